@@ -1,0 +1,39 @@
+"""gaspart: hard-sphere and hard-disc gases, simulated, measured, and compared with theory.
+
+The names below are loaded when first used, so that planning a workflow starts no compiler.
+"""
+
+from importlib import import_module
+
+__version__ = "0.1.0"
+
+_HOMES = {
+    "Body": "scene",
+    "Container": "scene",
+    "EventDriven": "engines",
+    "Scene": "scene",
+    "SceneError": "errors",
+    "Simulation": "simulation",
+    "SimulationError": "errors",
+    "Species": "scene",
+    "State": "state",
+    "Tally": "tally",
+    "TimeStepped": "engines",
+    "engine_from_dict": "engines",
+    "engine_to_dict": "engines",
+    "open_trajectory": "trajectory",
+    "resume": "trajectory",
+    "run": "trajectory",
+}
+
+__all__ = ["__version__", *_HOMES]
+
+
+def __getattr__(name: str):
+    if name in _HOMES:
+        return getattr(import_module(f"gaspart.{_HOMES[name]}"), name)
+    raise AttributeError(f"module 'gaspart' has no attribute {name!r}")
+
+
+def __dir__():
+    return sorted(__all__)

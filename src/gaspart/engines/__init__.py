@@ -1,0 +1,34 @@
+"""Two ways from a state to a later state, one contract.
+
+An engine's settings are a frozen dataclass with a `name`; `start(scene, state)` gives its dynamics, which
+can `advance`, tell `time`, `state` and `tally`, and make and `restore` a `checkpoint`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+
+from gaspart.engines.event_driven import EventDriven
+from gaspart.engines.time_stepped import TimeStepped
+from gaspart.errors import SceneError
+from gaspart.scene import from_mapping
+
+ENGINES = {engine.name: engine for engine in (EventDriven, TimeStepped)}
+
+
+def engine_from_dict(mapping: dict) -> EventDriven | TimeStepped:
+    """The engine described by {"name": "event" | "step", setting: value, ...}. Raises SceneError."""
+    if not isinstance(mapping, dict):
+        raise SceneError("engine", mapping, "must be a mapping with a name")
+    settings = dict(mapping)
+    name = settings.pop("name", None)
+    if name not in ENGINES:
+        raise SceneError("engine.name", name, f"must be one of {tuple(ENGINES)}")
+    if isinstance(settings.get("boxes_per_side"), list):
+        settings["boxes_per_side"] = tuple(settings["boxes_per_side"])
+    return from_mapping(ENGINES[name], settings, "engine")
+
+
+def engine_to_dict(engine: EventDriven | TimeStepped) -> dict:
+    """What `engine_from_dict` takes."""
+    return {"name": engine.name, **{key: value for key, value in asdict(engine).items() if value is not None}}

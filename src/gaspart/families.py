@@ -1,0 +1,39 @@
+"""Which family of modules makes which figure: one line a figure.
+
+A figure ``f`` of family ``m`` is measured by ``gaspart.measure.m.f``, judged by ``gaspart.claims.m.f`` and
+drawn by ``gaspart.figures.m.f``. This table stands alone so that planning a workflow imports nothing else.
+"""
+
+from __future__ import annotations
+
+FAMILIES = {
+    "naive_scaling": "scaling",
+    "box_count": "scaling",
+    "ideal_boxes": "scaling",
+    "linear_scaling": "scaling",
+    "event_scaling": "scaling",
+    "radius_grid": "scaling",
+    "fill_failures": "insertion",
+    "virial_discs": "virial",
+    "virial_spheres": "virial",
+    "speed_relaxation": "speeds",
+    "speed_distribution_spheres": "speeds",
+    "speed_distribution_discs": "speeds",
+    "msd_spheres": "displacement",
+    "msd_discs": "displacement",
+}
+
+TITLES = {
+    "scaling": "What space partitioning buys",
+    "insertion": "Random insertion",
+    "virial": "Equation of state",
+    "speeds": "Speed distributions",
+    "displacement": "Mean-squared displacement",
+}
+
+
+def function(stage: str, figure: str):
+    """The function of ``figure`` in one of the packages ``measure``, ``claims``, ``figures``."""
+    from importlib import import_module
+
+    return getattr(import_module(f"gaspart.{stage}.{FAMILIES[figure]}"), figure)

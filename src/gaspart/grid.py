@@ -1,0 +1,308 @@
+"""From a config to the points of its grids: names, seeds, paths; and from a point to what is to be run.
+
+Planning a workflow reads every point of every grid, so nothing heavy is imported here before it is needed.
+
+An *experiment* of the config holds ``point`` (defaults) and ``grid`` (a mapping from a key to the list of
+its values, whose product is taken, or a list of such mappings, which are concatenated). A key that is null
+counts as absent, so that a config merged over another can take a key back.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import math
+import re
+from dataclasses import asdict, dataclass
+
+from gaspart.errors import SceneError
+
+LENGTHS = ("collisions_per_body", "duration", "steps")
+EXTENTS = ("count", "radius", "packing_fraction", "side")
+ENGINE_KEYS = {
+    "event": ("search", "boxes_per_side", "boxes_per_body"),
+    "step": ("time_step", "boxes_per_side", "boxes_per_body", "precision", "rewind", "passes"),
+}
+SUFFIX = {"simulate": "", "measure_cost": ".nc", "fill": ".nc"}
+
+
+@dataclass(frozen=True)
+class Point:
+    """One point of a grid: one job of the workflow, with one output at ``path``."""
+
+    experiment: str
+    name: str
+    job: str
+    settings: dict
+    root: str
+    config_seed: int
+
+    @property
+    def path(self) -> str:
+        """Where the result lies: a folder of trajectories (``simulate``) or one netCDF file."""
+        return f"{self.root}/{self.experiment}/{self.name}{SUFFIX[self.job]}"
+
+    @property
+    def replicas(self) -> int:
+        """Number of independent runs of this point."""
+        return self.settings.get("replicas", 1)
+
+    def replica_path(self, replica: int) -> str:
+        """The trajectory of one replica (``simulate`` only)."""
+        return f"{self.path}/replica-{replica}.nc"
+
+    @property
+    def replica_paths(self) -> list[str]:
+        """The trajectories of all replicas, in order."""
+        return [self.replica_path(k) for k in range(self.replicas)]
+
+    def seed(self, replica: int = 0) -> tuple[int, ...]:
+        """Four 32-bit words that depend on the names alone, not on the point's place in its grid."""
+        text = f"{self.config_seed}/{self.experiment}/{self.name}/{replica}"
+        digest = hashlib.sha256(text.encode()).digest()
+        return tuple(int.from_bytes(digest[i : i + 4], "little") for i in range(0, 16, 4))
+
+    def to_dict(self) -> dict:
+        """Plain values only: what a job is handed."""
+        return asdict(self)
+
+    @classmethod
+    def from_dict(cls, values: dict) -> Point:
+        """The inverse of ``to_dict``."""
+        return cls(**values)
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """When a run is sampled, in the scene's time; the first ``equilibration_frames`` frames are dropped."""
+
+    duration: float
+    sample_interval: float
+    equilibration_frames: int
+    samples: int
+
+    @property
+    def equilibration(self) -> float:
+        """The time before the measured stretch."""
+        return self.equilibration_frames * self.sample_interval
+
+
+def points(config: dict, experiment: str) -> list[Point]:
+    """All points of an experiment. Raises SceneError for an empty grid or a point without a name of its own."""
+    block = config["experiments"][experiment]
+    where = f"experiments.{experiment}"
+    found: dict[str, Point] = {}
+    for varying in _combinations(block.get("grid") or {}, f"{where}.grid"):
+        settings = {**block.get("point", {}), **varying}
+        point = Point(
+            experiment=experiment,
+            name=_name(varying, f"{where}.grid"),
+            job=block.get("job", "simulate"),
+            settings={key: value for key, value in settings.items() if value is not None},
+            root=config.get("points", "results/points"),
+            config_seed=config["seed"],
+        )
+        if point.name in found:
+            raise SceneError(f"{where}.grid", point.name, "every point of a grid must be different")
+        found[point.name] = point
+    return list(found.values())
+
+
+def figure_points(config: dict, figure: str) -> list[Point]:
+    """The points of all experiments that a figure names, in its order."""
+    chosen = []
+    for experiment in config["figures"][figure]["experiments"]:
+        if experiment not in config["experiments"]:
+            raise SceneError(f"figures.{figure}.experiments", experiment, "must be the name of an experiment")
+        chosen += points(config, experiment)
+    return chosen
+
+
+def check(point: Point) -> None:
+    """Refuse settings that contradict each other, with SceneError; the cheap part, needing no scene."""
+    settings, where = point.settings, f"experiments.{point.experiment}"
+    given = [key for key in EXTENTS if key in settings]
+    if len(given) != 3:
+        raise SceneError(where, given, "exactly three of count, radius, packing_fraction, side must be given")
+    if point.job == "fill":
+        return
+    engine = settings.get("engine", "event")
+    if engine == "step" and "time_step" not in settings:
+        raise SceneError(f"{where}.time_step", None, "must be given with engine: step")
+    for key in set().union(*ENGINE_KEYS.values()) - set(ENGINE_KEYS[engine]):
+        if key in settings:
+            raise SceneError(f"{where}.{key}", settings[key], f"has no meaning with engine: {engine}")
+    if "boxes_per_side" in settings and "boxes_per_body" in settings:
+        raise SceneError(f"{where}.boxes_per_body", settings["boxes_per_body"], "excludes boxes_per_side")
+    lengths = [key for key in LENGTHS if key in settings]
+    if len(lengths) != 1:
+        raise SceneError(where, lengths, f"exactly one of {', '.join(LENGTHS)} must be given")
+    if lengths == ["steps"] and engine != "step":
+        raise SceneError(f"{where}.steps", settings["steps"], f"has no meaning with engine: {engine}")
+
+
+def extents(point: Point) -> tuple[int, float, tuple[float, ...]]:
+    """Number of bodies, radius and side lengths: the three that are given and the one that follows.
+
+    A count that follows is rounded to a whole number; a side that follows is the same on every axis.
+    """
+    check(point)
+    settings, dimension = point.settings, point.settings["dimension"]
+    unit = math.pi if dimension == 2 else 4.0 / 3.0 * math.pi
+    count, radius = settings.get("count"), settings.get("radius")
+    fraction, side = settings.get("packing_fraction"), settings.get("side")
+    if side is not None:
+        lengths = tuple(map(float, side)) if isinstance(side, (list, tuple)) else (float(side),) * dimension
+        if len(lengths) != dimension:
+            raise SceneError(f"experiments.{point.experiment}.side", side, f"must have {dimension} lengths")
+        volume = math.prod(lengths)
+        if count is None:
+            count = round(fraction * volume / (unit * radius**dimension))
+        elif radius is None:
+            radius = (fraction * volume / (unit * count)) ** (1.0 / dimension)
+    else:
+        lengths = ((count * unit * radius**dimension / fraction) ** (1.0 / dimension),) * dimension
+    return int(count), float(radius), lengths
+
+
+def scene(point: Point):
+    """The point's ``Scene``. Raises SceneError."""
+    from gaspart.scene import Container, Scene, Species
+
+    settings = point.settings
+    count, radius, lengths = extents(point)
+    boundary = settings.get("boundary", "wall")
+    species = Species(
+        count=count,
+        radius=radius,
+        mass=settings.get("mass", 1.0),
+        speed=settings.get("speed"),
+        temperature=settings.get("temperature"),
+        arrangement=settings.get("arrangement", "random"),
+    )
+    container = Container(
+        lengths=lengths, boundary=boundary if isinstance(boundary, str) else tuple(boundary)
+    )
+    return Scene(
+        container=container, species=(species,), centres_to_walls=settings.get("centres_to_walls", False)
+    )
+
+
+def engine(point: Point):
+    """The point's engine: ``EventDriven`` or ``TimeStepped``. Raises SceneError."""
+    from gaspart.engines import EventDriven, TimeStepped
+
+    check(point)
+    name = point.settings.get("engine", "event")
+    chosen = {key: point.settings[key] for key in ENGINE_KEYS[name] if key in point.settings}
+    if isinstance(chosen.get("boxes_per_side"), list):
+        chosen["boxes_per_side"] = tuple(chosen["boxes_per_side"])
+    if "boxes_per_body" in chosen:
+        chosen["boxes_per_side"] = boxes_per_side(chosen.pop("boxes_per_body"), *extents(point))
+    return EventDriven(**chosen) if name == "event" else TimeStepped(**chosen)
+
+
+def boxes_per_side(per_body: float, count: int, radius: float, lengths: tuple[float, ...]) -> tuple[int, ...]:
+    """(d,) boxes per axis: nearly cubic ones, ``per_body`` for each body, none smaller than a diameter."""
+    edge = (math.prod(lengths) / (per_body * count)) ** (1.0 / len(lengths))
+    return tuple(max(1, min(round(length / edge), int(length / (2.0 * radius)))) for length in lengths)
+
+
+def schedule(point: Point) -> Schedule:
+    """Duration and sampling of a point's runs, whatever unit its length is given in.
+
+    The length is divided into ``samples`` intervals (whole time steps with the step engine); the
+    equilibration, rounded up to whole intervals, goes before it.
+    """
+    check(point)
+    settings = point.settings
+    unit = next(key for key in LENGTHS if key in settings)
+    scale = _unit_of_time(point, unit)
+    samples = settings.get("samples", 1)
+    interval = settings[unit] * scale / samples
+    if settings.get("engine") == "step":
+        step = settings["time_step"]
+        interval = step * max(1, round(interval / step))
+    dropped = math.ceil(settings.get("equilibration", 0) * scale / interval * (1.0 - 1e-12))
+    return Schedule(interval * (dropped + samples), interval, dropped, samples)
+
+
+def _unit_of_time(point: Point, unit: str) -> float:
+    """The scene's time in one ``unit`` of length; for collisions per body, from Enskog's rate."""
+    settings, dimension = point.settings, point.settings["dimension"]
+    if unit == "duration":
+        return 1.0
+    if unit == "steps":
+        return settings["time_step"]
+    from gaspart import theory
+
+    count, radius, lengths = extents(point)
+    mass = settings.get("mass", 1.0)
+    temperature = settings.get("temperature")
+    if temperature is None:
+        temperature = mass * settings.get("speed", 0.0) ** 2 / dimension
+    if not temperature > 0.0:
+        raise SceneError(
+            f"experiments.{point.experiment}.collisions_per_body",
+            settings[unit],
+            "needs a temperature or a speed above zero",
+        )
+    ball = (math.pi if dimension == 2 else 4.0 / 3.0 * math.pi) * radius**dimension
+    fraction = count * ball / math.prod(lengths)
+    try:
+        return 1.0 / float(theory.collision_rate(fraction, dimension, 2.0 * radius, temperature, mass))
+    except ValueError as error:
+        rule = f"cannot be turned into a time: {error}"
+        raise SceneError(
+            f"experiments.{point.experiment}.collisions_per_body", settings[unit], rule
+        ) from None
+
+
+def variant(point: Point) -> str:
+    """The name of the compiled kernels a point needs: points with the same name share them."""
+    settings = point.settings
+    boundary = settings.get("boundary", "wall")
+    kinds = [boundary] * settings["dimension"] if isinstance(boundary, str) else list(boundary)
+    parts = [f"{settings['dimension']}d", "".join("p" if kind == "periodic" else "w" for kind in kinds)]
+    if point.job == "fill":
+        return "-".join(["fill", *parts])
+    if settings.get("engine", "event") == "event":
+        return "-".join(["event", settings.get("search", "boxes"), *parts])
+    rewind = "rewind" if settings.get("rewind", True) else "norewind"
+    return "-".join(["step", settings.get("precision", "float64"), rewind, *parts])
+
+
+def variants(config: dict) -> dict[str, Point]:
+    """One point, the first in the config's order, for each kernel variant of all grids."""
+    chosen: dict[str, Point] = {}
+    for experiment in config["experiments"]:
+        for point in points(config, experiment):
+            chosen.setdefault(variant(point), point)
+    return chosen
+
+
+def _combinations(grid, where: str) -> list[dict]:
+    """The product of a mapping's lists; of a list of mappings, one after the other."""
+    if isinstance(grid, list):
+        if not grid:
+            raise SceneError(where, grid, "must not be empty")
+        return [combination for block in grid for combination in _combinations(block, where)]
+    axes = {key: values if isinstance(values, list) else [values] for key, values in grid.items()}
+    for key, values in axes.items():
+        if not values:
+            raise SceneError(f"{where}.{key}", values, "must not be empty")
+    return [dict(zip(axes, chosen, strict=True)) for chosen in itertools.product(*axes.values())]
+
+
+def _name(varying: dict, where: str) -> str:
+    """The name of a point, fit for a file system: its varying keys and their values."""
+    return ",".join(f"{key}={_text(value, f'{where}.{key}')}" for key, value in varying.items()) or "single"
+
+
+def _text(value, where: str) -> str:
+    if isinstance(value, (list, tuple)):
+        return "x".join(_text(item, where) for item in value)
+    text = str(value).lower() if isinstance(value, bool) or value is None else str(value)
+    if not re.fullmatch(r"[A-Za-z0-9_.+-]+", text):
+        raise SceneError(where, value, "a value that names a point may hold letters, digits and _ . + - only")
+    return text

@@ -1,0 +1,172 @@
+"""How a scene starts: where the bodies are, and how they move."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from gaspart.errors import SceneError
+from gaspart.random import directions, normals, stream
+from gaspart.scene import Scene
+from gaspart.state import State
+
+PATIENCE = 2_000_000
+"""Failed attempts at placing one body after which a container counts as full."""
+
+_POSITIONS, _VELOCITIES = 0, 1
+
+
+def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
+    """The state at time 0. Positions and velocities have streams of their own under the one seed.
+
+    Raises SceneError if the bodies cannot be placed.
+    """
+    explicit = len(scene.bodies)
+    counts = [explicit, *(kind.count for kind in scene.species)]
+    groups = [len(scene.species), *range(len(scene.species))]
+
+    def per_body(attribute):
+        alone = [getattr(body, attribute) for body in scene.bodies]
+        return np.concatenate([alone, *(np.full(kind.count, getattr(kind, attribute)) for kind in scene.species)])
+
+    radii, masses = per_body("radius").astype(float), per_body("mass").astype(float)
+    rng = stream(seed, _POSITIONS)
+    if any(kind.arrangement == "lattice" and kind.count for kind in scene.species):
+        positions = lattice(scene, rng)
+    else:
+        positions, _ = random_insertion(scene, rng)
+    return State(
+        time=0.0,
+        positions=positions,
+        velocities=_velocities(scene, stream(seed, _VELOCITIES)),
+        images=np.zeros((scene.count, scene.dimension), dtype=np.int64),
+        radii=radii,
+        masses=masses,
+        species=np.repeat(groups, counts).astype(np.int64),
+        lengths=np.array(scene.container.lengths),
+    )
+
+
+def _velocities(scene: Scene, rng: np.random.Generator) -> np.ndarray:
+    """(N, d): given, of one fixed speed, Maxwellian, or none."""
+    parts = [np.array([body.velocity for body in scene.bodies], dtype=float).reshape(-1, scene.dimension)]
+    for kind in scene.species:
+        if kind.speed is not None:
+            parts.append(kind.speed * directions(rng, kind.count, scene.dimension))
+        elif kind.temperature is not None:
+            width = math.sqrt(kind.temperature / kind.mass)
+            parts.append(width * normals(rng, kind.count, scene.dimension))
+        else:
+            parts.append(np.zeros((kind.count, scene.dimension)))
+    return np.concatenate(parts)
+
+
+def random_insertion(
+    scene: Scene, rng: np.random.Generator, patience: int = PATIENCE
+) -> tuple[np.ndarray, np.ndarray]:
+    """Place the species one body after another at random places that are free, larger radii first.
+
+    Returns positions (N, d) and failures (N,), the failed attempts before each body found its place.
+    Raises SceneError when one body has failed `patience` times: the container is as good as full.
+    """
+    from gaspart.boxes import make_boxes, sides_for
+    from gaspart.insertion import place
+
+    lengths, dimension = scene.container.lengths, scene.dimension
+    explicit = len(scene.bodies)
+    species = sorted(range(len(scene.species)), key=lambda n: -scene.species[n].radius)
+    order = [np.arange(explicit)]  # bodies in the order in which they are placed
+    first = explicit + np.cumsum([0, *(kind.count for kind in scene.species)])
+    order += [np.arange(first[n], first[n + 1]) for n in species]
+    radii = np.concatenate(
+        [[body.radius for body in scene.bodies]]
+        + [np.full(scene.species[n].count, scene.species[n].radius) for n in species]
+    ).astype(float)
+    boxes = make_boxes(scene, sides_for(scene, per_body=1.0), images=False)
+    head = np.full(boxes.count, -1, dtype=np.int64)
+    following = np.full(scene.count, -1, dtype=np.int64)
+    positions = np.empty((scene.count, dimension))
+    failed = np.zeros(scene.count, dtype=np.int64)
+
+    for n, body in enumerate(scene.bodies):  # their places are given, and the scene has checked them
+        positions[n] = body.position
+        box = boxes.index_of(body.position)
+        following[n], head[box] = head[box], n
+    placed = explicit
+    for n in species:
+        kind = scene.species[n]
+        stop = placed + kind.count
+        lower, upper = scene.reach(kind.radius)
+        failures = 0
+        while placed < stop:
+            draws = rng.random((max(256, min(1_000_000, 2 * (stop - placed))), dimension))
+            placed, failures, _ = place(
+                draws, positions, radii, placed, stop, lower, upper, lengths, scene.container.periodic,
+                boxes.per_side, boxes.widths, boxes.neighbour, head, following, boxes.strides,
+                failures, patience, failed,
+            )  # fmt: skip
+            if failures >= patience:
+                eta = scene.packing_fraction * placed / scene.count
+                raise SceneError(
+                    f"species[{n}].count",
+                    kind.count,
+                    f"does not fit by random insertion: full after {placed} bodies, packing fraction about "
+                    f"{eta:.4f}, {patience} attempts in vain; use arrangement: lattice",
+                )
+    back = np.argsort(np.concatenate(order), kind="stable") if scene.count else np.empty(0, dtype=int)
+    return positions[back], failed[back]
+
+
+def lattice(scene: Scene, rng: np.random.Generator) -> np.ndarray:
+    """(N, d) positions on a triangular (2D) or face-centred cubic (3D) lattice stretched to the container.
+
+    If there are more sites than bodies, the sites left empty are random, as is who sits where in a
+    mixture. Raises SceneError if the lattice would have to be denser than the bodies allow.
+    """
+    margin = np.array(scene.reach(scene.largest_radius)[0])
+    walled = ~np.array(scene.container.periodic)
+    lengths = np.array(scene.container.lengths) - 2 * margin * walled
+    basis = np.array([[0, 0], [0.5, 0.5]]) if scene.dimension == 2 else _FCC
+    shape = np.array([1.0, math.sqrt(3.0)]) if scene.dimension == 2 else np.ones(3)
+    best = max(
+        _cell_counts(lengths, shape, walled, scene.count, len(basis)),
+        key=lambda cells: _spacing(lengths, cells, walled, basis),
+    )
+    spacing = _spacing(lengths, best, walled, basis)
+    if spacing < 2 * scene.largest_radius:
+        raise SceneError(
+            "arrangement", "lattice",
+            f"{scene.count} bodies of diameter {2 * scene.largest_radius:g} leave a lattice spacing of {spacing:g}",
+        )  # fmt: skip
+    cells = np.stack(np.meshgrid(*(np.arange(n) for n in best), indexing="ij"), axis=-1)
+    sites = (cells.reshape(-1, 1, scene.dimension) + basis).reshape(-1, scene.dimension)
+    sites = margin * walled + sites * (lengths / _periods(best, walled, basis))
+    chosen = np.sort(rng.permutation(len(sites))[: scene.count])
+    if len(scene.species) > 1:
+        chosen = rng.permutation(chosen)
+    return sites[chosen]
+
+
+_FCC = np.array([[0.0, 0, 0], [0, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 0.5, 0]])
+
+
+def _periods(cells: np.ndarray, walled: np.ndarray, basis: np.ndarray) -> np.ndarray:
+    """(d,) lattice cells that fill the length: between walls the last half cell is empty, so not counted."""
+    return np.where(walled, np.maximum(cells - 1 + basis.max(axis=0), 0.5), cells)
+
+
+def _spacing(lengths, cells, walled, basis) -> float:
+    """Shortest distance of two sites."""
+    edge = lengths / _periods(np.asarray(cells), walled, basis)
+    diagonals = (basis[1:] * edge) if len(basis) > 1 else np.empty((0, len(edge)))
+    return float(min(np.sqrt((diagonals**2).sum(axis=1)).min(), edge.min()))
+
+
+def _cell_counts(lengths, shape, walled, count, per_cell):
+    """Numbers of cells (d,) near the ideal shape that hold `count` sites."""
+    ideal = (lengths / shape) * (count / per_cell / np.prod(lengths / shape)) ** (1.0 / len(lengths))
+    reach = np.stack(np.meshgrid(*([np.arange(-2, 4)] * len(lengths)), indexing="ij"), axis=-1)
+    options = np.floor(ideal).astype(int) + reach.reshape(-1, len(lengths))
+    options = options[(options > 0).all(axis=1) & (options.prod(axis=1) * per_cell >= count)]
+    return list(options)

@@ -1,0 +1,66 @@
+"""Random sequential insertion: the kernel that tries places one after another."""
+
+import numpy as np
+
+from gaspart.boxes import box_coordinate
+from gaspart.kernel import kernel
+
+
+@kernel
+def place(
+    draws, positions, radii, start, stop, lower, upper, lengths, periodic, per_side, widths, neighbour, head, following,
+    strides, failures, patience, attempts_at,
+):
+    """Try the `draws` (M, d) in [0, 1) as places for bodies start, start + 1, ... stop - 1, in that order.
+
+    A place is free if no body already there is nearer than the sum of the radii. lower, upper: (d,) corners
+    of the region for the centres. `failures` counts the current body's failed attempts across calls; at
+    `patience` the search gives up. attempts_at: (N,) number of failed attempts of each placed body.
+
+    Returns (next body to place, failures so far, draws used).
+    """
+    dimension = len(lengths)
+    trial = np.empty(dimension)
+    at = np.zeros(3, np.int64)
+    body = start
+    used = 0
+    while used < draws.shape[0] and body < stop and failures < patience:
+        for k in range(dimension):
+            trial[k] = lower[k] + draws[used, k] * (upper[k] - lower[k])
+            at[k] = box_coordinate(trial[k], widths[k], per_side[k])
+        used += 1
+        free = True
+        for dz in range(3):
+            z = neighbour[2, at[2], dz]
+            for dy in range(3):
+                y = neighbour[1, at[1], dy]
+                for dx in range(3):
+                    x = neighbour[0, at[0], dx]
+                    if not free or x < 0 or y < 0 or z < 0:
+                        continue
+                    other = head[x + y + z]
+                    while other >= 0:
+                        square = 0.0
+                        for k in range(dimension):
+                            gap = abs(trial[k] - positions[other, k])
+                            if periodic[k]:
+                                gap = min(gap, lengths[k] - gap)
+                            square += gap * gap
+                        reach = radii[body] + radii[other]
+                        if square < reach * reach:
+                            free = False
+                            break
+                        other = following[other]
+        if not free:
+            failures += 1
+            continue
+        box = 0
+        for k in range(dimension):
+            positions[body, k] = trial[k]
+            box += at[k] * strides[k]
+        following[body] = head[box]
+        head[box] = body
+        attempts_at[body] = failures
+        failures = 0
+        body += 1
+    return body, failures, used

@@ -1,0 +1,63 @@
+"""Random sequential insertion into a container until it is as good as full, every failure counted."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from gaspart import grid
+from gaspart.boxes import make_boxes, sides_for
+from gaspart.insertion import place
+from gaspart.random import stream
+
+CHUNK = 1 << 16
+
+
+def fill(point: grid.Point) -> xr.Dataset:
+    """Offer every replica of the point's container ``attempts`` random places for each of its bodies.
+
+    The scene's count is the number of bodies at hand, which may be more than ever find room: insertion
+    stops when all are placed or the attempts (``attempts`` times the count) are used up.
+
+    Returns a dataset: ``failures`` (replica, body), failed attempts before each body found its place, -1
+    for a body without one; ``placed`` and ``attempts`` (replica,).
+    Attributes: packing_fraction_per_body, side, radius.
+    """
+    scene = grid.scene(point)
+    runs = [
+        _fill_once(scene, point.settings["attempts"] * scene.count, point.seed(k))
+        for k in range(point.replicas)
+    ]
+    return xr.Dataset(
+        {
+            "failures": (("replica", "body"), np.array([failures for failures, _ in runs]), {"units": "1"}),
+            "placed": ("replica", np.array([(failures >= 0).sum() for failures, _ in runs]), {"units": "1"}),
+            "attempts": ("replica", np.array([used for _, used in runs]), {"units": "1"}),
+        },
+        attrs={
+            "packing_fraction_per_body": scene.packing_fraction / scene.count,
+            "side": list(scene.container.lengths),
+            "radius": scene.largest_radius,
+        },
+    )
+
+
+def _fill_once(scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarray, int]:
+    """Failures before each body (N,), -1 where there was no room; and the attempts that were made."""
+    boxes = make_boxes(scene, sides_for(scene, per_body=1.0), images=False)
+    lower, upper = scene.reach(scene.largest_radius)
+    head = np.full(boxes.count, -1, dtype=np.int64)
+    following = np.full(scene.count, -1, dtype=np.int64)
+    positions = np.empty((scene.count, scene.dimension))
+    radii = np.full(scene.count, scene.largest_radius)
+    before = np.full(scene.count, -1, dtype=np.int64)
+    rng, placed, failures, used = stream(seed), 0, 0, 0
+    while placed < scene.count and used < attempts:
+        draws = rng.random((min(CHUNK, attempts - used), scene.dimension))
+        placed, failures, tried = place(
+            draws, positions, radii, placed, scene.count, lower, upper, scene.container.lengths,
+            scene.container.periodic, boxes.per_side, boxes.widths, boxes.neighbour, head, following,
+            boxes.strides, failures, attempts + 1, before,
+        )  # fmt: skip
+        used += tried
+    return before, used

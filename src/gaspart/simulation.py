@@ -1,0 +1,162 @@
+"""The face that everything above is used through: a scene, an engine and a seed, under way."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from gaspart.engines import EventDriven, TimeStepped
+from gaspart.engines.common import EventLog
+from gaspart.errors import SceneError, SimulationError
+from gaspart.initial import initial_state
+from gaspart.scene import Body, Scene, Species, count_of, number
+from gaspart.state import State
+from gaspart.tally import Tally
+
+ENERGY_DRIFT = {"float64": 1e-9, "float32": 1e-3}
+"""Relative drift of the energy at which a run is stopped, by the engine's precision."""
+
+
+class Simulation:
+    """One run. `seed`: a whole number, or a tuple of them, that fixes the initial state.
+
+    Raises SceneError if the scene cannot be set up, or the engine cannot model it.
+    """
+
+    def __init__(self, scene: Scene, engine: EventDriven | TimeStepped, seed: int | tuple[int, ...] = 0):
+        self.scene, self.engine, self.seed = scene, engine, seed
+        self._log: EventLog | None = None
+        self._advanced = False
+        self._set_up()
+
+    def _set_up(self) -> None:
+        self._initial = initial_state(self.scene, self.seed)
+        self._energy = self._initial.kinetic_energy
+        self._dynamics = self.engine.start(self.scene, self._initial)
+
+    def add(self, position, velocity, radius: float, mass: float = 1.0) -> None:
+        """Add one body: `scene` becomes a new, validated scene. Refused once the simulation has advanced."""
+        self._change(self.scene.with_bodies(Body(tuple(position), tuple(velocity), radius, mass)))
+
+    def add_random(self, count: int, radius: float, **properties) -> None:
+        """Add `count` bodies at random places (properties as in `Species`). Refused after the first advance."""
+        self._change(self.scene.with_species(Species(count, radius, **properties)))
+
+    def _change(self, scene: Scene) -> None:
+        if self._advanced:
+            raise SceneError("scene", "under way", "bodies can only be added before the first advance")
+        before = self.scene
+        self.scene = scene
+        try:
+            self._set_up()
+        except SceneError:
+            self.scene = before
+            self._set_up()
+            raise
+
+    def advance(
+        self, duration: float | None = None, max_events: int | None = None, until: float | None = None
+    ) -> None:
+        """Advance by `duration`, or to the time `until`, or by `max_events` collisions and wall hits, whichever
+        comes first. The time-stepped engine stops at the last whole step not after the target.
+
+        Raises SceneError for a target in the past, or no target at all.
+        """
+        if duration is not None:
+            until_ = self.time + number("duration", duration, "must not be negative", least=0.0)
+            until = until_ if until is None else min(until, until_)
+        if until is None:
+            if max_events is None:
+                raise SceneError("duration", None, "give duration, until or max_events")
+            until = math.inf
+        elif until < self.time:
+            raise SceneError("until", until, f"lies in the past of the present time {self.time:g}")
+        if max_events is not None:
+            count_of("max_events", max_events)
+        self._advanced = True
+        self._dynamics.advance(until, max_events, self._log)
+
+    @property
+    def time(self) -> float:
+        return self._dynamics.time
+
+    @property
+    def state(self) -> State:
+        """All bodies now; a copy."""
+        return self._dynamics.state
+
+    @property
+    def initial_state(self) -> State:
+        """All bodies at the start; a copy."""
+        return self._initial.copy()
+
+    @property
+    def tally(self) -> Tally:
+        """What was counted since the start, or the last `reset_tally`; a copy."""
+        return self._dynamics.tally
+
+    def reset_tally(self) -> None:
+        """Begin to count anew."""
+        self._dynamics.reset_tally()
+
+    @property
+    def record_events(self) -> bool:
+        """Whether events are written down as they happen (event-driven engine only)."""
+        return self._log is not None
+
+    @record_events.setter
+    def record_events(self, wanted: bool) -> None:
+        if wanted and not isinstance(self.engine, EventDriven):
+            raise SceneError("record_events", wanted, 'needs the "event" engine; steps know no events')
+        self._log = EventLog(self.scene.dimension) if wanted else None
+
+    @property
+    def events(self) -> dict[str, np.ndarray]:
+        """The events recorded: time (M,), bodies (M, 2), positions and velocities (M, 2, d) just after.
+
+        The second of `bodies` is -1 - face for a hit at a wall.
+        """
+        if self._log is None:
+            raise SceneError("events", None, "set record_events to True before advancing")
+        return self._log.events
+
+    def replay(self, by: str = "time", interval: float | None = None) -> Iterator[State]:
+        """The states from the start to the present time, by running it again: at every `interval`
+        (by="time"), or after every event (by="event", event-driven engine only)."""
+        again = Simulation(self.scene, self.engine, self.seed)
+        if by == "time":
+            step = number("interval", interval, "must be positive", above=0.0)
+            for n in range(math.floor(self.time / step * (1 + 1e-12)) + 1):
+                again.advance(until=min(n * step, self.time))
+                yield again.state
+        elif by == "event":
+            yield again.state
+            while True:
+                again.advance(until=self.time, max_events=1)
+                if again.time >= self.time:
+                    yield again.state
+                    return
+                yield again.state
+        else:
+            raise SceneError("by", by, 'must be "time" or "event"')
+
+    def check_invariants(self) -> None:
+        """Raise SimulationError if energy has drifted, or a body is not where it can be."""
+        state = self.state
+        if not (np.isfinite(state.positions).all() and np.isfinite(state.velocities).all()):
+            raise SimulationError(f"at time {self.time:g} a position or velocity is not finite")
+        drift = abs(state.kinetic_energy - self._energy)
+        allowed = ENERGY_DRIFT[getattr(self.engine, "precision", "float64")] * self._energy
+        if drift > allowed:
+            raise SimulationError(f"at time {self.time:g} the energy has drifted by {drift:g} from {self._energy:g}")
+
+    def checkpoint(self) -> dict[str, np.ndarray]:
+        """Arrays from which `restore` goes on to the same bits, as if nothing had happened."""
+        return self._dynamics.checkpoint()
+
+    def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
+        """Go on from a checkpoint of a simulation of the same scene, engine and seed."""
+        self._advanced = True
+        self._dynamics.restore(checkpoint)

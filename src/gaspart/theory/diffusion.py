@@ -1,0 +1,103 @@
+"""Self-diffusion beyond Enskog: dense corrections, finite systems, and the long-time tail.
+
+Arguments as in `enskog`: packing fraction (number or array), diameter, temperature (k_B = 1), mass.
+"""
+
+import math
+
+import numpy as np
+
+from ._arguments import checked_packing_fraction
+from .enskog import collision_rate, enskog_diffusion, enskog_viscosity
+from .geometry import number_density
+
+ERPENBECK_WOOD_UNCERTAINTY = 0.03
+"""Relative uncertainty of `erpenbeck_wood_ratio`: the band to draw around it."""
+YEH_HUMMER_CONSTANT = 2.837297
+"""Madelung-like constant of a cubic periodic container (Yeh and Hummer 2004; recalled)."""
+
+
+def erpenbeck_wood_ratio(packing_fraction):
+    """Spheres: D / D_Enskog = 1 + 0.05403 y + 6.3656 y^2 - 10.9425 y^3, y = rho sigma^3 / sqrt 2.
+
+    Erpenbeck and Wood, Phys. Rev. A 43, 4254 (1991); recalled, good to 3 %. Range: the fluid, eta <= 0.4915.
+    Infinite system. Dimensionless.
+    """
+    eta = checked_packing_fraction(packing_fraction, 0.4915)
+    y = number_density(eta, 3) / math.sqrt(2.0)
+    return 1.0 + 0.05403 * y + 6.3656 * y**2 - 10.9425 * y**3
+
+
+def erpenbeck_wood_diffusion(packing_fraction, diameter=1.0, temperature=1.0, mass=1.0):
+    """Spheres: D of the infinite system, `erpenbeck_wood_ratio` times Enskog's (3 %; length^2 / time)."""
+    enskog = enskog_diffusion(packing_fraction, 3, diameter, temperature, mass)
+    return erpenbeck_wood_ratio(packing_fraction) * enskog
+
+
+def yeh_hummer(length, viscosity, temperature=1.0):
+    """Spheres: D_infinity - D_L = 2.837297 k_B T / (6 pi viscosity L): to be added to D_L (length^2 / time).
+
+    Yeh and Hummer, J. Phys. Chem. B 108, 15873 (2004); recalled. `length`: side of the cubic periodic
+    container; `viscosity`: shear viscosity, `enskog.enskog_viscosity` will do to eta = 0.3. Hydrodynamics:
+    holds where the mean free path is much smaller than L; a dilute gas has less correction than this.
+    """
+    return YEH_HUMMER_CONSTANT * temperature / (6.0 * math.pi * viscosity * length)
+
+
+def velocity_decay_rate(packing_fraction, dimension, diameter=1.0, temperature=1.0, mass=1.0):
+    """Initial decay rate of the velocity autocorrelation, 2 nu / d (exact in equilibrium; 1 / time).
+
+    nu is `enskog.collision_rate`; k_B T / (m rate) is Enskog's D in the first Sonine approximation.
+    """
+    return 2.0 / dimension * collision_rate(packing_fraction, dimension, diameter, temperature, mass)
+
+
+def enskog_mean_squared_displacement(
+    time, packing_fraction, dimension, diameter=1.0, temperature=1.0, mass=1.0
+):
+    """Mean-squared displacement 2 d D [t - (1 - exp(-g t)) / g], g = k_B T / (m D), D Enskog's (length^2).
+
+    From an exponential velocity autocorrelation: ballistic d (k_B T / m) t^2 at short times (exact), 2 d D t
+    at long ones; g is 2 to 3 % below the exact initial rate. Dilute gases; no long-time tail. `time`
+    broadcasts with eta.
+    """
+    diffusion = enskog_diffusion(packing_fraction, dimension, diameter, temperature, mass)
+    rate = temperature / (mass * diffusion)
+    time = np.asarray(time, dtype=float)
+    scaled = rate * time
+    # t - (1 - exp(-g t)) / g loses its digits at small g t: its series there, g t^2 / 2 (1 - g t / 3 + ...).
+    series = 0.5 * scaled**2 * (1.0 - scaled / 3.0 + scaled**2 / 12.0)
+    shape = np.where(scaled < 1e-3, series, scaled + np.expm1(-scaled))
+    return 2.0 * dimension * diffusion / rate * shape
+
+
+def _spreading(packing_fraction, dimension, diameter, temperature, mass):
+    """Number density, and diffusion coefficient plus kinematic viscosity, both Enskog's."""
+    density = number_density(np.asarray(packing_fraction, dtype=float), dimension, diameter)
+    diffusion = enskog_diffusion(packing_fraction, dimension, diameter, temperature, mass)
+    viscosity = enskog_viscosity(packing_fraction, dimension, diameter, temperature, mass)
+    return density, diffusion + viscosity / (mass * density)
+
+
+def velocity_autocorrelation_tail(
+    time, packing_fraction, dimension, diameter=1.0, temperature=1.0, mass=1.0
+):
+    """Long-time tail of <v(0).v(t)> / <v^2>: ((d-1) / (d rho)) [4 pi (D + nu) t]^(-d/2) (dimensionless).
+
+    Mode coupling, Ernst, Hauge and van Leeuwen (1970); recalled. D and the kinematic viscosity nu are
+    Enskog's. Range: after 15 to 30 mean free times and before sound has crossed the container.
+    """
+    density, spreading = _spreading(packing_fraction, dimension, diameter, temperature, mass)
+    amplitude = (dimension - 1) / (dimension * density)
+    return amplitude * (4.0 * math.pi * spreading * np.asarray(time)) ** (-0.5 * dimension)
+
+
+def logarithmic_slope(packing_fraction, diameter=1.0, temperature=1.0, mass=1.0):
+    """Discs: dD(t) / d ln t = k_B T / (8 pi m rho (D + nu)), D(t) the integral of the tail (length^2 / time).
+
+    In 2D the tail falls as 1/t, so D(t) grows without limit and no diffusion coefficient exists. Range and
+    provenance of `velocity_autocorrelation_tail`, of which it is the integral; the very long times, where
+    D(t) in turn changes the slope, are out of reach of a simulation.
+    """
+    density, spreading = _spreading(packing_fraction, 2, diameter, temperature, mass)
+    return temperature / (8.0 * math.pi * mass * density * spreading)

@@ -1,0 +1,125 @@
+"""Enskog theory of the dense gas: collision rate, mean free path and transport coefficients.
+
+All take `packing_fraction` (number or array), dimension 2 or 3, and the bodies' diameter, temperature (k_B =
+1) and mass; time is in units of diameter sqrt(mass / temperature). chi is `state.contact_value`. Literature:
+Chapman and Cowling (1970) for spheres; Gass, J. Chem. Phys. 54, 1898 (1971) for discs. Range: that of the
+reference equation of state; the collision rate is exact, the transport coefficients neglect correlated
+collisions (see `diffusion`).
+"""
+
+import math
+
+import numpy as np
+
+from ._arguments import checked_dimension
+from .geometry import number_density, unit_sphere_surface
+from .speeds import mean_speed
+from .state import compressibility_factor, contact_value, finite_size_correction
+
+# Exact solutions of the linear Boltzmann equation over the first Sonine approximation, at zero density:
+# diffusion (recalled); and viscosity and conductivity in units of diameter = mass = k_B T = 1 (recalled).
+_DIFFUSION_FACTOR = {2: 1.02710, 3: 1.01895}
+_DILUTE_VISCOSITY = {2: 0.28829, 3: 0.17913}
+_DILUTE_CONDUCTIVITY = {2: 1.16192, 3: 0.67783}
+
+
+def _density_and_contact(packing_fraction, dimension, diameter):
+    density = number_density(np.asarray(packing_fraction, dtype=float), dimension, diameter)
+    return density, contact_value(packing_fraction, dimension)
+
+
+def collision_rate(packing_fraction, dimension, diameter=1.0, temperature=1.0, mass=1.0):
+    """Collisions of one body per time, nu = S rho sigma^(d-1) chi sqrt(k_B T / (pi m)).
+
+    S = 2 pi (2D), 4 pi (3D), so 2 rho sigma chi sqrt(pi k_B T / m) and 4 rho sigma^2 chi sqrt(pi k_B T / m).
+    Exact in equilibrium (velocities independent of positions), as good as chi. In a run: 2 N_coll / (N t).
+    Unit 1 / time.
+    """
+    density, contact = _density_and_contact(packing_fraction, dimension, diameter)
+    speed = math.sqrt(temperature / (math.pi * mass))
+    return unit_sphere_surface(dimension) * density * diameter ** (dimension - 1) * contact * speed
+
+
+def collision_rate_finite_size_factor(packing_fraction, dimension, count):
+    """nu_N / nu of `count` bodies in a periodic container, fixed energy, total momentum zero.
+
+    Contacts: the canonical Z_N - 1 over Z - 1 (to O(1/N), see `state.finite_size_correction`).
+    Speeds: <|v_12 . n|> of velocities uniform on the sphere in D = d (N-1) dimensions over Maxwell's,
+    sqrt(d N / 2) Gamma(D/2) / Gamma((D+1)/2) (exact).
+    """
+    freedoms = dimension * (count - 1)
+    log_ratio = math.lgamma(0.5 * freedoms) - math.lgamma(0.5 * (freedoms + 1))
+    speeds = math.sqrt(0.5 * dimension * count) * math.exp(log_ratio)
+    eta = np.maximum(packing_fraction, 1e-6)  # the ratio's limit, where the excess itself vanishes
+    shift = finite_size_correction(eta, dimension, count, ensemble="canonical")
+    return speeds * (1.0 + shift / (compressibility_factor(eta, dimension) - 1.0))
+
+
+def mean_free_path(packing_fraction, dimension, diameter=1.0):
+    """Mean path between collisions, <v> / nu.
+
+    1 / (sqrt 2 pi rho sigma^2 chi) in 3D, 1 / (2 sqrt 2 rho sigma chi) in 2D.
+    Exact in equilibrium, as good as chi; infinite at zero density. Unit length.
+    """
+    with np.errstate(divide="ignore"):
+        return mean_speed(dimension) / collision_rate(packing_fraction, dimension, diameter)
+
+
+def enskog_diffusion(packing_fraction, dimension, diameter=1.0, temperature=1.0, mass=1.0):
+    """Self-diffusion coefficient of Enskog theory, D = c sqrt(k_B T / (pi m)) / (rho sigma^(d-1) chi).
+
+    c = (3/8) 1.01895 in 3D, (1/2) 1.02710 in 2D (recalled Sonine factors). 3D: exact at zero density;
+    `diffusion` has the correction at higher density. 2D: D of the Enskog equation only; the true one does not
+    exist (it grows like ln t). Unit length^2 / time.
+    """
+    density, contact = _density_and_contact(packing_fraction, dimension, diameter)
+    first = {2: 0.5, 3: 0.375}[dimension]
+    speed = math.sqrt(temperature / (math.pi * mass))
+    with np.errstate(divide="ignore"):  # infinite at zero density
+        path = 1.0 / (density * diameter ** (dimension - 1) * contact)
+    return first * _DIFFUSION_FACTOR[dimension] * speed * path
+
+
+def enskog_bulk_viscosity(packing_fraction, dimension, diameter=1.0, temperature=1.0, mass=1.0):
+    """Bulk viscosity of Enskog theory, (S / d^2) rho^2 sigma^(d+1) chi sqrt(m k_B T / pi).
+
+    S = 2 pi (2D), 4 pi (3D). Exact within the theory: the first-order change of the collisional pressure
+    under uniform expansion, in which a pair at contact has the mean normal velocity sigma div(u) / d.
+    Unit mass length^(2-d) / time.
+    """
+    density, contact = _density_and_contact(packing_fraction, dimension, diameter)
+    thermal = math.sqrt(mass * temperature / math.pi)
+    surface = unit_sphere_surface(dimension)
+    return surface / dimension**2 * density**2 * diameter ** (dimension + 1) * contact * thermal
+
+
+def enskog_viscosity(packing_fraction, dimension, diameter=1.0, temperature=1.0, mass=1.0):
+    """Shear viscosity of Enskog theory, (eta_0 / chi) [1 + 2 b chi / (d+2)]^2 + bulk viscosity d / (d+2).
+
+    b = 2^(d-1) times the packing fraction, eta_0 the dilute value (0.17913 in 3D, 0.28829 in 2D, times
+    sqrt(m k_B T) / sigma^(d-1)). 3D: eta_0 [1/chi + 0.8 b + 0.7615 b^2 chi]; 2D: eta_0 [1/chi + b + 0.8729
+    b^2 chi] (Gass). Good to a few per cent to eta = 0.3 (3D), too low beyond. Unit mass length^(2-d) / time.
+    """
+    checked_dimension(dimension)
+    contact = contact_value(packing_fraction, dimension)
+    dilute = _DILUTE_VISCOSITY[dimension] * math.sqrt(mass * temperature) / diameter ** (dimension - 1)
+    excess = 2.0 ** (dimension - 1) * np.asarray(packing_fraction) * contact
+    bulk = enskog_bulk_viscosity(packing_fraction, dimension, diameter, temperature, mass)
+    kinetic = dilute / contact * (1.0 + 2.0 * excess / (dimension + 2)) ** 2
+    return kinetic + dimension / (dimension + 2) * bulk
+
+
+def enskog_conductivity(packing_fraction, dimension, diameter=1.0, temperature=1.0, mass=1.0):
+    """Conductivity of heat, (lambda_0 / chi) [1 + 3 b chi / (d+2)]^2 + d / (2m) bulk viscosity (Enskog).
+
+    b = 2^(d-1) times the packing fraction, lambda_0 the dilute value (0.67783 in 3D, 1.16192 in 2D, times
+    sqrt(T / m) / sigma^(d-1)). 3D: lambda_0 [1/chi + 1.2 b + 0.7574 b^2 chi]; 2D: lambda_0 [1/chi + 1.5 b +
+    0.8716 b^2 chi]. Unit 1 / (length^(d-2) time), with k_B = 1.
+    """
+    checked_dimension(dimension)
+    contact = contact_value(packing_fraction, dimension)
+    dilute = _DILUTE_CONDUCTIVITY[dimension] * math.sqrt(temperature / mass) / diameter ** (dimension - 1)
+    excess = 2.0 ** (dimension - 1) * np.asarray(packing_fraction) * contact
+    bulk = enskog_bulk_viscosity(packing_fraction, dimension, diameter, temperature, mass)
+    kinetic = dilute / contact * (1.0 + 3.0 * excess / (dimension + 2)) ** 2
+    return kinetic + 0.5 * dimension / mass * bulk

@@ -1,0 +1,152 @@
+"""Speeds of a gas: Maxwell's distribution, its moments, and the way there from equal speeds.
+
+k_B = 1; speeds in units of sqrt(temperature / mass).
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from ._arguments import checked_dimension
+
+_TABLES = Path(__file__).parent / "data"
+
+KURTOSIS_RELAXATION_RATE = {2: 0.4360, 3: 0.4748}
+"""Final decay rate of K - K_eq, per collision per body (computed; homogeneous Boltzmann equation)."""
+RELAXATION_UNCERTAINTY = 3e-4
+"""Standard uncertainty of the tabulated kurtosis and never-hit fraction (computed, Monte Carlo)."""
+
+
+def mean_speed(dimension, temperature=1.0, mass=1.0):
+    """Mean speed in equilibrium: sqrt(pi k_B T / 2m) in 2D, sqrt(8 k_B T / (pi m)) in 3D (exact)."""
+    ratio = {2: 0.5 * math.pi, 3: 8.0 / math.pi}[checked_dimension(dimension)]
+    return math.sqrt(ratio * temperature / mass)
+
+
+def maxwell_pdf(speed, dimension, temperature=1.0, mass=1.0):
+    """Maxwell's density of speeds (exact; time / length; 0 for negative speeds; same shape as `speed`).
+
+    With u = v sqrt(m / k_B T): u exp(-u^2/2) in 2D, sqrt(2/pi) u^2 exp(-u^2/2) in 3D, times sqrt(m / k_B T).
+    """
+    checked_dimension(dimension)
+    scale = math.sqrt(mass / temperature)
+    u = np.maximum(np.asarray(speed, dtype=float) * scale, 0.0)
+    factor = u if dimension == 2 else math.sqrt(2.0 / math.pi) * u**2
+    return scale * factor * np.exp(-0.5 * u**2)
+
+
+def maxwell_cdf(speed, dimension, temperature=1.0, mass=1.0):
+    """Fraction of bodies slower than `speed` (exact): incomplete gamma function P(d/2, m v^2 / 2 k_B T)."""
+    from scipy.special import gammainc
+
+    checked_dimension(dimension)
+    energy = 0.5 * mass / temperature * np.maximum(np.asarray(speed, dtype=float), 0.0) ** 2
+    return gammainc(0.5 * dimension, energy)
+
+
+def maxwell_ppf(probability, dimension, temperature=1.0, mass=1.0):
+    """Speed below which the fraction `probability` of the bodies lies: inverse of `maxwell_cdf` (exact)."""
+    from scipy.special import gammaincinv
+
+    checked_dimension(dimension)
+    energy = gammaincinv(0.5 * dimension, np.asarray(probability, dtype=float))
+    return np.sqrt(2.0 * temperature / mass * energy)
+
+
+def kurtosis(dimension, count=None, zero_momentum=False):
+    """<v^4> / <v^2>^2 in equilibrium: (d+2)/d, that is 2 in 2D and 5/3 in 3D (exact).
+
+    With `count` bodies at fixed energy the velocities are uniform on a sphere in D = d N dimensions (d (N-1)
+    if the total momentum is held at zero), and a body's kurtosis is (d+2)/d times D/(D+2) (exact).
+    """
+    infinite = (checked_dimension(dimension) + 2.0) / dimension
+    if count is None:
+        return infinite
+    freedoms = dimension * (count - 1 if zero_momentum else count)
+    return infinite * freedoms / (freedoms + 2.0)
+
+
+def initial_kurtosis_slope(dimension):
+    """dK/ds at s = 0 from equal speeds, s collisions per body: 64/225 in 2D, 8/35 in 3D (exact)."""
+    return {2: 64.0 / 225.0, 3: 8.0 / 35.0}[checked_dimension(dimension)]
+
+
+@dataclass(frozen=True)
+class Relaxation:
+    """Relaxation of a gas in which all speeds are equal at first, from the homogeneous Boltzmann equation.
+
+    `s` is the number of collisions per body so far, 2 N_collisions / N: on that clock the curves do not
+    depend on diameter, speed or density (Enskog theory). Computed by Monte Carlo, good to
+    RELAXATION_UNCERTAINTY up to `longest`; beyond it the last decay is continued, which stays within that
+    error. Infinite number of bodies: a finite gas at fixed energy ends at `kurtosis(dimension, count)`
+    instead.
+    """
+
+    dimension: int
+    collisions_table: np.ndarray
+    equilibrium_table: np.ndarray
+    log_excess_table: np.ndarray
+    log_never_hit_table: np.ndarray
+    mean_speed_table: np.ndarray
+
+    @property
+    def longest(self):
+        """Largest tabulated s (dimensionless)."""
+        return float(self.collisions_table[-1])
+
+    def _checked(self, s):
+        s = np.asarray(s, dtype=float)
+        if not np.all(s >= 0.0):
+            raise ValueError(f"collisions per body: {s} (must not be negative)")
+        return s
+
+    def kurtosis(self, s):
+        """<v^4> / <v^2>^2 after `s` collisions per body: 1 at first, (d+2)/d in the end (dimensionless)."""
+        s = self._checked(s)
+        beyond = np.maximum(s - self.longest, 0.0) * KURTOSIS_RELAXATION_RATE[self.dimension]
+        log_excess = np.interp(s, self.collisions_table, self.log_excess_table) - beyond
+        end = kurtosis(self.dimension)
+        return end - (end - 1.0) * np.exp(log_excess)
+
+    def never_hit(self, s):
+        """Fraction of the bodies that have had no collision (dimensionless); slightly below exp(-s)."""
+        s = self._checked(s)
+        last_rate = -self.log_never_hit_table[-1] / self.longest
+        log_fraction = np.interp(s, self.collisions_table, self.log_never_hit_table)
+        return np.exp(log_fraction - last_rate * np.maximum(s - self.longest, 0.0))
+
+    def mean_speed(self, s):
+        """Mean speed over the root-mean-square speed: 1 at first, `mean_speed(d) / sqrt(d)` in the end."""
+        return np.interp(self._checked(s), self.collisions_table, self.mean_speed_table)
+
+    def collisions(self, equilibrium_collisions):
+        """s at the time when a gas in equilibrium would have had `equilibrium_collisions` per body.
+
+        The argument is nu t at the same energy, with nu = `enskog.collision_rate`. s is the larger:
+        bodies of equal speeds collide more often, by 2.3 % in 3D and 1.6 % in 2D at first.
+        """
+        tau = self._checked(equilibrium_collisions)
+        beyond = np.maximum(tau - self.equilibrium_table[-1], 0.0)
+        return np.interp(tau, self.equilibrium_table, self.collisions_table) + beyond
+
+
+@cache
+def relaxation(dimension):
+    """The `Relaxation` of discs (2) or spheres (3), from the tables in `theory/data` (computed)."""
+    time, s, fourth, _, never, speed = np.loadtxt(
+        _TABLES / f"relaxation_{checked_dimension(dimension)}d.csv", delimiter=",", skiprows=1, unpack=True
+    )
+    end = kurtosis(dimension)
+    # In one tick of the table's clock a body collides <v_12> / v_rms times, <v_12> the mean relative speed.
+    ticks = math.sqrt(2.0) * mean_speed(dimension) / math.sqrt(dimension)
+    return Relaxation(
+        dimension=dimension,
+        collisions_table=s,
+        equilibrium_table=ticks * time,
+        log_excess_table=np.log((end - fourth) / (end - 1.0)),
+        log_never_hit_table=np.log(never),
+        mean_speed_table=speed,
+    )

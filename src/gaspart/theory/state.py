@@ -1,0 +1,126 @@
+"""The equation of state to compare with: its value, its uncertainty, and what a finite system shifts.
+
+Discs: virial series to B10 and a linear tail. Spheres: Kolafa, Labik and Malijevsky. Fluid branch only.
+Everything here is dimensionless and depends on the packing fraction alone.
+"""
+
+import numpy as np
+
+from ._arguments import checked_dimension, checked_packing_fraction
+from .equations import METASTABLE_SPHERES, STABLE_DISCS, kolafa_labik_malijevsky, liu
+from .virial import (
+    HIGHEST_ORDER,
+    linear_tail,
+    linear_tail_uncertainty,
+    partial_sum,
+    partial_sum_uncertainty,
+)
+
+HIGHEST_PACKING_FRACTION = {2: STABLE_DISCS, 3: METASTABLE_SPHERES}
+"""Where the reference ends: the liquid's limit in 2D, the end of the data in 3D (metastable from 0.4915)."""
+
+# Relative standard uncertainty of the sphere data behind the fit: half of the 4e-5 stated for 95 %
+# confidence.
+_SPHERE_DATA_ERROR = 2e-5
+# Step of the central differences of `_slope_and_curvature`: truncation and rounding both below 1e-6 of the
+# result.
+_STEP = 1e-4
+
+
+def virial_with_tail(packing_fraction, dimension=2):
+    """Z from the virial series to B10 and `virial.linear_tail` (literature and a computed extrapolation).
+
+    2D: the reference, to eta = 0.70. 3D: only a check of the sphere reference at low density.
+    """
+    eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
+    return partial_sum(eta, HIGHEST_ORDER, dimension) + linear_tail(eta, dimension)
+
+
+def compressibility_factor(packing_fraction, dimension):
+    """Z = P / (rho k_B T) of the infinite fluid, best reference at hand (same shape as `packing_fraction`).
+
+    2D: `virial_with_tail`, 0 <= eta <= 0.70. 3D: `kolafa_labik_malijevsky`, 0 <= eta <= 0.539.
+    Raises ValueError outside. `compressibility_uncertainty` says how good it is.
+    """
+    if checked_dimension(dimension) == 2:
+        return virial_with_tail(packing_fraction, 2)
+    return kolafa_labik_malijevsky(packing_fraction)
+
+
+def compressibility_uncertainty(packing_fraction, dimension):
+    """Standard uncertainty of `compressibility_factor` (computed estimate; same shape).
+
+    2D, in quadrature: the coefficients' uncertainties; the tail's slope; and the difference to Liu's
+    independent equation, but no more than the whole tail, because at low density the series is the better of
+    the two. 3D: the sharper of two bounds: the data's own error (2e-5 of Z), or the difference to the virial
+    series to B10 plus its tail and the coefficients' uncertainties (below 1e-6 for eta < 0.1).
+    """
+    eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
+    coefficients = partial_sum_uncertainty(eta, HIGHEST_ORDER, dimension)
+    tail = linear_tail(eta, dimension)
+    if dimension == 2:
+        between = np.minimum(tail, np.abs(virial_with_tail(eta, 2) - liu(eta)))
+        return np.sqrt(coefficients**2 + linear_tail_uncertainty(eta, 2) ** 2 + between**2)
+    reference = kolafa_labik_malijevsky(eta)
+    series = np.abs(reference - virial_with_tail(eta, 3)) + tail + coefficients
+    return np.minimum(series, _SPHERE_DATA_ERROR * reference)
+
+
+def contact_value(packing_fraction, dimension):
+    """Pair distribution at contact, g(sigma) = (Z - 1) / (2^(d-1) eta), the virial theorem (exact).
+
+    Z is `compressibility_factor`; at eta = 0 the value is its limit 1. Enskog theory calls it chi.
+    """
+    eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
+    excess = compressibility_factor(eta, dimension) - 1.0
+    first_order = 2.0 ** (dimension - 1) * eta
+    # Below 1e-8 the excess is lost in the rounding of Z, while g - 1 is less than 3 eta.
+    return np.where(eta > 1e-8, excess / np.where(eta > 1e-8, first_order, 1.0), 1.0)
+
+
+def _slope_and_curvature(eta, dimension):
+    """First and second derivative of eta Z(eta), by differences (central, but at the ends)."""
+    centre = np.clip(eta, _STEP, HIGHEST_PACKING_FRACTION[dimension] - _STEP)
+    low, mid, high = (
+        (centre + shift) * compressibility_factor(centre + shift, dimension) for shift in (-_STEP, 0.0, _STEP)
+    )
+    return (high - low) / (2.0 * _STEP), (high - 2.0 * mid + low) / _STEP**2
+
+
+def finite_size_correction(packing_fraction, dimension, count, ensemble="dynamics"):
+    """Z_N - Z_infinity of `count` bodies in a periodic container, to first order in 1/N.
+
+    `ensemble="canonical"`. In a periodic container the grand partition function is exp(P V / k_B T) up to
+    terms that fall exponentially with the side. Taking N out of it by the saddle point gives
+
+        ln Q_N = [P V - N mu] / k_B T - (1/2) ln(2 pi <dN^2>),    <dN^2> = N k_B T / P',   P' = dP / d rho,
+
+    and minus its volume derivative at fixed N, with d rho / dV = - rho / V,
+
+        P_N = P - k_B T (rho / 2V) P'' / P',    so    Z_N - Z = - (eta / 2N) (eta Z)'' / (eta Z)'   (in eta).
+
+    Checks (tested): to first order in eta it is -b_2 eta / N, exact because only N (N-1) / 2 pairs exist; for
+    hard rods on a ring it is exact at every density.
+
+    `ensemble="dynamics"` (default): what Z = 1 + sum |dr . dp| / (2 E t) measures, E the kinetic energy and
+    the total momentum zero, as in a periodic run. Configurations are those of the canonical ensemble, but two
+    bodies of a set with zero total momentum have <v_12^2> = 2 <v^2> N / (N-1), and the collisional virial is
+    proportional to it (contacts at rate |v_n|, each giving |v_n|). So Z_N - 1 is the canonical one times N /
+    (N-1), and the first order in eta has no correction at all. (If the total momentum is not zero, E is that
+    of the motion about it.)
+
+    Arguments: eta (number or array) within the reference's range, dimension 2 or 3, count >= 2.
+    Dimensionless. Neglected: 1/N^2, and exponentially small terms, which matter when the side is only a few
+    diameters.
+    """
+    if ensemble not in ("canonical", "dynamics"):
+        raise ValueError(f"ensemble: {ensemble!r} (must be 'canonical' or 'dynamics')")
+    if count < 2:
+        raise ValueError(f"count: {count} (must be at least 2)")
+    eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
+    slope, curvature = _slope_and_curvature(eta, dimension)
+    canonical = -0.5 * eta / count * curvature / slope
+    if ensemble == "canonical":
+        return canonical
+    excess = compressibility_factor(eta, dimension) - 1.0
+    return (excess + canonical) * count / (count - 1.0) - excess
