@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.kernel import kernel
+from gaspart.kernel import helper
 from gaspart.scene import Scene, count_of
 
 NOWHERE = -1
@@ -106,14 +106,14 @@ def make_boxes(scene: Scene, boxes_per_side: int | tuple[int, ...], images: bool
     return Boxes(per_side, widths, strides, neighbour, shift)
 
 
-@kernel
+@helper
 def box_coordinate(x, width, per_side):
     """Which box along an axis holds coordinate x; the outermost one for x outside."""
     c = int(x / width)
     return min(max(c, 0), per_side - 1)
 
 
-@kernel
+@helper
 def nearest(gap, length, periodic):
     """A difference of two coordinates of the container, by the nearest image on a periodic axis."""
     if periodic:
@@ -123,26 +123,3 @@ def nearest(gap, length, periodic):
             return gap + length
     return gap
 
-
-@kernel
-def put(head, following, preceding, box, body):
-    """Put a body at the head of its box's list."""
-    first = head[box]
-    following[body] = first
-    preceding[body] = -1
-    if first >= 0:
-        preceding[first] = body
-    head[box] = body
-
-
-@kernel
-def take(head, following, preceding, box, body):
-    """Take a body out of its box's list."""
-    after = following[body]
-    before = preceding[body]
-    if before >= 0:
-        following[before] = after
-    else:
-        head[box] = after
-    if after >= 0:
-        preceding[after] = before

@@ -8,10 +8,10 @@ The arithmetic keeps the type of its arguments (float32 stays float32): hence x 
 
 from math import inf, sqrt
 
-from gaspart.kernel import kernel
+from gaspart.kernel import helper
 
 
-@kernel
+@helper
 def contact_root(rr, rv, vv, ss):
     """Time of first touch of an approaching pair (rv < 0) on a collision course.
 
@@ -23,24 +23,22 @@ def contact_root(rr, rv, vv, ss):
     return c / (sqrt(rv * rv - vv * c) - rv)
 
 
-@kernel
+@helper
 def time_to_contact(rr, rv, vv, ss):
     """Time until a pair touches; 0 if it touches or overlaps and approaches; inf if it never does.
 
     Overlap that rounding has left is never allowed to grow: a touching, approaching pair collides now
     (Bannerman, Strobl, Formella & Poeschel, Comput. Part. Mech. 1, 191 (2014)).
     """
-    if rv >= 0.0:
-        return inf
     c = rr - ss
+    if not ((rv < 0.0) & (rv * rv >= vv * c)):  # one branch, nearly always taken
+        return inf
     if c <= 0.0:
         return 0.0
-    if rv * rv < vv * c:
-        return inf
     return contact_root(rr, rv, vv, ss)
 
 
-@kernel
+@helper
 def exchange_equal(rr, rv):
     """The factor k of an elastic contact of equal masses: v1 += k r, v2 -= k r.
 
@@ -49,7 +47,7 @@ def exchange_equal(rr, rv):
     return rv / rr
 
 
-@kernel
+@helper
 def exchange(rr, rv, mass1, mass2):
     """The factors k1, k2 of an elastic contact: v1 += k1 r, v2 -= k2 r (Spencer 2022, Eq. 39, smooth).
 
@@ -60,7 +58,7 @@ def exchange(rr, rv, mass1, mass2):
     return (mass2 + mass2) / total * k, (mass1 + mass1) / total * k
 
 
-@kernel
+@helper
 def time_to_plane(x, v, plane):
     """Time at which a coordinate x, moving at v != 0, reaches `plane` (Spencer 2022, Eqs. 10 and 13)."""
     return (plane - x) / v

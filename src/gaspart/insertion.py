@@ -3,10 +3,10 @@
 import numpy as np
 
 from gaspart.boxes import box_coordinate
-from gaspart.kernel import kernel
+from gaspart.kernel import allocating_kernel
 
 
-@kernel
+@allocating_kernel
 def place(
     draws, positions, radii, start, stop, lower, upper, lengths, periodic, per_side, widths, neighbour, head, following,
     strides, failures, patience, attempts_at,

@@ -59,11 +59,30 @@ if not _CACHING:
     )
 
 
-def kernel(function):
-    """Compile `function` with numba under the package's policy."""
+def _compile(function, **options):
     before = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = str(_CACHE)
     try:
-        return numba.njit(cache=_CACHING, nogil=True, error_model="numpy")(function)
+        return numba.njit(cache=_CACHING, nogil=True, error_model="numpy", **options)(function)
     finally:
         numba.config.CACHE_DIR = before
+
+
+def kernel(function):
+    """Compile `function` with numba under the package's policy. It must not make arrays.
+
+    Without numba's reference counting, that is: counting the arrays that pass between helpers costs several
+    times what the helpers compute.
+    """
+    return _compile(function, _nrt=False)
+
+
+def helper(function):
+    """The same for a small function that is inlined where it is used: LLVM by itself leaves a call, which
+    passes every array as seven words."""
+    return _compile(function, _nrt=False, inline="always")
+
+
+def allocating_kernel(function):
+    """The same for a function that makes arrays."""
+    return _compile(function)

@@ -9,22 +9,36 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gaspart.kernel import kernel
+from gaspart.kernel import helper, kernel
 
 BUCKET, FILLED = 0, 1
 
 
-class Calendar(NamedTuple):
-    """time (N,), tie (N,) of each body's next event; the linked lists of the buckets, the last of which is
-    the overflow; slot (N,) the bucket that a body is in, or -1; rate (1,) buckets per unit of time;
-    cursor (2,): the current bucket, and how many bodies are in buckets that are not the overflow."""
+PLAN = np.dtype(
+    [
+        ("contact", "f8"),  # time of the next contact foreseen, with
+        ("face_time", "f8"),  # time of the next face of a box or of the container, and
+        ("partner", "i4"),  # whom,
+        ("partner_changes", "i4"),  # and how many changes that partner had seen when this was foreseen
+        ("face", "i4"),  # which
+        ("changes", "i4"),  # changes of flight that this body has seen
+        ("at", "i4", 3),  # coordinates of its box
+        ("box_before", "i4"),  # its neighbours in the lists of its box
+        ("box_after", "i4"),
+        ("before", "i4"),  # and of its bucket of the calendar,
+        ("after", "i4"),
+        ("slot", "i4"),  # which is this one, or -1
+    ],
+    align=True,
+)
+"""One body's plans, one cache line of 64 bytes: what an event reads and writes beside the body's flight."""
 
-    time: np.ndarray
-    tie: np.ndarray
+
+class Calendar(NamedTuple):
+    """head: first body of each bucket, the last of which is the overflow; rate (1,): buckets per unit of
+    time; cursor (2,): the current bucket, and how many bodies are in buckets that are not the overflow."""
+
     head: np.ndarray
-    following: np.ndarray
-    preceding: np.ndarray
-    slot: np.ndarray
     rate: np.ndarray
     cursor: np.ndarray
 
@@ -32,121 +46,129 @@ class Calendar(NamedTuple):
 def empty_calendar(count: int) -> Calendar:
     """A calendar for `count` bodies with nothing in it."""
     buckets = 1 << max(4, (4 * count - 1).bit_length())
-    return Calendar(
-        time=np.full(count, np.inf),
-        tie=np.zeros(count, dtype=np.int64),
-        head=np.full(buckets + 1, -1, dtype=np.int32),
-        following=np.full(count, -1, dtype=np.int32),
-        preceding=np.full(count, -1, dtype=np.int32),
-        slot=np.full(count, -1, dtype=np.int32),
-        rate=np.ones(1),
-        cursor=np.zeros(2, dtype=np.int64),
-    )
+    return Calendar(np.full(buckets + 1, -1, dtype=np.int32), np.ones(1), np.zeros(2, dtype=np.int64))
 
 
-@kernel
-def _link(calendar, body):
+@helper
+def time_of(plans, body):
+    """The time of a body's next event."""
+    return min(plans[body].contact, plans[body].face_time)
+
+
+@helper
+def tie(plans, body):
+    """What orders simultaneous events: faces first, by body, then pairs by lower and higher index."""
+    if plans[body].face_time <= plans[body].contact:
+        return body - len(plans)
+    partner = plans[body].partner
+    return min(body, partner) * len(plans) + max(body, partner)
+
+
+@helper
+def _link(calendar, plans, body):
     """Put a body into the bucket of its time."""
     buckets = len(calendar.head) - 1
     current = calendar.cursor[BUCKET]
-    x = calendar.time[body] * calendar.rate[0]
+    x = time_of(plans, body) * calendar.rate[0]
     slot = buckets
     if x < current + buckets:
         slot = max(int(x), current) & (buckets - 1)
         calendar.cursor[FILLED] += 1
     first = calendar.head[slot]
-    calendar.following[body] = first
-    calendar.preceding[body] = -1
+    plans[body].after = first
+    plans[body].before = -1
     if first >= 0:
-        calendar.preceding[first] = body
+        plans[first].before = body
     calendar.head[slot] = body
-    calendar.slot[body] = slot
+    plans[body].slot = slot
 
 
-@kernel
-def _unlink(calendar, body):
+@helper
+def _unlink(calendar, plans, body):
     """Take a body out of its bucket."""
-    slot = calendar.slot[body]
-    after = calendar.following[body]
-    before = calendar.preceding[body]
+    slot = plans[body].slot
+    after = plans[body].after
+    before = plans[body].before
     if before >= 0:
-        calendar.following[before] = after
+        plans[before].after = after
     else:
         calendar.head[slot] = after
     if after >= 0:
-        calendar.preceding[after] = before
+        plans[after].before = before
     if slot < len(calendar.head) - 1:
         calendar.cursor[FILLED] -= 1
 
 
-@kernel
-def schedule(calendar, body, time, tie):
-    """Set a body's next event, in place of the one it had."""
-    if calendar.slot[body] >= 0:
-        _unlink(calendar, body)
-    calendar.time[body] = time
-    calendar.tie[body] = tie
-    _link(calendar, body)
+@helper
+def reschedule(calendar, plans, body):
+    """Put a body whose plans have changed where it now belongs."""
+    _unlink(calendar, plans, body)
+    _link(calendar, plans, body)
 
 
 @kernel
-def restart(calendar, now):
-    """Sort all bodies in anew by their `time`, with buckets of the mean time between their events."""
+def fill(calendar, plans, now):
+    """Sort all bodies in anew, with buckets of the mean time between their events."""
     calendar.head[:] = -1
-    count = len(calendar.time)
     total = 0.0
     finite = 0
-    for body in range(count):
-        if calendar.time[body] < np.inf:
-            total += max(calendar.time[body] - now, 0.0)
+    for body in range(len(plans)):
+        if time_of(plans, body) < np.inf:
+            total += max(time_of(plans, body) - now, 0.0)
             finite += 1
     calendar.rate[0] = finite * (finite / total) if total > 0.0 else 1.0
     if not calendar.rate[0] * abs(now) < 2.0**52:  # times too short to number: one bucket for all
         calendar.rate[0] = 0.0
     calendar.cursor[BUCKET] = int(max(now, 0.0) * calendar.rate[0])
     calendar.cursor[FILLED] = 0
-    for body in range(count):
-        _link(calendar, body)
+    for body in range(len(plans)):
+        _link(calendar, plans, body)
 
 
 @kernel
-def _recall_overflow(calendar):
+def _recall_overflow(calendar, plans):
     """Move the bodies of the overflow whose time has come within the horizon into their buckets."""
     buckets = len(calendar.head) - 1
     body = calendar.head[buckets]
     while body >= 0:
-        after = calendar.following[body]
-        if calendar.time[body] * calendar.rate[0] < calendar.cursor[BUCKET] + buckets:
-            _unlink(calendar, body)
-            _link(calendar, body)
+        after = plans[body].after
+        if time_of(plans, body) * calendar.rate[0] < calendar.cursor[BUCKET] + buckets:
+            reschedule(calendar, plans, body)
         body = after
 
 
 @kernel
-def soonest(calendar):
+def _leap(calendar, plans):
+    """With all buckets empty, go straight to the first event of the overflow. False if there is none."""
+    first = np.inf
+    body = calendar.head[len(calendar.head) - 1]
+    while body >= 0:
+        first = min(first, time_of(plans, body))
+        body = plans[body].after
+    if not first * calendar.rate[0] < 2.0**62:
+        return False
+    calendar.cursor[BUCKET] = max(calendar.cursor[BUCKET], int(first * calendar.rate[0]))
+    _recall_overflow(calendar, plans)
+    return True
+
+
+@kernel
+def soonest(calendar, plans):
     """The body whose event comes first, or -1 if nothing will ever happen again."""
     buckets = len(calendar.head) - 1
     while True:
-        if calendar.cursor[FILLED] == 0:  # leap to the first event beyond the horizon
-            first = np.inf
-            body = calendar.head[buckets]
-            while body >= 0:
-                first = min(first, calendar.time[body])
-                body = calendar.following[body]
-            if not first * calendar.rate[0] < 2.0**62:
-                return -1
-            calendar.cursor[BUCKET] = max(calendar.cursor[BUCKET], int(first * calendar.rate[0]))
-            _recall_overflow(calendar)
+        if calendar.cursor[FILLED] == 0 and not _leap(calendar, plans):
+            return -1
         best = calendar.head[calendar.cursor[BUCKET] & (buckets - 1)]
         if best >= 0:
-            body = calendar.following[best]
+            soon = time_of(plans, best)
+            body = plans[best].after
             while body >= 0:
-                if calendar.time[body] < calendar.time[best] or (
-                    calendar.time[body] == calendar.time[best] and calendar.tie[body] < calendar.tie[best]
-                ):
-                    best = body
-                body = calendar.following[body]
+                time = time_of(plans, body)
+                if time < soon or (time == soon and tie(plans, body) < tie(plans, best)):
+                    best, soon = body, time
+                body = plans[body].after
             return best
         calendar.cursor[BUCKET] += 1
         if calendar.cursor[BUCKET] & (buckets - 1) == 0:
-            _recall_overflow(calendar)
+            _recall_overflow(calendar, plans)

@@ -14,6 +14,14 @@ def masses_for_kernel(masses: np.ndarray) -> tuple[float, np.ndarray | None]:
     return (float(masses[0]), None) if (masses == masses[0]).all() else (1.0, masses)
 
 
+def aligned(shape: tuple[int, ...], dtype) -> np.ndarray:
+    """An array of zeros that starts on a cache line."""
+    size = int(np.prod(shape)) * np.dtype(dtype).itemsize
+    buffer = np.zeros(size + 64, dtype=np.uint8)
+    start = -buffer.ctypes.data % 64
+    return buffer[start : start + size].view(dtype).reshape(shape)
+
+
 class EventLog:
     """Events as they happened: bodies, and their positions and velocities just after."""
 

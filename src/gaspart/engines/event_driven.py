@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gaspart.engines.common import EventLog, masses_for_kernel
+from gaspart.engines.common import EventLog, aligned, masses_for_kernel
 from gaspart.errors import SceneError
 from gaspart.scene import Scene
 from gaspart.state import State
@@ -48,38 +48,32 @@ class EventDynamics:
     def __init__(self, engine: EventDriven, scene: Scene, state: State):
         from gaspart.boxes import make_boxes, sides_for
         from gaspart.engines import event_kernels as kernels
-        from gaspart.engines.calendar import empty_calendar
+        from gaspart.engines.calendar import PLAN, empty_calendar
 
         self._kernels = kernels
         self._scene = scene
         self._reference = state
         d, n = scene.dimension, state.count
-        clock = np.zeros((n, 1))
-        rows = np.hstack([state.positions, state.velocities, clock, state.radii[:, None]])
+        self._rows = aligned((n, 8), float)
+        self._rows[:, :d], self._rows[:, d : 2 * d] = state.positions, state.velocities
+        self._rows[:, 2 * d + 1] = state.radii
+        self._images = state.images.copy()
         per_side = engine.boxes_per_side or sides_for(scene, per_body=1.0)
         boxes = make_boxes(scene, per_side if engine.search == "boxes" else 1, images=True)
         self._by_pairs = engine.search == "pairs"
         self._space = kernels.Space(scene.container.lengths, scene.container.periodic, float(not scene.centres_to_walls))
-        self._bodies = kernels.Bodies(rows, state.images.copy(), np.zeros(n, dtype=np.int64))
-        self._plans = kernels.Plans(
-            contact=np.full(n, np.inf),
-            partner=np.full(n, -1, dtype=np.int64),
-            partner_changes=np.zeros(n, dtype=np.int64),
-            face_time=np.full(n, np.inf),
-            face=np.full(n, -1, dtype=np.int64),
-        )
+        self._plans = aligned((n,), PLAN)
+        self._plans["partner"] = -1
+        self._plans["at"] = boxes.coordinates(state.positions)
         self._partition = kernels.Partition(
             boxes.per_side, boxes.widths, boxes.strides, boxes.neighbour, boxes.shift,
-            at=boxes.coordinates(state.positions),
-            head=np.full(boxes.count, -1, dtype=np.int64),
-            following=np.full(n, -1, dtype=np.int64),
-            preceding=np.full(n, -1, dtype=np.int64),
+            head=np.full(boxes.count, -1, dtype=np.int32),
         )  # fmt: skip
         self._calendar = empty_calendar(n)
         self._unit_mass, self._masses = masses_for_kernel(state.masses)
         self._lap = _lap_length(scene, state)
         self._laps, self._clock = divmod(state.time, self._lap)
-        rows[:, 2 * d] = self._clock
+        self._rows[:, 2 * d] = self._clock
         self.reset_tally()
         self._foresee()
 
@@ -94,7 +88,7 @@ class EventDynamics:
     def _foresee(self) -> None:
         if not self._by_pairs:
             self._kernels.foresee_all(
-                self._bodies, self._plans, self._calendar, self._space, self._partition, self._counters, self._clock
+                self._rows, self._plans, self._calendar, self._space, self._partition, self._counters, self._clock
             )
 
     @property
@@ -124,12 +118,12 @@ class EventDynamics:
         """Let the kernel of this search run: why it stopped, the events it did, the time of the last."""
         common = self._space, self._partition, self._masses, self._counters, room, stop, most
         if self._by_pairs:
-            return self._kernels.run_pairs(self._bodies, *common)
-        return self._kernels.run_boxes(self._bodies, self._plans, self._calendar, *common)
+            return self._kernels.run_pairs(self._rows, self._images, self._plans, *common)
+        return self._kernels.run_boxes(self._rows, self._images, self._plans, self._calendar, *common)
 
     def _turn_lap(self) -> None:
         """Start the clocks again from zero, and plan anew."""
-        self._kernels.synchronise(self._bodies, self._lap, self._space.lengths)
+        self._kernels.synchronise(self._rows, self._lap, self._space.lengths)
         self._laps += 1
         self._clock = 0.0
         self._foresee()
@@ -153,7 +147,7 @@ class EventDynamics:
     def state(self) -> State:
         """All bodies at the present time."""
         d = self._scene.dimension
-        rows, lengths = self._bodies.rows, np.array(self._space.lengths)
+        rows, lengths = self._rows, np.array(self._space.lengths)
         positions = rows[:, :d] + rows[:, d : 2 * d] * (self._clock - rows[:, 2 * d, None])
         periodic = np.array(self._space.periodic)
         # a body that reaches a periodic face just now may stand beyond it by rounding
@@ -165,22 +159,20 @@ class EventDynamics:
             time=self.time,
             positions=positions,
             velocities=rows[:, d : 2 * d].copy(),
-            images=self._bodies.images + beyond,
+            images=self._images + beyond,
         )
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         """Everything that a continuation to the same bits needs: bodies at their own clocks, plans, counts."""
-        parts = {"laps": self._laps, "clock": self._clock, "since": self._since, "at": self._partition.at}
-        for group in (self._bodies, self._plans, self._counters):
-            parts.update(group._asdict())
+        parts = {"laps": self._laps, "clock": self._clock, "since": self._since}
+        parts.update(rows=self._rows, images=self._images, plans=self._plans, **self._counters._asdict())
         return {key: np.array(value) for key, value in parts.items()}
 
     def restore(self, parts: dict[str, np.ndarray]) -> None:
         """Go on from a checkpoint of the same scene and engine."""
-        for group in (self._bodies, self._plans, self._counters):
-            for key, array in group._asdict().items():
-                array[...] = parts[key]
-        self._partition.at[...] = parts["at"]
+        self._rows[...], self._images[...], self._plans[...] = parts["rows"], parts["images"], parts["plans"]
+        for key, array in self._counters._asdict().items():
+            array[...] = parts[key]
         self._laps, self._clock, self._since = (float(parts[key]) for key in ("laps", "clock", "since"))
         if not self._by_pairs:
             self._kernels.refill(self._plans, self._calendar, self._partition, self._clock)

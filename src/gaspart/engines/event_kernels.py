@@ -1,7 +1,8 @@
 """From one event to the next: the kernels of the event-driven engine.
 
-A body's row holds its position, velocity, clock and radius, true at that clock; between its events a body
-is not touched. So that no bit depends on how events are searched for:
+A body's row of 8 numbers, one cache line, holds its position (d), velocity (d), clock and radius, true at
+that clock; between its events a body is not touched. Beside it stand its plans (see `calendar.PLAN`) and
+`images` (N, d), its laps through periodic faces. So that no bit depends on how events are searched for:
 
 - the time of a pair's contact is always computed from the later of the two clocks, never from "now";
 - crossing into another box changes what is searched, never the row;
@@ -16,10 +17,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gaspart.boxes import nearest, put, take
+from gaspart.boxes import nearest
 from gaspart.contact import exchange, exchange_equal, time_to_contact, time_to_plane
-from gaspart.engines.calendar import restart, schedule, soonest
-from gaspart.kernel import kernel
+from gaspart.engines.calendar import fill, reschedule, soonest, time_of
+from gaspart.kernel import allocating_kernel, helper, kernel
 
 COLLISIONS, CROSSINGS, STALE, PAIR_TESTS, BOX_VISITS = range(5)
 VIRIAL, WORST = range(2)
@@ -36,37 +37,15 @@ class Space(NamedTuple):
     margin: float
 
 
-class Bodies(NamedTuple):
-    """rows (N, 2d + 2): position, velocity, clock, radius; images (N, d); changes (N,), events so far."""
-
-    rows: np.ndarray
-    images: np.ndarray
-    changes: np.ndarray
-
-
-class Plans(NamedTuple):
-    """What is foreseen for each body: the time of its next contact, with whom, and that partner's number
-    of changes when this was foreseen; the time of its next face, and which."""
-
-    contact: np.ndarray
-    partner: np.ndarray
-    partner_changes: np.ndarray
-    face_time: np.ndarray
-    face: np.ndarray
-
-
 class Partition(NamedTuple):
-    """The grid of boxes (see `boxes.Boxes`), each body's box coordinates at (N, 3), and the boxes' lists."""
+    """The grid of boxes (see `boxes.Boxes`), and the first body in each."""
 
     per_side: np.ndarray
     widths: np.ndarray
     strides: np.ndarray
     neighbour: np.ndarray
     shift: np.ndarray
-    at: np.ndarray
     head: np.ndarray
-    following: np.ndarray
-    preceding: np.ndarray
 
 
 class Counters(NamedTuple):
@@ -88,7 +67,7 @@ class Record(NamedTuple):
     velocities: np.ndarray
 
 
-@kernel
+@helper
 def pair_time(rows, i, j, offset, lengths):
     """When bodies i and j touch, j displaced by `offset` (d,); inf if they do not."""
     d = len(lengths)
@@ -108,15 +87,15 @@ def pair_time(rows, i, j, offset, lengths):
     return start + time_to_contact(rr, rv, vv, sigma * sigma)
 
 
-@kernel
+@helper
 def face_plane(rows, body, axis, upper, space):
     """Where a face of the container stops, or on a periodic axis passes on, this body's centre."""
     inset = 0.0 if space.periodic[axis] else space.margin * rows[body, 2 * len(space.lengths) + 1]
     return space.lengths[axis] - inset if upper else inset
 
 
-@kernel
-def find_face(rows, body, space, partition):
+@helper
+def find_face(rows, plans, body, space, partition):
     """The next face that the body comes to, of its box or of the container: (time, face code)."""
     d = len(space.lengths)
     soon = inf
@@ -126,7 +105,7 @@ def find_face(rows, body, space, partition):
         if v == 0.0:
             continue
         upper = v > 0.0
-        at = partition.at[body, k]
+        at = plans[body].at[k]
         code = 2 * k + (1 if upper else 0)
         if at == (partition.per_side[k] - 1 if upper else 0):
             plane = face_plane(rows, body, k, upper, space)
@@ -141,31 +120,30 @@ def find_face(rows, body, space, partition):
 
 
 @kernel
-def find_contact(bodies, plans, body, space, partition, counters, low, high):
+def find_contact(rows, plans, body, space, partition, counters, low, high):
     """Look for an earlier contact of the body in the boxes at steps low..high (3,) from its own."""
     d = len(space.lengths)
-    rows = bodies.rows
-    at = partition.at
-    best = plans.contact[body]
-    partner = plans.partner[body]
+    ax, ay, az = plans[body].at[0], plans[body].at[1], plans[body].at[2]
+    best = plans[body].contact
+    partner = plans[body].partner
     found = False
     tests = 0
     visits = 0
     for dz in range(low[2], high[2] + 1):
-        z = partition.neighbour[2, at[body, 2], dz + 1]
+        z = partition.neighbour[2, az, dz + 1]
         if z < 0:
             continue
-        far_z = partition.shift[2, at[body, 2], dz + 1] * space.lengths[d - 1]  # 0 in two dimensions
+        far_z = partition.shift[2, az, dz + 1] * space.lengths[d - 1]  # 0 in two dimensions
         for dy in range(low[1], high[1] + 1):
-            y = partition.neighbour[1, at[body, 1], dy + 1]
+            y = partition.neighbour[1, ay, dy + 1]
             if y < 0:
                 continue
-            far_y = partition.shift[1, at[body, 1], dy + 1] * space.lengths[1]
+            far_y = partition.shift[1, ay, dy + 1] * space.lengths[1]
             for dx in range(low[0], high[0] + 1):
-                x = partition.neighbour[0, at[body, 0], dx + 1]
+                x = partition.neighbour[0, ax, dx + 1]
                 if x < 0:
                     continue
-                offset = (partition.shift[0, at[body, 0], dx + 1] * space.lengths[0], far_y, far_z)
+                offset = (partition.shift[0, ax, dx + 1] * space.lengths[0], far_y, far_z)
                 visits += 1
                 other = partition.head[x + y + z]
                 while other >= 0:
@@ -176,92 +154,101 @@ def find_contact(bodies, plans, body, space, partition, counters, low, high):
                             best = time
                             partner = other
                             found = True
-                    other = partition.following[other]
+                    other = plans[other].box_after
     if found:
-        plans.contact[body] = best
-        plans.partner[body] = partner
-        plans.partner_changes[body] = bodies.changes[partner]
+        plans[body].contact = best
+        plans[body].partner = partner
+        plans[body].partner_changes = plans[partner].changes
     counters.counts[PAIR_TESTS] += tests
     counters.counts[BOX_VISITS] += visits
 
 
-@kernel
-def enter(calendar, plans, body):
-    """Put the sooner of the body's two plans into the calendar."""
-    count = len(plans.contact)
-    if plans.face_time[body] <= plans.contact[body]:
-        schedule(calendar, body, plans.face_time[body], body - count)
+@helper
+def box_of(plans, partition, body):
+    """The linear index of the body's box."""
+    at = plans[body].at
+    return at[0] * partition.strides[0] + at[1] * partition.strides[1] + at[2] * partition.strides[2]
+
+
+@helper
+def put(plans, partition, body):
+    """Put a body at the head of its box's list."""
+    box = box_of(plans, partition, body)
+    first = partition.head[box]
+    plans[body].box_after = first
+    plans[body].box_before = -1
+    if first >= 0:
+        plans[first].box_before = body
+    partition.head[box] = body
+
+
+@helper
+def take(plans, partition, body):
+    """Take a body out of its box's list."""
+    before = plans[body].box_before
+    after = plans[body].box_after
+    if before >= 0:
+        plans[before].box_after = after
     else:
-        partner = plans.partner[body]
-        tie = min(body, partner) * count + max(body, partner)
-        schedule(calendar, body, plans.contact[body], tie)
-
-
-EVERYWHERE = (-1, -1, -1), (1, 1, 1)
+        partition.head[box_of(plans, partition, body)] = after
+    if after >= 0:
+        plans[after].box_before = before
 
 
 @kernel
-def foresee(bodies, plans, body, space, partition, counters):
+def foresee(rows, plans, body, space, partition, counters):
     """Make a body's plans afresh."""
-    plans.contact[body] = inf
-    plans.partner[body] = NOTHING
-    find_contact(bodies, plans, body, space, partition, counters, *EVERYWHERE)
-    plans.face_time[body], plans.face[body] = find_face(bodies.rows, body, space, partition)
+    plans[body].contact = inf
+    plans[body].partner = NOTHING
+    find_contact(rows, plans, body, space, partition, counters, (-1, -1, -1), (1, 1, 1))
+    plans[body].face_time, plans[body].face = find_face(rows, plans, body, space, partition)
 
 
 @kernel
-def foresee_all(bodies, plans, calendar, space, partition, counters, now):
-    """Sort all bodies into their boxes, make all plans and fill the calendar. `partition.at` is given."""
+def sort_in(plans, partition):
+    """Put all bodies into the lists of their boxes."""
     partition.head[:] = -1
-    count = len(bodies.rows)
-    for body in range(count):
-        put(partition.head, partition.following, partition.preceding, box_of(partition, body), body)
-    for body in range(count):
-        foresee(bodies, plans, body, space, partition, counters)
-        enter(calendar, plans, body)
-    restart(calendar, now)
+    for body in range(len(plans)):
+        put(plans, partition, body)
+
+
+@kernel
+def foresee_all(rows, plans, calendar, space, partition, counters, now):
+    """Sort all bodies into their boxes, make all plans and fill the calendar."""
+    sort_in(plans, partition)
+    for body in range(len(rows)):
+        foresee(rows, plans, body, space, partition, counters)
+    fill(calendar, plans, now)
 
 
 @kernel
 def refill(plans, calendar, partition, now):
     """Rebuild lists and calendar from plans that are already made, as after a checkpoint."""
-    partition.head[:] = -1
-    count = len(plans.contact)
-    for body in range(count):
-        put(partition.head, partition.following, partition.preceding, box_of(partition, body), body)
-        enter(calendar, plans, body)
-    restart(calendar, now)
+    sort_in(plans, partition)
+    fill(calendar, plans, now)
 
 
 @kernel
-def box_of(partition, body):
-    """The linear index of the body's box."""
-    at = partition.at
-    strides = partition.strides
-    return at[body, 0] * strides[0] + at[body, 1] * strides[1] + at[body, 2] * strides[2]
-
-
-@kernel
-def cross(bodies, plans, calendar, body, space, partition, counters):
+def cross(rows, plans, calendar, body, space, partition, counters):
     """Let a body pass into the next box, and look about in the boxes that have become neighbours."""
-    code = plans.face[body] - INNER
+    code = plans[body].face - INNER
     axis = code // 2
     step = 1 if code % 2 else -1
-    take(partition.head, partition.following, partition.preceding, box_of(partition, body), body)
-    partition.at[body, axis] += step
-    put(partition.head, partition.following, partition.preceding, box_of(partition, body), body)
+    take(plans, partition, body)
+    plans[body].at[axis] += step
+    put(plans, partition, body)
     counters.counts[CROSSINGS] += 1
     x = step if axis == 0 else 0
     y = step if axis == 1 else 0
     z = step if axis == 2 else 0
     low = (x if x else -1, y if y else -1, z if z else -1)
     high = (x if x else 1, y if y else 1, z if z else 1)
-    find_contact(bodies, plans, body, space, partition, counters, low, high)
-    plans.face_time[body], plans.face[body] = find_face(bodies.rows, body, space, partition)
-    enter(calendar, plans, body)
+    find_contact(rows, plans, body, space, partition, counters, low, high)
+    plans[body].face_time, plans[body].face = find_face(rows, plans, body, space, partition)
+    reschedule(calendar, plans, body)
 
 
-@kernel
+@helper
 def advance_row(rows, body, time, lengths):
     """Move a body along its flight to `time`."""
     d = len(lengths)
@@ -272,17 +259,16 @@ def advance_row(rows, body, time, lengths):
 
 
 @kernel
-def meet_face(bodies, body, face, time, space, masses, counters):
+def meet_face(rows, images, plans, body, face, time, space, masses, counters):
     """Reflect a body at a wall, or take it from a periodic face to the opposite one. True if a wall."""
     d = len(space.lengths)
-    rows = bodies.rows
     axis = face // 2
     upper = face % 2 == 1
     advance_row(rows, body, time, space.lengths)
-    bodies.changes[body] += 1
+    plans[body].changes += 1
     if space.periodic[axis]:
         rows[body, axis] = 0.0 if upper else space.lengths[axis]
-        bodies.images[body, axis] += 1 if upper else -1
+        images[body, axis] += 1 if upper else -1
         return False
     rows[body, axis] = face_plane(rows, body, axis, upper, space)
     mass = 1.0 if masses is None else masses[body]
@@ -293,10 +279,9 @@ def meet_face(bodies, body, face, time, space, masses, counters):
 
 
 @kernel
-def collide(bodies, i, j, time, space, masses, counters):
+def collide(rows, plans, i, j, time, space, masses, counters):
     """Advance two bodies to their contact and pass the momentum."""
     d = len(space.lengths)
-    rows = bodies.rows
     advance_row(rows, i, time, space.lengths)
     advance_row(rows, j, time, space.lengths)
     rr = 0.0
@@ -315,15 +300,15 @@ def collide(bodies, i, j, time, space, masses, counters):
         gap = nearest(rows[j, k] - rows[i, k], space.lengths[k], space.periodic[k])
         rows[i, d + k] += to_i * gap
         rows[j, d + k] -= to_j * gap
-    bodies.changes[i] += 1
-    bodies.changes[j] += 1
+    plans[i].changes += 1
+    plans[j].changes += 1
     sigma = rows[i, 2 * d + 1] + rows[j, 2 * d + 1]
     counters.sums[WORST] = max(counters.sums[WORST], abs(rr / (sigma * sigma) - 1.0))
     counters.counts[COLLISIONS] += 1
 
 
 @kernel
-def note(record, time, bodies, i, j, lengths):
+def note(record, time, rows, i, j, lengths):
     """Write an event down; j is the partner, or -1 - face for a wall."""
     d = len(lengths)
     n = record.filled[0]
@@ -331,19 +316,19 @@ def note(record, time, bodies, i, j, lengths):
     record.bodies[n, 0] = i
     record.bodies[n, 1] = j
     for k in range(d):
-        record.positions[n, 0, k] = bodies.rows[i, k]
-        record.velocities[n, 0, k] = bodies.rows[i, d + k]
-        record.positions[n, 1, k] = bodies.rows[j, k] if j >= 0 else np.nan
-        record.velocities[n, 1, k] = bodies.rows[j, d + k] if j >= 0 else np.nan
+        record.positions[n, 0, k] = rows[i, k]
+        record.velocities[n, 0, k] = rows[i, d + k]
+        record.positions[n, 1, k] = rows[j, k] if j >= 0 else np.nan
+        record.velocities[n, 1, k] = rows[j, d + k] if j >= 0 else np.nan
     record.filled[0] = n + 1
 
 
 @kernel
-def run_boxes(bodies, plans, calendar, space, partition, masses, counters, record, stop, most):
+def run_boxes(rows, images, plans, calendar, space, partition, masses, counters, record, stop, most):
     """Process all events up to time `stop`, at most `most` of them (collisions and wall hits).
 
-    masses: (N,), or None if all are 1; record: a Record, or None. Returns (reason, number
-    of events, time of the last).
+    masses: (N,), or None if all are 1; record: a Record, or None. Returns (reason, number of events, time of
+    the last).
     """
     done = 0
     last = -inf
@@ -353,57 +338,56 @@ def run_boxes(bodies, plans, calendar, space, partition, masses, counters, recor
         if record is not None:
             if record.filled[0] == len(record.time):
                 return FULL, done, last
-        body = soonest(calendar)
-        if body < 0 or not calendar.time[body] <= stop:
+        body = soonest(calendar, plans)
+        if body < 0:
             return STOP, done, last
-        time = calendar.time[body]
-        if plans.face_time[body] <= plans.contact[body]:
-            face = plans.face[body]
-            if face >= INNER:
-                cross(bodies, plans, calendar, body, space, partition, counters)
-                continue
-            wall = meet_face(bodies, body, face, time, space, masses, counters)
-            if not wall:
-                take(partition.head, partition.following, partition.preceding, box_of(partition, body), body)
-                axis = face // 2
-                partition.at[body, axis] = 0 if face % 2 else partition.per_side[axis] - 1
-                put(partition.head, partition.following, partition.preceding, box_of(partition, body), body)
-            foresee(bodies, plans, body, space, partition, counters)
-            enter(calendar, plans, body)
-            if wall:
-                last = time
-                done += 1
-                if record is not None:
-                    note(record, time, bodies, body, -1 - face, space.lengths)
+        time = time_of(plans, body)
+        if not time <= stop:
+            return STOP, done, last
+        face = plans[body].face
+        meets_face = plans[body].face_time <= plans[body].contact
+        if meets_face and face >= INNER:
+            cross(rows, plans, calendar, body, space, partition, counters)
             continue
-        partner = plans.partner[body]
-        if bodies.changes[partner] != plans.partner_changes[body]:
+        partner = plans[body].partner
+        if not meets_face and plans[partner].changes != plans[body].partner_changes:
             counters.counts[STALE] += 1
-            foresee(bodies, plans, body, space, partition, counters)
-            enter(calendar, plans, body)
+            foresee(rows, plans, body, space, partition, counters)
+            reschedule(calendar, plans, body)
             continue
-        i = min(body, partner)
-        j = max(body, partner)
-        collide(bodies, i, j, time, space, masses, counters)
-        foresee(bodies, plans, i, space, partition, counters)
-        foresee(bodies, plans, j, space, partition, counters)
-        enter(calendar, plans, i)
-        enter(calendar, plans, j)
+        if meets_face:
+            partner = -1 - face
+            if not meet_face(rows, images, plans, body, face, time, space, masses, counters):
+                take(plans, partition, body)
+                axis = face // 2
+                plans[body].at[axis] = 0 if face % 2 else partition.per_side[axis] - 1
+                put(plans, partition, body)
+                foresee(rows, plans, body, space, partition, counters)
+                reschedule(calendar, plans, body)
+                continue
+        else:
+            body, partner = min(body, partner), max(body, partner)
+            collide(rows, plans, body, partner, time, space, masses, counters)
+            foresee(rows, plans, partner, space, partition, counters)
+            reschedule(calendar, plans, partner)
+        foresee(rows, plans, body, space, partition, counters)
+        reschedule(calendar, plans, body)
         last = time
         done += 1
         if record is not None:
-            note(record, time, bodies, i, j, space.lengths)
+            note(record, time, rows, body, partner, space.lengths)
 
 
-@kernel
-def run_pairs(bodies, space, partition, masses, counters, record, stop, most):
+@allocating_kernel
+def run_pairs(rows, images, plans, space, partition, masses, counters, record, stop, most):
     """The same by the first algorithm of Spencer 2021: look at all pairs before every event.
 
-    `partition` has one box; it stores no plans, so nothing can be out of date: the referee of `run_boxes`.
+    `partition` has one box and the plans are not used, so nothing can be out of date: the referee of
+    `run_boxes`.
     """
     d = len(space.lengths)
-    count = len(bodies.rows)
-    images = 3**d
+    count = len(rows)
+    images_of_pair = 3**d
     offset = np.zeros(3)
     done = 0
     last = -inf
@@ -418,12 +402,12 @@ def run_pairs(bodies, space, partition, masses, counters, record, stop, most):
         second = NOTHING
         face = NOTHING
         for i in range(count):
-            time, code = find_face(bodies.rows, i, space, partition)
+            time, code = find_face(rows, plans, i, space, partition)
             if time < soon:
                 soon, first, face = time, i, code
         for i in range(count):
             for j in range(i + 1, count):
-                for image in range(images):
+                for image in range(images_of_pair):
                     rest = image
                     absent = False
                     for k in range(d):
@@ -434,27 +418,26 @@ def run_pairs(bodies, space, partition, masses, counters, record, stop, most):
                     if absent:
                         continue
                     counters.counts[PAIR_TESTS] += 1
-                    time = pair_time(bodies.rows, i, j, offset, space.lengths)
+                    time = pair_time(rows, i, j, offset, space.lengths)
                     if time < soon:
                         soon, first, second = time, i, j
         if not soon <= stop or first == NOTHING:
             return STOP, done, last
         if second != NOTHING:
-            collide(bodies, first, second, soon, space, masses, counters)
+            collide(rows, plans, first, second, soon, space, masses, counters)
         else:
-            if not meet_face(bodies, first, face, soon, space, masses, counters):
-                continue
             second = -1 - face
+            if not meet_face(rows, images, plans, first, face, soon, space, masses, counters):
+                continue
         last = soon
         done += 1
         if record is not None:
-            note(record, soon, bodies, first, second, space.lengths)
+            note(record, soon, rows, first, second, space.lengths)
 
 
 @kernel
-def synchronise(bodies, time, lengths):
+def synchronise(rows, time, lengths):
     """Advance all bodies to `time`, and let that be time 0 of their clocks."""
-    clock = 2 * len(lengths)
-    for body in range(len(bodies.rows)):
-        advance_row(bodies.rows, body, time, lengths)
-        bodies.rows[body, clock] = 0.0
+    for body in range(len(rows)):
+        advance_row(rows, body, time, lengths)
+        rows[body, 2 * len(lengths)] = 0.0

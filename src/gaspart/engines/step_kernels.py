@@ -12,7 +12,7 @@ import numpy as np
 
 from gaspart.boxes import box_coordinate, nearest
 from gaspart.contact import contact_root, exchange, exchange_equal
-from gaspart.kernel import kernel
+from gaspart.kernel import allocating_kernel, helper, kernel
 
 COLLISIONS, PAIR_TESTS, BOX_VISITS, OVERLAPS_LEFT, MULTIPLE = range(5)
 VIRIAL, DEEPEST, WORST = range(3)
@@ -56,7 +56,7 @@ class Counters(NamedTuple):
     wall_impulse: np.ndarray
 
 
-@kernel
+@helper
 def wrap(bodies, body, axis, length):
     """Bring a body back into the container on a periodic axis."""
     x = bodies.positions[body, axis]
@@ -70,7 +70,7 @@ def wrap(bodies, body, axis, length):
         bodies.images[body, axis] += int(laps)
 
 
-@kernel
+@helper
 def reflect(bodies, body, axis, lower, upper, mass, counters):
     """Mirror a body that left through a wall, as long as it moves outward."""
     x = bodies.positions[body, axis]
@@ -114,7 +114,7 @@ def sort_in(positions, partition, dimension):
         partition.head[box] = body
 
 
-@kernel
+@helper
 def invariants(bodies, space, i, j):
     """rr, rv, vv of a pair (see `contact`), j by its nearest image."""
     rr = rv = vv = space.margin - space.margin
@@ -128,7 +128,7 @@ def invariants(bodies, space, i, j):
     return rr, rv, vv
 
 
-@kernel
+@helper
 def examine(bodies, space, i, j, pairs, times, found, counters):
     """Test one pair; write it down if it overlaps and approaches. Returns the number found so far."""
     rr, rv, vv = invariants(bodies, space, i, j)
@@ -182,7 +182,7 @@ def find_overlaps(bodies, space, partition, pairs, times, counters):
     return found
 
 
-@kernel
+@allocating_kernel
 def in_order(pairs, times, count):
     """The order in which contacts are resolved: by time, then lower index, then higher index."""
     key = pairs[:, 0] * count + pairs[:, 1]
@@ -226,7 +226,7 @@ def resolve(bodies, space, masses, i, j, rewind, counters):
     return True
 
 
-@kernel
+@allocating_kernel
 def run_steps(bodies, space, partition, masses, dt, steps, rewind, counters):
     """Make `steps` steps of length `dt`. masses: (N,), or None if all are 1."""
     count, dimension = bodies.positions.shape
