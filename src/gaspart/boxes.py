@@ -85,7 +85,9 @@ def make_boxes(scene: Scene, boxes_per_side: int | tuple[int, ...], images: bool
             raise SceneError("boxes_per_side", boxes_per_side, rule)
     periodic = scene.container.periodic + (False,) * (3 - len(lengths))
     per_side = np.array(sides + [1] * (3 - len(sides)), dtype=np.int64)
-    widths = np.array([length / n for length, n in zip(lengths, sides, strict=True)] + [1.0] * (3 - len(sides)))
+    widths = np.array(
+        [length / n for length, n in zip(lengths, sides, strict=True)] + [1.0] * (3 - len(sides))
+    )
     strides = np.array([1, per_side[0], per_side[0] * per_side[1]], dtype=np.int64)
     most = int(per_side.max())
     neighbour = np.full((3, most, 3), NOWHERE, dtype=np.int64)
@@ -122,4 +124,3 @@ def nearest(gap, length, periodic):
         if gap + gap < -length:
             return gap + length
     return gap
-

@@ -42,14 +42,9 @@ def _experiment(config: dict, experiment: str, schema: dict) -> None:
     for point in grid.points(config, experiment):
         grid.check(point)
         try:
-            scene = grid.scene(point)
-            if point.job != "fill":
-                grid.engine(point)
-                grid.schedule(point)
+            grid.recipe(point)
         except SceneError as error:
             raise error if error.key.startswith(where) else error.inside(f"{where}[{point.name}]") from None
-        if scene.count < 1:
-            raise SceneError(f"{where}[{point.name}].count", scene.count, "must be at least 1")
 
 
 def _against(rule: dict, value, schema: dict, where: str) -> None:

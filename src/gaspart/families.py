@@ -30,10 +30,3 @@ TITLES = {
     "speeds": "Speed distributions",
     "displacement": "Mean-squared displacement",
 }
-
-
-def function(stage: str, figure: str):
-    """The function of ``figure`` in one of the packages ``measure``, ``claims``, ``figures``."""
-    from importlib import import_module
-
-    return getattr(import_module(f"gaspart.{stage}.{FAMILIES[figure]}"), figure)

@@ -23,6 +23,7 @@ ENGINE_KEYS = {
     "event": ("search", "boxes_per_side", "boxes_per_body"),
     "step": ("time_step", "boxes_per_side", "boxes_per_body", "precision", "rewind", "passes"),
 }
+SCANS = ("scan_boxes_per_side", "scan_boxes_per_body")
 SUFFIX = {"simulate": "", "measure_cost": ".nc", "fill": ".nc"}
 
 
@@ -88,11 +89,12 @@ class Schedule:
 
 
 def points(config: dict, experiment: str) -> list[Point]:
-    """All points of an experiment. Raises SceneError for an empty grid or a point without a name of its own."""
+    """All points of an experiment. Raises SceneError for an empty grid, or two points of one name."""
     block = config["experiments"][experiment]
     where = f"experiments.{experiment}"
     found: dict[str, Point] = {}
-    for varying in _combinations(block.get("grid") or {}, f"{where}.grid"):
+    varied = block.get("grid")
+    for varying in _combinations({} if varied is None else varied, f"{where}.grid"):
         settings = {**block.get("point", {}), **varying}
         point = Point(
             experiment=experiment,
@@ -125,6 +127,8 @@ def check(point: Point) -> None:
     if len(given) != 3:
         raise SceneError(where, given, "exactly three of count, radius, packing_fraction, side must be given")
     if point.job == "fill":
+        if "attempts" not in settings:
+            raise SceneError(f"{where}.attempts", None, "is required with job: fill")
         return
     engine = settings.get("engine", "event")
     if engine == "step" and "time_step" not in settings:
@@ -197,9 +201,40 @@ def engine(point: Point):
     chosen = {key: point.settings[key] for key in ENGINE_KEYS[name] if key in point.settings}
     if isinstance(chosen.get("boxes_per_side"), list):
         chosen["boxes_per_side"] = tuple(chosen["boxes_per_side"])
+    count, radius, lengths = extents(point)
     if "boxes_per_body" in chosen:
-        chosen["boxes_per_side"] = boxes_per_side(chosen.pop("boxes_per_body"), *extents(point))
+        chosen["boxes_per_side"] = boxes_per_side(chosen.pop("boxes_per_body"), count, radius, lengths)
+    given = chosen.get("boxes_per_side", 1)
+    for length, boxes in zip(
+        lengths, given if isinstance(given, tuple) else (given,) * len(lengths), strict=True
+    ):
+        if boxes > 1 and length / boxes < 2.0 * radius:  # told here already, before any job starts
+            rule = f"boxes must not be narrower than the largest diameter, {2.0 * radius:g}"
+            raise SceneError("boxes_per_side", given, rule)
     return EventDriven(**chosen) if name == "event" else TimeStepped(**chosen)
+
+
+def engines(point: Point) -> list:
+    """The engines that a ``measure_cost`` job times in turn: the point's own, or one for each partition of
+    its scan (``scan_boxes_per_side`` or ``scan_boxes_per_body``; the same partition is timed once).
+
+    Raises SceneError.
+    """
+    from dataclasses import replace
+
+    own, settings = engine(point), point.settings
+    given = [key for key in SCANS if key in settings]
+    if not given:
+        return [own]
+    where = f"experiments.{point.experiment}.{given[0]}"
+    if len(given) > 1 or "boxes_per_side" in settings or "boxes_per_body" in settings:
+        raise SceneError(where, settings[given[0]], "a scan excludes every other choice of boxes")
+    if not settings[given[0]]:
+        raise SceneError(where, settings[given[0]], "must not be empty")
+    partitions = settings[given[0]]
+    if given[0] == "scan_boxes_per_body":
+        partitions = [boxes_per_side(per_body, *extents(point)) for per_body in partitions]
+    return [replace(own, boxes_per_side=partition) for partition in dict.fromkeys(partitions)]
 
 
 def boxes_per_side(per_body: float, count: int, radius: float, lengths: tuple[float, ...]) -> tuple[int, ...]:
@@ -225,6 +260,34 @@ def schedule(point: Point) -> Schedule:
         interval = step * max(1, round(interval / step))
     dropped = math.ceil(settings.get("equilibration", 0) * scale / interval * (1.0 - 1e-12))
     return Schedule(interval * (dropped + samples), interval, dropped, samples)
+
+
+def recipe(point: Point) -> dict:
+    """All that the point's job needs, in plain values: what its result depends on, and nothing else."""
+    made = {
+        "scene": scene(point).to_dict(),
+        "seeds": [list(point.seed(k)) for k in range(point.replicas)],
+    }
+    if point.job == "fill":
+        return {**made, "attempts": point.settings["attempts"]}
+    from gaspart.engines import engine_to_dict
+
+    times = schedule(point)
+    if point.job == "measure_cost":
+        return {
+            **made,
+            "engines": [engine_to_dict(chosen) for chosen in engines(point)],
+            "equilibration": times.equilibration,
+            "stretch": times.sample_interval,
+            "repeats": times.samples,
+        }
+    return {
+        **made,
+        "engine": engine_to_dict(engine(point)),
+        "duration": times.duration,
+        "sample_interval": times.sample_interval,
+        "displacements": point.settings.get("displacements", False),
+    }
 
 
 def _unit_of_time(point: Point, unit: str) -> float:
@@ -256,29 +319,6 @@ def _unit_of_time(point: Point, unit: str) -> float:
         raise SceneError(
             f"experiments.{point.experiment}.collisions_per_body", settings[unit], rule
         ) from None
-
-
-def variant(point: Point) -> str:
-    """The name of the compiled kernels a point needs: points with the same name share them."""
-    settings = point.settings
-    boundary = settings.get("boundary", "wall")
-    kinds = [boundary] * settings["dimension"] if isinstance(boundary, str) else list(boundary)
-    parts = [f"{settings['dimension']}d", "".join("p" if kind == "periodic" else "w" for kind in kinds)]
-    if point.job == "fill":
-        return "-".join(["fill", *parts])
-    if settings.get("engine", "event") == "event":
-        return "-".join(["event", settings.get("search", "boxes"), *parts])
-    rewind = "rewind" if settings.get("rewind", True) else "norewind"
-    return "-".join(["step", settings.get("precision", "float64"), rewind, *parts])
-
-
-def variants(config: dict) -> dict[str, Point]:
-    """One point, the first in the config's order, for each kernel variant of all grids."""
-    chosen: dict[str, Point] = {}
-    for experiment in config["experiments"]:
-        for point in points(config, experiment):
-            chosen.setdefault(variant(point), point)
-    return chosen
 
 
 def _combinations(grid, where: str) -> list[dict]:

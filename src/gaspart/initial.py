@@ -28,7 +28,9 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
 
     def per_body(attribute):
         alone = [getattr(body, attribute) for body in scene.bodies]
-        return np.concatenate([alone, *(np.full(kind.count, getattr(kind, attribute)) for kind in scene.species)])
+        return np.concatenate(
+            [alone, *(np.full(kind.count, getattr(kind, attribute)) for kind in scene.species)]
+        )
 
     radii, masses = per_body("radius").astype(float), per_body("mass").astype(float)
     rng = stream(seed, _POSITIONS)

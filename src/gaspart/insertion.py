@@ -8,8 +8,24 @@ from gaspart.kernel import allocating_kernel
 
 @allocating_kernel
 def place(
-    draws, positions, radii, start, stop, lower, upper, lengths, periodic, per_side, widths, neighbour, head, following,
-    strides, failures, patience, attempts_at,
+    draws,
+    positions,
+    radii,
+    start,
+    stop,
+    lower,
+    upper,
+    lengths,
+    periodic,
+    per_side,
+    widths,
+    neighbour,
+    head,
+    following,
+    strides,
+    failures,
+    patience,
+    attempts_at,
 ):
     """Try the `draws` (M, d) in [0, 1) as places for bodies start, start + 1, ... stop - 1, in that order.
 

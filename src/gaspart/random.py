@@ -46,7 +46,7 @@ def natural_log(x: np.ndarray) -> np.ndarray:
 
 def _disc(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """`count` points (u, v) uniform in the unit disc without its centre, and s = u^2 + v^2."""
-    us, vs, have = [], [], 0
+    us, vs, have = [np.empty(0)], [np.empty(0)], 0
     while have < count:
         u, v = 2.0 * rng.random((2, 2 * (count - have) + 8)) - 1.0
         s = u * u + v * v

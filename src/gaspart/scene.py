@@ -18,7 +18,9 @@ BOUNDARIES = ("wall", "periodic")
 ARRANGEMENTS = ("random", "lattice")
 
 
-def number(key: str, value: object, rule: str, *, above: float = -math.inf, least: float = -math.inf) -> float:
+def number(
+    key: str, value: object, rule: str, *, above: float = -math.inf, least: float = -math.inf
+) -> float:
     """`value` as a finite float greater than `above` and at least `least`, or a SceneError with `rule`."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real) or not math.isfinite(value):
         raise SceneError(key, value, rule)

@@ -150,7 +150,9 @@ class Simulation:
         drift = abs(state.kinetic_energy - self._energy)
         allowed = ENERGY_DRIFT[getattr(self.engine, "precision", "float64")] * self._energy
         if drift > allowed:
-            raise SimulationError(f"at time {self.time:g} the energy has drifted by {drift:g} from {self._energy:g}")
+            raise SimulationError(
+                f"at time {self.time:g} the energy has drifted by {drift:g} from {self._energy:g}"
+            )
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         """Arrays from which `restore` goes on to the same bits, as if nothing had happened."""

@@ -61,7 +61,9 @@ class EventDynamics:
         per_side = engine.boxes_per_side or sides_for(scene, per_body=1.0)
         boxes = make_boxes(scene, per_side if engine.search == "boxes" else 1, images=True)
         self._by_pairs = engine.search == "pairs"
-        self._space = kernels.Space(scene.container.lengths, scene.container.periodic, float(not scene.centres_to_walls))
+        self._space = kernels.Space(
+            scene.container.lengths, scene.container.periodic, float(not scene.centres_to_walls)
+        )
         self._plans = aligned((n,), PLAN)
         self._plans["partner"] = -1
         self._plans["at"] = boxes.coordinates(state.positions)
@@ -88,7 +90,13 @@ class EventDynamics:
     def _foresee(self) -> None:
         if not self._by_pairs:
             self._kernels.foresee_all(
-                self._rows, self._plans, self._calendar, self._space, self._partition, self._counters, self._clock
+                self._rows,
+                self._plans,
+                self._calendar,
+                self._space,
+                self._partition,
+                self._counters,
+                self._clock,
             )
 
     @property

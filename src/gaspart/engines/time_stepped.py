@@ -69,7 +69,10 @@ class StepDynamics:
             real(not scene.centres_to_walls),
         )
         self._bodies = kernels.Bodies(
-            state.positions.astype(real), state.velocities.astype(real), state.images.copy(), state.radii.astype(real)
+            state.positions.astype(real),
+            state.velocities.astype(real),
+            state.images.copy(),
+            state.radii.astype(real),
         )
         self._partition = kernels.Partition(
             boxes.per_side, boxes.widths.astype(real), boxes.strides, boxes.neighbour,

@@ -1,0 +1,50 @@
+"""The float64 state of an unfinished run, in a file that appears whole or not at all."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+_DIGEST, _FRAMES = "trajectory header", "trajectory frames"
+
+
+@dataclass(frozen=True)
+class Checkpoint:
+    """frames: how many frames of the trajectory were complete; arrays: for `Simulation.restore`."""
+
+    frames: int
+    arrays: dict[str, np.ndarray]
+
+
+def _digest(header: bytes) -> str:
+    return hashlib.sha256(header).hexdigest()
+
+
+def write_checkpoint(path: Path, header: bytes, frames: int, arrays: dict[str, np.ndarray]) -> None:
+    """Write the checkpoint of a run, which the header of its trajectory stands for. May raise OSError."""
+    new = path.with_name(path.name + ".new")
+    try:
+        with new.open("wb") as file:
+            np.savez(file, **arrays, **{_DIGEST: np.array(_digest(header)), _FRAMES: np.array(frames)})
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(new, path)
+    except OSError:
+        new.unlink(missing_ok=True)
+        raise
+
+
+def read_checkpoint(path: Path, header: bytes) -> Checkpoint | None:
+    """The checkpoint of the run that this header stands for, or None if there is none."""
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            arrays = {key: file[key] for key in file.files}
+        digest, frames = str(arrays.pop(_DIGEST)), int(arrays.pop(_FRAMES))
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        return None
+    return Checkpoint(frames, arrays) if digest == _digest(header) else None

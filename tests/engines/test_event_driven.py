@@ -1,0 +1,286 @@
+"""The event-driven engine against its referee, exact cases, conservation laws and the equation of state."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scenes import gas, mixtures
+
+import gaspart as gp
+from gaspart import theory
+
+
+def events_of(scene, search, most, seed=1, **settings_):
+    sim = gp.Simulation(scene, gp.EventDriven(search, **settings_), seed=seed)
+    sim.record_events = True
+    sim.advance(max_events=most, duration=1e4)
+    return sim
+
+
+def same_bits(one, other):
+    return all(np.array_equal(one.events[key], other.events[key], equal_nan=True) for key in one.events)
+
+
+@given(mixtures(), st.integers(0, 2**32))
+@settings(max_examples=60, deadline=None)
+def test_all_searches_give_the_same_events_bit_for_bit(scene, seed):
+    referee = events_of(scene, "pairs", 150, seed)
+    for search in ("boxes", "direct"):
+        assert same_bits(referee, events_of(scene, search, 150, seed))
+
+
+@given(mixtures(most=40), st.integers(0, 2**32))
+@settings(max_examples=40, deadline=None)
+def test_invariants_hold_in_any_scene(scene, seed):
+    sim = gp.Simulation(scene, gp.EventDriven(), seed=seed)
+    before = sim.initial_state
+    sim.advance(max_events=3000, duration=1e4)
+    state, tally = sim.state, sim.tally
+    assert state.kinetic_energy == pytest.approx(before.kinetic_energy, rel=1e-12)
+    if all(scene.container.periodic):
+        scale = (state.masses[:, None] * abs(state.velocities)).sum()
+        assert np.allclose(state.momentum, before.momentum, rtol=0, atol=1e-13 * scale)
+    assert tally.worst_contact < 1e-9
+    for position, radius in zip(state.positions, state.radii, strict=True):
+        low, high = scene.reach(radius)
+        assert (position >= np.array(low) - 1e-12).all()
+        assert (position <= np.array(high) + 1e-12).all()
+
+
+@pytest.mark.parametrize("boundary", ["wall", "periodic"])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_any_number_of_boxes_gives_the_same_events(dimension, boundary):
+    scene = gas(dimension, 100, 0.05, boundary)
+    first = events_of(scene, "boxes", 4000)
+    for boxes_per_side in (1, 2, 3, tuple(range(4, 4 + dimension))):
+        assert same_bits(first, events_of(scene, "boxes", 4000, boxes_per_side=boxes_per_side))
+
+
+def test_energy_over_a_million_collisions():
+    sim = gp.Simulation(gas(3, 1000, 0.3), gp.EventDriven(), seed=5)
+    sim.advance(max_events=1_000_000)
+    drift = sim.state.kinetic_energy / sim.initial_state.kinetic_energy - 1
+    assert abs(drift) < 1e-12
+    assert sim.tally.collisions == 1_000_000
+    assert sim.tally.worst_contact < 1e-9
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("eta", [0.1, 0.2, 0.3])
+def test_compressibility_factor(dimension, eta):
+    """Z within 3 sigma of the reference, sigma at most 0.2 %; the finite-size shift is theory's."""
+    count, blocks = 500, 16
+    sim = gp.Simulation(
+        gas(dimension, count, eta, arrangement="lattice"), gp.EventDriven(), seed=(11, dimension)
+    )
+    sim.advance(max_events=30 * count)
+    velocities = sim.state.velocities
+    twice_energy = ((velocities - velocities.mean(axis=0)) ** 2).sum()
+    found = []
+    for _ in range(blocks):
+        sim.reset_tally()
+        sim.advance(max_events=100 * count)
+        tally = sim.tally
+        found.append(1 + tally.virial_sum / (twice_energy * tally.time))
+    error = np.std(found, ddof=1) / math.sqrt(blocks)
+    expected = theory.compressibility_factor(eta, dimension)
+    expected += theory.finite_size_correction(eta, dimension, count)
+    assert error < 2e-3 * expected
+    assert abs(np.mean(found) - expected) < 3 * error
+
+
+def test_a_head_on_collision_is_exact():
+    bodies = [gp.Body((2.0, 5.0), (1.0, 0.0), 0.5), gp.Body((6.0, 5.0), (0.0, 0.0), 0.5)]
+    sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), bodies=bodies), gp.EventDriven())
+    sim.record_events = True
+    sim.advance(duration=4.0)
+    assert sim.events["time"].tolist() == [3.0]
+    assert sim.events["bodies"].tolist() == [[0, 1]]
+    assert sim.state.positions.tolist() == [[5.0, 5.0], [7.0, 5.0]]
+    assert sim.state.velocities.tolist() == [[0.0, 0.0], [1.0, 0.0]]
+
+
+def test_a_wall_hit_gives_its_momentum_to_that_face():
+    bodies = [gp.Body((2.0, 5.0), (-1.0, 0.0), 0.5, mass=3.0)]
+    sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), bodies=bodies), gp.EventDriven())
+    sim.record_events = True
+    sim.advance(duration=2.0)
+    assert sim.tally.wall_hits.tolist() == [1, 0, 0, 0]
+    assert sim.tally.wall_impulse.tolist() == [6.0, 0.0, 0.0, 0.0]
+    assert sim.events["bodies"].tolist() == [[0, -1]]
+    assert sim.state.positions.tolist() == [[1.0, 5.0]]
+
+
+def test_centres_reach_the_walls_where_the_scene_says_so():
+    body = gp.Body((2.0, 5.0), (-1.0, 0.0), 0.5)
+    scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=[body], centres_to_walls=True)
+    sim = gp.Simulation(scene, gp.EventDriven())
+    sim.advance(duration=3.0)
+    assert sim.state.positions.tolist() == [[1.0, 5.0]]
+
+
+def test_newtons_cradle_passes_the_momentum_through_touching_discs():
+    row = [gp.Body((4.0 + n, 5.0), (0.0, 0.0), 0.5) for n in range(4)]
+    scene = gp.Scene(gp.Container((20.0, 10.0)), bodies=[gp.Body((1.0, 5.0), (1.0, 0.0), 0.5), *row])
+    sim = gp.Simulation(scene, gp.EventDriven())
+    sim.advance(duration=3.0)
+    assert sim.state.velocities[:, 0].tolist() == [0.0, 0.0, 0.0, 0.0, 1.0]
+    assert sim.tally.collisions == 4
+
+
+@pytest.mark.parametrize(("ratio", "count"), [(1.0, 3), (1e2, 31), (1e4, 314), (1e6, 3141), (1e8, 31415)])
+def test_pi_by_billiards(ratio, count):
+    """A heavy ball, a light one at rest, a wall: ceil(pi/arctan sqrt(m/M)) - 1 hits (Galperin 2003)."""
+    bodies = [gp.Body((2.0, 1.0), (0.0, 0.0), 0.5), gp.Body((4.0, 1.0), (-1.0, 0.0), 0.5, mass=ratio)]
+    sim = gp.Simulation(gp.Scene(gp.Container((1e3, 2.0)), bodies=bodies), gp.EventDriven())
+    sim.advance(duration=500.0)
+    assert sim.tally.collisions + sim.tally.wall_hits[0] == count
+    assert sim.tally.wall_hits[1] == 0
+    assert count == math.ceil(math.pi / math.atan(math.sqrt(1 / ratio))) - 1
+
+
+def test_a_corner_is_two_walls_at_once():
+    body = gp.Body((5.0, 5.0), (1.0, 1.0), 0.5)
+    sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), bodies=[body]), gp.EventDriven())
+    sim.advance(duration=5.5)
+    assert sim.tally.wall_hits.tolist() == [0, 1, 0, 1]
+    assert sim.state.velocities.tolist() == [[-1.0, -1.0]]
+    assert sim.state.positions.tolist() == [[8.5, 8.5]]
+
+
+def test_simultaneous_contacts_come_in_the_order_of_their_indices():
+    # two pairs that touch at the same instant, and a lone body at a wall then: walls, then (0, 3), then (1, 2)
+    bodies = [
+        gp.Body((2.0, 2.0), (1.0, 0.0), 0.5),
+        gp.Body((2.0, 6.0), (1.0, 0.0), 0.5),
+        gp.Body((6.0, 6.0), (-1.0, 0.0), 0.5),
+        gp.Body((6.0, 2.0), (-1.0, 0.0), 0.5),
+        gp.Body((8.0, 4.0), (1.0, 0.0), 0.5),
+    ]
+    for search in ("boxes", "direct", "pairs"):
+        sim = events_of(gp.Scene(gp.Container((10.0, 10.0)), bodies=bodies), search, 3)
+        assert sim.events["time"].tolist() == [1.5, 1.5, 1.5]
+        assert sim.events["bodies"].tolist() == [[4, -2], [0, 3], [1, 2]]
+
+
+@pytest.mark.parametrize("search", ["boxes", "pairs"])
+def test_stopping_on_the_way_changes_no_bit(search):
+    scene = gas(3, 60, 0.1, ("wall", "periodic", "periodic"))
+    whole = gp.Simulation(scene, gp.EventDriven(search), seed=2)
+    whole.advance(until=10.0)
+    parts = gp.Simulation(scene, gp.EventDriven(search), seed=2)
+    for n in range(1, 71):
+        parts.advance(until=n / 7)
+        parts.state  # noqa: B018 - looking must change nothing
+    parts.advance(until=10.0)
+    assert np.array_equal(whole.state.positions, parts.state.positions)
+    assert np.array_equal(whole.state.velocities, parts.state.velocities)
+
+
+def test_a_checkpoint_goes_on_to_the_same_bits_and_counts():
+    scene = gas(2, 200, 0.3)
+    whole = gp.Simulation(scene, gp.EventDriven(), seed=2)
+    whole.advance(until=5.0)
+    kept = {key: value.copy() for key, value in whole.checkpoint().items()}
+    whole.advance(until=12.0)
+    again = gp.Simulation(scene, gp.EventDriven(), seed=2)
+    again.restore(kept)
+    again.advance(until=12.0)
+    assert np.array_equal(whole.state.unwrapped, again.state.unwrapped)
+    assert str(whole.tally) == str(again.tally)
+
+
+def test_clocks_that_start_again_lose_nothing():
+    """Far beyond a lap of the clocks (some 1000 times of flight), contacts are as exact as at the start."""
+    sim = gp.Simulation(gas(2, 10, 0.05), gp.EventDriven(), seed=3)
+    sim.advance(duration=200_000.0)
+    assert sim.tally.worst_contact < 1e-11
+    sim.check_invariants()
+    referee = gp.Simulation(gas(2, 10, 0.05), gp.EventDriven("pairs"), seed=3)
+    referee.advance(duration=5_000.0)
+    again = gp.Simulation(gas(2, 10, 0.05), gp.EventDriven(), seed=3)
+    again.advance(duration=5_000.0)
+    assert np.array_equal(again.state.unwrapped, referee.state.unwrapped)
+
+
+@pytest.mark.parametrize("power", [-7, 5])
+@pytest.mark.parametrize("what", ["length", "time", "mass"])
+def test_other_units_give_the_same_bits(what, power):
+    """Lengths, times or masses times a power of two: the mantissas do not change."""
+    factor = 2.0**power
+    length, time, mass = (factor if what == unit else 1.0 for unit in ("length", "time", "mass"))
+    scene = gas(2, 50, 0.2, "wall")
+    start = gp.Simulation(scene, gp.EventDriven(), seed=9).initial_state
+    half = start.masses * np.where(np.arange(50) < 25, 1.0, 3.0)
+    one = _given(scene, start, half, 1.0, 1.0, 1.0)
+    other = _given(scene, start, half, length, time, mass)
+    one.advance(until=20.0)
+    other.advance(until=20.0 * time)
+    assert np.array_equal(one.state.positions * length, other.state.positions)
+    assert np.array_equal(one.state.velocities * (length / time), other.state.velocities)
+
+
+def _given(scene, start, masses, length, time, mass):
+    bodies = [
+        gp.Body(tuple(r * length), tuple(v * (length / time)), 0.5 * length, m * mass)
+        for r, v, m in zip(start.positions, start.velocities, masses, strict=True)
+    ]
+    container = replace(scene.container, lengths=tuple(np.array(scene.container.lengths) * length))
+    return gp.Simulation(gp.Scene(container, bodies=bodies), gp.EventDriven())
+
+
+def test_a_mirrored_scene_runs_mirrored_until_chaos_takes_over():
+    scene = gas(2, 30, 0.1, "wall")
+    start = gp.Simulation(scene, gp.EventDriven(), seed=4).initial_state
+    side = scene.container.lengths[0]
+    mirrored = replace(
+        start,
+        positions=start.positions * (-1, 1) + (side, 0),
+        velocities=start.velocities * (-1, 1),
+    )
+    one = _given(scene, start, start.masses, 1, 1, 1)
+    other = _given(scene, mirrored, start.masses, 1, 1, 1)
+    for sim in (one, other):
+        sim.advance(duration=8.0)
+    assert one.tally.collisions > 20
+    assert np.allclose(one.state.positions * (-1, 1) + (side, 0), other.state.positions, atol=1e-6)
+
+
+def test_turned_velocities_run_back_until_chaos_takes_over():
+    scene = gas(3, 30, 0.1, "wall")
+    sim = gp.Simulation(scene, gp.EventDriven(), seed=4)
+    sim.advance(duration=4.0)
+    assert sim.tally.collisions > 20
+    turned = replace(sim.state, velocities=-sim.state.velocities)
+    back = _given(scene, turned, turned.masses, 1, 1, 1)
+    back.advance(duration=4.0)
+    assert np.allclose(back.state.positions, sim.initial_state.positions, atol=1e-6)
+
+
+def test_bodies_at_rest_stay_there():
+    sim = gp.Simulation(gas(3, 20, 0.1, temperature=None), gp.EventDriven(), seed=1)
+    sim.advance(duration=1e6)
+    assert np.array_equal(sim.state.positions, sim.initial_state.positions)
+    assert sim.time == 1e6
+
+
+@pytest.mark.parametrize("count", [0, 1])
+def test_scenes_of_nobody_and_of_one(count):
+    sim = gp.Simulation(
+        gp.Scene(gp.Container((3.0, 3.0)), [gp.Species(count, 0.5, speed=1.0)]), gp.EventDriven()
+    )
+    sim.advance(duration=100.0)
+    assert sim.time == 100.0
+    assert sim.tally.collisions == 0
+
+
+@pytest.mark.parametrize(
+    ("settings_", "key"),
+    [({"search": "magic"}, "search"), ({"search": "pairs", "boxes_per_side": 3}, "boxes_per_side")],
+)
+def test_settings_that_are_none(settings_, key):
+    with pytest.raises(gp.SceneError, match=key):
+        gp.EventDriven(**settings_)

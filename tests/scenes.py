@@ -1,0 +1,34 @@
+"""Scenes that several tests use, and how to draw random ones."""
+
+import math
+
+from hypothesis import strategies as st
+
+import gaspart as gp
+
+
+def gas(dimension, count, packing_fraction, boundary="periodic", **properties):
+    """A gas of bodies of diameter 1 at temperature 1 in a cube or square of the right size."""
+    properties = {"radius": 0.5, "temperature": 1.0} | properties
+    unit = math.pi if dimension == 2 else 4 / 3 * math.pi
+    side = (count * unit * properties["radius"] ** dimension / packing_fraction) ** (1 / dimension)
+    return gp.Scene(gp.Container((side,) * dimension, boundary), [gp.Species(count, **properties)])
+
+
+@st.composite
+def mixtures(draw, most=12):
+    """Small scenes of one or two species, any boundary, uneven sides, moderate density."""
+    dimension = draw(st.sampled_from([2, 3]))
+    boundary = draw(st.lists(st.sampled_from(["wall", "periodic"]), min_size=dimension, max_size=dimension))
+    lengths = draw(st.lists(st.floats(4.5, 9.0), min_size=dimension, max_size=dimension))
+    species = [
+        gp.Species(
+            count=draw(st.integers(1, most // 2)),
+            radius=draw(st.floats(0.1, 0.8)),
+            mass=draw(st.sampled_from([1.0, 1.0, 0.1, 30.0])),
+            temperature=draw(st.floats(0.1, 10.0)),
+        )
+        for _ in range(draw(st.integers(1, 2)))
+    ]
+    centres = draw(st.booleans())
+    return gp.Scene(gp.Container(lengths, boundary), species, centres_to_walls=centres)

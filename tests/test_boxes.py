@@ -1,0 +1,62 @@
+"""The partition: every close pair is in boxes that the table calls neighbours."""
+
+import itertools
+
+import numpy as np
+import pytest
+from scenes import gas
+
+import gaspart as gp
+from gaspart.boxes import NOWHERE, make_boxes, sides_for
+
+
+def neighbours(boxes, at):
+    """The (box, shift) that the tables name around a box."""
+    found = []
+    for steps in itertools.product(range(3), repeat=3):
+        parts = [boxes.neighbour[k, at[k], steps[k]] for k in range(3)]
+        if NOWHERE not in parts:
+            found.append((sum(parts), tuple(boxes.shift[k, at[k], steps[k]] for k in range(3))))
+    return found
+
+
+@pytest.mark.parametrize("boundary", [("wall", "wall"), ("periodic", "periodic"), ("wall", "periodic")])
+@pytest.mark.parametrize("per_side", [1, 2, 3, (4, 1), (2, 5)])
+@pytest.mark.parametrize("images", [True, False])
+def test_neighbours_are_those_within_one_box(boundary, per_side, images):
+    lengths = (10.0, 7.0)
+    scene = gp.Scene(gp.Container(lengths, boundary), [gp.Species(3, 0.5, speed=1.0)])
+    boxes = make_boxes(scene, per_side, images)
+    n = boxes.per_side
+    for x, y in itertools.product(range(n[0]), range(n[1])):
+        expected = set()
+        for dx, dy in itertools.product((-1, 0, 1), repeat=2):
+            laps_x, to_x = divmod(x + dx, n[0])
+            laps_y, to_y = divmod(y + dy, n[1])
+            if (laps_x and boundary[0] == "wall") or (laps_y and boundary[1] == "wall"):
+                continue
+            expected.add((to_x + n[0] * to_y, (laps_x, laps_y, 0)))
+        found = neighbours(boxes, (x, y, 0))
+        if images:
+            assert sorted(found) == sorted(expected)
+        else:  # each box once
+            assert sorted(box for box, _ in found) == sorted({box for box, _ in expected})
+
+
+def test_boxes_narrower_than_a_diameter_are_refused():
+    scene = gas(2, 10, 0.1)
+    with pytest.raises(gp.SceneError, match="boxes_per_side = 50: boxes must not be narrower"):
+        make_boxes(scene, 50, images=True)
+    make_boxes(scene, 1, images=True)
+
+
+@pytest.mark.parametrize("wrong", [0, -1, 2.5, (2,), "many"])
+def test_numbers_of_boxes_that_are_none(wrong):
+    with pytest.raises(gp.SceneError, match="boxes_per_side"):
+        make_boxes(gas(2, 10, 0.1), wrong, images=True)
+
+
+def test_the_number_of_boxes_follows_the_number_of_bodies():
+    assert np.prod(sides_for(gas(3, 1000, 0.01), per_body=1.0)) == 1000
+    dense = gas(3, 1000, 0.4)
+    assert dense.container.lengths[0] / sides_for(dense, per_body=10.0)[0] >= 1.0

@@ -1,0 +1,95 @@
+"""Initial states: bodies placed where they may be, moving as they should."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from scenes import gas, mixtures
+
+import gaspart as gp
+from gaspart.initial import initial_state, random_insertion
+from gaspart.random import stream
+
+
+def closest(scene, state):
+    """The smallest gap between two surfaces, by all pairs and the nearest image."""
+    gaps = []
+    for i in range(state.count):
+        r = np.abs(state.positions[i] - state.positions[i + 1 :])
+        r = np.where(scene.container.periodic, np.minimum(r, state.lengths - r), r)
+        gaps.append(np.sqrt((r**2).sum(axis=1)) - state.radii[i] - state.radii[i + 1 :])
+    return np.concatenate(gaps).min(initial=math.inf)
+
+
+@given(mixtures(most=30))
+@settings(max_examples=60, deadline=None)
+def test_random_insertion_keeps_bodies_apart_and_inside(scene):
+    state = initial_state(scene, seed=1)
+    assert closest(scene, state) >= 0
+    for position, radius in zip(state.positions, state.radii, strict=True):
+        low, high = scene.reach(radius)
+        assert (position >= low).all()
+        assert (position <= high).all()
+
+
+@pytest.mark.parametrize("boundary", ["wall", "periodic"])
+@pytest.mark.parametrize(("dimension", "eta"), [(2, 0.3), (2, 0.72), (3, 0.3), (3, 0.58)])
+def test_lattices_hold_any_number(dimension, boundary, eta):
+    for count in (1, 2, 7, 64, 108, 250):
+        wanted = eta if boundary == "periodic" and count in (108, 250) else eta / 3
+        scene = gas(dimension, count, wanted if count > 2 else 0.05, boundary, arrangement="lattice")
+        state = initial_state(scene, seed=0)
+        assert len(np.unique(state.positions, axis=0)) == count
+        assert closest(scene, state) > -1e-12
+
+
+def test_a_lattice_that_would_overlap_is_refused():
+    with pytest.raises(gp.SceneError, match="lattice spacing"):
+        initial_state(gas(3, 100, 0.7, arrangement="lattice"), seed=0)
+
+
+def test_insertion_gives_up_at_saturation():
+    scene = gas(3, 200, 0.5)
+    with pytest.raises(gp.SceneError, match=r"species\[0\].count = 200: does not fit") as caught:
+        random_insertion(scene, stream(0), patience=20_000)
+    assert "\n" not in str(caught.value)
+
+
+def test_failures_at_low_density_are_those_of_the_excluded_volume():
+    # the chance that an attempt fails is 2^d eta to first order; here eta grows from 0 to 0.01
+    failures = 0
+    for seed in range(20):
+        _, failed = random_insertion(gas(3, 1000, 0.01), stream(seed))
+        failures += failed.sum()
+    expected = 20 * 1000 * 8 * 0.005  # mean over the filling; the next order adds some 5 %
+    assert failures == pytest.approx(expected * 1.045, abs=4 * math.sqrt(expected))
+
+
+def test_velocities_have_their_speed_or_temperature():
+    speeds = np.sqrt(
+        (initial_state(gas(3, 500, 0.01, temperature=None, speed=2.0), 1).velocities ** 2).sum(axis=1)
+    )
+    assert np.allclose(speeds, 2.0, rtol=1e-14)
+    velocities = initial_state(gas(2, 20_000, 0.01, temperature=3.0, mass=2.0), 1).velocities
+    assert (velocities**2).mean() == pytest.approx(1.5, abs=4 * 1.5 * math.sqrt(2 / 40_000))
+    assert not initial_state(gas(2, 10, 0.01, temperature=None), 1).velocities.any()
+
+
+def test_explicit_bodies_come_first_and_stay_put():
+    body = gp.Body((5.0, 5.0), (1.0, 0.0), 2.0, mass=7.0)
+    scene = gp.Scene(gp.Container((10.0, 10.0)), [gp.Species(20, 0.3, speed=1.0)], [body])
+    state = initial_state(scene, seed=4)
+    assert state.positions[0].tolist() == [5.0, 5.0]
+    assert state.masses[0] == 7.0
+    assert state.species.tolist() == [1] + [0] * 20
+    assert closest(scene, state) >= 0
+
+
+def test_large_bodies_find_room_among_small_ones():
+    scene = gp.Scene(
+        gp.Container((12.0, 12.0)), [gp.Species(150, 0.25, speed=1.0), gp.Species(8, 1.2, speed=1.0)]
+    )
+    state = initial_state(scene, seed=2)
+    assert (state.radii[:150] == 0.25).all()
+    assert closest(scene, state) >= 0

@@ -1,0 +1,106 @@
+"""Scenes: what they refuse, in one line, and that a file gives back what was written."""
+
+import math
+
+import pytest
+from hypothesis import given
+from scenes import mixtures
+
+import gaspart as gp
+
+GOOD = {
+    "container": {"lengths": [10.0, 10.0], "boundary": "wall"},
+    "species": [{"count": 5, "radius": 0.5, "speed": 1.0}],
+}
+
+
+def changed(path, value):
+    """GOOD with one entry replaced (a new key where it has none)."""
+    scene = {"container": dict(GOOD["container"]), "species": [dict(GOOD["species"][0])]}
+    *way, last = path
+    target = scene
+    for step in way:
+        target = target[step]
+    target[last] = value
+    return scene
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "key"),
+    [
+        (("colour",), "red", "colour"),
+        (("species", 0, "colour"), "red", "species[0].colour"),
+        (("species", 0, "mass"), -1.0, "species[0].mass"),
+        (("species", 0, "mass"), 0.0, "species[0].mass"),
+        (("species", 0, "radius"), math.nan, "species[0].radius"),
+        (("species", 0, "radius"), "big", "species[0].radius"),
+        (("species", 0, "radius"), 6.0, "species[0].radius"),
+        (("species", 0, "count"), 2.5, "species[0].count"),
+        (("species", 0, "count"), -1, "species[0].count"),
+        (("species", 0, "count"), True, "species[0].count"),
+        (("species", 0, "count"), 200, "packing_fraction"),
+        (("species", 0, "temperature"), 1.0, "species[0].temperature"),
+        (("species", 0, "arrangement"), "neat", "species[0].arrangement"),
+        (("container", "lengths"), [10.0], "container.lengths"),
+        (("container", "lengths"), [10.0, math.inf], "container.lengths"),
+        (("container", "lengths"), [10.0, -1.0], "container.lengths"),
+        (("container", "boundary"), "fog", "container.boundary"),
+        (("container", "boundary"), ["wall"], "container.boundary"),
+        (("centres_to_walls",), "yes", "centres_to_walls"),
+        (("species",), {"count": 3}, "species"),
+        (("bodies",), [{"position": [0.1, 5], "velocity": [0, 0], "radius": 0.5}], "bodies[0].position"),
+        (("bodies",), [{"position": [5, 5, 5], "velocity": [0, 0], "radius": 0.5}], "bodies[0].position"),
+        (("bodies",), [{"position": [5, 5], "velocity": [0, 0]}], "bodies[0].radius"),
+        (
+            ("bodies",),
+            [{"position": [5, y], "velocity": [0, 0], "radius": 0.5} for y in (5, 5.5)],
+            "bodies[1].position",
+        ),
+    ],
+)
+def test_one_line_names_file_key_and_value(path, value, key):
+    with pytest.raises(gp.SceneError) as caught:
+        gp.Scene.from_dict(changed(path, value), file="scene.yaml")
+    message = str(caught.value)
+    assert message.startswith(f"scene.yaml: {key} = ")
+    assert "\n" not in message
+
+
+def test_overlap_is_seen_across_a_periodic_face():
+    bodies = [gp.Body((0.2, 5.0), (0, 0), 0.5), gp.Body((9.8, 5.0), (0, 0), 0.5)]
+    with pytest.raises(gp.SceneError, match="overlaps"):
+        gp.Scene(gp.Container((10.0, 10.0), "periodic"), bodies=bodies)
+
+
+@given(mixtures())
+def test_a_file_gives_back_the_scene(tmp_path_factory, scene):
+    path = tmp_path_factory.mktemp("scene") / "scene.yaml"
+    scene.to_file(path)
+    assert gp.Scene.from_file(path) == scene
+
+
+def test_numbers_in_a_file_may_be_written_as_people_write_them(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text("container: {lengths: [1e1, 10]}\nspecies: [{count: 1, radius: 5e-1, speed: 1}]\n")
+    assert gp.Scene.from_file(path).species[0].radius == 0.5
+
+
+@pytest.mark.parametrize("text", ["a: [", "!!python/object/apply:os.system ['true']", "- 1"])
+def test_a_file_that_is_no_scene(tmp_path, text):
+    path = tmp_path / "scene.yaml"
+    path.write_text(text)
+    with pytest.raises(gp.SceneError, match="scene.yaml") as caught:
+        gp.Scene.from_file(path)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_file_that_is_not_there():
+    with pytest.raises(gp.SceneError, match="cannot be read"):
+        gp.Scene.from_file("no-such-scene.yaml")
+
+
+def test_derived_numbers():
+    scene = gp.Scene.from_dict(GOOD)
+    assert scene.count == 5
+    assert scene.number_density == 0.05
+    assert scene.packing_fraction == pytest.approx(5 * math.pi * 0.25 / 100)

@@ -1,0 +1,126 @@
+"""The face of the library."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from scenes import gas
+
+import gaspart as gp
+
+
+def test_same_seed_same_bits_and_another_seed_another_gas():
+    scene = gas(3, 50, 0.1)
+    ends = []
+    for seed in (1, 1, 2, (1, 1)):
+        sim = gp.Simulation(scene, gp.EventDriven(), seed=seed)
+        sim.advance(duration=5.0)
+        ends.append(sim.state.positions)
+    assert np.array_equal(ends[0], ends[1])
+    assert not np.array_equal(ends[0], ends[2])
+    assert not np.array_equal(ends[0], ends[3])
+
+
+def test_recording_changes_no_bit():
+    plain, recorded = (gp.Simulation(gas(2, 50, 0.2, "wall"), gp.EventDriven(), seed=1) for _ in range(2))
+    recorded.record_events = True
+    for sim in (plain, recorded):
+        sim.advance(duration=300.0)
+    assert np.array_equal(plain.state.positions, recorded.state.positions)
+    events = recorded.events
+    hits = plain.tally.wall_hits.sum()
+    assert len(events["time"]) == plain.tally.collisions + hits > 4096  # more than the record holds at once
+    assert (np.diff(events["time"]) >= -1e-12).all()
+    assert (events["bodies"][:, 1] < 0).sum() == hits
+    pairs = events["bodies"][:, 1] >= 0
+    r = events["positions"][pairs, 1] - events["positions"][pairs, 0]
+    assert np.allclose((r**2).sum(axis=1), 1.0, atol=1e-10)
+
+
+def test_replay_by_time_and_by_event():
+    sim = gp.Simulation(gas(2, 10, 0.1, "wall"), gp.EventDriven(), seed=1)
+    sim.advance(duration=4.0)
+    frames = list(sim.replay(by="time", interval=0.5))
+    assert [frame.time for frame in frames] == [0.5 * n for n in range(9)]
+    assert np.array_equal(frames[0].positions, sim.initial_state.positions)
+    assert np.array_equal(frames[-1].positions, sim.state.positions)
+    events = list(sim.replay(by="event"))
+    assert len(events) == 2 + sim.tally.collisions + sim.tally.wall_hits.sum()
+    assert np.array_equal(events[-1].positions, sim.state.positions)
+
+
+def test_max_events_is_exact_and_tallies_can_be_reset():
+    sim = gp.Simulation(gas(2, 50, 0.2), gp.EventDriven(), seed=1)
+    sim.advance(max_events=123)
+    assert sim.tally.collisions == 123
+    time = sim.time
+    sim.reset_tally()
+    sim.advance(max_events=7)
+    assert sim.tally.collisions == 7
+    assert sim.tally.time == pytest.approx(sim.time - time)
+    sim.advance(duration=1e9, max_events=0)
+    assert sim.tally.collisions == 7
+
+
+def test_bodies_are_added_before_the_start_only():
+    sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0))), gp.EventDriven(), seed=1)
+    sim.add(position=(5.0, 5.0), velocity=(1.0, 0.0), radius=1.0, mass=2.0)
+    sim.add_random(10, radius=0.3, speed=1.0)
+    assert sim.scene.count == 11
+    assert sim.state.positions[0].tolist() == [5.0, 5.0]
+    with pytest.raises(gp.SceneError, match="overlaps"):
+        sim.add(position=(5.5, 5.0), velocity=(0.0, 0.0), radius=1.0)
+    assert sim.scene.count == 11
+    sim.advance(duration=1.0)
+    with pytest.raises(gp.SceneError, match="before the first advance"):
+        sim.add_random(1, radius=0.3)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "key"),
+    [
+        ({}, "duration"),
+        ({"duration": -1.0}, "duration"),
+        ({"duration": float("nan")}, "duration"),
+        ({"until": -1.0}, "until"),
+        ({"max_events": -3}, "max_events"),
+        ({"max_events": 2.5}, "max_events"),
+    ],
+)
+def test_targets_that_are_none(arguments, key):
+    sim = gp.Simulation(gas(2, 5, 0.1), gp.EventDriven(), seed=1)
+    with pytest.raises(gp.SceneError, match=key):
+        sim.advance(**arguments)
+
+
+def test_states_and_tallies_are_copies():
+    sim = gp.Simulation(gas(2, 5, 0.1), gp.EventDriven(), seed=1)
+    sim.initial_state.positions[:] = 0
+    sim.state.velocities[:] = 0
+    sim.tally.wall_hits[:] = 7
+    assert sim.state.velocities.any()
+    assert sim.initial_state.positions.any()
+    assert not sim.tally.wall_hits.any()
+
+
+def test_engines_can_be_written_down():
+    for engine in (
+        gp.EventDriven("direct"),
+        gp.EventDriven(boxes_per_side=(2, 3)),
+        gp.TimeStepped(0.1, 4, "float32"),
+    ):
+        assert gp.engine_from_dict(gp.engine_to_dict(engine)) == engine
+    for wrong, key in (
+        ({"name": "magic"}, "engine.name"),
+        ({"name": "step"}, "engine.time_step"),
+        ([], "engine"),
+    ):
+        with pytest.raises(gp.SceneError, match=key):
+            gp.engine_from_dict(wrong)
+
+
+def test_importing_the_package_starts_no_compiler():
+    code = "import sys, gaspart, gaspart.grid; print('numba' in sys.modules, 'xarray' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["False", "False"]

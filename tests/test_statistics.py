@@ -1,0 +1,201 @@
+import math
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from gaspart import statistics, theory
+
+
+def autoregressive(size, memory, seed):
+    """Unit-variance series with correlation memory^k: integrated time 1/2 + memory / (1 - memory)."""
+    noise = np.random.default_rng(seed).standard_normal(size) * math.sqrt(1.0 - memory**2)
+    series = np.empty(size)
+    value = np.random.default_rng(seed + 1).standard_normal()
+    for index, kick in enumerate(noise):
+        value = memory * value + kick
+        series[index] = value
+    return series
+
+
+def test_block_average_of_independent_samples_needs_no_blocks():
+    series = np.random.default_rng(1).standard_normal(4096)
+    result = statistics.block_average(series)
+    assert result.flat
+    assert result.error == pytest.approx(1.0 / 64.0, rel=0.15)
+    assert abs(result.mean) < 4.0 / 64.0
+
+
+def test_block_average_finds_the_error_of_a_correlated_series():
+    memory, size = 0.9, 2**16
+    time = 0.5 + memory / (1.0 - memory)
+    result = statistics.block_average(autoregressive(size, memory, 2))
+    assert result.flat
+    assert result.block_length > time
+    assert result.error == pytest.approx(math.sqrt(2.0 * time / size), rel=0.15)
+    assert result.errors[0] < 0.4 * result.error
+
+
+def test_block_average_says_when_the_series_is_too_short():
+    result = statistics.block_average(np.cumsum(np.random.default_rng(3).standard_normal(256)))
+    assert not result.flat
+    assert result.block_length == 16
+
+
+def test_block_error_holds_what_it_promises():
+    deviations = []
+    for seed in range(60):
+        result = statistics.block_average(autoregressive(2048, 0.8, 100 + 2 * seed))
+        deviations.append(result.mean / result.error)
+    assert 0.8 < np.std(deviations) < 1.3
+
+
+@pytest.mark.parametrize("memory", [0.0, 0.5, 0.9])
+def test_autocorrelation_time(memory):
+    exact = 0.5 + memory / (1.0 - memory)
+    measured = statistics.autocorrelation_time(autoregressive(2**16, memory, 7))
+    assert measured == pytest.approx(exact, rel=0.1)
+    assert statistics.autocorrelation_time(np.full(10, 3.0)) == 0.5
+
+
+def test_means():
+    estimate = statistics.mean_of([1.0, 2.0, 3.0])
+    assert (estimate.value, estimate.count) == (2.0, 3)
+    assert estimate.error == pytest.approx(1.0 / math.sqrt(3.0))
+    combined = statistics.combine([1.0, 3.0], [1.0, 2.0])
+    assert combined.value == pytest.approx(1.4)
+    assert combined.error == pytest.approx(1.0 / math.sqrt(1.25))
+    assert combined.chi_square == pytest.approx(0.8)
+    assert combined.p_value == pytest.approx(stats.chi2.sf(0.8, 1))
+    assert math.isnan(statistics.combine([1.0], [1.0]).p_value)
+
+
+def test_polynomial_fit_recovers_coefficients_within_their_errors():
+    generator = np.random.default_rng(5)
+    x = np.linspace(0.01, 0.3, 25)
+    truth, error = np.array([2.0, 3.128, 4.26]), 1e-3
+    fits = []
+    for _ in range(300):
+        y = x * truth[0] + x**2 * truth[1] + x**3 * truth[2] + error * generator.standard_normal(x.size)
+        fits.append(statistics.fit_polynomial(x, y, error, powers=(1, 2, 3)))
+    pulls = np.array([(fit.values - truth) / fit.errors for fit in fits])
+    assert np.all(np.abs(pulls.mean(axis=0)) < 0.25)
+    assert np.all(np.abs(pulls.std(axis=0) - 1.0) < 0.15)
+    assert stats.kstest([fit.p_value for fit in fits], "uniform").pvalue > 1e-3
+    # The full covariance: a combination of the parameters has its own right error.
+    combination = np.array([1.0, 0.1, 0.01])
+    pulls = [
+        combination @ (fit.values - truth) / np.sqrt(combination @ fit.covariance @ combination)
+        for fit in fits
+    ]
+    assert abs(np.std(pulls) - 1.0) < 0.15
+
+
+def test_terms_held_fixed_are_taken_out():
+    x = np.linspace(0.1, 1.0, 9)
+    y = 1.0 + 2.0 * x + 3.0 * x**2
+    fit = statistics.fit_polynomial(x, y, 0.1, powers=(1,), fixed={0: 1.0, 2: 3.0})
+    assert fit.values == pytest.approx([2.0])
+    assert fit.degrees_of_freedom == 8
+    assert fit.chi_square == pytest.approx(0.0, abs=1e-20)
+
+
+def test_fit_without_errors_takes_them_from_the_scatter():
+    generator = np.random.default_rng(6)
+    x = np.linspace(0.0, 1.0, 200)
+    y = 1.0 + x + 0.05 * generator.standard_normal(x.size)
+    known = statistics.fit_polynomial(x, y, 0.05)
+    guessed = statistics.fit_polynomial(x, y)
+    np.testing.assert_allclose(guessed.values, known.values, rtol=1e-10)
+    np.testing.assert_allclose(guessed.errors, known.errors, rtol=0.15)
+    assert math.isnan(guessed.p_value)
+
+
+def test_power_law():
+    x = np.array([10.0, 100.0, 1e3, 1e4])
+    law = statistics.fit_power_law(x, 3.0 * x**1.5, 0.01 * 3.0 * x**1.5)
+    assert law.exponent == pytest.approx(1.5, rel=1e-12)
+    assert law.amplitude == pytest.approx(3.0, rel=1e-10)
+    spread = np.sqrt(np.sum((np.log(x) - np.log(x).mean()) ** 2))
+    assert law.exponent_error == pytest.approx(0.01 / spread)
+    assert law.amplitude_error == pytest.approx(
+        3.0 * 0.01 * math.sqrt(0.25 + np.log(x).mean() ** 2 / spread**2), rel=1e-10
+    )
+
+
+def test_histogram_accepts_maxwell_and_rejects_another_temperature():
+    generator = np.random.default_rng(8)
+    speeds = np.linalg.norm(generator.standard_normal((20_000, 3)), axis=1)
+    right = statistics.histogram_chi_square(speeds, lambda v: theory.maxwell_cdf(v, 3), 50)
+    assert right.degrees_of_freedom == 49
+    assert right.counts.sum() == 20_000
+    assert right.p_value > 1e-3
+    wrong = statistics.histogram_chi_square(speeds, lambda v: theory.maxwell_cdf(v, 3, temperature=1.05), 50)
+    assert wrong.p_value < 1e-6
+
+
+def test_histogram_probabilities_are_uniform():
+    generator = np.random.default_rng(9)
+    values = [
+        statistics.histogram_chi_square(generator.uniform(size=2000), lambda u: u, 20).p_value
+        for _ in range(300)
+    ]
+    assert stats.kstest(values, "uniform").pvalue > 1e-3
+
+
+def test_bootstrap_of_a_mean_is_its_standard_error():
+    samples = np.random.default_rng(10).standard_normal(400)
+    estimate = statistics.bootstrap(np.mean, samples)
+    assert estimate.value == samples.mean()
+    assert estimate.error == pytest.approx(samples.std() / 20.0, rel=0.1)
+    assert statistics.bootstrap(np.mean, samples) == estimate
+
+
+def test_optimum_of_a_cost_of_two_terms():
+    # Cost of pair tests and of box visits: a / x + b x, least at sqrt(a / b).
+    generator = np.random.default_rng(12)
+    x = np.geomspace(2.0, 32.0, 13)
+    inside = 0
+    for _ in range(200):
+        cost = (64.0 / x + x) * (1.0 + 0.02 * generator.standard_normal(x.size))
+        best = statistics.optimum(x, cost, 0.02 * cost, within=1.6)
+        assert best.interior
+        assert best.low < best.location < best.high
+        inside += best.low <= 8.0 <= best.high
+        assert best.cost == pytest.approx(16.0, rel=0.06)
+    assert 180 <= inside <= 199  # 95 %
+
+
+def test_optimum_without_errors_uses_the_scatter():
+    x = np.geomspace(2.0, 32.0, 9)
+    scatter = 1.0 + 0.01 * np.array([1, -1, 1, -1, 1, -1, 1, -1, 1])
+    best = statistics.optimum(x, np.exp(0.3 * np.log(x / 8.0) ** 2) * scatter)
+    assert best.location == pytest.approx(8.0, rel=0.05)
+    assert best.low < 8.0 < best.high < 10.0
+
+
+def test_optimum_at_the_edge_is_not_one():
+    x = np.geomspace(1.0, 100.0, 9)
+    best = statistics.optimum(x, 1.0 / x, 0.01 / x, within=1e3)
+    assert not best.interior
+    assert (best.location, best.low, best.high) == (pytest.approx(100.0), 0.0, math.inf)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: statistics.mean_of([1.0]), "at least 2"),
+        (lambda: statistics.mean_of([1.0, math.nan]), "not all values are finite"),
+        (lambda: statistics.combine([1.0, 2.0], [1.0, 0.0]), "errors: must be positive"),
+        (lambda: statistics.block_average(np.ones(8)), "at least 16"),
+        (lambda: statistics.fit_polynomial([1.0, 2.0], [1.0, 2.0, 3.0]), "2 and 3 values"),
+        (lambda: statistics.fit_polynomial([1.0, 2.0], [1.0, 2.0], powers=(0, 1)), "too few"),
+        (lambda: statistics.fit_polynomial([1.0, 1.0, 1.0], [1.0, 2.0, 3.0], 0.1), "not independent"),
+        (lambda: statistics.fit_power_law([1.0, -2.0, 3.0], [1.0, 2.0, 3.0]), "positive"),
+        (lambda: statistics.histogram_chi_square(np.ones(9), lambda u: u, 2), "5 or more"),
+        (lambda: statistics.optimum([1.0, 2.0, 3.0], [3.0, 2.0, 3.0]), "at least 4"),
+    ],
+)
+def test_unusable_input_is_refused(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()
