@@ -21,14 +21,17 @@ def mixtures(draw, most=12):
     dimension = draw(st.sampled_from([2, 3]))
     boundary = draw(st.lists(st.sampled_from(["wall", "periodic"]), min_size=dimension, max_size=dimension))
     lengths = draw(st.lists(st.floats(4.5, 9.0), min_size=dimension, max_size=dimension))
-    species = [
-        gp.Species(
-            count=draw(st.integers(1, most // 2)),
-            radius=draw(st.floats(0.1, 0.8)),
-            mass=draw(st.sampled_from([1.0, 1.0, 0.1, 30.0])),
-            temperature=draw(st.floats(0.1, 10.0)),
-        )
+    kinds = [
+        {
+            "count": draw(st.integers(1, most // 2)),
+            "radius": draw(st.floats(0.1, 0.8)),
+            "mass": draw(st.sampled_from([1.0, 1.0, 0.1, 30.0])),
+            "temperature": draw(st.floats(0.1, 10.0)),
+        }
         for _ in range(draw(st.integers(1, 2)))
     ]
-    centres = draw(st.booleans())
-    return gp.Scene(gp.Container(lengths, boundary), species, centres_to_walls=centres)
+    filled = sum(4 * kind["count"] * kind["radius"] ** dimension for kind in kinds) / math.prod(lengths)
+    for kind in kinds:  # thin enough for random insertion
+        kind["radius"] *= min(1.0, 0.25 / filled) ** (1 / dimension)
+    species = [gp.Species(**kind) for kind in kinds]
+    return gp.Scene(gp.Container(lengths, boundary), species, centres_to_walls=draw(st.booleans()))
