@@ -1,6 +1,7 @@
 """Scenes that several tests use, and how to draw random ones."""
 
 import math
+from dataclasses import replace
 
 from hypothesis import strategies as st
 
@@ -35,3 +36,26 @@ def mixtures(draw, most=12):
         kind["radius"] *= min(1.0, 0.25 / filled) ** (1 / dimension)
     species = [gp.Species(**kind) for kind in kinds]
     return gp.Scene(gp.Container(lengths, boundary), species, centres_to_walls=draw(st.booleans()))
+
+
+@st.composite
+def falling(draw, most=12):
+    """The same under gravity of any direction that the boundary allows, weak to strong."""
+    scene = draw(mixtures(most))
+    strengths = st.sampled_from([-3.0, -1.0, -0.1, 0.0, 0.3, 1.0, 1e-9, -40.0])
+    gravity = tuple(0.0 if periodic else draw(strengths) for periodic in scene.container.periodic)
+    return replace(scene, gravity=gravity)
+
+
+@st.composite
+def granular(draw, most=12):
+    """The same with restitution, moments of inertia, fixed bodies and perhaps gravity."""
+    scene = draw(st.one_of(mixtures(most), falling(most)))
+    law = gp.Restitution(draw(st.sampled_from([1.0, 0.95, 0.7])), draw(st.sampled_from([-1.0, 1.0, 0.4, -0.5])))
+    if scene.centres_to_walls:
+        law = gp.Restitution(law.normal)
+    species = [replace(kind, moment_of_inertia=draw(st.sampled_from([None, 0.3, 5.0]))) for kind in scene.species]
+    if draw(st.booleans()):
+        still = gp.Species(draw(st.integers(1, 2)), 0.3, fixed=True)
+        species.append(still)
+    return replace(scene, species=tuple(species), restitution=law)

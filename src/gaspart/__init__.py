@@ -8,14 +8,15 @@ from importlib import import_module
 __version__ = "0.1.0"
 
 _HOMES = {
-    "Body": "scene",
+    "Body": "matter",
     "Container": "scene",
     "EventDriven": "engines",
+    "Restitution": "matter",
     "Scene": "scene",
     "SceneError": "errors",
     "Simulation": "simulation",
     "SimulationError": "errors",
-    "Species": "scene",
+    "Species": "matter",
     "State": "state",
     "Tally": "tally",
     "TimeStepped": "engines",

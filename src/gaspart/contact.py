@@ -59,6 +59,22 @@ def exchange(rr, rv, mass1, mass2):
 
 
 @helper
+def normal_change(approach, restitution, least):
+    """By how much a contact changes the normal relative velocity: `approach` becomes -restitution * approach
+    (Spencer 2022, Eq. 35), or -least, whichever parts the two faster."""
+    return approach + max(restitution * approach, least)
+
+
+@helper
+def tangential_impulse(inverse_mass, lever, restitution):
+    """Impulse per tangential relative velocity of the surfaces (Spencer 2022, Eq. 38).
+
+    inverse_mass: 1/m1 + 1/m2; lever: R1^2/I1 + R2^2/I2; 0 for what is fixed.
+    """
+    return (1.0 + restitution) / (inverse_mass + lever)
+
+
+@helper
 def time_to_plane(x, v, plane):
     """Time at which a coordinate x, moving at v != 0, reaches `plane` (Spencer 2022, Eqs. 10 and 13)."""
     return (plane - x) / v

@@ -33,6 +33,13 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
         )
 
     radii, masses = per_body("radius").astype(float), per_body("mass").astype(float)
+    shape = 1 / 2 if scene.dimension == 2 else 2 / 5  # of a uniform disc or sphere
+    inertia = per_body("moment_of_inertia").astype(float)  # None becomes nan
+    inertia = np.where(np.isnan(inertia), shape * masses * radii**2, inertia)
+    fixed = per_body("fixed").astype(bool)
+    spins = np.zeros((scene.count, 3))
+    if explicit:
+        spins[:explicit] = [body.spin_vector for body in scene.bodies]
     rng = stream(seed, _POSITIONS)
     if any(kind.arrangement == "lattice" and kind.count for kind in scene.species):
         positions = lattice(scene, rng)
@@ -44,9 +51,12 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
         velocities=_velocities(scene, stream(seed, _VELOCITIES)),
         images=np.zeros((scene.count, scene.dimension), dtype=np.int64),
         radii=radii,
-        masses=masses,
+        masses=np.where(fixed, np.inf, masses),
         species=np.repeat(groups, counts).astype(np.int64),
         lengths=np.array(scene.container.lengths),
+        spins=spins[:, 2] if scene.dimension == 2 else spins,
+        moments_of_inertia=np.where(fixed, np.inf, inertia),
+        gravity=None if scene.gravity is None else np.array(scene.gravity),
     )
 
 

@@ -18,9 +18,14 @@ _HERE = Path(__file__).parent
 KERNEL_MODULES = (
     "kernel.py",
     "contact.py",
+    "falling.py",
     "boxes.py",
     "insertion.py",
     "engines/calendar.py",
+    "engines/layout.py",
+    "engines/flight.py",
+    "engines/faces.py",
+    "engines/impact.py",
     "engines/event_kernels.py",
     "engines/step_kernels.py",
 )

@@ -7,69 +7,18 @@ units; masses are relative to the reference species; k_B = 1.
 from __future__ import annotations
 
 import math
-import numbers
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from gaspart.errors import SceneError
 from gaspart.files import read_yaml, write_yaml
+from gaspart.matter import Body, Restitution, Species
+from gaspart.validation import count_of, from_mapping, number, settle, vector
+
+__all__ = ["Body", "Container", "Restitution", "Scene", "Species", "count_of", "from_mapping", "number"]
 
 BOUNDARIES = ("wall", "periodic")
-ARRANGEMENTS = ("random", "lattice")
-
-
-def number(
-    key: str, value: object, rule: str, *, above: float = -math.inf, least: float = -math.inf
-) -> float:
-    """`value` as a finite float greater than `above` and at least `least`, or a SceneError with `rule`."""
-    if isinstance(value, bool) or not isinstance(value, numbers.Real) or not math.isfinite(value):
-        raise SceneError(key, value, rule)
-    if not (value > above and value >= least):
-        raise SceneError(key, value, rule)
-    return float(value)
-
-
-def count_of(key: str, value: object, least: int = 0) -> int:
-    """`value` as an integer of at least `least`."""
-    rule = f"must be a whole number of at least {least}"
-    if number(key, value, rule, least=least) != int(value):
-        raise SceneError(key, value, rule)
-    return int(value)
-
-
-def vector(key: str, value: object, dimension: int | None = None) -> tuple[float, ...]:
-    """`value` as a tuple of finite floats, of length `dimension` where that is known."""
-    size = f"{dimension} " if dimension else ""
-    rule = f"must be a list of {size}finite numbers"
-    if isinstance(value, str) or not hasattr(value, "__iter__"):
-        raise SceneError(key, value, rule)
-    numbers_ = tuple(number(key, x, rule) for x in value)
-    if dimension is not None and len(numbers_) != dimension:
-        raise SceneError(key, value, rule)
-    return numbers_
-
-
-def settle(instance, **values) -> None:
-    """Write the validated `values` into a frozen dataclass that is being made."""
-    for name, value in values.items():
-        object.__setattr__(instance, name, value)
-
-
-def from_mapping(cls, mapping: object, where: str):
-    """Make the dataclass `cls` from a mapping whose keys must all be fields of it."""
-    if not isinstance(mapping, dict):
-        raise SceneError(where, mapping, "must be a mapping of keys to values")
-    known = {f.name: f for f in fields(cls)}
-    for key in mapping:
-        if key not in known:
-            raise SceneError(f"{where}.{key}", mapping[key], f"unknown key; known are {', '.join(known)}")
-    for name, field in known.items():
-        if name not in mapping and field.default is field.default_factory:  # both MISSING: no default
-            raise SceneError(f"{where}.{name}", None, "is required")
-    try:
-        return cls(**mapping)
-    except SceneError as error:
-        raise error.inside(where) from None
+_ABSENT = ("fixed",)  # not written into a file unless there
 
 
 @dataclass(frozen=True)
@@ -112,62 +61,12 @@ class Container:
 
 
 @dataclass(frozen=True)
-class Species:
-    """`count` like bodies, placed by the program.
-
-    Velocities are isotropic: of one fixed `speed`, or Maxwellian at `temperature`; with neither the bodies
-    start at rest. `arrangement` is "random" (sequential insertion) or "lattice".
-    """
-
-    count: int
-    radius: float
-    mass: float = 1.0
-    speed: float | None = None
-    temperature: float | None = None
-    arrangement: str = "random"
-
-    def __post_init__(self):
-        settle(
-            self,
-            count=count_of("count", self.count),
-            radius=number("radius", self.radius, "must be positive", above=0.0),
-            mass=number("mass", self.mass, "must be positive", above=0.0),
-        )
-        for key in ("speed", "temperature"):
-            if getattr(self, key) is not None:
-                value = number(key, getattr(self, key), "must not be negative", least=0.0)
-                settle(self, **{key: value})
-        if self.speed is not None and self.temperature is not None:
-            raise SceneError("temperature", self.temperature, "give speed or temperature, not both")
-        if self.arrangement not in ARRANGEMENTS:
-            raise SceneError("arrangement", self.arrangement, f"must be one of {ARRANGEMENTS}")
-
-
-@dataclass(frozen=True)
-class Body:
-    """One body at a stated place: position (d,), velocity (d,), radius, mass."""
-
-    position: tuple[float, ...]
-    velocity: tuple[float, ...]
-    radius: float
-    mass: float = 1.0
-
-    def __post_init__(self):
-        settle(
-            self,
-            position=vector("position", self.position),
-            velocity=vector("velocity", self.velocity),
-            radius=number("radius", self.radius, "must be positive", above=0.0),
-            mass=number("mass", self.mass, "must be positive", above=0.0),
-        )
-
-
-@dataclass(frozen=True)
 class Scene:
     """A container and its bodies: first `bodies` in their order, then each of `species` in turn.
 
     With `centres_to_walls` the walls stop the bodies' centres instead of their surfaces (the rule of
-    Frederickx & Meerts 2010, whose spheres stick out of the container).
+    Frederickx & Meerts 2010, whose spheres stick out of the container). gravity: (d,) a uniform acceleration.
+    restitution: the law of all contacts; without it they are elastic and smooth.
 
     Raises SceneError for a scene that cannot be.
     """
@@ -176,9 +75,18 @@ class Scene:
     species: tuple[Species, ...] = ()
     bodies: tuple[Body, ...] = ()
     centres_to_walls: bool = False
+    gravity: tuple[float, ...] | None = None
+    restitution: Restitution | None = None
 
     def __post_init__(self):
         settle(self, species=tuple(self.species), bodies=tuple(self.bodies))
+        if self.gravity is not None:
+            self._check_gravity()
+        if self.restitution is not None and not isinstance(self.restitution, Restitution):
+            raise SceneError("restitution", self.restitution, "must be a Restitution")
+        if self.centres_to_walls and self.restitution is not None and self.restitution.tangential > -1.0:
+            rule = "rough bodies (tangential above -1) touch walls with their surfaces"
+            raise SceneError("centres_to_walls", True, rule)
         if not isinstance(self.centres_to_walls, bool):
             raise SceneError("centres_to_walls", self.centres_to_walls, "must be true or false")
         for n, kind in enumerate(self.species):
@@ -192,6 +100,14 @@ class Scene:
         if self.packing_fraction > math.pi / math.sqrt(12 if self.dimension == 2 else 18):
             if not self.centres_to_walls:
                 raise SceneError("packing_fraction", self.packing_fraction, "exceeds close packing")
+
+    def _check_gravity(self) -> None:
+        pull = vector("gravity", self.gravity, self.dimension)
+        for component, periodic in zip(pull, self.container.periodic, strict=True):
+            if component != 0.0 and periodic:
+                rule = "must have no component along a periodic axis: a body would fall, and gain energy, for ever"
+                raise SceneError("gravity", self.gravity, rule)
+        settle(self, gravity=pull)
 
     def _fits(self, key: str, radius: float) -> None:
         shortest = min(self.container.lengths)
@@ -275,7 +191,7 @@ class Scene:
 
         def plain(value):
             if isinstance(value, dict):
-                return {key: plain(item) for key, item in value.items() if item is not None}
+                return {k: plain(x) for k, x in value.items() if x is not None and (x or k not in _ABSENT)}
             return [plain(item) for item in value] if isinstance(value, tuple) else value
 
         return plain(asdict(self))
@@ -290,6 +206,8 @@ class Scene:
             if "container" not in parts:
                 raise SceneError("container", None, "is required")
             parts["container"] = from_mapping(Container, parts["container"], "container")
+            if parts.get("restitution") is not None:
+                parts["restitution"] = from_mapping(Restitution, parts["restitution"], "restitution")
             for key, kind in (("species", Species), ("bodies", Body)):
                 items = parts.get(key, ())
                 if not isinstance(items, (list, tuple)):

@@ -13,7 +13,9 @@ class State:
 
     time; positions (N, d), inside the container on periodic axes; velocities (N, d); images (N, d), how
     often each body has crossed the container on periodic axes; radii, masses (N,); species (N,), the index
-    of the body's species, explicit bodies counting as one species after the others; lengths (d,).
+    of the body's species, explicit bodies counting as one species after the others; lengths (d,);
+    spins, angular velocities, (N,) in 2D and (N, 3) in 3D; moments_of_inertia (N,); gravity (d,) or None. The
+    mass and moment of inertia of a fixed body are infinite; it counts in no sum.
     """
 
     time: float
@@ -24,6 +26,9 @@ class State:
     masses: np.ndarray
     species: np.ndarray
     lengths: np.ndarray
+    spins: np.ndarray
+    moments_of_inertia: np.ndarray
+    gravity: np.ndarray | None = None
 
     @property
     def count(self) -> int:
@@ -41,13 +46,50 @@ class State:
     @property
     def momentum(self) -> np.ndarray:
         """(d,) total momentum."""
-        return self.masses @ self.velocities
+        return _finite(self.masses) @ self.velocities
+
+    @property
+    def angular_momentum(self) -> np.ndarray | float:
+        """Total angular momentum about the container's origin, spins included: a number in 2D, (3,) in 3D."""
+        orbital = np.cross(self.unwrapped, self.velocities) if self.dimension == 3 else _cross(self)
+        return _finite(self.masses) @ orbital + _finite(self.moments_of_inertia) @ self.spins
+
+    @property
+    def translational_energy(self) -> float:
+        return 0.5 * float(_finite(self.masses) @ (self.velocities**2).sum(axis=1))
+
+    @property
+    def rotational_energy(self) -> float:
+        square = self.spins**2 if self.dimension == 2 else (self.spins**2).sum(axis=1)
+        return 0.5 * float(_finite(self.moments_of_inertia) @ square)
 
     @property
     def kinetic_energy(self) -> float:
-        return 0.5 * float(self.masses @ (self.velocities**2).sum(axis=1))
+        """Translational and rotational."""
+        return self.translational_energy + self.rotational_energy
+
+    @property
+    def potential_energy(self) -> float:
+        """Of all bodies under gravity, 0 where their centres are at the container's origin."""
+        return 0.0 if self.gravity is None else -float(_finite(self.masses) @ (self.positions @ self.gravity))
+
+    @property
+    def energy(self) -> float:
+        """Kinetic and potential."""
+        return self.kinetic_energy + self.potential_energy
 
     def copy(self) -> State:
         """A state that shares no array with this one."""
         arrays = {key: value.copy() for key, value in vars(self).items() if isinstance(value, np.ndarray)}
         return replace(self, **arrays)
+
+
+def _finite(values: np.ndarray) -> np.ndarray:
+    """Values with 0 in the place of infinity."""
+    return np.where(np.isinf(values), 0.0, values)
+
+
+def _cross(state: State) -> np.ndarray:
+    """(N,) r x v in 2D."""
+    r, v = state.unwrapped, state.velocities
+    return r[:, 0] * v[:, 1] - r[:, 1] * v[:, 0]

@@ -14,7 +14,7 @@ class Tally:
     time: simulated time covered; collisions of pairs; wall_hits (2d,) and wall_impulse (2d,), the momentum
     given to each face (x low, x high, y low ...); virial_sum: sum of |dr.dp| over collisions;
     pair_tests: pairs examined; box_visits: boxes looked into; crossings of box boundaries;
-    worst_contact: largest |r^2/sigma^2 - 1| at a contact.
+    worst_contact: largest |r^2/sigma^2 - 1| at a contact; dissipated_energy: what inelastic contacts took.
 
     The time-stepped engine also tells what it got wrong: steps; overlaps_left, pairs that still overlap and
     approach when a step ends; deepest_overlap met, as a fraction of the contact distance;
@@ -30,6 +30,7 @@ class Tally:
     box_visits: int
     crossings: int = 0
     worst_contact: float = 0.0
+    dissipated_energy: float = 0.0
     steps: int = 0
     overlaps_left: int = 0
     deepest_overlap: float = 0.0

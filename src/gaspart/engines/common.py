@@ -26,7 +26,7 @@ class EventLog:
     """Events as they happened: bodies, and their positions and velocities just after."""
 
     def __init__(self, dimension: int):
-        from gaspart.engines.event_kernels import Record
+        from gaspart.engines.layout import Record
 
         self._dimension = dimension
         self._parts: list[tuple[np.ndarray, ...]] = []

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gaspart.engines.common import EventLog, aligned, masses_for_kernel
-from gaspart.errors import SceneError
+from gaspart.errors import SceneError, SimulationError
+from gaspart.matter import Restitution
 from gaspart.scene import Scene
 from gaspart.state import State
 from gaspart.tally import Tally
@@ -15,6 +16,8 @@ from gaspart.tally import Tally
 SEARCHES = ("boxes", "direct", "pairs")
 _LAP = 10  # a lap of the clocks is some 2^10 times of flight over a diameter
 _STILL = 2.0**960  # the lap of a scene in which nothing moves
+_BLINK = 2.0**-44  # of a lap: the longest bounce on a floor that is taken for rest
+_CROWD = 1000  # contacts of one body within a blink, more of which are taken for a collapse
 
 
 @dataclass(frozen=True)
@@ -47,10 +50,10 @@ class EventDynamics:
 
     def __init__(self, engine: EventDriven, scene: Scene, state: State):
         from gaspart.boxes import make_boxes, sides_for
-        from gaspart.engines import event_kernels as kernels
+        from gaspart.engines import event_kernels, flight, layout
         from gaspart.engines.calendar import PLAN, empty_calendar
 
-        self._kernels = kernels
+        self._kernels, self._flight, self._layout = event_kernels, flight, layout
         self._scene = scene
         self._reference = state
         d, n = scene.dimension, state.count
@@ -61,19 +64,28 @@ class EventDynamics:
         per_side = engine.boxes_per_side or sides_for(scene, per_body=1.0)
         boxes = make_boxes(scene, per_side if engine.search == "boxes" else 1, images=True)
         self._by_pairs = engine.search == "pairs"
-        self._space = kernels.Space(
+        self._space = layout.Space(
             scene.container.lengths, scene.container.periodic, float(not scene.centres_to_walls)
         )
         self._plans = aligned((n,), PLAN)
         self._plans["partner"] = -1
         self._plans["at"] = boxes.coordinates(state.positions)
-        self._partition = kernels.Partition(
+        self._partition = layout.Partition(
             boxes.per_side, boxes.widths, boxes.strides, boxes.neighbour, boxes.shift,
             head=np.full(boxes.count, -1, dtype=np.int32),
         )  # fmt: skip
         self._calendar = empty_calendar(n)
-        self._unit_mass, self._masses = masses_for_kernel(state.masses)
+        self._law = _law(scene, state, layout)
+        self._unit_mass, self._masses = (1.0, None) if self._law else masses_for_kernel(state.masses)
         self._lap = _lap_length(scene, state)
+        self._gravity = None
+        if scene.gravity is not None and any(scene.gravity):
+            self._gravity = layout.Gravity(scene.gravity, np.isinf(state.masses), _BLINK * self._lap)
+        self._watch = None
+        if self._law or self._gravity:
+            start = np.full(n, -np.inf)
+            self._watch = layout.Watch(start, np.zeros(n, dtype=np.int64), _BLINK * self._lap, _CROWD)
+        self._lost, self._counters = 0.0, None
         self._laps, self._clock = divmod(state.time, self._lap)
         self._rows[:, 2 * d] = self._clock
         self.reset_tally()
@@ -82,8 +94,10 @@ class EventDynamics:
     def reset_tally(self) -> None:
         """Begin to count anew."""
         faces = 2 * self._scene.dimension
-        self._counters = self._kernels.Counters(
-            np.zeros(5, dtype=np.int64), np.zeros(2), np.zeros(faces, dtype=np.int64), np.zeros(faces)
+        if self._counters:
+            self._lost = self.dissipated
+        self._counters = self._layout.Counters(
+            np.zeros(5, dtype=np.int64), np.zeros(3), np.zeros(faces, dtype=np.int64), np.zeros(faces)
         )
         self._since = self.time
 
@@ -97,6 +111,7 @@ class EventDynamics:
                 self._partition,
                 self._counters,
                 self._clock,
+                self._gravity,
             )
 
     @property
@@ -104,7 +119,10 @@ class EventDynamics:
         return self._laps * self._lap + self._clock
 
     def advance(self, until: float, most: int | None = None, log: EventLog | None = None) -> None:
-        """Process events up to time `until`, at most `most` of them (collisions and wall hits)."""
+        """Process events up to time `until`, at most `most` of them (collisions and wall hits).
+
+        Raises SimulationError, with the state kept, if bodies collapse: they would meet for ever in no time.
+        """
         left = np.iinfo(np.int64).max if most is None else most
         room = None if log is None else log.room
         while left > 0:
@@ -114,66 +132,87 @@ class EventDynamics:
             left -= done
             if log is not None:
                 log.take(self._laps * self._lap)
-            if reason == self._kernels.STOP:
+            if reason == self._layout.STOP:
                 if not ends_lap:
                     self._clock = stop
                     return
                 self._turn_lap()
             elif done:
                 self._clock = max(self._clock, last)
+            if reason == self._layout.COLLAPSE:
+                raise SimulationError(
+                    f"at time {self.time:g} body {int(self._watch.contacts.argmax())} has had {_CROWD} contacts "
+                    f"within a time of {self._watch.blink:g}: an inelastic collapse, or a stack at rest; the state "
+                    "is that of the present time"
+                )
 
     def _run(self, room, stop: float, most: int) -> tuple[int, int, float]:
         """Let the kernel of this search run: why it stopped, the events it did, the time of the last."""
         common = self._space, self._partition, self._masses, self._counters, room, stop, most
+        common = *common, self._gravity, self._law, self._watch
         if self._by_pairs:
             return self._kernels.run_pairs(self._rows, self._images, self._plans, *common)
         return self._kernels.run_boxes(self._rows, self._images, self._plans, self._calendar, *common)
 
     def _turn_lap(self) -> None:
         """Start the clocks again from zero, and plan anew."""
-        self._kernels.synchronise(self._rows, self._lap, self._space.lengths)
+        self._flight.synchronise(self._rows, self._lap, self._space, self._gravity)
         self._laps += 1
         self._clock = 0.0
+        if self._watch:
+            self._watch.since[:] -= self._lap
         self._foresee()
 
     @property
     def tally(self) -> Tally:
-        kernels, counters = self._kernels, self._counters
+        layout, counters = self._layout, self._counters
         return Tally(
             time=self.time - self._since,
-            collisions=int(counters.counts[kernels.COLLISIONS]),
+            collisions=int(counters.counts[layout.COLLISIONS]),
             wall_hits=counters.wall_hits.copy(),
             wall_impulse=counters.wall_impulse * self._unit_mass,
-            virial_sum=float(counters.sums[kernels.VIRIAL]) * self._unit_mass,
-            pair_tests=int(counters.counts[kernels.PAIR_TESTS]),
-            box_visits=int(counters.counts[kernels.BOX_VISITS]),
-            crossings=int(counters.counts[kernels.CROSSINGS]),
-            worst_contact=float(counters.sums[kernels.WORST]),
+            virial_sum=float(counters.sums[layout.VIRIAL]) * self._unit_mass,
+            pair_tests=int(counters.counts[layout.PAIR_TESTS]),
+            box_visits=int(counters.counts[layout.BOX_VISITS]),
+            crossings=int(counters.counts[layout.CROSSINGS]),
+            worst_contact=float(counters.sums[layout.WORST]),
+            dissipated_energy=float(counters.sums[layout.LOSS]),
         )
+
+    @property
+    def dissipated(self) -> float:
+        """The energy that contacts have taken since time 0."""
+        return self._lost + float(self._counters.sums[self._layout.LOSS])
 
     @property
     def state(self) -> State:
         """All bodies at the present time."""
         d = self._scene.dimension
-        rows, lengths = self._rows, np.array(self._space.lengths)
-        positions = rows[:, :d] + rows[:, d : 2 * d] * (self._clock - rows[:, 2 * d, None])
+        rows, lengths = self._rows.copy(), np.array(self._space.lengths)
+        self._flight.advance_rows(rows, self._clock, self._space, self._gravity)
+        positions = rows[:, :d]
         periodic = np.array(self._space.periodic)
         # a body that reaches a periodic face just now may stand beyond it by rounding
         beyond = np.where(periodic, (positions >= lengths).astype(np.int64) - (positions < 0), 0)
         positions = positions - beyond * lengths
         positions = np.where(periodic & (positions >= lengths), 0.0, positions)
-        return replace(
+        state = replace(
             self._reference,
             time=self.time,
             positions=positions,
             velocities=rows[:, d : 2 * d].copy(),
             images=self._images + beyond,
         )
+        if self._law:
+            state.spins = (self._law.spins[:, 2] if d == 2 else self._law.spins).copy()
+        return state
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         """Everything that a continuation to the same bits needs: bodies at their own clocks, plans, counts."""
-        parts = {"laps": self._laps, "clock": self._clock, "since": self._since}
+        parts = {"laps": self._laps, "clock": self._clock, "since": self._since, "lost": self._lost}
         parts.update(rows=self._rows, images=self._images, plans=self._plans, **self._counters._asdict())
+        if self._law:
+            parts["spins"] = self._law.spins
         return {key: np.array(value) for key, value in parts.items()}
 
     def restore(self, parts: dict[str, np.ndarray]) -> None:
@@ -181,14 +220,33 @@ class EventDynamics:
         self._rows[...], self._images[...], self._plans[...] = parts["rows"], parts["images"], parts["plans"]
         for key, array in self._counters._asdict().items():
             array[...] = parts[key]
-        self._laps, self._clock, self._since = (float(parts[key]) for key in ("laps", "clock", "since"))
+        if self._law:
+            self._law.spins[...] = parts["spins"]
+        times = (float(parts[key]) for key in ("laps", "clock", "since", "lost"))
+        self._laps, self._clock, self._since, self._lost = times
         if not self._by_pairs:
             self._kernels.refill(self._plans, self._calendar, self._partition, self._clock)
 
 
+def _law(scene: Scene, state: State, layout):
+    """The law of contacts, or None if all are elastic, smooth and between bodies that can move."""
+    rule = scene.restitution or Restitution()
+    if rule.smooth_and_elastic and not np.isinf(state.masses).any():
+        return None
+    spins = np.zeros((state.count, 3))
+    if scene.dimension == 2:
+        spins[:, 2] = state.spins
+    else:
+        spins[:] = state.spins
+    return layout.Law(rule.normal, rule.tangential, 1 / state.masses, 1 / state.moments_of_inertia, spins)
+
+
 def _lap_length(scene: Scene, state: State) -> float:
     """The time after which clocks start again from zero: a power of two, so that it scales with the units."""
-    speed = float(np.sqrt((state.velocities**2).sum(axis=1).mean())) if state.count else 0.0
+    square = float((state.velocities**2).sum(axis=1).mean()) if state.count else 0.0
+    if scene.gravity is not None:  # the square of the speed that a fall can add
+        square += 2.0 * sum(abs(g) * length for g, length in zip(scene.gravity, state.lengths, strict=True))
+    speed = float(np.sqrt(square))
     if not speed > 0.0:
         return _STILL
     _, exponent = np.frexp(2 * scene.smallest_radius / speed)

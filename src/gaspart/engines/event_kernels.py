@@ -13,114 +13,30 @@ and the higher index of their bodies.
 """
 
 from math import inf
-from typing import NamedTuple
 
 import numpy as np
 
-from gaspart.boxes import nearest
-from gaspart.contact import exchange, exchange_equal, time_to_contact, time_to_plane
 from gaspart.engines.calendar import fill, reschedule, soonest, time_of
+from gaspart.engines.faces import find_face, meet_face
+from gaspart.engines.flight import pair_time
+from gaspart.engines.impact import collide, crowded
+from gaspart.engines.layout import (
+    BOX_VISITS,
+    COLLAPSE,
+    CROSSINGS,
+    EVENTS,
+    FULL,
+    INNER,
+    NOTHING,
+    PAIR_TESTS,
+    STALE,
+    STOP,
+)
 from gaspart.kernel import allocating_kernel, helper, kernel
-
-COLLISIONS, CROSSINGS, STALE, PAIR_TESTS, BOX_VISITS = range(5)
-VIRIAL, WORST = range(2)
-NOTHING = -1
-INNER = 6  # face codes: 2 axis + side for the container's faces, INNER more for those between boxes
-STOP, EVENTS, FULL = range(3)  # why a run ended: the time, the number of events, the record
-
-
-class Space(NamedTuple):
-    """lengths (d,), periodic (d,); margin: 1 if walls stop surfaces, 0 if they stop centres."""
-
-    lengths: tuple
-    periodic: tuple
-    margin: float
-
-
-class Partition(NamedTuple):
-    """The grid of boxes (see `boxes.Boxes`), and the first body in each."""
-
-    per_side: np.ndarray
-    widths: np.ndarray
-    strides: np.ndarray
-    neighbour: np.ndarray
-    shift: np.ndarray
-    head: np.ndarray
-
-
-class Counters(NamedTuple):
-    """counts (5,), sums (2,), wall_hits (2d,), wall_impulse (2d,); see the names at the module's top."""
-
-    counts: np.ndarray
-    sums: np.ndarray
-    wall_hits: np.ndarray
-    wall_impulse: np.ndarray
-
-
-class Record(NamedTuple):
-    """Room for events: filled (1,), time (M,), bodies (M, 2), positions and velocities (M, 2, d)."""
-
-    filled: np.ndarray
-    time: np.ndarray
-    bodies: np.ndarray
-    positions: np.ndarray
-    velocities: np.ndarray
-
-
-@helper
-def pair_time(rows, i, j, offset, lengths):
-    """When bodies i and j touch, j displaced by `offset` (d,); inf if they do not."""
-    d = len(lengths)
-    start = max(rows[i, 2 * d], rows[j, 2 * d])
-    late_i = start - rows[i, 2 * d]
-    late_j = start - rows[j, 2 * d]
-    rr = 0.0
-    rv = 0.0
-    vv = 0.0
-    for k in range(d):
-        v = rows[j, d + k] - rows[i, d + k]
-        r = (rows[j, k] + rows[j, d + k] * late_j) - (rows[i, k] + rows[i, d + k] * late_i) + offset[k]
-        rr += r * r
-        rv += r * v
-        vv += v * v
-    sigma = rows[i, 2 * d + 1] + rows[j, 2 * d + 1]
-    return start + time_to_contact(rr, rv, vv, sigma * sigma)
-
-
-@helper
-def face_plane(rows, body, axis, upper, space):
-    """Where a face of the container stops, or on a periodic axis passes on, this body's centre."""
-    inset = 0.0 if space.periodic[axis] else space.margin * rows[body, 2 * len(space.lengths) + 1]
-    return space.lengths[axis] - inset if upper else inset
-
-
-@helper
-def find_face(rows, plans, body, space, partition):
-    """The next face that the body comes to, of its box or of the container: (time, face code)."""
-    d = len(space.lengths)
-    soon = inf
-    face = NOTHING
-    for k in range(d):
-        v = rows[body, d + k]
-        if v == 0.0:
-            continue
-        upper = v > 0.0
-        at = plans[body].at[k]
-        code = 2 * k + (1 if upper else 0)
-        if at == (partition.per_side[k] - 1 if upper else 0):
-            plane = face_plane(rows, body, k, upper, space)
-        else:
-            plane = (at + 1 if upper else at) * partition.widths[k]
-            code += INNER
-        time = rows[body, 2 * d] + time_to_plane(rows[body, k], v, plane)
-        if time < soon:
-            soon = time
-            face = code
-    return soon, face
 
 
 @kernel
-def find_contact(rows, plans, body, space, partition, counters, low, high):
+def find_contact(rows, plans, body, space, partition, counters, low, high, gravity):
     """Look for an earlier contact of the body in the boxes at steps low..high (3,) from its own."""
     d = len(space.lengths)
     ax, ay, az = plans[body].at[0], plans[body].at[1], plans[body].at[2]
@@ -149,7 +65,7 @@ def find_contact(rows, plans, body, space, partition, counters, low, high):
                 while other >= 0:
                     if other != body:
                         tests += 1
-                        time = pair_time(rows, body, other, offset, space.lengths)
+                        time = pair_time(rows, body, other, offset, space, gravity)
                         if time < best or (time == best and time < inf and other < partner):
                             best = time
                             partner = other
@@ -196,12 +112,12 @@ def take(plans, partition, body):
 
 
 @kernel
-def foresee(rows, plans, body, space, partition, counters):
+def foresee(rows, plans, body, space, partition, counters, now, gravity):
     """Make a body's plans afresh."""
     plans[body].contact = inf
     plans[body].partner = NOTHING
-    find_contact(rows, plans, body, space, partition, counters, (-1, -1, -1), (1, 1, 1))
-    plans[body].face_time, plans[body].face = find_face(rows, plans, body, space, partition)
+    find_contact(rows, plans, body, space, partition, counters, (-1, -1, -1), (1, 1, 1), gravity)
+    plans[body].face_time, plans[body].face = find_face(rows, plans, body, space, partition, now, gravity)
 
 
 @kernel
@@ -213,11 +129,11 @@ def sort_in(plans, partition):
 
 
 @kernel
-def foresee_all(rows, plans, calendar, space, partition, counters, now):
+def foresee_all(rows, plans, calendar, space, partition, counters, now, gravity):
     """Sort all bodies into their boxes, make all plans and fill the calendar."""
     sort_in(plans, partition)
     for body in range(len(rows)):
-        foresee(rows, plans, body, space, partition, counters)
+        foresee(rows, plans, body, space, partition, counters, now, gravity)
     fill(calendar, plans, now)
 
 
@@ -229,7 +145,7 @@ def refill(plans, calendar, partition, now):
 
 
 @kernel
-def cross(rows, plans, calendar, body, space, partition, counters):
+def cross(rows, plans, calendar, body, space, partition, counters, now, gravity):
     """Let a body pass into the next box, and look about in the boxes that have become neighbours."""
     code = plans[body].face - INNER
     axis = code // 2
@@ -243,68 +159,9 @@ def cross(rows, plans, calendar, body, space, partition, counters):
     z = step if axis == 2 else 0
     low = (x if x else -1, y if y else -1, z if z else -1)
     high = (x if x else 1, y if y else 1, z if z else 1)
-    find_contact(rows, plans, body, space, partition, counters, low, high)
-    plans[body].face_time, plans[body].face = find_face(rows, plans, body, space, partition)
+    find_contact(rows, plans, body, space, partition, counters, low, high, gravity)
+    plans[body].face_time, plans[body].face = find_face(rows, plans, body, space, partition, now, gravity)
     reschedule(calendar, plans, body)
-
-
-@helper
-def advance_row(rows, body, time, lengths):
-    """Move a body along its flight to `time`."""
-    d = len(lengths)
-    late = time - rows[body, 2 * d]
-    for k in range(d):
-        rows[body, k] += rows[body, d + k] * late
-    rows[body, 2 * d] = time
-
-
-@kernel
-def meet_face(rows, images, plans, body, face, time, space, masses, counters):
-    """Reflect a body at a wall, or take it from a periodic face to the opposite one. True if a wall."""
-    d = len(space.lengths)
-    axis = face // 2
-    upper = face % 2 == 1
-    advance_row(rows, body, time, space.lengths)
-    plans[body].changes += 1
-    if space.periodic[axis]:
-        rows[body, axis] = 0.0 if upper else space.lengths[axis]
-        images[body, axis] += 1 if upper else -1
-        return False
-    rows[body, axis] = face_plane(rows, body, axis, upper, space)
-    mass = 1.0 if masses is None else masses[body]
-    counters.wall_hits[face] += 1
-    counters.wall_impulse[face] += 2.0 * mass * abs(rows[body, d + axis])
-    rows[body, d + axis] = -rows[body, d + axis]
-    return True
-
-
-@kernel
-def collide(rows, plans, i, j, time, space, masses, counters):
-    """Advance two bodies to their contact and pass the momentum."""
-    d = len(space.lengths)
-    advance_row(rows, i, time, space.lengths)
-    advance_row(rows, j, time, space.lengths)
-    rr = 0.0
-    rv = 0.0
-    for k in range(d):
-        gap = nearest(rows[j, k] - rows[i, k], space.lengths[k], space.periodic[k])
-        rr += gap * gap
-        rv += gap * (rows[j, d + k] - rows[i, d + k])
-    if masses is None:
-        to_i = to_j = exchange_equal(rr, rv)
-        counters.sums[VIRIAL] += abs(rv)
-    else:
-        to_i, to_j = exchange(rr, rv, masses[i], masses[j])
-        counters.sums[VIRIAL] += masses[i] * abs(to_i) * rr
-    for k in range(d):
-        gap = nearest(rows[j, k] - rows[i, k], space.lengths[k], space.periodic[k])
-        rows[i, d + k] += to_i * gap
-        rows[j, d + k] -= to_j * gap
-    plans[i].changes += 1
-    plans[j].changes += 1
-    sigma = rows[i, 2 * d + 1] + rows[j, 2 * d + 1]
-    counters.sums[WORST] = max(counters.sums[WORST], abs(rr / (sigma * sigma) - 1.0))
-    counters.counts[COLLISIONS] += 1
 
 
 @kernel
@@ -324,11 +181,13 @@ def note(record, time, rows, i, j, lengths):
 
 
 @kernel
-def run_boxes(rows, images, plans, calendar, space, partition, masses, counters, record, stop, most):
+def run_boxes(
+    rows, images, plans, calendar, space, partition, masses, counters, record, stop, most, gravity, law, watch
+):
     """Process all events up to time `stop`, at most `most` of them (collisions and wall hits).
 
-    masses: (N,), or None if all are 1; record: a Record, or None. Returns (reason, number of events, time of
-    the last).
+    masses: (N,), or None if all are 1; record, gravity, law, watch: a Record, Gravity, Law and Watch, or None
+    each. Returns (reason, number of events, time of the last).
     """
     done = 0
     last = -inf
@@ -347,39 +206,44 @@ def run_boxes(rows, images, plans, calendar, space, partition, masses, counters,
         face = plans[body].face
         meets_face = plans[body].face_time <= plans[body].contact
         if meets_face and face >= INNER:
-            cross(rows, plans, calendar, body, space, partition, counters)
+            cross(rows, plans, calendar, body, space, partition, counters, time, gravity)
             continue
         partner = plans[body].partner
         if not meets_face and plans[partner].changes != plans[body].partner_changes:
             counters.counts[STALE] += 1
-            foresee(rows, plans, body, space, partition, counters)
+            foresee(rows, plans, body, space, partition, counters, time, gravity)
             reschedule(calendar, plans, body)
             continue
         if meets_face:
             partner = -1 - face
-            if not meet_face(rows, images, plans, body, face, time, space, masses, counters):
+            if not meet_face(rows, images, plans, body, face, time, space, masses, counters, gravity, law):
                 take(plans, partition, body)
                 axis = face // 2
                 plans[body].at[axis] = 0 if face % 2 else partition.per_side[axis] - 1
                 put(plans, partition, body)
-                foresee(rows, plans, body, space, partition, counters)
+                foresee(rows, plans, body, space, partition, counters, time, gravity)
                 reschedule(calendar, plans, body)
                 continue
         else:
             body, partner = min(body, partner), max(body, partner)
-            collide(rows, plans, body, partner, time, space, masses, counters)
-            foresee(rows, plans, partner, space, partition, counters)
+            collide(rows, plans, body, partner, time, space, masses, counters, gravity, law)
+            foresee(rows, plans, partner, space, partition, counters, time, gravity)
             reschedule(calendar, plans, partner)
-        foresee(rows, plans, body, space, partition, counters)
+        foresee(rows, plans, body, space, partition, counters, time, gravity)
         reschedule(calendar, plans, body)
         last = time
         done += 1
         if record is not None:
             note(record, time, rows, body, partner, space.lengths)
+        if watch is not None:
+            if crowded(watch, body, time) or (partner >= 0 and crowded(watch, partner, time)):
+                return COLLAPSE, done, last
 
 
 @allocating_kernel
-def run_pairs(rows, images, plans, space, partition, masses, counters, record, stop, most):
+def run_pairs(
+    rows, images, plans, space, partition, masses, counters, record, stop, most, gravity, law, watch
+):
     """The same by the first algorithm of Spencer 2021: look at all pairs before every event.
 
     `partition` has one box and the plans are not used, so nothing can be out of date: the referee of
@@ -402,7 +266,7 @@ def run_pairs(rows, images, plans, space, partition, masses, counters, record, s
         second = NOTHING
         face = NOTHING
         for i in range(count):
-            time, code = find_face(rows, plans, i, space, partition)
+            time, code = find_face(rows, plans, i, space, partition, -inf, gravity)
             if time < soon:
                 soon, first, face = time, i, code
         for i in range(count):
@@ -418,26 +282,21 @@ def run_pairs(rows, images, plans, space, partition, masses, counters, record, s
                     if absent:
                         continue
                     counters.counts[PAIR_TESTS] += 1
-                    time = pair_time(rows, i, j, offset, space.lengths)
+                    time = pair_time(rows, i, j, offset, space, gravity)
                     if time < soon:
                         soon, first, second = time, i, j
         if not soon <= stop or first == NOTHING:
             return STOP, done, last
         if second != NOTHING:
-            collide(rows, plans, first, second, soon, space, masses, counters)
+            collide(rows, plans, first, second, soon, space, masses, counters, gravity, law)
         else:
             second = -1 - face
-            if not meet_face(rows, images, plans, first, face, soon, space, masses, counters):
+            if not meet_face(rows, images, plans, first, face, soon, space, masses, counters, gravity, law):
                 continue
         last = soon
         done += 1
         if record is not None:
             note(record, soon, rows, first, second, space.lengths)
-
-
-@kernel
-def synchronise(rows, time, lengths):
-    """Advance all bodies to `time`, and let that be time 0 of their clocks."""
-    for body in range(len(rows)):
-        advance_row(rows, body, time, lengths)
-        rows[body, 2 * len(lengths)] = 0.0
+        if watch is not None:
+            if crowded(watch, first, soon) or (second >= 0 and crowded(watch, second, soon)):
+                return COLLAPSE, done, last

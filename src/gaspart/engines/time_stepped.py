@@ -48,10 +48,20 @@ class TimeStepped:
 class StepDynamics:
     """A scene under way; its time is a whole number of steps."""
 
+    dissipated = 0.0
+
     def __init__(self, engine: TimeStepped, scene: Scene, state: State):
         from gaspart.boxes import make_boxes, sides_for, widest
         from gaspart.engines import step_kernels as kernels
 
+        rough = scene.restitution is not None and not scene.restitution.smooth_and_elastic
+        for key, value in (
+            ("gravity", scene.gravity),
+            ("restitution", scene.restitution if rough else None),
+            ("fixed", True if np.isinf(state.masses).any() else None),
+        ):
+            if value is not None:
+                raise SceneError(key, value, 'needs the "event" engine; this one knows none')
         for length, periodic in zip(scene.container.lengths, scene.container.periodic, strict=True):
             if periodic and length < 2 * widest(scene):
                 rule = "the time-stepped engine needs periodic sides of two largest diameters"

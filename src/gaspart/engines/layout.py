@@ -1,0 +1,77 @@
+"""What the kernels of the event-driven engine pass to one another."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+COLLISIONS, CROSSINGS, STALE, PAIR_TESTS, BOX_VISITS = range(5)
+VIRIAL, WORST, LOSS = range(3)
+NOTHING = -1
+INNER = 6  # face codes: 2 axis + side for the container's faces, INNER more for those between boxes
+STOP, EVENTS, FULL, COLLAPSE = range(4)  # why a run ended: the time, the number of events, the record, a loop
+
+
+class Space(NamedTuple):
+    """lengths (d,), periodic (d,); margin: 1 if walls stop surfaces, 0 if they stop centres."""
+
+    lengths: tuple
+    periodic: tuple
+    margin: float
+
+
+class Gravity(NamedTuple):
+    """pull (d,), the acceleration; fixed (N,), which bodies it does not move; blink, the longest bounce on a
+    floor that is taken for rest."""
+
+    pull: tuple
+    fixed: np.ndarray
+    blink: float
+
+
+class Law(NamedTuple):
+    """normal, tangential: restitution; inverse_mass, inverse_inertia (N,), 0 if fixed; spins (N, 3)."""
+
+    normal: float
+    tangential: float
+    inverse_mass: np.ndarray
+    inverse_inertia: np.ndarray
+    spins: np.ndarray
+
+
+class Watch(NamedTuple):
+    """For each body, how many contacts it has had since (N,): contacts (N,) within `blink`, at most `most`."""
+
+    since: np.ndarray
+    contacts: np.ndarray
+    blink: float
+    most: int
+
+
+class Partition(NamedTuple):
+    """The grid of boxes (see `boxes.Boxes`), and the first body in each."""
+
+    per_side: np.ndarray
+    widths: np.ndarray
+    strides: np.ndarray
+    neighbour: np.ndarray
+    shift: np.ndarray
+    head: np.ndarray
+
+
+class Counters(NamedTuple):
+    """counts (5,), sums (3,), wall_hits (2d,), wall_impulse (2d,); see the names at the module's top."""
+
+    counts: np.ndarray
+    sums: np.ndarray
+    wall_hits: np.ndarray
+    wall_impulse: np.ndarray
+
+
+class Record(NamedTuple):
+    """Room for events: filled (1,), time (M,), bodies (M, 2), positions and velocities (M, 2, d)."""
+
+    filled: np.ndarray
+    time: np.ndarray
+    bodies: np.ndarray
+    positions: np.ndarray
+    velocities: np.ndarray

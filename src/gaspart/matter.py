@@ -1,0 +1,115 @@
+"""What stands in a container: species and single bodies, and the law of their contacts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from gaspart.errors import SceneError
+from gaspart.validation import count_of, number, settle, vector
+
+ARRANGEMENTS = ("random", "lattice")
+
+
+def _check_matter(thing) -> None:
+    """What species and bodies have in common: radius, mass, moment of inertia, fixed."""
+    settle(
+        thing,
+        radius=number("radius", thing.radius, "must be positive", above=0.0),
+        mass=number("mass", thing.mass, "must be positive", above=0.0),
+    )
+    if thing.moment_of_inertia is not None:
+        value = number("moment_of_inertia", thing.moment_of_inertia, "must be positive", above=0.0)
+        settle(thing, moment_of_inertia=value)
+    if not isinstance(thing.fixed, bool):
+        raise SceneError("fixed", thing.fixed, "must be true or false")
+
+
+@dataclass(frozen=True)
+class Species:
+    """`count` like bodies, placed by the program.
+
+    Velocities are isotropic: of one fixed `speed`, or Maxwellian at `temperature`; with neither the bodies
+    start at rest. `arrangement` is "random" (sequential insertion) or "lattice". moment_of_inertia: by default
+    that of a uniform disc or sphere. A `fixed` body never moves: it has infinite mass.
+    """
+
+    count: int
+    radius: float
+    mass: float = 1.0
+    speed: float | None = None
+    temperature: float | None = None
+    arrangement: str = "random"
+    moment_of_inertia: float | None = None
+    fixed: bool = False
+
+    def __post_init__(self):
+        settle(self, count=count_of("count", self.count))
+        _check_matter(self)
+        for key in ("speed", "temperature"):
+            if getattr(self, key) is not None:
+                value = number(key, getattr(self, key), "must not be negative", least=0.0)
+                settle(self, **{key: value})
+                if self.fixed and value > 0.0:
+                    raise SceneError(key, value, "a fixed species has none")
+        if self.speed is not None and self.temperature is not None:
+            raise SceneError("temperature", self.temperature, "give speed or temperature, not both")
+        if self.arrangement not in ARRANGEMENTS:
+            raise SceneError("arrangement", self.arrangement, f"must be one of {ARRANGEMENTS}")
+
+
+@dataclass(frozen=True)
+class Body:
+    """One body at a stated place: position (d,), velocity (d,), radius, mass; spin, its angular velocity (a
+    number in 2D, (3,) in 3D); moment_of_inertia and fixed as in `Species`."""
+
+    position: tuple[float, ...]
+    velocity: tuple[float, ...]
+    radius: float
+    mass: float = 1.0
+    spin: float | tuple[float, ...] | None = None
+    moment_of_inertia: float | None = None
+    fixed: bool = False
+
+    def __post_init__(self):
+        settle(
+            self,
+            position=vector("position", self.position),
+            velocity=vector("velocity", self.velocity),
+        )
+        _check_matter(self)
+        if self.spin is not None:
+            flat = len(self.position) == 2
+            spin = number("spin", self.spin, "must be a number") if flat else vector("spin", self.spin, 3)
+            settle(self, spin=spin)
+        for key, value in (("velocity", self.velocity), ("spin", self.spin_vector)):
+            if self.fixed and any(value):
+                raise SceneError(key, value, "a fixed body has none")
+
+    @property
+    def spin_vector(self) -> tuple[float, float, float]:
+        """(3,) the spin as a vector, which in 2D stands on the plane."""
+        if self.spin is None:
+            return 0.0, 0.0, 0.0
+        return self.spin if isinstance(self.spin, tuple) else (0.0, 0.0, self.spin)
+
+
+@dataclass(frozen=True)
+class Restitution:
+    """What a contact does to the relative velocity of the two surfaces: its normal part is multiplied by
+    -`normal`, from 0 (they stick) to 1 (elastic), its tangential part by -`tangential`, from -1 (perfectly
+    smooth) to 1 (perfectly rough). Spencer 2022, Eq. 22."""
+
+    normal: float = 1.0
+    tangential: float = -1.0
+
+    def __post_init__(self):
+        for key, least in (("normal", 0.0), ("tangential", -1.0)):
+            rule = f"must be from {least:g} to 1"
+            value = number(key, getattr(self, key), rule, least=least)
+            if value > 1.0:
+                raise SceneError(key, value, rule)
+            settle(self, **{key: value})
+
+    @property
+    def smooth_and_elastic(self) -> bool:
+        return self.normal == 1.0 and self.tangential == -1.0

@@ -1,0 +1,63 @@
+"""Values that users give, checked: each function returns what is meant, or says in one line what is wrong."""
+
+from __future__ import annotations
+
+import math
+import numbers
+from dataclasses import fields
+
+from gaspart.errors import SceneError
+
+
+def number(
+    key: str, value: object, rule: str, *, above: float = -math.inf, least: float = -math.inf
+) -> float:
+    """`value` as a finite float greater than `above` and at least `least`, or a SceneError with `rule`."""
+    if isinstance(value, bool) or not isinstance(value, numbers.Real) or not math.isfinite(value):
+        raise SceneError(key, value, rule)
+    if not (value > above and value >= least):
+        raise SceneError(key, value, rule)
+    return float(value)
+
+
+def count_of(key: str, value: object, least: int = 0) -> int:
+    """`value` as an integer of at least `least`."""
+    rule = f"must be a whole number of at least {least}"
+    if number(key, value, rule, least=least) != int(value):
+        raise SceneError(key, value, rule)
+    return int(value)
+
+
+def vector(key: str, value: object, dimension: int | None = None) -> tuple[float, ...]:
+    """`value` as a tuple of finite floats, of length `dimension` where that is known."""
+    size = f"{dimension} " if dimension else ""
+    rule = f"must be a list of {size}finite numbers"
+    if isinstance(value, str) or not hasattr(value, "__iter__"):
+        raise SceneError(key, value, rule)
+    numbers_ = tuple(number(key, x, rule) for x in value)
+    if dimension is not None and len(numbers_) != dimension:
+        raise SceneError(key, value, rule)
+    return numbers_
+
+
+def settle(instance, **values) -> None:
+    """Write the validated `values` into a frozen dataclass that is being made."""
+    for name, value in values.items():
+        object.__setattr__(instance, name, value)
+
+
+def from_mapping(cls, mapping: object, where: str):
+    """Make the dataclass `cls` from a mapping whose keys must all be fields of it."""
+    if not isinstance(mapping, dict):
+        raise SceneError(where, mapping, "must be a mapping of keys to values")
+    known = {f.name: f for f in fields(cls)}
+    for key in mapping:
+        if key not in known:
+            raise SceneError(f"{where}.{key}", mapping[key], f"unknown key; known are {', '.join(known)}")
+    for name, field in known.items():
+        if name not in mapping and field.default is field.default_factory:  # both MISSING: no default
+            raise SceneError(f"{where}.{name}", None, "is required")
+    try:
+        return cls(**mapping)
+    except SceneError as error:
+        raise error.inside(where) from None

@@ -1,0 +1,244 @@
+"""Uniform gravity: parabolic flights, exactly."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scenes import falling, gas
+
+import gaspart as gp
+
+
+def events_of(scene, search, most, seed=1, **settings_):
+    sim = gp.Simulation(scene, gp.EventDriven(search, **settings_), seed=seed)
+    sim.record_events = True
+    sim.advance(max_events=most, duration=1e3)
+    return sim
+
+
+def same_bits(one, other):
+    return all(np.array_equal(one.events[key], other.events[key], equal_nan=True) for key in one.events)
+
+
+def thrown(position, velocity, gravity=(0.0, -1.0), lengths=(10.0, 10.0), radius=0.5, boundary="wall", search="boxes"):
+    scene = gp.Scene(
+        gp.Container(lengths, boundary), bodies=[gp.Body(position, velocity, radius)], gravity=gravity
+    )
+    boxes = 8 if search == "boxes" else None
+    return gp.Simulation(scene, gp.EventDriven(search, boxes_per_side=boxes))
+
+
+@given(falling(), st.integers(0, 2**32))
+@settings(max_examples=60, deadline=None)
+def test_all_searches_give_the_same_events_bit_for_bit(scene, seed):
+    referee = events_of(scene, "pairs", 150, seed)
+    for search in ("boxes", "direct"):
+        assert same_bits(referee, events_of(scene, search, 150, seed))
+
+
+@given(falling(most=40), st.integers(0, 2**32))
+@settings(max_examples=40, deadline=None)
+def test_invariants_hold_in_any_scene(scene, seed):
+    sim = gp.Simulation(scene, gp.EventDriven(), seed=seed)
+    sim.advance(max_events=3000, duration=1e3)
+    state = sim.state
+    scale = sim.initial_state.kinetic_energy + state.masses.sum() * (abs(state.gravity) @ state.lengths)
+    assert abs(state.energy - sim.initial_state.energy) < 1e-11 * scale
+    sim.check_invariants()
+    assert sim.tally.worst_contact < 1e-9
+    for position, radius in zip(state.positions, state.radii, strict=True):
+        low, high = scene.reach(radius)
+        assert (position >= np.array(low) - 1e-11).all()
+        assert (position <= np.array(high) + 1e-11).all()
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_any_number_of_boxes_gives_the_same_events(dimension):
+    scene = replace(gas(dimension, 100, 0.05, "wall"), gravity=(0.3, -2.0, 0.1)[:dimension])
+    first = events_of(scene, "boxes", 3000)
+    for boxes_per_side in (1, 2, 3, tuple(range(4, 4 + dimension))):
+        assert same_bits(first, events_of(scene, "boxes", 3000, boxes_per_side=boxes_per_side))
+
+
+@pytest.mark.parametrize("search", ["boxes", "direct", "pairs"])
+def test_a_projectile_is_where_it_should_be(search):
+    sim = thrown((1.0, 1.0), (1.0, 3.0), search=search)  # up through several boxes, and down again
+    for _ in range(11):
+        sim.advance(duration=0.5)
+        t = sim.time
+        assert sim.state.positions == pytest.approx(np.array([[1 + t, 1 + 3 * t - t * t / 2]]), rel=1e-14)
+        assert sim.state.velocities == pytest.approx(np.array([[1.0, 3 - t]]), abs=1e-14)
+    assert sim.tally.wall_hits.sum() == 0
+    assert sim.tally.crossings >= 6 or search != "boxes"
+
+
+@pytest.mark.parametrize("search", ["boxes", "pairs"])
+def test_bounce_times_of_a_ball_let_go(search):
+    """Let go at height h: the floor at sqrt(2h/g), and after each 2 sqrt(2h/g) again."""
+    sim = thrown((5.0, 5.0), (0.0, 0.0), gravity=(0.0, -9.0), search=search)
+    sim.record_events = True
+    sim.advance(duration=40.5)
+    fall = math.sqrt(2 * 4.5 / 9.0)
+    assert sim.events["time"] == pytest.approx(fall * np.arange(1, 41, 2), rel=1e-14)
+    assert (sim.events["bodies"] == [0, -3]).all()
+    assert sim.events["velocities"][:, 0, 1] == pytest.approx(9.0, rel=1e-14)
+
+
+def test_ten_thousand_bounces_lose_no_height():
+    sim = thrown((5.0, 5.0), (0.01, 0.0), gravity=(0.0, -1.0))
+    fall = math.sqrt(2 * 4.5)
+    sim.advance(until=20_000 * fall)
+    assert sim.tally.wall_hits[2] == 10_000
+    assert sim.state.positions[0, 1] == pytest.approx(5.0, abs=1e-8)
+    assert sim.state.energy == pytest.approx(sim.initial_state.energy, rel=1e-11)
+    assert sim.tally.wall_impulse[2] == pytest.approx(10_000 * 2 * fall, rel=1e-11)
+
+
+def test_a_ball_hits_the_ceiling_on_its_way_up():
+    sim = thrown((5.0, 5.0), (0.0, 5.0), gravity=(0.0, -1.0))
+    sim.record_events = True
+    sim.advance(max_events=2)
+    up = 5 - math.sqrt(25 - 9)
+    assert sim.events["bodies"][:, 1].tolist() == [-4, -3]
+    down = -4 + math.sqrt(16 + 2 * 9)
+    assert sim.events["time"] == pytest.approx([up, up + down], rel=1e-14)
+
+
+def test_two_that_fall_together_meet_as_if_they_did_not():
+    bodies = [gp.Body((2.0, 60.0), (1.0, 0.0), 0.5), gp.Body((6.0, 60.0), (0.0, 0.0), 0.5)]
+    sim = gp.Simulation(
+        gp.Scene(gp.Container((10.0, 100.0)), bodies=bodies, gravity=(0.0, -1.0)), gp.EventDriven()
+    )
+    sim.advance(duration=4.0)
+    assert sim.tally.collisions == 1
+    assert sim.state.positions == pytest.approx(np.array([[5.0, 52.0], [7.0, 52.0]]), rel=1e-15)
+
+
+@pytest.mark.parametrize("gravity", [(0.0, -1.0), (0.0, -1e9), (0.0, -1e-300), (0.0, 1e6), (-1.0, -1.0)])
+def test_a_body_at_rest_on_a_floor_stays_there(gravity):
+    place = tuple(0.5 if g <= 0 else 9.5 for g in gravity)
+    sim = thrown(place, (0.0, 0.0), gravity=gravity)
+    sim.advance(duration=100.0)
+    assert sim.state.positions.tolist() == [list(place)]
+    assert sim.tally.wall_hits.sum() == 0
+
+
+def test_a_body_slides_on_a_floor_and_is_pushed_off_it():
+    bodies = [gp.Body((2.0, 0.5), (1.0, 0.0), 0.5), gp.Body((6.0, 1.0), (0.0, 0.0), 1.0)]
+    scene = gp.Scene(gp.Container((40.0, 10.0)), bodies=bodies, gravity=(0.0, -1.0))
+    for search in ("boxes", "direct", "pairs"):
+        sim = gp.Simulation(scene, gp.EventDriven(search))
+        meet = 4.0 - math.sqrt(1.5**2 - 0.5**2)  # the large body's centre is higher by a half
+        sim.advance(duration=meet - 1e-9)
+        assert sim.state.positions[0] == pytest.approx([2 + meet, 0.5], abs=1e-8)
+        assert sim.tally.collisions == 0
+        sim.advance(duration=2e-9)
+        assert sim.tally.collisions == 1
+        assert sim.state.velocities[1, 1] > 0  # lifted by the low one, which the floor throws back
+        sim.check_invariants()
+
+
+def test_a_falling_body_meets_one_that_lies():
+    bodies = [gp.Body((5.0, 0.5), (0.0, 0.0), 0.5), gp.Body((5.0, 5.5), (0.0, 0.0), 0.5)]
+    scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=bodies, gravity=(0.0, -2.0))
+    sim = gp.Simulation(scene, gp.EventDriven())
+    sim.record_events = True
+    sim.advance(max_events=2)
+    assert sim.events["time"] == pytest.approx([2.0, 2.0])
+    assert sim.events["bodies"].tolist() == [[0, 1], [0, -3]]
+
+
+@pytest.mark.parametrize("speed", [1e-3, 1e-6, 1e-12, 1e-200])
+def test_small_bounces_end_in_rest_not_in_a_loop(speed):
+    sim = thrown((5.0, 0.5), (0.0, speed), gravity=(0.0, -1.0))
+    sim.advance(duration=1e4 * speed)
+    assert sim.tally.wall_hits[2] <= 5001
+    assert sim.state.positions[0, 1] == pytest.approx(0.5, abs=speed**2)
+
+
+@pytest.mark.parametrize("pull", [1e-9, 1e-30, 1e-300])
+def test_gravity_that_vanishes(pull):
+    scene = gas(2, 30, 0.1, "wall")
+    plain, pulled = (
+        gp.Simulation(replace(scene, gravity=gravity), gp.EventDriven(), seed=3)
+        for gravity in (None, (0.0, -pull))
+    )
+    for sim in (plain, pulled):
+        sim.advance(duration=5.0)
+    assert plain.tally.collisions == pulled.tally.collisions > 20
+    assert np.allclose(plain.state.positions, pulled.state.positions, atol=1e5 * pull + 1e-7)
+
+
+def test_gravity_of_zero_is_none():
+    scene = gas(2, 30, 0.1, "wall")
+    ends = []
+    for gravity in (None, (0.0, 0.0)):
+        sim = gp.Simulation(replace(scene, gravity=gravity), gp.EventDriven(), seed=3)
+        sim.advance(duration=20.0)
+        ends.append(sim.state.positions)
+    assert np.array_equal(*ends)
+
+
+def given_bodies(scene, start, length, time, mass, gravity):
+    bodies = [
+        gp.Body(tuple(r * length), tuple(v * (length / time)), 0.5 * length, m * mass)
+        for r, v, m in zip(start.positions, start.velocities, start.masses, strict=True)
+    ]
+    container = replace(scene.container, lengths=tuple(np.array(scene.container.lengths) * length))
+    gravity = tuple(g * (length / (time * time)) for g in gravity)
+    return gp.Simulation(gp.Scene(container, bodies=bodies, gravity=gravity), gp.EventDriven())
+
+
+@pytest.mark.parametrize("power", [-7, 5])
+@pytest.mark.parametrize("what", ["length", "time", "mass"])
+def test_other_units_give_the_same_bits(what, power):
+    factor = 2.0**power
+    length, time, mass = (factor if what == unit else 1.0 for unit in ("length", "time", "mass"))
+    scene, gravity = gas(2, 50, 0.2, "wall"), (0.3, -1.0)
+    start = gp.Simulation(scene, gp.EventDriven(), seed=9).initial_state
+    one = given_bodies(scene, start, 1.0, 1.0, 1.0, gravity)
+    other = given_bodies(scene, start, length, time, mass, gravity)
+    one.advance(until=20.0)
+    other.advance(until=20.0 * time)
+    assert np.array_equal(one.state.positions * length, other.state.positions)
+    assert np.array_equal(one.state.velocities * (length / time), other.state.velocities)
+
+
+def test_turned_velocities_run_back_until_chaos_takes_over():
+    scene, gravity = gas(3, 30, 0.1, "wall"), (0.0, 0.2, -1.0)
+    sim = gp.Simulation(replace(scene, gravity=gravity), gp.EventDriven(), seed=4)
+    sim.advance(duration=3.0)
+    assert sim.tally.collisions > 20
+    turned = replace(sim.state, velocities=-sim.state.velocities)
+    back = given_bodies(scene, turned, 1.0, 1.0, 1.0, gravity)
+    back.advance(duration=3.0)
+    assert np.allclose(back.state.positions, sim.initial_state.positions, atol=1e-5)
+
+
+def test_stopping_and_checkpoints_change_no_bit():
+    scene = replace(gas(2, 60, 0.1, ("periodic", "wall")), gravity=(0.0, -1.0))
+    whole, parts = (gp.Simulation(scene, gp.EventDriven(), seed=2) for _ in range(2))
+    whole.advance(until=10.0)
+    for n in range(1, 36):
+        parts.advance(until=n / 7)
+        parts.state  # noqa: B018 - looking must change nothing
+    again = gp.Simulation(scene, gp.EventDriven(), seed=2)
+    again.restore(parts.checkpoint())
+    again.advance(until=10.0)
+    assert np.array_equal(whole.state.positions, again.state.positions)
+    assert np.array_equal(whole.state.velocities, again.state.velocities)
+
+
+def test_what_is_refused():
+    container = gp.Container((10.0, 10.0), ("wall", "periodic"))
+    with pytest.raises(gp.SceneError, match="gravity.*periodic"):
+        gp.Scene(container, gravity=(0.0, -1.0))
+    with pytest.raises(gp.SceneError, match="gravity"):
+        gp.Scene(container, gravity=(0.0, -1.0, 0.0))
+    scene = gp.Scene(container, gravity=(1.0, 0.0))
+    assert gp.Scene.from_dict(scene.to_dict()) == scene
+    with pytest.raises(gp.SceneError, match="gravity"):
+        gp.Simulation(scene, gp.TimeStepped(0.1))

@@ -1,0 +1,340 @@
+"""Inelastic and rough contacts, spins and fixed bodies, against closed formulae and conservation laws."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scenes import gas, granular
+
+import gaspart as gp
+
+
+def events_of(scene, search, most, seed=1):
+    sim = gp.Simulation(scene, gp.EventDriven(search), seed=seed)
+    sim.record_events = True
+    try:
+        sim.advance(max_events=most, duration=1e3)
+    except gp.SimulationError:
+        pass
+    return sim
+
+
+def same_bits(one, other):
+    return all(np.array_equal(one.events[key], other.events[key], equal_nan=True) for key in one.events)
+
+
+@given(granular(), st.integers(0, 2**32))
+@settings(max_examples=60, deadline=None)
+def test_all_searches_give_the_same_events_bit_for_bit(scene, seed):
+    referee = events_of(scene, "pairs", 150, seed)
+    for search in ("boxes", "direct"):
+        other = events_of(scene, search, 150, seed)
+        assert same_bits(referee, other)
+        assert np.array_equal(referee.state.spins, other.state.spins)
+
+
+@given(granular(most=30), st.integers(0, 2**32))
+@settings(max_examples=40, deadline=None)
+def test_invariants_hold_in_any_scene(scene, seed):
+    sim = gp.Simulation(scene, gp.EventDriven(), seed=seed)
+    before = sim.initial_state
+    try:
+        sim.advance(max_events=2000, duration=1e3)
+    except gp.SimulationError as error:
+        assert "collapse" in str(error)
+    state = sim.state
+    sim.check_invariants()
+    assert sim.tally.dissipated_energy >= 0
+    if scene.restitution.normal == 1.0 and abs(scene.restitution.tangential) == 1.0:
+        assert sim.tally.dissipated_energy == 0
+    moving = np.isfinite(state.masses)
+    assert np.array_equal(state.positions[~moving], before.positions[~moving])
+    if all(scene.container.periodic) and moving.all():
+        scale = (state.masses[:, None] * abs(before.velocities)).sum()
+        assert np.allclose(state.momentum, before.momentum, rtol=0, atol=1e-12 * scale)
+    for position, radius in zip(state.positions, state.radii, strict=True):
+        low, high = scene.reach(radius)
+        assert (position >= np.array(low) - 1e-11).all()
+        assert (position <= np.array(high) + 1e-11).all()
+
+
+def test_smooth_and_elastic_is_the_plain_engine():
+    scene = gas(3, 50, 0.1)
+    ends = []
+    for restitution in (None, gp.Restitution()):
+        sim = gp.Simulation(replace(scene, restitution=restitution), gp.EventDriven(), seed=1)
+        sim.advance(duration=20.0)
+        ends.append(sim.state.positions)
+    assert np.array_equal(*ends)
+    # and the law's own code, brought in by a fixed body out of reach, agrees with it to rounding
+    body = gp.Body((2.0, 5.0), (1.0, 0.2), 0.5, mass=2.0)
+    other, far = gp.Body((6.0, 5.1), (0.0, 0.0), 0.5), gp.Body((1.0, 1.0), (0.0, 0.0), 0.2, fixed=True)
+    ends = []
+    for bodies in ([body, other], [body, other, far]):
+        sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), bodies=bodies), gp.EventDriven())
+        sim.advance(duration=7.0)
+        assert sim.tally.collisions == 1
+        ends.append(sim.state.positions[:2])
+    assert np.allclose(*ends, rtol=1e-14)
+
+
+def collided(law, one, other, side=40.0):
+    """The state just after two bodies, placed by hand, have met."""
+    scene = gp.Scene(gp.Container((side,) * len(one.position)), bodies=[one, other], restitution=law)
+    sim = gp.Simulation(scene, gp.EventDriven())
+    sim.advance(max_events=1)
+    assert sim.tally.collisions == 1
+    return sim
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("law", [(1.0, 1.0), (0.8, 0.3), (0.0, 0.0), (0.5, -0.7), (1.0, -1.0)])
+def test_a_rough_contact_follows_the_closed_formulae(dimension, law):
+    """Spencer 2022, Eqs. 22, 26 and 39, with unlike masses, radii, inertias and spins."""
+    rng = np.random.default_rng(5)
+    law = gp.Restitution(*law)
+    turn = [float(s) for s in rng.normal(size=2)] if dimension == 2 else [tuple(s) for s in rng.normal(size=(2, 3))]
+    one = gp.Body((20.0,) * dimension, (1.0, 0.3, -0.2)[:dimension], 1.5, 2.0, turn[0], 0.7)
+    other = gp.Body((24.0, 20.5, 21.0)[:dimension], (-1.0, 0.1, 0.4)[:dimension], 0.6, 5.0, turn[1], 1.9)
+    sim = collided(law, one, other)
+    before, after = sim.initial_state, sim.state
+
+    def three(x):
+        return np.pad(x, (0, 3 - len(x)))
+
+    n = three(after.positions[1] - after.positions[0])
+    assert np.linalg.norm(n) == pytest.approx(2.1, rel=1e-13)
+    n /= np.linalg.norm(n)
+    spin = [np.array([0, 0, s]) if dimension == 2 else np.array(s) for s in turn]
+    m, radius, inertia = (2.0, 5.0), (1.5, 0.6), (0.7, 1.9)
+
+    def surface(v, w):
+        return v[0] - v[1] + np.cross(radius[0] * w[0] + radius[1] * w[1], n)
+
+    v = [three(x) for x in before.velocities]
+    g = surface(v, spin)
+    gn = (g @ n) * n
+    mu = m[0] * m[1] / (m[0] + m[1])
+    q = -(1 + law.normal) * mu * gn - (1 + law.tangential) / (
+        1 / mu + radius[0] ** 2 / inertia[0] + radius[1] ** 2 / inertia[1]
+    ) * (g - gn)
+    found = [three(x) for x in after.velocities]
+    assert found[0] == pytest.approx(v[0] + q / m[0], abs=1e-13)
+    assert found[1] == pytest.approx(v[1] - q / m[1], abs=1e-13)
+    turned = [np.array([0, 0, s]) if dimension == 2 else s for s in after.spins]
+    for k in (0, 1):
+        expected = spin[k] + radius[k] / inertia[k] * np.cross(n, q)
+        assert turned[k] == pytest.approx(expected, abs=1e-13)
+    h = surface(found, turned)
+    assert h @ n == pytest.approx(-law.normal * (g @ n), abs=1e-13)
+    assert h - (h @ n) * n == pytest.approx(-law.tangential * (g - gn), abs=1e-13)
+    assert after.momentum == pytest.approx(before.momentum, abs=1e-13)
+    assert after.angular_momentum == pytest.approx(before.angular_momentum, abs=1e-11)
+    assert after.energy + sim.tally.dissipated_energy == pytest.approx(before.energy, rel=1e-14)
+
+
+def test_equal_rough_discs_exchange_their_surface_velocities():
+    """Equal masses, all of it in the rim (I = m R^2), perfectly rough: a grazing pair swaps v and R w."""
+    one = gp.Body((5.0, 5.0), (1.0, 0.0), 0.5, 1.0, 0.0, 0.25)
+    other = gp.Body((8.0, 5.0), (0.0, 0.0), 0.5, 1.0, 2.0, 0.25)
+    sim = collided(gp.Restitution(1.0, 1.0), one, other)
+    # surfaces slide at -R w = -1; the impulse -2/(2 + 2) * g = 1/2 along y
+    assert sim.state.velocities == pytest.approx(np.array([[0.0, 0.5], [1.0, -0.5]]), abs=1e-14)
+    assert sim.state.spins == pytest.approx([1.0, 3.0 - 2.0 + 0.0], abs=1e-13)
+
+
+@pytest.mark.parametrize("law", [(1.0, 1.0), (0.6, 0.2), (0.0, -1.0)])
+def test_a_wall_hit_follows_its_formula(law):
+    """Spencer 2022, Eq. 40, at the upper y wall."""
+    law, m, radius, inertia, spin = gp.Restitution(*law), 3.0, 0.5, 0.2, 1.7
+    body = gp.Body((5.0, 5.0), (1.0, 2.0), radius, m, spin, inertia)
+    sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), bodies=[body], restitution=law), gp.EventDriven())
+    sim.advance(max_events=1)
+    slide = 1.0 - radius * spin  # v + R w x n, n = y
+    along = -(1 + law.tangential) / (1 / m + radius**2 / inertia) * slide
+    assert sim.state.velocities[0] == pytest.approx([1.0 + along / m, -2.0 * law.normal], abs=1e-14)
+    assert sim.state.spins[0] == pytest.approx(spin - radius / inertia * along, abs=1e-13)
+    assert sim.tally.wall_impulse[3] == pytest.approx((1 + law.normal) * m * 2.0)
+    assert sim.state.energy + sim.tally.dissipated_energy == pytest.approx(sim.initial_state.energy, rel=1e-14)
+    sim.advance(duration=1.0)
+    sim.check_invariants()
+
+
+def test_a_superball_between_floor_and_ceiling_comes_back():
+    """Garwin (Am. J. Phys. 37, 88 (1969)): a perfectly rough ball thrown under a table returns; the three hits
+    of floor, table and floor nearly turn its way round, where a smooth ball would go on."""
+    way = {}
+    for tangential in (-1.0, 1.0):
+        ball = gp.Body((50.0, 1.0, 50.0), (1.0, -2.0, 0.0), 0.5)
+        scene = gp.Scene(
+            gp.Container((100.0, 3.0, 100.0)), bodies=[ball], restitution=gp.Restitution(1.0, tangential)
+        )
+        sim = gp.Simulation(scene, gp.EventDriven())
+        sim.advance(max_events=3)
+        way[tangential] = sim.state.velocities[0, 0]
+    assert way[-1.0] == 1.0
+    assert way[1.0] < -0.3
+
+
+def test_a_fixed_body_is_a_wall():
+    for dimension in (2, 3):
+        post = gp.Body((5.0,) * dimension, (0.0,) * dimension, 1.0, fixed=True)
+        ball = gp.Body((2.0,) + (5.0,) * (dimension - 1), (1.0,) + (0.0,) * (dimension - 1), 0.5, mass=7.0)
+        sim = gp.Simulation(gp.Scene(gp.Container((10.0,) * dimension), bodies=[post, ball]), gp.EventDriven())
+        sim.advance(duration=2.5)
+        assert sim.tally.collisions == 1
+        assert sim.state.positions[1, 0] == pytest.approx(2.5, rel=1e-15)
+        assert sim.state.velocities[1, 0] == -1.0
+        assert sim.state.positions[0].tolist() == [5.0] * dimension
+        assert sim.state.kinetic_energy == 3.5
+
+
+def test_a_ball_falls_on_a_fixed_one_and_bounces_back():
+    """Dropped just off the top: |r(t)| = sigma decides when, and the rebound is about that normal."""
+    post = gp.Body((5.0, 2.0), (0.0, 0.0), 1.0, fixed=True)
+    ball = gp.Body((5.3, 8.0), (0.0, 0.0), 0.5)
+    scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=[post, ball], gravity=(0.0, -2.0))
+    for search in ("boxes", "direct", "pairs"):
+        sim = gp.Simulation(scene, gp.EventDriven(search))
+        sim.record_events = True
+        sim.advance(max_events=1)
+        height = math.sqrt(1.5**2 - 0.3**2)
+        assert sim.events["time"] == pytest.approx([math.sqrt(8.0 - 2.0 - height)], rel=1e-14)
+        speed = 2.0 * sim.time
+        n = np.array([0.3, height]) / 1.5
+        assert sim.state.velocities[1] == pytest.approx(np.array([0, -speed]) + 2 * speed * n[1] * n, rel=1e-13)
+
+
+@pytest.mark.parametrize("normal", [0.0, 0.5, 0.9])
+def test_a_ball_on_a_floor_comes_to_rest(normal):
+    """Bounce times are a geometric series, with an end: t = sqrt(2h/g) (1 + e)/(1 - e). Then it lies still."""
+    body = gp.Body((5.0, 2.5), (0.25, 0.0), 0.5)
+    scene = gp.Scene(
+        gp.Container((400.0, 10.0)), bodies=[body], gravity=(0.0, -1.0), restitution=gp.Restitution(normal)
+    )
+    end = 2.0 * (1 + normal) / (1 - normal)
+    sim = gp.Simulation(scene, gp.EventDriven())
+    sim.record_events = True
+    sim.advance(duration=1000.0)
+    assert sim.events["time"][-1] == pytest.approx(end, rel=1e-12)
+    assert sim.state.positions[0] == pytest.approx([5.0 + 250.0, 0.5])
+    assert sim.state.velocities.tolist() == [[0.25, 0.0]]
+    assert sim.tally.dissipated_energy == pytest.approx(2.0, rel=1e-13)
+    sim.check_invariants()
+
+
+def test_collapse_is_reported_with_the_state_kept():
+    """Three in a row on a line with e < 7 - 4 sqrt 3 meet infinitely often (McNamara & Young 1992)."""
+    bodies = [
+        gp.Body((3.0, 1.0), (1.0, 0.0), 0.5),
+        gp.Body((5.0, 1.0), (0.0, 0.0), 0.5),
+        gp.Body((7.0, 1.0), (-1.0, 0.0), 0.5),
+    ]
+    for search in ("boxes", "pairs"):
+        scene = gp.Scene(gp.Container((10.0, 2.0)), bodies=bodies, restitution=gp.Restitution(0.05))
+        sim = gp.Simulation(scene, gp.EventDriven(search))
+        with pytest.raises(gp.SimulationError, match="collapse"):
+            sim.advance(duration=10.0)
+        assert 1.0 < sim.time < 3.0
+        assert np.isfinite(sim.state.positions).all()
+        sim.check_invariants()
+    scene = replace(scene, restitution=gp.Restitution(0.2))  # above the threshold of 0.0718: no collapse
+    sim = gp.Simulation(scene, gp.EventDriven())
+    sim.advance(duration=10.0)
+
+
+def test_a_stack_at_rest_is_reported_not_looped_over():
+    bodies = [gp.Body((5.0, 0.5), (0.0, 0.0), 0.5), gp.Body((5.0, 1.5), (0.0, 0.0), 0.5)]
+    scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=bodies, gravity=(0.0, -1.0))
+    sim = gp.Simulation(scene, gp.EventDriven())
+    with pytest.raises(gp.SimulationError, match="rest"):
+        sim.advance(duration=1.0)
+
+
+def test_bodies_that_stick_fly_on_together():
+    """e = 0, head on: they stay together and never meet again for rounding's sake."""
+    sim = collided(gp.Restitution(0.0), gp.Body((5.0, 5.3), (1.0, 0.1), 0.5), gp.Body((9.0, 5.3), (0.3, 0.1), 0.5))
+    assert sim.state.velocities == pytest.approx(np.array([[0.65, 0.1], [0.65, 0.1]]), rel=1e-13)
+    sim.advance(duration=20.0)
+    assert sim.tally.collisions == 1
+
+
+def test_haffs_law():
+    """T(s) = T0 exp(-(1 - e^2) s / d) per collision per body, while the gas is uniform (PHYSICS: Haff)."""
+    count, e = 1000, 0.9
+    scene = replace(gas(2, count, 0.05), restitution=gp.Restitution(e))
+    sim = gp.Simulation(scene, gp.EventDriven(), seed=3)
+    sim.advance(max_events=10 * count)
+    per_body = 2 * sim.tally.collisions / count
+    ratio = sim.state.kinetic_energy / sim.initial_state.kinetic_energy
+    rate = -math.log(ratio) / (per_body * (1 - e**2) / 2)
+    assert rate == pytest.approx(1.0, abs=0.03)
+
+
+def test_rough_elastic_discs_share_the_energy_equally():
+    scene = replace(gas(2, 300, 0.1), restitution=gp.Restitution(1.0, 1.0))
+    sim = gp.Simulation(scene, gp.EventDriven(), seed=2)
+    sim.advance(max_events=20_000)
+    shares = []
+    for _ in range(60):
+        sim.advance(max_events=1000)
+        shares.append(sim.state.rotational_energy / sim.state.kinetic_energy)
+    assert np.mean(shares) == pytest.approx(1 / 3, abs=0.01)
+    assert sim.state.energy == pytest.approx(sim.initial_state.energy, rel=1e-11)
+
+
+def test_checkpoints_keep_spins_and_losses():
+    scene = replace(gas(3, 50, 0.1), restitution=gp.Restitution(0.9, 0.5))
+    whole = gp.Simulation(scene, gp.EventDriven(), seed=2)
+    whole.advance(until=2.0)
+    whole.reset_tally()
+    kept = {key: value.copy() for key, value in whole.checkpoint().items()}
+    whole.advance(until=4.0)
+    again = gp.Simulation(scene, gp.EventDriven(), seed=2)
+    again.restore(kept)
+    again.advance(until=4.0)
+    assert np.array_equal(whole.state.spins, again.state.spins)
+    assert str(whole.tally) == str(again.tally)
+    again.check_invariants()
+
+
+@pytest.mark.parametrize(
+    ("change", "key"),
+    [
+        ({"restitution": {"normal": 1.1}}, "restitution.normal"),
+        ({"restitution": {"normal": -0.1}}, "restitution.normal"),
+        ({"restitution": {"tangential": -1.1}}, "restitution.tangential"),
+        ({"restitution": {"rough": 1}}, "restitution.rough"),
+        ({"restitution": {"tangential": 0.0}, "centres_to_walls": True}, "centres_to_walls"),
+        ({"species": [{"count": 1, "radius": 0.5, "moment_of_inertia": 0.0}]}, "species[0].moment_of_inertia"),
+        ({"species": [{"count": 1, "radius": 0.5, "fixed": True, "speed": 1.0}]}, "species[0].speed"),
+        ({"species": [{"count": 1, "radius": 0.5, "fixed": 1}]}, "species[0].fixed"),
+        ({"bodies": [{"position": [5, 5], "velocity": [1, 0], "radius": 1, "fixed": True}]}, "bodies[0].velocity"),
+        ({"bodies": [{"position": [5, 5], "velocity": [1, 0], "radius": 1, "spin": [1, 0, 0]}]}, "bodies[0].spin"),
+    ],
+)
+def test_what_is_refused(change, key):
+    with pytest.raises(gp.SceneError) as caught:
+        gp.Scene.from_dict({"container": {"lengths": [10.0, 10.0]}} | change)
+    assert caught.value.key == key
+
+
+def test_files_and_the_other_engine():
+    scene = gp.Scene(
+        gp.Container((10.0, 10.0)),
+        [gp.Species(1, 0.5, fixed=True)],
+        [gp.Body((5.0, 5.0), (0.0, 0.0), 0.5, spin=2.0, moment_of_inertia=0.1)],
+        restitution=gp.Restitution(0.5, 0.5),
+    )
+    assert gp.Scene.from_dict(scene.to_dict()) == scene
+    with pytest.raises(gp.SceneError, match="restitution"):
+        gp.Simulation(scene, gp.TimeStepped(0.1))
+    with pytest.raises(gp.SceneError, match="fixed"):
+        gp.Simulation(replace(scene, restitution=None), gp.TimeStepped(0.1))
+    assert "fixed" not in str(gas(2, 3, 0.01).to_dict())
+    sim = gp.Simulation(gas(2, 3, 0.01), gp.EventDriven())
+    sim.add((0.6, 0.6), (0.0, 0.0), 0.1, spin=3.0)
+    assert sim.state.spins[0] == 3.0
