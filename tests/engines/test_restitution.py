@@ -98,7 +98,7 @@ def test_a_rough_contact_follows_the_closed_formulae(dimension, law):
     law = gp.Restitution(*law)
     turn = [float(s) for s in rng.normal(size=2)] if dimension == 2 else [tuple(s) for s in rng.normal(size=(2, 3))]
     one = gp.Body((20.0,) * dimension, (1.0, 0.3, -0.2)[:dimension], 1.5, 2.0, turn[0], 0.7)
-    other = gp.Body((24.0, 20.5, 21.0)[:dimension], (-1.0, 0.1, 0.4)[:dimension], 0.6, 5.0, turn[1], 1.9)
+    other = gp.Body((24.0, 20.5, 21.0)[:dimension], (-1.0, 0.1, -0.6)[:dimension], 0.6, 5.0, turn[1], 1.9)
     sim = collided(law, one, other)
     before, after = sim.initial_state, sim.state
 
@@ -141,9 +141,9 @@ def test_equal_rough_discs_exchange_their_surface_velocities():
     one = gp.Body((5.0, 5.0), (1.0, 0.0), 0.5, 1.0, 0.0, 0.25)
     other = gp.Body((8.0, 5.0), (0.0, 0.0), 0.5, 1.0, 2.0, 0.25)
     sim = collided(gp.Restitution(1.0, 1.0), one, other)
-    # surfaces slide at -R w = -1; the impulse -2/(2 + 2) * g = 1/2 along y
-    assert sim.state.velocities == pytest.approx(np.array([[0.0, 0.5], [1.0, -0.5]]), abs=1e-14)
-    assert sim.state.spins == pytest.approx([1.0, 3.0 - 2.0 + 0.0], abs=1e-13)
+    # surfaces slide at R w = 1; the impulse is -2/(2 + 2) of that
+    assert sim.state.velocities == pytest.approx(np.array([[0.0, -0.5], [1.0, 0.5]]), abs=1e-14)
+    assert sim.state.spins == pytest.approx([-1.0, 1.0], abs=1e-13)
 
 
 @pytest.mark.parametrize("law", [(1.0, 1.0), (0.6, 0.2), (0.0, -1.0)])
@@ -219,31 +219,29 @@ def test_a_ball_on_a_floor_comes_to_rest(normal):
     sim = gp.Simulation(scene, gp.EventDriven())
     sim.record_events = True
     sim.advance(duration=1000.0)
-    assert sim.events["time"][-1] == pytest.approx(end, rel=1e-12)
+    assert sim.events["time"][-1] == pytest.approx(end, rel=1e-10)
     assert sim.state.positions[0] == pytest.approx([5.0 + 250.0, 0.5])
     assert sim.state.velocities.tolist() == [[0.25, 0.0]]
     assert sim.tally.dissipated_energy == pytest.approx(2.0, rel=1e-13)
     sim.check_invariants()
 
 
-def test_collapse_is_reported_with_the_state_kept():
-    """Three in a row on a line with e < 7 - 4 sqrt 3 meet infinitely often (McNamara & Young 1992)."""
-    bodies = [
-        gp.Body((3.0, 1.0), (1.0, 0.0), 0.5),
-        gp.Body((5.0, 1.0), (0.0, 0.0), 0.5),
-        gp.Body((7.0, 1.0), (-1.0, 0.0), 0.5),
-    ]
+@pytest.mark.parametrize("middle", [0.0, 0.5])
+@pytest.mark.parametrize("normal", [0.0, 0.03, 0.05, 0.06])
+def test_collapse_is_reported_with_the_state_kept(middle, normal):
+    """Three on a line with e < 7 - 4 sqrt 3 = 0.0718 meet infinitely often (McNamara & Young, Phys. Fluids A 4,
+    496 (1992))."""
+    bodies = [gp.Body((x, 1.0), (v, 0.0), 0.5) for x, v in ((2.5, 1.0), (5.0, middle), (7.0, -1.0))]
+    scene = gp.Scene(gp.Container((10.0, 2.0)), bodies=bodies, restitution=gp.Restitution(normal))
     for search in ("boxes", "pairs"):
-        scene = gp.Scene(gp.Container((10.0, 2.0)), bodies=bodies, restitution=gp.Restitution(0.05))
         sim = gp.Simulation(scene, gp.EventDriven(search))
         with pytest.raises(gp.SimulationError, match="collapse"):
             sim.advance(duration=10.0)
         assert 1.0 < sim.time < 3.0
         assert np.isfinite(sim.state.positions).all()
         sim.check_invariants()
-    scene = replace(scene, restitution=gp.Restitution(0.2))  # above the threshold of 0.0718: no collapse
-    sim = gp.Simulation(scene, gp.EventDriven())
-    sim.advance(duration=10.0)
+    sim = gp.Simulation(replace(scene, restitution=gp.Restitution(0.1)), gp.EventDriven())
+    sim.advance(duration=10.0)  # above the threshold
 
 
 def test_a_stack_at_rest_is_reported_not_looped_over():

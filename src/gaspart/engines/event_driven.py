@@ -17,7 +17,10 @@ SEARCHES = ("boxes", "direct", "pairs")
 _LAP = 10  # a lap of the clocks is some 2^10 times of flight over a diameter
 _STILL = 2.0**960  # the lap of a scene in which nothing moves
 _BLINK = 2.0**-44  # of a lap: the longest bounce on a floor that is taken for rest
-_CROWD = 1000  # contacts of one body within a blink, more of which are taken for a collapse
+# More contacts of one body than these, within so much of a lap, are taken for a collapse. Intervals between
+# inelastic contacts shrink geometrically until rounding lets the bodies part, so few of them are left to see.
+_CROWD, _CROWDED = 1000, _BLINK
+_INELASTIC_CROWD, _INELASTIC_CROWDED = 12, 2.0**-34
 
 
 @dataclass(frozen=True)
@@ -83,8 +86,10 @@ class EventDynamics:
             self._gravity = layout.Gravity(scene.gravity, np.isinf(state.masses), _BLINK * self._lap)
         self._watch = None
         if self._law or self._gravity:
+            inelastic = self._law and self._law.normal < 1.0
+            most, within = (_INELASTIC_CROWD, _INELASTIC_CROWDED) if inelastic else (_CROWD, _CROWDED)
             start = np.full(n, -np.inf)
-            self._watch = layout.Watch(start, np.zeros(n, dtype=np.int64), _BLINK * self._lap, _CROWD)
+            self._watch = layout.Watch(start, np.zeros(n, dtype=np.int64), within * self._lap, most)
         self._lost, self._counters = 0.0, None
         self._laps, self._clock = divmod(state.time, self._lap)
         self._rows[:, 2 * d] = self._clock
@@ -141,7 +146,7 @@ class EventDynamics:
                 self._clock = max(self._clock, last)
             if reason == self._layout.COLLAPSE:
                 raise SimulationError(
-                    f"at time {self.time:g} body {int(self._watch.contacts.argmax())} has had {_CROWD} contacts "
+                    f"at time {self.time:g} body {int(self._watch.contacts.argmax())} has had {self._watch.most} contacts "
                     f"within a time of {self._watch.blink:g}: an inelastic collapse, or a stack at rest; the state "
                     "is that of the present time"
                 )

@@ -236,7 +236,7 @@ def run_boxes(
         if record is not None:
             note(record, time, rows, body, partner, space.lengths)
         if watch is not None:
-            if crowded(watch, body, time) or (partner >= 0 and crowded(watch, partner, time)):
+            if partner >= 0 and (crowded(watch, body, time) or crowded(watch, partner, time)):
                 return COLLAPSE, done, last
 
 
@@ -298,5 +298,5 @@ def run_pairs(
         if record is not None:
             note(record, soon, rows, first, second, space.lengths)
         if watch is not None:
-            if crowded(watch, first, soon) or (second >= 0 and crowded(watch, second, soon)):
+            if second >= 0 and (crowded(watch, first, soon) or crowded(watch, second, soon)):
                 return COLLAPSE, done, last

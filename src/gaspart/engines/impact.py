@@ -151,7 +151,7 @@ def strike_wall(rows, body, x, y, z, least, space, counters, law):
 
 @kernel
 def crowded(watch, body, time):
-    """Note a contact of a body. True if it has had too many of them in no time."""
+    """Note a contact of a body with another. True if it has had too many of them in no time."""
     if time - watch.since[body] > watch.blink:
         watch.since[body] = time
         watch.contacts[body] = 0
