@@ -59,3 +59,25 @@ def granular(draw, most=12):
         still = gp.Species(draw(st.integers(1, 2)), 0.3, fixed=True)
         species.append(still)
     return replace(scene, species=tuple(species), restitution=law)
+
+
+@st.composite
+def walled(draw, most=12):
+    """Scenes of two dimensions with interior walls, which may cross, and now and then all the rest."""
+    lengths = draw(st.lists(st.floats(6.0, 9.0), min_size=2, max_size=2))
+    boundary = draw(st.lists(st.sampled_from(["wall", "periodic"]), min_size=2, max_size=2))
+    point = st.tuples(*(st.floats(0.0, length) for length in lengths))
+    ends = draw(st.lists(st.tuples(point, point), min_size=1, max_size=4))
+    walls = [gp.Wall(a, b) for a, b in ends if abs(a[0] - b[0]) + abs(a[1] - b[1]) > 1e-3]
+    gravity = tuple(0.0 if b == "periodic" else draw(st.sampled_from([0.0, -1.0, 0.3])) for b in boundary)
+    law = draw(st.sampled_from([None, None, gp.Restitution(0.9, 0.5), gp.Restitution(1.0, 1.0)]))
+    species = [gp.Species(draw(st.integers(1, most)), draw(st.floats(0.1, 0.3)), temperature=1.0)]
+    if draw(st.booleans()):
+        species.append(gp.Species(2, 0.3, 2.0, temperature=1.0))
+    return gp.Scene(
+        gp.Container(lengths, boundary),
+        species,
+        gravity=draw(st.sampled_from([None, gravity])),
+        restitution=law,
+        walls=walls,
+    )

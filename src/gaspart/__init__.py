@@ -20,6 +20,7 @@ _HOMES = {
     "State": "state",
     "Tally": "tally",
     "TimeStepped": "engines",
+    "Wall": "matter",
     "engine_from_dict": "engines",
     "engine_to_dict": "engines",
     "open_trajectory": "trajectory",

@@ -28,21 +28,22 @@ _FRAME_COUNT_AT = 4  # where a netCDF-3 header keeps the number of frames, as a 
 MOST_FRAMES = 2**31 - 1
 
 
-def face_names(dimension: int) -> list[str]:
-    """(2d,) what the faces are called, in the order of the counters."""
-    return [f"{axis} {end}" for axis in "xyz"[:dimension] for end in ("low", "high")]
+def face_names(dimension: int, walls: int = 0) -> list[str]:
+    """(2d + walls,) what faces and interior walls are called, in the order of the counters."""
+    faces = [f"{axis} {end}" for axis in "xyz"[:dimension] for end in ("low", "high")]
+    return faces + [f"wall {n}" for n in range(walls)]
 
 
 class Layout:
     """The variables of one frame, in their order in the file: name -> (type, dimensions, attributes)."""
 
-    def __init__(self, count: int, dimension: int, displacements: bool):
+    def __init__(self, count: int, dimension: int, displacements: bool, walls: int = 0):
         self.sizes = {
-            "spatial": 3, "atom": count, "cell_spatial": 3, "cell_angular": 3, "label": 5, "face": 2 * dimension,
+            "spatial": 3, "atom": count, "cell_spatial": 3, "cell_angular": 3, "label": 5, "face": 2 * dimension + walls,
         }  # fmt: skip
         self.dimension = dimension
         vectors = ("atom", "spatial")
-        faces = {"faces": ", ".join(face_names(dimension))}
+        faces = {"faces": ", ".join(face_names(dimension, walls))}
         self.variables = {
             "time": (">f8", (), {"units": "picosecond"}),
             "cell_lengths": (">f8", ("cell_spatial",), {"units": "angstrom"}),

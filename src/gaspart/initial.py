@@ -43,6 +43,8 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
     rng = stream(seed, _POSITIONS)
     if any(kind.arrangement == "lattice" and kind.count for kind in scene.species):
         positions = lattice(scene, rng)
+        if any(scene.wall_at(place, radius) for place, radius in zip(positions, radii, strict=True)):
+            raise SceneError("arrangement", "lattice", "a body would overlap an interior wall; use random")
     else:
         positions, _ = random_insertion(scene, rng)
     return State(
@@ -96,6 +98,11 @@ def random_insertion(
         + [np.full(scene.species[n].count, scene.species[n].radius) for n in species]
     ).astype(float)
     boxes = make_boxes(scene, sides_for(scene, per_body=1.0), images=False)
+    segments = None
+    if scene.walls:
+        from gaspart.segments import segments_of
+
+        segments, _ = segments_of(scene)
     head = np.full(boxes.count, -1, dtype=np.int64)
     following = np.full(scene.count, -1, dtype=np.int64)
     positions = np.empty((scene.count, dimension))
@@ -116,7 +123,7 @@ def random_insertion(
             placed, failures, _ = place(
                 draws, positions, radii, placed, stop, lower, upper, lengths, scene.container.periodic,
                 boxes.per_side, boxes.widths, boxes.neighbour, head, following, boxes.strides,
-                failures, patience, failed,
+                failures, patience, failed, segments,
             )  # fmt: skip
             if failures >= patience:
                 eta = scene.packing_fraction * placed / scene.count

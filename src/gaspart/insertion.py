@@ -4,6 +4,7 @@ import numpy as np
 
 from gaspart.boxes import box_coordinate
 from gaspart.kernel import allocating_kernel
+from gaspart.segments import square_from_segment
 
 
 @allocating_kernel
@@ -26,12 +27,14 @@ def place(
     failures,
     patience,
     attempts_at,
+    segments,
 ):
     """Try the `draws` (M, d) in [0, 1) as places for bodies start, start + 1, ... stop - 1, in that order.
 
     A place is free if no body already there is nearer than the sum of the radii. lower, upper: (d,) corners
     of the region for the centres. `failures` counts the current body's failed attempts across calls; at
     `patience` the search gives up. attempts_at: (N,) number of failed attempts of each placed body.
+    segments: (M, 5) interior walls to keep clear of (see `segments`), or None.
 
     Returns (next body to place, failures so far, draws used).
     """
@@ -46,6 +49,10 @@ def place(
             at[k] = box_coordinate(trial[k], widths[k], per_side[k])
         used += 1
         free = True
+        if segments is not None:
+            for m in range(len(segments)):
+                square = square_from_segment(segments, m, trial[0], trial[1])
+                free = free and square >= radii[body] * radii[body]
         for dz in range(3):
             z = neighbour[2, at[2], dz]
             for dy in range(3):

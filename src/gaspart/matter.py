@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from gaspart.errors import SceneError
@@ -113,3 +114,31 @@ class Restitution:
     @property
     def smooth_and_elastic(self) -> bool:
         return self.normal == 1.0 and self.tangential == -1.0
+
+
+@dataclass(frozen=True)
+class Wall:
+    """A straight wall inside a container of two dimensions, from `start` (2,) to `end` (2,): hit from both
+    sides, and at its ends, which are solid."""
+
+    start: tuple[float, float]
+    end: tuple[float, float]
+
+    def __post_init__(self):
+        settle(self, start=vector("start", self.start, 2), end=vector("end", self.end, 2))
+        if self.start == self.end:
+            raise SceneError("end", self.end, "a wall must have a length; for a post take a fixed body")
+
+    def distance(self, point: tuple[float, float]) -> float:
+        """How far a point is from the wall, its ends included."""
+        (ax, ay), (bx, by), (x, y) = self.start, self.end, point
+        s = ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / ((bx - ax) ** 2 + (by - ay) ** 2)
+        s = min(max(s, 0.0), 1.0)
+        return math.hypot(x - ax - s * (bx - ax), y - ay - s * (by - ay))
+
+
+def box_of_walls(lower: tuple[float, float], upper: tuple[float, float]) -> tuple[Wall, ...]:
+    """The four walls of a rectangle, given two opposite corners."""
+    (x, y), (u, v) = vector("lower", lower, 2), vector("upper", upper, 2)
+    corners = ((x, y), (u, y), (u, v), (x, v))
+    return tuple(Wall(corners[n], corners[(n + 1) % 4]) for n in range(4))

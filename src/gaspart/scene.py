@@ -8,17 +8,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, replace
+from itertools import product
 from pathlib import Path
 
 from gaspart.errors import SceneError
 from gaspart.files import read_yaml, write_yaml
-from gaspart.matter import Body, Restitution, Species
+from gaspart.matter import Body, Restitution, Species, Wall
 from gaspart.validation import count_of, from_mapping, number, settle, vector
 
-__all__ = ["Body", "Container", "Restitution", "Scene", "Species", "count_of", "from_mapping", "number"]
+__all__ = ["Body", "Container", "Restitution", "Scene", "Species", "Wall"]
+__all__ += ["count_of", "from_mapping", "number"]
 
 BOUNDARIES = ("wall", "periodic")
-_ABSENT = ("fixed",)  # not written into a file unless there
+_TOUCH = 1e-12  # of a radius: by which a body that touches a wall may seem to overlap it
+_ABSENT = ("fixed", "walls")  # not written into a file unless there
 
 
 @dataclass(frozen=True)
@@ -66,7 +69,8 @@ class Scene:
 
     With `centres_to_walls` the walls stop the bodies' centres instead of their surfaces (the rule of
     Frederickx & Meerts 2010, whose spheres stick out of the container). gravity: (d,) a uniform acceleration.
-    restitution: the law of all contacts; without it they are elastic and smooth.
+    restitution: the law of all contacts; without it they are elastic and smooth. walls: straight
+    ones inside a container of two dimensions.
 
     Raises SceneError for a scene that cannot be.
     """
@@ -77,9 +81,10 @@ class Scene:
     centres_to_walls: bool = False
     gravity: tuple[float, ...] | None = None
     restitution: Restitution | None = None
+    walls: tuple[Wall, ...] = ()
 
     def __post_init__(self):
-        settle(self, species=tuple(self.species), bodies=tuple(self.bodies))
+        settle(self, species=tuple(self.species), bodies=tuple(self.bodies), walls=tuple(self.walls))
         if self.gravity is not None:
             self._check_gravity()
         if self.restitution is not None and not isinstance(self.restitution, Restitution):
@@ -89,6 +94,7 @@ class Scene:
             raise SceneError("centres_to_walls", True, rule)
         if not isinstance(self.centres_to_walls, bool):
             raise SceneError("centres_to_walls", self.centres_to_walls, "must be true or false")
+        self._check_walls()
         for n, kind in enumerate(self.species):
             if kind.count:
                 self._fits(f"species[{n}].radius", kind.radius)
@@ -109,6 +115,26 @@ class Scene:
                 raise SceneError("gravity", self.gravity, rule)
         settle(self, gravity=pull)
 
+    def _check_walls(self) -> None:
+        for n, wall in enumerate(self.walls):
+            if self.dimension != 2:
+                raise SceneError("walls", self.walls, "interior walls need a container of two dimensions")
+            if self.centres_to_walls:
+                raise SceneError("centres_to_walls", True, "interior walls stop the bodies' surfaces")
+            for key, point in (("start", wall.start), ("end", wall.end)):
+                if not all(0.0 <= x <= length for x, length in zip(point, self.container.lengths, strict=True)):
+                    raise SceneError(f"walls[{n}].{key}", point, "must lie inside the container")
+
+    def wall_at(self, position: tuple[float, ...], radius: float) -> str | None:
+        """The key of an interior wall that a body at this place overlaps, if any."""
+        laps = [(0, -1, 1) if periodic else (0,) for periodic in self.container.periodic]
+        for n, wall in enumerate(self.walls):
+            for lap in product(*laps):
+                image = tuple(x + k * length for x, k, length in zip(position, lap, self.container.lengths))
+                if wall.distance(image) < radius * (1.0 - _TOUCH):
+                    return f"walls[{n}]"
+        return None
+
     def _fits(self, key: str, radius: float) -> None:
         shortest = min(self.container.lengths)
         if not self.centres_to_walls and 2 * radius > shortest:
@@ -124,6 +150,8 @@ class Scene:
         for x, low, high in zip(body.position, lower, upper, strict=True):
             if not low <= x <= high:
                 raise SceneError(f"{where}.position", body.position, "must lie wholly inside the container")
+        if wall := self.wall_at(body.position, body.radius):
+            raise SceneError(f"{where}.position", body.position, f"overlaps {wall}")
         for m, other in enumerate(self.bodies[:n]):
             if self.separation(body.position, other.position) < body.radius + other.radius:
                 raise SceneError(f"{where}.position", body.position, f"overlaps bodies[{m}]")
@@ -186,6 +214,10 @@ class Scene:
         """A new scene with these species added."""
         return replace(self, species=self.species + species)
 
+    def with_walls(self, *walls: Wall) -> Scene:
+        """A new scene with these walls added."""
+        return replace(self, walls=self.walls + walls)
+
     def to_dict(self) -> dict:
         """Plain lists and mappings, as they stand in a scene file."""
 
@@ -208,7 +240,7 @@ class Scene:
             parts["container"] = from_mapping(Container, parts["container"], "container")
             if parts.get("restitution") is not None:
                 parts["restitution"] = from_mapping(Restitution, parts["restitution"], "restitution")
-            for key, kind in (("species", Species), ("bodies", Body)):
+            for key, kind in (("species", Species), ("bodies", Body), ("walls", Wall)):
                 items = parts.get(key, ())
                 if not isinstance(items, (list, tuple)):
                     raise SceneError(key, items, "must be a list")

@@ -11,7 +11,7 @@ from gaspart.engines import EventDriven, TimeStepped
 from gaspart.engines.common import EventLog
 from gaspart.errors import SceneError, SimulationError
 from gaspart.initial import initial_state
-from gaspart.matter import Body, Species
+from gaspart.matter import Body, Species, Wall, box_of_walls
 from gaspart.scene import Scene
 from gaspart.state import State
 from gaspart.tally import Tally
@@ -47,9 +47,17 @@ class Simulation:
         """Add `count` bodies at random places (properties as in `Species`). Refused after the first advance."""
         self._change(self.scene.with_species(Species(count, radius, **properties)))
 
+    def add_wall(self, start, end) -> None:
+        """Add an interior wall from `start` to `end`. Refused after the first advance."""
+        self._change(self.scene.with_walls(Wall(tuple(start), tuple(end))))
+
+    def add_box(self, lower, upper) -> None:
+        """Add the four walls of a rectangle, given opposite corners. Refused after the first advance."""
+        self._change(self.scene.with_walls(*box_of_walls(tuple(lower), tuple(upper))))
+
     def _change(self, scene: Scene) -> None:
         if self._advanced:
-            raise SceneError("scene", "under way", "bodies can only be added before the first advance")
+            raise SceneError("scene", "under way", "bodies and walls can only be added before the first advance")
         before = self.scene
         self.scene = scene
         try:
@@ -119,7 +127,7 @@ class Simulation:
     def events(self) -> dict[str, np.ndarray]:
         """The events recorded: time (M,), bodies (M, 2), positions and velocities (M, 2, d) just after.
 
-        The second of `bodies` is -1 - face for a hit at a wall.
+        The second of `bodies` is -1 - face for a hit at a face of the container, -1 - 2d - n at interior wall n.
         """
         if self._log is None:
             raise SceneError("events", None, "set record_events to True before advancing")

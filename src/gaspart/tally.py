@@ -12,7 +12,7 @@ class Tally:
     """Sums since the last reset.
 
     time: simulated time covered; collisions of pairs; wall_hits (2d,) and wall_impulse (2d,), the momentum
-    given to each face (x low, x high, y low ...); virial_sum: sum of |dr.dp| over collisions;
+    given to each face (x low, x high, y low ...), and further to each interior wall; virial_sum: sum of |dr.dp| over collisions;
     pair_tests: pairs examined; box_visits: boxes looked into; crossings of box boundaries;
     worst_contact: largest |r^2/sigma^2 - 1| at a contact; dissipated_energy: what inelastic contacts took.
 

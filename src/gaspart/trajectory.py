@@ -90,7 +90,8 @@ class Recipe:
     @property
     def layout(self) -> amber.Layout:
         """What a frame consists of."""
-        return amber.Layout(self.scene.count, self.scene.dimension, self.displacements)
+        scene = self.scene
+        return amber.Layout(scene.count, scene.dimension, self.displacements, len(scene.walls))
 
     def attributes(self) -> dict:
         """The recipe as the file's attributes; `recipe` reads it back."""
@@ -189,7 +190,8 @@ def open_trajectory(path: str | Path):
     attributes |= {"packing_fraction": scene.packing_fraction, "number_density": scene.number_density}
     data = data.isel(spatial=slice(scene.dimension)).set_coords(["time", "radius", "type"])
     data = data.drop_vars(["cell_spatial", "cell_angular"])
-    data = data.assign_coords(spatial=list("xyz"[: scene.dimension]), face=amber.face_names(scene.dimension))
+    faces = amber.face_names(scene.dimension, len(scene.walls))
+    data = data.assign_coords(spatial=list("xyz"[: scene.dimension]), face=faces)
     reduced = {"angstrom": "length", "picosecond": "time", "angstrom/picosecond": "length/time"}
     for variable in data.variables.values():
         if variable.attrs.get("units") in reduced:

@@ -77,6 +77,13 @@ class EventDynamics:
             boxes.per_side, boxes.widths, boxes.strides, boxes.neighbour, boxes.shift,
             head=np.full(boxes.count, -1, dtype=np.int32),
         )  # fmt: skip
+        self._walls = None
+        if scene.walls:
+            from gaspart.segments import segments_near, segments_of
+
+            segments, wall = segments_of(scene)
+            near = segments_near(segments, boxes, scene.largest_radius)
+            self._walls = layout.Walls(segments, wall, *near)
         self._calendar = empty_calendar(n)
         self._law = _law(scene, state, layout)
         self._unit_mass, self._masses = (1.0, None) if self._law else masses_for_kernel(state.masses)
@@ -98,7 +105,7 @@ class EventDynamics:
 
     def reset_tally(self) -> None:
         """Begin to count anew."""
-        faces = 2 * self._scene.dimension
+        faces = 2 * self._scene.dimension + len(self._scene.walls)
         if self._counters:
             self._lost = self.dissipated
         self._counters = self._layout.Counters(
@@ -117,6 +124,7 @@ class EventDynamics:
                 self._counters,
                 self._clock,
                 self._gravity,
+                self._walls,
             )
 
     @property
@@ -154,7 +162,7 @@ class EventDynamics:
     def _run(self, room, stop: float, most: int) -> tuple[int, int, float]:
         """Let the kernel of this search run: why it stopped, the events it did, the time of the last."""
         common = self._space, self._partition, self._masses, self._counters, room, stop, most
-        common = *common, self._gravity, self._law, self._watch
+        common = *common, self._gravity, self._law, self._watch, self._walls
         if self._by_pairs:
             return self._kernels.run_pairs(self._rows, self._images, self._plans, *common)
         return self._kernels.run_boxes(self._rows, self._images, self._plans, self._calendar, *common)

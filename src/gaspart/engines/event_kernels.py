@@ -31,7 +31,10 @@ from gaspart.engines.layout import (
     PAIR_TESTS,
     STALE,
     STOP,
+    WALLS,
 )
+from gaspart.engines.lists import put, sort_in, take
+from gaspart.engines.walls import find_wall, meet_wall
 from gaspart.kernel import allocating_kernel, helper, kernel
 
 
@@ -80,60 +83,30 @@ def find_contact(rows, plans, body, space, partition, counters, low, high, gravi
 
 
 @helper
-def box_of(plans, partition, body):
-    """The linear index of the body's box."""
-    at = plans[body].at
-    return at[0] * partition.strides[0] + at[1] * partition.strides[1] + at[2] * partition.strides[2]
-
-
-@helper
-def put(plans, partition, body):
-    """Put a body at the head of its box's list."""
-    box = box_of(plans, partition, body)
-    first = partition.head[box]
-    plans[body].box_after = first
-    plans[body].box_before = -1
-    if first >= 0:
-        plans[first].box_before = body
-    partition.head[box] = body
-
-
-@helper
-def take(plans, partition, body):
-    """Take a body out of its box's list."""
-    before = plans[body].box_before
-    after = plans[body].box_after
-    if before >= 0:
-        plans[before].box_after = after
-    else:
-        partition.head[box_of(plans, partition, body)] = after
-    if after >= 0:
-        plans[after].box_before = before
+def plan_face(rows, plans, body, space, partition, now, gravity, walls):
+    """Note the next face or wall that the body comes to."""
+    time, face = find_face(rows, plans, body, space, partition, now, gravity)
+    if walls is not None:
+        time, face = find_wall(rows, plans, body, space, partition, gravity, walls, time, face)
+    plans[body].face_time = time
+    plans[body].face = face
 
 
 @kernel
-def foresee(rows, plans, body, space, partition, counters, now, gravity):
+def foresee(rows, plans, body, space, partition, counters, now, gravity, walls):
     """Make a body's plans afresh."""
     plans[body].contact = inf
     plans[body].partner = NOTHING
     find_contact(rows, plans, body, space, partition, counters, (-1, -1, -1), (1, 1, 1), gravity)
-    plans[body].face_time, plans[body].face = find_face(rows, plans, body, space, partition, now, gravity)
+    plan_face(rows, plans, body, space, partition, now, gravity, walls)
 
 
 @kernel
-def sort_in(plans, partition):
-    """Put all bodies into the lists of their boxes."""
-    partition.head[:] = -1
-    for body in range(len(plans)):
-        put(plans, partition, body)
-
-
-@kernel
-def foresee_all(rows, plans, calendar, space, partition, counters, now, gravity):
+def foresee_all(rows, plans, calendar, space, partition, counters, now, gravity, walls):
     """Sort all bodies into their boxes, make all plans and fill the calendar."""
     sort_in(plans, partition)
     for body in range(len(rows)):
-        foresee(rows, plans, body, space, partition, counters, now, gravity)
+        foresee(rows, plans, body, space, partition, counters, now, gravity, walls)
     fill(calendar, plans, now)
 
 
@@ -145,7 +118,7 @@ def refill(plans, calendar, partition, now):
 
 
 @kernel
-def cross(rows, plans, calendar, body, space, partition, counters, now, gravity):
+def cross(rows, plans, calendar, body, space, partition, counters, now, gravity, walls):
     """Let a body pass into the next box, and look about in the boxes that have become neighbours."""
     code = plans[body].face - INNER
     axis = code // 2
@@ -160,7 +133,7 @@ def cross(rows, plans, calendar, body, space, partition, counters, now, gravity)
     low = (x if x else -1, y if y else -1, z if z else -1)
     high = (x if x else 1, y if y else 1, z if z else 1)
     find_contact(rows, plans, body, space, partition, counters, low, high, gravity)
-    plans[body].face_time, plans[body].face = find_face(rows, plans, body, space, partition, now, gravity)
+    plan_face(rows, plans, body, space, partition, now, gravity, walls)
     reschedule(calendar, plans, body)
 
 
@@ -182,12 +155,13 @@ def note(record, time, rows, i, j, lengths):
 
 @kernel
 def run_boxes(
-    rows, images, plans, calendar, space, partition, masses, counters, record, stop, most, gravity, law, watch
+    rows, images, plans, calendar, space, partition, masses, counters, record, stop, most, gravity, law, watch,
+    walls,
 ):
     """Process all events up to time `stop`, at most `most` of them (collisions and wall hits).
 
-    masses: (N,), or None if all are 1; record, gravity, law, watch: a Record, Gravity, Law and Watch, or None
-    each. Returns (reason, number of events, time of the last).
+    masses: (N,), or None if all are 1; record, gravity, law, watch, walls: a Record, Gravity, Law, Watch and
+    Walls, or None each. Returns (reason, number of events, time of the last).
     """
     done = 0
     last = -inf
@@ -205,44 +179,53 @@ def run_boxes(
             return STOP, done, last
         face = plans[body].face
         meets_face = plans[body].face_time <= plans[body].contact
-        if meets_face and face >= INNER:
-            cross(rows, plans, calendar, body, space, partition, counters, time, gravity)
+        if meets_face and INNER <= face < WALLS:
+            cross(rows, plans, calendar, body, space, partition, counters, time, gravity, walls)
             continue
         partner = plans[body].partner
         if not meets_face and plans[partner].changes != plans[body].partner_changes:
             counters.counts[STALE] += 1
-            foresee(rows, plans, body, space, partition, counters, time, gravity)
+            foresee(rows, plans, body, space, partition, counters, time, gravity, walls)
             reschedule(calendar, plans, body)
             continue
         if meets_face:
             partner = -1 - face
-            if not meet_face(rows, images, plans, body, face, time, space, masses, counters, gravity, law):
+            if face >= WALLS:
+                if walls is not None:
+                    m = face - WALLS
+                    partner = -1 - meet_wall(
+                        rows, plans, body, m, time, space, masses, counters, gravity, law, walls
+                    )
+            elif not meet_face(rows, images, plans, body, face, time, space, masses, counters, gravity, law):
                 take(plans, partition, body)
                 axis = face // 2
                 plans[body].at[axis] = 0 if face % 2 else partition.per_side[axis] - 1
                 put(plans, partition, body)
-                foresee(rows, plans, body, space, partition, counters, time, gravity)
+                foresee(rows, plans, body, space, partition, counters, time, gravity, walls)
                 reschedule(calendar, plans, body)
                 continue
         else:
             body, partner = min(body, partner), max(body, partner)
             collide(rows, plans, body, partner, time, space, masses, counters, gravity, law)
-            foresee(rows, plans, partner, space, partition, counters, time, gravity)
+            foresee(rows, plans, partner, space, partition, counters, time, gravity, walls)
             reschedule(calendar, plans, partner)
-        foresee(rows, plans, body, space, partition, counters, time, gravity)
+        foresee(rows, plans, body, space, partition, counters, time, gravity, walls)
         reschedule(calendar, plans, body)
         last = time
         done += 1
         if record is not None:
             note(record, time, rows, body, partner, space.lengths)
         if watch is not None:
-            if partner >= 0 and (crowded(watch, body, time) or crowded(watch, partner, time)):
-                return COLLAPSE, done, last
+            faces = 2 * len(space.lengths)
+            if partner >= 0 or partner < -faces:
+                if crowded(watch, body, time) or (partner >= 0 and crowded(watch, partner, time)):
+                    return COLLAPSE, done, last
 
 
 @allocating_kernel
 def run_pairs(
-    rows, images, plans, space, partition, masses, counters, record, stop, most, gravity, law, watch
+    rows, images, plans, space, partition, masses, counters, record, stop, most, gravity, law, watch,
+    walls,
 ):
     """The same by the first algorithm of Spencer 2021: look at all pairs before every event.
 
@@ -267,6 +250,8 @@ def run_pairs(
         face = NOTHING
         for i in range(count):
             time, code = find_face(rows, plans, i, space, partition, -inf, gravity)
+            if walls is not None:
+                time, code = find_wall(rows, plans, i, space, partition, gravity, walls, time, code)
             if time < soon:
                 soon, first, face = time, i, code
         for i in range(count):
@@ -291,12 +276,19 @@ def run_pairs(
             collide(rows, plans, first, second, soon, space, masses, counters, gravity, law)
         else:
             second = -1 - face
-            if not meet_face(rows, images, plans, first, face, soon, space, masses, counters, gravity, law):
+            if face >= WALLS:
+                if walls is not None:
+                    m = face - WALLS
+                    second = -1 - meet_wall(
+                        rows, plans, first, m, soon, space, masses, counters, gravity, law, walls
+                    )
+            elif not meet_face(rows, images, plans, first, face, soon, space, masses, counters, gravity, law):
                 continue
         last = soon
         done += 1
         if record is not None:
             note(record, soon, rows, first, second, space.lengths)
         if watch is not None:
-            if second >= 0 and (crowded(watch, first, soon) or crowded(watch, second, soon)):
-                return COLLAPSE, done, last
+            if second >= 0 or second < -2 * d:
+                if crowded(watch, first, soon) or (second >= 0 and crowded(watch, second, soon)):
+                    return COLLAPSE, done, last

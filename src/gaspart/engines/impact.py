@@ -12,7 +12,7 @@ from gaspart.engines.flight import advance_row
 from gaspart.engines.layout import COLLISIONS, LOSS, VIRIAL, WORST
 from gaspart.kernel import helper, kernel
 
-_LEAST = 2.0**-48  # of the bodies' speed: they part at least so fast, or rounding would let them meet for ever
+LEAST = 2.0**-48  # of the bodies' speed: they part at least so fast, or rounding would let them meet for ever
 
 
 @helper
@@ -102,7 +102,7 @@ def strike(rows, i, j, rr, rv, space, counters, law):
     for k in range(d):
         fastest = max(fastest, abs(rows[i, d + k]), abs(rows[j, d + k]))
     approach = -rv / length
-    impulse = normal_change(approach, law.normal, _LEAST * fastest) / mobility
+    impulse = normal_change(approach, law.normal, LEAST * fastest) / mobility
     counters.sums[LOSS] += 0.5 * (1.0 - law.normal * law.normal) * approach * approach / mobility
     if law.tangential > -1.0:
         gx, gy, gz = sliding(rows, i, j, x, y, z, space, law)

@@ -8,6 +8,7 @@ COLLISIONS, CROSSINGS, STALE, PAIR_TESTS, BOX_VISITS = range(5)
 VIRIAL, WORST, LOSS = range(3)
 NOTHING = -1
 INNER = 6  # face codes: 2 axis + side for the container's faces, INNER more for those between boxes
+WALLS = 12  # and from here on the segments of interior walls
 STOP, EVENTS, FULL, COLLAPSE = range(4)  # why a run ended: the time, the number of events, the record, a loop
 
 
@@ -38,6 +39,15 @@ class Law(NamedTuple):
     spins: np.ndarray
 
 
+class Walls(NamedTuple):
+    """segments (M, 5) and wall (M,), see `segments`; listed[first[b] : first[b + 1]] are those near box b."""
+
+    segments: np.ndarray
+    wall: np.ndarray
+    first: np.ndarray
+    listed: np.ndarray
+
+
 class Watch(NamedTuple):
     """For each body, how many contacts it has had since (N,): contacts (N,) within `blink`, at most `most`."""
 
@@ -59,7 +69,7 @@ class Partition(NamedTuple):
 
 
 class Counters(NamedTuple):
-    """counts (5,), sums (3,), wall_hits (2d,), wall_impulse (2d,); see the names at the module's top."""
+    """counts (5,), sums (3,), wall_hits and wall_impulse (2d + interior walls,); see the module's top."""
 
     counts: np.ndarray
     sums: np.ndarray

@@ -58,6 +58,7 @@ class StepDynamics:
         for key, value in (
             ("gravity", scene.gravity),
             ("restitution", scene.restitution if rough else None),
+            ("walls", scene.walls or None),
             ("fixed", True if np.isinf(state.masses).any() else None),
         ):
             if value is not None:
