@@ -51,10 +51,14 @@ def falling(draw, most=12):
 def granular(draw, most=12):
     """The same with restitution, moments of inertia, fixed bodies and perhaps gravity."""
     scene = draw(st.one_of(mixtures(most), falling(most)))
-    law = gp.Restitution(draw(st.sampled_from([1.0, 0.95, 0.7])), draw(st.sampled_from([-1.0, 1.0, 0.4, -0.5])))
+    law = gp.Restitution(
+        draw(st.sampled_from([1.0, 0.95, 0.7])), draw(st.sampled_from([-1.0, 1.0, 0.4, -0.5]))
+    )
     if scene.centres_to_walls:
         law = gp.Restitution(law.normal)
-    species = [replace(kind, moment_of_inertia=draw(st.sampled_from([None, 0.3, 5.0]))) for kind in scene.species]
+    species = [
+        replace(kind, moment_of_inertia=draw(st.sampled_from([None, 0.3, 5.0]))) for kind in scene.species
+    ]
     if draw(st.booleans()):
         still = gp.Species(draw(st.integers(1, 2)), 0.3, fixed=True)
         species.append(still)

@@ -55,7 +55,7 @@ def _polynomial(c0, c1, c2, c3, c4, t):
 
 @helper
 def _root_between(c0, c1, c2, c3, c4, low, high):
-    """A root of the quartic between `low` and `high`, where its signs differ: Newton kept within bisection."""
+    """A root of the quartic between `low` and `high`, where its signs differ: Newton within bisection."""
     falls = _polynomial(c0, c1, c2, c3, c4, low) > 0.0
     t = 0.5 * (low + high)
     for _ in range(_HALVINGS):
@@ -81,8 +81,8 @@ def time_to_contact_pulled(gap, rv, vv, ra, va, aa):
     """Time until two bodies touch whose separation is r + v t + a t^2 / 2; inf if they never do.
 
     gap = r.r - sigma^2, rv = r.v, vv = v.v, ra = r.a, va = v.a, aa = a.a > 0. The first time at which they
-    touch or overlap and approach: the quartic f(t) = |r(t)|^2 - sigma^2 is looked at between the roots of its
-    derivative, and those between the roots of its second, so that no contact, however grazing, is passed over.
+    touch or overlap and approach: the quartic f(t) = |r(t)|^2 - sigma^2 is looked at between the roots of
+    its derivative, and those between the roots of its second, so that no grazing contact is passed over.
     """
     c0, c1, c2, c3, c4 = gap, 2.0 * rv, vv + ra, va, 0.25 * aa
     # f'' = 2 c2 + 6 c3 t + 12 c4 t^2 splits time into stretches in which f' is monotonic

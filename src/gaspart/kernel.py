@@ -30,6 +30,7 @@ KERNEL_MODULES = (
     "engines/faces.py",
     "engines/walls.py",
     "engines/event_kernels.py",
+    "engines/all_pairs.py",
     "engines/step_kernels.py",
 )
 

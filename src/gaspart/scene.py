@@ -111,7 +111,7 @@ class Scene:
         pull = vector("gravity", self.gravity, self.dimension)
         for component, periodic in zip(pull, self.container.periodic, strict=True):
             if component != 0.0 and periodic:
-                rule = "must have no component along a periodic axis: a body would fall, and gain energy, for ever"
+                rule = "must not point along a periodic axis, where bodies would fall and gain energy for ever"
                 raise SceneError("gravity", self.gravity, rule)
         settle(self, gravity=pull)
 
@@ -122,7 +122,9 @@ class Scene:
             if self.centres_to_walls:
                 raise SceneError("centres_to_walls", True, "interior walls stop the bodies' surfaces")
             for key, point in (("start", wall.start), ("end", wall.end)):
-                if not all(0.0 <= x <= length for x, length in zip(point, self.container.lengths, strict=True)):
+                if not all(
+                    0.0 <= x <= length for x, length in zip(point, self.container.lengths, strict=True)
+                ):
                     raise SceneError(f"walls[{n}].{key}", point, "must lie inside the container")
 
     def wall_at(self, position: tuple[float, ...], radius: float) -> str | None:
@@ -130,7 +132,9 @@ class Scene:
         laps = [(0, -1, 1) if periodic else (0,) for periodic in self.container.periodic]
         for n, wall in enumerate(self.walls):
             for lap in product(*laps):
-                image = tuple(x + k * length for x, k, length in zip(position, lap, self.container.lengths))
+                image = tuple(
+                    x + k * length for x, k, length in zip(position, lap, self.container.lengths, strict=True)
+                )
                 if wall.distance(image) < radius * (1.0 - _TOUCH):
                     return f"walls[{n}]"
         return None

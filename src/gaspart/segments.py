@@ -1,4 +1,4 @@
-"""Interior walls as straight segments: rows (ax, ay, ux, uy, length), the start, the unit vector along, the length.
+"""Interior walls as segments: rows (ax, ay, ux, uy, length), the start, the unit vector along, the length.
 
 A wall near a periodic face is met across it too, so it has an image wherever one comes within a radius of the
 container.
@@ -34,7 +34,7 @@ def segments_of(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 def segments_near(segments: np.ndarray, boxes: Boxes, reach: float) -> tuple[np.ndarray, np.ndarray]:
-    """The segments within `reach` of each box: those of box b are listed[first[b] : first[b + 1]], ascending."""
+    """The segments within `reach` of each box: those of box b are listed[first[b] : first[b + 1]]."""
     reach *= 1 + _SLACK
     half = boxes.widths[:2] / 2
     found = []

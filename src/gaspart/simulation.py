@@ -41,7 +41,9 @@ class Simulation:
     def add(self, position, velocity, radius: float, mass: float = 1.0, **properties) -> None:
         """Add one body (properties as in `Body`): `scene` becomes a new, validated scene. Refused once the
         simulation has advanced."""
-        self._change(self.scene.with_bodies(Body(tuple(position), tuple(velocity), radius, mass, **properties)))
+        self._change(
+            self.scene.with_bodies(Body(tuple(position), tuple(velocity), radius, mass, **properties))
+        )
 
     def add_random(self, count: int, radius: float, **properties) -> None:
         """Add `count` bodies at random places (properties as in `Species`). Refused after the first advance."""
@@ -57,7 +59,9 @@ class Simulation:
 
     def _change(self, scene: Scene) -> None:
         if self._advanced:
-            raise SceneError("scene", "under way", "bodies and walls can only be added before the first advance")
+            raise SceneError(
+                "scene", "under way", "bodies and walls can only be added before the first advance"
+            )
         before = self.scene
         self.scene = scene
         try:
@@ -127,7 +131,8 @@ class Simulation:
     def events(self) -> dict[str, np.ndarray]:
         """The events recorded: time (M,), bodies (M, 2), positions and velocities (M, 2, d) just after.
 
-        The second of `bodies` is -1 - face for a hit at a face of the container, -1 - 2d - n at interior wall n.
+        The second of `bodies` is -1 - face for a hit at a face of the container, -1 - 2d - n for one at
+        interior wall n.
         """
         if self._log is None:
             raise SceneError("events", None, "set record_events to True before advancing")
@@ -154,7 +159,8 @@ class Simulation:
             raise SceneError("by", by, 'must be "time" or "event"')
 
     def check_invariants(self) -> None:
-        """Raise SimulationError if energy has drifted from what it was less what contacts took, or a body is not where it can be."""
+        """Raise SimulationError if energy has drifted from what it was less what contacts took, or a body is
+        not where it can be."""
         state = self.state
         if not (np.isfinite(state.positions).all() and np.isfinite(state.velocities).all()):
             raise SimulationError(f"at time {self.time:g} a position or velocity is not finite")

@@ -11,10 +11,11 @@ import numpy as np
 class Tally:
     """Sums since the last reset.
 
-    time: simulated time covered; collisions of pairs; wall_hits (2d,) and wall_impulse (2d,), the momentum
-    given to each face (x low, x high, y low ...), and further to each interior wall; virial_sum: sum of |dr.dp| over collisions;
-    pair_tests: pairs examined; box_visits: boxes looked into; crossings of box boundaries;
-    worst_contact: largest |r^2/sigma^2 - 1| at a contact; dissipated_energy: what inelastic contacts took.
+    time: simulated time covered; collisions of pairs; wall_hits and wall_impulse (2d + interior walls,), the
+    momentum given to each face (x low, x high, y low ...) and then to each interior wall; virial_sum: sum of
+    |dr.dp| over collisions; pair_tests: pairs examined; box_visits: boxes looked into; crossings of box
+    boundaries; worst_contact: largest |r^2/sigma^2 - 1| at a contact; dissipated_energy: what inelastic
+    contacts took.
 
     The time-stepped engine also tells what it got wrong: steps; overlaps_left, pairs that still overlap and
     approach when a step ends; deepest_overlap met, as a fraction of the contact distance;

@@ -23,7 +23,9 @@ def same_bits(one, other):
     return all(np.array_equal(one.events[key], other.events[key], equal_nan=True) for key in one.events)
 
 
-def thrown(position, velocity, gravity=(0.0, -1.0), lengths=(10.0, 10.0), radius=0.5, boundary="wall", search="boxes"):
+def thrown(
+    position, velocity, gravity=(0.0, -1.0), lengths=(10.0, 10.0), radius=0.5, boundary="wall", search="boxes"
+):
     scene = gp.Scene(
         gp.Container(lengths, boundary), bodies=[gp.Body(position, velocity, radius)], gravity=gravity
     )

@@ -96,7 +96,11 @@ def test_a_rough_contact_follows_the_closed_formulae(dimension, law):
     """Spencer 2022, Eqs. 22, 26 and 39, with unlike masses, radii, inertias and spins."""
     rng = np.random.default_rng(5)
     law = gp.Restitution(*law)
-    turn = [float(s) for s in rng.normal(size=2)] if dimension == 2 else [tuple(s) for s in rng.normal(size=(2, 3))]
+    turn = (
+        [float(s) for s in rng.normal(size=2)]
+        if dimension == 2
+        else [tuple(s) for s in rng.normal(size=(2, 3))]
+    )
     one = gp.Body((20.0,) * dimension, (1.0, 0.3, -0.2)[:dimension], 1.5, 2.0, turn[0], 0.7)
     other = gp.Body((24.0, 20.5, 21.0)[:dimension], (-1.0, 0.1, -0.6)[:dimension], 0.6, 5.0, turn[1], 1.9)
     sim = collided(law, one, other)
@@ -151,20 +155,24 @@ def test_a_wall_hit_follows_its_formula(law):
     """Spencer 2022, Eq. 40, at the upper y wall."""
     law, m, radius, inertia, spin = gp.Restitution(*law), 3.0, 0.5, 0.2, 1.7
     body = gp.Body((5.0, 5.0), (1.0, 2.0), radius, m, spin, inertia)
-    sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), bodies=[body], restitution=law), gp.EventDriven())
+    sim = gp.Simulation(
+        gp.Scene(gp.Container((10.0, 10.0)), bodies=[body], restitution=law), gp.EventDriven()
+    )
     sim.advance(max_events=1)
     slide = 1.0 - radius * spin  # v + R w x n, n = y
     along = -(1 + law.tangential) / (1 / m + radius**2 / inertia) * slide
     assert sim.state.velocities[0] == pytest.approx([1.0 + along / m, -2.0 * law.normal], abs=1e-14)
     assert sim.state.spins[0] == pytest.approx(spin - radius / inertia * along, abs=1e-13)
     assert sim.tally.wall_impulse[3] == pytest.approx((1 + law.normal) * m * 2.0)
-    assert sim.state.energy + sim.tally.dissipated_energy == pytest.approx(sim.initial_state.energy, rel=1e-14)
+    assert sim.state.energy + sim.tally.dissipated_energy == pytest.approx(
+        sim.initial_state.energy, rel=1e-14
+    )
     sim.advance(duration=1.0)
     sim.check_invariants()
 
 
 def test_a_superball_between_floor_and_ceiling_comes_back():
-    """Garwin (Am. J. Phys. 37, 88 (1969)): a perfectly rough ball thrown under a table returns; the three hits
+    """Garwin (Am. J. Phys. 37, 88 (1969)): a perfectly rough ball thrown under a table returns; three hits
     of floor, table and floor nearly turn its way round, where a smooth ball would go on."""
     way = {}
     for tangential in (-1.0, 1.0):
@@ -183,7 +191,9 @@ def test_a_fixed_body_is_a_wall():
     for dimension in (2, 3):
         post = gp.Body((5.0,) * dimension, (0.0,) * dimension, 1.0, fixed=True)
         ball = gp.Body((2.0,) + (5.0,) * (dimension - 1), (1.0,) + (0.0,) * (dimension - 1), 0.5, mass=7.0)
-        sim = gp.Simulation(gp.Scene(gp.Container((10.0,) * dimension), bodies=[post, ball]), gp.EventDriven())
+        sim = gp.Simulation(
+            gp.Scene(gp.Container((10.0,) * dimension), bodies=[post, ball]), gp.EventDriven()
+        )
         sim.advance(duration=2.5)
         assert sim.tally.collisions == 1
         assert sim.state.positions[1, 0] == pytest.approx(2.5, rel=1e-15)
@@ -205,12 +215,14 @@ def test_a_ball_falls_on_a_fixed_one_and_bounces_back():
         assert sim.events["time"] == pytest.approx([math.sqrt(8.0 - 2.0 - height)], rel=1e-14)
         speed = 2.0 * sim.time
         n = np.array([0.3, height]) / 1.5
-        assert sim.state.velocities[1] == pytest.approx(np.array([0, -speed]) + 2 * speed * n[1] * n, rel=1e-13)
+        assert sim.state.velocities[1] == pytest.approx(
+            np.array([0, -speed]) + 2 * speed * n[1] * n, rel=1e-13
+        )
 
 
 @pytest.mark.parametrize("normal", [0.0, 0.5, 0.9])
 def test_a_ball_on_a_floor_comes_to_rest(normal):
-    """Bounce times are a geometric series, with an end: t = sqrt(2h/g) (1 + e)/(1 - e). Then it lies still."""
+    """Bounce times are a geometric series, with an end: t = sqrt(2h/g) (1 + e)/(1 - e). Then it lies."""
     body = gp.Body((5.0, 2.5), (0.25, 0.0), 0.5)
     scene = gp.Scene(
         gp.Container((400.0, 10.0)), bodies=[body], gravity=(0.0, -1.0), restitution=gp.Restitution(normal)
@@ -229,8 +241,8 @@ def test_a_ball_on_a_floor_comes_to_rest(normal):
 @pytest.mark.parametrize("middle", [0.0, 0.5])
 @pytest.mark.parametrize("normal", [0.0, 0.03, 0.05, 0.06])
 def test_collapse_is_reported_with_the_state_kept(middle, normal):
-    """Three on a line with e < 7 - 4 sqrt 3 = 0.0718 meet infinitely often (McNamara & Young, Phys. Fluids A 4,
-    496 (1992))."""
+    """Three on a line with e < 7 - 4 sqrt 3 = 0.0718 meet infinitely often (McNamara & Young, Phys. Fluids
+    A 4, 496 (1992))."""
     bodies = [gp.Body((x, 1.0), (v, 0.0), 0.5) for x, v in ((2.5, 1.0), (5.0, middle), (7.0, -1.0))]
     scene = gp.Scene(gp.Container((10.0, 2.0)), bodies=bodies, restitution=gp.Restitution(normal))
     for search in ("boxes", "pairs"):
@@ -254,7 +266,9 @@ def test_a_stack_at_rest_is_reported_not_looped_over():
 
 def test_bodies_that_stick_fly_on_together():
     """e = 0, head on: they stay together and never meet again for rounding's sake."""
-    sim = collided(gp.Restitution(0.0), gp.Body((5.0, 5.3), (1.0, 0.1), 0.5), gp.Body((9.0, 5.3), (0.3, 0.1), 0.5))
+    sim = collided(
+        gp.Restitution(0.0), gp.Body((5.0, 5.3), (1.0, 0.1), 0.5), gp.Body((9.0, 5.3), (0.3, 0.1), 0.5)
+    )
     assert sim.state.velocities == pytest.approx(np.array([[0.65, 0.1], [0.65, 0.1]]), rel=1e-13)
     sim.advance(duration=20.0)
     assert sim.tally.collisions == 1
@@ -307,11 +321,20 @@ def test_checkpoints_keep_spins_and_losses():
         ({"restitution": {"tangential": -1.1}}, "restitution.tangential"),
         ({"restitution": {"rough": 1}}, "restitution.rough"),
         ({"restitution": {"tangential": 0.0}, "centres_to_walls": True}, "centres_to_walls"),
-        ({"species": [{"count": 1, "radius": 0.5, "moment_of_inertia": 0.0}]}, "species[0].moment_of_inertia"),
+        (
+            {"species": [{"count": 1, "radius": 0.5, "moment_of_inertia": 0.0}]},
+            "species[0].moment_of_inertia",
+        ),
         ({"species": [{"count": 1, "radius": 0.5, "fixed": True, "speed": 1.0}]}, "species[0].speed"),
         ({"species": [{"count": 1, "radius": 0.5, "fixed": 1}]}, "species[0].fixed"),
-        ({"bodies": [{"position": [5, 5], "velocity": [1, 0], "radius": 1, "fixed": True}]}, "bodies[0].velocity"),
-        ({"bodies": [{"position": [5, 5], "velocity": [1, 0], "radius": 1, "spin": [1, 0, 0]}]}, "bodies[0].spin"),
+        (
+            {"bodies": [{"position": [5, 5], "velocity": [1, 0], "radius": 1, "fixed": True}]},
+            "bodies[0].velocity",
+        ),
+        (
+            {"bodies": [{"position": [5, 5], "velocity": [1, 0], "radius": 1, "spin": [1, 0, 0]}]},
+            "bodies[0].spin",
+        ),
     ],
 )
 def test_what_is_refused(change, key):

@@ -1,4 +1,4 @@
-"""Interior walls: both sides, solid ends, any number, in any boxes; and what other programs get wrong there."""
+"""Interior walls: both sides, solid ends, any number, in any boxes; and what others get wrong."""
 
 import math
 from dataclasses import replace
@@ -200,10 +200,15 @@ def test_dropped_on_the_end_of_a_wall():
 
 def test_a_rough_wall_follows_its_formula():
     """Spencer 2022, Eq. 40, at an oblique wall."""
-    law, n = gp.Restitution(0.7, 0.4), np.array([1.0, -1.0, 0.0]) / math.sqrt(2.0)  # from the body to the wall
+    law, n = (
+        gp.Restitution(0.7, 0.4),
+        np.array([1.0, -1.0, 0.0]) / math.sqrt(2.0),
+    )  # from the body to the wall
     body = gp.Body((2.0, 6.0), (1.0, 0.2), 0.5, 3.0, 1.3, 0.2)
     wall = gp.Wall((4.0, 4.0), (8.0, 8.0))
-    sim = gp.Simulation(gp.Scene(gp.Container((12.0, 12.0)), bodies=[body], restitution=law, walls=[wall]), gp.EventDriven())
+    sim = gp.Simulation(
+        gp.Scene(gp.Container((12.0, 12.0)), bodies=[body], restitution=law, walls=[wall]), gp.EventDriven()
+    )
     sim.advance(max_events=1)
     v, spin = np.array([1.0, 0.2, 0.0]), np.array([0.0, 0.0, 1.3])
     g = v + 0.5 * np.cross(spin, n)
@@ -228,7 +233,10 @@ def test_random_bodies_keep_clear_of_walls():
         ({"walls": [{"start": [6.0, 2.0], "end": [6.0, 13.0]}]}, "walls[0].end"),
         ({"walls": [{"start": [6.0, 2.0, 1.0], "end": [6.0, 3.0]}]}, "walls[0].start"),
         ({"walls": [{"start": [6.0, math.nan], "end": [6.0, 3.0]}]}, "walls[0].start"),
-        ({"walls": [{"start": [2.4, 0.0], "end": [2.4, 12.0]}]}, "bodies[0].position"),  # an overlap of its side
+        (
+            {"walls": [{"start": [2.4, 0.0], "end": [2.4, 12.0]}]},
+            "bodies[0].position",
+        ),  # an overlap of its side
         ({"walls": [{"start": [2.0, 2.6], "end": [2.0, 9.0]}]}, "bodies[0].position"),  # and of its end
         ({"walls": [{"start": [6.0, 2.0], "end": [6.0, 3.0]}], "centres_to_walls": True}, "centres_to_walls"),
     ],

@@ -53,10 +53,11 @@ class EventDynamics:
 
     def __init__(self, engine: EventDriven, scene: Scene, state: State):
         from gaspart.boxes import make_boxes, sides_for
-        from gaspart.engines import event_kernels, flight, layout
+        from gaspart.engines import all_pairs, event_kernels, flight, layout
         from gaspart.engines.calendar import PLAN, empty_calendar
 
-        self._kernels, self._flight, self._layout = event_kernels, flight, layout
+        self._kernels, self._all_pairs = event_kernels, all_pairs
+        self._flight, self._layout = flight, layout
         self._scene = scene
         self._reference = state
         d, n = scene.dimension, state.count
@@ -154,9 +155,9 @@ class EventDynamics:
                 self._clock = max(self._clock, last)
             if reason == self._layout.COLLAPSE:
                 raise SimulationError(
-                    f"at time {self.time:g} body {int(self._watch.contacts.argmax())} has had {self._watch.most} contacts "
-                    f"within a time of {self._watch.blink:g}: an inelastic collapse, or a stack at rest; the state "
-                    "is that of the present time"
+                    f"at time {self.time:g} body {self._watch.contacts.argmax()} has had {self._watch.most} "
+                    f"contacts within a time of {self._watch.blink:g}: an inelastic collapse, or a stack at rest; "
+                    "the state is that of the present time"
                 )
 
     def _run(self, room, stop: float, most: int) -> tuple[int, int, float]:
@@ -164,7 +165,7 @@ class EventDynamics:
         common = self._space, self._partition, self._masses, self._counters, room, stop, most
         common = *common, self._gravity, self._law, self._watch, self._walls
         if self._by_pairs:
-            return self._kernels.run_pairs(self._rows, self._images, self._plans, *common)
+            return self._all_pairs.run_pairs(self._rows, self._images, self._plans, *common)
         return self._kernels.run_boxes(self._rows, self._images, self._plans, self._calendar, *common)
 
     def _turn_lap(self) -> None:

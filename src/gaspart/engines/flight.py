@@ -18,7 +18,7 @@ def face_plane(rows, body, axis, upper, space):
 
 @helper
 def acceleration(rows, body, axis, space, gravity):
-    """What pulls a body along an axis: nothing if it is fixed, or lies still on the face that it is pulled to."""
+    """What pulls a body along an axis: nothing if it is fixed, or lies still on the face below."""
     pull = gravity.pull[axis]
     if pull == 0.0 or gravity.fixed[body]:
         return 0.0

@@ -1,7 +1,7 @@
 """What passes between two bodies that touch, or a body and a wall.
 
-Smooth elastic bodies know only their momenta. A `Law` brings restitution, spins and fixed bodies (Spencer 2022,
-section 2.2); it reckons with three components, of which 2D leaves the unneeded ones 0.
+Smooth elastic bodies know only their momenta. A `Law` brings restitution, spins and fixed bodies (Spencer
+2022, section 2.2); it reckons with three components, of which 2D leaves the unneeded ones 0.
 """
 
 from math import sqrt
@@ -63,7 +63,11 @@ def sliding(rows, i, j, x, y, z, space, law):
     d = len(space.lengths)
     radius = rows[i, 2 * d + 1]
     sx, sy, sz = radius * law.spins[i, 0], radius * law.spins[i, 1], radius * law.spins[i, 2]
-    gx, gy, gz = speed_along(rows, i, 0, space), speed_along(rows, i, 1, space), speed_along(rows, i, 2, space)
+    gx, gy, gz = (
+        speed_along(rows, i, 0, space),
+        speed_along(rows, i, 1, space),
+        speed_along(rows, i, 2, space),
+    )
     if j >= 0:
         radius = rows[j, 2 * d + 1]
         sx += radius * law.spins[j, 0]

@@ -49,7 +49,7 @@ class Walls(NamedTuple):
 
 
 class Watch(NamedTuple):
-    """For each body, how many contacts it has had since (N,): contacts (N,) within `blink`, at most `most`."""
+    """For each body, how many contacts (N,) it has had since (N,) within `blink`, at most `most`."""
 
     since: np.ndarray
     contacts: np.ndarray

@@ -13,8 +13,8 @@ from gaspart.kernel import helper, kernel
 
 @helper
 def time_to_side(gap, closing, pull):
-    """Time until a body touches the side that it is on: `gap` from it, approaching at `closing`, drawn towards
-    it by `pull`; inf if it never does."""
+    """Time until a body touches the side that it is on: `gap` from it, approaching at `closing`, drawn
+    towards it by `pull`; inf if it never does."""
     if pull > 0.0:
         return time_along(gap, closing, pull)
     if closing <= 0.0:
