@@ -1,5 +1,6 @@
 """The command line."""
 
+import io
 import os
 import re
 import shlex
@@ -9,7 +10,7 @@ import sys
 import pytest
 
 import gaspart as gp
-from gaspart import theory
+from gaspart import cli, theory
 from gaspart.cli import main
 
 GAS = """\
@@ -133,6 +134,19 @@ def test_a_broken_invariant_is_exit_code_1_and_ctrl_c_130(folder, capsys, monkey
         assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY]) == code
         told = capsys.readouterr().err
         assert text in told and told.count("\n") == 1
+
+
+def test_progress_is_one_line_on_a_terminal_and_nothing_elsewhere(monkeypatch):
+    assert cli._progress(quiet=False) is None and cli._progress(quiet=True) is None
+    terminal = io.StringIO()
+    terminal.isatty = lambda: True
+    monkeypatch.setattr(sys, "stderr", terminal)
+    clock = iter([100.0, 110.0])
+    monkeypatch.setattr(cli.time, "monotonic", lambda: next(clock))
+    show = cli._progress(quiet=False)
+    show(20.0, 100.0, 1000)
+    show(40.0, 100.0, 51000)
+    assert terminal.getvalue() == "\r\033[K 40.0%  5e+03 collisions/s  0:00:30 left"
 
 
 def throw(error):

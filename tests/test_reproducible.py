@@ -2,6 +2,7 @@
 
 import os
 import signal
+import struct
 import subprocess
 import sys
 import time
@@ -74,6 +75,22 @@ def test_checkpoints_change_no_bit(tmp_path, engine):
     assert plain.read_bytes() == often.read_bytes()
 
 
+@pytest.mark.parametrize("engine", [ENGINES["event"], ENGINES["step"]], ids=["event", "step"])
+def test_restored_again_and_again_to_the_same_counts(engine):
+    """Large enough for both bodies of a pair to plan one contact at one time, one of them out of date."""
+    scene = gas(3, 1000, 0.2)
+    undisturbed, simulation = (gp.Simulation(scene, engine, 3) for _ in range(2))
+    for n in range(1, 41):
+        simulation.advance(until=0.25 * n)
+        parts = simulation.checkpoint()
+        simulation = gp.Simulation(scene, engine, 3)
+        simulation.restore(parts)
+    undisturbed.advance(until=10.0)
+    assert np.array_equal(simulation.state.positions, undisturbed.state.positions)
+    for name, value in vars(undisturbed.tally).items():
+        assert np.array_equal(getattr(simulation.tally, name), value), name
+
+
 @every_engine
 @pytest.mark.parametrize("cut_after", [1, 2, 5, 9])
 def test_cut_short_after_any_checkpoint_and_resumed(tmp_path, monkeypatch, engine, cut_after):
@@ -114,7 +131,7 @@ def frames_in(partial):
     try:
         with partial.open("rb") as file:
             return amber.frame_count(file)
-    except (OSError, ValueError, IndexError, __import__("struct").error):
+    except (OSError, struct.error):
         return 0
 
 
@@ -123,7 +140,7 @@ def test_killed_again_and_again_and_resumed(tmp_path, engine):
     """kill -9, at moments that differ from run to run of this test; the finished file never does."""
     scene, path = tmp_path / "scene.yaml", tmp_path / "run.nc"
     gas(3, 2000, 0.2).to_file(scene)
-    step = ["--time-step", "0.0078125", "--boxes-per-side", "4"] if engine == "step" else []
+    step = ["--time-step", "0.015625"] if engine == "step" else []
     settings = ["--engine", engine, "--duration", "64", "--sample-interval", "0.5", "--seed", "3", *step]
     settings += ["--displacements", "--quiet", "--checkpoint-seconds", "0"]
     partial, reached = partial_path(path), 0

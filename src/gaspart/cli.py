@@ -18,21 +18,14 @@ from gaspart.errors import SceneError, SimulationError
 _ENGINE_SETTINGS = ("time_step", "boxes_per_side", "precision", "rewind", "search")
 
 # `gaspart theory`: name -> (function of gaspart.theory, the body's properties it takes, what it is)
+_BODY = ("diameter", "temperature", "mass")
 _QUANTITIES = {
     "Z": ("compressibility_factor", (), "compressibility factor PV/(N k_B T), best reference"),
     "contact_value": ("contact_value", (), "pair distribution at contact g(sigma)"),
     "mean_free_path": ("mean_free_path", ("diameter",), "mean free path"),
-    "collision_rate": ("collision_rate", ("diameter", "temperature", "mass"), "collisions per body and time"),
-    "diffusion_coefficient": (
-        "enskog_diffusion",
-        ("diameter", "temperature", "mass"),
-        "self-diffusion coefficient of Enskog's theory",
-    ),
-    "viscosity": (
-        "enskog_viscosity",
-        ("diameter", "temperature", "mass"),
-        "shear viscosity of Enskog's theory",
-    ),
+    "collision_rate": ("collision_rate", _BODY, "collisions per body and time"),
+    "diffusion_coefficient": ("enskog_diffusion", _BODY, "self-diffusion coefficient of Enskog's theory"),
+    "viscosity": ("enskog_viscosity", _BODY, "shear viscosity of Enskog's theory"),
 }
 
 
@@ -154,7 +147,7 @@ def _add_theory(commands) -> None:
         "--eta", type=_several(float), required=True, metavar="X[,X...]", help="packing fraction"
     )
     theory.add_argument("--dimension", type=int, choices=(2, 3), required=True)
-    for name in ("diameter", "temperature", "mass"):
+    for name in _BODY:
         theory.add_argument(f"--{name}", type=float, help="default: 1")
 
 
@@ -286,7 +279,7 @@ def _theory(given: argparse.Namespace) -> None:
     from gaspart import theory
 
     function, takes, _ = _QUANTITIES[given.quantity]
-    properties = {key: getattr(given, key) for key in ("diameter", "temperature", "mass")}
+    properties = {key: getattr(given, key) for key in _BODY}
     properties = {key: value for key, value in properties.items() if value is not None}
     for key in properties:
         if key not in takes:

@@ -45,7 +45,7 @@ class State:
 
     @property
     def kinetic_energy(self) -> float:
-        return 0.5 * float(self.masses @ (self.velocities**2).sum(axis=1))
+        return 0.5 * float(sum(self.masses @ along**2 for along in self.velocities.T))
 
     def copy(self) -> State:
         """A state that shares no array with this one."""

@@ -33,7 +33,7 @@ def msd_spheres(ds: xr.Dataset) -> list[Claim]:
                     1.0,
                     theory.ERPENBECK_WOOD_UNCERTAINTY,
                     ERPENBECK_WOOD,
-                    "missing correlations of collisions, a msd not yet straight, or a wrong finite-size correction",
+                    "correlations of collisions missing, a msd not yet straight, a wrong finite-size correction",
                 )
             )
     if bool(ds["in_series"].any()):
@@ -63,7 +63,7 @@ def _dilute_limit(ds: xr.Dataset) -> Claim:
         1.0,
         0.02,
         "Enskog theory, 1.01895 times the first Sonine approximation",
-        "a wrong mean free path, or a msd fitted before it is straight; the first approximation alone is 1.9 % low",
+        "a wrong mean free path, or a msd not yet straight; the first approximation is 1.9 % low",
         required_uncertainty=0.005,
     )
 
@@ -109,7 +109,7 @@ def msd_discs(ds: xr.Dataset) -> list[Claim]:
 
 
 def _renormalisation(row) -> float:
-    """Relative uncertainty of the predicted slope: what the measured D(t), instead of Enskog's, would change."""
+    """Relative uncertainty of the predicted slope: what the measured D(t) for Enskog's D would change."""
     eta = float(row["packing_fraction"])
     enskog = float(theory.enskog_diffusion(eta, 2))
     middle = math.sqrt(float(row["fit_from"]) * float(row["fit_to"]))
@@ -138,7 +138,7 @@ def _short_times(ds: xr.Dataset, dimension: int) -> list[Claim]:
                 "displacements that are not the integral of the velocities, or sampling too coarse",
             ),
             Claim.within(
-                f"ballistic msd over Enskog's after {float(row['interval']):.2g} collisions, packing fraction {eta:g}",
+                f"msd over Enskog's after {float(row['interval']):.2g} collisions at packing fraction {eta:g}",
                 "test",
                 float(first["msd"]) / ballistic,
                 float(first["msd_error"]) / ballistic,

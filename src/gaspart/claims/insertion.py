@@ -48,7 +48,10 @@ def _saturation(one: xr.Dataset) -> Claim:
     if rule == "periodic":
         required, source = 1e-3, "Zhang and Torquato 2013"
     else:
-        required, source = 4e-3, "Zhang and Torquato 2013, times the wall excess (1 + 0.64 σ/L')^3 of saturated fills"
+        required, source = (
+            4e-3,
+            "Zhang and Torquato 2013, times the wall excess (1 + 0.64 σ/L')^3 of saturated fills",
+        )
     return Claim(
         f"saturation of random insertion, {_bodies(one)}, extrapolated in attempts^(-1/{dimension})",
         "test",

@@ -43,7 +43,10 @@ def virial_spheres(dataset: xr.Dataset) -> list[Claim]:
 def equation_of_state(dataset: xr.Dataset) -> list[Claim]:
     """The claims that both dimensions share."""
     dimension = int(dataset.attrs["dimension"])
-    claims = [_compressibility(dataset.isel(packing_fraction=k), dimension) for k in range(dataset.sizes["packing_fraction"])]
+    claims = [
+        _compressibility(dataset.isel(packing_fraction=k), dimension)
+        for k in range(dataset.sizes["packing_fraction"])
+    ]
     claims.append(_jointly(dataset, dimension))
     if dataset.sizes["fit"]:
         claims += [_coefficient(dataset.isel(fit=0), order, dimension) for order in WANTED]
@@ -82,7 +85,11 @@ def _jointly(dataset: xr.Dataset, dimension: int) -> Claim:
 def _coefficient(fit: xr.Dataset, order: int, dimension: int) -> Claim:
     at = fit.sel(order=order)
     exact = float(at["exact"])
-    held = f"B{int(fit['free']) + 1} to B10 held at literature values" if int(fit["held"]) else "higher ones zero"
+    held = (
+        f"B{int(fit['free']) + 1} to B10 held at literature values"
+        if int(fit["held"])
+        else "higher ones zero"
+    )
     return Claim(
         f"B{order} in powers of the body's {'area' if dimension == 2 else 'volume'} "
         f"(B2 to B{int(fit['free'])} fitted up to packing fraction {float(fit['up_to']):g}, {held})",

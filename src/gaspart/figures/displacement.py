@@ -45,23 +45,24 @@ def _shown(ds: xr.Dataset, long: np.ndarray) -> np.ndarray:
     )
 
 
-def _spread(first: int, last: int, number: int) -> np.ndarray:
-    """At most `number` of the lags first ... last - 1, evenly spaced in their logarithm."""
+def _spread(first: int, last: int) -> np.ndarray:
+    """Of the lags first ... last - 1 about eight in each decade."""
+    number = int(np.ceil(8.0 * np.log10(last / first))) + 1
     return np.unique(np.geomspace(first, max(last - 1, first), number).round().astype(int))
 
 
 def _pieces(ds: xr.Dataset, eta: float):
-    """(row, lags) of one packing fraction: the finely sampled run first, then the others where it ends."""
+    """(row, lags) of one packing fraction: the finely sampled run, up to where the long ones begin, and those."""
     chosen = ds.isel(point=np.flatnonzero(np.isclose(ds["packing_fraction"], eta, atol=1e-5)))
-    reached = 0.0
-    for point in np.argsort(chosen["interval"].values, kind="stable"):
-        row = chosen.isel(point=point)
+    rows = [chosen.isel(point=point) for point in np.argsort(chosen["interval"].values, kind="stable")]
+    ends = [float(row["time"][1]) for row in rows[1:]] + [np.inf]
+    begin = 0.0
+    for row, end in zip(rows, ends, strict=True):
         time = row["time"].values
-        last = int(np.isfinite(time).sum())
-        first = max(1, int(np.searchsorted(time[:last], reached * 1.1)))
-        if first < last:
-            reached = time[last - 1]
-            yield row, _spread(first, last, 14)
+        lags = np.flatnonzero((time > begin) & (time < end))
+        if lags.size:
+            begin = time[lags[-1]]
+            yield row, _spread(lags[0], lags[-1] + 1)
 
 
 def _displacement(axis, ds: xr.Dataset, dimension: int) -> None:
@@ -77,7 +78,9 @@ def _displacement(axis, ds: xr.Dataset, dimension: int) -> None:
         curve = theory.enskog_mean_squared_displacement(time, eta, dimension)
         axis.loglog(time, curve, color=style.COLOURS[kind], lw=0.8)
     top = axis.get_ylim()[1]
-    axis.plot(time, dimension * time**2, color=style.DATA, ls="--", lw=0.8, label=rf"ballistic ${dimension}t^2$")
+    axis.plot(
+        time, dimension * time**2, color=style.DATA, ls="--", lw=0.8, label=rf"ballistic ${dimension}t^2$"
+    )
     axis.plot([], [], color=style.GREY, lw=0.8, label="Enskog")
     axis.set_ylim(top=top)
     axis.set_xlabel(r"time $t\ (\sigma\sqrt{m/k_\mathrm{B}T})$")
@@ -88,6 +91,7 @@ def _displacement(axis, ds: xr.Dataset, dimension: int) -> None:
 def _running(axis, ds: xr.Dataset, dimension: int) -> None:
     """D(t), half the msd's slope over d, over Enskog's D: displacements as points, velocities as lines."""
     fractions = np.unique(ds["packing_fraction"].values.round(6))
+    axis.set_xscale("log")
     for kind, eta in enumerate(fractions):
         enskog = float(theory.enskog_diffusion(eta, dimension))
         rate = float(theory.collision_rate(eta, dimension))
@@ -103,9 +107,15 @@ def _running(axis, ds: xr.Dataset, dimension: int) -> None:
             elif dimension == 2:
                 _predicted(axis, row, eta, rate, enskog, kind)
     x = np.geomspace(*axis.get_xlim(), 200)
-    decay = 1.0 / (float(theory.enskog_diffusion(fractions[0], dimension)) * theory.collision_rate(fractions[0], dimension))
+    enskog, rate = (
+        float(function(fractions[0], dimension))
+        for function in (theory.enskog_diffusion, theory.collision_rate)
+    )
+    decay = 1.0 / (enskog * rate)  # per collision: the same at every packing fraction
     axis.plot(x, -np.expm1(-decay * x), color=style.DATA, lw=0.8, label="Enskog", zorder=1)
-    axis.set_xscale("log")
+    axis.plot([], [], color=style.GREY, lw=0.8, label="Green-Kubo")
+    if dimension == 2:
+        axis.plot([], [], color=style.GREY, lw=1.6, alpha=0.5, label="mode coupling")
     axis.set_ylim(0.0)
     axis.set_xlabel(r"collisions per body $\nu t$")
     axis.set_ylabel(r"$D(t)/D_\mathrm{Enskog}$")
@@ -134,11 +144,13 @@ def _density(axis, ds: xr.Dataset) -> None:
     raw, error = row["diffusion"] / enskog, row["diffusion_error"] / enskog
     both = np.hypot(row["diffusion_error"], row["correction_uncertainty"]) / enskog
     style.points(axis, eta, raw, error, kind=1, hollow=True, label="as measured")
-    style.points(axis, eta, raw + row["correction"] / enskog, both, color=style.DATA, label="infinite container")
+    style.points(
+        axis, eta, raw + row["correction"] / enskog, both, color=style.DATA, label="infinite container"
+    )
     axis.set_xlim(0.0, curve[-1])
     axis.set_xlabel(r"packing fraction $\eta$")
     axis.set_ylabel(r"$D/D_\mathrm{Enskog}$")
-    axis.set_ylim(0.93, 1.62)
+    axis.set_ylim(0.93, 1.72)
     axis.legend(loc="upper right")
 
 
@@ -157,9 +169,18 @@ def _size(axis, ds: xr.Dataset) -> None:
     eta = float(row["packing_fraction"][0])
     known, band = float(theory.erpenbeck_wood_diffusion(eta)), theory.ERPENBECK_WOOD_UNCERTAINTY
     style.points(
-        axis, [0.0], [known], [band * known], color=style.REFERENCE, marker="s", clip_on=False, label="Erpenbeck & Wood"
+        axis,
+        [0.0],
+        [known],
+        [band * known],
+        color=style.REFERENCE,
+        marker="s",
+        clip_on=False,
+        label="Erpenbeck & Wood",
     )
-    style.points(axis, inverse, row["diffusion"], row["diffusion_error"], color=style.DATA, label=rf"$\eta={eta:g}$")
+    style.points(
+        axis, inverse, row["diffusion"], row["diffusion_error"], color=style.DATA, label=rf"$\eta={eta:g}$"
+    )
     for one, count, value in zip(inverse, row["count"].values, row["diffusion"].values, strict=True):
         axis.annotate(f"{int(count)}", (one, value), (3, 5), textcoords="offset points", fontsize=7)
     axis.set_xlim(0.0, x[-1])
@@ -175,7 +196,12 @@ def _slopes(axis, ds: xr.Dataset) -> None:
     curve = np.linspace(0.5 * eta.min(), 1.1 * eta.max(), 100)
     axis.plot(curve, theory.logarithmic_slope(curve), color=style.REFERENCE, label="mode coupling, Enskog")
     style.points(
-        axis, eta, row["logarithmic_slope"], row["logarithmic_slope_error"], color=style.DATA, label="measured"
+        axis,
+        eta,
+        row["logarithmic_slope"],
+        row["logarithmic_slope_error"],
+        color=style.DATA,
+        label="measured",
     )
     axis.set_ylim(0.0)
     axis.set_xlabel(r"packing fraction $\eta$")

@@ -93,6 +93,10 @@ def _saturation(axis, one, kind: int):
         markersize=2.5, color=colour, zorder=3,
     )  # fmt: skip
     x = np.linspace(0.0, 0.45, 2)
-    axis.plot(x, one["saturation"].values[0] + one["saturation_slope"].values[0] * x, color=colour, linewidth=0.8)
-    expected = theory.insertion_saturation(dimension, float(one["side_over_diameter"]), str(one["rule"].values))
+    axis.plot(
+        x, one["saturation"].values[0] + one["saturation_slope"].values[0] * x, color=colour, linewidth=0.8
+    )
+    expected = theory.insertion_saturation(
+        dimension, float(one["side_over_diameter"]), str(one["rule"].values)
+    )
     axis.plot([0.0], [expected], marker="_", markersize=12, color="black", clip_on=False, zorder=5)

@@ -15,7 +15,9 @@ def naive_scaling(ds):
     count = ds["count"].values
     line = np.geomspace(count.min(), count.max(), 50)
     law = 0.5 * line * (line - 1.0) * float(ds.test_seconds)
-    top.plot(line, _SCAN * law * _MS, color=_SOURCE, linestyle="--", label="scanned 27 times (Frederickx & Meerts)")
+    top.plot(
+        line, _SCAN * law * _MS, color=_SOURCE, linestyle="--", label="scanned 27 times (Frederickx & Meerts)"
+    )
     top.plot(line, law * _MS, color=style.REFERENCE, label=r"$\frac{1}{2}N(N-1)$ tests, each once")
     style.points(top, count, ds.seconds * _MS, ds.seconds_error * _MS, color=style.DATA, label="measured")
     top.set(xscale="log", yscale="log", ylabel="time per step (ms)")
@@ -51,29 +53,29 @@ def _scan_time(axis, ds, boxes):
         boxes[near], (model * _NS).values[near], color=style.REFERENCE, label="$a + b$ tests $+ c$ boxes"
     )
     bodies = float(boxes[-1] / ds.boxes_per_body[-1])
-    axis.axvspan(
-        float(ds.ideal_low) * bodies, float(ds.ideal_high) * bodies, color=style.GREY, alpha=0.25, lw=0
+    interval = [float(ds.ideal_low) * bodies, float(ds.ideal_high) * bodies]
+    if np.isfinite(interval[1]):
+        axis.axvspan(*interval, color=style.GREY, alpha=0.25, lw=0)
+    axis.axvline(
+        float(ds.source_boxes_per_body) * bodies, color=_SOURCE, linestyle="--", ymax=0.45, label="F & M"
     )
-    axis.axvline(12.5 * bodies, color=_SOURCE, linestyle="--", ymax=0.45, label="F & M: $50^3$")
     axis.set(xscale="log", yscale="log", ylabel="time per body and step (ns)")
     axis.legend(loc="upper right")
 
 
 def _scan_work(axis, ds, boxes):
-    kinds = (("pair_tests", "pair tests"), ("box_visits", "boxes looked into"), ("boxes_emptied", "boxes emptied"))
-    for kind, (name, label) in enumerate(kinds):
-        style.points(axis, boxes, ds[name], kind=kind, label=label)
     axis.plot(boxes, ds.expected_tests, color=style.COLOURS[0])
     axis.plot(boxes, ds.expected_visits, color=style.COLOURS[1])
-    axis.plot(boxes, ds.in_reach, color=style.COLOURS[1], linestyle="--", label="boxes within a diameter")
-    axis.plot(boxes, ds.touched, color=style.COLOURS[1], linestyle=":", label="boxes touched (F & M)")
-    axis.set(yscale="log", ylabel="per body and step", ylim=(0.01, 1e9))
-    handles, labels = axis.get_legend_handles_labels()
-    order = sorted(range(len(labels)), key=[label for _, label in kinds].__contains__)
-    named = dict(zip(labels, handles, strict=True))
-    shown = [*(label for _, label in kinds), *(labels[n] for n in order if labels[n].split()[-1] != "tests")]
-    shown = list(dict.fromkeys(shown))
-    axis.legend([named[label] for label in shown], shown, loc="upper right", fontsize=7)
+    kinds = {"pair_tests": "pair tests", "box_visits": "boxes looked into", "boxes_emptied": "boxes emptied"}
+    shown = [
+        style.points(axis, boxes, ds[name], kind=kind, label=label)
+        for kind, (name, label) in enumerate(kinds.items())
+    ]
+    colour = style.COLOURS[1]
+    shown += axis.plot(boxes, ds.in_reach, color=colour, linestyle="--", label="boxes within a diameter")
+    shown += axis.plot(boxes, ds.touched, color=colour, linestyle=":", label="boxes touched (F & M)")
+    axis.set(yscale="log", ylabel="per body and step", ylim=(0.01, 1e8))
+    axis.legend(handles=shown, loc="upper right", fontsize=7)
 
 
 def _round_widths(axis, ds):
@@ -117,7 +119,9 @@ def ideal_boxes(ds):
     figure, (top, bottom) = style.new(rows=2, height=5.4, share_x=False)
     count = ds["count"].values.astype(float)
     line = np.geomspace(0.7 * count.min(), 1.5 * count.max(), 50)
-    top.fill_between(line, 7.0 * line, 10.0 * line, color=_SOURCE, alpha=0.4, lw=0, label="F & M: 7 to 10 a body")
+    top.fill_between(
+        line, 7.0 * line, 10.0 * line, color=_SOURCE, alpha=0.4, lw=0, label="F & M: 7 to 10 a body"
+    )
     for kind, radius in enumerate(ds.series_radius.values):
         of = ds.isel(gas=np.flatnonzero(ds.radius.values == radius))
         _ideal(top, of, kind, f"ideal, $r = {radius:g}$")
@@ -135,7 +139,7 @@ def ideal_boxes(ds):
     for kind, gas in enumerate(shown):
         one = ds.isel(gas=gas)
         least = float(one.seconds.min())
-        label = f"$N = {int(one['count']):,}$, $r = {float(one.radius):g}$".replace(",", "\\,", 1 if int(one["count"]) < 1e6 else 2)
+        label = f"$N = {_thousands(one['count'])}$, $r = {float(one.radius):g}$"
         style.points(
             bottom, one.boxes_per_body, one.seconds / least, one.seconds_error / least,
             kind=kind, linestyle="-", label=label,
@@ -146,9 +150,14 @@ def ideal_boxes(ds):
     return figure
 
 
+def _thousands(number):
+    """A whole number with thin spaces, for mathematical text."""
+    return f"{int(number):,}".replace(",", r"\,")
+
+
 def _ideal(axis, of, kind, label):
-    """Ideal numbers with 95 % intervals. Hollow: none was found with an interval; an arrow where the time still
-    falls at the finest partition."""
+    """Ideal numbers with 95 % intervals. Hollow: without an interval; with an arrow where the time still
+    falls at the finest partition timed."""
     count, interior = of["count"].values, of.ideal_interior.values.astype(bool)
     ideal, low, high = (of[name].values * count for name in ("ideal", "ideal_low", "ideal_high"))
     found = interior & np.isfinite(high) & (low > 0.0)
@@ -169,7 +178,11 @@ def linear_scaling(ds):
     scale = float(ds.extrapolated_seconds) / far**2
     line = np.array([naive.min(), far])
     top.plot(
-        line, _SCAN * scale * line**2, color=_SOURCE, linestyle="--", label="one box, scanned 27 times (F & M)"
+        line,
+        _SCAN * scale * line**2,
+        color=_SOURCE,
+        linestyle="--",
+        label="one box, scanned 27 times (F & M)",
     )
     top.plot(line, scale * line**2, color=style.COLOURS[1], linestyle="--")
     style.points(top, naive, ds.naive_seconds, ds.naive_seconds_error, kind=1, label="one box")
@@ -184,8 +197,10 @@ def linear_scaling(ds):
         style.points(bottom, n, of.pair_tests, kind=2 * kind, linestyle="--", hollow=True)
     guide = np.array([count.min(), count.max()])
     top.plot(guide, guide * float(ds.seconds.min()), color=style.GREY, lw=0.8, zorder=1)
-    top.annotate("linear", (guide[1], 0.4 * guide[1] * float(ds.seconds.min())), ha="right", va="top", fontsize=7)
-    for factor, offset in ((_SCAN, 3), (1.0, 3)):
+    top.annotate(
+        "linear", (guide[1], 0.4 * guide[1] * float(ds.seconds.min())), ha="right", va="top", fontsize=7
+    )
+    for factor, offset in ((_SCAN, 3), (1.0, -30)):
         seconds = factor * float(ds.extrapolated_seconds)
         top.annotate(
             _duration(seconds),
@@ -242,6 +257,4 @@ def event_scaling(ds):
 
 def _guide(axis, count, values, power, kind):
     """The power law that the search should follow, through the last point."""
-    axis.plot(
-        count, values[-1] * (count / count[-1]) ** power, color=style.COLOURS[kind], lw=0.8, zorder=1
-    )
+    axis.plot(count, values[-1] * (count / count[-1]) ** power, color=style.COLOURS[kind], lw=0.8, zorder=1)

@@ -69,9 +69,13 @@ def _histograms(axis, ds: xr.Dataset) -> None:
                 style.points(axis, middle[seen], density[seen], error[seen], kind=kind, markersize=2)
     u = np.linspace(1e-3, edges[-1], 300)
     dimension = ds.attrs["dimension"]
-    axis.plot(u, theory.maxwell_pdf(u, dimension, 1.0 / dimension), color=style.DATA, label="Maxwell", zorder=4)
+    axis.plot(
+        u, theory.maxwell_pdf(u, dimension, 1.0 / dimension), color=style.DATA, label="Maxwell", zorder=4
+    )
     peak = float(ds["density"].max())
-    axis.annotate("never hit", (0.97, 0.8 * peak), (0.5, 1.2 * peak), arrowprops={"arrowstyle": "-", "lw": 0.6})
+    axis.annotate(
+        "never hit", (0.97, 0.8 * peak), (0.5, 1.2 * peak), arrowprops={"arrowstyle": "-", "lw": 0.6}
+    )
     axis.set_yscale("log")
     axis.set_ylim(2e-3, 20.0)
     axis.set_xlim(0.0, edges[-1])

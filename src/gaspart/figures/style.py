@@ -61,7 +61,9 @@ def applied():
         yield
 
 
-def new(rows: int = 1, columns: int = 1, height: float | None = None, height_ratios=None, share_x: bool = True):
+def new(
+    rows: int = 1, columns: int = 1, height: float | None = None, height_ratios=None, share_x: bool = True
+):
     """A figure one column wide (two, if it has several columns of panels), and its axes.
 
     height: in inches. height_ratios: (rows,). share_x: panels above each other have one x axis.
@@ -93,7 +95,7 @@ def points(axis, x, y, error=None, kind: int = 0, hollow: bool = False, **option
 
 
 def residuals(axis, x, sigmas, kind: int = 0, gate: float = 3.0, **options):
-    """A panel of deviations in standard deviations: the points, the zero line and the band of ± `gate`.
+    """A panel of deviations in standard deviations: one series, the zero line and the band of ± `gate`.
 
     The scale is at least ±1.3 gate, so that an innocent panel looks innocent.
     """

@@ -30,7 +30,9 @@ def _draw(dataset: xr.Dataset, name: str, curves: dict, ceiling: float, percent:
     dimension = int(dataset.attrs["dimension"])
     eta = dataset["packing_fraction"].values
     grid = np.linspace(1e-3, 1.04 * eta.max(), 300)
-    figure, (upper, middle, lower) = style.new(rows=3, height=6.6, height_ratios=(2.6, 1.7, 1.4), share_x=False)
+    figure, (upper, middle, lower) = style.new(
+        rows=3, height=6.6, height_ratios=(2.6, 1.7, 1.4), share_x=False
+    )
     lines = _equations(grid, dimension, curves)
     reference = theory.compressibility_factor(grid, dimension)
 

@@ -1,8 +1,8 @@
 """Mean-squared displacement: from ballistic to diffusive, and the diffusion coefficient where there is one.
 
-Everything is in reduced units, in which the bodies' diameter, mass and temperature are 1; T = 2 E' / (d (N - 1))
-is each replica's own, E' the energy about the centre of mass, whose drift is taken out of displacements and
-velocities. One species. Errors are standard errors of the mean over replicas.
+Everything is in reduced units, in which the bodies' diameter, mass and temperature are 1. The temperature
+2 E' / (d (N - 1)) is each replica's own, E' the energy about the centre of mass, whose drift is taken out of
+displacements and velocities. One species. Errors are standard errors of the mean over replicas.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ SETTLE_COLLISIONS, SETTLE_SHEAR_TIMES = 12.0, 3.0
 """D is the slope of the msd from this many collisions per body, or decay times of the container's slowest
 shear mode, whichever is later, to twice that time."""
 SHORT_INTERVAL = 0.5
-"""A run sampled at least this often (collisions per body) is there for short times: its velocity autocorrelation
-is integrated (Simpson's rule, good to 1e-4 at this spacing), and no D is taken from it."""
+"""A run sampled at least this often (collisions per body) is there for short times: its velocity
+autocorrelation is integrated (Simpson's rule, good to 1e-4 at this spacing), and no D is taken from it."""
 GREEN_KUBO_FROM, GREEN_KUBO_TO = 8.0, 16.0
 """Collisions per body between which the integral is compared with the slope of the msd."""
 LOGARITHM_FROM = 15.0
@@ -57,7 +57,7 @@ def correlate(displacements: np.ndarray, velocities: np.ndarray, interval: float
         raise ValueError(f"lags: {lags} (must be between 1 and the {frames} frames)")
     r = np.asarray(displacements, dtype=float).reshape(frames, -1)
     v = np.asarray(velocities, dtype=float).reshape(frames, -1)
-    # Sums over bodies and axes for every pair of frames at once; a lag is a diagonal of these (T, T) matrices.
+    # Sums over bodies and axes for every pair of frames at once; a lag is a diagonal of these T x T matrices.
     rr, rv, vv = r @ r.T, r @ v.T, v @ v.T
     square, product = np.diag(rr), np.diag(rv)
     msd, correlation, running = np.empty(lags), np.empty(lags), np.empty(lags)
@@ -117,9 +117,9 @@ def replicas(point: grid.Point, longest: float) -> list[Curves]:
 def msd_spheres(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """Mean-squared displacement and diffusion coefficient of spheres; see `_spheres` for a point's numbers.
 
-    Dimensions point and lag (NaN beyond a point's own lags). `largest`: no longer run at this packing fraction has
-    more bodies. `in_series`: one of three or more sizes at one packing fraction; through these goes
-    D_L = D_infinity + size_slope / L. Raises SceneError if a run is too short for its straight stretch.
+    Dimensions point and lag (NaN beyond a point's own lags). `largest`: the long run with the most bodies at
+    its packing fraction. `in_series`: one of three or more sizes at one packing fraction; through these goes
+    the line size_intercept + size_slope / L. Raises SceneError if a run is too short for its straight stretch.
     """
     dataset = _dataset([_spheres(point) for point in points], 3)
     eta, count = dataset["packing_fraction"].values.round(6), dataset["count"].values
@@ -141,7 +141,7 @@ def msd_discs(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 
 def _state(point: grid.Point) -> dict:
-    """What theory says of a point's scene: reduced collision rate, decay time of the slowest shear mode ..."""
+    """What theory says of a point's scene: collision rate, decay time of the slowest shear mode ..."""
     dimension = point.settings["dimension"]
     count, radius, lengths = grid.extents(point)
     eta = count * theory.body_volume(dimension, 2.0 * radius) / math.prod(lengths)
@@ -180,16 +180,25 @@ def _common(point: grid.Point, state: dict, curves: list[Curves]) -> dict:
         **_mean("msd", [one.msd for one in curves]),
         **_mean("running", [one.running for one in curves]),
     }
-    if rows["interval"] <= SHORT_INTERVAL:
-        rows |= _green_kubo(curves, state["collision_rate"], point.settings["dimension"])
-    return rows
+    if rows["interval"] > SHORT_INTERVAL:
+        return {
+            **rows,
+            **_absent("integral_difference"),
+            **_absent("correlation", "integral", empty=np.empty(0)),
+        }
+    return {**rows, **_green_kubo(curves, state["collision_rate"], point.settings["dimension"])}
+
+
+def _absent(*names: str, empty=math.nan) -> dict:
+    """Entries, and those of their errors, for what a point does not tell."""
+    return {key: empty for name in names for key in (name, f"{name}_error")}
 
 
 def _spheres(point: grid.Point) -> dict:
     """D, D of the infinite system, and the curves.
 
-    Of N bodies whose total momentum is zero, D is (N - 1) / N of that of N bodies without this condition (exact
-    for a dilute gas, where a body diffuses against N - 1 others with -1/(N-1) of its momentum each): all curves are
+    Of N bodies whose total momentum is zero, D is (N - 1) / N of that of N bodies without this condition
+    (exact for a dilute gas, where the others carry -1 / (N - 1) of a body's momentum each): all curves are
     multiplied by N / (N - 1). The rest of the finite size is hydrodynamic: Yeh and Hummer's correction with
     Enskog's viscosity. Its uncertainty is that of the viscosity, 5 % (15 % above packing fraction 0.3), and
     (2 pi mean free path / side)^2 of it, the next order of hydrodynamics in the slowest mode, but not more
@@ -204,7 +213,7 @@ def _spheres(point: grid.Point) -> dict:
     ]
     rows = _common(point, state, curves)
     if rows["interval"] <= SHORT_INTERVAL:
-        return rows
+        return {**rows, **_absent("diffusion")}
     time = rows["time"]
     if time[-1] + time[1] < 2.0 * start:
         where = f"experiments.{point.experiment}[{point.name}]: collisions per body"
@@ -231,10 +240,10 @@ def _spheres(point: grid.Point) -> dict:
 def _discs(point: grid.Point) -> dict:
     """The slope of D(t), the msd's derivative over 2d, against ln t, and the curves.
 
-    Until sound has crossed the container a body does not feel its size, but that the total momentum is zero it
-    feels at once: without this condition it would share a velocity of mean square d / N with all others. So
-    1 / N is added to the correlation, t / N to D(t) and d t^2 / N to the msd (exact until then; the slope is
-    taken from no later time).
+    Until sound has crossed the container a body does not feel its size, but it feels at once that the total
+    momentum is zero: without this condition all would share a velocity of mean square d / N. So 1 / N is
+    added to the correlation, t / N to D(t) and d t^2 / N to the msd (exact until then; the slope is taken
+    from no later time).
     """
     state = _state(point)
     start, stop = LOGARITHM_FROM / state["collision_rate"], state["sound_time"]
@@ -250,7 +259,7 @@ def _discs(point: grid.Point) -> dict:
     ]
     rows = _common(point, state, curves)
     if rows["interval"] <= SHORT_INTERVAL:
-        return rows
+        return {**rows, **_absent("logarithmic_slope")}
     slopes = []
     for one in curves:
         inside = between(one.time, start, stop)
@@ -262,8 +271,8 @@ def _green_kubo(curves: list[Curves], rate: float, dimension: int) -> dict:
     """The integral of the velocity autocorrelation, and how far it is from the msd's slope.
 
     `integral_difference`: (slope of the twice integrated correlation) / (slope of the msd over 2d) - 1, both
-    by a line from GREEN_KUBO_FROM to GREEN_KUBO_TO collisions per body; the first from velocities alone, the second
-    from displacements alone.
+    by a line from GREEN_KUBO_FROM to GREEN_KUBO_TO collisions per body; the first from velocities alone, the
+    second from displacements alone.
     """
     integrals = [cumulative_simpson(one.correlation, x=one.time, initial=0.0) for one in curves]
     differences = []

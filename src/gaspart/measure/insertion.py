@@ -77,7 +77,9 @@ def fill_failures(points: list[grid.Point], settings: dict) -> xr.Dataset:
     density (periodic containers only). Attribute dilute_up_to.
     """
     fills = [_read(point) for point in points]
-    names = [point.experiment if point.name == "single" else f"{point.experiment}/{point.name}" for point in points]
+    names = [
+        point.experiment if point.name == "single" else f"{point.experiment}/{point.name}" for point in points
+    ]
     windows = settings["windows"]
     saturated = [point.experiment in settings["saturated"] for point in points]
     periodic = [grid.scene(point).container.periodic[0] for point in points]

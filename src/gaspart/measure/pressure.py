@@ -82,7 +82,9 @@ def read_run(point: grid.Point, path: str) -> Run:
     first = schedule.equilibration_frames
     with open_trajectory(path) as trajectory:
         if trajectory.sizes["frame"] != first + schedule.samples + 1 or trajectory.sizes["atom"] != count:
-            raise ValueError(f"{path}: {dict(trajectory.sizes)} are not the frames and bodies of {point.path}")
+            raise ValueError(
+                f"{path}: {dict(trajectory.sizes)} are not the frames and bodies of {point.path}"
+            )
         drift = trajectory["velocities"][first].values.astype(float).mean(axis=0)
         energy = float(trajectory["kinetic_energy"][first:].mean())
         virial = np.diff(trajectory["virial_sum"][first:].values)
@@ -120,8 +122,13 @@ def combine_runs(runs: list[Run]) -> Pressure:
         correlation=max(autocorrelation_time(run.z) for run in runs),
         collision_rate=_mean(rate)[0],
         collision_rate_error=_mean(rate)[1],
-        counters={name: float(sum(run.counters[name].sum() for run in runs)) for name in COUNTED},
+        counters=totals(runs),
     )
+
+
+def totals(runs: list[Run]) -> dict[str, float]:
+    """What was counted in all replicas together, by name."""
+    return {name: float(sum(run.counters[name].sum() for run in runs)) for name in COUNTED}
 
 
 def _mean(averages: list[BlockAverage]) -> tuple[float, float]:

@@ -38,11 +38,13 @@ def naive_scaling(points, settings):
 def box_count(points, settings):
     """One gas: cost against the number of boxes, time-stepped and event-driven.
 
-    settings: ``round_per_side``, the boxes per side that source A found quicker for their round width.
+    settings: ``round_per_side``, the boxes per side that source A found quicker for their round width;
+    ``source_boxes_per_body``, the ideal number in its figure 6.
 
     Over ``scan`` (the scan that has one box): costs as in `per_body`; ``expected_tests`` with
-    ``tests_spread`` and ``expected_visits``; the boxes a body would look into if these were the ones that it
-    touches (``touched``: within a radius) or that can hold a partner (``in_reach``: within a diameter).
+    ``tests_spread`` and ``expected_visits``; the boxes that a body would look into, with each
+    pair tested once, if it left out those that it does not touch (``touched``: within a radius) or those
+    that can hold no partner (``in_reach``: within a diameter).
     Over (``container``, ``fine``): ``fine_seconds`` ... of the two other scans, in containers whose sides
     (``container_side``) do and do not give round widths. Over ``power``: ``advantage``, see `_advantage`.
     Over ``sector``: ``sector_seconds`` ... as in `per_event`. Scalars: as in `ideal`; of the sectors, how
@@ -72,6 +74,9 @@ def box_count(points, settings):
         ]
     ).assign(
         **ideal(costs, main.dimension),
+        count=main.attrs["count"],
+        radius=main.radius,
+        source_boxes_per_body=settings["source_boxes_per_body"],
         container_side=("container", [run.side for run in fine]),
         round_per_side=("power", settings["round_per_side"]),
         advantage=("power", advantage[:, 0]),
@@ -89,12 +94,14 @@ def ideal_boxes(points, settings):
     """The ideal number of boxes of many gases.
 
     settings: ``rule``, source A's boxes per body; ``source_numbers``, those that it found for the largest gas
-    of its figures 5, 6 and 7 (each with ``count``, ``radius``, ``boxes_per_body``). Over (``gas``, ``partition``): costs as in
-    `per_body`, NaN beyond a gas's own partitions. Over ``gas``: ``count``, ``radius``, ``most`` (boxes per
-    body of a diameter's width, the limit), the results of `ideal`, and ``penalty``, the time at the rule's
-    number over the least. Over ``source``: ``source_number``, and what was found there: ``source_ideal`` with
-    interval, ``source_penalty`` at that number, with error. Over ``series`` (gases of one ``series_radius``): ``exponent`` of the ideal number
-    of boxes in N, where it was found between the partitions timed, with error from the scatter.
+    of its figures 5, 6 and 7 (each with ``count``, ``radius``, ``boxes_per_body``).
+
+    Over (``gas``, ``partition``): costs as in `per_body`, NaN beyond a gas's own partitions. Over ``gas``:
+    ``count``, ``radius``, ``most`` (boxes per body of a diameter's width, the limit), the results of `ideal`,
+    and ``penalty``, the time at the rule's number over the least, with error. Over ``source``:
+    ``source_number``, and what was found there: ``source_ideal`` with interval, ``source_penalty`` at that
+    number, with error. Over ``series`` (gases of one ``series_radius``): ``exponent`` of the ideal number of
+    boxes in N, where it was found between the partitions timed, with error from the scatter.
     """
     runs = sorted((_run(point) for point in points), key=lambda run: (-run.radius, run.attrs["count"]))
     costs = [per_body(run) for run in runs]
@@ -117,6 +124,7 @@ def ideal_boxes(points, settings):
         penalty=("gas", [value for value, _ in slower]),
         penalty_error=("gas", [error for _, error in slower]),
         **{name: ("source", [one[name] for one in sources]) for name in sources[0]},
+        rule=settings["rule"],
         series_radius=("series", radii),
         exponent=("series", [value for value, _ in trend]),
         exponent_error=("series", [error for _, error in trend]),
@@ -238,8 +246,8 @@ def _expected(run):
         "expected_tests": ("partition", tests[:, 0]),
         "tests_spread": ("partition", tests[:, 1]),
         "expected_visits": ("partition", [theory.expected_box_visits(int(n), **gas) for n in sides]),
-        "touched": ("partition", theory.boxes_in_reach(width, run.radius, run.dimension)),
-        "in_reach": ("partition", theory.boxes_in_reach(width, 2.0 * run.radius, run.dimension)),
+        "touched": ("partition", 0.5 + 0.5 * theory.boxes_in_reach(width, run.radius, run.dimension)),
+        "in_reach": ("partition", 0.5 + 0.5 * theory.boxes_in_reach(width, 2.0 * run.radius, run.dimension)),
     }
 
 

@@ -1,7 +1,7 @@
 """Speeds of the bodies: relaxation from equal speeds, and the distribution in equilibrium.
 
-Speeds are given as u = v / sqrt(<v^2>), root-mean-square speed 1: at fixed energy that is the unit of the sources
-(all speeds 1 at first, temperature 1/d). Collisions per body are s = 2 N_collisions / N, counted.
+Speeds are given as u = v / sqrt(<v^2>), root-mean-square speed 1: at fixed energy that is the unit of the
+sources (all speeds 1 at first, temperature 1/d). Collisions per body are s = 2 N_collisions / N, counted.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def never_hit(velocities: np.ndarray, first: np.ndarray) -> np.ndarray:
 
 
 def shared_error(samples: list[np.ndarray]) -> list[np.ndarray]:
-    """Standard errors of the means over axis 0 of several groups of runs, (R_g, ...) each, of the same physics.
+    """Standard errors of the means over axis 0 of several groups of runs of the same physics, (R_g, ...) each.
 
     The groups are assumed to have the same scatter, which is estimated from all of them about their own
     means: a group of few runs has no good estimate of its own. Needs more runs than groups.
@@ -103,7 +103,9 @@ def speed_relaxation(points: list[grid.Point], settings: dict) -> xr.Dataset:
         if grid.scene(point) != scene or any(
             run.time.shape != time.shape or not np.allclose(run.time, time) for run in group
         ):
-            raise SceneError(f"experiments.{point.experiment}", point.name, "must be the others' scene and times")
+            raise SceneError(
+                f"experiments.{point.experiment}", point.name, "must be the others' scene and times"
+            )
     shown = np.array([_frame_at(time, wanted) for wanted in settings["times"]])
     edges = np.linspace(0.0, settings["highest"], settings["bins"] + 1)
 
@@ -147,14 +149,12 @@ def speed_relaxation(points: list[grid.Point], settings: dict) -> xr.Dataset:
 def _rate_between_walls(scene, temperature: float) -> float:
     """Collisions per body and time of a dilute gas whose centres are confined to the container.
 
-    Enskog's rate times the chance that the other body of a contact, at distance sigma in the direction n,
+    Enskog's rate times (N - 1) / N, as a body has N - 1 partners, and times the chance that the other body of a contact, at distance sigma in the direction n,
     lies within the walls too: the mean over n of prod_k (1 - sigma |n_k| / L_k) to first order in sigma / L,
     with <|n_k|> = 1/2 in 3D, 2/pi in 2D (exact for a dilute gas, whose density is uniform up to the walls).
     """
     diameter = 2.0 * scene.largest_radius
-    accessible = [
-        upper - lower for lower, upper in zip(*map(tuple, scene.reach(scene.largest_radius)), strict=True)
-    ]
+    accessible = [upper - lower for lower, upper in zip(*scene.reach(scene.largest_radius), strict=True)]
     fraction = scene.packing_fraction * np.prod(scene.container.lengths) / np.prod(accessible)
     mean_cosine = {2: 2.0 / np.pi, 3: 0.5}[scene.dimension]
     share = 1.0 - mean_cosine * sum(
@@ -162,6 +162,7 @@ def _rate_between_walls(scene, temperature: float) -> float:
         for length, periodic in zip(accessible, scene.container.periodic, strict=True)
         if not periodic
     )
+    share *= (scene.count - 1) / scene.count
     return float(theory.collision_rate(fraction, scene.dimension, diameter, temperature) * share)
 
 
@@ -178,7 +179,7 @@ def _density(speeds: np.ndarray, edges: np.ndarray) -> np.ndarray:
 
 
 def _initial_slope(s: np.ndarray, values: np.ndarray, longest: float = 1.5) -> float:
-    """dK/ds at s = 0: the cubic through K(0) = 1 that fits the frames up to `longest` collisions per body best."""
+    """dK/ds at s = 0 of the cubic through K(0) = 1 and, by least squares, the frames up to s = `longest`."""
     early = (s > 0.0) & (s <= longest)
     design = s[early, None] ** np.arange(1, 4)
     return float(np.linalg.lstsq(design, values[early] - 1.0, rcond=None)[0][0])
@@ -195,7 +196,7 @@ def speed_distribution_discs(points: list[grid.Point], settings: dict) -> xr.Dat
 
 
 def distribution(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """Speeds in equilibrium, pooled over snapshots and replicas, against Maxwell's distribution without a fit.
+    """Speeds in equilibrium, of all snapshots and replicas, against Maxwell's distribution without a fit.
 
     Snapshots are the frames after equilibration; how many collisions per body lie between them is in
     `collisions_between` (they are independent samples from about 3 on). settings: `bins` of the histogram
@@ -211,7 +212,13 @@ def distribution(points: list[grid.Point], settings: dict) -> xr.Dataset:
     edges = np.linspace(0.0, settings["highest"], settings["bins"] + 1)
     steps = np.linspace(0.0, settings["highest"], 201)
     rows = [_distribution(point, dimension, edges, steps, settings["classes"]) for point in points]
-    axes = {"density": "bin", "density_error": "bin", "expected": "bin", "residual": "bin", "difference": "step"}
+    axes = {
+        "density": "bin",
+        "density_error": "bin",
+        "expected": "bin",
+        "residual": "bin",
+        "difference": "step",
+    }
     dataset = xr.Dataset(
         {
             name: (("point", axes[name]) if name in axes else "point", np.array([row[name] for row in rows]))
@@ -230,7 +237,7 @@ def distribution(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 
 def _distribution(point, dimension: int, edges, steps, classes: int) -> dict:
-    """The numbers of one point; speeds are over the root-mean-square speed, so Maxwell's temperature is 1/d."""
+    """The numbers of one point. Speeds are over the root-mean-square speed: Maxwell's temperature is 1/d."""
     temperature = 1.0 / dimension
     found = runs(point, drop=grid.schedule(point).equilibration_frames)
     speeds = np.concatenate([run.speeds.ravel() for run in found])
@@ -276,12 +283,14 @@ def _given_temperature(point: grid.Point) -> float:
     """m v^2 / d of the speed that all bodies were given."""
     settings = point.settings
     if "speed" not in settings:
-        raise SceneError(f"experiments.{point.experiment}.speed", None, "is required: all bodies start with it")
+        raise SceneError(
+            f"experiments.{point.experiment}.speed", None, "is required: all bodies start with it"
+        )
     return settings.get("mass", 1.0) * settings["speed"] ** 2 / settings["dimension"]
 
 
 def _kolmogorov_distance(cumulative: np.ndarray) -> float:
-    """Largest |empirical - theoretical| cumulative distribution; `cumulative`: the latter at the sorted samples."""
+    """Largest |empirical - theoretical| cumulative probability; `cumulative`: the latter at sorted samples."""
     count = len(cumulative)
     above = np.arange(1, count + 1) / count - cumulative
     below = cumulative - np.arange(count) / count

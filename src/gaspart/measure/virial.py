@@ -89,7 +89,9 @@ def fit_table(dataset: xr.Dataset, choices: list[dict]) -> xr.Dataset:
         fits.append((choice, fit_coefficients(*part, dimension, choice["free"], choice["held"])))
     highest = max((choice["free"] for choice, _ in fits), default=4)
     orders = np.arange(2, highest + 1)
-    table = {name: np.full((len(fits), orders.size), np.nan) for name in ("coefficient", "error", "held_error")}
+    table = {
+        name: np.full((len(fits), orders.size), np.nan) for name in ("coefficient", "error", "held_error")
+    }
     for row, (_, (fit, held_error)) in enumerate(fits):
         table["coefficient"][row, : fit.values.size] = fit.values
         table["error"][row, : fit.values.size] = fit.errors

@@ -50,7 +50,7 @@ def expected_pair_tests(count, per_side, dimension, side, radius):
 
 
 def neighbour_share(per_side, dimension, side, radius):
-    """(n,) Chance that two bodies lie in the same box or in neighbouring ones, for each of `per_side` (n,)."""
+    """(n,) Chance that two bodies lie in the same box or in neighbouring ones, for `per_side` (n,)."""
     return np.array([_moments(int(n), side, radius)[1] for n in per_side]) ** checked_dimension(dimension)
 
 
