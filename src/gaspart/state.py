@@ -41,11 +41,11 @@ class State:
     @property
     def momentum(self) -> np.ndarray:
         """(d,) total momentum."""
-        return self.masses @ self.velocities
+        return (self.masses[:, None] * self.velocities).sum(axis=0)
 
     @property
     def kinetic_energy(self) -> float:
-        return 0.5 * float(sum(self.masses @ along**2 for along in self.velocities.T))
+        return 0.5 * float((self.masses[:, None] * self.velocities**2).sum())  # not @: BLAS differs by machine
 
     def copy(self) -> State:
         """A state that shares no array with this one."""

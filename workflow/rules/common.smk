@@ -107,9 +107,11 @@ MODULES = {
     "report": ["__init__", "errors", "families", "files", "provenance"],
 }
 FAMILY_MODULES = {
+    ("measure", "radius"): ["measure/pressure"],
     ("measure", "virial"): ["measure/pressure"],
     ("measure", "scaling"): ["measure/timings"],
     ("judge", "displacement"): ["statistics"],
+    ("judge", "radius"): ["statistics"],
     ("judge", "virial"): ["statistics"],
 }
 

@@ -33,7 +33,7 @@ def msd_spheres(ds: xr.Dataset) -> list[Claim]:
                     1.0,
                     theory.ERPENBECK_WOOD_UNCERTAINTY,
                     ERPENBECK_WOOD,
-                    "correlations of collisions missing, a msd not yet straight, a wrong finite-size correction",
+                    "correlated collisions missing, a msd not yet straight, a wrong finite-size correction",
                 )
             )
     if bool(ds["in_series"].any()):
@@ -138,7 +138,7 @@ def _short_times(ds: xr.Dataset, dimension: int) -> list[Claim]:
                 "displacements that are not the integral of the velocities, or sampling too coarse",
             ),
             Claim.within(
-                f"msd over Enskog's after {float(row['interval']):.2g} collisions at packing fraction {eta:g}",
+                f"msd over Enskog's after {float(row['interval']):.2g} collisions, packing fraction {eta:g}",
                 "test",
                 float(first["msd"]) / ballistic,
                 float(first["msd_error"]) / ballistic,

@@ -25,7 +25,7 @@ def speed_relaxation(ds: xr.Dataset) -> list[Claim]:
             row = ds.sel(engine=engine).isel(frame=int(frame))
             s = float(row["collisions"])
             when = f"at t = {float(row['time']):g} ({by})"
-            # s scatters too, but within a run together with the kurtosis: its part is in the scatter of the runs.
+            # s scatters too, but together with the run's kurtosis: that is in the scatter of the runs.
             claims += [
                 Claim(
                     f"kurtosis of the speeds {when}",

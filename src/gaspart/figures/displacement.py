@@ -52,7 +52,7 @@ def _spread(first: int, last: int) -> np.ndarray:
 
 
 def _pieces(ds: xr.Dataset, eta: float):
-    """(row, lags) of one packing fraction: the finely sampled run, up to where the long ones begin, and those."""
+    """(row, lags) of one packing fraction: the finely sampled run up to where the long ones begin; those."""
     chosen = ds.isel(point=np.flatnonzero(np.isclose(ds["packing_fraction"], eta, atol=1e-5)))
     rows = [chosen.isel(point=point) for point in np.argsort(chosen["interval"].values, kind="stable")]
     ends = [float(row["time"][1]) for row in rows[1:]] + [np.inf]

@@ -119,7 +119,7 @@ def msd_spheres(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
     Dimensions point and lag (NaN beyond a point's own lags). `largest`: the long run with the most bodies at
     its packing fraction. `in_series`: one of three or more sizes at one packing fraction; through these goes
-    the line size_intercept + size_slope / L. Raises SceneError if a run is too short for its straight stretch.
+    the line size_intercept + size_slope / L. Raises SceneError for a run too short for its straight stretch.
     """
     dataset = _dataset([_spheres(point) for point in points], 3)
     eta, count = dataset["packing_fraction"].values.round(6), dataset["count"].values

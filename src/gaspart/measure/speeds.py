@@ -74,7 +74,7 @@ def never_hit(velocities: np.ndarray, first: np.ndarray) -> np.ndarray:
 
 
 def shared_error(samples: list[np.ndarray]) -> list[np.ndarray]:
-    """Standard errors of the means over axis 0 of several groups of runs of the same physics, (R_g, ...) each.
+    """Standard errors of the means over axis 0 of groups of runs of the same physics, (R_g, ...) each.
 
     The groups are assumed to have the same scatter, which is estimated from all of them about their own
     means: a group of few runs has no good estimate of its own. Needs more runs than groups.
@@ -149,9 +149,10 @@ def speed_relaxation(points: list[grid.Point], settings: dict) -> xr.Dataset:
 def _rate_between_walls(scene, temperature: float) -> float:
     """Collisions per body and time of a dilute gas whose centres are confined to the container.
 
-    Enskog's rate times (N - 1) / N, as a body has N - 1 partners, and times the chance that the other body of a contact, at distance sigma in the direction n,
-    lies within the walls too: the mean over n of prod_k (1 - sigma |n_k| / L_k) to first order in sigma / L,
-    with <|n_k|> = 1/2 in 3D, 2/pi in 2D (exact for a dilute gas, whose density is uniform up to the walls).
+    Enskog's rate times (N - 1) / N, as a body has N - 1 partners, and times the chance that the other body of
+    a contact, at distance sigma in the direction n, lies within the walls too: the mean over n of prod_k (1 -
+    sigma |n_k| / L_k) to first order in sigma / L, with <|n_k|> = 1/2 in 3D, 2/pi in 2D. Exact to that order
+    for a dilute gas, whose density is uniform up to the walls.
     """
     diameter = 2.0 * scene.largest_radius
     accessible = [upper - lower for lower, upper in zip(*scene.reach(scene.largest_radius), strict=True)]
@@ -290,7 +291,7 @@ def _given_temperature(point: grid.Point) -> float:
 
 
 def _kolmogorov_distance(cumulative: np.ndarray) -> float:
-    """Largest |empirical - theoretical| cumulative probability; `cumulative`: the latter at sorted samples."""
+    """Largest |empirical - theoretical| cumulative probability; `cumulative`: the latter at the samples."""
     count = len(cumulative)
     above = np.arange(1, count + 1) / count - cumulative
     below = cumulative - np.arange(count) / count
