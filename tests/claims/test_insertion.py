@@ -21,8 +21,6 @@ def dataset(**changes):
         "dimension": np.array([3, 3, 2, 3]),
         "side_over_diameter": side,
         "rule": np.array(rule),
-        "replicas": np.array([32, 16, 12, 16]),
-        "final": np.array([0.514, 0.372, 0.541, 0.06]),
         "final_spread": np.array([0.011, 0.002, 0.001, 0.0]),
         "approach": np.array([np.nan, 0.34, 0.49, np.nan]),
         "approach_error": np.array([np.nan, 0.01, 0.02, np.nan]),
@@ -53,10 +51,10 @@ def test_right_data_agree():
 @pytest.mark.parametrize(
     ("changes", "start"),
     [
-        ({"saturation": np.array([0.53, 0.390, 0.547, np.nan])}, "saturation of random insertion, spheres periodic"),
-        ({"saturation": np.array([0.53, 0.3841, 0.544, np.nan])}, "saturation of random insertion, discs"),
-        ({"saturation": np.array([0.55, 0.3841, 0.547, np.nan])}, "saturation of random insertion, spheres with"),
-        ({"final": np.array([0.44, 0.372, 0.541, 0.06])}, "packing fraction at which insertion gets stuck"),
+        ({"saturation": np.array([0.53, 0.390, 0.547, np.nan])}, "saturation of random insertion, spheres p"),
+        ({"saturation": np.array([0.53, 0.3841, 0.544, np.nan])}, "saturation of random insertion, d"),
+        ({"saturation": np.array([0.55, 0.384, 0.547, np.nan])}, "saturation of random insertion, spheres w"),
+        ({"saturation": np.array([0.46, 0.3841, 0.547, np.nan])}, "packing fraction at which insertion ends"),
         ({"approach": np.array([np.nan, 0.5, 0.49, np.nan])}, "exponent p"),
         ({"dilute_failures": np.array([np.nan, 1.0, 1.0, 0.95])}, "failed attempts up to"),
     ],

@@ -21,7 +21,7 @@ def test_the_same_figure_gives_the_same_bytes(tmp_path, suffix):
 
 def test_text_is_legible_in_a_column():
     with style.applied():
-        figure, axis = style.new()
+        figure, _ = style.new()
     assert figure.get_figwidth() == style.COLUMN
     sizes = [value for key, value in style.RULES.items() if key.endswith(("size", "labelsize"))]
     assert min(size for size in sizes if isinstance(size, int) and size > 4) >= 8

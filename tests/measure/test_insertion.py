@@ -68,13 +68,13 @@ def point(tmp_path, name, **settings):
 
 
 def test_real_fills(tmp_path):
+    periodic = {"radius": 0.5, "boundary": "periodic", "replicas": 4}
+    source = {"radius": 1.77, "side": 20, "boundary": "wall", "centres_to_walls": True, "replicas": 4}
     points = [
-        point(tmp_path, "discs", dimension=2, count=600, radius=0.5, side=27, boundary="periodic", attempts=300, replicas=4),
-        point(tmp_path, "source", dimension=3, count=230, radius=1.77, side=20, boundary="wall",
-              centres_to_walls=True, attempts=300, replicas=4),
-        point(tmp_path, "dilute", dimension=3, count=3000, radius=0.5, packing_fraction=0.05, boundary="periodic",
-              attempts=20, replicas=4),
-    ]  # fmt: skip
+        point(tmp_path, "discs", dimension=2, count=600, side=27, attempts=300, **periodic),
+        point(tmp_path, "source", dimension=3, count=230, attempts=300, **source),
+        point(tmp_path, "dilute", dimension=3, count=3000, packing_fraction=0.05, attempts=20, **periodic),
+    ]
     settings = {"saturated": ["discs", "source"], "bins": 12, "windows": [10, 3], "dilute": 0.04}
     dataset = fill_failures(points, settings)
     assert dataset["rule"].values.tolist() == ["periodic", "centres_to_walls", "periodic"]

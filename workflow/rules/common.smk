@@ -108,6 +108,7 @@ MODULES = {
 }
 FAMILY_MODULES = {
     ("measure", "radius"): ["measure/pressure"],
+    ("measure", "displacement"): ["measure/correlations"],
     ("measure", "virial"): ["measure/pressure"],
     ("measure", "scaling"): ["measure/timings"],
     ("judge", "displacement"): ["statistics"],

@@ -26,11 +26,11 @@ def radius_grid(dataset: xr.Dataset) -> list[Claim]:
 def _same_state(same: xr.Dataset) -> Claim:
     """No theory but the 1/N correction: the values are compared with their own mean."""
     mean = combine(same["Z"].values, same["Z_error"].values)
-    radii = same["radius"].values
+    radii, eta = same["radius"].values, float(same["packing_fraction"][0])
     return Claim.chi_square(
-        f"one Z at packing fraction {float(same['packing_fraction'][0]):.3g} for all radii, {radii.min():.3g} to "
-        f"{radii.max():.3g} (N = {int(same['count'].min())} to {int(same['count'].max())}), corrected to first order "
-        "in 1/N (chi-square per degree of freedom about their mean)",
+        f"one Z at packing fraction {eta:.3g} for all radii, {radii.min():.3g} "
+        f"to {radii.max():.3g} (N = {int(same['count'].min())} to {int(same['count'].max())}), "
+        "corrected to first order in 1/N (chi-square per degree of freedom about their mean)",
         "test",
         mean.chi_square,
         mean.degrees_of_freedom,
@@ -43,7 +43,8 @@ def _reference(other: xr.Dataset) -> Claim:
     spread = np.hypot(other["Z_error"], other["reference_error"])
     sigmas = ((other["Z"] - other["reference"]) / spread).values
     return Claim.chi_square(
-        f"Z of N = {int(other['count'][0])} at all radii against the equation of state (chi-square per degree of freedom)",
+        f"Z of N = {int(other['count'][0])} at all radii against the equation of state "
+        "(chi-square per degree of freedom)",
         "test",
         float(np.sum(sigmas**2)),
         sigmas.size,
@@ -69,7 +70,8 @@ def _lens(same: xr.Dataset) -> Claim:
     """The exponent of a collision's cost against the radius at one packing fraction: none."""
     law = fit_power_law(same["radius"].values, same["pair_tests"].values)
     return Claim.within(
-        "exponent of the event-driven engine's pair tests per collision, against the radius at one packing fraction",
+        "exponent of the event-driven engine's pair tests per collision, "
+        "against the radius at one packing fraction",
         "test",
         law.exponent,
         law.exponent_error,
@@ -89,6 +91,7 @@ def _pair_tests(step: xr.Dataset) -> Claim:
         float(ratios.std(ddof=1) / np.sqrt(ratios.size)),
         1.0,
         0.01,
-        "half of the bodies in 3^d boxes, less the hole that each makes: f N + (S - 1) - f S, 1/S = d(eta Z)/d eta",
+        "half of the bodies in 3^d boxes, less the hole that each makes: "
+        "f N + (S - 1) - f S, 1/S = d(eta Z)/d eta",
         "pairs are tested twice or missed, or bodies are kept in wrong boxes",
     )

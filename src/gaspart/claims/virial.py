@@ -10,9 +10,9 @@ from gaspart.claims import Claim
 from gaspart.statistics import combine
 
 RELATIVE_ERROR = 1e-3
-"""The largest standard error of Z, relative to it, at which its comparison with the reference means anything."""
+"""The largest standard error of Z, relative to it, at which its comparison means anything."""
 WANTED = {2: 1e-3, 3: 1e-2, 4: 1e-1}
-"""How well each virial coefficient is to be known, relative to it; its standard error must be half of that."""
+"""How well each virial coefficient is to be known, relative to it; its standard error is to be half of it."""
 REFERENCE = {
     2: "virial series to B10 (Clisby and McCoy 2006) and a linear tail",
     3: "Kolafa, Labík and Malijevský 2004",
@@ -22,7 +22,7 @@ EXACT = {
     3: "exact: Boltzmann 1899",
 }
 KOLAFA_RANGE = (0.19, 0.41)
-"""Packing fractions at which Carnahan and Starling's equation is 0.13 to 0.3 % low: where the two are told apart."""
+"""Packing fractions at which Carnahan and Starling's equation is 0.13 to 0.3 % low, and can be told apart."""
 
 
 def virial_discs(dataset: xr.Dataset) -> list[Claim]:
@@ -124,7 +124,8 @@ def _replicas(dataset: xr.Dataset) -> list[Claim]:
         return []
     return [
         Claim.chi_square(
-            "error bars: scatter of replicas over what their blocks predict (chi-square per degree of freedom)",
+            "error bars: scatter of replicas over what their blocks predict "
+            "(chi-square per degree of freedom)",
             "test",
             float(dataset["replica_chi_square"].sum()),
             freedom,

@@ -20,7 +20,7 @@ SOURCE = 0.52
 
 
 def fill_failures(dataset: xr.Dataset):
-    """Failures per body, to saturation and at low density; and the packing fraction against attempts^(-1/d)."""
+    """Failures per body, to saturation and at low density; packing fraction against attempts^(-1/d)."""
     figure, (upper, middle, lower) = style.new(rows=3, height=7.4, height_ratios=(1.5, 0.7, 1), share_x=False)
     for kind, (key, label) in enumerate(SERIES.items()):
         for k in range(dataset.sizes["container"]):

@@ -200,7 +200,7 @@ def linear_scaling(ds):
     top.annotate(
         "linear", (guide[1], 0.4 * guide[1] * float(ds.seconds.min())), ha="right", va="top", fontsize=7
     )
-    for factor, offset in ((_SCAN, 3), (1.0, -30)):
+    for factor, offset in ((_SCAN, 3), (1.0, -38)):
         seconds = factor * float(ds.extrapolated_seconds)
         top.annotate(
             _duration(seconds),

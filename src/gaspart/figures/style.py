@@ -84,7 +84,7 @@ def new(
 
 
 def points(axis, x, y, error=None, kind: int = 0, hollow: bool = False, **options):
-    """Measured points with error bars: colour and marker number `kind`, unless `color`, `marker` are given."""
+    """Measured points with error bars: colour and marker number `kind`, or `color` and `marker`."""
     colour = options.pop("color", COLOURS[kind % len(COLOURS)])
     options.setdefault("marker", MARKERS[kind % len(MARKERS)])
     options.setdefault("linestyle", "none")
@@ -122,7 +122,7 @@ def letter(axis, text: str, x: float = 0.02, y: float = 0.97):
 
 
 def save(figure, path: str | Path) -> None:
-    """Write a figure, whole or not at all, as the path's suffix says; the same figure gives the same bytes."""
+    """Write a figure, whole or not at all, as its suffix says; the same figure gives the same bytes."""
     from gaspart.files import whole_file
 
     kind = Path(path).suffix.lstrip(".")

@@ -26,7 +26,7 @@ def virial_spheres(dataset: xr.Dataset):
 
 
 def _draw(dataset: xr.Dataset, name: str, curves: dict, ceiling: float, percent: float):
-    """Three panels. name: of the reference; ceiling: top of Z's axis; percent: half height of the residuals."""
+    """Three panels. name: the reference's; ceiling: top of Z's axis; percent: residuals' half height."""
     dimension = int(dataset.attrs["dimension"])
     eta = dataset["packing_fraction"].values
     grid = np.linspace(1e-3, 1.04 * eta.max(), 300)
@@ -103,7 +103,7 @@ def _residuals(axis, dataset, grid, reference, lines, dimension: int, percent: f
 
 
 def _coefficients(axis, dataset):
-    """Each fitted coefficient's distance from the exact one, in units of the accuracy wanted, by choice of fit."""
+    """Each fitted coefficient's distance from the exact one, in units of the accuracy wanted, by fit."""
     style.band(axis, -1.0, 1.0)
     style.level(axis, 0.0)
     fits = np.arange(dataset.sizes["fit"])

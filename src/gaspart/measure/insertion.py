@@ -45,12 +45,12 @@ class Fill:
 
     def packing_fraction(self, times: np.ndarray) -> np.ndarray:
         """(replica, times): packing fraction at the times t."""
-        return self.body * np.array([
-            np.searchsorted(np.cumsum(one[one >= 0] + 1), times / self.body, side="right") for one in self.failures
-        ])  # fmt: skip
+        attempts = times / self.body
+        placed_at = [np.cumsum(one[one >= 0] + 1) for one in self.failures]
+        return self.body * np.array([np.searchsorted(one, attempts, side="right") for one in placed_at])
 
     def trials(self) -> tuple[np.ndarray, np.ndarray]:
-        """(replica, body) failures met and successes had while `body` bodies were there; zero beyond the end."""
+        """(replica, body) failures and successes while `body` bodies were there; zero beyond the end."""
         successes = (self.failures >= 0).astype(int)
         failures = np.where(self.failures >= 0, self.failures, 0)
         for k, placed in enumerate(self.placed):

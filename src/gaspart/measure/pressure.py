@@ -77,7 +77,7 @@ def read_run(point: grid.Point, path: str) -> Run:
     Raises OSError for a file that cannot be read and ValueError for one that is not this point's.
     """
     schedule = grid.schedule(point)
-    count, radius, lengths = grid.extents(point)
+    count, radius, _ = grid.extents(point)
     mass, dimension = point.settings.get("mass", 1.0), point.settings["dimension"]
     first = schedule.equilibration_frames
     with open_trajectory(path) as trajectory:

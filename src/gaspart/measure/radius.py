@@ -5,14 +5,15 @@ What is counted is predicted (periodic container of side L, n boxes of width w =
 - crossings of the boundaries between boxes, per body and time, from kinetic theory (exact):
   :math:`d\, \langle |v_x| \rangle (n-1)/L = d \sqrt{2 k_B T / (\pi m)}\,(n-1)/(n w)`, since the periodic face
   of the container, one of the n boundaries of an axis, is counted apart;
-- the time-stepped engine's pair tests per body and step, each pair of neighbouring boxes' bodies once: half of
-  the other bodies in the 3^d boxes around a body, which hold the fraction f of the volume:
+- the time-stepped engine's pair tests per body and step, each pair of bodies in neighbouring boxes once: half
+  of the other bodies in the 3^d boxes around a body, which hold the fraction f of the volume:
   :math:`\tfrac12 [f N + (S - 1) - f S]`, S = S(0) the structure factor at zero wave number,
-  :math:`1/S = d(\eta Z)/d\eta`: :math:`\rho \int (g - 1) = S - 1` is the hole that a body makes around itself,
-  and -f S what the others must make up for because their number is fixed. Holds if correlations end within w;
-- everything per collision depends on the packing fraction and on the boxes per body alone: a larger radius in the
-  same container is the same gas seen through a lens. What is left are terms of order 1/N, and 1/n where the
-  partition meets the periodic faces.
+  :math:`1/S = d(\eta Z)/d\eta`: :math:`\rho \int (g - 1) = S - 1` is the hole that a body makes around
+  itself, and -f S what the others make up for because their number is fixed. Holds if correlations end
+  within w;
+- everything per collision depends on the packing fraction and on the boxes per body alone: a larger radius in
+  the same container is the same gas seen through a lens. What is left are terms of order 1/N, and 1/n where
+  the partition meets the periodic faces.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ def radius_grid(points: list[grid.Point], settings: dict) -> xr.Dataset:
     An experiment whose points have one packing fraction is the series "packing fraction", else "count".
 
     Returns over `point`: series, engine ("event" or "step"), radius, count, packing_fraction, boxes_per_side.
-    Event-driven points: Z, Z_error (corrected to the infinite system), finite_size, reference, reference_error;
+    Event-driven points: Z, Z_error (corrected to the infinite system), finite_size, reference and its error;
     crossings, per body and time over the kinetic theory's, and its error; pair_tests, box_visits
     and crossings_counted, per collision; crossings_expected, the same from kinetic theory and Enskog's rate.
     Time-stepped points: pair_tests and box_visits per body and step, pair_tests_expected. NaN elsewhere.

@@ -24,11 +24,11 @@ def naive_scaling(points, settings):
     """
     made = one_box([_run(point) for point in points])
     count, tests, seconds = (made[name].values.astype(float) for name in ("count", "pair_tests", "seconds"))
-    time = statistics.fit_power_law(count, seconds)
+    exponent, error = _trend(count, seconds)
     parts = weights(seconds, made.seconds_error.values, count, tests)
     return made.assign(
-        exponent=time.exponent,
-        exponent_error=time.exponent_error,
+        exponent=exponent,
+        exponent_error=error,
         tests_excess=np.abs(tests / (0.5 * count * (count - 1.0)) - 1.0).max(),
         test_seconds=parts.values[1],
         test_seconds_error=parts.errors[1],
@@ -153,7 +153,7 @@ def linear_scaling(points, settings):
     radius = np.array([run.radius for run in runs])
     seconds = count * gases.seconds.values
     work = (gases.pair_tests + gases.box_visits).values
-    total = statistics.fit_power_law(count, count * work)
+    work_exponent, work_error = _trend(count, count * work)
     parts = []
     for part in settings["source_figures"]:
         low, high = part["counts"]
@@ -172,8 +172,8 @@ def linear_scaling(points, settings):
         part_radius=("part", [part["radius"] for part in settings["source_figures"]]),
         exponent=("part", [value for value, _ in parts]),
         exponent_error=("part", [error for _, error in parts]),
-        work_exponent=total.exponent,
-        work_exponent_error=total.exponent_error,
+        work_exponent=work_exponent,
+        work_exponent_error=work_error,
         extrapolated_count=settings["naive_count"],
         extrapolated_seconds=carried[0],
         extrapolated_seconds_error=carried[1],

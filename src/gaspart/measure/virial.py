@@ -12,12 +12,12 @@ from gaspart.theory.virial import linear_tail_uncertainty
 
 
 def virial_discs(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """Z of discs at each packing fraction, and virial coefficients fitted to it. See `equation_of_state`."""
+    """Z of discs at each packing fraction, virial coefficients fitted to it. See `equation_of_state`."""
     return equation_of_state(points, settings)
 
 
 def virial_spheres(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """Z of spheres at each packing fraction, and virial coefficients fitted to it. See `equation_of_state`."""
+    """Z of spheres at each packing fraction, virial coefficients fitted to it. See `equation_of_state`."""
     return equation_of_state(points, settings)
 
 
