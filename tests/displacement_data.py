@@ -136,7 +136,12 @@ def spheres():
     slope = -rows[-1]["correction"] * rows[-1]["side"]
     rows.append(_short(0.3, 3, count=864, side=1.0, largest=False, in_series=False))
     intercept = float(theory.erpenbeck_wood_diffusion(0.3))
-    fitted = {"size_slope": slope, "size_slope_error": 0.02, "size_intercept": intercept}
+    fitted = {
+        "size_slope": slope,
+        "size_slope_error": 0.02,
+        "size_intercept": intercept,
+        "size_limit": intercept,
+    }
     return _table(rows, 3, **fitted, size_intercept_error=0.001)
 
 

@@ -27,7 +27,7 @@ except SceneError as error:
     print(f"gaspart: {error}", file=sys.stderr)
     sys.exit(2)
 
-FIGURES = list(config["figures"])
+FIGURES = [figure for figure in FAMILIES if figure in config["figures"]]
 POINTS = {
     experiment: {point.name: point for point in grid.points(config, experiment)}
     for experiment in config["experiments"]

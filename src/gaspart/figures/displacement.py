@@ -161,11 +161,17 @@ def _size(axis, ds: xr.Dataset) -> None:
         axis.set_axis_off()
         return
     inverse = 1.0 / row["side"].values
-    x = np.linspace(0.0, 1.1 * inverse.max(), 2)
+    x = np.linspace(0.0, 1.15 * inverse.max(), 2)
     start = float(ds["size_intercept"])
     predicted = -float((row["correction"] * row["side"])[0])
     axis.plot(x, start + float(ds["size_slope"]) * x, color=style.DATA, lw=0.8, label="fit")
-    axis.plot(x, start + predicted * x, color=style.REFERENCE, ls="--", label="Yeh & Hummer's slope")
+    axis.plot(
+        x,
+        float(ds["size_limit"]) + predicted * x,
+        color=style.REFERENCE,
+        ls="--",
+        label="Yeh & Hummer's slope",
+    )
     eta = float(row["packing_fraction"][0])
     known, band = float(theory.erpenbeck_wood_diffusion(eta)), theory.ERPENBECK_WOOD_UNCERTAINTY
     style.points(

@@ -64,7 +64,8 @@ def msd_spheres(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
     Dimensions point and lag (NaN beyond a point's own lags). `largest`: the long run with the most bodies at
     its packing fraction. `in_series`: one of three or more sizes at one packing fraction; through these goes
-    the line size_intercept + size_slope / L. Raises SceneError for a run too short for its straight stretch.
+    the line size_intercept + size_slope / L, or with Yeh and Hummer's slope one from `size_limit`.
+    Raises SceneError for a run too short for its straight stretch.
     """
     dataset = _dataset([_spheres(point) for point in points], 3)
     eta, count = dataset["packing_fraction"].values.round(6), dataset["count"].values
@@ -74,7 +75,10 @@ def msd_spheres(points: list[grid.Point], settings: dict) -> xr.Dataset:
     dataset["in_series"] = ("point", long & (same.sum(axis=1) >= 3))
     if dataset["in_series"].any():
         series = dataset.isel(point=dataset["in_series"].values)
-        fit = fit_polynomial(1.0 / series["side"], series["diffusion"], series["diffusion_error"])
+        table = 1.0 / series["side"], series["diffusion"], series["diffusion_error"]
+        fit = fit_polynomial(*table)
+        predicted = -float((series["correction"] * series["side"])[0])
+        dataset["size_limit"] = float(fit_polynomial(*table, powers=(0,), fixed={1: predicted}).values[0])
         for name, value, error in zip(("size_intercept", "size_slope"), fit.values, fit.errors, strict=True):
             dataset[name], dataset[f"{name}_error"] = value, error
     return dataset
@@ -187,8 +191,8 @@ def _discs(point: grid.Point) -> dict:
 
     Until sound has crossed the container a body does not feel its size, but it feels at once that the total
     momentum is zero: without this condition all would share a velocity of mean square d / N. So 1 / N is
-    added to the correlation, t / N to D(t) and d t^2 / N to the msd (exact until then; the slope is taken
-    from no later time).
+    added to the correlation, t / N to D(t) and d t^2 / N to the msd, which is exact until then; the curves end
+    there.
     """
     state = _state(point)
     start, stop = LOGARITHM_FROM / state["collision_rate"], state["sound_time"]
@@ -200,7 +204,7 @@ def _discs(point: grid.Point) -> dict:
             one.correlation + share,
             one.running + share * one.time,
         )
-        for one in replicas(point, max(stop, 2.0 * GREEN_KUBO_TO / state["collision_rate"]))
+        for one in replicas(point, stop)
     ]
     rows = _common(point, state, curves)
     if rows["interval"] <= SHORT_INTERVAL:
