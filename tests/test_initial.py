@@ -45,7 +45,7 @@ def test_lattices_hold_any_number(dimension, boundary, eta):
 
 
 def test_a_lattice_that_would_overlap_is_refused():
-    with pytest.raises(gp.SceneError, match="lattice spacing"):
+    with pytest.raises(gp.SceneError, match="a spacing of"):
         initial_state(gas(3, 100, 0.7, arrangement="lattice"), seed=0)
 
 

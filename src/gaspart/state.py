@@ -45,7 +45,9 @@ class State:
 
     @property
     def kinetic_energy(self) -> float:
-        return 0.5 * float((self.masses[:, None] * self.velocities**2).sum())  # not @: BLAS differs by machine
+        return 0.5 * float(
+            (self.masses[:, None] * self.velocities**2).sum()
+        )  # not @: BLAS differs by machine
 
     def copy(self) -> State:
         """A state that shares no array with this one."""

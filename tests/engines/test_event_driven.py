@@ -152,7 +152,7 @@ def test_a_corner_is_two_walls_at_once():
 
 
 def test_simultaneous_contacts_come_in_the_order_of_their_indices():
-    # two pairs that touch at the same instant, and a lone body at a wall then: walls, then (0, 3), then (1, 2)
+    # two pairs touch at one instant, and a lone body meets a wall: the wall, then (0, 3), then (1, 2)
     bodies = [
         gp.Body((2.0, 2.0), (1.0, 0.0), 0.5),
         gp.Body((2.0, 6.0), (1.0, 0.0), 0.5),

@@ -74,7 +74,7 @@ def test_few_bodies_follow_the_event_driven_engine(boundary):
 
 
 def test_rewinding_buys_accuracy():
-    """Without it, a coarse step makes the pressure wrong by a factor; with it, by percents (ENGINES of 2010)."""
+    """At a coarse step the pressure is off by some percent with it, and by several times that without."""
     scene, eta = gas(3, 300, 0.1, arrangement="lattice"), 0.1
     expected = theory.compressibility_factor(eta, 3)
     off = {}

@@ -191,8 +191,7 @@ def _discs(point: grid.Point) -> dict:
 
     Until sound has crossed the container a body does not feel its size, but it feels at once that the total
     momentum is zero: without this condition all would share a velocity of mean square d / N. So 1 / N is
-    added to the correlation, t / N to D(t) and d t^2 / N to the msd, which is exact until then; the curves end
-    there.
+    added to the correlation, t / N to D(t) and d t^2 / N to the msd, exact until then; the curves end there.
     """
     state = _state(point)
     start, stop = LOGARITHM_FROM / state["collision_rate"], state["sound_time"]
