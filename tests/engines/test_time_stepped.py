@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scenes import gas, mixtures
 
@@ -13,7 +13,6 @@ from gaspart import theory
 
 
 @given(mixtures(most=20), st.sampled_from(["float64", "float32"]), st.booleans(), st.integers(0, 2**32))
-@settings(max_examples=40, deadline=None)
 def test_any_number_of_boxes_gives_the_same_bits(scene, precision, rewind, seed):
     ends = []
     for boxes_per_side in (1, 2, None):
