@@ -12,6 +12,12 @@ from gaspart.files import dump_yaml, read_yaml
 
 ROOT = Path(__file__).parents[1]
 SCHEMA = ROOT / "workflow/schemas/config.schema.yaml"
+A_FIGURE = {
+    "type": "object",
+    "additionalProperties": False,
+    "required": ["experiments"],
+    "properties": {"experiments": {"$ref": "#/$defs/names"}},
+}
 GOOD = {
     "title": "a test",
     "seed": 1,
@@ -41,12 +47,24 @@ def with_value(keys, value):
     return config
 
 
-def test_a_good_config_passes():
-    check(GOOD, str(SCHEMA), [])
+@pytest.fixture(scope="module")
+def schema(tmp_path_factory):
+    """The project's schema, with one figure that has no settings of its own."""
+    content = read_yaml(SCHEMA)
+    content["properties"]["figures"]["properties"] = {"virial_discs": A_FIGURE}
+    path = tmp_path_factory.mktemp("schema") / "schema.yaml"
+    path.write_text(dump_yaml(content))
+    return str(path)
+
+
+def test_a_good_config_passes(schema):
+    check(GOOD, schema, [])
 
 
 POINT = ("experiments", "gas", "point")
 GRID = ("experiments", "gas", "grid")
+FIGURE = ("figures", "virial_discs")
+DENSE = "experiments.gas[packing_fraction=0.95]"
 
 
 @pytest.mark.parametrize(
@@ -75,38 +93,38 @@ GRID = ("experiments", "gas", "grid")
         ),
         ((*GRID, "packing_fraction"), [], "experiments.gas.grid.packing_fraction", "must not be empty"),
         ((*GRID, "packing_fraction"), [0.1, -0.1], "experiments.gas.grid.packing_fraction", "greater than 0"),
-        ((*GRID, "packing_fraction"), [0.95], "experiments.gas[packing_fraction=0.95].packing_fraction", "close packing"),
+        ((*GRID, "packing_fraction"), [0.95], f"{DENSE}.packing_fraction", "close packing"),
         ((*GRID, "packing"), [0.1], "experiments.gas.grid.packing", "unknown key"),
-        (("figures", "virial_discs", "experiments"), ["gass"], "figures.virial_discs.experiments", "name of an experiment"),
+        ((*FIGURE, "experiments"), ["gass"], "figures.virial_discs.experiments", "name of an experiment"),
         (("figures", "virial_disks"), {"experiments": ["gas"]}, "figures.virial_disks", "unknown key"),
-        (("figures", "virial_discs", "colour"), "red", "figures.virial_discs.colour", "unknown key"),
+        ((*FIGURE, "colour"), "red", "figures.virial_discs.colour", "unknown key"),
     ],
 )  # fmt: skip
-def test_each_mistake_is_one_line_with_key_value_and_rule(keys, value, key, rule):
+def test_each_mistake_is_one_line_with_key_value_and_rule(schema, keys, value, key, rule):
     with pytest.raises(SceneError) as refused:
-        check(with_value(keys, value), str(SCHEMA), [])
+        check(with_value(keys, value), schema, [])
     assert refused.value.key == key
     assert rule in refused.value.rule
     assert "\n" not in str(refused.value)
 
 
-def test_a_key_that_is_missing_is_named():
+def test_a_key_that_is_missing_is_named(schema):
     config = copy.deepcopy(GOOD)
     del config["seed"]
     with pytest.raises(SceneError, match="seed = None: is required"):
-        check(config, str(SCHEMA), [])
+        check(config, schema, [])
 
 
-def test_the_last_file_that_holds_the_key_is_named(tmp_path):
+def test_the_last_file_that_holds_the_key_is_named(schema, tmp_path):
     default, own = tmp_path / "config.yaml", tmp_path / "own.yaml"
     default.write_text(dump_yaml(GOOD))
     own.write_text(dump_yaml({"experiments": {"gas": {"point": {"mass": -2.0}}}}))
     config = with_value((*POINT, "mass"), -2.0)
     with pytest.raises(SceneError) as refused:
-        check(config, str(SCHEMA), [str(default), str(own)])
+        check(config, schema, [str(default), str(own)])
     assert refused.value.file == str(own)
     with pytest.raises(SceneError) as refused:
-        check(with_value(("seed",), -1), str(SCHEMA), [str(default), str(own)])
+        check(with_value(("seed",), -1), schema, [str(default), str(own)])
     assert refused.value.file == str(default)
 
 

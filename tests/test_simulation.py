@@ -1,5 +1,6 @@
 """The face of the library."""
 
+import os
 import subprocess
 import sys
 
@@ -122,5 +123,8 @@ def test_engines_can_be_written_down():
 
 def test_importing_the_package_starts_no_compiler():
     code = "import sys, gaspart, gaspart.grid; print('numba' in sys.modules, 'xarray' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment
+    )
     assert done.stdout.split() == ["False", "False"]

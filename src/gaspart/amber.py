@@ -17,13 +17,14 @@ import numpy as np
 from gaspart.tally import Tally
 
 NOTE = (
-    "Reduced units: lengths and times are in the scene's own units, masses relative to the reference species, "
-    "k_B = 1. Units named picosecond and angstrom stand for these, because readers of AMBER files insist on them."
+    "Reduced units: lengths and times are in the scene's own units, masses relative to the reference "
+    "species, k_B = 1. Picosecond and angstrom stand for these, because readers of AMBER files insist on it."
 )
 COUNTERS = tuple(field.name for field in fields(Tally) if field.name != "time")
 """Sums since time 0, one variable each."""
 
 _PER_FACE = ("wall_hits", "wall_impulse")
+_MAGIC = b"CDF\x02"  # a netCDF-3 file of 64-bit offsets
 _FRAME_COUNT_AT = 4  # where a netCDF-3 header keeps the number of frames, as a big-endian uint32
 MOST_FRAMES = 2**31 - 1
 
@@ -39,9 +40,13 @@ class Layout:
 
     def __init__(self, count: int, dimension: int, displacements: bool, walls: int = 0):
         self.sizes = {
-            "spatial": 3, "atom": count, "cell_spatial": 3, "cell_angular": 3, "label": 5, "face": 2 * dimension + walls,
-        }  # fmt: skip
-        self.dimension = dimension
+            "spatial": 3,
+            "atom": count,
+            "cell_spatial": 3,
+            "cell_angular": 3,
+            "label": 5,
+            "face": 2 * dimension + walls,
+        }
         vectors = ("atom", "spatial")
         faces = {"faces": ", ".join(face_names(dimension, walls))}
         self.variables = {
@@ -94,7 +99,7 @@ class Layout:
             "type": ("i4", ("atom",), types),
         }
         for name, (kind, dimensions, _) in fixed.items():
-            file.createVariable(name, kind, dimensions, fill_value=False)
+            file.createVariable(name, kind, dimensions)  # filled, lest the padding be what memory held
         file["radius"].units = "angstrom"
         for name, (kind, dimensions, extra) in self.variables.items():
             file.createVariable(name, kind[1:], ("frame", *dimensions), fill_value=False).setncatts(extra)
@@ -109,6 +114,12 @@ def same_header(file: BinaryIO, header: bytes) -> bool:
     file.seek(0)
     found = file.read(len(header))
     return found[:_FRAME_COUNT_AT] == header[:_FRAME_COUNT_AT] and found[after:] == header[after:]
+
+
+def is_blank(file: BinaryIO) -> bool:
+    """Whether a file is empty, or its header was never finished."""
+    file.seek(0)
+    return not any(file.read(len(_MAGIC)))
 
 
 def frame_count(file: BinaryIO) -> int:
@@ -127,13 +138,22 @@ class Frames:
         self._file, self._layout = file, layout
         self.count = kept
         if kept == 0:
-            file.truncate(0)
-            file.seek(0)
-            self._write(header)
+            self._begin(header)
         else:
             self._count_frames()
         file.truncate(len(header) + kept * layout.frame_bytes)
         file.seek(0, os.SEEK_END)
+
+    def _begin(self, header: bytes) -> None:
+        """Write the header, its first word last: where that stands, the header is whole."""
+        self._file.truncate(0)
+        self._file.seek(0)
+        try:
+            self._write(bytes(len(_MAGIC)) + header[len(_MAGIC) :])
+        except OSError:
+            self._file.truncate(0)
+            raise
+        os.pwrite(self._file.fileno(), header[: len(_MAGIC)], 0)
 
     def append(self, values: dict[str, np.ndarray | float]) -> None:
         """Write one frame: a value for every variable of the layout, vectors of 2 or 3 components."""

@@ -25,9 +25,19 @@ def _digest(header: bytes) -> str:
     return hashlib.sha256(header).hexdigest()
 
 
+def _new(path: Path) -> Path:
+    return path.with_name(path.name + ".new")
+
+
+def remove_checkpoint(path: Path) -> None:
+    """Remove a checkpoint that has served, and what a kill may have left of its successor."""
+    path.unlink(missing_ok=True)
+    _new(path).unlink(missing_ok=True)
+
+
 def write_checkpoint(path: Path, header: bytes, frames: int, arrays: dict[str, np.ndarray]) -> None:
     """Write the checkpoint of a run, which the header of its trajectory stands for. May raise OSError."""
-    new = path.with_name(path.name + ".new")
+    new = _new(path)
     try:
         with new.open("wb") as file:
             np.savez(file, **arrays, **{_DIGEST: np.array(_digest(header)), _FRAMES: np.array(frames)})

@@ -12,7 +12,7 @@ FAMILIES = {
     "ideal_boxes": "scaling",
     "linear_scaling": "scaling",
     "event_scaling": "scaling",
-    "radius_grid": "scaling",
+    "radius_grid": "radius",
     "fill_failures": "insertion",
     "virial_discs": "virial",
     "virial_spheres": "virial",
@@ -25,6 +25,7 @@ FAMILIES = {
 
 TITLES = {
     "scaling": "What space partitioning buys",
+    "radius": "Radius, density and number of bodies",
     "insertion": "Random insertion",
     "virial": "Equation of state",
     "speeds": "Speed distributions",

@@ -21,7 +21,7 @@ LENGTHS = ("collisions_per_body", "duration", "steps")
 EXTENTS = ("count", "radius", "packing_fraction", "side")
 ENGINE_KEYS = {
     "event": ("search", "boxes_per_side", "boxes_per_body"),
-    "step": ("time_step", "boxes_per_side", "boxes_per_body", "precision", "rewind", "passes"),
+    "step": ("time_step", "boxes_per_side", "boxes_per_body", "precision", "rewind"),
 }
 SCANS = ("scan_boxes_per_side", "scan_boxes_per_body")
 SUFFIX = {"simulate": "", "measure_cost": ".nc", "fill": ".nc"}

@@ -156,7 +156,7 @@ def lattice(scene: Scene, rng: np.random.Generator) -> np.ndarray:
     if spacing < 2 * scene.largest_radius:
         raise SceneError(
             "arrangement", "lattice",
-            f"{scene.count} bodies of diameter {2 * scene.largest_radius:g} leave a lattice spacing of {spacing:g}",
+            f"a spacing of {spacing:g} is too small for {scene.count} bodies of this radius",
         )  # fmt: skip
     cells = np.stack(np.meshgrid(*(np.arange(n) for n in best), indexing="ij"), axis=-1)
     sites = (cells.reshape(-1, 1, scene.dimension) + basis).reshape(-1, scene.dimension)

@@ -46,7 +46,7 @@ class Simulation:
         )
 
     def add_random(self, count: int, radius: float, **properties) -> None:
-        """Add `count` bodies at random places (properties as in `Species`). Refused after the first advance."""
+        """Add `count` bodies at random places (properties as in `Species`), before the first advance."""
         self._change(self.scene.with_species(Species(count, radius, **properties)))
 
     def add_wall(self, start, end) -> None:
@@ -74,7 +74,7 @@ class Simulation:
     def advance(
         self, duration: float | None = None, max_events: int | None = None, until: float | None = None
     ) -> None:
-        """Advance by `duration`, or to the time `until`, or by `max_events` collisions and wall hits, whichever
+        """Advance by `duration`, to the time `until`, or by `max_events` collisions and wall hits, whichever
         comes first. The time-stepped engine stops at the last whole step not after the target.
 
         Raises SceneError for a target in the past, or no target at all.

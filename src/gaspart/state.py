@@ -46,22 +46,23 @@ class State:
     @property
     def momentum(self) -> np.ndarray:
         """(d,) total momentum."""
-        return _finite(self.masses) @ self.velocities
+        return (_finite(self.masses)[:, None] * self.velocities).sum(axis=0)  # not @: BLAS differs by machine
 
     @property
     def angular_momentum(self) -> np.ndarray | float:
         """Total angular momentum about the container's origin, spins included: a number in 2D, (3,) in 3D."""
         orbital = np.cross(self.unwrapped, self.velocities) if self.dimension == 3 else _cross(self)
-        return _finite(self.masses) @ orbital + _finite(self.moments_of_inertia) @ self.spins
+        return (_finite(self.masses) * orbital.T + _finite(self.moments_of_inertia) * self.spins.T).sum(
+            axis=-1
+        )
 
     @property
     def translational_energy(self) -> float:
-        return 0.5 * float(_finite(self.masses) @ (self.velocities**2).sum(axis=1))
+        return 0.5 * float((_finite(self.masses)[:, None] * self.velocities**2).sum())
 
     @property
     def rotational_energy(self) -> float:
-        square = self.spins**2 if self.dimension == 2 else (self.spins**2).sum(axis=1)
-        return 0.5 * float(_finite(self.moments_of_inertia) @ square)
+        return 0.5 * float((_finite(self.moments_of_inertia) * (self.spins**2).T).sum())
 
     @property
     def kinetic_energy(self) -> float:
@@ -71,7 +72,11 @@ class State:
     @property
     def potential_energy(self) -> float:
         """Of all bodies under gravity, 0 where their centres are at the container's origin."""
-        return 0.0 if self.gravity is None else -float(_finite(self.masses) @ (self.positions @ self.gravity))
+        return (
+            0.0
+            if self.gravity is None
+            else -float((_finite(self.masses)[:, None] * self.positions * self.gravity).sum())
+        )
 
     @property
     def energy(self) -> float:

@@ -70,6 +70,8 @@ class Claim:
         for name in ("claim", "source", "fails_if"):
             if not getattr(self, name).strip():
                 raise ValueError(f"{name}: empty (a claim states what, by whom, and what would make it fail)")
+        for name in ("measured", "expected", "uncertainty", "required_uncertainty", "expected_uncertainty"):
+            object.__setattr__(self, name, float(getattr(self, name)))
         for name in ("uncertainty", "required_uncertainty", "expected_uncertainty"):
             if getattr(self, name) < 0.0:
                 raise ValueError(f"{name}: {getattr(self, name)} (must not be negative)")

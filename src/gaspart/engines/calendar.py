@@ -57,11 +57,15 @@ def time_of(plans, body):
 
 @helper
 def tie(plans, body):
-    """What orders simultaneous events: faces first, by body, then pairs by lower and higher index."""
+    """What orders simultaneous events: faces first, by body, then pairs by lower and higher index.
+
+    No two plans have the same key, though both bodies of a pair may plan their contact: if one of the plans
+    is out of date, which comes first decides how much is searched, and a bucket's order must not decide that.
+    """
     if plans[body].face_time <= plans[body].contact:
         return body - len(plans)
     partner = plans[body].partner
-    return min(body, partner) * len(plans) + max(body, partner)
+    return 2 * (min(body, partner) * len(plans) + max(body, partner)) + (1 if body > partner else 0)
 
 
 @helper

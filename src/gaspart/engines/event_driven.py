@@ -29,7 +29,7 @@ class EventDriven:
 
     search: "boxes", with one next event per body in a queue; "direct", the same without a partition, each
     search over all bodies; "pairs", all pairs before every event (Spencer 2021, section 3.1), the referee.
-    All three give the same bits. boxes_per_side: a number, or one per axis; by default about one box per body.
+    All three give the same bits. boxes_per_side: a number, or one per axis; by default about one a body.
     """
 
     search: str = "boxes"
@@ -222,7 +222,7 @@ class EventDynamics:
         return state
 
     def checkpoint(self) -> dict[str, np.ndarray]:
-        """Everything that a continuation to the same bits needs: bodies at their own clocks, plans, counts."""
+        """All that a continuation to the same bits needs: bodies at their own clocks, plans, counts."""
         parts = {"laps": self._laps, "clock": self._clock, "since": self._since, "lost": self._lost}
         parts.update(rows=self._rows, images=self._images, plans=self._plans, **self._counters._asdict())
         if self._law:

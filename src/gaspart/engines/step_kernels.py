@@ -251,7 +251,7 @@ def run_steps(bodies, space, partition, masses, dt, steps, rewind, counters):
                     last_met[body] = step
         for n in range(found):
             i, j = pairs[n]
-            rr, rv, vv = invariants(bodies, space, i, j)
+            rr, rv, _ = invariants(bodies, space, i, j)
             sigma = bodies.radii[i] + bodies.radii[j]
             if rr < sigma * sigma and rv < 0.0:
                 counters.counts[OVERLAPS_LEFT] += 1

@@ -118,7 +118,8 @@ class StepDynamics:
             raise SceneError("max_events", most, 'needs the "event" engine; this one knows steps only')
         if log is not None:
             raise SceneError("record_events", True, 'needs the "event" engine; this one knows steps only')
-        target = int(np.floor((until - self._start) / self._engine.time_step + 1e-9))
+        steps = (until - self._start) / self._engine.time_step
+        target = int(np.floor(steps * (1.0 + 4e-16) + 1e-9))
         if target > self._steps:
             self._kernels.run_steps(
                 self._bodies, self._space, self._partition, self._masses, self._step,

@@ -2,7 +2,3 @@
 
 ``gaspart.figures.<family>.<figure>(dataset)`` gives a ``matplotlib.figure.Figure``.
 """
-
-from gaspart.families import FAMILIES
-
-__all__ = ["FAMILIES"]

@@ -5,12 +5,22 @@ from __future__ import annotations
 from contextlib import contextmanager
 from pathlib import Path
 
+import numpy as np
+
 COLUMN = 3.4
 """Width of one column of a journal, in inches."""
+PAGE = 7.0
+"""Width of two columns."""
 
 # Okabe and Ito, "Color universal design" (2008), in an order whose neighbours differ in lightness too.
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"]
 MARKERS = ["o", "s", "^", "D", "v", "P", "X"]
+DATA = "#000000"
+"""The colour of what was measured, where only one kind of thing was."""
+REFERENCE = "#0072b2"
+"""The colour of the curve that the measurement is compared with."""
+GREY = "#8c8c8c"
+"""For guides: zero lines, bands, limits."""
 
 RULES = {
     "figure.figsize": (COLUMN, 2.6),
@@ -18,12 +28,15 @@ RULES = {
     "figure.constrained_layout.use": True,
     "savefig.dpi": 300,
     "font.size": 8,
-    "axes.labelsize": 8,
+    "axes.labelsize": 9,
     "axes.titlesize": 8,
-    "legend.fontsize": 7,
+    "legend.fontsize": 8,
     "legend.frameon": False,
-    "xtick.labelsize": 7,
-    "ytick.labelsize": 7,
+    "legend.handlelength": 1.6,
+    "legend.labelspacing": 0.25,
+    "legend.borderpad": 0.2,
+    "xtick.labelsize": 8,
+    "ytick.labelsize": 8,
     "xtick.direction": "in",
     "ytick.direction": "in",
     "xtick.top": True,
@@ -31,7 +44,7 @@ RULES = {
     "axes.linewidth": 0.6,
     "lines.linewidth": 1.0,
     "lines.markersize": 3.5,
-    "errorbar.capsize": 2,
+    "errorbar.capsize": 1.5,
     "svg.fonttype": "path",
     "svg.hashsalt": "gaspart",
 }
@@ -41,16 +54,75 @@ RULES = {
 def applied():
     """Draw in this style, without a display, inside the ``with`` block."""
     import matplotlib
-
-    matplotlib.use("Agg")
     from cycler import cycler
 
+    matplotlib.use("Agg")
     with matplotlib.rc_context({**RULES, "axes.prop_cycle": cycler(color=COLOURS)}):
         yield
 
 
+def new(
+    rows: int = 1, columns: int = 1, height: float | None = None, height_ratios=None, share_x: bool = True
+):
+    """A figure one column wide (two, if it has several columns of panels), and its axes.
+
+    height: in inches. height_ratios: (rows,). share_x: panels above each other have one x axis.
+    Returns (figure, axes): one Axes if there is one panel, else an array of shape (rows,), (columns,) or
+    (rows, columns).
+    """
+    from matplotlib.figure import Figure
+
+    width = COLUMN if columns == 1 else PAGE
+    figure = Figure(figsize=(width, 0.4 + 2.2 * rows if height is None else height), layout="constrained")
+    axes = figure.subplots(
+        rows,
+        columns,
+        sharex="col" if share_x and rows > 1 else False,
+        gridspec_kw={} if height_ratios is None else {"height_ratios": height_ratios},
+    )
+    return figure, axes
+
+
+def points(axis, x, y, error=None, kind: int = 0, hollow: bool = False, **options):
+    """Measured points with error bars: colour and marker number `kind`, or `color` and `marker`."""
+    colour = options.pop("color", COLOURS[kind % len(COLOURS)])
+    options.setdefault("marker", MARKERS[kind % len(MARKERS)])
+    options.setdefault("linestyle", "none")
+    options.setdefault("elinewidth", 0.8)
+    options.setdefault("zorder", 3)
+    face = "white" if hollow else colour
+    return axis.errorbar(x, y, yerr=error, color=colour, markerfacecolor=face, markeredgewidth=0.8, **options)
+
+
+def residuals(axis, x, sigmas, kind: int = 0, gate: float = 3.0, **options):
+    """A panel of deviations in standard deviations: one series, the zero line and the band of ± `gate`.
+
+    The scale is at least ±1.3 gate, so that an innocent panel looks innocent.
+    """
+    band(axis, -gate, gate)
+    level(axis, 0.0)
+    points(axis, x, sigmas, np.ones(np.shape(sigmas)), kind=kind, **options)
+    widest = max(1.3 * gate, *(1.0 + 1.1 * np.abs(np.atleast_1d(sigmas))))
+    axis.set_ylim(-widest, widest)
+
+
+def band(axis, low: float, high: float, **options):
+    """A horizontal grey band, behind everything."""
+    return axis.axhspan(low, high, color=GREY, alpha=0.18, linewidth=0, zorder=0, **options)
+
+
+def level(axis, value: float, **options):
+    """A horizontal grey line, behind the points."""
+    return axis.axhline(value, color=GREY, linewidth=0.6, zorder=1, **options)
+
+
+def letter(axis, text: str, x: float = 0.02, y: float = 0.97):
+    """(a), (b) ... or a short title in a panel's upper left corner; x, y: in parts of the panel."""
+    return axis.text(x, y, text, transform=axis.transAxes, ha="left", va="top", fontweight="bold")
+
+
 def save(figure, path: str | Path) -> None:
-    """Write a figure, whole or not at all, as the path's suffix says; the same figure gives the same bytes."""
+    """Write a figure, whole or not at all, as its suffix says; the same figure gives the same bytes."""
     from gaspart.files import whole_file
 
     kind = Path(path).suffix.lstrip(".")

@@ -1,58 +1,110 @@
-"""What a point costs: work that is counted, the same on every machine, and time that is measured."""
+"""What a run costs: work that is counted, the same on every machine, and time that is measured.
+
+Every timing starts from one and the same state, so the repeated timings of an engine are of exactly the
+same work, and differ by what disturbs the clock alone; and engines that differ in their partition are timed
+in turn, in alternating order, so that a machine that slows down favours none of them.
+"""
 
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 
-from gaspart import grid
+from gaspart.engines import EventDriven, TimeStepped
+from gaspart.errors import SimulationError
+from gaspart.initial import initial_state
+from gaspart.scene import Scene
 from gaspart.simulation import Simulation
+from gaspart.state import State
 
-COUNTED = ("collisions", "pair_tests", "box_visits", "crossings", "steps")
+COUNTED = ("steps", "collisions", "wall_hits", "pair_tests", "box_visits", "crossings")
+_SLACK = 1e-6  # of a time step: so that rounding of a stretch loses no step
 
 
-def measure_cost(point: grid.Point) -> xr.Dataset:
-    """Run the point's equilibration, then its length in ``samples`` stretches, each timed and counted.
+def measure_cost(
+    scene: Scene,
+    engines: Sequence[EventDriven | TimeStepped],
+    seed: tuple[int, ...],
+    equilibration: float,
+    stretch: float,
+    repeats: int,
+) -> xr.Dataset:
+    """Time `repeats` times, with each of the engines, the same stretch of simulated time of the same gas.
 
-    Returns a dataset over ``stretch``: ``seconds`` (processor time of ``advance`` alone: filling the
-    container and compiling are left out), ``duration`` (scene's time), and the counts of the tally.
-    Attributes: count, packing_fraction, radius, boxes (in all; 0 if the engine chooses them itself).
-    Raises SceneError and SimulationError.
+    equilibration, stretch: in the scene's time. Returns a dataset over ``partition`` (the engines, in their
+    order) and ``repeat``: ``seconds`` (partition, repeat), processor time of the advance alone (filling the
+    container, setting up and compiling are left out); over ``partition``: ``boxes`` in all,
+    ``boxes_per_side`` (of the first axis; both 0 if the engine chooses itself), ``duration`` (scene's time)
+    and the counts of the tally. Attributes: count, dimension, radius, side (first axis), packing_fraction,
+    engine, search (event-driven) or time_step.
+
+    Raises SceneError, and SimulationError if the counted work of a repeat differs from the first one's.
     """
-    schedule = grid.schedule(point)
-    scene, engine = grid.scene(point), grid.engine(point)
-    simulation = Simulation(scene, engine, seed=point.seed())
-    simulation.advance(duration=schedule.equilibration)
-    columns = {name: [] for name in ("seconds", "duration", *COUNTED)}
-    for _ in range(schedule.samples):
-        simulation.reset_tally()
-        start = time.process_time()
-        simulation.advance(duration=schedule.sample_interval)
-        columns["seconds"].append(time.process_time() - start)
-        tally = simulation.tally
-        columns["duration"].append(tally.time)
-        for name in COUNTED:
-            columns[name].append(getattr(tally, name))
-    units = {"seconds": "s", "duration": "scene time"}
-    dataset = xr.Dataset(
+    state = _start(scene, engines[0], seed, equilibration)
+    seconds = np.empty((len(engines), repeats))
+    counts: list[dict | None] = [None] * len(engines)
+    for repeat in range(repeats):
+        order = range(len(engines))
+        for n in order if repeat % 2 == 0 else reversed(order):
+            seconds[n, repeat], counted = _timed(scene, engines[n], state, stretch)
+            if counts[n] is None:
+                counts[n] = counted
+            elif counted != counts[n]:
+                raise SimulationError(f"the same run twice: counted {counts[n]}, then {counted}")
+    columns = {name: ("partition", np.array([counted[name] for counted in counts])) for name in counts[0]}
+    sides = [_sides(engine, scene.dimension) for engine in engines]
+    return xr.Dataset(
         {
-            name: ("stretch", np.asarray(values), {"units": units.get(name, "1")})
-            for name, values in columns.items()
-        }
+            "seconds": (("partition", "repeat"), seconds, {"units": "s"}),
+            "boxes": ("partition", np.array([int(np.prod(side)) for side in sides])),
+            "boxes_per_side": ("partition", np.array([side[0] for side in sides])),
+            **columns,
+        },
+        attrs={
+            "count": scene.count,
+            "dimension": scene.dimension,
+            "radius": scene.largest_radius,
+            "side": scene.container.lengths[0],
+            "packing_fraction": scene.packing_fraction,
+            "engine": engines[0].name,
+            "search": getattr(engines[0], "search", ""),
+            "time_step": getattr(engines[0], "time_step", 0.0),
+        },
     )
-    per_side = getattr(engine, "boxes_per_side", None)
-    if per_side is None:
-        boxes = 0
-    elif isinstance(per_side, int):
-        boxes = per_side**scene.dimension
-    else:
-        boxes = int(np.prod(per_side))
-    dataset.attrs.update(
-        count=scene.count,
-        packing_fraction=scene.packing_fraction,
-        radius=scene.largest_radius,
-        boxes=boxes,
-    )
-    return dataset
+
+
+def _start(scene: Scene, engine, seed: tuple[int, ...], equilibration: float) -> State:
+    """The state from which everything is timed. No partition or search changes a bit of it."""
+    if equilibration <= 0.0:
+        return initial_state(scene, seed)
+    quick = {"search": "boxes"} if isinstance(engine, EventDriven) else {}
+    simulation = Simulation(scene, replace(engine, boxes_per_side=None, **quick), seed=seed)
+    simulation.advance(duration=equilibration)
+    return simulation.state
+
+
+def _timed(scene: Scene, engine, state: State, stretch: float) -> tuple[float, dict]:
+    """Processor time of one stretch, in s, and what was counted in it."""
+    dynamics = engine.start(scene, state)
+    step = getattr(engine, "time_step", 0.0)
+    dynamics.advance(state.time + step * (1 + _SLACK))  # loads the kernels; the first step touches all memory
+    dynamics.reset_tally()
+    target = dynamics.time + stretch + step * _SLACK
+    start = time.process_time()
+    dynamics.advance(target)
+    seconds = time.process_time() - start
+    tally = dynamics.tally
+    counted = {name: int(np.sum(getattr(tally, name))) for name in COUNTED}
+    return seconds, {"duration": tally.time, **counted}
+
+
+def _sides(engine, dimension: int) -> tuple[int, ...]:
+    """Boxes along each axis; zeros if the engine chooses them itself."""
+    if getattr(engine, "search", "boxes") != "boxes":
+        return (1,) * dimension
+    given = engine.boxes_per_side or 0
+    return given if isinstance(given, tuple) else (given,) * dimension

@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from gaspart import grid
 from gaspart.boxes import make_boxes, sides_for
 from gaspart.insertion import place
 from gaspart.random import stream
+from gaspart.scene import Scene
 
 CHUNK = 1 << 16
 
 
-def fill(point: grid.Point) -> xr.Dataset:
-    """Offer every replica of the point's container ``attempts`` random places for each of its bodies.
+def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> xr.Dataset:
+    """Offer the container ``attempts`` random places for each body of the scene's one species; once per seed.
 
     The scene's count is the number of bodies at hand, which may be more than ever find room: insertion
     stops when all are placed or the attempts (``attempts`` times the count) are used up.
@@ -23,11 +23,7 @@ def fill(point: grid.Point) -> xr.Dataset:
     for a body without one; ``placed`` and ``attempts`` (replica,).
     Attributes: packing_fraction_per_body, side, radius.
     """
-    scene = grid.scene(point)
-    runs = [
-        _fill_once(scene, point.settings["attempts"] * scene.count, point.seed(k))
-        for k in range(point.replicas)
-    ]
+    runs = [_fill_once(scene, attempts * scene.count, seed) for seed in seeds]
     return xr.Dataset(
         {
             "failures": (("replica", "body"), np.array([failures for failures, _ in runs]), {"units": "1"}),
@@ -42,7 +38,7 @@ def fill(point: grid.Point) -> xr.Dataset:
     )
 
 
-def _fill_once(scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarray, int]:
+def _fill_once(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarray, int]:
     """Failures before each body (N,), -1 where there was no room; and the attempts that were made."""
     boxes = make_boxes(scene, sides_for(scene, per_body=1.0), images=False)
     lower, upper = scene.reach(scene.largest_radius)

@@ -79,9 +79,7 @@ def _spreading(packing_fraction, dimension, diameter, temperature, mass):
     return density, diffusion + viscosity / (mass * density)
 
 
-def velocity_autocorrelation_tail(
-    time, packing_fraction, dimension, diameter=1.0, temperature=1.0, mass=1.0
-):
+def velocity_autocorrelation_tail(time, packing_fraction, dimension, diameter=1.0, temperature=1.0, mass=1.0):
     """Long-time tail of <v(0).v(t)> / <v^2>: ((d-1) / (d rho)) [4 pi (D + nu) t]^(-d/2) (dimensionless).
 
     Mode coupling, Ernst, Hauge and van Leeuwen (1970); recalled. D and the kinematic viscosity nu are

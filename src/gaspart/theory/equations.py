@@ -71,7 +71,7 @@ def percus_yevick_compressibility(packing_fraction):
 
 
 def scaled_particle(packing_fraction):
-    """Discs: Z = 1 / (1 - eta)^2, scaled-particle theory (Helfand and others 1961; recalled); to 3 %."""
+    """Discs: Z = 1 / (1 - eta)^2, scaled-particle theory (Helfand and others 1961; recalled); to 4 %."""
     return 1.0 / (1.0 - checked_packing_fraction(packing_fraction, STABLE_DISCS)) ** 2
 
 
@@ -98,7 +98,7 @@ def liu(packing_fraction):
     """Discs, stable fluid: Z = (1 + eta^2/8 + eta^3/18 - 4 eta^4/21) / (1 - eta)^2 (Liu 2021, Mol. Phys.).
 
     Literature through SklogWiki, which prints eta^4/18; the power 3 is the one that agrees with the virial
-    series and with the tabulated values (tested). Within 2e-4 of the virial reference up to eta = 0.4, 1e-3
+    series and with the tabulated values (tested). Within 3e-4 of the virial reference up to eta = 0.4, 1e-3
     up to 0.7.
     """
     eta = checked_packing_fraction(packing_fraction, STABLE_DISCS)

@@ -1,0 +1,59 @@
+# make            set up, reproduce every figure, write results/report.html
+# make test       set up, run all tests (a small copy of the whole workflow among them)
+# make check-all  the linters, the tests, and a thousand new random scenes for each property
+# make smoke      all figures, small
+# make lint | report | clean | distclean
+#
+# Needs Python 3.11 or later with venv and pip, and make. Everything else is installed into .venv.
+
+SHELL := /bin/bash
+.DELETE_ON_ERROR:
+.DEFAULT_GOAL := all
+.PHONY: all setup test check-all smoke lint report clean distclean
+
+PYTHON ?= $(shell command -v python3.11 || command -v python3)
+CORES ?= all
+PIP = .venv/bin/python -m pip --quiet --disable-pip-version-check
+SNAKEMAKE = .venv/bin/python -m snakemake --cores $(CORES)
+
+all: setup
+	$(SNAKEMAKE) --quiet rules
+	@echo "done: results/report.html"
+
+setup: .venv/gaspart.stamp
+
+.venv/environment.stamp: environment.txt
+	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
+		|| { echo "gaspart needs Python 3.11 or later: make PYTHON=/path/to/python3.11" >&2; exit 2; }
+	"$(PYTHON)" -m venv --clear .venv
+	$(PIP) install --require-hashes --requirement environment.txt
+	@touch $@
+
+# Nothing unlocked gets in: no dependencies, no build tools from the network.
+.venv/gaspart.stamp: .venv/environment.stamp pyproject.toml
+	$(PIP) install --no-deps --no-build-isolation --editable .
+	@touch $@
+
+test: setup
+	.venv/bin/python -m pytest
+
+check-all: lint test
+	.venv/bin/python -m pytest tests/engines tests/test_contact.py tests/test_initial.py --hypothesis-profile=search
+
+smoke: setup
+	$(SNAKEMAKE) --quiet rules --configfile config/smoke.yaml
+
+lint: setup
+	.venv/bin/python -m ruff check .
+	.venv/bin/python -m ruff format --check .
+	.venv/bin/python -m snakefmt --check Snakefile workflow
+	.venv/bin/python -m snakemake --lint
+
+report: setup
+	$(SNAKEMAKE) report --quiet rules
+
+clean:
+	rm -rf results .snakemake
+
+distclean: clean
+	rm -rf .venv .pytest_cache .ruff_cache .hypothesis src/*.egg-info

@@ -1,0 +1,63 @@
+"""Time correlations of one run's displacements and velocities, averaged over bodies and time origins."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Time correlations of one replica at L lags, in reduced units, (L,) each.
+
+    time; msd <|r(t) - r(0)|^2>; correlation <v(0).v(t)> / d; running, the msd's derivative over 2d, from
+    <(r(t) - r(0)).(v(t) + v(0))> / 2d, which holds at every lag.
+    """
+
+    time: np.ndarray
+    msd: np.ndarray
+    correlation: np.ndarray
+    running: np.ndarray
+
+
+def correlate(displacements: np.ndarray, velocities: np.ndarray, interval: float, lags: int) -> Curves:
+    """Averages over bodies and all time origins at lags 0 ... `lags` - 1 of `interval`.
+
+    displacements, velocities: (T, N, d), evenly sampled. In double precision throughout: freud's windowed
+    mean-squared displacement is the same average, but rounds positions to single precision first.
+    Raises ValueError for more lags than frames.
+    """
+    frames, count, dimension = displacements.shape
+    if not 1 <= lags <= frames:
+        raise ValueError(f"lags: {lags} (must be between 1 and the {frames} frames)")
+    r = np.asarray(displacements, dtype=float).reshape(frames, -1)
+    v = np.asarray(velocities, dtype=float).reshape(frames, -1)
+    # Sums over bodies and axes for every pair of frames at once; a lag is a diagonal of these T x T matrices.
+    rr, rv, vv = r @ r.T, r @ v.T, v @ v.T
+    square, product = np.diag(rr), np.diag(rv)
+    msd, correlation, running = np.empty(lags), np.empty(lags), np.empty(lags)
+    for lag in range(lags):
+        late, early = slice(lag, frames), slice(0, frames - lag)
+        pairs = (frames - lag) * count
+        msd[lag] = (square[late] + square[early] - 2.0 * np.diag(rr, lag)).sum() / pairs
+        correlation[lag] = np.diag(vv, lag).sum() / (pairs * dimension)
+        crossed = np.diag(rv, -lag) - np.diag(rv, lag)
+        running[lag] = (product[late] - product[early] + crossed).sum() / (2 * dimension * pairs)
+    return Curves(interval * np.arange(lags), msd, correlation, running)
+
+
+def centred(values: np.ndarray) -> np.ndarray:
+    """(T, N, d) about the mean over the N bodies of each frame."""
+    return values - values.mean(axis=1, keepdims=True)
+
+
+def between(time: np.ndarray, start: float, stop: float) -> np.ndarray:
+    """Mask of the times from `start` to `stop`, both included."""
+    return (time >= start * (1.0 - 1e-9)) & (time <= stop * (1.0 + 1e-9))
+
+
+def line(x: np.ndarray, y: np.ndarray) -> float:
+    """Slope of the least-squares line; NaN through fewer than four points."""
+    return float(np.polyfit(x, y, 1)[0]) if len(x) >= 4 else math.nan

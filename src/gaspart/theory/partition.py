@@ -1,0 +1,74 @@
+"""What a partition into boxes costs in a dilute gas between walls: expected counts, and the ideal number.
+
+A cubic (square) container of side L is divided into n boxes a side; bodies are kept in the box of their
+centre, and every pair of bodies in the same or in neighbouring boxes is tested once. All formulas are exact
+for centres that are uniform in [r, L - r] and independent but for one thing: no two are closer than a
+diameter (first order in the density, so for packing fractions below some 0.05).
+"""
+
+import math
+
+import numpy as np
+
+from ._arguments import checked_dimension
+
+
+def _shares(per_side, side, radius):
+    """(n,) Chance that a coordinate, uniform between the walls, lies in each of the n boxes."""
+    edges = np.linspace(0.0, side, per_side + 1)
+    return np.diff(np.clip(edges, radius, side - radius)) / (side - 2.0 * radius)
+
+
+def _moments(per_side, side, radius):
+    """Along one axis: mean over a body's place of (boxes in its neighbourhood, its share, its share squared).
+
+    The share of a neighbourhood is the chance that another body is in it.
+    """
+    if not (per_side >= 1 and side > 2.0 * radius >= 0.0):
+        raise ValueError(
+            f"per_side, side, radius: {per_side}, {side}, {radius} (at least one box, room to move)"
+        )
+    own = _shares(per_side, side, radius)
+    near = np.convolve(own, np.ones(3))[1:-1]
+    boxes = np.convolve(np.ones(per_side), np.ones(3))[1:-1]
+    return np.array([own @ boxes, own @ near, own @ near**2])
+
+
+def expected_pair_tests(count, per_side, dimension, side, radius):
+    """Mean and standard deviation (over random places of the bodies) of the pairs tested in one search.
+
+    The mean is N(N-1)/2 times the chance that two bodies are neighbours, exactly N(N-1)/2 for one box; the
+    variance is that of a sum over pairs of independent bodies (Hoeffding 1948; exact for points).
+    """
+    _, share, square = _moments(per_side, side, radius) ** checked_dimension(dimension)
+    ball = math.pi if dimension == 2 else 4.0 / 3.0 * math.pi
+    excluded = ball * (2.0 * radius) ** dimension / (side - 2.0 * radius) ** dimension
+    pairs = 0.5 * count * (count - 1.0)
+    mean = pairs * (share - excluded) / (1.0 - excluded)
+    variance = pairs * (share - share**2) + 2.0 * pairs * max(count - 2.0, 0.0) * (square - share**2)
+    return mean, math.sqrt(max(variance, 0.0))
+
+
+def neighbour_share(per_side, dimension, side, radius):
+    """(n,) Chance that two bodies lie in the same box or in neighbouring ones, for `per_side` (n,)."""
+    return np.array([_moments(int(n), side, radius)[1] for n in per_side]) ** checked_dimension(dimension)
+
+
+def expected_box_visits(per_side, dimension, side, radius):
+    """Mean number of boxes that one body looks into: its own, and half of the others around it."""
+    boxes, _, _ = _moments(per_side, side, radius) ** checked_dimension(dimension)
+    return 0.5 * (1.0 + boxes)
+
+
+def boxes_in_reach(width, reach, dimension):
+    """Mean number of boxes of side `width` that a cube of half side `reach` around a random point meets."""
+    return (1.0 + 2.0 * np.asarray(reach) / width) ** checked_dimension(dimension)
+
+
+def ideal_boxes_per_body(test_cost, box_cost, dimension):
+    """Boxes per body at which a step costs least, if a pair test and a box cost what is given (same unit).
+
+    With M boxes and N bodies, away from the walls, there are 3^d N / (2 M) tests per body, while every box
+    must be emptied in every step. The sum of both is least at M / N = sqrt(3^d c_test / (2 c_box)).
+    """
+    return np.sqrt(0.5 * 3.0 ** checked_dimension(dimension) * np.asarray(test_cost) / box_cost)

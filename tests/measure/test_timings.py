@@ -1,0 +1,58 @@
+"""Fits of costs, on costs that are known."""
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from gaspart.measure import timings
+
+BODY, TEST, BOX = 30e-9, 12e-9, 0.3e-9
+IDEAL = math.sqrt(13.5 * TEST / BOX)
+
+
+def costs(boxes, noise=0.0, seed=0):
+    """`per_body` costs of a gas whose pair tests and boxes cost what is given."""
+    rng = np.random.default_rng(seed)
+    boxes = np.asarray(boxes, dtype=float)
+    seconds = (BODY + TEST * 13.5 / boxes + BOX * boxes) * (1.0 + noise * rng.standard_normal(boxes.size))
+    columns = {"boxes_per_body": boxes, "seconds": seconds, "pair_tests": 13.5 / boxes}
+    columns["seconds_error"] = noise * seconds
+    return xr.Dataset({name: ("partition", values) for name, values in columns.items()})
+
+
+def test_median_ignores_a_disturbed_repeat():
+    value, error = timings.median(np.array([[1.0, 1.01, 0.99, 1.0, 50.0]]))
+    assert value[0] == 1.0
+    assert error[0] < 0.02
+
+
+def test_the_ideal_number_is_found_both_ways():
+    found = timings.ideal(costs(np.geomspace(1.0, 300.0, 14), noise=0.01), 3)
+    assert found["ideal_interior"]
+    assert found["ideal"] == pytest.approx(IDEAL, rel=0.25)
+    assert found["model_low"] < IDEAL < found["model_high"]
+    assert found["model"] == pytest.approx(IDEAL, rel=0.1)
+    assert found["test_seconds"] == pytest.approx(TEST, rel=0.1)
+
+
+def test_a_minimum_beyond_the_scan_is_not_claimed():
+    found = timings.ideal(costs(np.geomspace(0.5, 8.0, 6)), 3)
+    assert not found["ideal_interior"]
+    assert math.isinf(found["ideal_high"])
+
+
+def test_penalty():
+    boxes = np.geomspace(1.0, 256.0, 9)
+    made = costs(boxes)
+    ratio, _ = timings.penalty(made, 4.0)
+    assert ratio == pytest.approx(float(made.seconds[2] / made.seconds.min()))
+    assert timings.penalty(made, float(made.boxes_per_body[made.seconds.argmin("partition")]))[0] == 1.0
+    assert math.isnan(timings.penalty(made, 300.0)[0])
+
+
+def test_weights():
+    tests, bodies = np.array([10.0, 100.0, 1000.0]), np.array([5.0, 15.0, 45.0])
+    fit = timings.weights(2.0 * bodies + 3.0 * tests, 1e-3 * tests, bodies, tests)
+    assert fit.values == pytest.approx([2.0, 3.0])

@@ -1,0 +1,61 @@
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from gaspart import theory
+
+
+def test_erpenbeck_wood_reproduces_the_table(table):
+    rows = table("enskog_3d")
+    computed = theory.erpenbeck_wood_diffusion(rows["packing_fraction"])
+    np.testing.assert_allclose(computed, rows["diffusion_erpenbeck_wood"], rtol=1e-5)
+    assert theory.erpenbeck_wood_ratio(0.0) == 1.0
+
+
+def test_yeh_hummer_at_the_stated_scene():
+    # 15 % of D at N = 256, rho = 0.7.
+    density, count = 0.7, 256
+    eta = theory.packing_fraction(density, 3)
+    length = (count / density) ** (1.0 / 3.0)
+    shift = theory.yeh_hummer(length, theory.enskog_viscosity(eta, 3))
+    assert shift / theory.erpenbeck_wood_diffusion(eta) == pytest.approx(0.15, abs=0.02)
+    assert theory.yeh_hummer(2 * length, 1.0) == pytest.approx(0.5 * theory.yeh_hummer(length, 1.0))
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_decay_rate_is_the_first_sonine_approximation_of_diffusion(dimension):
+    rate = theory.velocity_decay_rate(0.2, dimension, diameter=0.5, temperature=2.0, mass=3.0)
+    first = 2.0 / (3.0 * rate)
+    sonine = theory.enskog_diffusion(0.2, dimension, 0.5, 2.0, 3.0) / first
+    assert sonine == pytest.approx({2: 1.02710, 3: 1.01895}[dimension], rel=1e-12)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_mean_squared_displacement_is_ballistic_then_diffusive(dimension):
+    eta, temperature, mass, diameter = 0.05, 2.0, 3.0, 0.5
+    arguments = (eta, dimension, diameter, temperature, mass)
+    diffusion = theory.enskog_diffusion(*arguments)
+    free_time = mass * diffusion / temperature
+    short, long = 1e-5 * free_time, 1e5 * free_time
+    ballistic = dimension * temperature / mass * short**2
+    assert theory.enskog_mean_squared_displacement(short, *arguments) == pytest.approx(ballistic, rel=1e-5)
+    diffusive = 2.0 * dimension * diffusion * long
+    assert theory.enskog_mean_squared_displacement(long, *arguments) == pytest.approx(diffusive, rel=2e-5)
+    assert theory.enskog_mean_squared_displacement(0.0, *arguments) == 0.0
+    # Across the switch between the series and the closed form.
+    times = free_time * np.array([0.99e-3, 1.01e-3])
+    values = theory.enskog_mean_squared_displacement(times, *arguments)
+    assert values[1] / values[0] == pytest.approx((1.01 / 0.99) ** 2 * (1 - 2e-5 / 3.0), rel=1e-7)
+
+
+def test_logarithmic_slope_is_the_integral_of_the_tail():
+    eta, temperature, mass, diameter = 0.2, 2.0, 3.0, 0.5
+    arguments = (eta, 2, diameter, temperature, mass)
+    integral = quad(lambda t: theory.velocity_autocorrelation_tail(t, *arguments), 10.0, 10.0 * np.e)[0]
+    slope = theory.logarithmic_slope(eta, diameter, temperature, mass)
+    assert temperature / mass * integral == pytest.approx(slope, rel=1e-8)
+
+
+def test_tail_of_spheres_falls_with_the_power_three_halves():
+    tail = theory.velocity_autocorrelation_tail(np.array([10.0, 40.0]), 0.3, 3)
+    assert tail[0] / tail[1] == pytest.approx(8.0)

@@ -1,0 +1,167 @@
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from gaspart import theory
+
+EQUATIONS = {
+    2: ["scaled_particle", "henderson", "santos_haro_yuste", "liu"],
+    3: [
+        "carnahan_starling",
+        "kolafa_1986",
+        "kolafa_labik_malijevsky",
+        "percus_yevick_virial",
+        "percus_yevick_compressibility",
+    ],
+}
+NAMED = [(dimension, name) for dimension, names in EQUATIONS.items() for name in names]
+
+
+def coefficients_of(function, order):
+    """Taylor coefficients at 0, by a polynomial through Chebyshev points of a short interval."""
+    eta = 0.1 * (1.0 - np.cos(np.pi * (np.arange(40) + 0.5) / 40)) / 2.0
+    fit = np.polynomial.Polynomial.fit(eta, function(eta), 14).convert()
+    return fit.coef[:order]
+
+
+@pytest.mark.parametrize(("dimension", "name"), NAMED)
+def test_equations_reproduce_the_table(dimension, name, table):
+    rows = table(f"eos_{dimension}d")
+    np.testing.assert_allclose(getattr(theory, name)(rows["packing_fraction"]), rows[name], rtol=5e-7)
+
+
+@pytest.mark.parametrize(("dimension", "name"), NAMED)
+def test_equations_have_the_exact_second_and_nearly_the_third_coefficient(dimension, name):
+    series = coefficients_of(getattr(theory, name), 3)
+    exact, _ = theory.virial_coefficients(dimension)
+    np.testing.assert_allclose(series[:2], exact[:2], rtol=1e-5)
+    assert series[2] == pytest.approx(exact[2], rel=0.05)
+
+
+def test_discs_reference_reproduces_the_table(table):
+    rows = table("eos_2d")
+    computed = theory.compressibility_factor(rows["packing_fraction"], 2)
+    np.testing.assert_allclose(computed, rows["virial_with_tail"], rtol=5e-6)
+
+
+def test_spheres_reference_gives_the_virial_coefficients_to_b6():
+    # The fit's claim: B2 to B6 reproduced. x = eta / (1 - eta) expanded to fifth order.
+    x = np.array([0.0, 1.0, 1.0, 1.0, 1.0, 1.0])
+    series, power = np.zeros(6), np.eye(6)[0]
+    for coefficient in (1.0, 4.0, 6.0, 2.3647684, -0.8698551, 1.1062803):
+        series += coefficient * power
+        power = np.convolve(power, x)[:6]
+    exact, uncertainty = theory.virial_coefficients(3, 6)
+    assert np.all(np.abs(series - exact) <= 3.0 * uncertainty + 1e-6)
+    eta = np.array([0.01, 0.05])
+    computed = theory.compressibility_factor(eta, 3)
+    np.testing.assert_allclose(computed, theory.partial_sum(eta, 10, 3), rtol=1e-8)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_uncertainty_covers_the_virial_series_where_that_is_sharp(dimension):
+    eta = np.linspace(0.0, 0.2, 41)
+    reference = theory.compressibility_factor(eta, dimension)
+    uncertainty = theory.compressibility_uncertainty(eta, dimension)
+    shift = np.abs(reference - theory.partial_sum(eta, 10, dimension))
+    assert np.all(shift <= uncertainty + 1e-14)
+    assert np.all(uncertainty <= 1e-5 * reference)
+
+
+def test_uncertainty_is_below_what_the_figures_ask_for():
+    assert theory.compressibility_uncertainty(0.3, 2) < 1e-4 * theory.compressibility_factor(0.3, 2)
+    assert theory.compressibility_uncertainty(0.65, 2) < 1e-3 * theory.compressibility_factor(0.65, 2)
+    assert theory.compressibility_uncertainty(0.49, 3) < 3e-5 * theory.compressibility_factor(0.49, 3)
+
+
+def test_reference_tells_itself_from_carnahan_starling():
+    eta = np.array([0.2, 0.3, 0.4])
+    reference = theory.compressibility_factor(eta, 3)
+    low = 1.0 - theory.carnahan_starling(eta) / reference
+    np.testing.assert_allclose(low, [0.0013, 0.0026, 0.0028], atol=2e-4)
+    assert np.all(low * reference > 50 * theory.compressibility_uncertainty(eta, 3))
+
+
+def test_van_der_waals_is_exact_to_b2_only():
+    for dimension in (2, 3):
+        exact, _ = theory.virial_coefficients(dimension)
+        series = coefficients_of(lambda eta, d=dimension: theory.van_der_waals(eta, d), 3)
+        assert series[1] == pytest.approx(exact[1], rel=1e-4)
+        assert series[2] == pytest.approx(exact[1] ** 2, rel=1e-2)
+    with pytest.raises(ValueError, match="packing_fraction"):
+        theory.van_der_waals(0.25, 3)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_contact_value_is_one_in_the_dilute_limit_and_continuous(dimension):
+    exact, _ = theory.virial_coefficients(dimension)
+    assert theory.contact_value(0.0, dimension) == 1.0
+    assert theory.contact_value(1e-8, dimension) == pytest.approx(1.0, abs=1e-6)
+    slope = (theory.contact_value(1e-4, dimension) - 1.0) / 1e-4
+    assert slope == pytest.approx(exact[2] / exact[1], rel=1e-3)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_finite_size_correction_has_the_exact_first_order(dimension):
+    # N (N - 1) / 2 pairs: B2 of the canonical ensemble carries the factor (N - 1) / N, at every N.
+    count, eta = 50, 1e-3
+    second = 2.0 ** (dimension - 1)
+    canonical = theory.finite_size_correction(eta, dimension, count, "canonical")
+    assert canonical == pytest.approx(-second * eta / count, rel=5e-3)
+    dynamics = theory.finite_size_correction(eta, dimension, count, "dynamics")
+    assert abs(dynamics) < 5e-3 * abs(canonical)
+
+
+def test_finite_size_formula_is_exact_for_rods_on_a_ring():
+    # Q_N = V (V - N sigma)^(N-1) / N!, so P_N = 1/V + (N-1) / (V - N sigma); bulk: P = rho / (1 - rho sigma).
+    count, volume = 7, 20.0
+    density = count / volume
+    exact = 1.0 / volume + (count - 1.0) / (volume - count)
+    first, second = (1.0 - density) ** -2, 2.0 * (1.0 - density) ** -3
+    bulk = density / (1.0 - density)
+    assert bulk - density / (2.0 * volume) * second / first == pytest.approx(exact, rel=1e-12)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_finite_size_correction_agrees_with_the_derivatives_of_the_series(dimension):
+    # Independent evaluation: exact derivatives of the polynomial to B10, where that is enough.
+    coefficients, _ = theory.virial_coefficients(dimension)
+    pressure = np.polynomial.Polynomial(np.concatenate([[0.0], coefficients]))
+    eta, count = 0.1, 200
+    expected = -eta / (2.0 * count) * pressure.deriv(2)(eta) / pressure.deriv(1)(eta)
+    computed = theory.finite_size_correction(eta, dimension, count, "canonical")
+    assert computed == pytest.approx(expected, rel=1e-5)
+
+
+def test_finite_size_correction_refuses_nonsense():
+    with pytest.raises(ValueError, match="ensemble"):
+        theory.finite_size_correction(0.1, 2, 100, "grand")
+    with pytest.raises(ValueError, match="count"):
+        theory.finite_size_correction(0.1, 2, 1)
+
+
+def test_the_reference_ends_where_the_fluid_does():
+    for dimension, beyond in ((2, 0.71), (3, 0.55)):
+        with pytest.raises(ValueError, match="packing_fraction"):
+            theory.compressibility_factor(beyond, dimension)
+    with pytest.raises(ValueError, match="packing_fraction"):
+        theory.compressibility_factor(-0.1, 3)
+
+
+def test_density_and_packing_fraction_are_inverse():
+    assert theory.body_volume(2, 2.0) == pytest.approx(np.pi)
+    assert theory.body_volume(3, 2.0) == pytest.approx(4.0 / 3.0 * np.pi)
+    density = theory.number_density(0.3, 3, 0.4)
+    assert theory.packing_fraction(density, 3, 0.4) == pytest.approx(0.3, rel=1e-15)
+    assert theory.number_density(theory.CLOSE_PACKING[3], 3) == pytest.approx(np.sqrt(2.0))
+
+
+def test_importing_theory_loads_nothing_heavy():
+    code = (
+        "import sys; from gaspart import theory; theory.compressibility_factor(0.3, 2); theory.relaxation(3);"
+        "print([m for m in ('scipy', 'pandas', 'xarray', 'numba', 'matplotlib') if m in sys.modules])"
+    )
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert out.stdout.strip() == "[]"

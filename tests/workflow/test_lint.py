@@ -1,0 +1,20 @@
+"""The workflow's own linters."""
+
+import subprocess
+import sys
+
+import pytest
+from workspace import ROOT, SMOKE
+
+pytestmark = pytest.mark.workflow
+
+
+def test_snakemake_finds_nothing_to_complain_about(fresh):
+    result = fresh.snakemake("--lint", *SMOKE)
+    assert result.returncode == 0, result.stdout
+
+
+def test_the_rules_are_formatted():
+    command = [sys.executable, "-m", "snakefmt", "--check", "Snakefile", "workflow"]
+    result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert result.returncode == 0, result.stderr

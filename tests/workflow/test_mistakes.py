@@ -1,0 +1,44 @@
+"""A user's mistake, as Snakemake tells it: one line, exit code 2, nothing written."""
+
+import pytest
+from workspace import SMOKE
+
+pytestmark = pytest.mark.workflow
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("experiments: {virial_discs: {point: {mass: -1}}}", "experiments.virial_discs.point.mass = -1"),
+        ("experiments: {virial_discs: {point: {mass: .nan}}}", "experiments.virial_discs.point.mass = nan"),
+        ("experiments: {virial_discs: {point: {maas: 1}}}", "experiments.virial_discs.point.maas = 1"),
+        ("experiments: {virial_discs: {grid: {packing_fraction: []}}}", "must not be empty"),
+    ],
+)
+def test_a_bad_config_is_one_line_that_names_the_file(fresh, tmp_path, text, told):
+    bad = tmp_path / "bad.yaml"
+    bad.write_text(text)
+    result = fresh.snakemake("--cores", "1", *SMOKE, str(bad))
+    lines = [
+        line for line in result.stdout.splitlines() if not line.startswith(("Using work", "Config file"))
+    ]
+    assert result.returncode == 2
+    assert len(lines) == 1
+    assert lines[0].startswith(f"gaspart: {bad}: ")
+    assert told in lines[0]
+    assert not (fresh.path / "results").exists()
+
+
+def test_what_only_a_job_can_find_out_is_one_line_in_its_log(fresh, tmp_path):
+    """Random insertion beyond saturation: the workflow fails, the log says why, and no output is left."""
+    bad = tmp_path / "full.yaml"
+    dense = "{point: {arrangement: random, count: 64}, grid: {packing_fraction: [0.6]}}"
+    bad.write_text(f"experiments: {{virial_discs: {dense}}}")
+    target = "results/smoke/points/virial_discs/packing_fraction=0.6"
+    result = fresh.snakemake("--cores", "1", *SMOKE, str(bad), "--", target)
+    assert result.returncode != 0
+    log = (fresh.path / "results/logs/simulate/virial_discs/packing_fraction=0.6.log").read_text()
+    assert log.splitlines()[-1].startswith("gaspart: simulate")
+    assert "does not fit by random insertion" in log
+    assert "Traceback" not in log
+    assert not (fresh.path / target).exists()

@@ -1,0 +1,55 @@
+"""The small workflow, all of it: figures, claims with verdicts, the report, and the physics bit for bit."""
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+from digests import digests
+
+from gaspart.families import FAMILIES
+from gaspart.files import read_yaml
+
+pytestmark = pytest.mark.workflow
+
+ROOT = Path(__file__).parents[2]
+FIGURES = list(read_yaml(ROOT / "config/config.yaml")["figures"])
+
+
+def test_every_figure_of_the_table_is_in_the_config():
+    assert set(FIGURES) == set(FAMILIES)
+
+
+@pytest.mark.parametrize("figure", FIGURES)
+def test_every_figure_is_drawn_twice_and_has_a_claim_with_a_verdict(smoke, figure):
+    results = smoke.path / "results"
+    png = (results / f"figures/{figure}.png").read_bytes()
+    assert png.startswith(b"\x89PNG")
+    assert len(png) > 5_000
+    assert "<svg" in (results / f"figures/{figure}.svg").read_text()
+    with (results / "tables/claims.csv").open(newline="") as file:
+        claims = [row for row in csv.DictReader(file) if row["figure"] == figure]
+    assert claims
+    for claim in claims:
+        assert claim["verdict"] in ("agrees", "disagrees", "inconclusive")
+        assert claim["kind"] in ("test", "identity", "reproduction")
+        assert claim["fails_if"]
+
+
+def test_the_report_holds_every_figure_and_needs_no_other_file(smoke):
+    page = (smoke.path / "results/report.html").read_text()
+    for figure in FIGURES:
+        assert f'<section id="{figure}">' in page
+    assert 'src="data:image/svg+xml;base64,' in page
+    assert "http://" not in page.split("</style>")[1].split("data:image")[0]
+    assert 'name="viewport"' in page
+
+
+def test_nothing_half_written_is_left(smoke):
+    assert not list((smoke.path / "results").rglob("*.partial"))
+
+
+def test_the_simulations_are_these_bits(smoke):
+    """Made anew by: python tests/workflow/digests.py results/smoke/points > tests/workflow/digests.json"""
+    known = json.loads((Path(__file__).parent / "digests.json").read_text())
+    assert digests(smoke.path / "results/smoke/points") == known

@@ -1,0 +1,63 @@
+"""A copy of the project in another folder, and what Snakemake plans and does there."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+PARTS = ["Snakefile", "config", "profiles", "src", "workflow"]
+SMOKE = ["--configfile", "config/smoke.yaml"]
+
+
+@dataclass
+class Workspace:
+    """A checkout in which the workflow can be run and changed."""
+
+    path: Path
+
+    def snakemake(self, *arguments):
+        """Run Snakemake here; the result with its output, whatever it exits with."""
+        # The copy's own modules are to be used, wherever the installed ones are.
+        environment = {**os.environ, "PYTHONPATH": str(self.path / "src")}
+        return subprocess.run(
+            [sys.executable, "-m", "snakemake", *arguments],
+            cwd=self.path,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+
+    def plan(self, *arguments):
+        """The jobs that a dry run would start: {rule: number}."""
+        result = self.snakemake("--dry-run", "--cores", "2", *arguments)
+        assert result.returncode == 0, result.stdout
+        table = re.search(r"^Job stats:\n(.*?)^total", result.stdout, re.MULTILINE | re.DOTALL)
+        if table is None:
+            assert "Nothing to be done" in result.stdout
+            return {}
+        rows = re.findall(r"^(\w+) +(\d+)$", table[1], re.MULTILINE)
+        return {rule: int(number) for rule, number in rows}
+
+    def edit(self, path, old, new):
+        """Replace text in a file of this copy; returns a function that puts it back."""
+        file = self.path / path
+        before = file.read_text()
+        assert old in before
+        file.write_text(before.replace(old, new, 1))
+        return lambda: file.write_text(before)
+
+
+def copy_of_project(path):
+    for part in PARTS:
+        source = ROOT / part
+        if source.is_dir():
+            shutil.copytree(source, path / part, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
+        else:
+            shutil.copy2(source, path / part)
+    return Workspace(path)

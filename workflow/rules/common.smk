@@ -1,0 +1,156 @@
+# What the rules share: the checked config, the points of its grids, and which modules each stage is made of.
+
+import hashlib
+import os
+import shlex
+import sys
+from functools import cache
+from pathlib import Path
+
+ROOT = Path(workflow.basedir)
+sys.path.insert(0, str(ROOT / "src"))
+# Snakemake writes its interpreter's path into shell commands without quotes: with a space in it, no job would start.
+if " " in sys.executable:
+    sys.executable = shlex.quote(sys.executable)
+
+from gaspart import grid
+from gaspart.config import check
+from gaspart.errors import SceneError
+from gaspart.families import FAMILIES, TITLES
+from gaspart.variants import variant
+
+try:
+    files = ["config/config.yaml", *workflow.overwrite_configfiles]
+    check(config, str(ROOT / "workflow/schemas/config.schema.yaml"), [str(name) for name in files])
+except SceneError as error:
+    # A user's mistake: one line and exit code 2, instead of a WorkflowError with its place in this file.
+    print(f"gaspart: {error}", file=sys.stderr)
+    sys.exit(2)
+
+FIGURES = [figure for figure in FAMILIES if figure in config["figures"]]
+POINTS = {
+    experiment: {point.name: point for point in grid.points(config, experiment)}
+    for experiment in config["experiments"]
+}
+
+
+def experiments(job):
+    """A pattern that matches the experiments made by one kind of job, and nothing if there are none."""
+    names = [name for name, block in config["experiments"].items() if block.get("job", "simulate") == job]
+    return "|".join(names) or "(?!)"
+
+
+def point_of(wildcards):
+    return POINTS[wildcards.experiment][wildcards.point]
+
+
+def recipe_of(wildcards):
+    return grid.recipe(point_of(wildcards))
+
+
+def figure_points(wildcards):
+    return grid.figure_points(config, wildcards.figure)
+
+
+def family(wildcards):
+    return FAMILIES[wildcards.figure]
+
+
+def memory_of(wildcards):
+    """MB for one simulation: the interpreter, and what each body costs."""
+    return 800 + grid.extents(point_of(wildcards))[0] // 1000
+
+
+def caption_of(wildcards):
+    return (ROOT / f"workflow/report/{wildcards.figure}.rst").read_text(encoding="utf-8")
+
+
+def flagged(path, kind):
+    """A figure that `snakemake --report` shows too, under its family, with its caption."""
+    return report(
+        path,
+        caption="../report/figure.rst",
+        category=lambda wildcards: TITLES[family(wildcards)],
+        subcategory="{figure}",
+        labels={"figure": "{figure}", "type": kind},
+    )
+
+
+# The modules of gaspart that each stage uses are inputs of its rules: editing one reruns what it touches.
+# `{family}` stands for the family of a figure, `*` for every module of a package; FAMILY_MODULES are what single
+# families use beside. tests/workflow/test_modules.py compares these tables with the import graph of the scripts.
+SCENE = ["__init__", "errors", "files", "scene"]
+ENGINES = [
+    "boxes",
+    "contact",
+    "engines/*",
+    "initial",
+    "insertion",
+    "kernel",
+    "random",
+    "simulation",
+    "state",
+    "tally",
+]
+TRAJECTORY = ["amber", "checkpoint", "provenance", "recipe", "recording", "trajectory"]
+SIMULATE = [*SCENE, *ENGINES, *TRAJECTORY]
+THEORY = ["theory/*", "theory/data/*.csv"]
+CLAIMS = ["__init__", "errors", "files", "claims/__init__"]
+MODULES = {
+    "simulate": SIMULATE,
+    "measure_cost": [*SCENE, *ENGINES, "measure/__init__", "measure/cost"],
+    "fill": [*SCENE, "boxes", "insertion", "kernel", "random", "measure/__init__", "measure/fill"],
+    "measure": [*SIMULATE, *THEORY, "grid", "measure/__init__", "measure/{family}", "statistics"],
+    "judge": [*CLAIMS, *THEORY, "claims/{family}"],
+    "claims": CLAIMS,
+    "draw": ["__init__", "errors", "files", *THEORY, "figures/__init__", "figures/style", "figures/{family}"],
+    "report": ["__init__", "errors", "families", "files", "provenance"],
+}
+FAMILY_MODULES = {
+    ("measure", "radius"): ["measure/pressure"],
+    ("measure", "displacement"): ["measure/correlations"],
+    ("measure", "virial"): ["measure/pressure"],
+    ("measure", "scaling"): ["measure/timings"],
+    ("judge", "displacement"): ["statistics"],
+    ("judge", "radius"): ["statistics"],
+    ("judge", "virial"): ["statistics"],
+}
+
+
+def module_files(stage, family=None):
+    """Paths of the modules of a stage, and of a family there."""
+    names = [name.format(family=family) for name in MODULES[stage] + FAMILY_MODULES.get((stage, family), [])]
+    patterns = [name if name.endswith(".csv") else f"{name}.py" for name in names]
+    source = ROOT / "src/gaspart"
+    found = [sorted(source.glob(pattern)) or [source / pattern] for pattern in patterns]
+    return [os.path.relpath(path, ROOT) for paths in found for path in paths]
+
+
+def modules_of(stage):
+    """The same for `input:`, where the figure is a wildcard."""
+    return lambda wildcards: module_files(stage, family(wildcards))
+
+
+# The modules among them whose code is compiled.
+KERNELS = ["boxes", "contact", "engines/*", "insertion", "kernel"]
+
+
+@cache
+def digest(job):
+    """A digest of the compiled modules that a job uses."""
+    names = [name for name in KERNELS if name in MODULES[job]]
+    paths = [path for name in names for path in sorted((ROOT / "src/gaspart").glob(f"{name}.py"))]
+    return hashlib.sha256(b"".join(path.read_bytes() for path in paths)).hexdigest()[:12]
+
+
+def stamp_of(wildcards):
+    point = point_of(wildcards)
+    return f"results/kernels/{digest(point.job)}/{variant(point)}.stamp"
+
+
+wildcard_constraints:
+    experiment="[a-z][a-z0-9_]*",
+    point="[^/]+",
+    figure="|".join(FIGURES),
+    digest="[0-9a-f]+",
+    variant="[^/]+",

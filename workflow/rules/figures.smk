@@ -1,0 +1,52 @@
+# From numbers and curves to pictures, and from everything to one page.
+
+
+rule draw:
+    input:
+        dataset="results/measurements/{figure}.nc",
+        modules=modules_of("draw"),
+    output:
+        png=flagged("results/figures/{figure}.png", "png"),
+        svg=flagged("results/figures/{figure}.svg", "svg"),
+    log:
+        "results/logs/draw/{figure}.log",
+    benchmark:
+        "results/benchmarks/draw/{figure}.tsv"
+    conda:
+        "../envs/gaspart.yaml"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=10,
+    params:
+        family=family,
+        caption=caption_of,
+    script:
+        "../scripts/draw.py"
+
+
+rule report:
+    input:
+        figures=expand("results/figures/{figure}.svg", figure=FIGURES),
+        datasets=expand("results/measurements/{figure}.nc", figure=FIGURES),
+        captions=expand("workflow/report/{figure}.rst", figure=FIGURES),
+        claims="results/tables/claims.csv",
+        template="workflow/report/report.html.j2",
+        modules=module_files("report"),
+    output:
+        "results/report.html",
+    log:
+        "results/logs/report.log",
+    benchmark:
+        "results/benchmarks/report.tsv"
+    conda:
+        "../envs/gaspart.yaml"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        figures=FIGURES,
+        title=config["title"],
+    script:
+        "../scripts/report.py"

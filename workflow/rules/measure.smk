@@ -1,0 +1,73 @@
+# From simulations to numbers with uncertainties, and from numbers to verdicts: re-judging reruns no analysis.
+
+
+rule measure:
+    input:
+        points=lambda wildcards: [point.path for point in figure_points(wildcards)],
+        modules=modules_of("measure"),
+    output:
+        "results/measurements/{figure}.nc",
+    log:
+        "results/logs/measure/{figure}.log",
+    benchmark:
+        "results/benchmarks/measure/{figure}.tsv"
+    conda:
+        "../envs/gaspart.yaml"
+    threads: 1
+    resources:
+        mem_mb=4000,
+        runtime=30,
+    params:
+        family=family,
+        points=lambda wildcards: [point.to_dict() for point in figure_points(wildcards)],
+        settings=lambda wildcards: config["figures"][wildcards.figure],
+        title=config["title"],
+    script:
+        "../scripts/measure.py"
+
+
+rule judge:
+    input:
+        dataset="results/measurements/{figure}.nc",
+        modules=modules_of("judge"),
+    output:
+        "results/claims/{figure}.csv",
+    log:
+        "results/logs/judge/{figure}.log",
+    benchmark:
+        "results/benchmarks/judge/{figure}.tsv"
+    conda:
+        "../envs/gaspart.yaml"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        family=family,
+    script:
+        "../scripts/judge.py"
+
+
+rule claims:
+    input:
+        tables=expand("results/claims/{figure}.csv", figure=FIGURES),
+        modules=module_files("claims"),
+    output:
+        report(
+            "results/tables/claims.csv",
+            caption="../report/claims.rst",
+            category="Claims",
+            labels={"figure": "all", "type": "table"},
+        ),
+    log:
+        "results/logs/claims.log",
+    benchmark:
+        "results/benchmarks/claims.tsv"
+    conda:
+        "../envs/gaspart.yaml"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    script:
+        "../scripts/claims.py"

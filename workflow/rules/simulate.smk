@@ -1,0 +1,75 @@
+# One point of a grid is one job with one output: its replicas run inside it.
+# The stamps are `ancient`: kernels that are compiled anew change no result.
+
+
+rule simulate:
+    input:
+        kernels=lambda wildcards: ancient(stamp_of(wildcards)),
+        modules=module_files("simulate"),
+    output:
+        directory(f"{config['points']}/{{experiment}}/{{point}}"),
+    log:
+        "results/logs/simulate/{experiment}/{point}.log",
+    benchmark:
+        "results/benchmarks/simulate/{experiment}/{point}.tsv"
+    wildcard_constraints:
+        experiment=experiments("simulate"),
+    conda:
+        "../envs/gaspart.yaml"
+    threads: 1
+    resources:
+        mem_mb=memory_of,
+        runtime=120,
+    params:
+        recipe=recipe_of,
+    script:
+        "../scripts/simulate.py"
+
+
+# Timings claim all cores, so that nothing runs beside them.
+rule measure_cost:
+    input:
+        kernels=lambda wildcards: ancient(stamp_of(wildcards)),
+        modules=module_files("measure_cost"),
+    output:
+        f"{config['points']}/{{experiment}}/{{point}}.nc",
+    log:
+        "results/logs/measure_cost/{experiment}/{point}.log",
+    benchmark:
+        "results/benchmarks/measure_cost/{experiment}/{point}.tsv"
+    wildcard_constraints:
+        experiment=experiments("measure_cost"),
+    conda:
+        "../envs/gaspart.yaml"
+    threads: workflow.resource_settings.cores or 1
+    resources:
+        mem_mb=memory_of,
+        runtime=120,
+    params:
+        recipe=recipe_of,
+    script:
+        "../scripts/measure_cost.py"
+
+
+rule fill:
+    input:
+        kernels=lambda wildcards: ancient(stamp_of(wildcards)),
+        modules=module_files("fill"),
+    output:
+        f"{config['points']}/{{experiment}}/{{point}}.nc",
+    log:
+        "results/logs/fill/{experiment}/{point}.log",
+    benchmark:
+        "results/benchmarks/fill/{experiment}/{point}.tsv"
+    wildcard_constraints:
+        experiment=experiments("fill"),
+    conda:
+        "../envs/gaspart.yaml"
+    threads: 1
+    resources:
+        mem_mb=memory_of,
+        runtime=120,
+    params:
+        recipe=recipe_of,
+    script:
+        "../scripts/fill.py"

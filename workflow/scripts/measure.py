@@ -1,0 +1,25 @@
+"""All points of one figure, as numbers with uncertainties."""
+
+import json
+
+from _job import function, job
+
+with job(snakemake):
+    from gaspart import provenance
+    from gaspart.files import whole_file
+    from gaspart.grid import Point
+
+    figure = snakemake.wildcards.figure
+    points = [Point.from_dict(values) for values in snakemake.params.points]
+    settings = {key: value for key, value in snakemake.params.settings.items() if key != "experiments"}
+    dataset = function(f"gaspart.measure.{snakemake.params.family}", figure)(points, settings)
+    dataset.attrs.update(
+        figure=figure,
+        config=snakemake.params.title,
+        settings=json.dumps(snakemake.params.settings),
+        points="\n".join(point.path for point in points),
+        git_revision=provenance.git_revision(),
+        **provenance.versions(),
+    )
+    with whole_file(snakemake.output[0]) as partial:
+        dataset.to_netcdf(partial)

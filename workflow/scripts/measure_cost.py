@@ -1,0 +1,21 @@
+"""What one point costs: counted work and repeated timings, with nothing running beside it."""
+
+from _job import job
+
+with job(snakemake):
+    from gaspart.engines import engine_from_dict
+    from gaspart.files import whole_file
+    from gaspart.measure.cost import measure_cost
+    from gaspart.scene import Scene
+
+    recipe = snakemake.params.recipe
+    dataset = measure_cost(
+        Scene.from_dict(recipe["scene"]),
+        [engine_from_dict(engine) for engine in recipe["engines"]],
+        seed=tuple(recipe["seeds"][0]),
+        equilibration=recipe["equilibration"],
+        stretch=recipe["stretch"],
+        repeats=recipe["repeats"],
+    )
+    with whole_file(snakemake.output[0]) as partial:
+        dataset.to_netcdf(partial)

@@ -1,0 +1,106 @@
+"""One page with everything on it: figures, captions, claims, where they come from and what they took."""
+
+import base64
+import csv
+import json
+import os
+import platform
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+
+from _job import job
+
+TOOLS = ["numpy", "numba", "scipy", "xarray", "matplotlib", "snakemake"]
+
+
+def rows(path):
+    """A CSV or TSV file as a list of mappings."""
+    path = Path(path)
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file, delimiter="\t" if path.suffix == ".tsv" else ","))
+
+
+def html_of(rst):
+    """reStructuredText as HTML, without a page around it."""
+    from docutils.core import publish_parts
+
+    settings = {"file_insertion_enabled": False, "raw_enabled": False, "math_output": "MathML"}
+    return publish_parts(rst, writer="html5", settings_overrides=settings)["body"]
+
+
+def run_times(folder):
+    """Seconds of every rule: number of jobs, their sum, the longest."""
+    spent = {}
+    for path in sorted(Path(folder).rglob("*.tsv")):
+        rule = path.relative_to(folder).parts[0].removesuffix(".tsv")
+        spent.setdefault(rule, []).extend(float(row["s"]) for row in rows(path))
+    return [
+        {"rule": rule, "jobs": len(times), "total": sum(times), "longest": max(times)}
+        for rule, times in spent.items()
+    ]
+
+
+def number(text):
+    """A number as one reads it: five significant digits; what is no number stays as it is."""
+    try:
+        return f"{float(text):.5g}"
+    except ValueError:
+        return text
+
+
+def attributes(path):
+    """The attributes of a netCDF file, without loading it."""
+    from netCDF4 import Dataset
+
+    with Dataset(path) as file:
+        return {name: file.getncattr(name) for name in file.ncattrs()}
+
+
+with job(snakemake):
+    import jinja2
+
+    from gaspart import __version__, provenance
+    from gaspart.families import FAMILIES, TITLES
+    from gaspart.files import whole_file
+
+    claims = rows(snakemake.input.claims)
+    sections = {}
+    for figure, image, dataset, caption in zip(
+        snakemake.params.figures,
+        snakemake.input.figures,
+        snakemake.input.datasets,
+        snakemake.input.captions,
+        strict=True,
+    ):
+        made = attributes(dataset)
+        sections.setdefault(TITLES[FAMILIES[figure]], []).append(
+            {
+                "name": figure,
+                "image": base64.b64encode(Path(image).read_bytes()).decode(),
+                "caption": html_of(Path(caption).read_text(encoding="utf-8")),
+                "claims": [row for row in claims if row["figure"] == figure],
+                "settings": json.dumps(json.loads(made["settings"]), indent=1),
+                "points": made["points"].splitlines(),
+            }
+        )
+    verdicts = {}
+    for row in claims:
+        verdicts[row["verdict"]] = verdicts.get(row["verdict"], 0) + 1
+    template = Path(snakemake.input.template).read_text(encoding="utf-8")
+    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
+    environment.filters["number"] = number
+    text = environment.from_string(template).render(
+        title=snakemake.params.title,
+        sections=sections,
+        claims=claims,
+        verdicts=verdicts,
+        times=run_times("results/benchmarks"),
+        versions={"gaspart": __version__, "python": platform.python_version()}
+        | {name: version(name) for name in TOOLS},
+        machine=f"{platform.machine()}, {os.cpu_count()} processors, {platform.system()}",
+        revision=provenance.git_revision(),
+        made=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
+    )
+    with whole_file(snakemake.output[0]) as partial:
+        partial.write_text(text, encoding="utf-8")
