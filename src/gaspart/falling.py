@@ -70,7 +70,7 @@ def _root_between(c0, c1, c2, c3, c4, low, high):
         step = t - value / slope if slope != 0.0 else high
         if not (step > low and step < high) or abs(step - t) > 0.5 * (high - low):
             step = 0.5 * (low + high)
-        if step == t or step == low or step == high:
+        if step == t or step == low or step == high:  # noqa: SIM109 - compiled
             return step
         t = step
     return t

@@ -30,8 +30,8 @@ class Species:
     """`count` like bodies, placed by the program.
 
     Velocities are isotropic: of one fixed `speed`, or Maxwellian at `temperature`; with neither the bodies
-    start at rest. `arrangement` is "random" (sequential insertion) or "lattice". moment_of_inertia: by default
-    that of a uniform disc or sphere. A `fixed` body never moves: it has infinite mass.
+    start at rest. `arrangement` is "random" (sequential insertion) or "lattice". moment_of_inertia: by
+    default that of a uniform disc or sphere. A `fixed` body never moves: it has infinite mass.
     """
 
     count: int

@@ -111,7 +111,7 @@ class Scene:
         pull = vector("gravity", self.gravity, self.dimension)
         for component, periodic in zip(pull, self.container.periodic, strict=True):
             if component != 0.0 and periodic:
-                rule = "must not point along a periodic axis, where bodies would fall and gain energy for ever"
+                rule = "must not point along a periodic axis, where bodies would gain energy for ever"
                 raise SceneError("gravity", self.gravity, rule)
         settle(self, gravity=pull)
 

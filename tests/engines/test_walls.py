@@ -1,6 +1,7 @@
 """Interior walls: both sides, solid ends, any number, in any boxes; and what others get wrong."""
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -15,10 +16,8 @@ import gaspart as gp
 def events_of(scene, search, most, seed=1):
     sim = gp.Simulation(scene, gp.EventDriven(search), seed=seed)
     sim.record_events = True
-    try:
+    with suppress(gp.SimulationError):
         sim.advance(max_events=most, duration=1e3)
-    except gp.SimulationError:
-        pass
     return sim
 
 

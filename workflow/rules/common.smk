@@ -79,15 +79,17 @@ def flagged(path, kind):
 # The modules of gaspart that each stage uses are inputs of its rules: editing one reruns what it touches.
 # `{family}` stands for the family of a figure, `*` for every module of a package; FAMILY_MODULES are what single
 # families use beside. tests/workflow/test_modules.py compares these tables with the import graph of the scripts.
-SCENE = ["__init__", "errors", "files", "scene"]
+SCENE = ["__init__", "errors", "files", "matter", "scene", "validation"]
 ENGINES = [
     "boxes",
     "contact",
     "engines/*",
+    "falling",
     "initial",
     "insertion",
     "kernel",
     "random",
+    "segments",
     "simulation",
     "state",
     "tally",
@@ -99,7 +101,16 @@ CLAIMS = ["__init__", "errors", "files", "claims/__init__"]
 MODULES = {
     "simulate": SIMULATE,
     "measure_cost": [*SCENE, *ENGINES, "measure/__init__", "measure/cost"],
-    "fill": [*SCENE, "boxes", "insertion", "kernel", "random", "measure/__init__", "measure/fill"],
+    "fill": [
+        *SCENE,
+        "boxes",
+        "insertion",
+        "kernel",
+        "random",
+        "segments",
+        "measure/__init__",
+        "measure/fill",
+    ],
     "measure": [*SIMULATE, *THEORY, "grid", "measure/__init__", "measure/{family}", "statistics"],
     "judge": [*CLAIMS, *THEORY, "claims/{family}"],
     "claims": CLAIMS,
@@ -132,7 +143,7 @@ def modules_of(stage):
 
 
 # The modules among them whose code is compiled.
-KERNELS = ["boxes", "contact", "engines/*", "insertion", "kernel"]
+KERNELS = ["boxes", "contact", "engines/*", "falling", "insertion", "kernel", "segments"]
 
 
 @cache

@@ -154,10 +154,10 @@ class EventDynamics:
             elif done:
                 self._clock = max(self._clock, last)
             if reason == self._layout.COLLAPSE:
+                body, most, within = self._watch.contacts.argmax(), self._watch.most, self._watch.blink
                 raise SimulationError(
-                    f"at time {self.time:g} body {self._watch.contacts.argmax()} has had {self._watch.most} "
-                    f"contacts within a time of {self._watch.blink:g}: an inelastic collapse, or a stack at rest; "
-                    "the state is that of the present time"
+                    f"at time {self.time:g} body {body} has had {most} contacts within a time of {within:g}: "
+                    "an inelastic collapse, or a stack at rest; the state is that of the present time"
                 )
 
     def _run(self, room, stop: float, most: int) -> tuple[int, int, float]:
