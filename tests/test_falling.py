@@ -13,7 +13,6 @@ from gaspart.falling import time_against, time_along, time_to_contact_pulled
 vectors = st.lists(st.floats(-5, 5), min_size=2, max_size=2).map(np.array)
 
 
-@settings(deadline=None)
 @given(st.floats(1e-3, 10), st.floats(0, 10), st.floats(1e-6, 10))
 def test_against_and_along_a_pull(gap, speed, pull):
     rise = time_against(gap, speed, pull)
@@ -51,7 +50,6 @@ def separation(r, v, a, t):
     return (at**2).sum(axis=-1)
 
 
-@settings(deadline=None)
 @given(vectors, vectors, vectors, st.floats(0.2, 2.0))
 def test_a_pulled_contact_is_the_first(r, v, a, sigma):
     assume(r @ r > 1.01 * sigma**2 and a @ a > 1e-3)
@@ -76,7 +74,6 @@ def test_a_pulled_contact_from_rest_and_thrown_up():
     assert time_to_contact_pulled(1.0, 0.0, 0.0, 1.5, 0.0, 1.0) == math.inf
 
 
-@settings(deadline=None)
 @given(vectors, vectors)
 def test_a_vanishing_pull_changes_nothing(r, v):
     assume(r @ r > 1.01 and v @ v > 1e-2)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scenes import falling, gas
 
@@ -34,7 +34,6 @@ def thrown(
 
 
 @given(falling(), st.integers(0, 2**32))
-@settings(max_examples=60, deadline=None)
 def test_all_searches_give_the_same_events_bit_for_bit(scene, seed):
     referee = events_of(scene, "pairs", 150, seed)
     for search in ("boxes", "direct"):
@@ -42,7 +41,6 @@ def test_all_searches_give_the_same_events_bit_for_bit(scene, seed):
 
 
 @given(falling(most=40), st.integers(0, 2**32))
-@settings(max_examples=40, deadline=None)
 def test_invariants_hold_in_any_scene(scene, seed):
     sim = gp.Simulation(scene, gp.EventDriven(), seed=seed)
     sim.advance(max_events=3000, duration=1e3)

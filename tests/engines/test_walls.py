@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scenes import walled
 
@@ -33,7 +33,6 @@ def sent(position, velocity, walls, radius=0.5, boxes_per_side=None, side=12.0, 
 
 
 @given(walled(), st.integers(0, 2**32))
-@settings(max_examples=60, deadline=None)
 def test_all_searches_give_the_same_events_bit_for_bit(scene, seed):
     referee = events_of(scene, "pairs", 120, seed)
     for search in ("boxes", "direct"):
@@ -41,7 +40,6 @@ def test_all_searches_give_the_same_events_bit_for_bit(scene, seed):
 
 
 @given(walled(most=20), st.integers(0, 2**32))
-@settings(max_examples=40, deadline=None)
 def test_nobody_passes_through_a_wall(scene, seed):
     sim = gp.Simulation(scene, gp.EventDriven(), seed=seed)
     try:
