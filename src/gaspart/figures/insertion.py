@@ -57,13 +57,13 @@ def _failures(axis, one, kind: int, label: str):
 def _limits(axis):
     """Where insertion ends: in an infinite container, and in source A's."""
     marks = [
-        (theory.RSA_SATURATION[3], "3D: 0.384", style.COLOURS[1], -0.02),
-        (SOURCE, "source A: 52 %", style.COLOURS[0], -0.02),
-        (theory.RSA_SATURATION[2], "2D: 0.547", style.COLOURS[3], 0.006),
+        (theory.RSA_SATURATION[3], "3D: 0.384", style.COLOURS[1], -0.006, "right"),
+        (SOURCE, "source A: 52 %", style.COLOURS[0], -0.006, "right"),
+        (theory.RSA_SATURATION[2], "2D: 0.547", style.COLOURS[3], 0.006, "left"),
     ]
-    for place, text, colour, shift in marks:
+    for place, text, colour, shift, side in marks:
         axis.axvline(place, color=colour, linestyle="--", linewidth=0.8, zorder=1)
-        axis.text(place + shift, 0.013, text, color=colour, rotation=90, ha="left", va="bottom")
+        axis.text(place + shift, 0.013, text, color=colour, rotation=90, ha=side, va="bottom")
     axis.set_yscale("log")
     axis.set_xlim(0.0, 0.59)
     axis.set_ylim(0.01, 6e6)
