@@ -35,10 +35,10 @@ setup: .venv/gaspart.stamp
 	@touch $@
 
 test: setup
-	.venv/bin/python -m pytest
+	.venv/bin/python -m pytest --numprocesses=auto
 
 check-all: lint test
-	.venv/bin/python -m pytest tests/engines tests/test_contact.py tests/test_initial.py --hypothesis-profile=search
+	.venv/bin/python -m pytest --numprocesses=auto tests/engines tests/test_contact.py tests/test_initial.py --hypothesis-profile=search
 
 smoke: setup
 	$(SNAKEMAKE) --quiet rules --configfile config/smoke.yaml

@@ -76,7 +76,7 @@ def walled(draw, most=12):
     gravity = tuple(0.0 if b == "periodic" else draw(st.sampled_from([0.0, -1.0, 0.3])) for b in boundary)
     law = draw(st.sampled_from([None, None, gp.Restitution(0.9, 0.5), gp.Restitution(1.0, 1.0)]))
     species = [gp.Species(draw(st.integers(1, most)), draw(st.floats(0.1, 0.3)), temperature=1.0)]
-    if draw(st.booleans()):
+    if law and draw(st.booleans()):
         species.append(gp.Species(2, 0.3, 2.0, temperature=1.0))
     return gp.Scene(
         gp.Container(lengths, boundary),

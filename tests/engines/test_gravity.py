@@ -43,6 +43,7 @@ def test_all_searches_give_the_same_events_bit_for_bit(scene, seed):
 @given(falling(most=40), st.integers(0, 2**32))
 def test_invariants_hold_in_any_scene(scene, seed):
     sim = gp.Simulation(scene, gp.EventDriven(), seed=seed)
+    sim.record_events = True  # with the kernels that the test above has compiled
     sim.advance(max_events=3000, duration=1e3)
     state = sim.state
     scale = sim.initial_state.kinetic_energy + state.masses.sum() * (abs(state.gravity) @ state.lengths)

@@ -37,6 +37,7 @@ def test_all_searches_give_the_same_events_bit_for_bit(scene, seed):
 @given(granular(most=30), st.integers(0, 2**32))
 def test_invariants_hold_in_any_scene(scene, seed):
     sim = gp.Simulation(scene, gp.EventDriven(), seed=seed)
+    sim.record_events = True  # with the kernels that the test above has compiled
     before = sim.initial_state
     try:
         sim.advance(max_events=2000, duration=1e3)

@@ -42,6 +42,7 @@ def test_all_searches_give_the_same_events_bit_for_bit(scene, seed):
 @given(walled(most=20), st.integers(0, 2**32))
 def test_nobody_passes_through_a_wall(scene, seed):
     sim = gp.Simulation(scene, gp.EventDriven(), seed=seed)
+    sim.record_events = True  # with the kernels that the test above has compiled
     try:
         sim.advance(max_events=2000, duration=100.0)
     except gp.SimulationError as error:
