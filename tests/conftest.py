@@ -1,9 +1,7 @@
 """How the tests are run: which random scenes hypothesis draws, and how several processes share the work."""
 
-from pathlib import Path
-
-import pytest
 from hypothesis import settings
+from xdist.scheduler import LoadScopeScheduling
 
 # The same scenes every time, or new ones with `--hypothesis-profile=search`.
 settings.register_profile("fixed", max_examples=50, derandomize=True, deadline=None)
@@ -11,12 +9,19 @@ settings.register_profile("search", max_examples=1000, deadline=None)
 settings.load_profile("fixed")
 
 
-@pytest.hookimpl(tryfirst=True)
+class ByFile(LoadScopeScheduling):
+    """A file's tests go to one process, since they share compiled kernels, and the workflow's all to one,
+    since they share a run of it."""
+
+    def _split_scope(self, nodeid):
+        path = nodeid.split("::")[0]
+        return "workflow" if "workflow/" in path else path
+
+
+def pytest_xdist_make_scheduler(config, log):
+    return ByFile(config, log)
+
+
 def pytest_collection_modifyitems(items):
-    """Keep a file's tests together, since they share compiled kernels, and the workflow's, since they share
-    a run of it; begin with the workflow, which takes longest."""
-    here = Path(__file__).parent
-    for item in items:
-        part = item.path.relative_to(here).parts
-        item.add_marker(pytest.mark.xdist_group("workflow" if part[0] == "workflow" else "/".join(part)))
-    items.sort(key=lambda item: item.path.relative_to(here).parts[0] != "workflow")
+    """Begin with the workflow, which takes longest."""
+    items.sort(key=lambda item: "workflow" not in item.path.parent.name)
