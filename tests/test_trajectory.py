@@ -1,7 +1,6 @@
 """Trajectory files: what is in them, who can read them, and what happens when something goes wrong."""
 
 import fcntl
-import resource
 import subprocess
 import sys
 import textwrap
@@ -266,7 +265,6 @@ FULL_DISK = """
 """
 
 
-@pytest.mark.skipif(not hasattr(resource, "RLIMIT_FSIZE"), reason="needs a limit on the size of files")
 def test_a_full_disk_loses_nothing(tmp_path):
     """A limit on the file's size fails a write where a full disk would: in a frame, or in the header."""
     path, reference = tmp_path / "run.nc", tmp_path / "reference.nc"

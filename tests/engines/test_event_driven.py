@@ -7,21 +7,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from referee import events_of, same_bits
 from scenes import gas, mixtures
 
 import gaspart as gp
 from gaspart import theory
-
-
-def events_of(scene, search, most, seed=1, **settings_):
-    sim = gp.Simulation(scene, gp.EventDriven(search, **settings_), seed=seed)
-    sim.record_events = True
-    sim.advance(max_events=most, duration=1e4)
-    return sim
-
-
-def same_bits(one, other):
-    return all(np.array_equal(one.events[key], other.events[key], equal_nan=True) for key in one.events)
 
 
 @given(mixtures(), st.integers(0, 2**32))
