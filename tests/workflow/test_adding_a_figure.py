@@ -1,0 +1,66 @@
+"""docs/adding-a-figure.md, followed word by word: the new figure is drawn and judged."""
+
+import csv
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+import pytest
+from workspace import ROOT, SMOKE, copy_of_project
+
+pytestmark = pytest.mark.workflow
+
+BLOCK = re.compile(
+    r'^```\w+ title="(?P<path>[^"]+)"(?: after="(?P<after>[^"]+)")?\n(?P<text>.*?)^```$', re.M | re.S
+)
+
+
+@pytest.fixture(scope="module")
+def workspace(tmp_path_factory):
+    """A copy of the project in which the page has been followed."""
+    copy = copy_of_project(tmp_path_factory.mktemp("a new figure"))
+    blocks = list(BLOCK.finditer((ROOT / "docs/adding-a-figure.md").read_text(encoding="utf-8")))
+    assert len(blocks) == 11
+    for block in blocks:
+        file = copy.path / block["path"]
+        if block["after"] is None:
+            assert not file.exists()
+            file.write_text(block["text"], encoding="utf-8")
+            continue
+        line = block["after"].replace("\\n", "\n") + "\n"
+        before = file.read_text(encoding="utf-8")
+        assert before.count(f"\n{line}") == 1, line
+        file.write_text(before.replace(f"\n{line}", f"\n{line}{block['text']}"), encoding="utf-8")
+    return copy
+
+
+def test_the_new_figure_is_drawn_and_judged(workspace):
+    targets = ["results/figures/free_path.png", "results/claims/free_path.csv"]
+    result = workspace.snakemake("--cores", "2", *targets, *SMOKE)
+    assert result.returncode == 0, result.stdout[-20_000:]
+    assert (workspace.path / targets[0]).read_bytes().startswith(b"\x89PNG")
+    with (workspace.path / targets[1]).open(newline="") as file:
+        claims = list(csv.DictReader(file))
+    assert [claim["verdict"] for claim in claims] == ["agrees", "agrees"]
+
+
+def test_the_table_of_modules_is_kept(workspace):
+    """What tests/workflow/test_modules.py asks of every family holds for the new one."""
+    test = workspace.path / "tests/workflow/test_modules.py"
+    test.parent.mkdir(parents=True)
+    shutil.copy2(ROOT / "tests/workflow/test_modules.py", test)
+    environment = {**os.environ, "PYTHONPATH": str(workspace.path / "src")}
+    command = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-q",
+        "--import-mode=importlib",
+        "-p",
+        "no:cacheprovider",
+        test,
+    ]
+    result = subprocess.run(command, cwd=workspace.path, env=environment, capture_output=True, text=True)
+    assert result.returncode == 0, result.stdout[-5_000:]
