@@ -37,7 +37,7 @@ def folder(tmp_path, monkeypatch):
 
 def test_run_info_and_the_command_that_makes_it_again(folder, capsys):
     for options in (
-        ["--engine", "event", "--boxes-per-side", "3,4", "--seed", "1,2", "--displacements"],
+        ["--engine", "event", "--boxes-per-side", "3,4", "--seed", "1,2", "--displacements", "--follow", "9"],
         ["--engine", "step", "--time-step", "0.1", "--precision", "float32", "--no-rewind"],
     ):
         assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY, *options, "--force"]) == 0

@@ -6,6 +6,7 @@ import struct
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -94,11 +95,19 @@ def test_restored_again_and_again_to_the_same_counts(engine):
 @every_engine
 @pytest.mark.parametrize("cut_after", [1, 2, 5, 9])
 def test_cut_short_after_any_checkpoint_and_resumed(tmp_path, monkeypatch, engine, cut_after):
+    cut_and_resume(tmp_path, monkeypatch, cut_after, small("periodic"), engine, displacements=True)
+
+
+def test_spins_and_counters_of_some_bodies_cut_short_and_resumed(tmp_path, monkeypatch):
+    rough = replace(small("wall"), restitution=gp.Restitution(0.9, 0.5))
+    cut_and_resume(tmp_path, monkeypatch, 5, rough, ENGINES["event"], follow=7)
+
+
+def cut_and_resume(tmp_path, monkeypatch, cut_after, scene, engine, **settings):
     """Checkpoints lie between frames here, and at frames; the work after the last one is lost on purpose."""
     monkeypatch.setitem(recording._FIRST_STRETCH, "event", 20)
     monkeypatch.setattr(recording, "_STRETCH", 1e-9)  # stretches stay short
-    scene = small("periodic")
-    whole = gp.run(scene, engine, 7, 4.0, 0.5, tmp_path / "whole.nc", displacements=True).read_bytes()
+    whole = gp.run(scene, engine, 7, 4.0, 0.5, tmp_path / "whole.nc", **settings).read_bytes()
     path, write, saved = tmp_path / "cut.nc", recording.write_checkpoint, []
 
     def write_some(*arguments):
@@ -109,7 +118,7 @@ def test_cut_short_after_any_checkpoint_and_resumed(tmp_path, monkeypatch, engin
 
     monkeypatch.setattr(recording, "write_checkpoint", write_some)
     with pytest.raises(Cut):
-        gp.run(scene, engine, 7, 4.0, 0.5, path, displacements=True, checkpoint_seconds=0.0)
+        gp.run(scene, engine, 7, 4.0, 0.5, path, checkpoint_seconds=0.0, **settings)
     monkeypatch.setattr(recording, "write_checkpoint", write)
     assert checkpoint_path(path).exists() and not path.exists()
     assert gp.resume(path).read_bytes() == whole

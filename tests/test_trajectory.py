@@ -4,6 +4,7 @@ import fcntl
 import subprocess
 import sys
 import textwrap
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -122,6 +123,25 @@ def test_open_trajectory_gives_every_number_its_name(written):
         assert (hit > 0).all() and float(data["wall_hits"].isel(frame=-1).sum()) == float(hit.sum())
 
 
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_rough_bodies_have_their_spins_and_only_the_bodies_that_are_followed_are_written(tmp_path, dimension):
+    scene = replace(gas(dimension, 20, 0.2, "wall"), restitution=gp.Restitution(0.9, 0.5))
+    path = gp.run(scene, ENGINES["event"], 5, 4.0, 2.0, tmp_path / "run.nc", displacements=True, follow=3)
+    simulation = gp.Simulation(scene, ENGINES["event"], 5)
+    simulation.advance(until=4.0)
+    state = simulation.state
+    with gp.open_trajectory(path) as data:
+        last = data.isel(frame=-1)
+        assert data["spins"].dims == ("frame", "atom", "spatial")[:dimension]
+        assert (data["spins"].isel(frame=0) == 0.0).all() and (last["spins"] != 0.0).all()
+        for name, values in (("spins", state.spins), ("coordinates", state.positions)):
+            assert np.array_equal(last[name], values[:3].astype(np.float32))
+        assert data["displacements"].shape == (3, 3, dimension) and data.sizes["atom"] == 3
+        assert data.attrs["count"] == 20 and last["kinetic_energy"] == state.kinetic_energy
+        assert last["dissipated_energy"] == simulation.tally.dissipated_energy > 0.0
+    assert read_recipe(path) == Recipe(scene, ENGINES["event"], 5, 4.0, 2.0, True, 3)
+
+
 def test_a_file_says_how_it_was_made(tmp_path):
     scene = mixture(3)
     engine = gp.TimeStepped(time_step=0.1, boxes_per_side=(3, 2, 2), precision="float32", rewind=False)
@@ -158,6 +178,8 @@ def test_no_frame_is_lost_to_rounding(tmp_path):
             {"engine": gp.TimeStepped(0.2)},
             "sample_interval = 0.5: must be a whole multiple of time_step, 0.2",
         ),
+        ({"follow": 5}, "follow = 5: there are 4 bodies"),
+        ({"follow": 0}, "follow = 0: must be a whole number of at least 1"),
         ({"seed": -1}, "seed = -1: must be a whole number"),
         ({"scene": gp.Scene(gp.Container((5.0, 5.0)))}, "a run needs at least one body"),
         ({"checkpoint_seconds": -1.0}, "checkpoint_seconds = -1.0: must not be negative"),

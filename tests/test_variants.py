@@ -1,13 +1,27 @@
-"""Kernel variants: what tells two of them apart, and that a name is enough to compile them."""
+"""Kernel variants: what tells two of them apart, and that a tiny run compiles what a point needs."""
+
+import json
 
 import pytest
 
-from gaspart.grid import Point
-from gaspart.variants import variant, warm
+import gaspart as gp
+from gaspart.point import Point
+from gaspart.variants import features, task, variant, warm
+
+SIZE = {"dimension": 2, "count": 1000, "radius": 0.5, "side": 100.0, "temperature": 1.0, "duration": 10.0}
+BOX = gp.Container((40.0, 40.0))
+GAS = gp.Species(500, 0.5, temperature=1.0)
 
 
 def point(job="simulate", **settings):
-    return Point("gas", "single", job, {"dimension": 2, **settings}, "results/points", 1)
+    return Point("gas", "single", job, {**SIZE, "attempts": 10, **settings}, "results/points", 1)
+
+
+def described(tmp_path, scene, **settings):
+    """A point of a scene file."""
+    scene.to_file(tmp_path / "scene.yaml")
+    given = {"scene": str(tmp_path / "scene.yaml"), "duration": 10.0, **settings}
+    return Point("gas", "single", "simulate", given, "results/points", 1)
 
 
 @pytest.mark.parametrize(
@@ -17,7 +31,7 @@ def point(job="simulate", **settings):
         ({"boundary": "periodic", "dimension": 3}, "event-boxes-3d-ppp"),
         ({"boundary": ["periodic", "wall"], "search": "direct"}, "event-direct-2d-pw"),
         ({"engine": "step", "time_step": 0.1}, "step-float64-2d-ww"),
-        ({"engine": "step", "precision": "float32"}, "step-float32-2d-ww"),
+        ({"engine": "step", "time_step": 0.1, "precision": "float32"}, "step-float32-2d-ww"),
         ({"job": "fill", "dimension": 3}, "fill-random-3d-www"),
     ],
 )
@@ -26,9 +40,48 @@ def test_a_variant_is_named_after_what_is_compiled(settings, name):
 
 
 def test_points_that_differ_in_numbers_share_their_kernels():
-    assert variant(point(count=10, radius=0.5)) == variant(point(count=1000, radius=0.1, temperature=2.0))
+    assert variant(point(count=10, radius=0.4)) == variant(point(mass=3.0, temperature=2.0))
 
 
-@pytest.mark.parametrize("name", ["event-boxes-2d-pw", "step-float32-2d-ww", "fill-random-3d-ppp"])
-def test_the_name_is_enough_to_warm_the_kernels(name):
-    warm(name)
+@pytest.mark.parametrize(
+    ("scene", "expected"),
+    [
+        (gp.Scene(BOX, [GAS], gravity=(0.0, 0.0), restitution=gp.Restitution()), set()),
+        (gp.Scene(BOX, [GAS], gravity=(0.0, -1.0)), {"gravity"}),
+        (gp.Scene(BOX, [GAS], restitution=gp.Restitution(0.9)), {"restitution.normal"}),
+        (gp.Scene(BOX, [GAS], walls=[gp.Wall((1, 1), (9, 9))]), {"walls.Wall"}),
+        (gp.Scene(BOX, [GAS, gp.Species(5, 0.5, mass=2.0)]), {"species.mass"}),
+        (gp.Scene(BOX, [gp.Species(5, 0.5, mass=2.0)]), set()),
+        (gp.Scene(BOX, [GAS, gp.Species(5, 0.5, fixed=True)]), {"species.fixed"}),
+        (gp.Scene(BOX, [gp.Species(5, 0.5, arrangement="lattice")]), {"species.arrangement=lattice"}),
+    ],
+)
+def test_every_feature_of_a_scene_that_changes_kernels_tells_variants_apart(scene, expected):
+    assert features(scene) == expected
+
+
+def test_a_point_is_warmed_by_a_few_of_its_own_bodies_that_have_all_its_features(tmp_path):
+    scene = gp.Scene(
+        BOX,
+        [GAS, gp.Species(300, 0.25, mass=4.0, moment_of_inertia=0.1)],
+        gravity=(0.0, -1.0),
+        restitution=gp.Restitution(0.9, 0.5),
+        walls=[gp.Wall((x, 1.0), (x, 2.0)) for x in range(1, 39)],
+    )
+    full = described(tmp_path, scene, follow=400, **{"scene.restitution.tangential": 0.2})
+    tiny = gp.Scene.from_dict(json.loads(task(full))["scene"])
+    assert [kind.count for kind in tiny.species] == [8, 8] and len(tiny.walls) == 8
+    assert features(tiny) == features(scene)
+    assert variant(full) == variant(described(tmp_path, scene))
+
+
+@pytest.mark.parametrize(
+    ("job", "settings"),
+    [
+        ("simulate", {"boundary": ["periodic", "wall"]}),
+        ("measure_cost", {"engine": "step", "time_step": 0.1, "precision": "float32"}),
+        ("fill", {"boundary": "periodic", "dimension": 3}),
+    ],
+)
+def test_a_task_is_enough_to_warm_the_kernels(job, settings):
+    warm(task(point(job, **settings)))

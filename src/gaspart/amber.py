@@ -23,7 +23,7 @@ NOTE = (
 COUNTERS = tuple(field.name for field in fields(Tally) if field.name != "time")
 """Sums since time 0, one variable each."""
 
-_PER_FACE = ("wall_hits", "wall_impulse")
+_PER_FACE = tuple(field.name for field in fields(Tally) if field.type == "np.ndarray")
 _MAGIC = b"CDF\x02"  # a netCDF-3 file of 64-bit offsets
 _FRAME_COUNT_AT = 4  # where a netCDF-3 header keeps the number of frames, as a big-endian uint32
 MOST_FRAMES = 2**31 - 1
@@ -36,9 +36,12 @@ def face_names(dimension: int, walls: int = 0) -> list[str]:
 
 
 class Layout:
-    """The variables of one frame, in their order in the file: name -> (type, dimensions, attributes)."""
+    """The variables of one frame, in their order in the file: name -> (type, dimensions, attributes).
 
-    def __init__(self, count: int, dimension: int, displacements: bool, walls: int = 0):
+    count: bodies in the file; displacements, spins: whether these are there; walls: interior ones.
+    """
+
+    def __init__(self, count: int, dimension: int, displacements: bool, walls: int = 0, spins: bool = False):
         self.sizes = {
             "spatial": 3,
             "atom": count,
@@ -61,6 +64,9 @@ class Layout:
             "coordinates": (">f4", vectors, {"units": "angstrom"}),
             "velocities": (">f4", vectors, {"units": "angstrom/picosecond"}),
         }
+        if spins:
+            meaning = "angular velocity, in two dimensions along z"
+            self.variables["spins"] = (">f4", vectors, {"units": "1/picosecond", "long_name": meaning})
         if displacements:
             meaning = "way since time 0, unwrapped"
             self.variables["displacements"] = (">f8", vectors, {"units": "angstrom", "long_name": meaning})

@@ -106,6 +106,7 @@ def _add_run(commands) -> None:
     add(
         "--displacements", action="store_true", help="write unwrapped float64 displacements since time 0, too"
     )
+    add("--follow", type=int, metavar="N", help="write the first N bodies only")
     add("--time-step", type=float, metavar="T", help="step engine: a whole part of the sample interval")
     add("--boxes-per-side", type=whole, metavar="N[,N...]", help="one number for all sides, or one per side")
     add("--precision", metavar="TYPE", help="step engine: float64 (default) or float32")
@@ -167,6 +168,7 @@ def _run(given: argparse.Namespace) -> None:
         sample_interval=given.sample_interval,
         path=given.output,
         displacements=given.displacements,
+        follow=given.follow,
         checkpoint_seconds=given.checkpoint_seconds,
         progress=_progress(given.quiet),
         overwrite=given.force,
@@ -268,6 +270,8 @@ def _run_options(path: Path, recipe, stored: dict) -> list[str]:
         options.append("--no-rewind")
     if recipe.displacements:
         options.append("--displacements")
+    if recipe.follow is not None:
+        options += ["--follow", str(recipe.follow)]
     return options
 
 

@@ -9,6 +9,7 @@ from gaspart import grid
 from gaspart.errors import SceneError
 from gaspart.families import FAMILIES
 from gaspart.files import read_yaml
+from gaspart.point_scene import PREFIX
 
 
 def check(config: dict, schema_path: str, files: list[str]) -> None:
@@ -28,7 +29,7 @@ def check(config: dict, schema_path: str, files: list[str]) -> None:
                 raise SceneError(f"figures.{figure}", figure, "has no line in gaspart.families")
             grid.figure_points(config, figure)
     except SceneError as error:
-        raise error.inside("", _file_of(error.key, files)) from None
+        raise error.inside("", error.file or _file_of(error.key, files)) from None
 
 
 def _experiment(config: dict, experiment: str, schema: dict) -> None:
@@ -36,6 +37,8 @@ def _experiment(config: dict, experiment: str, schema: dict) -> None:
     rules = schema["$defs"]["point"]["properties"]
     where = f"experiments.{experiment}"
     for key, value in _grid_values(config["experiments"][experiment].get("grid")):
+        if key.startswith(PREFIX):  # a value of a scene file, which the scene judges
+            continue
         if key not in rules:
             raise SceneError(f"{where}.grid.{key}", value, f"unknown key; known are {', '.join(rules)}")
         _against(rules[key], value, schema, f"{where}.grid.{key}")
@@ -44,7 +47,8 @@ def _experiment(config: dict, experiment: str, schema: dict) -> None:
         try:
             grid.recipe(point)
         except SceneError as error:
-            raise error if error.key.startswith(where) else error.inside(f"{where}[{point.name}]") from None
+            told = error.file or error.key.startswith(where)
+            raise error if told else error.inside(f"{where}[{point.name}]") from None
 
 
 def _against(rule: dict, value, schema: dict, where: str) -> None:
@@ -114,6 +118,8 @@ def _finite(value, where: str = "") -> None:
 def _file_of(key: str, files: list[str]) -> str | None:
     """The last of the files that holds the longest part of ``key``."""
     parts = key.replace("[", ".").split(".")
+    dotted = parts.index("scene") if "scene" in parts else len(parts)  # `scene.` and what follows is one key
+    parts[dotted:] = [".".join(parts[dotted:])]
 
     def depth(path: str) -> int:
         block, reached = read_yaml(path), 0

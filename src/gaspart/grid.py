@@ -1,4 +1,4 @@
-"""From a config to the points of its grids: names, seeds, paths; and from a point to what is to be run.
+"""From a config to the points of its grids, and from a point to what is to be run.
 
 Planning a workflow reads every point of every grid, so nothing heavy is imported here before it is needed.
 
@@ -9,68 +9,20 @@ counts as absent, so that a config merged over another can take a key back.
 
 from __future__ import annotations
 
-import hashlib
 import itertools
 import math
-import re
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 from gaspart.errors import SceneError
+from gaspart.point import Point, name_of
+from gaspart.point_scene import check_scene, extents, scene
 
 LENGTHS = ("collisions_per_body", "duration", "steps")
-EXTENTS = ("count", "radius", "packing_fraction", "side")
 ENGINE_KEYS = {
     "event": ("search", "boxes_per_side", "boxes_per_body"),
     "step": ("time_step", "boxes_per_side", "boxes_per_body", "precision", "rewind"),
 }
 SCANS = ("scan_boxes_per_side", "scan_boxes_per_body")
-SUFFIX = {"simulate": "", "measure_cost": ".nc", "fill": ".nc"}
-
-
-@dataclass(frozen=True)
-class Point:
-    """One point of a grid: one job of the workflow, with one output at ``path``."""
-
-    experiment: str
-    name: str
-    job: str
-    settings: dict
-    root: str
-    config_seed: int
-
-    @property
-    def path(self) -> str:
-        """Where the result lies: a folder of trajectories (``simulate``) or one netCDF file."""
-        return f"{self.root}/{self.experiment}/{self.name}{SUFFIX[self.job]}"
-
-    @property
-    def replicas(self) -> int:
-        """Number of independent runs of this point."""
-        return self.settings.get("replicas", 1)
-
-    def replica_path(self, replica: int) -> str:
-        """The trajectory of one replica (``simulate`` only)."""
-        return f"{self.path}/replica-{replica}.nc"
-
-    @property
-    def replica_paths(self) -> list[str]:
-        """The trajectories of all replicas, in order."""
-        return [self.replica_path(k) for k in range(self.replicas)]
-
-    def seed(self, replica: int = 0) -> tuple[int, ...]:
-        """Four 32-bit words that depend on the names alone, not on the point's place in its grid."""
-        text = f"{self.config_seed}/{self.experiment}/{self.name}/{replica}"
-        digest = hashlib.sha256(text.encode()).digest()
-        return tuple(int.from_bytes(digest[i : i + 4], "little") for i in range(0, 16, 4))
-
-    def to_dict(self) -> dict:
-        """Plain values only: what a job is handed."""
-        return asdict(self)
-
-    @classmethod
-    def from_dict(cls, values: dict) -> Point:
-        """The inverse of ``to_dict``."""
-        return cls(**values)
 
 
 @dataclass(frozen=True)
@@ -98,7 +50,7 @@ def points(config: dict, experiment: str) -> list[Point]:
         settings = {**block.get("point", {}), **varying}
         point = Point(
             experiment=experiment,
-            name=_name(varying, f"{where}.grid"),
+            name=name_of(varying, f"{where}.grid"),
             job=block.get("job", "simulate"),
             settings={key: value for key, value in settings.items() if value is not None},
             root=config.get("points", "results/points"),
@@ -123,9 +75,7 @@ def figure_points(config: dict, figure: str) -> list[Point]:
 def check(point: Point) -> None:
     """Refuse settings that contradict each other, with SceneError; the cheap part, needing no scene."""
     settings, where = point.settings, f"experiments.{point.experiment}"
-    given = [key for key in EXTENTS if key in settings]
-    if len(given) != 3:
-        raise SceneError(where, given, "exactly three of count, radius, packing_fraction, side must be given")
+    check_scene(point)
     if point.job == "fill":
         if "attempts" not in settings:
             raise SceneError(f"{where}.attempts", None, "is required with job: fill")
@@ -143,53 +93,6 @@ def check(point: Point) -> None:
         raise SceneError(where, lengths, f"exactly one of {', '.join(LENGTHS)} must be given")
     if lengths == ["steps"] and engine != "step":
         raise SceneError(f"{where}.steps", settings["steps"], f"has no meaning with engine: {engine}")
-
-
-def extents(point: Point) -> tuple[int, float, tuple[float, ...]]:
-    """Number of bodies, radius and side lengths: the three that are given and the one that follows.
-
-    A count that follows is rounded to a whole number; a side that follows is the same on every axis.
-    """
-    check(point)
-    settings, dimension = point.settings, point.settings["dimension"]
-    unit = math.pi if dimension == 2 else 4.0 / 3.0 * math.pi
-    count, radius = settings.get("count"), settings.get("radius")
-    fraction, side = settings.get("packing_fraction"), settings.get("side")
-    if side is not None:
-        lengths = tuple(map(float, side)) if isinstance(side, (list, tuple)) else (float(side),) * dimension
-        if len(lengths) != dimension:
-            raise SceneError(f"experiments.{point.experiment}.side", side, f"must have {dimension} lengths")
-        volume = math.prod(lengths)
-        if count is None:
-            count = round(fraction * volume / (unit * radius**dimension))
-        elif radius is None:
-            radius = (fraction * volume / (unit * count)) ** (1.0 / dimension)
-    else:
-        lengths = ((count * unit * radius**dimension / fraction) ** (1.0 / dimension),) * dimension
-    return int(count), float(radius), lengths
-
-
-def scene(point: Point):
-    """The point's ``Scene``. Raises SceneError."""
-    from gaspart.scene import Container, Scene, Species
-
-    settings = point.settings
-    count, radius, lengths = extents(point)
-    boundary = settings.get("boundary", "wall")
-    species = Species(
-        count=count,
-        radius=radius,
-        mass=settings.get("mass", 1.0),
-        speed=settings.get("speed"),
-        temperature=settings.get("temperature"),
-        arrangement=settings.get("arrangement", "random"),
-    )
-    container = Container(
-        lengths=lengths, boundary=boundary if isinstance(boundary, str) else tuple(boundary)
-    )
-    return Scene(
-        container=container, species=(species,), centres_to_walls=settings.get("centres_to_walls", False)
-    )
 
 
 def engine(point: Point):
@@ -264,6 +167,7 @@ def schedule(point: Point) -> Schedule:
 
 def recipe(point: Point) -> dict:
     """All that the point's job needs, in plain values: what its result depends on, and nothing else."""
+    check(point)
     made = {
         "scene": scene(point).to_dict(),
         "seeds": [list(point.seed(k)) for k in range(point.replicas)],
@@ -273,6 +177,9 @@ def recipe(point: Point) -> dict:
     from gaspart.engines import engine_to_dict
 
     times = schedule(point)
+    follow, count = point.settings.get("follow"), extents(point)[0]
+    if follow is not None and follow > count:
+        raise SceneError(f"experiments.{point.experiment}.follow", follow, f"there are {count} bodies")
     if point.job == "measure_cost":
         return {
             **made,
@@ -287,38 +194,46 @@ def recipe(point: Point) -> dict:
         "duration": times.duration,
         "sample_interval": times.sample_interval,
         "displacements": point.settings.get("displacements", False),
+        "follow": follow,
     }
 
 
 def _unit_of_time(point: Point, unit: str) -> float:
     """The scene's time in one ``unit`` of length; for collisions per body, from Enskog's rate."""
-    settings, dimension = point.settings, point.settings["dimension"]
     if unit == "duration":
         return 1.0
     if unit == "steps":
-        return settings["time_step"]
+        return point.settings["time_step"]
     from gaspart import theory
 
+    key, given = f"experiments.{point.experiment}.collisions_per_body", point.settings[unit]
+    kind = _only_species(scene(point))
+    if kind is None:
+        rule = "is known for one species of smooth bodies alone, without gravity or obstacles; give duration"
+        raise SceneError(key, given, rule)
     count, radius, lengths = extents(point)
-    mass = settings.get("mass", 1.0)
-    temperature = settings.get("temperature")
+    dimension = len(lengths)
+    temperature = kind.temperature
     if temperature is None:
-        temperature = mass * settings.get("speed", 0.0) ** 2 / dimension
+        temperature = kind.mass * (kind.speed or 0.0) ** 2 / dimension
     if not temperature > 0.0:
-        raise SceneError(
-            f"experiments.{point.experiment}.collisions_per_body",
-            settings[unit],
-            "needs a temperature or a speed above zero",
-        )
+        raise SceneError(key, given, "needs a temperature or a speed above zero")
     ball = (math.pi if dimension == 2 else 4.0 / 3.0 * math.pi) * radius**dimension
     fraction = count * ball / math.prod(lengths)
     try:
-        return 1.0 / float(theory.collision_rate(fraction, dimension, 2.0 * radius, temperature, mass))
+        rate = theory.collision_rate(fraction, dimension, 2.0 * radius, temperature, kind.mass)
     except ValueError as error:
-        rule = f"cannot be turned into a time: {error}"
-        raise SceneError(
-            f"experiments.{point.experiment}.collisions_per_body", settings[unit], rule
-        ) from None
+        raise SceneError(key, given, f"cannot be turned into a time: {error}") from None
+    return 1.0 / float(rate)
+
+
+def _only_species(made):
+    """The species of a scene that holds nothing else; None if there is more to it."""
+    from gaspart.scene import Scene
+
+    kinds = made.species
+    plain = Scene(made.container, kinds, centres_to_walls=made.centres_to_walls)
+    return kinds[0] if len(kinds) == 1 and not kinds[0].fixed and made == plain else None
 
 
 def _combinations(grid, where: str) -> list[dict]:
@@ -332,17 +247,3 @@ def _combinations(grid, where: str) -> list[dict]:
         if not values:
             raise SceneError(f"{where}.{key}", values, "must not be empty")
     return [dict(zip(axes, chosen, strict=True)) for chosen in itertools.product(*axes.values())]
-
-
-def _name(varying: dict, where: str) -> str:
-    """The name of a point, fit for a file system: its varying keys and their values."""
-    return ",".join(f"{key}={_text(value, f'{where}.{key}')}" for key, value in varying.items()) or "single"
-
-
-def _text(value, where: str) -> str:
-    if isinstance(value, (list, tuple)):
-        return "x".join(_text(item, where) for item in value)
-    text = str(value).lower() if isinstance(value, bool) or value is None else str(value)
-    if not re.fullmatch(r"[A-Za-z0-9_.+-]+", text):
-        raise SceneError(where, value, "a value that names a point may hold letters, digits and _ . + - only")
-    return text

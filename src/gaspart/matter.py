@@ -115,6 +115,11 @@ class Restitution:
     def smooth_and_elastic(self) -> bool:
         return self.normal == 1.0 and self.tangential == -1.0
 
+    @property
+    def rough(self) -> bool:
+        """Whether contacts change spins."""
+        return self.tangential > -1.0
+
 
 @dataclass(frozen=True)
 class Wall:

@@ -14,7 +14,7 @@ from gaspart.engines import EventDriven, TimeStepped, engine_from_dict, engine_t
 from gaspart.errors import SceneError
 from gaspart.files import dump_yaml, parse_yaml
 from gaspart.random import stream
-from gaspart.scene import Scene, number
+from gaspart.scene import Scene, count_of, number
 
 ROUNDING = 1e-9
 """Relative deviation from a whole multiple that is put down to rounding."""
@@ -33,7 +33,8 @@ class Recipe:
     """All that a trajectory follows from. Raises SceneError for what cannot be run.
 
     duration and sample_interval are in the scene's time; duration is a whole multiple of sample_interval,
-    and that, for the time-stepped engine, of time_step.
+    and that, for the time-stepped engine, of time_step. follow: how many bodies, from the first on, are in
+    the file; None: all.
     """
 
     scene: Scene
@@ -42,6 +43,7 @@ class Recipe:
     duration: float
     sample_interval: float
     displacements: bool = False
+    follow: int | None = None
 
     def __post_init__(self):
         stream(self.seed)  # complains of a seed that is none
@@ -50,6 +52,9 @@ class Recipe:
             object.__setattr__(self, key, value)
         if self.scene.count == 0:
             raise SceneError("scene", "no bodies", "a run needs at least one body")
+        if self.follow is not None:
+            if count_of("follow", self.follow, least=1) > self.scene.count:
+                raise SceneError("follow", self.follow, f"there are {self.scene.count} bodies")
         if isinstance(self.engine, TimeStepped):
             multiple("sample_interval", self.sample_interval, "time_step", self.engine.time_step)
         if self.frames > amber.MOST_FRAMES:
@@ -62,10 +67,15 @@ class Recipe:
         return multiple("duration", self.duration, "sample_interval", self.sample_interval) + 1
 
     @property
+    def bodies(self) -> int:
+        """How many bodies are in the file."""
+        return self.scene.count if self.follow is None else self.follow
+
+    @property
     def layout(self) -> amber.Layout:
         """What a frame consists of."""
-        scene = self.scene
-        return amber.Layout(scene.count, scene.dimension, self.displacements, len(scene.walls))
+        scene, walls = self.scene, len(self.scene.walls)
+        return amber.Layout(self.bodies, scene.dimension, self.displacements, walls, scene.rough)
 
     def attributes(self) -> dict:
         """The recipe as the file's attributes, from which `read_recipe` makes it again."""
@@ -77,6 +87,7 @@ class Recipe:
             "duration": self.duration,
             "sample_interval": self.sample_interval,
             "displacements": np.int32(self.displacements),
+            **({} if self.follow is None else {"follow": np.int32(self.follow)}),
         }
 
     def header(self, revision: str) -> bytes:
@@ -87,6 +98,7 @@ class Recipe:
         groups = [(len(scene.species), body.radius, 1) for body in scene.bodies]
         groups += [(n, kind.radius, kind.count) for n, kind in enumerate(scene.species)]
         types, radii, counts = (np.array(column) for column in zip(*groups, strict=True))
+        radii, types = np.repeat(radii, counts)[: self.bodies], np.repeat(types, counts)[: self.bodies]
         attributes = {
             "Conventions": "AMBER",
             "ConventionVersion": "1.0",
@@ -99,7 +111,7 @@ class Recipe:
             "kernels": source_digest(),
             **({"git_revision": revision} if revision else {}),
         }
-        return self.layout.header(attributes, np.repeat(radii, counts), np.repeat(types, counts))
+        return self.layout.header(attributes, radii, types)
 
 
 @contextmanager
@@ -142,6 +154,7 @@ def read_recipe(path: str | Path) -> Recipe:
         duration=float(stored["duration"]),
         sample_interval=float(stored["sample_interval"]),
         displacements=bool(stored["displacements"]),
+        follow=int(stored["follow"]) if "follow" in stored else None,
     )
 
 

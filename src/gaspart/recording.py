@@ -103,6 +103,9 @@ class Recording:
     def _frame(self) -> dict[str, np.ndarray | float]:
         """The present state and counters, as the variables of a frame."""
         state, tally = self._simulation.state, self._simulation.tally
+        followed = slice(self._recipe.bodies)
+        flat = state.dimension == 2
+        spins = np.pad(state.spins[:, None], ((0, 0), (2, 0))) if flat else state.spins
         # in 2D the cell is one diameter thick
         lengths = np.full(3, 2.0 * self._recipe.scene.largest_radius)
         lengths[: state.dimension] = state.lengths
@@ -112,7 +115,8 @@ class Recording:
             "cell_angles": np.full(3, 90.0),
             "kinetic_energy": state.kinetic_energy,
             **{name: getattr(tally, name) for name in amber.COUNTERS},
-            "coordinates": state.positions,
-            "velocities": state.velocities,
-            "displacements": state.unwrapped - self._origin,
+            "coordinates": state.positions[followed],
+            "velocities": state.velocities[followed],
+            "spins": spins[followed],
+            "displacements": (state.unwrapped - self._origin)[followed],
         }

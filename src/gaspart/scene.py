@@ -89,7 +89,7 @@ class Scene:
             self._check_gravity()
         if self.restitution is not None and not isinstance(self.restitution, Restitution):
             raise SceneError("restitution", self.restitution, "must be a Restitution")
-        if self.centres_to_walls and self.restitution is not None and self.restitution.tangential > -1.0:
+        if self.centres_to_walls and self.rough:
             rule = "rough bodies (tangential above -1) touch walls with their surfaces"
             raise SceneError("centres_to_walls", True, rule)
         if not isinstance(self.centres_to_walls, bool):
@@ -163,6 +163,11 @@ class Scene:
     @property
     def dimension(self) -> int:
         return self.container.dimension
+
+    @property
+    def rough(self) -> bool:
+        """Whether contacts change spins."""
+        return self.restitution is not None and self.restitution.rough
 
     @property
     def count(self) -> int:

@@ -20,7 +20,12 @@ from gaspart.recording import Progress, Recording
 from gaspart.scene import Scene, number
 from gaspart.simulation import Simulation
 
-_REDUCED = {"angstrom": "length", "picosecond": "time", "angstrom/picosecond": "length/time"}
+_REDUCED = {
+    "angstrom": "length",
+    "picosecond": "time",
+    "angstrom/picosecond": "length/time",
+    "1/picosecond": "1/time",
+}
 
 
 def partial_path(path: Path) -> Path:
@@ -37,6 +42,7 @@ def open_trajectory(path: str | Path):
     """A trajectory, or the finished part of a `.partial` one, as an xarray.Dataset, read as it is used.
 
     Dimensions frame, atom, spatial (d) and face (2d); time (frame), radius and type (atom) are coordinates.
+    Of discs that spin, `spins` is (frame, atom); of spheres (frame, atom, spatial).
     Lengths and times are in the scene's units, counters cumulative since time 0. Attributes tell the scene
     (YAML), engine and seed (JSON), and what follows from the scene: count, dimension, packing_fraction,
     number_density. Close it, or use it in a `with` statement.
@@ -50,6 +56,8 @@ def open_trajectory(path: str | Path):
     data = opened = xr.open_dataset(path, engine="netcdf4", decode_times=False)
     attributes = {**data.attrs, "count": scene.count, "dimension": scene.dimension}
     attributes |= {"packing_fraction": scene.packing_fraction, "number_density": scene.number_density}
+    if "spins" in data and scene.dimension == 2:
+        data["spins"] = data["spins"].isel(spatial=2)
     data = data.isel(spatial=slice(scene.dimension)).set_coords(["time", "radius", "type"])
     data = data.drop_vars(["cell_spatial", "cell_angular"])
     faces = amber.face_names(scene.dimension, len(scene.walls))
@@ -70,6 +78,7 @@ def run(
     sample_interval: float,
     path: str | Path,
     displacements: bool = False,
+    follow: int | None = None,
     checkpoint_seconds: float = 30.0,
     progress: Progress | None = None,
     overwrite: bool = False,
@@ -77,16 +86,17 @@ def run(
     """Run a scene and write its trajectory to `path`; returns `path`.
 
     A frame at time 0 and at every sample_interval to the duration, which must be a whole multiple of it;
-    with `displacements` also each body's float64 way since time 0, unwrapped. A run of the same recipe and
-    program that was cut short is continued, and one that is whole is left as it is. Anything else at `path`,
-    or half-finished beside it, is replaced only with `overwrite`.
+    with `displacements` also each body's float64 way since time 0, unwrapped; with rough contacts also the
+    spins; with `follow` only so many bodies, from the first on (counters are still those of all). A run of
+    the same recipe and program that was cut short is continued, and one that is whole is left as it is.
+    Anything else at `path`, or half-finished beside it, is replaced only with `overwrite`.
 
     `progress(time, duration, collisions)` is called about twice a second.
 
     Raises SceneError for settings that cannot be, and for a file that cannot be written; SimulationError
     if the run breaks an invariant, with its state kept in `path.failed.npz`.
     """
-    wanted = Recipe(scene, engine, seed, duration, sample_interval, displacements)
+    wanted = Recipe(scene, engine, seed, duration, sample_interval, displacements, follow)
     return _carry_out(wanted, Path(path), checkpoint_seconds, progress, overwrite)
 
 

@@ -1,42 +1,99 @@
-"""Which compiled kernels a point needs, as a name; and how to compile them, from the name alone."""
+"""Which compiled kernels a point needs, as a name; and how to compile them, by a tiny run of its own."""
 
 from __future__ import annotations
 
-from gaspart.grid import Point
+import hashlib
+import json
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import MISSING, fields, is_dataclass
 
-SEPARATOR = "-"
+from gaspart import grid
+from gaspart.errors import SimulationError
+from gaspart.point import Point
+
+_FEW = 8  # bodies, walls and the like that a tiny run has of each kind
+# in every kernel, or in none
+_MATTER = {"species.Species", "bodies.Body", "restitution.Restitution"}  # whose properties are features
+_NO_FEATURE = ("container", "count", "radius", "speed", "temperature", "centres_to_walls")
 
 
 def variant(point: Point) -> str:
-    """The kernels of a point: engine, search or precision, dimension, boundaries (`p`eriodic or `w`all)."""
-    settings = point.settings
-    boundary = settings.get("boundary", "wall")
-    kinds = [boundary] * settings["dimension"] if isinstance(boundary, str) else boundary
-    engine = "fill" if point.job == "fill" else settings.get("engine", "event")
+    """The kernels of a point: engine, search or precision, dimension, boundaries (`p`eriodic or `w`all), and
+    a digest of all features of its scene that a plain one is without.
+
+    Kernels are compiled for what is there at all, not for its numbers. Raises SceneError.
+    """
+    scene = grid.scene(point)
+    engine = "fill" if point.job == "fill" else point.settings.get("engine", "event")
     choice = {
         "fill": "random",
-        "event": settings.get("search", "boxes"),
-        "step": settings.get("precision", "float64"),
+        "event": point.settings.get("search", "boxes"),
+        "step": point.settings.get("precision", "float64"),
     }
-    return SEPARATOR.join([engine, choice[engine], f"{settings['dimension']}d", "".join(k[0] for k in kinds)])
+    boundary = "".join(kind[0] for kind in scene.container.boundary)
+    parts = [engine, choice[engine], f"{scene.dimension}d", boundary]
+    present = sorted(features(scene))
+    if present:
+        parts.append(hashlib.sha256(" ".join(present).encode()).hexdigest()[:8])
+    return "-".join(parts)
 
 
-def warm(name: str) -> None:
-    """Run something tiny that needs the kernels of this variant, so that they are compiled and cached."""
-    from gaspart.engines import EventDriven, TimeStepped
-    from gaspart.scene import Container, Scene, Species
+def features(scene) -> set[str]:
+    """Dotted names of all that differs from its default in a scene, with its value where that is a word."""
+    found = set(_differing(scene)) - _MATTER
+    if len({kind.mass for kind in (*scene.species, *scene.bodies)}) <= 1:
+        found -= {"species.mass", "bodies.mass"}  # equal masses are left out of the kernels
+    return found
+
+
+def _differing(thing, prefix: str = "") -> Iterator[str]:
+    for field in fields(thing):
+        value, name = getattr(thing, field.name), f"{prefix}{field.name}"
+        if field.name in _NO_FEATURE or value == field.default:
+            continue
+        parts = value if isinstance(value, tuple) else (value,)
+        for part in parts:
+            if is_dataclass(part):
+                yield f"{name}.{type(part).__name__}"
+                yield from _differing(part, f"{name}.")
+            elif isinstance(part, str):
+                yield f"{name}={part}"
+            elif field.default is not MISSING and part:  # an acceleration of zero is none
+                yield name
+
+
+def task(point: Point) -> str:
+    """What `warm` is to do for a point, as JSON: its recipe, of a few bodies, and without what it varies."""
+    recipe = grid.recipe(point)
+    scene = {
+        key: value[:_FEW] if isinstance(value, list) else value for key, value in recipe["scene"].items()
+    }
+    for kind in scene.get("species", ()):
+        kind["count"] = min(kind["count"], _FEW)
+    engine = recipe.get("engine") or recipe.get("engines", [None])[0]
+    return json.dumps({"scene": scene, "engine": engine})
+
+
+def warm(job: str) -> None:
+    """Run something tiny that needs all kernels of a `task`, so that they are compiled and cached."""
+    from gaspart.engines import engine_from_dict
+    from gaspart.initial import initial_state
+    from gaspart.scene import Scene
     from gaspart.simulation import Simulation
 
-    engine, choice, dimension, kinds = name.split(SEPARATOR)
-    boundary = tuple("periodic" if kind == "p" else "wall" for kind in kinds)
-    container = Container(lengths=(8.0,) * int(dimension[0]), boundary=boundary)
-    scene = Scene(container=container, species=(Species(count=16, radius=0.5, temperature=1.0),))
-    if engine == "step":
-        chosen = TimeStepped(time_step=0.01, boxes_per_side=4, precision=choice)
+    given = json.loads(job)
+    scene = Scene.from_dict(given["scene"])
+    if given["engine"] is None:
+        initial_state(scene, seed=1)
+        return
+    settings = {key: value for key, value in given["engine"].items() if key != "boxes_per_side"}
+    simulation = Simulation(scene, engine_from_dict(settings), seed=1)
+    if "time_step" in settings:
+        limits = {"duration": 4 * settings["time_step"]}
     else:
-        chosen = EventDriven(search="boxes" if engine == "fill" else choice)
-    simulation = Simulation(scene, chosen, seed=1)
-    if engine != "fill":
-        simulation.advance(duration=1.0)
+        limits = {"duration": 1.0, "max_events": 100}
+    with suppress(SimulationError):  # a collapse, before which all was compiled
+        simulation.advance(**limits)
         simulation.restore(simulation.checkpoint())
-        simulation.advance(duration=0.1)
+        simulation.advance(**limits)

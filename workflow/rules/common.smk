@@ -17,7 +17,7 @@ from gaspart import grid
 from gaspart.config import check
 from gaspart.errors import SceneError
 from gaspart.families import FAMILIES, TITLES
-from gaspart.variants import variant
+from gaspart.variants import task, variant
 
 try:
     files = ["config/config.yaml", *workflow.overwrite_configfiles]
@@ -111,7 +111,16 @@ MODULES = {
         "measure/__init__",
         "measure/fill",
     ],
-    "measure": [*SIMULATE, *THEORY, "grid", "measure/__init__", "measure/{family}", "statistics"],
+    "measure": [
+        *SIMULATE,
+        *THEORY,
+        "grid",
+        "point",
+        "point_scene",
+        "measure/__init__",
+        "measure/{family}",
+        "statistics",
+    ],
     "judge": [*CLAIMS, *THEORY, "claims/{family}"],
     "claims": CLAIMS,
     "draw": ["__init__", "errors", "files", *THEORY, "figures/__init__", "figures/style", "figures/{family}"],
@@ -157,6 +166,12 @@ def digest(job):
 def stamp_of(wildcards):
     point = point_of(wildcards)
     return f"results/kernels/{digest(point.job)}/{variant(point)}.stamp"
+
+
+def task_of(wildcards):
+    """What compiles a variant: a tiny run of the first point that needs it."""
+    of_all = (point for experiment in POINTS.values() for point in experiment.values())
+    return next(task(point) for point in of_all if variant(point) == wildcards.variant)
 
 
 wildcard_constraints:

@@ -1,8 +1,9 @@
 # Compile the kernels that the grids use, once each, so that no simulation waits for a compiler.
 #
-# The stamp's path holds a digest of the compiled modules, and the rule has neither inputs, nor parameters, nor a
-# `script:`, so that nothing but a missing stamp can make it run. It must be so: while a job that is to be rerun has
-# `ancient` output, Snakemake (9.27) leaves everything downstream of it unexamined, whatever else may have changed.
+# The stamp's path holds a digest of the compiled modules and one of the features of the scene, and the rule has
+# neither inputs nor a `script:`, so that nothing but a missing stamp can make it run. It must be so: while a job that
+# is to be rerun has `ancient` output, Snakemake (9.27) leaves everything downstream of it unexamined, whatever else
+# may have changed. Parameters that are made with `threads` count as derived, and make nothing run.
 
 
 rule warm:
@@ -20,5 +21,6 @@ rule warm:
         runtime=10,
     params:
         python=lambda wildcards, threads: sys.executable,
+        task=lambda wildcards, threads: task_of(wildcards),
     shell:
-        "{params.python} workflow/scripts/warm.py {wildcards.variant} > {log} 2>&1"
+        "{params.python} workflow/scripts/warm.py {params.task:q} > {log} 2>&1"

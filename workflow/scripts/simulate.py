@@ -24,6 +24,7 @@ with job(snakemake):
             sample_interval=recipe["sample_interval"],
             path=path,
             displacements=recipe["displacements"],
+            follow=recipe["follow"],
             overwrite=True,  # what is left of another recipe
         )
     for leftover in set(partial.iterdir()) - set(paths):

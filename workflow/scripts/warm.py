@@ -1,4 +1,4 @@
-"""Compile the kernels of the variant that is named on the command line."""
+"""Compile the kernels that the task on the command line needs."""
 
 import sys
 from pathlib import Path
