@@ -118,7 +118,7 @@ def test_a_mistake_costs_one_line(tmp_path, scene, options, complaint):
 
 def test_no_command_is_a_mistake_and_help_is_not(tmp_path):
     assert shell(folder=tmp_path).returncode == 2
-    for command in ([], ["run"], ["resume"], ["info"], ["theory"]):
+    for command in ([], ["run"], ["resume"], ["info"], ["render"], ["theory"]):
         done = shell(*command, "--help", folder=tmp_path)
         assert done.returncode == 0 and "usage: gaspart" in done.stdout
     assert shell("--version", folder=tmp_path).stdout == f"gaspart {gp.__version__}\n"

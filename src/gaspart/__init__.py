@@ -23,7 +23,9 @@ _HOMES = {
     "Wall": "matter",
     "engine_from_dict": "engines",
     "engine_to_dict": "engines",
+    "film": "rendering.films",
     "open_trajectory": "trajectory",
+    "render": "rendering.pictures",
     "resume": "trajectory",
     "run": "trajectory",
 }

@@ -1,4 +1,4 @@
-"""The command line: `gaspart run | resume | info | theory`.
+"""The command line: `gaspart run | resume | info | render | theory`.
 
 A user's mistake is one line on stderr and exit code 2; a run that broke an invariant, 1; Ctrl-C, 130.
 """
@@ -14,6 +14,7 @@ from pathlib import Path
 
 from gaspart import __version__
 from gaspart.errors import SceneError, SimulationError
+from gaspart.rendering.command import add_render
 
 _ENGINE_SETTINGS = ("time_step", "boxes_per_side", "precision", "rewind", "search")
 
@@ -66,10 +67,11 @@ def _complain(error: object, code: int) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = _Parser(prog="gaspart", description="Hard-sphere and hard-disc gases.", allow_abbrev=False)
     parser.add_argument("--version", action="version", version=f"gaspart {__version__}")
-    commands = parser.add_subparsers(required=True, metavar="run | resume | info | theory")
+    commands = parser.add_subparsers(required=True, metavar="run | resume | info | render | theory")
     _add_run(commands)
     _add_resume(commands)
     _add_info(commands)
+    add_render(commands)
     _add_theory(commands)
     return parser
 

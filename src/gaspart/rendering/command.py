@@ -1,0 +1,74 @@
+"""`gaspart render`: a picture or a film of a trajectory."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from gaspart.errors import SceneError
+
+PICTURES = (".png",)
+
+
+def add_render(commands) -> None:
+    """Add the command to the others."""
+    text = (
+        "A picture (.png) of one frame of a trajectory, or a film (.mp4, .gif) of all: spheres with light "
+        "and shadow, discs as seen from above."
+    )
+    render = commands.add_parser("render", help="a picture or a film", description=text, allow_abbrev=False)
+    render.set_defaults(command=_render)
+    add = render.add_argument
+    add("trajectory", metavar="FILE")
+    add("-o", "--output", required=True, metavar="FILE", help="ends in .png, .mp4 or .gif")
+    add(
+        "--frame",
+        type=int,
+        metavar="N",
+        help="picture: counted from 0, or from the end if negative; default: -1",
+    )
+    add("--size", type=_size, metavar="WxH", help="in pixels; default: 1000x750")
+    add("--colour", metavar="NAME", help="speed (default) or species")
+    add("--frames-per-second", type=float, metavar="X", help="film; default: 25")
+    add("--trail", type=int, metavar="N", help="film of discs: draw the way of body N, counted from 0")
+
+
+def _size(text: str) -> tuple[int, int]:
+    try:
+        width, height = (int(part) for part in text.split("x"))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} must be as 1000x750") from None
+    return width, height
+
+
+def _render(given: argparse.Namespace) -> None:
+    output = Path(given.output)
+    named = ("size", "colour", "frame", "frames_per_second", "trail")
+    options = {key: getattr(given, key) for key in named if getattr(given, key) is not None}
+    if output.suffix in PICTURES:
+        for key in ("frames_per_second", "trail"):
+            if key in options:
+                raise SceneError(key, options[key], "has no meaning for a picture")
+        _picture(Path(given.trajectory), output, options)
+    else:
+        from gaspart.rendering.films import FORMATS, film
+
+        if output.suffix not in FORMATS:
+            raise SceneError("output", given.output, f"must end in {', '.join((*PICTURES, *FORMATS))}")
+        if "frame" in options:
+            raise SceneError("frame", given.frame, "has no meaning for a film, which shows all")
+        film(given.trajectory, output, **options)
+    print(output)
+
+
+def _picture(trajectory: Path, output: Path, options: dict) -> None:
+    from gaspart.rendering.films import writing
+    from gaspart.rendering.pictures import render
+    from gaspart.trajectory import open_trajectory
+
+    with open_trajectory(trajectory) as opened:
+        image = render(opened, **options)
+    with writing(output) as partial:
+        import imageio.v3 as imageio
+
+        imageio.imwrite(partial, image, extension=".png")

@@ -1,0 +1,98 @@
+import imageio.v3 as imageio
+import numpy as np
+import pytest
+
+import gaspart as gp
+from gaspart.cli import main
+from gaspart.rendering.films import _pieces, film
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    """A folder with trajectories of five frames, of discs between walls and of spheres."""
+    folder = tmp_path_factory.mktemp("films")
+    discs = gp.Scene(
+        gp.Container((12.0, 9.0)),
+        [gp.Species(20, 0.5, temperature=1.0)],
+        bodies=[gp.Body((6.0, 4.5), (0.0, 0.0), 1.5, 10.0)],
+        walls=[gp.Wall((1.0, 1.0), (1.0, 3.0))],
+    )
+    spheres = gp.Scene(gp.Container((6.0,) * 3), [gp.Species(20, 0.5, temperature=1.0)])
+    for name, scene in (("discs", discs), ("spheres", spheres)):
+        gp.run(scene, gp.EventDriven("direct"), 1, 2.0, 0.5, folder / f"{name}.nc")
+    return folder
+
+
+@pytest.mark.parametrize("suffix", ["mp4", "gif"])
+def test_a_film_has_a_picture_for_every_frame(runs, suffix):
+    path = runs / f"discs.{suffix}"
+    assert film(runs / "discs.nc", path, size=(121, 91), trail=0) == path
+    shape = (91, 121) if suffix == "gif" else (90, 120)
+    images = imageio.imread(path, plugin="FFMPEG" if suffix == "mp4" else None)
+    assert images.shape == (5, *shape, 3)
+    assert (images[0] != images[-1]).any()
+    assert not list(runs.glob("*.partial"))
+
+
+def test_a_film_of_spheres_is_made_of_their_pictures(runs):
+    with gp.open_trajectory(runs / "spheres.nc") as trajectory:
+        film(trajectory, runs / "spheres.gif", size=(64, 48), colour="species")
+        last = gp.render(trajectory, size=(64, 48), colour="species")
+        first = gp.render(trajectory, 0, size=(64, 48), colour="species")
+    images = imageio.imread(runs / "spheres.gif").astype(int)
+    assert np.abs(images[-1] - last).mean() < 4.0 < np.abs(images[-1] - first).mean()
+
+
+def test_walls_of_the_scene_are_drawn(runs):
+    with gp.open_trajectory(runs / "discs.nc") as trajectory:
+        image = gp.render(trajectory, size=(240, 180), colour=np.ones((21, 3)))
+    dark = np.argwhere(image[5:-5, 10:-10].max(axis=-1) < 100)
+    assert len(dark) and np.ptp(dark[:, 1]) <= 2 and 34 <= np.ptp(dark[:, 0]) <= 42
+
+
+def test_a_trail_is_cut_where_a_periodic_face_is_crossed():
+    way = [np.array(p) for p in ((8.0, 5.0), (9.5, 5.0), (0.5, 5.0), (1.0, 5.0), (1.0, 9.9))]
+    lengths = np.array([10.0, 10.0])
+    assert [len(piece) for piece in _pieces(way[:4], lengths)] == [2, 2]
+    assert [len(piece) for piece in _pieces(way[:3], lengths)] == [2]
+    assert _pieces(way[:1], lengths) == []
+
+
+def test_the_command_line_makes_pictures_and_films(runs, capsys):
+    source, size = str(runs / "discs.nc"), ["--size", "120x90"]
+    assert main(["render", source, "-o", str(runs / "a.png"), "--frame", "2", *size]) == 0
+    assert main(["render", source, "-o", str(runs / "b.png"), "--frame", "-3", *size]) == 0
+    assert (runs / "a.png").read_bytes() == (runs / "b.png").read_bytes()
+    options = ["--colour", "species", "--frames-per-second", "10", "--trail", "0"]
+    assert main(["render", source, "-o", str(runs / "a.gif"), *size, *options]) == 0
+    assert capsys.readouterr().out.split() == [str(runs / name) for name in ("a.png", "b.png", "a.gif")]
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        (["discs.nc", "-o", "a.jpg"], "output = 'a.jpg': must end in .png, .mp4, .gif"),
+        (["none.nc", "-o", "a.png"], "file = 'none.nc': cannot be read: No such file"),
+        (["discs.nc", "-o", "a.png", "--frame", "5"], "frame = 5: the trajectory has 5, counted from 0"),
+        (["discs.nc", "-o", "a.gif", "--frame", "1"], "frame = 1: has no meaning for a film"),
+        (["discs.nc", "-o", "a.png", "--trail", "1"], "trail = 1: has no meaning for a picture"),
+        (["discs.nc", "-o", "a.gif", "--trail", "21"], "trail = 21: the trajectory has 21 bodies"),
+        (["spheres.nc", "-o", "a.gif", "--trail", "0"], "trail = 0: is drawn among discs only"),
+        (["discs.nc", "-o", "a.png", "--size", "9"], "argument --size: '9' must be as 1000x750"),
+        (["discs.nc", "-o", "a.mp4", "--size", "9x9"], "size = 9: must be a whole number of at least 16"),
+        (["discs.nc", "-o", "a.png", "--colour", "red"], "colour = 'red': must be one of speed, species"),
+        (["discs.nc", "-o", "none/a.png"], "path = 'none/a.png': cannot be written: No such file"),
+        (["discs.nc", "-o", "none/a.mp4"], "path = 'none/a.mp4': cannot be written: No such file"),
+        (
+            ["discs.nc", "-o", "a.gif", "--frames-per-second", "0"],
+            "frames_per_second = 0.0: must be positive",
+        ),
+    ],
+)
+def test_a_mistake_costs_one_line(runs, monkeypatch, capsys, options, complaint):
+    monkeypatch.chdir(runs)
+    before = sorted(runs.iterdir())
+    assert main(["render", *options]) == 2
+    told = capsys.readouterr().err
+    assert complaint in told and told.count("\n") == 1
+    assert sorted(runs.iterdir()) == before
