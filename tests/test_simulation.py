@@ -51,6 +51,37 @@ def test_replay_by_time_and_by_event():
     assert np.array_equal(events[-1].positions, sim.state.positions)
 
 
+def test_chosen_properties_at_any_time():
+    sim = gp.Simulation(gas(2, 10, 0.1, "wall"), gp.EventDriven(), seed=1)
+    sim.advance(duration=4.0)
+    found = sim.properties("positions", "speeds", "kinetic_energies", "radii", at=[3.25, 0.0, 4.0, 3.25])
+    assert found["time"].tolist() == [3.25, 0.0, 4.0, 3.25]
+    assert found["positions"].shape == (4, 10, 2) and found["radii"].shape == (4, 10)
+    assert np.array_equal(found["positions"][0], found["positions"][3])
+    assert np.array_equal(found["positions"][1], sim.initial_state.positions)
+    now = sim.properties("positions", "speeds")
+    assert np.array_equal(found["positions"][2], now["positions"])
+    assert found["speeds"][2] == pytest.approx(np.hypot(*sim.state.velocities.T), rel=1e-15)
+    assert found["kinetic_energies"].sum(axis=1) == pytest.approx(sim.state.kinetic_energy, rel=1e-12)
+    for wrong in ({"at": [4.5]}, {"at": [-1.0]}):
+        with pytest.raises(gp.SceneError, match="at = "):
+            sim.properties("positions", **wrong)
+    with pytest.raises(gp.SceneError, match="properties = 'time'"):
+        sim.properties("time")
+
+
+def test_energies_of_spinning_and_fixed_bodies():
+    for spin in (2.0, (0.0, 0.0, 2.0)):
+        d = 2 if isinstance(spin, float) else 3
+        bodies = [
+            gp.Body((1.0,) * d, (1.0,) * d, 0.5, mass=3.0, spin=spin, moment_of_inertia=4.0),
+            gp.Body((3.0,) * d, (0.0,) * d, 0.5, fixed=True),
+        ]
+        sim = gp.Simulation(gp.Scene(gp.Container((5.0,) * d), bodies=bodies), gp.EventDriven())
+        assert sim.properties("kinetic_energies")["kinetic_energies"].tolist() == [1.5 * d + 8.0, 0.0]
+        assert sim.state.kinetic_energy == 1.5 * d + 8.0
+
+
 def test_max_events_is_exact_and_tallies_can_be_reset():
     sim = gp.Simulation(gas(2, 50, 0.2), gp.EventDriven(), seed=1)
     sim.advance(max_events=123)

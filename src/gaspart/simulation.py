@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -19,6 +19,20 @@ from gaspart.validation import count_of, number
 
 ENERGY_DRIFT = {"float64": 1e-9, "float32": 1e-3}
 """Relative drift of the energy at which a run is stopped, by the engine's precision."""
+PROPERTIES = (
+    "positions",
+    "unwrapped",
+    "images",
+    "velocities",
+    "speeds",
+    "spins",
+    "kinetic_energies",
+    "radii",
+    "masses",
+    "moments_of_inertia",
+    "species",
+)
+"""What `Simulation.properties` can tell of each body; explained in `State`."""
 
 
 class Simulation:
@@ -141,13 +155,12 @@ class Simulation:
     def replay(self, by: str = "time", interval: float | None = None) -> Iterator[State]:
         """The states from the start to the present time, by running it again: at every `interval`
         (by="time"), or after every event (by="event", event-driven engine only)."""
-        again = Simulation(self.scene, self.engine, self.seed)
         if by == "time":
             step = number("interval", interval, "must be positive", above=0.0)
-            for n in range(math.floor(self.time / step * (1 + 1e-12)) + 1):
-                again.advance(until=min(n * step, self.time))
-                yield again.state
+            count = math.floor(self.time / step * (1 + 1e-12)) + 1
+            yield from self._states_at(min(n * step, self.time) for n in range(count))
         elif by == "event":
+            again = Simulation(self.scene, self.engine, self.seed)
             yield again.state
             while True:
                 again.advance(until=self.time, max_events=1)
@@ -157,6 +170,38 @@ class Simulation:
                 yield again.state
         else:
             raise SceneError("by", by, 'must be "time" or "event"')
+
+    def _states_at(self, times: Iterable[float]) -> Iterator[State]:
+        """The states at rising times, by running it again."""
+        again = Simulation(self.scene, self.engine, self.seed)
+        for time in times:
+            again.advance(until=time)
+            yield again.state
+
+    def properties(self, *names: str, at: Iterable[float] | None = None) -> dict[str, np.ndarray]:
+        """Chosen properties of all bodies as arrays, by their names in `PROPERTIES`.
+
+        Now: (N, ...) each. Or at the times `at`, from the start to the present one and in any order, by
+        running it again: (T, N, ...) each, and `time` (T,) with them.
+
+        Raises SceneError for an unknown name, and for a time that lies outside.
+        """
+        for name in names:
+            if name not in PROPERTIES:
+                raise SceneError("properties", name, f"must be one of {PROPERTIES}")
+        if at is None:
+            state = self.state
+            return {name: getattr(state, name) for name in names}
+        times = [number("at", time, "must be from 0 to the present time", least=0.0) for time in at]
+        if max(times, default=0.0) > self.time:
+            raise SceneError("at", max(times), f"lies after the present time {self.time:g}")
+        rising = sorted(set(times))
+        found = {
+            time: [getattr(state, name) for name in names]
+            for time, state in zip(rising, self._states_at(rising), strict=True)
+        }
+        arrays = {name: np.array([found[time][n] for time in times]) for n, name in enumerate(names)}
+        return {"time": np.array(times), **arrays}
 
     def check_invariants(self) -> None:
         """Raise SimulationError if energy has drifted from what it was less what contacts took, or a body is

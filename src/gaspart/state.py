@@ -44,6 +44,18 @@ class State:
         return self.positions + self.images * self.lengths
 
     @property
+    def speeds(self) -> np.ndarray:
+        """(N,) speeds."""
+        return np.sqrt((self.velocities**2).sum(axis=1))
+
+    @property
+    def kinetic_energies(self) -> np.ndarray:
+        """(N,) kinetic energies, of flight and spin together; 0 for a fixed body."""
+        flight = _finite(self.masses) * (self.velocities**2).sum(axis=1)
+        turning = _finite(self.moments_of_inertia) * self.spins.T**2
+        return 0.5 * (flight + (turning if turning.ndim == 1 else turning.sum(axis=0)))
+
+    @property
     def momentum(self) -> np.ndarray:
         """(d,) total momentum."""
         return (_finite(self.masses)[:, None] * self.velocities).sum(axis=0)  # not @: BLAS differs by machine

@@ -242,6 +242,22 @@ def test_collapse_is_reported_with_the_state_kept(middle, normal):
     sim.advance(duration=10.0)  # above the threshold
 
 
+def test_a_collapse_comes_at_the_same_event_however_often_the_run_is_resumed():
+    """The watch's counts are in the checkpoint; without them a run resumed in time would never collapse."""
+    bodies = [gp.Body((x, 1.0), (v, 0.0), 0.5) for x, v in ((2.5, 1.0), (5.0, 0.0), (7.0, -1.0))]
+    scene = gp.Scene(gp.Container((10.0, 2.0)), bodies=bodies, restitution=gp.Restitution(0.05))
+    whole, resumed = (gp.Simulation(scene, gp.EventDriven()) for _ in range(2))
+    with pytest.raises(gp.SimulationError, match="collapse"):
+        whole.advance(duration=10.0)
+    with pytest.raises(gp.SimulationError, match="collapse"):
+        while resumed.tally.collisions <= whole.tally.collisions:
+            resumed.advance(max_events=1)
+            kept = resumed.checkpoint()
+            resumed = gp.Simulation(scene, gp.EventDriven())
+            resumed.restore(kept)
+    assert (resumed.time, resumed.tally.collisions) == (whole.time, whole.tally.collisions)
+
+
 def test_a_stack_at_rest_is_reported_not_looped_over():
     bodies = [gp.Body((5.0, 0.5), (0.0, 0.0), 0.5), gp.Body((5.0, 1.5), (0.0, 0.0), 0.5)]
     scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=bodies, gravity=(0.0, -1.0))

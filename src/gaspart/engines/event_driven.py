@@ -227,6 +227,8 @@ class EventDynamics:
         parts.update(rows=self._rows, images=self._images, plans=self._plans, **self._counters._asdict())
         if self._law:
             parts["spins"] = self._law.spins
+        if self._watch:
+            parts.update(crowd_since=self._watch.since, crowd=self._watch.contacts)
         return {key: np.array(value) for key, value in parts.items()}
 
     def restore(self, parts: dict[str, np.ndarray]) -> None:
@@ -236,6 +238,8 @@ class EventDynamics:
             array[...] = parts[key]
         if self._law:
             self._law.spins[...] = parts["spins"]
+        if self._watch:
+            self._watch.since[...], self._watch.contacts[...] = parts["crowd_since"], parts["crowd"]
         times = (float(parts[key]) for key in ("laps", "clock", "since", "lost"))
         self._laps, self._clock, self._since, self._lost = times
         if not self._by_pairs:
