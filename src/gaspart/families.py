@@ -21,6 +21,7 @@ FAMILIES = {
     "speed_distribution_discs": "speeds",
     "msd_spheres": "displacement",
     "msd_discs": "displacement",
+    "wall_pressure": "wall_pressure",
 }
 
 TITLES = {
@@ -30,4 +31,5 @@ TITLES = {
     "virial": "Equation of state",
     "speeds": "Speed distributions",
     "displacement": "Mean-squared displacement",
+    "wall_pressure": "Pressure on walls",
 }

@@ -134,6 +134,7 @@ FAMILY_MODULES = {
     ("judge", "displacement"): ["statistics"],
     ("judge", "radius"): ["statistics"],
     ("judge", "virial"): ["statistics"],
+    ("judge", "wall_pressure"): ["statistics"],
 }
 
 

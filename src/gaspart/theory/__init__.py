@@ -43,6 +43,14 @@ from .geometry import (
     number_density,
     packing_fraction,
 )
+from .granular import (
+    cooling_rate,
+    fourth_cumulant,
+    haff_time,
+    rough_matrix,
+    rough_ratio,
+    rough_temperatures,
+)
 from .insertion import (
     RSA_SATURATION,
     RSA_SATURATION_UNCERTAINTY,
@@ -78,6 +86,11 @@ from .virial import (
     partial_sum_uncertainty,
     virial_coefficients,
 )
+from .walls import (
+    surface_tension,
+    surface_tension_uncertainty,
+    wall_pressure,
+)
 
 __all__ = [
     "CLOSE_PACKING",
@@ -98,6 +111,7 @@ __all__ = [
     "compressibility_factor",
     "compressibility_uncertainty",
     "contact_value",
+    "cooling_rate",
     "enskog_bulk_viscosity",
     "enskog_conductivity",
     "enskog_diffusion",
@@ -107,6 +121,8 @@ __all__ = [
     "erpenbeck_wood_ratio",
     "failures_per_body",
     "finite_size_correction",
+    "fourth_cumulant",
+    "haff_time",
     "henderson",
     "initial_kurtosis_slope",
     "insertion_saturation",
@@ -129,12 +145,18 @@ __all__ = [
     "percus_yevick_compressibility",
     "percus_yevick_virial",
     "relaxation",
+    "rough_matrix",
+    "rough_ratio",
+    "rough_temperatures",
     "santos_haro_yuste",
     "scaled_particle",
+    "surface_tension",
+    "surface_tension_uncertainty",
     "van_der_waals",
     "velocity_autocorrelation_tail",
     "velocity_decay_rate",
     "virial_coefficients",
     "virial_with_tail",
+    "wall_pressure",
     "yeh_hummer",
 ]

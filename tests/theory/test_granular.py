@@ -1,0 +1,70 @@
+"""Rough and inelastic gases against averages over Maxwellian pairs of the contact law itself."""
+
+import numpy as np
+import pytest
+
+from gaspart import theory
+
+
+def drawn_matrix(q, tangential, normal, pairs=400_000):
+    """rough_matrix by Monte Carlo: the mean changes of energy of one contact of equal discs, weighted by the
+    chance of the contact, the approach speed. Spencer 2022, Eqs. 26, 35 and 38, unit mass and radius."""
+    rng = np.random.default_rng(3)
+    columns = []
+    for spin in (0.0, 1.0):  # linear in T_rot at T_tr = 1
+        v = rng.standard_normal((2, pairs, 2))  # normal, tangential component of both bodies
+        w = np.sqrt(spin / q) * rng.standard_normal((2, pairs))
+        gn, gt = v[0, :, 0] - v[1, :, 0], v[0, :, 1] - v[1, :, 1] + w[0] + w[1]
+        weight = np.where(gn > 0.0, gn, 0.0)
+        jn = -(1.0 + normal) * gn / 2.0
+        jt = -(1.0 + tangential) * gt / (2.0 + 2.0 / q)
+        translation = jn * gn + jn**2 + jt * (v[0, :, 1] - v[1, :, 1]) + jt**2
+        rotation = 0.5 * q * ((w[0] + jt / q) ** 2 - w[0] ** 2 + (w[1] + jt / q) ** 2 - w[1] ** 2)
+        # a contact is one collision of two bodies: per ds, N/2 ds contacts; T_tr = E / N, T_rot = 2 E / N
+        columns.append([0.5 * np.average(translation, weights=weight), np.average(rotation, weights=weight)])
+    smooth, both = np.array(columns)
+    return np.stack([smooth, both - smooth], axis=1)
+
+
+@pytest.mark.parametrize(("q", "tangential", "normal"), [(0.5, 1.0, 1.0), (0.5, 0.0, 0.8), (0.2, -0.5, 1.0)])
+def test_the_matrix_is_the_mean_of_the_contact_law(q, tangential, normal):
+    found = drawn_matrix(q, tangential, normal)
+    assert found == pytest.approx(theory.rough_matrix(q, tangential, normal), abs=0.003)
+
+
+def test_perfectly_rough_discs_share_equally_at_the_known_rate():
+    for q in (0.1, 0.5, 1.0):
+        s = np.linspace(0.0, 3.0, 7)
+        translation, rotation = theory.rough_temperatures(s, q, 1.0)
+        assert translation - rotation == pytest.approx(np.exp(-3.0 * q / (1.0 + q) ** 2 * s), rel=1e-12)
+        assert 2.0 * translation + rotation == pytest.approx(2.0, rel=1e-12)
+        assert theory.rough_ratio(q, 1.0) == pytest.approx(1.0, rel=1e-12)
+
+
+def test_the_ratio_is_where_the_temperatures_tend():
+    translation, rotation = theory.rough_temperatures(200.0, 0.5, 0.2, 0.9)
+    assert rotation / translation == pytest.approx(theory.rough_ratio(0.5, 0.2, 0.9), rel=1e-9)
+
+
+def test_smooth_discs_cool_as_haff_says():
+    assert theory.rough_matrix(0.5, -1.0, 0.9)[0, 0] == pytest.approx(-(1.0 - 0.81) / 2.0)
+    assert theory.fourth_cumulant(0.9, 3) == pytest.approx(-0.01456, abs=1e-5)
+    assert theory.fourth_cumulant(np.sqrt(0.5), 2) == pytest.approx(0.0, abs=1e-15)
+    assert theory.cooling_rate(0.9, 2) == pytest.approx(0.095 * (1.0 - 0.02686 / 4.0), rel=1e-4)
+    # T(t) of Haff's law falls at first by the cooling rate times the collision rate
+    slowed = 1.0 - theory.fourth_cumulant(0.9, 2) / 16.0
+    assert 2.0 / theory.haff_time(0.9, 2, 0.3) == pytest.approx(theory.cooling_rate(0.9, 2) * slowed * 0.3)
+
+
+@pytest.mark.parametrize(
+    ("function", "arguments"),
+    [
+        (theory.fourth_cumulant, (1.1, 2)),
+        (theory.rough_matrix, (0.0, 1.0)),
+        (theory.rough_matrix, (0.5, 1.5)),
+        (theory.rough_ratio, (0.5, -1.0)),
+    ],
+)
+def test_what_cannot_be_is_refused(function, arguments):
+    with pytest.raises(ValueError):
+        function(*arguments)
