@@ -85,3 +85,29 @@ def walled(draw, most=12):
         restitution=law,
         walls=walls,
     )
+
+
+@st.composite
+def surfaced(draw, most=12):
+    """Scenes whose faces are thermal, sticky or attract: rough discs that fall, or spheres of two masses."""
+    dimension = draw(st.sampled_from([2, 3]))
+    lengths = draw(st.lists(st.floats(4.5, 9.0), min_size=dimension, max_size=dimension))
+    boundary = draw(st.lists(st.sampled_from(["wall", "periodic"]), min_size=dimension, max_size=dimension))
+    boundary[1] = "wall"
+    kinds = {
+        "thermal": st.builds(gp.Thermal, st.floats(0.2, 5.0), st.sampled_from(["all", "normal"])),
+        "well": st.builds(gp.Well, st.floats(0.1, 3.0), st.floats(0.01, 1.2), st.sampled_from([None, 1.0])),
+        "sticky": st.builds(gp.Sticky, st.floats(0.1, 2.0)),
+    }
+    faces = {}
+    for axis in range(dimension):
+        for side in ("low", "high"):
+            falls = dimension == 2 and axis == 1
+            kind = draw(st.sampled_from(["thermal", *(() if falls else ("well", "sticky", "hard"))]))
+            if boundary[axis] == "wall" and kind != "hard":
+                faces[f"{'xyz'[axis]}_{side}"] = draw(kinds[kind])
+    count, radius = st.integers(1, most // 2), st.floats(0.1, 0.4)
+    species = [gp.Species(draw(count), draw(radius), mass, temperature=1.0) for mass in (1.0, 2.0)]
+    discs = {"gravity": (0.0, -0.5), "restitution": gp.Restitution(draw(st.sampled_from([1.0, 0.9])), 0.5)}
+    container = gp.Container(lengths, boundary)
+    return gp.Scene(container, species, faces=faces, **(discs if dimension == 2 else {}))

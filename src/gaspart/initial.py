@@ -10,6 +10,7 @@ from gaspart.errors import SceneError
 from gaspart.random import directions, normals, stream
 from gaspart.scene import Scene
 from gaspart.state import State
+from gaspart.wells import places_in_wells, well_energies
 
 PATIENCE = 2_000_000
 """Failed attempts at placing one body after which a container counts as full."""
@@ -59,6 +60,7 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
         spins=spins[:, 2] if scene.dimension == 2 else spins,
         moments_of_inertia=np.where(fixed, np.inf, inertia),
         gravity=None if scene.gravity is None else np.array(scene.gravity),
+        well_energies=well_energies(scene, places_in_wells(scene, positions, radii)) if scene.faces else None,
     )
 
 

@@ -18,6 +18,7 @@ _HERE = Path(__file__).parent
 KERNEL_MODULES = (
     "kernel.py",
     "contact.py",
+    "draws.py",
     "falling.py",
     "boxes.py",
     "segments.py",
@@ -28,6 +29,7 @@ KERNEL_MODULES = (
     "engines/lists.py",
     "engines/impact.py",
     "engines/faces.py",
+    "engines/surfaces.py",
     "engines/walls.py",
     "engines/event_kernels.py",
     "engines/all_pairs.py",

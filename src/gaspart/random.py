@@ -10,8 +10,9 @@ import numpy as np
 
 from gaspart.errors import SceneError
 
-_LN2 = 0.6931471805599453
-_SERIES = [1.0 / (2 * k + 1) for k in range(12)]
+LN2 = 0.6931471805599453
+LOG_SERIES = tuple(1.0 / (2 * k + 1) for k in range(12))
+"""Of artanh, from which logarithms are made."""
 
 
 def stream(seed: int | tuple[int, ...], *purpose: int) -> np.random.Generator:
@@ -19,12 +20,20 @@ def stream(seed: int | tuple[int, ...], *purpose: int) -> np.random.Generator:
 
     Raises SceneError unless the seed is made of non-negative whole numbers.
     """
+    return np.random.Generator(np.random.PCG64(_sequence(seed, purpose)))
+
+
+def key_of(seed: int | tuple[int, ...], *purpose: int) -> np.ndarray:
+    """(2,) words of 64 bits for the random numbers inside kernels (see `draws`); raises the same."""
+    return _sequence(seed, purpose).generate_state(2, np.uint64)
+
+
+def _sequence(seed: int | tuple[int, ...], purpose: tuple[int, ...]) -> np.random.SeedSequence:
     parts = seed if isinstance(seed, (tuple, list)) else (seed,)
     for part in parts:
         if isinstance(part, bool) or not isinstance(part, (int, np.integer)) or part < 0:
             raise SceneError("seed", seed, "must be a whole number of at least 0, or a list of them")
-    sequence = np.random.SeedSequence([int(part) for part in parts], spawn_key=purpose)
-    return np.random.Generator(np.random.PCG64(sequence))
+    return np.random.SeedSequence([int(part) for part in parts], spawn_key=purpose)
 
 
 def natural_log(x: np.ndarray) -> np.ndarray:
@@ -39,9 +48,9 @@ def natural_log(x: np.ndarray) -> np.ndarray:
     s = (mantissa - 1.0) / (mantissa + 1.0)
     square = s * s
     total = np.zeros_like(s)
-    for coefficient in reversed(_SERIES):
+    for coefficient in reversed(LOG_SERIES):
         total = total * square + coefficient
-    return exponent * _LN2 + 2.0 * s * total
+    return exponent * LN2 + 2.0 * s * total
 
 
 def _disc(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -7,13 +7,14 @@ units; masses are relative to the reference species; k_B = 1.
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from itertools import product
 from pathlib import Path
 
 from gaspart.errors import SceneError
 from gaspart.files import read_yaml, write_yaml
 from gaspart.matter import Body, Restitution, Species, Wall
+from gaspart.surfaces import Sticky, Thermal, Well, check_faces, surface_from_dict, surface_to_dict
 from gaspart.validation import count_of, from_mapping, number, settle, vector
 
 __all__ = ["Body", "Container", "Restitution", "Scene", "Species", "Wall"]
@@ -21,7 +22,7 @@ __all__ += ["count_of", "from_mapping", "number"]
 
 BOUNDARIES = ("wall", "periodic")
 _TOUCH = 1e-12  # of a radius: by which a body that touches a wall may seem to overlap it
-_ABSENT = ("fixed", "walls")  # not written into a file unless there
+_ABSENT = ("fixed", "walls", "faces")  # not written into a file unless there
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ class Scene:
     With `centres_to_walls` the walls stop the bodies' centres instead of their surfaces (the rule of
     Frederickx & Meerts 2010, whose spheres stick out of the container). gravity: (d,) a uniform acceleration.
     restitution: the law of all contacts; without it they are elastic and smooth. walls: straight
-    ones inside a container of two dimensions.
+    ones inside a container of two dimensions. faces: kinds of the container's faces, by name (x_low, ...).
 
     Raises SceneError for a scene that cannot be.
     """
@@ -82,6 +83,7 @@ class Scene:
     gravity: tuple[float, ...] | None = None
     restitution: Restitution | None = None
     walls: tuple[Wall, ...] = ()
+    faces: dict[str, Thermal | Well | Sticky] = field(default_factory=dict, hash=False)
 
     def __post_init__(self):
         settle(self, species=tuple(self.species), bodies=tuple(self.bodies), walls=tuple(self.walls))
@@ -95,6 +97,7 @@ class Scene:
         if not isinstance(self.centres_to_walls, bool):
             raise SceneError("centres_to_walls", self.centres_to_walls, "must be true or false")
         self._check_walls()
+        check_faces(self)
         for n, kind in enumerate(self.species):
             if kind.count:
                 self._fits(f"species[{n}].radius", kind.radius)
@@ -235,7 +238,8 @@ class Scene:
                 return {k: plain(x) for k, x in value.items() if x is not None and (x or k not in _ABSENT)}
             return [plain(item) for item in value] if isinstance(value, tuple) else value
 
-        return plain(asdict(self))
+        faces = {name: surface_to_dict(surface) for name, surface in self.faces.items()}
+        return plain({**asdict(self), "faces": faces})
 
     @classmethod
     def from_dict(cls, mapping: dict, file: str | None = None) -> Scene:
@@ -249,6 +253,9 @@ class Scene:
             parts["container"] = from_mapping(Container, parts["container"], "container")
             if parts.get("restitution") is not None:
                 parts["restitution"] = from_mapping(Restitution, parts["restitution"], "restitution")
+            if isinstance(parts.get("faces"), dict):
+                faces = parts["faces"].items()
+                parts["faces"] = {name: surface_from_dict(face, f"faces.{name}") for name, face in faces}
             for key, kind in (("species", Species), ("bodies", Body), ("walls", Wall)):
                 items = parts.get(key, ())
                 if not isinstance(items, (list, tuple)):

@@ -36,7 +36,8 @@ PROPERTIES = (
 
 
 class Simulation:
-    """One run. `seed`: a whole number, or a tuple of them, that fixes the initial state.
+    """One run. `seed`: a whole number, or a tuple of them, that fixes the initial state and what thermal
+    walls draw.
 
     Raises SceneError if the scene cannot be set up, or the engine cannot model it.
     """
@@ -50,7 +51,7 @@ class Simulation:
     def _set_up(self) -> None:
         self._initial = initial_state(self.scene, self.seed)
         self._energy = self._initial.energy
-        self._dynamics = self.engine.start(self.scene, self._initial)
+        self._dynamics = self.engine.start(self.scene, self._initial, self.seed)
 
     def add(self, position, velocity, radius: float, mass: float = 1.0, **properties) -> None:
         """Add one body (properties as in `Body`): `scene` becomes a new, validated scene. Refused once the
@@ -145,8 +146,8 @@ class Simulation:
     def events(self) -> dict[str, np.ndarray]:
         """The events recorded: time (M,), bodies (M, 2), positions and velocities (M, 2, d) just after.
 
-        The second of `bodies` is -1 - face for a hit at a face of the container, -1 - 2d - n for one at
-        interior wall n.
+        The second of `bodies` is -1 - face for a hit at a face of the container or the edge of its well,
+        -1 - 2d - n for one at interior wall n.
         """
         if self._log is None:
             raise SceneError("events", None, "set record_events to True before advancing")
@@ -204,13 +205,13 @@ class Simulation:
         return {"time": np.array(times), **arrays}
 
     def check_invariants(self) -> None:
-        """Raise SimulationError if energy has drifted from what it was less what contacts took, or a body is
-        not where it can be."""
+        """Raise SimulationError if energy has drifted from what it was less what contacts and walls took, or
+        a body is not where it can be."""
         state = self.state
         if not (np.isfinite(state.positions).all() and np.isfinite(state.velocities).all()):
             raise SimulationError(f"at time {self.time:g} a position or velocity is not finite")
         drift = abs(state.energy + self._dynamics.dissipated - self._energy)
-        scale = self._initial.kinetic_energy
+        scale = max(self._initial.kinetic_energy, state.kinetic_energy)
         if state.gravity is not None:  # what a fall through the container can change
             masses = state.masses[np.isfinite(state.masses)]
             scale += float(masses.sum() * (abs(state.gravity) @ state.lengths))

@@ -14,8 +14,10 @@ class State:
     time; positions (N, d), inside the container on periodic axes; velocities (N, d); images (N, d), how
     often each body has crossed the container on periodic axes; radii, masses (N,); species (N,), the index
     of the body's species, explicit bodies counting as one species after the others; lengths (d,);
-    spins, angular velocities, (N,) in 2D and (N, 3) in 3D; moments_of_inertia (N,); gravity (d,) or None. The
-    mass and moment of inertia of a fixed body are infinite; it counts in no sum.
+    spins, angular velocities, (N,) in 2D and (N, 3) in 3D; moments_of_inertia (N,); gravity (d,) or None;
+    well_energies (N,), the potential energy in the wells of the faces, and vibrations (N,), the energy of
+    each body's vibration, or None. The mass and moment of inertia of a fixed body are infinite; they count
+    in no sum.
     """
 
     time: float
@@ -29,6 +31,8 @@ class State:
     spins: np.ndarray
     moments_of_inertia: np.ndarray
     gravity: np.ndarray | None = None
+    well_energies: np.ndarray | None = None
+    vibrations: np.ndarray | None = None
 
     @property
     def count(self) -> int:
@@ -83,17 +87,20 @@ class State:
 
     @property
     def potential_energy(self) -> float:
-        """Of all bodies under gravity, 0 where their centres are at the container's origin."""
-        return (
-            0.0
-            if self.gravity is None
-            else -float((_finite(self.masses)[:, None] * self.positions * self.gravity).sum())
-        )
+        """Of all bodies under gravity, 0 where their centres are at the container's origin, and in wells."""
+        energy = 0.0 if self.well_energies is None else float(self.well_energies.sum())
+        if self.gravity is not None:
+            energy -= float((_finite(self.masses)[:, None] * self.positions * self.gravity).sum())
+        return energy
+
+    @property
+    def vibrational_energy(self) -> float:
+        return 0.0 if self.vibrations is None else float(self.vibrations.sum())
 
     @property
     def energy(self) -> float:
-        """Kinetic and potential."""
-        return self.kinetic_energy + self.potential_energy
+        """Kinetic, potential and vibrational."""
+        return self.kinetic_energy + self.potential_energy + self.vibrational_energy
 
     def copy(self) -> State:
         """A state that shares no array with this one."""

@@ -12,7 +12,8 @@ class Tally:
     """Sums since the last reset.
 
     time: simulated time covered; collisions of pairs; wall_hits and wall_impulse (2d + interior walls,), the
-    momentum given to each face (x low, x high, y low ...) and then to each interior wall; virial_sum: sum of
+    momentum given to each face (x low, x high, y low ...) and then to each interior wall; wall_energy, the
+    heat given to each of them by bodies that left it at its temperature; virial_sum: sum of
     |dr.dp| over collisions; pair_tests: pairs examined; box_visits: boxes looked into; crossings of box
     boundaries; worst_contact: largest |r^2/sigma^2 - 1| at a contact; dissipated_energy: what inelastic
     contacts took.
@@ -26,6 +27,7 @@ class Tally:
     collisions: int
     wall_hits: np.ndarray
     wall_impulse: np.ndarray
+    wall_energy: np.ndarray
     virial_sum: float
     pair_tests: int
     box_visits: int

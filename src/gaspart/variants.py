@@ -59,7 +59,7 @@ def _differing(thing, prefix: str = "") -> Iterator[str]:
                 yield from _differing(part, f"{name}.")
             elif isinstance(part, str):
                 yield f"{name}={part}"
-            elif field.default is not MISSING and part:  # an acceleration of zero is none
+            elif (isinstance(part, dict) and part) or (field.default is not MISSING and part):
                 yield name
 
 

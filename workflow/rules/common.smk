@@ -79,10 +79,11 @@ def flagged(path, kind):
 # The modules of gaspart that each stage uses are inputs of its rules: editing one reruns what it touches.
 # `{family}` stands for the family of a figure, `*` for every module of a package; FAMILY_MODULES are what single
 # families use beside. tests/workflow/test_modules.py compares these tables with the import graph of the scripts.
-SCENE = ["__init__", "errors", "files", "matter", "scene", "validation"]
+SCENE = ["__init__", "errors", "files", "matter", "scene", "surfaces", "validation"]
 ENGINES = [
     "boxes",
     "contact",
+    "draws",
     "engines/*",
     "falling",
     "initial",
@@ -93,6 +94,7 @@ ENGINES = [
     "simulation",
     "state",
     "tally",
+    "wells",
 ]
 TRAJECTORY = ["amber", "checkpoint", "provenance", "recipe", "recording", "trajectory"]
 SIMULATE = [*SCENE, *ENGINES, *TRAJECTORY]
@@ -153,7 +155,7 @@ def modules_of(stage):
 
 
 # The modules among them whose code is compiled.
-KERNELS = ["boxes", "contact", "engines/*", "falling", "insertion", "kernel", "segments"]
+KERNELS = ["boxes", "contact", "draws", "engines/*", "falling", "insertion", "kernel", "segments"]
 
 
 @cache

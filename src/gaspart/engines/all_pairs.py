@@ -8,7 +8,8 @@ from gaspart.engines.event_kernels import note
 from gaspart.engines.faces import find_face, meet_face
 from gaspart.engines.flight import pair_time
 from gaspart.engines.impact import collide, crowded
-from gaspart.engines.layout import COLLAPSE, EVENTS, FULL, NOTHING, PAIR_TESTS, STOP, WALLS
+from gaspart.engines.layout import COLLAPSE, EDGES, EVENTS, FULL, NOTHING, PAIR_TESTS, STOP, WALLS
+from gaspart.engines.surfaces import meet_edge
 from gaspart.engines.walls import find_wall, meet_wall
 from gaspart.kernel import allocating_kernel
 
@@ -29,6 +30,7 @@ def run_pairs(
     law,
     watch,
     walls,
+    surfaces,
 ):
     """What `run_boxes` does, with the same arguments and answers but for the calendar.
 
@@ -52,7 +54,7 @@ def run_pairs(
         second = NOTHING
         face = NOTHING
         for i in range(count):
-            time, code = find_face(rows, plans, i, space, partition, -inf, gravity)
+            time, code = find_face(rows, plans, i, space, partition, -inf, gravity, surfaces)
             if walls is not None:
                 time, code = find_wall(rows, plans, i, space, partition, gravity, walls, time, code)
             if time < soon:
@@ -85,7 +87,15 @@ def run_pairs(
                     second = -1 - meet_wall(
                         rows, plans, first, m, soon, space, masses, counters, gravity, law, walls
                     )
-            elif not meet_face(rows, images, plans, first, face, soon, space, masses, counters, gravity, law):
+            elif face >= EDGES:
+                if surfaces is not None:
+                    m = face - EDGES
+                    second = -1 - meet_edge(
+                        rows, plans, first, m, soon, space, masses, counters, gravity, law, surfaces
+                    )
+            elif not meet_face(
+                rows, images, plans, first, face, soon, space, masses, counters, gravity, law, surfaces
+            ):
                 continue
         last = soon
         done += 1

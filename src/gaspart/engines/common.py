@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from gaspart.random import key_of
+from gaspart.scene import Scene
+from gaspart.state import State
+from gaspart.surfaces import FACES, Sticky, Thermal, Well
+from gaspart.wells import places_in_wells, wells_of
+
 _ROOM = 4096  # events that the record holds before it is emptied
+_WALL_DRAWS = 2  # the purpose of the random numbers of thermal walls, after those of the initial state
 
 
 def masses_for_kernel(masses: np.ndarray) -> tuple[float, np.ndarray | None]:
@@ -12,6 +19,36 @@ def masses_for_kernel(masses: np.ndarray) -> tuple[float, np.ndarray | None]:
     if len(masses) == 0:
         return 1.0, None
     return (float(masses[0]), None) if (masses == masses[0]).all() else (1.0, masses)
+
+
+def surfaces_for_kernel(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float):
+    """The kinds of the container's faces as the kernels' `Surfaces`, in units of `unit_mass`."""
+    from gaspart.engines.layout import HARD, STICKY, THERMAL, THERMAL_NORMAL, Surfaces
+
+    kinds, levels = [], []
+    for name in FACES[: 2 * scene.dimension]:
+        match scene.faces.get(name):
+            case Thermal(temperature, "normal"):
+                kind, level = THERMAL_NORMAL, temperature
+            case Thermal(temperature) | Well(temperature=float(temperature)):
+                kind, level = THERMAL, temperature
+            case Sticky(momentum):
+                kind, level = STICKY, momentum
+            case _:
+                kind, level = HARD, 0.0
+        kinds.append(kind)
+        levels.append(level)
+    depths, widths = wells_of(scene)
+    return Surfaces(
+        kind=np.array(kinds, dtype=np.int64),
+        level=np.array(levels) / unit_mass,
+        depth=depths / unit_mass,
+        width=widths,
+        place=places_in_wells(scene, state.positions, state.radii),
+        held=np.zeros(state.positions.shape),
+        draws=np.zeros(state.count, dtype=np.int64),
+        key=key_of(seed, _WALL_DRAWS),
+    )
 
 
 def aligned(shape: tuple[int, ...], dtype) -> np.ndarray:

@@ -6,12 +6,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gaspart.engines.common import EventLog, aligned, masses_for_kernel
+from gaspart.engines.common import EventLog, aligned, masses_for_kernel, surfaces_for_kernel
 from gaspart.errors import SceneError, SimulationError
 from gaspart.matter import Restitution
 from gaspart.scene import Scene
 from gaspart.state import State
 from gaspart.tally import Tally
+from gaspart.wells import well_energies
 
 SEARCHES = ("boxes", "direct", "pairs")
 _LAP = 10  # a lap of the clocks is some 2^10 times of flight over a diameter
@@ -19,6 +20,7 @@ _STILL = 2.0**960  # the lap of a scene in which nothing moves
 _BLINK = 2.0**-44  # of a lap: the longest bounce on a floor that is taken for rest
 # More contacts of one body than these, within so much of a lap, are taken for a collapse. Intervals between
 # inelastic contacts shrink geometrically until rounding lets the bodies part, so few of them are left to see.
+_OF_BODIES = ("place", "held", "draws")  # what changes of the faces' Surfaces
 _CROWD, _CROWDED = 1000, _BLINK
 _INELASTIC_CROWD, _INELASTIC_CROWDED = 12, 2.0**-34
 
@@ -43,15 +45,15 @@ class EventDriven:
         if self.search != "boxes" and self.boxes_per_side is not None:
             raise SceneError("boxes_per_side", self.boxes_per_side, 'needs search "boxes"')
 
-    def start(self, scene: Scene, state: State) -> EventDynamics:
-        """Set the engine up for a scene in a given state."""
-        return EventDynamics(self, scene, state)
+    def start(self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0) -> EventDynamics:
+        """Set the engine up for a scene in a given state; `seed` is that of thermal walls."""
+        return EventDynamics(self, scene, state, seed)
 
 
 class EventDynamics:
     """A scene under way. Clocks count from the start of the current lap, lest they lose precision."""
 
-    def __init__(self, engine: EventDriven, scene: Scene, state: State):
+    def __init__(self, engine: EventDriven, scene: Scene, state: State, seed: int | tuple[int, ...]):
         from gaspart.boxes import make_boxes, sides_for
         from gaspart.engines import all_pairs, event_kernels, flight, layout
         from gaspart.engines.calendar import PLAN, empty_calendar
@@ -88,6 +90,7 @@ class EventDynamics:
         self._calendar = empty_calendar(n)
         self._law = _law(scene, state, layout)
         self._unit_mass, self._masses = (1.0, None) if self._law else masses_for_kernel(state.masses)
+        self._surfaces = surfaces_for_kernel(scene, state, seed, self._unit_mass) if scene.faces else None
         self._lap = _lap_length(scene, state)
         self._gravity = None
         if scene.gravity is not None and any(scene.gravity):
@@ -109,8 +112,9 @@ class EventDynamics:
         faces = 2 * self._scene.dimension + len(self._scene.walls)
         if self._counters:
             self._lost = self.dissipated
+        hits, impulse, energy = np.zeros(faces, dtype=np.int64), np.zeros(faces), np.zeros(faces)
         self._counters = self._layout.Counters(
-            np.zeros(5, dtype=np.int64), np.zeros(3), np.zeros(faces, dtype=np.int64), np.zeros(faces)
+            np.zeros(5, dtype=np.int64), np.zeros(3), hits, impulse, energy
         )
         self._since = self.time
 
@@ -126,6 +130,7 @@ class EventDynamics:
                 self._clock,
                 self._gravity,
                 self._walls,
+                self._surfaces,
             )
 
     @property
@@ -163,7 +168,7 @@ class EventDynamics:
     def _run(self, room, stop: float, most: int) -> tuple[int, int, float]:
         """Let the kernel of this search run: why it stopped, the events it did, the time of the last."""
         common = self._space, self._partition, self._masses, self._counters, room, stop, most
-        common = *common, self._gravity, self._law, self._watch, self._walls
+        common = *common, self._gravity, self._law, self._watch, self._walls, self._surfaces
         if self._by_pairs:
             return self._all_pairs.run_pairs(self._rows, self._images, self._plans, *common)
         return self._kernels.run_boxes(self._rows, self._images, self._plans, self._calendar, *common)
@@ -185,6 +190,7 @@ class EventDynamics:
             collisions=int(counters.counts[layout.COLLISIONS]),
             wall_hits=counters.wall_hits.copy(),
             wall_impulse=counters.wall_impulse * self._unit_mass,
+            wall_energy=counters.wall_energy * self._unit_mass,
             virial_sum=float(counters.sums[layout.VIRIAL]) * self._unit_mass,
             pair_tests=int(counters.counts[layout.PAIR_TESTS]),
             box_visits=int(counters.counts[layout.BOX_VISITS]),
@@ -195,8 +201,9 @@ class EventDynamics:
 
     @property
     def dissipated(self) -> float:
-        """The energy that contacts have taken since time 0."""
-        return self._lost + float(self._counters.sums[self._layout.LOSS])
+        """The energy that contacts and thermal walls have taken since time 0."""
+        walls = float(self._counters.wall_energy.sum()) * self._unit_mass
+        return self._lost + float(self._counters.sums[self._layout.LOSS]) + walls
 
     @property
     def state(self) -> State:
@@ -219,6 +226,9 @@ class EventDynamics:
         )
         if self._law:
             state.spins = (self._law.spins[:, 2] if d == 2 else self._law.spins).copy()
+        if self._surfaces:
+            state.well_energies = well_energies(self._scene, self._surfaces.place)
+            state.vibrations = self._surfaces.held.sum(axis=1) * self._unit_mass
         return state
 
     def checkpoint(self) -> dict[str, np.ndarray]:
@@ -229,6 +239,8 @@ class EventDynamics:
             parts["spins"] = self._law.spins
         if self._watch:
             parts.update(crowd_since=self._watch.since, crowd=self._watch.contacts)
+        if self._surfaces:
+            parts.update({key: getattr(self._surfaces, key) for key in _OF_BODIES})
         return {key: np.array(value) for key, value in parts.items()}
 
     def restore(self, parts: dict[str, np.ndarray]) -> None:
@@ -240,6 +252,9 @@ class EventDynamics:
             self._law.spins[...] = parts["spins"]
         if self._watch:
             self._watch.since[...], self._watch.contacts[...] = parts["crowd_since"], parts["crowd"]
+        if self._surfaces:
+            for key in _OF_BODIES:
+                getattr(self._surfaces, key)[...] = parts[key]
         times = (float(parts[key]) for key in ("laps", "clock", "since", "lost"))
         self._laps, self._clock, self._since, self._lost = times
         if not self._by_pairs:
@@ -264,6 +279,10 @@ def _lap_length(scene: Scene, state: State) -> float:
     square = float((state.velocities**2).sum(axis=1).mean()) if state.count else 0.0
     if scene.gravity is not None:  # the square of the speed that a fall can add
         square += 2.0 * sum(abs(g) * length for g, length in zip(scene.gravity, state.lengths, strict=True))
+    if scene.faces and state.count:  # and of those that a wall can give
+        hottest = max(getattr(face, "temperature", None) or 0.0 for face in scene.faces.values())
+        deepest = max(getattr(face, "depth", 0.0) for face in scene.faces.values())
+        square += (scene.dimension * hottest + 2.0 * deepest) / float(state.masses.min())
     speed = float(np.sqrt(square))
     if not speed > 0.0:
         return _STILL

@@ -24,6 +24,7 @@ from gaspart.engines.layout import (
     BOX_VISITS,
     COLLAPSE,
     CROSSINGS,
+    EDGES,
     EVENTS,
     FULL,
     INNER,
@@ -34,6 +35,7 @@ from gaspart.engines.layout import (
     WALLS,
 )
 from gaspart.engines.lists import put, sort_in, take
+from gaspart.engines.surfaces import meet_edge
 from gaspart.engines.walls import find_wall, meet_wall
 from gaspart.kernel import helper, kernel
 
@@ -83,9 +85,9 @@ def find_contact(rows, plans, body, space, partition, counters, low, high, gravi
 
 
 @helper
-def plan_face(rows, plans, body, space, partition, now, gravity, walls):
+def plan_face(rows, plans, body, space, partition, now, gravity, walls, surfaces):
     """Note the next face or wall that the body comes to."""
-    time, face = find_face(rows, plans, body, space, partition, now, gravity)
+    time, face = find_face(rows, plans, body, space, partition, now, gravity, surfaces)
     if walls is not None:
         time, face = find_wall(rows, plans, body, space, partition, gravity, walls, time, face)
     plans[body].face_time = time
@@ -93,20 +95,20 @@ def plan_face(rows, plans, body, space, partition, now, gravity, walls):
 
 
 @kernel
-def foresee(rows, plans, body, space, partition, counters, now, gravity, walls):
+def foresee(rows, plans, body, space, partition, counters, now, gravity, walls, surfaces):
     """Make a body's plans afresh."""
     plans[body].contact = inf
     plans[body].partner = NOTHING
     find_contact(rows, plans, body, space, partition, counters, (-1, -1, -1), (1, 1, 1), gravity)
-    plan_face(rows, plans, body, space, partition, now, gravity, walls)
+    plan_face(rows, plans, body, space, partition, now, gravity, walls, surfaces)
 
 
 @kernel
-def foresee_all(rows, plans, calendar, space, partition, counters, now, gravity, walls):
+def foresee_all(rows, plans, calendar, space, partition, counters, now, gravity, walls, surfaces):
     """Sort all bodies into their boxes, make all plans and fill the calendar."""
     sort_in(plans, partition)
     for body in range(len(rows)):
-        foresee(rows, plans, body, space, partition, counters, now, gravity, walls)
+        foresee(rows, plans, body, space, partition, counters, now, gravity, walls, surfaces)
     fill(calendar, plans, now)
 
 
@@ -118,7 +120,7 @@ def refill(plans, calendar, partition, now):
 
 
 @kernel
-def cross(rows, plans, calendar, body, space, partition, counters, now, gravity, walls):
+def cross(rows, plans, calendar, body, space, partition, counters, now, gravity, walls, surfaces):
     """Let a body pass into the next box, and look about in the boxes that have become neighbours."""
     code = plans[body].face - INNER
     axis = code // 2
@@ -133,7 +135,7 @@ def cross(rows, plans, calendar, body, space, partition, counters, now, gravity,
     low = (x if x else -1, y if y else -1, z if z else -1)
     high = (x if x else 1, y if y else 1, z if z else 1)
     find_contact(rows, plans, body, space, partition, counters, low, high, gravity)
-    plan_face(rows, plans, body, space, partition, now, gravity, walls)
+    plan_face(rows, plans, body, space, partition, now, gravity, walls, surfaces)
     reschedule(calendar, plans, body)
 
 
@@ -170,11 +172,12 @@ def run_boxes(
     law,
     watch,
     walls,
+    surfaces,
 ):
     """Process all events up to time `stop`, at most `most` of them (collisions and wall hits).
 
-    masses: (N,), or None if all are 1; record, gravity, law, watch, walls: a Record, Gravity, Law, Watch and
-    Walls, or None each. Returns (reason, number of events, time of the last).
+    masses: (N,), or None if all are 1; record, gravity, law, watch, walls, surfaces: a Record, Gravity, Law,
+    Watch, Walls and Surfaces, or None each. Returns (reason, number of events, time of the last).
     """
     done = 0
     last = -inf
@@ -192,13 +195,13 @@ def run_boxes(
             return STOP, done, last
         face = plans[body].face
         meets_face = plans[body].face_time <= plans[body].contact
-        if meets_face and INNER <= face < WALLS:
-            cross(rows, plans, calendar, body, space, partition, counters, time, gravity, walls)
+        if meets_face and INNER <= face < EDGES:
+            cross(rows, plans, calendar, body, space, partition, counters, time, gravity, walls, surfaces)
             continue
         partner = plans[body].partner
         if not meets_face and plans[partner].changes != plans[body].partner_changes:
             counters.counts[STALE] += 1
-            foresee(rows, plans, body, space, partition, counters, time, gravity, walls)
+            foresee(rows, plans, body, space, partition, counters, time, gravity, walls, surfaces)
             reschedule(calendar, plans, body)
             continue
         if meets_face:
@@ -209,20 +212,28 @@ def run_boxes(
                     partner = -1 - meet_wall(
                         rows, plans, body, m, time, space, masses, counters, gravity, law, walls
                     )
-            elif not meet_face(rows, images, plans, body, face, time, space, masses, counters, gravity, law):
+            elif face >= EDGES:
+                if surfaces is not None:
+                    m = face - EDGES
+                    partner = -1 - meet_edge(
+                        rows, plans, body, m, time, space, masses, counters, gravity, law, surfaces
+                    )
+            elif not meet_face(
+                rows, images, plans, body, face, time, space, masses, counters, gravity, law, surfaces
+            ):
                 take(plans, partition, body)
                 axis = face // 2
                 plans[body].at[axis] = 0 if face % 2 else partition.per_side[axis] - 1
                 put(plans, partition, body)
-                foresee(rows, plans, body, space, partition, counters, time, gravity, walls)
+                foresee(rows, plans, body, space, partition, counters, time, gravity, walls, surfaces)
                 reschedule(calendar, plans, body)
                 continue
         else:
             body, partner = min(body, partner), max(body, partner)
             collide(rows, plans, body, partner, time, space, masses, counters, gravity, law)
-            foresee(rows, plans, partner, space, partition, counters, time, gravity, walls)
+            foresee(rows, plans, partner, space, partition, counters, time, gravity, walls, surfaces)
             reschedule(calendar, plans, partner)
-        foresee(rows, plans, body, space, partition, counters, time, gravity, walls)
+        foresee(rows, plans, body, space, partition, counters, time, gravity, walls, surfaces)
         reschedule(calendar, plans, body)
         last = time
         done += 1

@@ -6,6 +6,7 @@ from gaspart.contact import time_to_plane
 from gaspart.engines.flight import acceleration, advance_row, face_plane
 from gaspart.engines.impact import strike_wall
 from gaspart.engines.layout import INNER, NOTHING
+from gaspart.engines.surfaces import find_edge, touch_surface
 from gaspart.falling import time_against, time_along
 from gaspart.kernel import helper, kernel
 
@@ -21,8 +22,9 @@ def plane_of(rows, plans, body, axis, upper, space, partition):
 
 
 @helper
-def find_face(rows, plans, body, space, partition, now, gravity):
-    """The next face that the body comes to, of its box or of the container: (time, face code).
+def find_face(rows, plans, body, space, partition, now, gravity, surfaces):
+    """The next face that the body comes to, of its box or of the container, or the edge of a well: (time,
+    face code).
 
     A falling body may cross the face of a box, turn, and cross it again in the same flight: `now` tells which
     of its crossings lie behind it.
@@ -42,6 +44,11 @@ def find_face(rows, plans, body, space, partition, now, gravity):
                 continue
         if v == 0.0:
             continue
+        if surfaces is not None:
+            time, code = find_edge(rows, body, k, space, surfaces)
+            if time < soon:
+                soon = time
+                face = code
         plane, code = plane_of(rows, plans, body, k, v > 0.0, space, partition)
         time = rows[body, 2 * d] + time_to_plane(rows[body, k], v, plane)
         if time < soon:
@@ -83,7 +90,7 @@ def find_face_pulled(rows, plans, body, axis, pull, space, partition, now):
 
 
 @kernel
-def meet_face(rows, images, plans, body, face, time, space, masses, counters, gravity, law):
+def meet_face(rows, images, plans, body, face, time, space, masses, counters, gravity, law, surfaces):
     """Reflect a body at a wall, or take it from a periodic face to the opposite one. True if a wall."""
     d = len(space.lengths)
     axis = face // 2
@@ -96,6 +103,9 @@ def meet_face(rows, images, plans, body, face, time, space, masses, counters, gr
         return False
     rows[body, axis] = face_plane(rows, body, axis, upper, space)
     counters.wall_hits[face] += 1
+    if surfaces is not None:
+        if touch_surface(rows, body, face, space, masses, counters, law, surfaces):
+            return True
     if law is None:
         mass = 1.0 if masses is None else masses[body]
         counters.wall_impulse[face] += 2.0 * mass * abs(rows[body, d + axis])

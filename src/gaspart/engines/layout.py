@@ -8,7 +8,9 @@ COLLISIONS, CROSSINGS, STALE, PAIR_TESTS, BOX_VISITS = range(5)
 VIRIAL, WORST, LOSS = range(3)
 NOTHING = -1
 INNER = 6  # face codes: 2 axis + side for the container's faces, INNER more for those between boxes
-WALLS = 12  # and from here on the segments of interior walls
+EDGES = 12  # EDGES more for the edges of the wells at the container's faces
+WALLS = 18  # and from here on the segments of interior walls
+HARD, THERMAL, THERMAL_NORMAL, STICKY = range(4)  # kinds of faces
 STOP, EVENTS, FULL, COLLAPSE = range(4)  # why a run ended: the time, the number of events, the record, a loop
 
 
@@ -48,6 +50,22 @@ class Walls(NamedTuple):
     listed: np.ndarray
 
 
+class Surfaces(NamedTuple):
+    """Of the container's faces (2d,): kind; level, the temperature, or the momentum that sticks; depth and
+    width of the well, 0 if there is none. Of the bodies: place (N, d), -1 or 1 in the well of an axis' low or
+    high face, or stuck to it; held (N, d), the energy kept there as vibration; draws (N,), how often random
+    numbers were taken for it, under `key` (2,)."""
+
+    kind: np.ndarray
+    level: np.ndarray
+    depth: np.ndarray
+    width: np.ndarray
+    place: np.ndarray
+    held: np.ndarray
+    draws: np.ndarray
+    key: np.ndarray
+
+
 class Watch(NamedTuple):
     """For each body, how many contacts (N,) it has had since (N,) within `blink`, at most `most`."""
 
@@ -69,12 +87,13 @@ class Partition(NamedTuple):
 
 
 class Counters(NamedTuple):
-    """counts (5,), sums (3,), wall_hits and wall_impulse (2d + interior walls,); see the module's top."""
+    """counts (5,), sums (3,), wall_hits, wall_impulse, wall_energy (2d + interior walls,); see the top."""
 
     counts: np.ndarray
     sums: np.ndarray
     wall_hits: np.ndarray
     wall_impulse: np.ndarray
+    wall_energy: np.ndarray
 
 
 class Record(NamedTuple):

@@ -40,8 +40,8 @@ class TimeStepped:
         if not isinstance(self.rewind, bool):
             raise SceneError("rewind", self.rewind, "must be true or false")
 
-    def start(self, scene: Scene, state: State) -> StepDynamics:
-        """Set the engine up for a scene in a given state."""
+    def start(self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0) -> StepDynamics:
+        """Set the engine up for a scene in a given state; nothing of it depends on `seed`."""
         return StepDynamics(self, scene, state)
 
 
@@ -59,6 +59,7 @@ class StepDynamics:
             ("gravity", scene.gravity),
             ("restitution", scene.restitution if rough else None),
             ("walls", scene.walls or None),
+            ("faces", scene.faces or None),
             ("fixed", True if np.isinf(state.masses).any() else None),
         ):
             if value is not None:
@@ -146,6 +147,7 @@ class StepDynamics:
             collisions=int(counters.counts[kernels.COLLISIONS]),
             wall_hits=counters.wall_hits.copy(),
             wall_impulse=counters.wall_impulse * self._unit_mass,
+            wall_energy=np.zeros(len(counters.wall_impulse)),
             virial_sum=float(counters.sums[kernels.VIRIAL]) * self._unit_mass,
             pair_tests=int(counters.counts[kernels.PAIR_TESTS]),
             box_visits=int(counters.counts[kernels.BOX_VISITS]),

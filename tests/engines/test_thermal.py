@@ -1,0 +1,187 @@
+"""Thermal walls: the temperature that they give, the heat that they take, and the same bits in any search."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from referee import events_of, same_bits
+from scenes import surfaced
+
+import gaspart as gp
+
+
+def between(hot, cold, dimension=3, components="all", count=200, temperature=1.0, side=4.0):
+    """A nearly ideal gas between two thermal walls across x, periodic along the others."""
+    faces = {"x_low": gp.Thermal(hot, components), "x_high": gp.Thermal(cold, components)}
+    container = gp.Container((side,) * dimension, ("wall",) + ("periodic",) * (dimension - 1))
+    return gp.Scene(container, [gp.Species(count, 1e-3, temperature=temperature)], faces=faces)
+
+
+@given(surfaced(), st.integers(0, 2**32))
+def test_all_searches_give_the_same_events_bit_for_bit_and_keep_the_energy(scene, seed):
+    referee = events_of(scene, "pairs", 150, seed, may_collapse=True)
+    referee.check_invariants()
+    for search in ("boxes", "direct"):
+        other = events_of(scene, search, 150, seed, may_collapse=True)
+        assert same_bits(referee, other)
+        assert np.array_equal(referee.state.vibrations, other.state.vibrations)
+        assert np.array_equal(referee.state.well_energies, other.state.well_energies)
+
+
+@given(surfaced(most=20), st.integers(0, 2**32))
+def test_nobody_leaves_and_no_energy_is_lost(scene, seed):
+    sim = gp.Simulation(scene, gp.EventDriven(), seed=seed)
+    sim.record_events = True  # with the kernels that the test above has compiled
+    try:
+        sim.advance(max_events=3000, duration=100.0)
+    except gp.SimulationError as error:
+        assert "collapse" in str(error)
+    sim.check_invariants()
+    state = sim.state
+    for position, radius in zip(state.positions, state.radii, strict=True):
+        low, high = scene.reach(radius)
+        assert (position >= np.array(low) - 1e-9).all()
+        assert (position <= np.array(high) + 1e-9).all()
+
+
+@pytest.mark.parametrize("components", ["all", "normal"])
+def test_velocities_after_a_wall(components):
+    """Outgoing normal speeds of mean sqrt(pi T/2m) and mean square 2T/m; tangential ones drawn or kept."""
+    scene = between(4.0, 4.0, components=components)
+    scene = scene.with_species(gp.Species(1, 1e-3, 2.0))  # the kernels of the tests above know masses
+    sim = gp.Simulation(scene, gp.EventDriven(), seed=2)
+    sim.record_events = True
+    sim.advance(max_events=30_000)
+    hits = (sim.events["bodies"][:, 1] < 0) & (sim.events["bodies"][:, 0] < 200)
+    v = sim.events["velocities"][hits, 0]
+    count = len(v)
+    assert count > 25_000
+    assert (np.sign(v[:, 0]) == np.where(sim.events["bodies"][hits, 1] == -1, 1.0, -1.0)).all()
+    speed = abs(v[:, 0]) / 2.0
+    assert speed.mean() == pytest.approx(math.sqrt(math.pi / 2), abs=3 * math.sqrt((2 - math.pi / 2) / count))
+    assert (speed**2).mean() == pytest.approx(2.0, abs=3 * math.sqrt(4.0 / count))
+    if components == "all":
+        across = v[:, 1:] / 2.0
+        assert across.mean() == pytest.approx(0.0, abs=3 * math.sqrt(0.5 / count))
+        assert (across**2).mean() == pytest.approx(1.0, abs=3 * math.sqrt(1.0 / count))
+        assert (across**4).mean() == pytest.approx(3.0, abs=3 * math.sqrt(48.0 / count))
+        assert np.mean(speed * across[:, 0]) == pytest.approx(0.0, abs=3 * math.sqrt(2.0 / count))
+    else:  # a body keeps its tangential velocity but for the few collisions
+        first = sim.initial_state.velocities[sim.events["bodies"][hits, 0], 1:]
+        assert np.mean(v[:, 1:] == first) > 0.9
+
+
+@pytest.mark.parametrize(("components", "share"), [("all", 1.0), ("normal", 0.5)])
+def test_heat_between_the_walls_of_a_thin_gas(components, share):
+    """Free-molecular flux n sqrt(8/pi m) sqrt(T1 T2) (sqrt T1 - sqrt T2); by the rule of Frederickx & Meerts
+    2010 the normal energy alone is carried, half of it. What one wall gives the other takes."""
+    scene = between(4.0, 1.0, components=components, count=1000)
+    sim = gp.Simulation(scene, gp.EventDriven(), seed=5)
+    sim.advance(duration=30.0)
+    into = []
+    for _ in range(20):
+        before = sim.state.energy
+        sim.reset_tally()
+        sim.advance(duration=10.0)
+        heat = sim.tally.wall_energy
+        assert sim.state.energy - before == pytest.approx(-heat.sum(), rel=1e-9, abs=1e-7)
+        assert (heat[2:] == 0.0).all()
+        into.append((heat[1] - heat[0]) / 2)  # from hot to cold, the mean of both faces
+    density = 1000 / (4.0 * 4.0 * (4.0 - 2e-3))
+    expected = share * density * math.sqrt(8 / math.pi) * 2.0 * (2.0 - 1.0) * 16.0 * 10.0
+    sigma = np.std(into, ddof=1) / math.sqrt(len(into))
+    assert sigma < 0.01 * expected
+    assert np.mean(into) == pytest.approx(expected, abs=3 * sigma)
+
+
+def test_a_gas_takes_the_temperature_of_its_walls():
+    """In each direction, spins included; the energy of a canonical gas has a variance to compare with."""
+    scene = gp.Scene(
+        gp.Container((8.0, 8.0)),
+        [gp.Species(100, 0.05, 2.0, temperature=0.3)],
+        gravity=(0.0, -0.5),  # without effect on velocities
+        restitution=gp.Restitution(1.0, 1.0),
+        faces={name: gp.Thermal(2.0) for name in ("x_low", "x_high", "y_low", "y_high")},
+    )
+    sim = gp.Simulation(scene, gp.EventDriven(), seed=4)
+    sim.record_events = True
+    sim.advance(duration=100.0)
+    found = []
+    for _ in range(20):
+        sim.advance(duration=40.0)
+        state = sim.state
+        spins = state.moments_of_inertia * state.spins**2
+        found.append([*(2.0 * state.velocities**2).mean(axis=0), spins.mean()])
+    sigma = 2.0 * math.sqrt(2.0 / 100 / 20)
+    assert np.mean(found, axis=0) == pytest.approx([2.0] * 3, abs=3 * sigma)
+    sim.check_invariants()
+
+
+def test_splits_kills_and_replays_change_no_bit():
+    scene = between(4.0, 1.0)
+    whole = gp.Simulation(scene, gp.EventDriven(), seed=7)
+    whole.advance(until=9.0)
+    parts = gp.Simulation(scene, gp.EventDriven(), seed=7)
+    parts.advance(until=3.3)
+    saved = parts.checkpoint()
+    again = gp.Simulation(scene, gp.EventDriven(), seed=7)
+    again.restore(saved)
+    for sim in (parts, again, *([again.advance(until=5.0)] and [again])):
+        sim.advance(until=9.0)
+        assert np.array_equal(sim.state.velocities, whole.state.velocities)
+        assert np.array_equal(sim.state.positions, whole.state.positions)
+        assert np.array_equal(sim.tally.wall_energy, whole.tally.wall_energy)
+    *_, last = whole.replay(interval=3.0)
+    assert np.array_equal(last.velocities, whole.state.velocities)
+    other = gp.Simulation(scene, gp.EventDriven(), seed=8)
+    other.advance(until=9.0)
+    assert not np.array_equal(other.state.velocities, whole.state.velocities)
+
+
+def test_units_of_powers_of_two_change_no_bit():
+    """Lengths times 4, masses times 8, times a half: temperatures times 8 (4/0.5)^2."""
+    small, large = between(4.0, 1.0), between(2048.0, 512.0, temperature=512.0, side=16.0)
+    species = replace(large.species[0], radius=4e-3, mass=8.0)
+    sims = [gp.Simulation(s, gp.EventDriven(), seed=1) for s in (small, replace(large, species=(species,)))]
+    for sim, time in zip(sims, (20.0, 10.0), strict=True):
+        sim.advance(duration=time)
+    one, other = (sim.state for sim in sims)
+    assert np.array_equal(4.0 * one.positions, other.positions)
+    assert np.array_equal(8.0 * one.velocities, other.velocities)
+    assert np.array_equal(512.0 * sims[0].tally.wall_energy, sims[1].tally.wall_energy)
+
+
+@pytest.mark.parametrize(
+    ("change", "key"),
+    [
+        ({"faces": []}, "faces"),
+        ({"faces": {"z_low": {"kind": "thermal", "temperature": 1.0}}}, "faces.z_low"),
+        ({"faces": {"y_low": {"kind": "thermal", "temperature": 1.0}}}, "faces.y_low"),
+        ({"faces": {"x_low": {"kind": "warm", "temperature": 1.0}}}, "faces.x_low.kind"),
+        ({"faces": {"x_low": {"temperature": 1.0}}}, "faces.x_low.kind"),
+        ({"faces": {"x_low": 1.0}}, "faces.x_low"),
+        ({"faces": {"x_low": {"kind": "thermal", "temperature": 0.0}}}, "faces.x_low.temperature"),
+        (
+            {"faces": {"x_low": {"kind": "thermal", "temperature": 1.0, "components": "tangential"}}},
+            "faces.x_low.components",
+        ),
+        ({"faces": {"x_low": {"kind": "thermal", "temperature": 1.0, "depth": 1.0}}}, "faces.x_low.depth"),
+    ],
+)
+def test_what_is_refused(change, key):
+    container = {"lengths": [12.0, 12.0], "boundary": ["wall", "periodic"]}
+    with pytest.raises(gp.SceneError) as caught:
+        gp.Scene.from_dict({"container": container} | change)
+    assert caught.value.key == key
+
+
+def test_files_and_the_other_engine(tmp_path):
+    scene = between(4.0, 1.0)
+    scene.to_file(tmp_path / "scene.yaml")
+    assert gp.Scene.from_file(tmp_path / "scene.yaml") == scene
+    assert "faces" not in replace(scene, faces={}).to_dict()
+    with pytest.raises(gp.SceneError, match="faces"):
+        gp.Simulation(scene, gp.TimeStepped(0.1))
