@@ -151,6 +151,18 @@ def test_bootstrap_of_a_mean_is_its_standard_error():
     assert statistics.bootstrap(np.mean, samples) == estimate
 
 
+def test_jackknife_of_a_ratio_knows_what_its_parts_share():
+    generator = np.random.default_rng(11)
+    common, own = generator.normal(10.0, 1.0, 400), generator.normal(0.0, 0.1, (400, 3))
+    value, error = statistics.jackknife(lambda a, b: a / b, common[:, None] + own, common)
+    assert value == pytest.approx(np.ones(3), abs=5e-3)
+    assert error == pytest.approx(np.full(3, 0.01 / 20.0), rel=0.15)
+    mean, spread = statistics.jackknife(lambda a: a, common)
+    assert (mean, spread) == (common.mean(), pytest.approx(common.std(ddof=1) / 20.0))
+    with pytest.raises(ValueError, match="blocks"):
+        statistics.jackknife(lambda a, b: a, common, common[:5])
+
+
 def test_optimum_of_a_cost_of_two_terms():
     # Cost of pair tests and of box visits: a / x + b x, least at sqrt(a / b).
     generator = np.random.default_rng(12)

@@ -22,6 +22,9 @@ FAMILIES = {
     "msd_spheres": "displacement",
     "msd_discs": "displacement",
     "wall_pressure": "wall_pressure",
+    "barometric": "gravity",
+    "separation": "gravity",
+    "heat_capacity": "gravity",
 }
 
 TITLES = {
@@ -32,4 +35,5 @@ TITLES = {
     "speeds": "Speed distributions",
     "displacement": "Mean-squared displacement",
     "wall_pressure": "Pressure on walls",
+    "gravity": "Under gravity",
 }

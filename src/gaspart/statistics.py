@@ -294,6 +294,30 @@ def bootstrap(function, samples, repeats=1000, seed=0):
     return Estimate(float(function(samples)), float(scatter), samples.shape[0])
 
 
+def jackknife(function, *samples):
+    """function(means of the samples) with its standard error, each block left out in turn.
+
+    samples: arrays whose axis 0 runs over the same n independent blocks (at least two); `function` takes
+    their means over blocks and returns a number or an array. For smooth functions the error is right to first
+    order, correlations between the samples included (Tukey 1958). Returns (value, error), arrays.
+    """
+    samples = [np.asarray(sample, dtype=float) for sample in samples]
+    blocks = samples[0].shape[0]
+    if blocks < 2 or any(sample.shape[0] != blocks for sample in samples):
+        raise ValueError(f"samples: {[len(sample) for sample in samples]} blocks (as many, and at least 2)")
+    sums = [sample.sum(axis=0) for sample in samples]
+    partial = np.array(
+        [
+            function(
+                *((total - sample[k]) / (blocks - 1) for total, sample in zip(sums, samples, strict=True))
+            )
+            for k in range(blocks)
+        ]
+    )
+    error = np.sqrt((blocks - 1) / blocks * ((partial - partial.mean(axis=0)) ** 2).sum(axis=0))
+    return np.asarray(function(*(total / blocks for total in sums)), dtype=float), error
+
+
 def optimum(x, cost, errors=None, within=3.0):
     """Where a cost is least: a parabola of ln cost against ln x, through the points near the minimum.
 

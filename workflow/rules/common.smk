@@ -129,6 +129,7 @@ MODULES = {
     "report": ["__init__", "errors", "families", "files", "provenance"],
 }
 FAMILY_MODULES = {
+    ("measure", "gravity"): ["measure/columns"],
     ("measure", "radius"): ["measure/pressure"],
     ("measure", "displacement"): ["measure/correlations"],
     ("measure", "virial"): ["measure/pressure"],

@@ -1,0 +1,177 @@
+"""Gases under gravity: the ideal gas in a box of finite height, and hydrostatics of dense discs and spheres.
+
+Heights z are those of the bodies' centres, from the lowest place that a centre can reach; `height` is the
+highest. A field is given by w = m g / (k_B T) of a body, one over its scale height (1 / length).
+"""
+
+import math
+
+import numpy as np
+
+from ._arguments import checked_dimension, checked_packing_fraction
+from .geometry import body_volume
+from .state import HIGHEST_PACKING_FRACTION, compressibility_factor
+
+_TABLE = 4001  # packing fractions at which the excess chemical potential is tabulated
+
+
+def ideal_profile(z, height, weight):
+    """Chance per length of finding a body at z: w e^{-w z} / (1 - e^{-w height}) (exact; canonical)."""
+    z = np.asarray(z, dtype=float)
+    if weight == 0.0:
+        return np.full_like(z, 1.0 / height)
+    return weight * np.exp(-weight * z) / -math.expm1(-weight * height)
+
+
+def ideal_mean_height(height, weight):
+    """<z> = 1/w - height / (e^x - 1), x = w height (exact; canonical). Without a field, height / 2."""
+    x = np.asarray(weight, dtype=float) * height
+    small = np.abs(x) < 1e-4  # where the two terms cancel; next is x^3 / 720
+    safe = np.where(small, 1.0, x)
+    return height * np.where(small, 0.5 - x / 12.0, 1.0 / safe + np.exp(-safe) / np.expm1(-safe))
+
+
+def ideal_heat_capacity(x, dimension):
+    """C_V / (N k_B) = d/2 + 1 - x^2 e^x / (e^x - 1)^2, x = m g height / (k_B T) (exact; canonical).
+
+    d/2 without gravity; d/2 + 1 in a box far higher than the gas, whose potential energy grows with T too.
+    """
+    x = np.asarray(x, dtype=float)
+    half = np.where(x == 0.0, 1.0, 0.5 * x)
+    return 0.5 * checked_dimension(dimension) + 1.0 - np.where(x == 0.0, 1.0, (half / np.sinh(half)) ** 2)
+
+
+def ideal_energy_moments(energy, count, height, force, dimension, points=2**14):
+    """<K> and the variance of the kinetic energy K of an ideal gas at fixed total energy (exact).
+
+    energy: kinetic and potential, of `count` bodies that weigh `force` = m g each, floor at 0. The number of
+    states with potential energy U is proportional to p(U) (E - U)^{dN/2 - 1}, p the density of a sum of N
+    independent potential energies, each uniform between 0 and force * height (walls all around: no momentum
+    is conserved). p is found as the N-fold convolution, by Fourier transform, of one e^{-bU}, which puts its
+    peak where it is wanted; the factor e^{bU} is put back afterwards.
+
+    Returns (mean, variance). From them follow T = 2 <K> / (dN) and, in the limit of many bodies, the heat
+    capacity `lebowitz_percus_verlet`. Raises ValueError unless 0 < energy <= d/2 N force height, say.
+    """
+    top = force * height
+    freedom = 0.5 * checked_dimension(dimension) * count
+    if not energy > 0.0:
+        raise ValueError(f"energy: {energy} (must be positive)")
+    if top == 0.0:
+        return energy, 0.0
+    inverse = 1.0 / _canonical_temperature(energy / count, top, dimension)
+    # The sum's grid holds 12 standard deviations of it (that of one term is below T and top / sqrt 12).
+    mean = count * ideal_mean_height(top, inverse)
+    spread = math.sqrt(count) * min(1.0 / inverse, top / math.sqrt(12.0))
+    step = 24.0 * spread / points
+    potential = mean + step * (np.arange(points) - points // 2)
+    frequency = 2.0 * np.pi * np.fft.fftfreq(points, step)
+    # Fourier transform of one term's density, proportional to e^{-bU} between 0 and top, about its mean.
+    one = -np.expm1(-(inverse + 1j * frequency) * top) / (inverse + 1j * frequency)
+    one *= inverse / -math.expm1(-inverse * top) * np.exp(1j * frequency * mean / count)
+    tilted = np.fft.fftshift(np.fft.ifft(one**count).real)
+    allowed = (tilted > 1e-13 * tilted.max()) & (potential < energy)
+    kinetic = energy - potential[allowed]
+    log_weight = np.log(tilted[allowed]) + inverse * potential[allowed] + (freedom - 1.0) * np.log(kinetic)
+    weight = np.exp(log_weight - log_weight.max())
+    weight /= weight.sum()
+    average = float(weight @ kinetic)
+    return average, float(weight @ (kinetic - average) ** 2)
+
+
+def _canonical_temperature(energy, top, dimension):
+    """T at which a body of an ideal gas has this mean energy, by bisection; `top`: m g height."""
+    half = 0.5 * dimension
+    low, high = 0.5 * energy / (half + 1.0), energy / half
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if half * middle + ideal_mean_height(top, 1.0 / middle) > energy:
+            high = middle
+        else:
+            low = middle
+    return middle
+
+
+def lebowitz_percus_verlet(mean, variance, count, dimension):
+    """C_V / (N k_B) from the kinetic energy's mean and variance at fixed total energy.
+
+    <dK^2> = (d/2) N T^2 (1 - (d/2) N k_B / C_V), to leading order in 1/N; Lebowitz, Percus and Verlet,
+    Phys. Rev. 153, 250 (1967) (recalled).
+    """
+    half = 0.5 * dimension
+    relative = variance / (half * count * (mean / (half * count)) ** 2)
+    return half / (1.0 - relative)
+
+
+def excess_chemical_potential(packing_fraction, dimension):
+    """mu / (k_B T) beyond that of an ideal gas: Z - 1 + the integral of (Z - 1) / eta from 0 to eta.
+
+    Exact thermodynamics with `compressibility_factor` (same range; to 1e-6 by its table).
+    """
+    eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
+    table, excess, _ = _thermodynamics(dimension)
+    return np.interp(eta, table, excess)
+
+
+_TABLES = {}
+
+
+def _thermodynamics(dimension):
+    """(eta, excess chemical potential, ln of the activity) on a grid, made once."""
+    if dimension not in _TABLES:
+        eta = np.linspace(0.0, HIGHEST_PACKING_FRACTION[dimension], _TABLE)
+        over = np.empty_like(eta)  # (Z - 1) / eta, which starts at b_2 = 2^{d-1}
+        over[1:] = (compressibility_factor(eta[1:], dimension) - 1.0) / eta[1:]
+        over[0] = 2.0 ** (dimension - 1)
+        integral = np.concatenate([[0.0], np.cumsum(0.5 * (over[1:] + over[:-1])) * eta[1]])
+        excess = eta * over + integral
+        with np.errstate(divide="ignore"):
+            _TABLES[dimension] = eta, excess, np.log(eta) + excess
+    return _TABLES[dimension]
+
+
+def packing_fraction_at(activity, dimension):
+    """The packing fraction at which eta e^{mu_excess} is `activity` (number or array, > 0).
+
+    Raises ValueError where that is above the reference's range.
+    """
+    logarithm = np.log(np.asarray(activity, dtype=float))
+    eta, excess, table = _thermodynamics(checked_dimension(dimension))
+    if np.any(logarithm > table[-1]):
+        raise ValueError(f"activity: {np.max(activity):g} (too dense: above a packing fraction of {eta[-1]})")
+    dense = np.exp(np.interp(logarithm, table[1:], np.log(eta[1:])))
+    # Below the table's first step mu_excess = 2 b_2 eta is small, and two iterations are exact enough.
+    slope = excess[1] / eta[1]
+    dilute = np.exp(logarithm)
+    for _ in range(3):
+        dilute = np.exp(logarithm - slope * dilute)
+    return np.where(logarithm < table[1], dilute, dense)
+
+
+def hydrostatic_profiles(z, numbers, weights, dimension, diameter=1.0):
+    """Densities of species of one size at heights z, hydrostatics with the reference equation of state.
+
+    Every species' chemical potential is uniform, ln eta_i + mu_excess(eta) + w_i z = c_i, where eta is the
+    packing fraction of all bodies; summed, that is dP/dz = -sum of m_i g rho_i. A local approximation: good
+    where the density changes little over a diameter (error of order (w diameter)^2).
+
+    z: (Z,) evenly spaced heights; numbers: (S,) bodies of each species per area (length in 2D) of the
+    column between the first and the last; weights: (S,) m_i g / (k_B T). Returns (S, Z) number densities, of
+    which each integrates (trapezoids) to its number.
+    """
+    z = np.asarray(z, dtype=float)
+    numbers, weights = np.asarray(numbers, dtype=float), np.asarray(weights, dtype=float)
+    fields = -weights[:, None] * (z - z[0])
+    volume = body_volume(dimension, diameter)
+    # Start dilute; each round scales the activities by what is missing. It converges from below, because the
+    # density grows more slowly than the activity.
+    logarithms = np.log(numbers * volume / np.trapezoid(np.exp(fields), z, axis=1))
+    for _ in range(2000):
+        parts = np.exp(logarithms[:, None] + fields)
+        activity = parts.sum(axis=0)
+        densities = parts / activity * packing_fraction_at(activity, dimension) / volume
+        missing = np.log(numbers / np.trapezoid(densities, z, axis=1))
+        if np.abs(missing).max() < 1e-10:
+            return densities
+        logarithms += missing
+    raise ValueError(f"numbers: {numbers} (no such column was found)")
