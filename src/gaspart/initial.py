@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.matter import LATTICES
 from gaspart.random import directions, normals, stream
 from gaspart.scene import Scene
 from gaspart.state import State
@@ -42,10 +43,11 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
     if explicit:
         spins[:explicit] = [body.spin_vector for body in scene.bodies]
     rng = stream(seed, _POSITIONS)
-    if any(kind.arrangement == "lattice" and kind.count for kind in scene.species):
-        positions = lattice(scene, rng)
+    ordered = {kind.arrangement for kind in scene.species if kind.count} & set(LATTICES)
+    if ordered:
+        positions = lattice(scene, rng, slab="slab" in ordered)
         if any(scene.wall_at(place, radius) for place, radius in zip(positions, radii, strict=True)):
-            raise SceneError("arrangement", "lattice", "a body would overlap an interior wall; use random")
+            raise SceneError("arrangement", *ordered, "a body would overlap an interior wall; use random")
     else:
         positions, _ = random_insertion(scene, rng)
     return State(
@@ -139,11 +141,13 @@ def random_insertion(
     return positions[back], failed[back]
 
 
-def lattice(scene: Scene, rng: np.random.Generator) -> np.ndarray:
+def lattice(scene: Scene, rng: np.random.Generator, slab: bool = False) -> np.ndarray:
     """(N, d) positions on a triangular (2D) or face-centred cubic (3D) lattice stretched to the container.
 
     If there are more sites than bodies, the sites left empty are random, as is who sits where in a
-    mixture. Raises SceneError if the lattice would have to be denser than the bodies allow.
+    mixture. With `slab` they all lie in the upper half of the longest side, which melts where a whole
+    crystal would not: the start of a crystal beside its fluid. Raises SceneError if the lattice would have
+    to be denser than the bodies allow, or the upper half to hold fewer than no bodies.
     """
     margin = np.array(scene.reach(scene.largest_radius)[0])
     walled = ~np.array(scene.container.periodic)
@@ -163,7 +167,14 @@ def lattice(scene: Scene, rng: np.random.Generator) -> np.ndarray:
     cells = np.stack(np.meshgrid(*(np.arange(n) for n in best), indexing="ij"), axis=-1)
     sites = (cells.reshape(-1, 1, scene.dimension) + basis).reshape(-1, scene.dimension)
     sites = margin * walled + sites * (lengths / _periods(best, walled, basis))
-    chosen = np.sort(rng.permutation(len(sites))[: scene.count])
+    spare = np.arange(len(sites))
+    if slab:
+        longest = int(np.argmax(scene.container.lengths))
+        spare = np.flatnonzero(sites[:, longest] >= 0.5 * scene.container.lengths[longest])
+        if len(spare) < len(sites) - scene.count:
+            raise SceneError("arrangement", "slab", f"{scene.count} bodies do not fill the crystal's half")
+    empty = rng.permutation(spare)[: len(sites) - scene.count]
+    chosen = np.setdiff1d(np.arange(len(sites)), empty, assume_unique=True)
     if len(scene.species) > 1:
         chosen = rng.permutation(chosen)
     return sites[chosen]

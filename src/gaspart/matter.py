@@ -8,7 +8,9 @@ from dataclasses import dataclass
 from gaspart.errors import SceneError
 from gaspart.validation import count_of, number, settle, vector
 
-ARRANGEMENTS = ("random", "lattice")
+LATTICES = ("lattice", "slab")
+"""Arrangements that all bodies of a scene share."""
+ARRANGEMENTS = ("random", *LATTICES)
 
 
 def _check_matter(thing) -> None:
@@ -30,7 +32,8 @@ class Species:
     """`count` like bodies, placed by the program.
 
     Velocities are isotropic: of one fixed `speed`, or Maxwellian at `temperature`; with neither the bodies
-    start at rest. `arrangement` is "random" (sequential insertion) or "lattice". moment_of_inertia: by
+    start at rest. `arrangement` is "random" (sequential insertion), "lattice", or "slab": a
+    lattice whose empty sites all lie in one half, so that this half melts. moment_of_inertia: by
     default that of a uniform disc or sphere. A `fixed` body never moves: it has infinite mass.
     """
 
