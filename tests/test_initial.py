@@ -92,3 +92,25 @@ def test_large_bodies_find_room_among_small_ones():
     state = initial_state(scene, seed=2)
     assert (state.radii[:150] == 0.25).all()
     assert closest(scene, state) >= 0
+
+
+def test_a_slab_is_empty_in_its_upper_half_only():
+    edge = 1.6
+    container = gp.Container((4 * edge, 4 * edge, 6 * edge), "periodic")
+    scene = gp.Scene(container, [gp.Species(364, 0.5, temperature=1.0, arrangement="slab")])
+    positions = initial_state(scene, seed=1).positions
+    below = positions[:, 2] < 3 * edge - 1e-9
+    assert (below.sum(), (~below).sum()) == (4 * 16 * 3, 364 - 4 * 16 * 3)
+    assert not np.array_equal(positions, initial_state(scene, seed=2).positions)
+
+
+def test_a_slab_that_cannot_fill_its_crystal_is_refused():
+    scene = gp.Scene(gp.Container((8.0,) * 3, "periodic"), [gp.Species(1, 0.5, arrangement="slab")])
+    with pytest.raises(gp.SceneError, match="do not fill the crystal's half"):
+        initial_state(scene, seed=1)
+
+
+def test_arrangements_that_share_a_lattice_do_not_mix():
+    kinds = [gp.Species(8, 0.5, arrangement=name) for name in ("lattice", "slab")]
+    with pytest.raises(gp.SceneError, match="a lattice is shared by all"):
+        gp.Scene(gp.Container((8.0, 8.0, 8.0)), kinds)

@@ -25,6 +25,8 @@ FAMILIES = {
     "barometric": "gravity",
     "separation": "gravity",
     "heat_capacity": "gravity",
+    "freezing_discs": "freezing",
+    "freezing_spheres": "freezing",
 }
 
 TITLES = {
@@ -36,4 +38,5 @@ TITLES = {
     "displacement": "Mean-squared displacement",
     "wall_pressure": "Pressure on walls",
     "gravity": "Under gravity",
+    "freezing": "Freezing and melting",
 }

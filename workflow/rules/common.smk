@@ -133,6 +133,7 @@ FAMILY_MODULES = {
     ("measure", "radius"): ["measure/pressure"],
     ("measure", "displacement"): ["measure/correlations"],
     ("measure", "virial"): ["measure/pressure"],
+    ("measure", "freezing"): ["measure/plateau", "measure/pressure", "measure/structure"],
     ("measure", "scaling"): ["measure/timings"],
     ("judge", "displacement"): ["statistics"],
     ("judge", "radius"): ["statistics"],

@@ -1,0 +1,85 @@
+"""How bodies are ordered: bond order, distances and Fourier modes, by freud.
+
+Ramasubramani and others, Comput. Phys. Commun. 254, 107275 (2020). Everywhere: positions (N, d) in [0, L]
+of a periodic container of lengths (d,). freud works in single precision and on one thread here, which is
+how the workflow counts jobs.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+NEIGHBOURS = 12
+"""Of a sphere: those of a face-centred cubic crystal."""
+
+
+@cache
+def _freud():
+    import freud
+
+    freud.parallel.set_num_threads(1)
+    return freud
+
+
+def _system(positions, lengths):
+    """Box and positions as freud takes them: the origin in the middle, and z = 0 for discs."""
+    box = _freud().box.Box(*map(float, lengths), is2D=len(lengths) == 2)
+    points = np.zeros((len(positions), 3), dtype=np.float32)
+    points[:, : len(lengths)] = np.asarray(positions) - 0.5 * np.asarray(lengths)
+    return box, box.wrap(points)
+
+
+def hexatic(positions, lengths) -> np.ndarray:
+    """(N,) complex psi_6 = mean of exp(6 i theta) over the bonds of a disc to its Voronoi neighbours.
+
+    |psi_6| is 1 in a triangular lattice; the mean over discs measures whether all have one orientation.
+    Halperin and Nelson, Phys. Rev. Lett. 41, 121 (1978).
+    """
+    order = _freud().order.Hexatic(k=6)
+    order.compute(_system(positions, lengths))  # Voronoi neighbours by default
+    return order.particle_order
+
+
+def global_steinhardt(positions, lengths) -> float:
+    """Q_6 of all bonds of spheres to their 12 nearest neighbours: 0.5745 in a face-centred cubic lattice,
+    about 1 / sqrt(12 N) in a fluid. Steinhardt, Nelson and Ronchetti, Phys. Rev. B 28, 784 (1983)."""
+    order = _freud().order.Steinhardt(l=6)
+    order.compute(_system(positions, lengths), neighbors={"num_neighbors": NEIGHBOURS})
+    return float(order.order)
+
+
+def local_steinhardt(positions, lengths) -> np.ndarray:
+    """(N,) q_6 of each sphere, averaged over it and its 12 neighbours: some 0.48 in a crystal near melting,
+    0.15 in the fluid. Lechner and Dellago, J. Chem. Phys. 129, 114707 (2008)."""
+    order = _freud().order.Steinhardt(l=6, average=True)
+    order.compute(_system(positions, lengths), neighbors={"num_neighbors": NEIGHBOURS})
+    return order.particle_order
+
+
+def radial_distribution(frames, lengths, bins: int, furthest: float) -> tuple[np.ndarray, np.ndarray]:
+    """Centres (bins,) of shells up to `furthest` and g(r) there, mean over frames (T, N, d)."""
+    rdf = _freud().density.RDF(bins=bins, r_max=furthest)
+    for positions in frames:
+        rdf.compute(_system(positions, lengths), reset=False)
+    return rdf.bin_centers, rdf.rdf
+
+
+def structure_factor(frames, lengths, highest: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Wave numbers (K,), (L,) along x and y up to `highest`, and S(k) = |sum exp(i k.r)|^2 / N there, (K, L).
+
+    Discs: mean over frames (T, N, 2), at the wave vectors that the container admits; S(0) is NaN. By
+    ourselves, because freud's structure factors refuse two dimensions, and its diffraction pattern boxes
+    that are not square.
+    """
+    unit = 2.0 * np.pi / np.asarray(lengths)
+    waves = [step * np.arange(-int(highest / step), int(highest / step) + 1) for step in unit]
+    total = np.zeros((waves[0].size, waves[1].size))
+    for positions in frames:
+        x, y = (
+            np.exp(1j * np.outer(k, r)) for k, r in zip(waves, np.asarray(positions, float).T, strict=True)
+        )
+        total += np.abs(x @ y.T) ** 2
+    total[waves[0].size // 2, waves[1].size // 2] = np.nan
+    return waves[0], waves[1], total / (len(frames) * len(frames[0]))

@@ -1,0 +1,75 @@
+"""Where hard discs and spheres freeze, and the pressure of their crystals.
+
+Diameter 1 and k_B T = 1: number densities in 1 / sigma^d, pressures in k_B T / sigma^d.
+"""
+
+import numpy as np
+
+from ._arguments import checked_dimension
+from .geometry import CLOSE_PACKING, packing_fraction
+
+COEXISTENCE_PRESSURE = {2: 9.185, 3: 11.573}
+"""Pressure P sigma^d / k_B T at which fluid and ordered phase coexist, infinite system.
+
+Discs (liquid and hexatic): Bernard and Krauth, Phys. Rev. Lett. 107, 155704 (2011); Engel and others, Phys.
+Rev. E 87, 042134 (2013); there written beta P (2 sigma)^2 with sigma the radius (recalled). Spheres (fluid
+and face-centred cubic): Fernandez and others, Phys. Rev. Lett. 108, 165701 (2012; recalled).
+"""
+COEXISTENCE_DENSITY = {2: (0.700 * 4.0 / np.pi, 0.716 * 4.0 / np.pi), 3: (0.939, 1.0375)}
+"""Number densities of the fluid that freezes and of the ordered phase that melts; sources as above."""
+LIQUID_DISCS = (0.698, 9.1708)
+"""Packing fraction and pressure of the disc liquid just before freezing, at 65 536 discs: Anderson and
+others, J. Comput. Phys. 254, 27 (2013) and Engel and others (2013), as HOOMD-blue's validation suite quotes
+them."""
+DENSE_LIQUID_DISCS = (CLOSE_PACKING[2] / 1.4, 8.306)
+"""Packing fraction and Z of the disc liquid at 1.4 times the closest area: molecular dynamics of Erpenbeck
+and Luban, Phys. Rev. A 32, 2920 (1985; recalled). The virial series with its tail is 0.4 % higher there
+already."""
+LOWEST_CRYSTAL = {2: 0.70, 3: 0.49}
+"""Packing fraction below which the crystals' equations are not drawn: no crystal lives there for long."""
+
+
+def coexistence_packing_fractions(dimension):
+    """Packing fractions of the freezing fluid and of the melting ordered phase, (2,)."""
+    return packing_fraction(np.array(COEXISTENCE_DENSITY[checked_dimension(dimension)]), dimension)
+
+
+def _expansion(eta, dimension):
+    """alpha = V / V_closest - 1, after the check of the range."""
+    eta = np.asarray(eta, dtype=float)
+    if not np.all((eta >= LOWEST_CRYSTAL[dimension]) & (eta < CLOSE_PACKING[dimension])):
+        low, high = LOWEST_CRYSTAL[dimension], CLOSE_PACKING[dimension]
+        raise ValueError(f"packing_fraction: {eta} (this formula holds from {low} to {high:.4f})")
+    return CLOSE_PACKING[dimension] / eta - 1.0
+
+
+def speedy_crystal(packing_fraction):
+    """Face-centred cubic crystal of spheres: Z = 3/(1-z) - 0.5921 (z - 0.7072)/(z - 0.601), z = eta / eta_c.
+
+    Speedy, J. Phys.: Condens. Matter 10, 4387 (1998; recalled). From LOWEST_CRYSTAL to close packing.
+    """
+    z = 1.0 / (1.0 + _expansion(packing_fraction, 3))
+    return 3.0 / (1.0 - z) - 0.5921 * (z - 0.7072) / (z - 0.601)
+
+
+def alder_hoover_young_crystal(packing_fraction, dimension):
+    """Z = d/alpha + a_0 + a_1 alpha + ..., alpha = V / V_c - 1: the free-volume limit and a fit beyond it.
+
+    Alder, Hoover and Young, J. Chem. Phys. 49, 3688 (1968; recalled). Discs on the triangular lattice:
+    2/alpha + 1.90 + 0.67 alpha + 1.5 alpha^2; spheres, face-centred cubic: 3/alpha + 2.566 + 0.55 alpha
+    - 1.19 alpha^2 + 5.95 alpha^3. The free-volume term is exact at close packing; the fits are good to some
+    0.3 %.
+    """
+    alpha = _expansion(packing_fraction, checked_dimension(dimension))
+    series = {2: (1.90, 0.67, 1.5), 3: (2.566, 0.55, -1.19, 5.95)}[dimension]
+    return dimension / alpha + np.polynomial.polynomial.polyval(alpha, series)
+
+
+def crystal_finite_size_correction(compressibility_factor, count):
+    """Z_N - Z_infinity = -(Z - 1) / N of a periodic crystal of N bodies, its centre of mass free.
+
+    The centre of mass explores the whole volume V, the other N - 1 bodies their free volumes: Q_N ~ V
+    v_f^(N-1), so Z_N = 1/N + (1 - 1/N) Z (exact towards close packing; further terms of order 1/N elsewhere
+    are small).
+    """
+    return -(compressibility_factor - 1.0) / count

@@ -1,0 +1,66 @@
+import numpy as np
+import pytest
+from scenes import gas
+
+from gaspart.initial import initial_state
+from gaspart.measure import structure
+
+HEXAGONAL = np.array([16.0, 8.0 * np.sqrt(3.0)])
+
+
+def triangular():
+    """256 sites of spacing 1, in rows of 16 along x."""
+    n, m = np.meshgrid(np.arange(16), np.arange(16), indexing="ij")
+    return np.stack([(n + 0.5 * (m % 2)).ravel(), (m * np.sqrt(0.75)).ravel()], axis=1)
+
+
+def fluid(dimension, seed=1):
+    lengths = np.array([16.0, 8.0 * np.sqrt(3.0), 9.0])[:dimension]
+    return np.random.default_rng(seed).random((600, dimension)) * lengths, lengths
+
+
+def test_hexatic_order_of_a_crystal_and_its_direction():
+    psi = structure.hexatic(triangular() + 0.3, HEXAGONAL)
+    assert abs(psi.mean()) == pytest.approx(1.0, abs=1e-5)
+    assert np.angle(psi.mean()) == pytest.approx(0.0, abs=1e-4)
+    turned = structure.hexatic(triangular()[:, ::-1], HEXAGONAL[::-1])
+    assert abs(np.angle(turned.mean())) == pytest.approx(
+        np.pi, abs=1e-4
+    )  # rows along y: turned by 30 degrees
+
+
+def test_hexatic_order_of_a_fluid_is_that_of_random_phases():
+    positions, lengths = fluid(2)
+    assert abs(structure.hexatic(positions, lengths).mean()) < 0.1
+
+
+def test_steinhardt_order_of_a_crystal_and_a_fluid():
+    state = initial_state(gas(3, 256, 0.5, "periodic", arrangement="lattice"), seed=1)
+    assert structure.global_steinhardt(state.positions, state.lengths) == pytest.approx(0.57452, abs=1e-4)
+    assert structure.local_steinhardt(state.positions, state.lengths) == pytest.approx(0.57452, abs=1e-3)
+    positions, lengths = fluid(3)
+    assert structure.global_steinhardt(positions, lengths) < 0.05
+    assert structure.local_steinhardt(positions, lengths).mean() < 0.25
+
+
+def test_radial_distribution_of_an_ideal_gas_is_one():
+    lengths = fluid(2)[1]
+    distance, g = structure.radial_distribution([fluid(2, k)[0] for k in range(20)], lengths, 10, 5.0)
+    assert distance[0] == pytest.approx(0.25)
+    assert g == pytest.approx(1.0, abs=0.03)
+
+
+def test_structure_factor_of_a_crystal_is_its_reciprocal_lattice():
+    x, y, factor = structure.structure_factor([triangular()], HEXAGONAL, 8.0)
+    peaks = np.argwhere(factor > 1.0)
+    found = {(round(x[i] / (2 * np.pi), 3), round(y[j] / (2 * np.pi), 3)) for i, j in peaks}
+    row, half = round(2 / np.sqrt(3.0), 3), round(1 / np.sqrt(3.0), 3)
+    assert found == {(0, row), (0, -row), (1, half), (1, -half), (-1, half), (-1, -half)}
+    assert factor[tuple(peaks[0])] == pytest.approx(256.0)
+
+
+def test_structure_factor_of_an_ideal_gas_is_one():
+    lengths = fluid(2)[1]
+    _, _, factor = structure.structure_factor([fluid(2, k)[0] for k in range(20)], lengths, 6.0)
+    assert np.isnan(factor).sum() == 1
+    assert np.nanmean(factor) == pytest.approx(1.0, abs=0.03)

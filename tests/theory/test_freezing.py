@@ -1,0 +1,49 @@
+import numpy as np
+import pytest
+
+from gaspart import theory
+
+
+def test_both_branches_of_spheres_meet_at_the_coexistence_pressure():
+    # Fluid and crystal are from different sources than the pressure and the densities.
+    fluid, crystal = theory.coexistence_packing_fractions(3)
+    freezing, melting = theory.COEXISTENCE_DENSITY[3]
+    pressure = theory.COEXISTENCE_PRESSURE[3]
+    assert freezing * theory.compressibility_factor(fluid, 3) == pytest.approx(pressure, rel=2e-3)
+    assert melting * theory.speedy_crystal(crystal) == pytest.approx(pressure, rel=2e-3)
+
+
+def test_the_liquid_of_discs_has_the_coexistence_pressure_at_its_end():
+    # Nearly: the literature's largest simulation just below freezing.
+    eta, pressure = theory.LIQUID_DISCS
+    assert eta < theory.coexistence_packing_fractions(2)[0]
+    assert pressure == pytest.approx(theory.COEXISTENCE_PRESSURE[2], rel=2e-3)
+
+
+def test_the_two_crystals_of_spheres_agree():
+    eta = np.linspace(0.545, 0.72, 30)
+    assert theory.alder_hoover_young_crystal(eta, 3) == pytest.approx(theory.speedy_crystal(eta), rel=1.5e-3)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_free_volume_rules_at_close_packing(dimension):
+    eta = theory.CLOSE_PACKING[dimension] * (1.0 - 1e-5)
+    z = theory.alder_hoover_young_crystal(eta, dimension)
+    assert z * 1e-5 == pytest.approx(dimension, rel=1e-4)
+    if dimension == 3:
+        assert theory.speedy_crystal(eta) * 1e-5 == pytest.approx(3.0, rel=1e-4)
+
+
+def test_the_virial_series_is_too_high_for_a_dense_liquid_of_discs():
+    eta, z = theory.DENSE_LIQUID_DISCS
+    assert theory.compressibility_factor(eta, 2) / z == pytest.approx(1.004, abs=1e-3)
+
+
+def test_a_finite_crystal_is_softer():
+    assert theory.crystal_finite_size_correction(11.0, 100) == pytest.approx(-0.1)
+
+
+@pytest.mark.parametrize("eta", [0.4, 0.7405, np.nan])
+def test_no_crystal_outside_its_range(eta):
+    with pytest.raises(ValueError, match="packing_fraction"):
+        theory.speedy_crystal(eta)
