@@ -30,8 +30,8 @@ def described(tmp_path, scene, **settings):
         ({}, "event-boxes-2d-ww"),
         ({"boundary": "periodic", "dimension": 3}, "event-boxes-3d-ppp"),
         ({"boundary": ["periodic", "wall"], "search": "direct"}, "event-direct-2d-pw"),
-        ({"engine": "step", "time_step": 0.1}, "step-float64-2d-ww"),
-        ({"engine": "step", "time_step": 0.1, "precision": "float32"}, "step-float32-2d-ww"),
+        ({"engine": "step", "time_step": 0.1}, "step-list-float64-2d-ww"),
+        ({"engine": "step", "time_step": 0.1, "precision": "float32"}, "step-list-float32-2d-ww"),
         ({"job": "fill", "dimension": 3}, "fill-random-3d-www"),
     ],
 )

@@ -64,8 +64,11 @@ def sides_for(scene: Scene, per_body: float) -> tuple[int, ...]:
     return tuple(max(1, int(length / width)) for length in lengths)
 
 
-def make_boxes(scene: Scene, boxes_per_side: int | tuple[int, ...], images: bool) -> Boxes:
-    """The grid of `boxes_per_side` (one number, or one per axis) for a scene.
+def make_boxes(
+    scene: Scene, boxes_per_side: int | tuple[int, ...], images: bool, narrowest: float | None = None
+) -> Boxes:
+    """The grid of `boxes_per_side` (one number, or one per axis) for a scene. narrowest: the smallest side a
+    box may have, the largest diameter unless some bodies are kept beside the boxes.
 
     On a periodic axis of fewer than three boxes the same box is a neighbour on both sides: with `images`
     both stand in the table, each with its own shift; without, each box stands in it once.
@@ -79,9 +82,10 @@ def make_boxes(scene: Scene, boxes_per_side: int | tuple[int, ...], images: bool
     if len(given) != len(lengths):
         raise SceneError("boxes_per_side", boxes_per_side, "must be one number, or one per axis")
     sides = [count_of("boxes_per_side", n, least=1) for n in given]
+    narrowest = widest(scene) if narrowest is None else narrowest
     for length, n in zip(lengths, sides, strict=True):
-        if n > 1 and length / n < widest(scene):
-            rule = f"boxes must not be narrower than the largest diameter, {widest(scene):g}"
+        if n > 1 and length / n < narrowest:
+            rule = f"boxes must not be narrower than the largest diameter, {narrowest:g}"
             raise SceneError("boxes_per_side", boxes_per_side, rule)
     periodic = scene.container.periodic + (False,) * (3 - len(lengths))
     per_side = np.array(sides + [1] * (3 - len(sides)), dtype=np.int64)

@@ -20,7 +20,16 @@ from gaspart.point_scene import check_scene, extents, scene
 LENGTHS = ("collisions_per_body", "duration", "steps")
 ENGINE_KEYS = {
     "event": ("search", "boxes_per_side", "boxes_per_body"),
-    "step": ("time_step", "boxes_per_side", "boxes_per_body", "precision", "rewind"),
+    "step": (
+        "time_step",
+        "boxes_per_side",
+        "boxes_per_body",
+        "near_boxes",
+        "precision",
+        "rewind",
+        "passes",
+        "skin",
+    ),
 }
 SCANS = ("scan_boxes_per_side", "scan_boxes_per_body")
 

@@ -33,6 +33,11 @@ KERNEL_MODULES = (
     "engines/walls.py",
     "engines/event_kernels.py",
     "engines/all_pairs.py",
+    "engines/step_layout.py",
+    "engines/step_motion.py",
+    "engines/step_contacts.py",
+    "engines/step_boxes.py",
+    "engines/step_list.py",
     "engines/step_kernels.py",
 )
 

@@ -20,7 +20,7 @@ class Tally:
 
     The time-stepped engine also tells what it got wrong: steps; overlaps_left, pairs that still overlap and
     approach when a step ends; deepest_overlap met, as a fraction of the contact distance;
-    multiple_contacts, bodies that met more than one other in a step.
+    multiple_contacts, bodies that met more than one other in a step; rebuilds of its neighbour list.
     """
 
     time: float
@@ -38,3 +38,4 @@ class Tally:
     overlaps_left: int = 0
     deepest_overlap: float = 0.0
     multiple_contacts: int = 0
+    rebuilds: int = 0

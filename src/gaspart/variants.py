@@ -26,10 +26,11 @@ def variant(point: Point) -> str:
     """
     scene = grid.scene(point)
     engine = "fill" if point.job == "fill" else point.settings.get("engine", "event")
+    boxes = any(key in point.settings for key in ("boxes_per_side", "boxes_per_body", *grid.SCANS))
     choice = {
         "fill": "random",
         "event": point.settings.get("search", "boxes"),
-        "step": point.settings.get("precision", "float64"),
+        "step": ("boxes" if boxes else "list") + "-" + point.settings.get("precision", "float64"),
     }
     boundary = "".join(kind[0] for kind in scene.container.boundary)
     parts = [engine, choice[engine], f"{scene.dimension}d", boundary]
@@ -87,7 +88,9 @@ def warm(job: str) -> None:
     if given["engine"] is None:
         initial_state(scene, seed=1)
         return
-    settings = {key: value for key, value in given["engine"].items() if key != "boxes_per_side"}
+    settings = dict(given["engine"])
+    if "boxes_per_side" in settings:  # one box does for a tiny run
+        settings["boxes_per_side"] = 1
     simulation = Simulation(scene, engine_from_dict(settings), seed=1)
     if "time_step" in settings:
         limits = {"duration": 4 * settings["time_step"]}

@@ -11,20 +11,34 @@ from scenes import gas, mixtures
 import gaspart as gp
 from gaspart import theory
 
+SEARCHES = (
+    {"boxes_per_side": 1},
+    {"boxes_per_side": 2},
+    {"boxes_per_side": 3, "near_boxes": True},
+    {},
+    {"skin": 0.05},
+    {"skin": 2.0},
+)
 
-@given(mixtures(most=20), st.sampled_from(["float64", "float32"]), st.booleans(), st.integers(0, 2**32))
-def test_any_number_of_boxes_gives_the_same_bits(scene, precision, rewind, seed):
+
+@given(
+    mixtures(most=20), st.sampled_from(["float64", "float32"]), st.booleans(), st.sampled_from([1, 3]),
+    st.integers(0, 2**32),
+)  # fmt: skip
+def test_any_search_gives_the_same_bits(scene, precision, rewind, passes, seed):
     ends = []
-    for boxes_per_side in (1, 2, None):
-        engine = gp.TimeStepped(0.01, boxes_per_side, precision, rewind)
+    for search in SEARCHES:
+        engine = gp.TimeStepped(0.01, precision=precision, rewind=rewind, passes=passes, **search)
         try:
             sim = gp.Simulation(scene, engine, seed=seed)
         except gp.SceneError as error:
             assert error.key in ("boxes_per_side", "lengths")
             continue
         sim.advance(duration=3.0)
-        ends.append(sim.state.unwrapped)
-    assert all(np.array_equal(ends[0], end) for end in ends[1:])
+        tally = sim.tally
+        ends.append((sim.state.unwrapped, tally.wall_impulse, tally.virial_sum, tally.overlaps_left))
+    for end in ends[1:]:
+        assert all(np.array_equal(one, other) for one, other in zip(ends[0], end, strict=True))
 
 
 def test_one_box_tests_each_pair_once_a_step():

@@ -7,28 +7,36 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gaspart.engines.common import EventLog, masses_for_kernel
+from gaspart.engines.step_settings import check_scene, check_step, giants_of, passes_for, quantum_for
 from gaspart.errors import SceneError
-from gaspart.scene import Scene, number
+from gaspart.scene import Scene, count_of, number
 from gaspart.state import State
 from gaspart.tally import Tally
 
 PRECISIONS = ("float64", "float32")
-_BOXES_PER_BODY = 8.0  # near the optimum of figure ideal_boxes
 
 
 @dataclass(frozen=True)
 class TimeStepped:
     """Small steps; pairs that overlap after a step are put right.
 
-    time_step: in the scene's time unit; boxes_per_side: a number, or one per axis, down to 1 (all pairs),
-    by default about eight boxes per body; precision: "float64" or "float32"; rewind: collide pairs as they
-    were at their contact (off: as they lie after the step, to measure what rewinding buys).
+    time_step: in the scene's time unit. boxes_per_side: search the boxes of a grid, a number of them or one
+    per axis, down to 1 (all pairs); by default a neighbour list is used instead, with a `skin` (a length)
+    that the engine chooses unless it is given. near_boxes: look only into boxes within reach of a contact.
+    precision: "float64" or "float32". rewind: collide pairs as they were at their contact (off: as they lie
+    after the step, to measure what rewinding buys). passes: how often a step may look for overlaps; from the
+    second pass on, those that part again within the step count too. By default 1 or 4, by density and step.
+
+    The result is the same, bit for bit, for any boxes_per_side, near_boxes and skin.
     """
 
     time_step: float
     boxes_per_side: int | tuple[int, ...] | None = None
     precision: str = "float64"
     rewind: bool = True
+    passes: int | None = None
+    skin: float | None = None
+    near_boxes: bool = False
 
     name = "step"
 
@@ -37,8 +45,17 @@ class TimeStepped:
         object.__setattr__(self, "time_step", step)
         if self.precision not in PRECISIONS:
             raise SceneError("precision", self.precision, f"must be one of {PRECISIONS}")
-        if not isinstance(self.rewind, bool):
-            raise SceneError("rewind", self.rewind, "must be true or false")
+        for key in ("rewind", "near_boxes"):
+            if not isinstance(getattr(self, key), bool):
+                raise SceneError(key, getattr(self, key), "must be true or false")
+        if self.passes is not None:
+            count_of("passes", self.passes, least=1)
+        if self.skin is not None:
+            if self.boxes_per_side is not None:
+                raise SceneError("skin", self.skin, "excludes boxes_per_side")
+            object.__setattr__(self, "skin", number("skin", self.skin, "must be positive", above=0.0))
+        if self.near_boxes and self.boxes_per_side is None:
+            raise SceneError("near_boxes", True, "needs boxes_per_side")
 
     def start(self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0) -> StepDynamics:
         """Set the engine up for a scene in a given state; nothing of it depends on `seed`."""
@@ -51,58 +68,73 @@ class StepDynamics:
     dissipated = 0.0
 
     def __init__(self, engine: TimeStepped, scene: Scene, state: State):
-        from gaspart.boxes import make_boxes, sides_for, widest
         from gaspart.engines import step_kernels as kernels
+        from gaspart.engines import step_layout as layout
+        from gaspart.engines import step_search as search
 
-        rough = scene.restitution is not None and not scene.restitution.smooth_and_elastic
-        for key, value in (
-            ("gravity", scene.gravity),
-            ("restitution", scene.restitution if rough else None),
-            ("walls", scene.walls or None),
-            ("faces", scene.faces or None),
-            ("fixed", True if np.isinf(state.masses).any() else None),
-        ):
-            if value is not None:
-                raise SceneError(key, value, 'needs the "event" engine; this one knows none')
-        for length, periodic in zip(scene.container.lengths, scene.container.periodic, strict=True):
-            if periodic and length < 2 * widest(scene):
-                rule = "the time-stepped engine needs periodic sides of two largest diameters"
-                raise SceneError("lengths", scene.container.lengths, rule)
-        self._kernels = kernels
-        self._engine = engine
-        self._scene = scene
-        self._reference = state
-        real = np.dtype(engine.precision).type
-        per_side = engine.boxes_per_side or sides_for(scene, per_body=_BOXES_PER_BODY)
-        boxes = make_boxes(scene, per_side, images=False)
-        self._space = kernels.Space(
+        giants = giants_of(state)
+        check_scene(scene, state, giants)
+        check_step(engine, scene, state)
+        self._kernels, self._layout = kernels, layout
+        self._engine, self._scene, self._reference = engine, scene, state
+        self._real = real = np.dtype(engine.precision).type
+        self._space = layout.Space(
             tuple(real(length) for length in scene.container.lengths),
             scene.container.periodic,
             real(not scene.centres_to_walls),
         )
-        self._bodies = kernels.Bodies(
-            state.positions.astype(real),
-            state.velocities.astype(real),
-            state.images.copy(),
-            state.radii.astype(real),
-        )
-        self._partition = kernels.Partition(
-            boxes.per_side, boxes.widths.astype(real), boxes.strides, boxes.neighbour,
-            at=np.zeros((state.count, 3), dtype=np.int64),
-            head=np.empty(boxes.count, dtype=np.int32),
-            following=np.empty(state.count, dtype=np.int32),
-        )  # fmt: skip
         self._unit_mass, masses = masses_for_kernel(state.masses)
-        self._masses = None if masses is None else masses.astype(real)
+        masses = np.ones(state.count) if masses is None else masses
+        shape = (scene.dimension, state.count)
+        self._bodies = layout.Bodies(
+            np.empty(shape, real),
+            np.empty(shape, real),
+            np.empty(shape, np.int32),
+            radii=np.empty(state.count, real),
+            index=np.empty(state.count, np.int32),
+            masses=masses.astype(real),
+            ordinary=int(state.count - giants.sum()),
+        )
+        slots = np.argsort(giants, kind="stable")  # giants last
+        self._place(slots, state.positions, state.velocities, state.images)
+        ordinary = state.radii[~giants]
+        self._inset = real(self._space.margin * real(ordinary.max(initial=0.0)))
+        self._partition = search.partition_for(engine, scene, state, ordinary)
+        self._cells = search.cells_for(engine, scene, state, ordinary)
+        self._gravity = None if scene.gravity is None else tuple(real(g) for g in scene.gravity)
+        self._passes = passes_for(engine, scene, state)
+        self._watch = layout.Watch(np.empty(state.count, np.int64), np.zeros(state.count, real), np.zeros(4))
+        self._watch.reach[layout.SPENT] = np.inf  # no list is made yet
+        self._pairs = (np.empty(0, np.int32), np.empty(0, np.int32))
+        self._quantum = quantum_for(scene, state, masses)
         self._step = real(engine.time_step)
         self._start, self._steps = state.time, 0
         self.reset_tally()
 
+    def _place(self, slots: np.ndarray, positions, velocities, images) -> None:
+        """Put the bodies into their slots: (N,) which body is in each."""
+        bodies = self._bodies
+        bodies.positions[...] = positions[slots].T
+        bodies.velocities[...] = velocities[slots].T
+        bodies.images[...] = images[slots].T
+        bodies.radii[...] = self._reference.radii[slots]
+        bodies.index[...] = slots
+
+    def _by_body(self, values: np.ndarray, dtype) -> np.ndarray:
+        """(N, d) of the bodies in their own order, from (d, N) by slot."""
+        found = np.empty(values.shape[::-1], dtype)
+        found[self._bodies.index] = values.T
+        return found
+
     def reset_tally(self) -> None:
         """Begin to count anew."""
-        faces = 2 * self._scene.dimension
-        self._counters = self._kernels.Counters(
-            np.zeros(5, dtype=np.int64), np.zeros(3), np.zeros(faces, dtype=np.int64), np.zeros(faces)
+        faces = (1, 2 * self._scene.dimension)
+        self._counters = self._layout.Counters(
+            counts=np.zeros(6, dtype=np.int64),
+            sums=np.zeros(3),
+            wall_hits=np.zeros(faces, dtype=np.int64),
+            wall_impulse=np.zeros(faces, dtype=np.int64),
+            quantum=self._quantum,
         )
         self._since = self._steps
 
@@ -122,9 +154,10 @@ class StepDynamics:
         steps = (until - self._start) / self._engine.time_step
         target = int(np.floor(steps * (1.0 + 4e-16) + 1e-9))
         if target > self._steps:
-            self._kernels.run_steps(
-                self._bodies, self._space, self._partition, self._masses, self._step,
-                target - self._steps, self._engine.rewind, self._counters,
+            self._pairs = self._kernels.run_steps(
+                self._bodies, self._space, self._partition, self._cells, self._pairs, self._gravity,
+                self._inset, self._step, target - self._steps, self._engine.rewind, self._passes,
+                self._passes > 1, self._watch, self._counters,
             )  # fmt: skip
             self._steps = target
 
@@ -134,40 +167,52 @@ class StepDynamics:
         return replace(
             self._reference,
             time=self.time,
-            positions=self._bodies.positions.astype(float),
-            velocities=self._bodies.velocities.astype(float),
-            images=self._bodies.images.copy(),
+            positions=self._by_body(self._bodies.positions, float),
+            velocities=self._by_body(self._bodies.velocities, float),
+            images=self._by_body(self._bodies.images, self._reference.images.dtype),
         )
 
     @property
     def tally(self) -> Tally:
-        kernels, counters = self._kernels, self._counters
+        layout, counts, sums = self._layout, self._counters.counts, self._counters.sums
         return Tally(
             time=(self._steps - self._since) * self._engine.time_step,
-            collisions=int(counters.counts[kernels.COLLISIONS]),
-            wall_hits=counters.wall_hits.copy(),
-            wall_impulse=counters.wall_impulse * self._unit_mass,
-            wall_energy=np.zeros(len(counters.wall_impulse)),
-            virial_sum=float(counters.sums[kernels.VIRIAL]) * self._unit_mass,
-            pair_tests=int(counters.counts[kernels.PAIR_TESTS]),
-            box_visits=int(counters.counts[kernels.BOX_VISITS]),
-            worst_contact=float(counters.sums[kernels.WORST]),
+            collisions=int(counts[layout.COLLISIONS]),
+            wall_hits=self._counters.wall_hits.sum(axis=0),
+            wall_impulse=self._counters.wall_impulse.sum(axis=0) * (self._quantum * self._unit_mass),
+            wall_energy=np.zeros(2 * self._scene.dimension),
+            virial_sum=float(sums[layout.VIRIAL]) * self._unit_mass,
+            pair_tests=int(counts[layout.PAIR_TESTS]),
+            box_visits=int(counts[layout.BOX_VISITS]),
+            worst_contact=float(sums[layout.WORST]),
             steps=self._steps - self._since,
-            overlaps_left=int(counters.counts[kernels.OVERLAPS_LEFT]),
-            deepest_overlap=float(counters.sums[kernels.DEEPEST]),
-            multiple_contacts=int(counters.counts[kernels.MULTIPLE]),
+            overlaps_left=int(counts[layout.OVERLAPS_LEFT]),
+            deepest_overlap=float(sums[layout.DEEPEST]),
+            multiple_contacts=int(counts[layout.MULTIPLE]),
+            rebuilds=int(counts[layout.REBUILDS]),
         )
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         """Everything that a continuation to the same bits needs."""
-        parts = {"steps": self._steps, "since": self._since}
-        for group in (self._bodies, self._counters):
-            parts.update(group._asdict())
-        return {key: np.array(value) for key, value in parts.items()}
+        bodies = self._bodies
+        return {
+            "steps": np.array(self._steps),
+            "since": np.array(self._since),
+            "positions": self._by_body(bodies.positions, self._real),
+            "velocities": self._by_body(bodies.velocities, self._real),
+            "images": self._by_body(bodies.images, np.int32),
+            "slots": bodies.index.copy(),
+            "first": self._pairs[0].copy(),
+            "second": self._pairs[1].copy(),
+            "reach": self._watch.reach.copy(),
+            **{key: np.array(value) for key, value in self._counters._asdict().items()},
+        }
 
     def restore(self, parts: dict[str, np.ndarray]) -> None:
         """Go on from a checkpoint of the same scene and engine."""
-        for group in (self._bodies, self._counters):
-            for key, array in group._asdict().items():
-                array[...] = parts[key]
+        self._place(*(parts[key] for key in ("slots", "positions", "velocities", "images")))
+        self._pairs = (parts["first"].copy(), parts["second"].copy())
+        self._watch.reach[...] = parts["reach"]
+        for key in ("counts", "sums", "wall_hits", "wall_impulse"):
+            getattr(self._counters, key)[...] = parts[key]
         self._steps, self._since = int(parts["steps"]), int(parts["since"])

@@ -1,0 +1,183 @@
+"""The contacts of one step: which overlaps count, in what order they are resolved, and how.
+
+The order - time of contact, lower index, higher index - knows nothing of slots, boxes or threads, so neither
+does any bit of the result.
+"""
+
+import numpy as np
+
+from gaspart.boxes import nearest
+from gaspart.contact import exchange
+from gaspart.engines.step_layout import (
+    COLLISIONS,
+    DEEPEST,
+    FASTEST,
+    MULTIPLE,
+    OVERLAPS_LEFT,
+    PENDING,
+    STRAYED,
+    VIRIAL,
+    WORST,
+)
+from gaspart.engines.step_motion import wrap
+from gaspart.kernel import allocating_kernel, helper, kernel
+
+
+@helper
+def distance_squared(bodies, space, i, j):
+    """Of two slots, by the nearest image."""
+    rr = space.margin - space.margin
+    for k in range(len(space.lengths)):
+        r = nearest(bodies.positions[k, j] - bodies.positions[k, i], space.lengths[k], space.periodic[k])
+        rr += r * r
+    return rr
+
+
+@helper
+def invariants(bodies, space, i, j):
+    """rr, rv, vv of a pair (see `contact`), j by its nearest image."""
+    rr = rv = vv = space.margin - space.margin
+    for k in range(len(space.lengths)):
+        gap = bodies.positions[k, j] - bodies.positions[k, i]
+        r = nearest(gap, space.lengths[k], space.periodic[k])
+        v = bodies.velocities[k, j] - bodies.velocities[k, i]
+        rr += r * r
+        rv += r * v
+        vv += v * v
+    return rr, rv, vv
+
+
+@helper
+def entered(rr, rv, vv, ss):
+    """When an overlapping pair touched first, if it has always moved as it does now: a time in the past.
+
+    The earlier root of vv t^2 + 2 rv t + (rr - ss) = 0, as in `contact.contact_root`, in the form that does
+    not cancel for a pair that is parting already.
+    """
+    root = np.sqrt(rv * rv - vv * (rr - ss))
+    if rv < 0.0:
+        return (rr - ss) / (root - rv)
+    return -(root + rv) / vv
+
+
+@helper
+def counts(rr, rv, vv, ss, dt, parting):
+    """Whether an overlap is to be resolved: it grows, or (if `parting` is on) it began in this step."""
+    if not rr < ss:
+        return False
+    return rv < 0.0 or (parting and rv > 0.0 and -entered(rr, rv, vv, ss) < dt)
+
+
+@kernel
+def examine(bodies, space, i, j, dt, parting, found, thread):
+    """Write a pair of overlapping slots down if it is to be resolved."""
+    if bodies.index[i] > bodies.index[j]:
+        i, j = j, i
+    rr, rv, vv = invariants(bodies, space, i, j)
+    sigma = bodies.radii[i] + bodies.radii[j]
+    if counts(rr, rv, vv, sigma * sigma, dt, parting):
+        n = found.number[thread]
+        if n < found.times.shape[1]:
+            found.pairs[thread, n, 0] = i
+            found.pairs[thread, n, 1] = j
+            found.times[thread, n] = entered(rr, rv, vv, sigma * sigma)
+        found.number[thread] = n + 1
+
+
+@allocating_kernel
+def in_order(index, pairs, times):
+    """The order in which contacts are resolved: by time, then lower index, then higher index."""
+    order = np.argsort(times)
+    for n in range(1, len(order)):
+        if times[order[n]] == times[order[n - 1]]:
+            key = index[pairs[:, 0]].astype(np.int64) * len(index) + index[pairs[:, 1]]
+            by_index = np.argsort(key, kind="mergesort")
+            return by_index[np.argsort(times[by_index], kind="mergesort")]
+    return order
+
+
+@helper
+def kicks(rr, rv, mass1, mass2):
+    """The factors k1, k2 of an elastic contact (v1 += k1 r, v2 -= k2 r), and |r.p| of the momentum p passed.
+    A body of infinite mass takes none."""
+    if mass1 == np.inf:
+        return rr - rr, (rv + rv) / rr, (mass2 + mass2) * abs(rv)
+    if mass2 == np.inf:
+        return (rv + rv) / rr, rr - rr, (mass1 + mass1) * abs(rv)
+    k1, k2 = exchange(rr, rv, mass1, mass2)
+    return k1, k2, (mass1 + mass1) * (mass2 / (mass1 + mass2)) * abs(rv)
+
+
+@helper
+def stray(body, way, covered, step, watch, counters):
+    """Remember by how far contacts put a body off its flight, if that is more than its speed explains."""
+    if watch.met[body] == step:
+        counters.counts[MULTIPLE] += 1
+    else:
+        watch.met[body] = step
+        watch.strayed[body] = way - way
+        if covered:
+            return
+    watch.strayed[body] += way
+    watch.reach[STRAYED] = max(watch.reach[STRAYED], watch.strayed[body])
+
+
+@kernel
+def resolve(bodies, space, i, j, dt, step, rewind, parting, watch, counters):
+    """Collide a pair, if it is still to be resolved: rewind it to its contact, pass the momentum along the
+    normal at contact, and play the rest of the step with the new velocities."""
+    rr, rv, vv = invariants(bodies, space, i, j)
+    one, other = bodies.index[i], bodies.index[j]
+    sigma = bodies.radii[i] + bodies.radii[j]
+    ss = sigma * sigma
+    if not counts(rr, rv, vv, ss, dt, parting):
+        return
+    counters.sums[DEEPEST] = max(counters.sums[DEEPEST], 1.0 - np.sqrt(rr) / sigma)
+    ago = rr - rr
+    if rewind:
+        ago = entered(rr, rv, vv, ss)
+        rr += ago * (rv + rv + vv * ago)  # the invariants as they were at the contact
+        rv += ago * vv
+        counters.sums[WORST] = max(counters.sums[WORST], abs(rr / ss - 1.0))
+    to_i, to_j, passed = kicks(rr, rv, bodies.masses[one], bodies.masses[other])
+    counters.counts[COLLISIONS] += 1
+    counters.sums[VIRIAL] += passed
+    speed_i = speed_j = way = ago - ago
+    for k in range(len(space.lengths)):
+        gap = bodies.positions[k, j] - bodies.positions[k, i]
+        r = nearest(gap, space.lengths[k], space.periodic[k])
+        r += ago * (bodies.velocities[k, j] - bodies.velocities[k, i])
+        bodies.velocities[k, i] += to_i * r
+        bodies.velocities[k, j] -= to_j * r
+        bodies.positions[k, i] -= ago * (to_i * r)
+        bodies.positions[k, j] += ago * (to_j * r)
+        speed_i += bodies.velocities[k, i] * bodies.velocities[k, i]
+        speed_j += bodies.velocities[k, j] * bodies.velocities[k, j]
+        way += r * r
+        if rewind and space.periodic[k]:
+            wrap(bodies, i, k, space.lengths[k])
+            wrap(bodies, j, k, space.lengths[k])
+    way = -ago * np.sqrt(way)
+    watch.reach[FASTEST] = max(watch.reach[FASTEST], np.sqrt(max(speed_i, speed_j)))
+    covered = watch.reach[PENDING] > 0.0 and -ago <= dt
+    stray(one, way * abs(to_i), covered, step, watch, counters)
+    stray(other, way * abs(to_j), covered, step, watch, counters)
+
+
+@kernel
+def resolve_all(bodies, space, found, order, dt, step, rewind, parting, watch, counters):
+    """Resolve what one search has found, in order."""
+    for n in order:
+        i, j = found.pairs[0, n, 0], found.pairs[0, n, 1]
+        resolve(bodies, space, i, j, dt, step, rewind, parting, watch, counters)
+
+
+@kernel
+def count_left(bodies, space, found, counters):
+    """Count the pairs found that overlap and approach even now."""
+    for n in range(found.number[0]):
+        i, j = found.pairs[0, n, 0], found.pairs[0, n, 1]
+        rr, rv, _ = invariants(bodies, space, i, j)
+        sigma = bodies.radii[i] + bodies.radii[j]
+        if rr < sigma * sigma and rv < 0.0:
+            counters.counts[OVERLAPS_LEFT] += 1

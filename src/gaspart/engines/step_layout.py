@@ -1,0 +1,70 @@
+"""What the time-stepped engine's kernels work on: arrays by axis, in the order of their slots.
+
+A *slot* is a body's present place in memory; `index` tells which body that is. All real numbers have the
+precision of the positions (float32 or float64). Sums that several threads make are whole numbers, so that
+no order of adding shows in them.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+COLLISIONS, PAIR_TESTS, BOX_VISITS, OVERLAPS_LEFT, MULTIPLE, REBUILDS = range(6)
+VIRIAL, DEEPEST, WORST = range(3)
+FASTEST, STRAYED, SPENT, PENDING = range(4)
+
+
+class Space(NamedTuple):
+    """lengths (d,), periodic (d,); margin: 1 if walls stop surfaces, 0 if they stop centres."""
+
+    lengths: tuple
+    periodic: tuple
+    margin: float
+
+
+class Bodies(NamedTuple):
+    """By slot: positions, velocities, images (d, N), radii, index (N,). By body: masses (N,).
+
+    ordinary: how many slots the partition holds; the bodies beyond, too large for it, are the last ones.
+    """
+
+    positions: np.ndarray
+    velocities: np.ndarray
+    images: np.ndarray
+    radii: np.ndarray
+    index: np.ndarray
+    masses: np.ndarray
+    ordinary: int
+
+
+class Counters(NamedTuple):
+    """counts (6,) and sums (3,), see the names at the module's top; by thread: wall_hits and wall_impulse
+    (threads, 2d), the impulse in whole numbers of `quantum`."""
+
+    counts: np.ndarray
+    sums: np.ndarray
+    wall_hits: np.ndarray
+    wall_impulse: np.ndarray
+    quantum: float
+
+
+class Found(NamedTuple):
+    """Contacts to resolve, by thread: pairs (threads, room, 2) of slots, times (threads, room), number
+    (threads,), which may exceed the room."""
+
+    pairs: np.ndarray
+    times: np.ndarray
+    number: np.ndarray
+
+
+class Watch(NamedTuple):
+    """How far anybody may have come since the list was made, and what that follows from.
+
+    By body: met (N,) the last step with a contact; strayed (N,) how far contacts put it off its flight in
+    that step. reach (4,): the FASTEST speed of any body, or more; the most that any STRAYED in this step; the
+    way SPENT before this step; PENDING, 1 if the list is older than this step's move.
+    """
+
+    met: np.ndarray
+    strayed: np.ndarray
+    reach: np.ndarray

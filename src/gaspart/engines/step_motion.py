@@ -1,0 +1,156 @@
+"""How bodies move in one step: freely, then back into the container through its periodic faces or walls.
+
+The free flight is a loop without branches; a block of bodies is looked at again only if somebody left the
+container in it.
+"""
+
+import numpy as np
+
+from gaspart.engines.step_layout import FASTEST
+from gaspart.kernel import helper, kernel
+
+_BLOCK = 512
+
+
+@helper
+def wrap(bodies, slot, axis, length):
+    """Bring a body back into the container on a periodic axis."""
+    x = bodies.positions[axis, slot]
+    laps = np.floor(x / length)
+    if laps != 0.0:
+        x -= laps * length
+        if x >= length:  # a tiny negative x rounds up to the length itself
+            x -= length
+            laps += 1
+        bodies.positions[axis, slot] = x
+        bodies.images[axis, slot] += int(laps)
+
+
+@helper
+def reflect(bodies, slot, axis, lower, upper, counters, thread):
+    """Mirror a body that left through a wall, as long as it moves outward."""
+    x = bodies.positions[axis, slot]
+    v = bodies.velocities[axis, slot]
+    while (x < lower and v < 0.0) or (x > upper and v > 0.0):
+        side = 0 if x < lower else 1
+        plane = upper if side else lower
+        x = plane + plane - x
+        impulse = 2.0 * bodies.masses[bodies.index[slot]] * abs(v)
+        counters.wall_hits[thread, 2 * axis + side] += 1
+        counters.wall_impulse[thread, 2 * axis + side] += np.int64(np.rint(impulse / counters.quantum))
+        v = -v
+    bodies.positions[axis, slot] = x
+    bodies.velocities[axis, slot] = v
+
+
+@kernel
+def reflect_falling(bodies, slot, axis, lower, upper, pull, dt, counters, thread):
+    """The same under a pull: back along the parabola to the plane, and on from there with the speed it had.
+
+    y is the height over the plane, u its rate and a the pull, all counted inward. y = u s + a s^2/2 tells
+    how long ago, s, the body crossed the plane (Spencer 2022, Eq. 14, in the form that does not cancel), and
+    w^2 = u^2 - 2 a y how fast. Bounces that fit into what is left of the step are made at once.
+    """
+    x = bodies.positions[axis, slot]
+    v = bodies.velocities[axis, slot]
+    half = dt / (dt + dt)
+    while x < lower or x > upper:
+        side = 0 if x < lower else 1
+        y, u, a = (upper - x, -v, -pull) if side else (x - lower, v, pull)
+        square = u * u - (y + y) * a
+        if square < 0.0:  # pushed out by a contact, too slow to have come through by itself
+            if u < 0.0:
+                v = -v
+            break
+        w = np.sqrt(square)
+        s = (y + y) / (u - w)
+        if u >= 0.0 and not (a > 0.0 and s <= dt):
+            break
+        hits = 1
+        if a < 0.0 and w > 0.0:
+            bounces = np.floor(s * -a / (w + w))
+            s -= bounces * (w + w) / -a
+            hits += int(bounces)
+        impulse = 2.0 * hits * bodies.masses[bodies.index[slot]] * w
+        counters.wall_hits[thread, 2 * axis + side] += hits
+        counters.wall_impulse[thread, 2 * axis + side] += np.int64(np.rint(impulse / counters.quantum))
+        u = w + a * s
+        y = max(y - y, half * (w + u) * s)
+        x, v = (upper - y, -u) if side else (lower + y, u)
+    bodies.positions[axis, slot] = x
+    bodies.velocities[axis, slot] = v
+
+
+@kernel
+def mend(bodies, space, gravity, slot, dt, counters, thread):
+    """Bring one body back into the container."""
+    inset = space.margin * bodies.radii[slot]
+    for k in range(len(space.lengths)):
+        if space.periodic[k]:
+            wrap(bodies, slot, k, space.lengths[k])
+        else:
+            upper = space.lengths[k] - inset
+            if gravity is None:
+                reflect(bodies, slot, k, inset, upper, counters, thread)
+            else:
+                reflect_falling(bodies, slot, k, inset, upper, gravity[k], dt, counters, thread)
+
+
+@kernel
+def fly(x, v, lower, upper, dt):
+    """Move bodies along one axis; the number that are not in [lower, upper) then."""
+    outside = 0
+    for n in range(len(x)):
+        moved = x[n] + v[n] * dt
+        x[n] = moved
+        outside += (moved < lower) | (moved >= upper)
+    return outside
+
+
+@kernel
+def fall(x, v, pull, lower, upper, dt):
+    """The same under a pull: exactly along the parabola."""
+    outside = 0
+    gain = pull * dt
+    drop = dt / (dt + dt) * gain * dt
+    for n in range(len(x)):
+        moved = x[n] + v[n] * dt + drop
+        x[n] = moved
+        v[n] += gain
+        outside += (moved < lower) | (moved >= upper)
+    return outside
+
+
+@kernel
+def move(bodies, space, gravity, inset, dt, low, high, counters, thread):
+    """Make the motion of one step for the slots from `low` to `high`. inset: the largest distance from a
+    wall at which an ordinary body may need to be mended."""
+    start = low
+    while start < high:
+        stop = min(start + _BLOCK, high)
+        outside = 0
+        for k in range(len(space.lengths)):
+            x = bodies.positions[k, start:stop]
+            v = bodies.velocities[k, start:stop]
+            lower = dt - dt if space.periodic[k] else inset
+            upper = space.lengths[k] - lower
+            if gravity is None:
+                outside += fly(x, v, lower, upper, dt)
+            else:
+                outside += fall(x, v, gravity[k], lower, upper, dt)
+        if outside > 0 or stop > bodies.ordinary:
+            for slot in range(start, stop):
+                mend(bodies, space, gravity, slot, dt, counters, thread)
+        start = stop
+
+
+@kernel
+def note_fastest(bodies, watch):
+    """Measure the highest speed of any body."""
+    most = bodies.velocities[0, 0] - bodies.velocities[0, 0]
+    for slot in range(bodies.velocities.shape[1]):
+        square = most - most
+        for k in range(bodies.velocities.shape[0]):
+            square += bodies.velocities[k, slot] * bodies.velocities[k, slot]
+        most = max(most, square)
+    watch.reach[FASTEST] = np.sqrt(most)

@@ -1,0 +1,76 @@
+"""Setting the time-stepped engine's search up: boxes, or the cells and the skin of a neighbour list."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gaspart.boxes import make_boxes
+from gaspart.engines.step_boxes import Partition
+from gaspart.engines.step_list import Cells
+from gaspart.scene import Scene
+from gaspart.state import State
+
+_CELLS_PER_BODY = 6.0
+_REBUILD, _PAIR = 35.0, 1.5  # ns a body and ns a pair of the list; only their ratio matters
+
+
+def partition_for(engine, scene: Scene, state: State, radii: np.ndarray) -> Partition | None:
+    """The grid of boxes, if the engine is to have one."""
+    if engine.boxes_per_side is None:
+        return None
+    reach = 2.0 * radii.max(initial=0.0)
+    boxes = make_boxes(scene, engine.boxes_per_side, images=False, narrowest=reach)
+    real = np.dtype(engine.precision).type
+    return Partition(
+        boxes.per_side, boxes.widths.astype(real), boxes.strides, boxes.neighbour,
+        at=np.zeros((state.count, 3), dtype=np.int64),
+        head=np.empty(boxes.count, dtype=np.int32),
+        following=np.empty(state.count, dtype=np.int32),
+        near=engine.near_boxes,
+        reach=real(reach * (1.0 + 1e-5)),
+    )  # fmt: skip
+
+
+def cells_for(engine, scene: Scene, state: State, radii: np.ndarray) -> Cells | None:
+    """The cells of the neighbour list, if the engine is to have one."""
+    if engine.boxes_per_side is not None:
+        return None
+    real = np.dtype(engine.precision).type
+    lengths, periodic = scene.container.lengths, scene.container.periodic
+    contact = 2.0 * radii.max(initial=0.0)
+    skin = engine.skin or _skin(engine, scene, state, contact)
+    # at least two cells on a periodic axis, so that no pair is in the list twice
+    room = min(
+        (0.5 * length - contact for length, p in zip(lengths, periodic, strict=True) if p), default=np.inf
+    )
+    skin = min(skin, max(0.0, room))
+    width = max((contact + skin) * (1.0 + 1e-6), _width(scene, state.count))
+    sides = [max(2 if p else 1, int(length / width)) for length, p in zip(lengths, periodic, strict=True)]
+    dimension = scene.dimension
+    per_side = np.array(sides + [1] * (3 - dimension), dtype=np.int64)
+    widths = np.array(
+        [length / n for length, n in zip(lengths, sides, strict=True)] + [1.0] * (3 - dimension)
+    )
+    layers = per_side + 2
+    strides = np.array([1, layers[0], layers[0] * layers[1]], dtype=np.int64)
+    count = int(layers[:dimension].prod())
+    return Cells(per_side, widths.astype(real), strides, np.empty(count + 1, dtype=np.int32), real(skin))
+
+
+def _width(scene: Scene, count: int) -> float:
+    return (scene.container.volume / max(1.0, _CELLS_PER_BODY * count)) ** (1.0 / scene.dimension)
+
+
+def _skin(engine, scene: Scene, state: State, contact: float) -> float:
+    """The skin that costs least: a thin one is spent soon, a thick one lists many pairs."""
+    speeds = np.sqrt((state.velocities**2).sum(axis=1))
+    gravity = 0.0 if scene.gravity is None else float(np.abs(scene.gravity).max())
+    fastest = max(speeds.max(initial=0.0), 1.7 * np.sqrt((speeds**2).mean()) if len(speeds) else 0.0)
+    way = 2.0 * (fastest * engine.time_step + gravity * engine.time_step**2)
+    unit = np.pi if scene.dimension == 2 else 4.0 / 3.0 * np.pi
+    density = 0.5 * unit * state.count / scene.container.volume
+    skins = contact * np.geomspace(0.02, 30.0, 60)
+    steps = np.maximum(1.0, np.floor(skins / way)) if way > 0.0 else np.full(60, np.inf)
+    pairs = density * (contact + skins) ** scene.dimension
+    cost = (_REBUILD + 3.0 * _PAIR * pairs) / steps + _PAIR * pairs
+    return float(skins[np.argmin(cost)])
