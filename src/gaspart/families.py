@@ -27,6 +27,10 @@ FAMILIES = {
     "heat_capacity": "gravity",
     "freezing_discs": "freezing",
     "freezing_spheres": "freezing",
+    "gas_render": "pictures",
+    "brownian_paths": "brownian",
+    "brownian_render": "pictures",
+    "brownian_msd": "brownian",
 }
 
 TITLES = {
@@ -39,4 +43,6 @@ TITLES = {
     "wall_pressure": "Pressure on walls",
     "gravity": "Under gravity",
     "freezing": "Freezing and melting",
+    "brownian": "A large body in a gas",
+    "pictures": "Pictures",
 }

@@ -135,10 +135,22 @@ FAMILY_MODULES = {
     ("measure", "virial"): ["measure/pressure"],
     ("measure", "freezing"): ["measure/plateau", "measure/pressure", "measure/structure"],
     ("measure", "scaling"): ["measure/timings"],
+    ("measure", "brownian"): ["measure/correlations"],
     ("judge", "displacement"): ["statistics"],
     ("judge", "radius"): ["statistics"],
     ("judge", "virial"): ["statistics"],
     ("judge", "wall_pressure"): ["statistics"],
+    ("draw", "pictures"): [
+        "kernel",
+        "rendering/__init__",
+        "rendering/bodies",
+        "rendering/camera",
+        "rendering/discs",
+        "rendering/pictures",
+        "rendering/tracer",
+        "state",
+        "validation",
+    ],
 }
 
 

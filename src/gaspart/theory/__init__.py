@@ -5,6 +5,12 @@ form), literature (read in the source), recalled (from memory of the source), co
 numerics).
 """
 
+from .brownian import (
+    friction_rate,
+    langevin_msd,
+    langevin_msd_from_rest,
+    tagged_diffusion,
+)
 from .diffusion import (
     ERPENBECK_WOOD_UNCERTAINTY,
     YEH_HUMMER_CONSTANT,
@@ -141,6 +147,7 @@ __all__ = [
     "failures_per_body",
     "finite_size_correction",
     "fourth_cumulant",
+    "friction_rate",
     "haff_time",
     "henderson",
     "initial_kurtosis_slope",
@@ -149,6 +156,8 @@ __all__ = [
     "kolafa_1986",
     "kolafa_labik_malijevsky",
     "kurtosis",
+    "langevin_msd",
+    "langevin_msd_from_rest",
     "linear_tail",
     "liu",
     "logarithmic_slope",
@@ -172,6 +181,7 @@ __all__ = [
     "speedy_crystal",
     "surface_tension",
     "surface_tension_uncertainty",
+    "tagged_diffusion",
     "van_der_waals",
     "velocity_autocorrelation_tail",
     "velocity_decay_rate",

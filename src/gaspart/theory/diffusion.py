@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from ._arguments import checked_packing_fraction
+from .brownian import langevin_msd
 from .enskog import collision_rate, enskog_diffusion, enskog_viscosity
 from .geometry import number_density
 
@@ -63,12 +64,7 @@ def enskog_mean_squared_displacement(
     """
     diffusion = enskog_diffusion(packing_fraction, dimension, diameter, temperature, mass)
     rate = temperature / (mass * diffusion)
-    time = np.asarray(time, dtype=float)
-    scaled = rate * time
-    # t - (1 - exp(-g t)) / g loses its digits at small g t: its series there, g t^2 / 2 (1 - g t / 3 + ...).
-    series = 0.5 * scaled**2 * (1.0 - scaled / 3.0 + scaled**2 / 12.0)
-    shape = np.where(scaled < 1e-3, series, scaled + np.expm1(-scaled))
-    return 2.0 * dimension * diffusion / rate * shape
+    return langevin_msd(time, diffusion, rate, dimension)
 
 
 def _spreading(packing_fraction, dimension, diameter, temperature, mass):

@@ -1,0 +1,61 @@
+import pytest
+import xarray as xr
+
+from gaspart.claims import brownian, judge
+
+
+def measured(**changes):
+    """What `measure.brownian` gives of a heavy body, if theory is right."""
+    values = {
+        "experiment": "brownian_heavy",
+        "mass": 100.0,
+        "gas_mass": 1.0,
+        "replicas": 200,
+        "share": 0.02,
+        "radius": 10.0,
+        "mean_free_path": 700.0,
+        "friction": 0.05,
+        "diffusion": 0.2,
+        "equipartition": 1.01,
+        "equipartition_error": 0.01,
+        "measured_friction": 0.0505,
+        "measured_friction_error": 0.0007,
+        "measured_diffusion": 0.199,
+        "measured_diffusion_error": 0.006,
+        "end_freedom": 600,
+        "end_chi_square": 620.0,
+    }
+    return xr.Dataset({name: ("point", [value]) for name, value in (values | changes).items()})
+
+
+def verdicts(ds):
+    claims = [*brownian.brownian_paths(ds), *brownian.brownian_msd(ds)]
+    return dict(zip((claim.claim for claim in claims), judge(claims), strict=True))
+
+
+def test_theory_agrees_with_itself():
+    found = verdicts(measured())
+    assert len(found) == 5 and set(found.values()) == {"agrees"}
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "text"),
+    [
+        ("equipartition", 1.06, "equipartition"),
+        ("measured_friction", 0.055, "friction"),
+        ("measured_diffusion", 0.23, "diffusion"),
+        ("end_chi_square", 800.0, "ends of"),
+        ("mean_free_path", 90.0, "mean free path"),
+    ],
+)
+def test_each_claim_can_fail(name, value, text):
+    found = verdicts(measured(**{name: value}))
+    assert {verdict for claim, verdict in found.items() if text in claim} == {"disagrees"}
+
+
+def test_the_source_is_reproduced_with_the_latitude_that_its_gas_asks_for():
+    ds = measured(experiment="brownian_source", mass=1.0, share=0.0, measured_friction=0.054)
+    claims = brownian.brownian_msd(ds)
+    assert {claim.kind for claim in claims} == {"reproduction", "identity"}
+    assert "equal speeds" in claims[0].claim
+    assert set(judge(claims)) == {"agrees"}

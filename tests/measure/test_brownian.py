@@ -1,0 +1,118 @@
+"""The large body's numbers, from made-up paths whose friction and diffusion are known."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import gaspart as gp
+from gaspart import grid
+from gaspart.measure import brownian
+
+RATE, MASS, COUNT = 0.5, 100.0, 900
+
+
+def point(replicas=300, boundary="periodic", **more):
+    """A point whose scene file is replaced by `setting`'s scene in these tests."""
+    settings = {
+        "scene": "config/scenes/brownian_heavy.yaml",
+        "scene.container.boundary": boundary,
+        "scene.species.0.count": COUNT,
+        "displacements": True,
+        "duration": 60.0,
+        "samples": 300,
+        "replicas": replicas,
+    }
+    return grid.Point("brownian_heavy", "single", "simulate", settings | more, "results/points", 1)
+
+
+def paths(setting, replicas, drift=0.0):
+    """Ornstein-Uhlenbeck paths in 3D of the container's friction, (T,), (T, 1, 3), (T, 1, 3) each."""
+    rng = np.random.default_rng(5)
+    rest = 1.0 - setting.share
+    rate, steps = setting.friction / rest, 300
+    interval, fine = 0.1 / rate, 20
+    width = np.sqrt(rest * setting.temperature / setting.mass)
+    keep = np.exp(-rate * interval / fine)
+    v = width * rng.standard_normal((replicas, 3))
+    x = np.zeros_like(v)
+    common = drift * np.sqrt(rest * setting.share * setting.temperature / setting.mass)
+    common = common * rng.standard_normal((replicas, 3))
+    moved, velocities = [x], [v]
+    for _ in range(steps):
+        for _ in range(fine):
+            new = keep * v + width * np.sqrt(1 - keep**2) * rng.standard_normal(v.shape)
+            x = x + 0.5 * (v + new) * interval / fine
+            v = new
+        moved.append(x)
+        velocities.append(v)
+    time = interval * np.arange(steps + 1)
+    moved = np.array(moved) + common * time[:, None, None]
+    velocities = np.array(velocities) + common
+    return [(time, moved[:, k, None], velocities[:, k, None]) for k in range(replicas)]
+
+
+@pytest.fixture
+def made_up(monkeypatch):
+    """Let the measurement read made-up paths."""
+
+    def use(chosen, found):
+        monkeypatch.setattr(brownian, "_followed", lambda given: found)
+        return chosen
+
+    return use
+
+
+def test_friction_diffusion_and_equipartition_of_known_paths(made_up):
+    """With the recoil that a finite gas gives back, and its drift, taken out."""
+    chosen = point()
+    setting = brownian.setting_of(chosen)
+    assert setting.share == pytest.approx(0.1)
+    ds = brownian.brownian_msd([made_up(chosen, paths(setting, 300, drift=1.0))], {}).isel(point=0)
+    for name, expected in (
+        ("equipartition", 1.0),
+        ("measured_friction", setting.friction),
+        ("measured_diffusion", setting.diffusion),
+    ):
+        value, error = float(ds[name]), float(ds[f"{name}_error"])
+        assert 0.002 * expected < error < 0.05 * expected, name
+        assert abs(value - expected) < 3.5 * error, name
+    assert float(ds["vacf"][0]) == pytest.approx(1.0, abs=0.05)
+    assert float(ds["time"][-1]) == pytest.approx(8.0)
+    late = np.nanargmin(np.abs(ds["time"].values - 5.0))
+    assert float(ds["msd"][late]) == pytest.approx(4.0, rel=0.1)
+
+
+def test_between_walls_nothing_is_given_back():
+    setting = brownian.setting_of(point(boundary="wall"))
+    assert setting.share == 0.0
+    assert setting.diffusion * setting.friction * setting.mass == pytest.approx(setting.temperature)
+    light = brownian.setting_of(point(boundary="wall", **{"scene.bodies.0.mass": 1.0}))
+    assert light.diffusion * light.friction == pytest.approx(1.01895)
+
+
+def test_ends_of_paths(made_up):
+    chosen = point(boundary="wall")
+    setting = brownian.setting_of(chosen)
+    found = [(t, x, v) for t, x, v in paths(setting, 200)]
+    ds = brownian.brownian_paths([made_up(chosen, found)], {"paths": 3}).isel(point=0)
+    assert ds["way"].shape == (3, 301, 3) and int(ds["end_freedom"]) == 600
+    # these start in equilibrium, not at rest: farther by (30 - 1) / (30 - 1.5)
+    ratio = float(ds["end_chi_square"] / ds["end_freedom"])
+    assert ratio == pytest.approx(29.0 / 28.5, abs=4 * np.sqrt(2 / 600))
+
+
+def test_what_cannot_be_measured_is_refused(made_up):
+    with pytest.raises(gp.SceneError, match="displacements"):
+        brownian.brownian_msd([point(displacements=False)], {})
+    short = point()
+    setting = brownian.setting_of(short)
+    found = [(t[:60], x[:60], v[:60]) for t, x, v in paths(setting, 2)]
+    with pytest.raises(gp.SceneError, match="must be .* or more"):
+        brownian.brownian_msd([made_up(short, found)], {})
+    with pytest.raises(gp.SceneError, match="one body and one species"):
+        brownian.setting_of(point(scene="config/scenes/brownian.yaml", **{"scene.bodies": []}))
+
+
+def test_points_of_different_length_stand_side_by_side():
+    ds = brownian._dataset([{"a": 1.0, "b": np.ones(3)}, {"a": 2.0, "b": np.zeros(2)}], {"b": ("lag",)})
+    assert isinstance(ds, xr.Dataset) and ds["b"].shape == (2, 3) and np.isnan(ds["b"][1, 2])
