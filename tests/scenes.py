@@ -111,3 +111,19 @@ def surfaced(draw, most=12):
     discs = {"gravity": (0.0, -0.5), "restitution": gp.Restitution(draw(st.sampled_from([1.0, 0.9])), 0.5)}
     container = gp.Container(lengths, boundary)
     return gp.Scene(container, species, faces=faces, **(discs if dimension == 2 else {}))
+
+
+@st.composite
+def metals(draw, most=12):
+    """Discs among fixed ones that vibrate, and perhaps rigid ones, between thermal walls across x."""
+    lengths = draw(st.lists(st.floats(4.5, 9.0), min_size=2, max_size=2))
+    boundary = ("wall", draw(st.sampled_from(["wall", "periodic"])))
+    species = [
+        gp.Species(draw(st.integers(1, most // 2)), draw(st.floats(0.02, 0.3)), 0.5, temperature=1.0),
+        gp.Species(draw(st.integers(1, most // 2)), 0.3, fixed=True, temperature=draw(st.floats(0.1, 3.0))),
+        gp.Species(draw(st.integers(0, 2)), 0.2, fixed=True),
+    ]
+    bodies = [gp.Body((0.5, 0.5), (0.0, 0.0), 0.25, fixed=True, vibration=draw(st.sampled_from([0.0, 2.0])))]
+    faces = {"x_low": gp.Thermal(draw(st.floats(0.5, 4.0))), "x_high": gp.Thermal(1.0)}
+    law = gp.Restitution(1.0, draw(st.sampled_from([-1.0, 0.5])))
+    return gp.Scene(gp.Container(lengths, boundary), species, bodies, restitution=law, faces=faces)

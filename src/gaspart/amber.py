@@ -38,10 +38,19 @@ def face_names(dimension: int, walls: int = 0) -> list[str]:
 class Layout:
     """The variables of one frame, in their order in the file: name -> (type, dimensions, attributes).
 
-    count: bodies in the file; displacements, spins: whether these are there; walls: interior ones.
+    count: bodies in the file; displacements, spins, vibrations: whether these are there; walls: interior
+    ones.
     """
 
-    def __init__(self, count: int, dimension: int, displacements: bool, walls: int = 0, spins: bool = False):
+    def __init__(
+        self,
+        count: int,
+        dimension: int,
+        displacements: bool,
+        walls: int = 0,
+        spins: bool = False,
+        vibrations: bool = False,
+    ):
         self.sizes = {
             "spatial": 3,
             "atom": count,
@@ -67,6 +76,8 @@ class Layout:
         if spins:
             meaning = "angular velocity, in two dimensions along z"
             self.variables["spins"] = (">f4", vectors, {"units": "1/picosecond", "long_name": meaning})
+        if vibrations:
+            self.variables["vibrations"] = (">f4", ("atom",), {"long_name": "energy of a body's vibration"})
         if displacements:
             meaning = "way since time 0, unwrapped"
             self.variables["displacements"] = (">f8", vectors, {"units": "angstrom", "long_name": meaning})

@@ -8,7 +8,7 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.matter import LATTICES
-from gaspart.random import directions, normals, stream
+from gaspart.random import directions, natural_log, normals, stream
 from gaspart.scene import Scene
 from gaspart.state import State
 from gaspart.wells import places_in_wells, well_energies
@@ -16,7 +16,7 @@ from gaspart.wells import places_in_wells, well_energies
 PATIENCE = 2_000_000
 """Failed attempts at placing one body after which a container counts as full."""
 
-_POSITIONS, _VELOCITIES = 0, 1
+_POSITIONS, _VELOCITIES, _VIBRATIONS = 0, 1, 3  # 2 is that of draws at walls
 
 
 def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
@@ -28,17 +28,11 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
     counts = [explicit, *(kind.count for kind in scene.species)]
     groups = [len(scene.species), *range(len(scene.species))]
 
-    def per_body(attribute):
-        alone = [getattr(body, attribute) for body in scene.bodies]
-        return np.concatenate(
-            [alone, *(np.full(kind.count, getattr(kind, attribute)) for kind in scene.species)]
-        )
-
-    radii, masses = per_body("radius").astype(float), per_body("mass").astype(float)
+    radii, masses = per_body(scene, "radius").astype(float), per_body(scene, "mass").astype(float)
     shape = 1 / 2 if scene.dimension == 2 else 2 / 5  # of a uniform disc or sphere
-    inertia = per_body("moment_of_inertia").astype(float)  # None becomes nan
+    inertia = per_body(scene, "moment_of_inertia").astype(float)  # None becomes nan
     inertia = np.where(np.isnan(inertia), shape * masses * radii**2, inertia)
-    fixed = per_body("fixed").astype(bool)
+    fixed = per_body(scene, "fixed").astype(bool)
     spins = np.zeros((scene.count, 3))
     if explicit:
         spins[:explicit] = [body.spin_vector for body in scene.bodies]
@@ -63,7 +57,25 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
         moments_of_inertia=np.where(fixed, np.inf, inertia),
         gravity=None if scene.gravity is None else np.array(scene.gravity),
         well_energies=well_energies(scene, places_in_wells(scene, positions, radii)) if scene.faces else None,
+        vibrations=_vibrations(scene, stream(seed, _VIBRATIONS)) if scene.vibrates else None,
     )
+
+
+def per_body(scene: Scene, attribute: str) -> np.ndarray:
+    """(N,) an attribute of all bodies, of which species share theirs."""
+    alone = [getattr(body, attribute) for body in scene.bodies]
+    return np.concatenate([alone, *(np.full(kind.count, getattr(kind, attribute)) for kind in scene.species)])
+
+
+def _vibrations(scene: Scene, rng: np.random.Generator) -> np.ndarray:
+    """(N,) energies of the modes: given, or drawn from exp(-E/kT)/kT; 0 where there is no mode."""
+    parts = [np.array([body.vibration or 0.0 for body in scene.bodies])]
+    for kind in scene.species:
+        if kind.vibrates and kind.temperature is not None:
+            parts.append(-kind.temperature * natural_log(1.0 - rng.random(kind.count)))
+        else:
+            parts.append(np.full(kind.count, kind.vibration or 0.0))
+    return np.concatenate(parts)
 
 
 def _velocities(scene: Scene, rng: np.random.Generator) -> np.ndarray:
@@ -72,7 +84,7 @@ def _velocities(scene: Scene, rng: np.random.Generator) -> np.ndarray:
     for kind in scene.species:
         if kind.speed is not None:
             parts.append(kind.speed * directions(rng, kind.count, scene.dimension))
-        elif kind.temperature is not None:
+        elif kind.temperature is not None and not kind.fixed:
             width = math.sqrt(kind.temperature / kind.mass)
             parts.append(width * normals(rng, kind.count, scene.dimension))
         else:

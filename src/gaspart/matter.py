@@ -14,7 +14,7 @@ ARRANGEMENTS = ("random", *LATTICES)
 
 
 def _check_matter(thing) -> None:
-    """What species and bodies have in common: radius, mass, moment of inertia, fixed."""
+    """What species and bodies have in common: radius, mass, moment of inertia, fixed, vibration."""
     settle(
         thing,
         radius=number("radius", thing.radius, "must be positive", above=0.0),
@@ -25,6 +25,10 @@ def _check_matter(thing) -> None:
         settle(thing, moment_of_inertia=value)
     if not isinstance(thing.fixed, bool):
         raise SceneError("fixed", thing.fixed, "must be true or false")
+    if thing.vibration is not None:
+        settle(thing, vibration=number("vibration", thing.vibration, "must not be negative", least=0.0))
+        if not thing.fixed:
+            raise SceneError("vibration", thing.vibration, "only a fixed body vibrates")
 
 
 @dataclass(frozen=True)
@@ -34,7 +38,9 @@ class Species:
     Velocities are isotropic: of one fixed `speed`, or Maxwellian at `temperature`; with neither the bodies
     start at rest. `arrangement` is "random" (sequential insertion), "lattice", or "slab": a
     lattice whose empty sites all lie in one half, so that this half melts. moment_of_inertia: by
-    default that of a uniform disc or sphere. A `fixed` body never moves: it has infinite mass.
+    default that of a uniform disc or sphere. A `fixed` body never moves: it has infinite mass. With a
+    `vibration`, the energy at the start, or a `temperature`, it has one mode of vibration: a contact swaps
+    that energy with the normal energy of the other body.
     """
 
     count: int
@@ -45,6 +51,7 @@ class Species:
     arrangement: str = "random"
     moment_of_inertia: float | None = None
     fixed: bool = False
+    vibration: float | None = None
 
     def __post_init__(self):
         settle(self, count=count_of("count", self.count))
@@ -53,18 +60,25 @@ class Species:
             if getattr(self, key) is not None:
                 value = number(key, getattr(self, key), "must not be negative", least=0.0)
                 settle(self, **{key: value})
-                if self.fixed and value > 0.0:
-                    raise SceneError(key, value, "a fixed species has none")
         if self.speed is not None and self.temperature is not None:
             raise SceneError("temperature", self.temperature, "give speed or temperature, not both")
+        if self.fixed and self.speed:
+            raise SceneError("speed", self.speed, "a fixed species has none")
+        if self.vibration is not None and self.temperature is not None:
+            raise SceneError("temperature", self.temperature, "give vibration or temperature, not both")
         if self.arrangement not in ARRANGEMENTS:
             raise SceneError("arrangement", self.arrangement, f"must be one of {ARRANGEMENTS}")
+
+    @property
+    def vibrates(self) -> bool:
+        """Whether its bodies have a mode of vibration."""
+        return self.fixed and (self.vibration is not None or self.temperature is not None)
 
 
 @dataclass(frozen=True)
 class Body:
     """One body at a stated place: position (d,), velocity (d,), radius, mass; spin, its angular velocity (a
-    number in 2D, (3,) in 3D); moment_of_inertia and fixed as in `Species`."""
+    number in 2D, (3,) in 3D); moment_of_inertia, fixed and vibration as in `Species`."""
 
     position: tuple[float, ...]
     velocity: tuple[float, ...]
@@ -73,6 +87,7 @@ class Body:
     spin: float | tuple[float, ...] | None = None
     moment_of_inertia: float | None = None
     fixed: bool = False
+    vibration: float | None = None
 
     def __post_init__(self):
         settle(
@@ -88,6 +103,11 @@ class Body:
         for key, value in (("velocity", self.velocity), ("spin", self.spin_vector)):
             if self.fixed and any(value):
                 raise SceneError(key, value, "a fixed body has none")
+
+    @property
+    def vibrates(self) -> bool:
+        """Whether it has a mode of vibration."""
+        return self.vibration is not None
 
     @property
     def spin_vector(self) -> tuple[float, float, float]:

@@ -75,7 +75,8 @@ class Recipe:
     def layout(self) -> amber.Layout:
         """What a frame consists of."""
         scene, walls = self.scene, len(self.scene.walls)
-        return amber.Layout(self.bodies, scene.dimension, self.displacements, walls, scene.rough)
+        kept = self.displacements, walls, scene.rough, scene.vibrates
+        return amber.Layout(self.bodies, scene.dimension, *kept)
 
     def attributes(self) -> dict:
         """The recipe as the file's attributes, from which `read_recipe` makes it again."""

@@ -118,5 +118,6 @@ class Recording:
             "coordinates": state.positions[followed],
             "velocities": state.velocities[followed],
             "spins": spins[followed],
+            "vibrations": None if state.vibrations is None else state.vibrations[followed],
             "displacements": (state.unwrapped - self._origin)[followed],
         }

@@ -94,6 +94,9 @@ class Scene:
         if self.centres_to_walls and self.rough:
             rule = "rough bodies (tangential above -1) touch walls with their surfaces"
             raise SceneError("centres_to_walls", True, rule)
+        if self.vibrates and self.restitution is not None and self.restitution.normal != 1.0:
+            rule = "must be 1 where bodies vibrate, lest energy be lost twice"
+            raise SceneError("restitution.normal", self.restitution.normal, rule)
         if not isinstance(self.centres_to_walls, bool):
             raise SceneError("centres_to_walls", self.centres_to_walls, "must be true or false")
         self._check_walls()
@@ -177,6 +180,12 @@ class Scene:
     def count(self) -> int:
         """The number of bodies."""
         return len(self.bodies) + sum(kind.count for kind in self.species)
+
+    @property
+    def vibrates(self) -> bool:
+        """Whether any body may keep energy in a vibration: a fixed one, or one that sticks to a face."""
+        sticky = any(isinstance(face, Sticky) for face in self.faces.values())
+        return sticky or any(thing.vibrates for thing in (*self.bodies, *self.species))
 
     @property
     def number_density(self) -> float:

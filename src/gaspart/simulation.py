@@ -211,7 +211,7 @@ class Simulation:
         if not (np.isfinite(state.positions).all() and np.isfinite(state.velocities).all()):
             raise SimulationError(f"at time {self.time:g} a position or velocity is not finite")
         drift = abs(state.energy + self._dynamics.dissipated - self._energy)
-        scale = max(self._initial.kinetic_energy, state.kinetic_energy)
+        scale = max(moving.kinetic_energy + moving.vibrational_energy for moving in (self._initial, state))
         if state.gravity is not None:  # what a fall through the container can change
             masses = state.masses[np.isfinite(state.masses)]
             scale += float(masses.sum() * (abs(state.gravity) @ state.lengths))

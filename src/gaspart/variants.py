@@ -45,6 +45,8 @@ def features(scene) -> set[str]:
     found = set(_differing(scene)) - _MATTER
     if len({kind.mass for kind in (*scene.species, *scene.bodies)}) <= 1:
         found -= {"species.mass", "bodies.mass"}  # equal masses are left out of the kernels
+    if scene.vibrates:  # which a temperature alone may tell
+        found.add("vibrates")
     return found
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from gaspart.initial import per_body
+from gaspart.matter import Restitution
 from gaspart.random import key_of
 from gaspart.scene import Scene
 from gaspart.state import State
@@ -19,6 +21,26 @@ def masses_for_kernel(masses: np.ndarray) -> tuple[float, np.ndarray | None]:
     if len(masses) == 0:
         return 1.0, None
     return (float(masses[0]), None) if (masses == masses[0]).all() else (1.0, masses)
+
+
+def law_for_kernel(scene: Scene, state: State):
+    """The law of contacts, or None if all are elastic, smooth and between bodies that can move."""
+    from gaspart.engines.layout import Law
+
+    rule = scene.restitution or Restitution()
+    if rule.smooth_and_elastic and not np.isinf(state.masses).any():
+        return None
+    spins = np.zeros((state.count, 3))
+    if scene.dimension == 2:
+        spins[:, 2] = state.spins
+    else:
+        spins[:] = state.spins
+    vibrations = None
+    modes = per_body(scene, "vibrates")
+    if modes.any():
+        vibrations = np.where(modes, state.vibrations, -1.0)
+    inverses = 1 / state.masses, 1 / state.moments_of_inertia
+    return Law(rule.normal, rule.tangential, *inverses, spins, vibrations)
 
 
 def surfaces_for_kernel(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float):

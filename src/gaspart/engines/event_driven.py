@@ -6,9 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gaspart.engines.common import EventLog, aligned, masses_for_kernel, surfaces_for_kernel
+from gaspart.engines.common import EventLog, aligned, law_for_kernel, masses_for_kernel, surfaces_for_kernel
 from gaspart.errors import SceneError, SimulationError
-from gaspart.matter import Restitution
 from gaspart.scene import Scene
 from gaspart.state import State
 from gaspart.tally import Tally
@@ -20,7 +19,6 @@ _STILL = 2.0**960  # the lap of a scene in which nothing moves
 _BLINK = 2.0**-44  # of a lap: the longest bounce on a floor that is taken for rest
 # More contacts of one body than these, within so much of a lap, are taken for a collapse. Intervals between
 # inelastic contacts shrink geometrically until rounding lets the bodies part, so few of them are left to see.
-_OF_BODIES = ("place", "held", "draws")  # what changes of the faces' Surfaces
 _CROWD, _CROWDED = 1000, _BLINK
 _INELASTIC_CROWD, _INELASTIC_CROWDED = 12, 2.0**-34
 
@@ -88,7 +86,7 @@ class EventDynamics:
             near = segments_near(segments, boxes, scene.largest_radius)
             self._walls = layout.Walls(segments, wall, *near)
         self._calendar = empty_calendar(n)
-        self._law = _law(scene, state, layout)
+        self._law = law_for_kernel(scene, state)
         self._unit_mass, self._masses = (1.0, None) if self._law else masses_for_kernel(state.masses)
         self._surfaces = surfaces_for_kernel(scene, state, seed, self._unit_mass) if scene.faces else None
         self._lap = _lap_length(scene, state)
@@ -228,50 +226,46 @@ class EventDynamics:
             state.spins = (self._law.spins[:, 2] if d == 2 else self._law.spins).copy()
         if self._surfaces:
             state.well_energies = well_energies(self._scene, self._surfaces.place)
-            state.vibrations = self._surfaces.held.sum(axis=1) * self._unit_mass
+        if state.vibrations is not None:
+            state.vibrations = self._vibrations()
         return state
+
+    def _vibrations(self) -> np.ndarray:
+        """(N,) the energies of the modes of fixed bodies, and of bodies stuck to a face."""
+        energies = np.zeros(len(self._rows))
+        if self._surfaces:
+            energies += self._surfaces.held.sum(axis=1) * self._unit_mass
+        if self._law and self._law.vibrations is not None:
+            energies += np.maximum(self._law.vibrations, 0.0)
+        return energies
+
+    def _arrays(self) -> dict[str, np.ndarray]:
+        """Everything that the kernels change and that cannot be made again, by name."""
+        arrays = {"rows": self._rows, "images": self._images, "plans": self._plans}
+        arrays.update(self._counters._asdict())
+        if self._law:
+            arrays["spins"] = self._law.spins
+            if self._law.vibrations is not None:
+                arrays["vibrations"] = self._law.vibrations
+        if self._watch:
+            arrays.update(crowd_since=self._watch.since, crowd=self._watch.contacts)
+        if self._surfaces:
+            arrays.update({key: getattr(self._surfaces, key) for key in ("place", "held", "draws")})
+        return arrays
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         """All that a continuation to the same bits needs: bodies at their own clocks, plans, counts."""
         parts = {"laps": self._laps, "clock": self._clock, "since": self._since, "lost": self._lost}
-        parts.update(rows=self._rows, images=self._images, plans=self._plans, **self._counters._asdict())
-        if self._law:
-            parts["spins"] = self._law.spins
-        if self._watch:
-            parts.update(crowd_since=self._watch.since, crowd=self._watch.contacts)
-        if self._surfaces:
-            parts.update({key: getattr(self._surfaces, key) for key in _OF_BODIES})
-        return {key: np.array(value) for key, value in parts.items()}
+        return {key: np.array(value) for key, value in {**parts, **self._arrays()}.items()}
 
     def restore(self, parts: dict[str, np.ndarray]) -> None:
         """Go on from a checkpoint of the same scene and engine."""
-        self._rows[...], self._images[...], self._plans[...] = parts["rows"], parts["images"], parts["plans"]
-        for key, array in self._counters._asdict().items():
+        for key, array in self._arrays().items():
             array[...] = parts[key]
-        if self._law:
-            self._law.spins[...] = parts["spins"]
-        if self._watch:
-            self._watch.since[...], self._watch.contacts[...] = parts["crowd_since"], parts["crowd"]
-        if self._surfaces:
-            for key in _OF_BODIES:
-                getattr(self._surfaces, key)[...] = parts[key]
         times = (float(parts[key]) for key in ("laps", "clock", "since", "lost"))
         self._laps, self._clock, self._since, self._lost = times
         if not self._by_pairs:
             self._kernels.refill(self._plans, self._calendar, self._partition, self._clock)
-
-
-def _law(scene: Scene, state: State, layout):
-    """The law of contacts, or None if all are elastic, smooth and between bodies that can move."""
-    rule = scene.restitution or Restitution()
-    if rule.smooth_and_elastic and not np.isinf(state.masses).any():
-        return None
-    spins = np.zeros((state.count, 3))
-    if scene.dimension == 2:
-        spins[:, 2] = state.spins
-    else:
-        spins[:] = state.spins
-    return layout.Law(rule.normal, rule.tangential, 1 / state.masses, 1 / state.moments_of_inertia, spins)
 
 
 def _lap_length(scene: Scene, state: State) -> float:

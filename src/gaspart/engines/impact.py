@@ -93,6 +93,23 @@ def turn(rows, body, x, y, z, qx, qy, qz, space, law):
 
 
 @kernel
+def swap_with_vibration(i, j, approach, mobility, vibrations):
+    """Let the normal energy of two bodies and that of the mode that one of them has change places.
+
+    This keeps the measure v dv dE and is its own inverse in time. Returns the speed at which they part, or -1
+    if neither has a mode.
+    """
+    if vibrations is None:
+        return -1.0
+    for body in (i, j):
+        energy = vibrations[body]
+        if energy >= 0.0:
+            vibrations[body] = 0.5 * approach * approach / mobility
+            return sqrt(2.0 * energy * mobility)
+    return -1.0
+
+
+@kernel
 def strike(rows, i, j, rr, rv, space, counters, law):
     """A contact under a law (Spencer 2022, Eq. 39). Returns |r . dp|."""
     d = len(space.lengths)
@@ -106,7 +123,11 @@ def strike(rows, i, j, rr, rv, space, counters, law):
     for k in range(d):
         fastest = max(fastest, abs(rows[i, d + k]), abs(rows[j, d + k]))
     approach = -rv / length
-    impulse = normal_change(approach, law.normal, LEAST * fastest) / mobility
+    parting = swap_with_vibration(i, j, approach, mobility, law.vibrations)
+    if parting >= 0.0:
+        impulse = (approach + max(parting, LEAST * fastest)) / mobility
+    else:
+        impulse = normal_change(approach, law.normal, LEAST * fastest) / mobility
     counters.sums[LOSS] += 0.5 * (1.0 - law.normal * law.normal) * approach * approach / mobility
     if law.tangential > -1.0:
         gx, gy, gz = sliding(rows, i, j, x, y, z, space, law)

@@ -32,13 +32,15 @@ class Gravity(NamedTuple):
 
 
 class Law(NamedTuple):
-    """normal, tangential: restitution; inverse_mass, inverse_inertia (N,), 0 if fixed; spins (N, 3)."""
+    """normal, tangential: restitution; inverse_mass, inverse_inertia (N,), 0 if fixed; spins (N, 3);
+    vibrations (N,), energies of modes, -1 where there is none, or None if no body has one."""
 
     normal: float
     tangential: float
     inverse_mass: np.ndarray
     inverse_inertia: np.ndarray
     spins: np.ndarray
+    vibrations: np.ndarray | None
 
 
 class Walls(NamedTuple):

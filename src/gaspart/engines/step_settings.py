@@ -33,6 +33,7 @@ def check_scene(scene: Scene, state: State, giants: np.ndarray) -> None:
         ("restitution", scene.restitution if rough else None),
         ("walls", scene.walls or None),
         ("faces", scene.faces or None),
+        ("vibration", scene.vibrates or None),
         ("fixed", True if fixed and scene.gravity is not None else None),
     ):
         if value is not None:
