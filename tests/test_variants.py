@@ -53,7 +53,12 @@ def test_points_that_differ_in_numbers_share_their_kernels():
         (gp.Scene(BOX, [GAS, gp.Species(5, 0.5, mass=2.0)]), {"species.mass"}),
         (gp.Scene(BOX, [gp.Species(5, 0.5, mass=2.0)]), set()),
         (gp.Scene(BOX, [GAS, gp.Species(5, 0.5, fixed=True)]), {"species.fixed"}),
-        (gp.Scene(BOX, [gp.Species(5, 0.5, arrangement="lattice")]), {"species.arrangement=lattice"}),
+        (gp.Scene(BOX, [gp.Species(5, 0.5, arrangement="lattice")]), set()),
+        (
+            gp.Scene(BOX, [GAS], faces={"x_low": gp.Thermal(2.0, "normal")}),
+            {"faces.Thermal", "faces.components=normal"},
+        ),
+        (gp.Scene(BOX, [GAS], faces={"y_low": gp.Well(1.0, 0.1, 3.0)}), {"faces.Well"}),
     ],
 )
 def test_every_feature_of_a_scene_that_changes_kernels_tells_variants_apart(scene, expected):

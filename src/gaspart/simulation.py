@@ -140,11 +140,12 @@ class Simulation:
     def record_events(self, wanted: bool) -> None:
         if wanted and not isinstance(self.engine, EventDriven):
             raise SceneError("record_events", wanted, 'needs the "event" engine; steps know no events')
-        self._log = EventLog(self.scene.dimension) if wanted else None
+        self._log = EventLog(self.scene.dimension, self.scene.rough) if wanted else None
 
     @property
     def events(self) -> dict[str, np.ndarray]:
-        """The events recorded: time (M,), bodies (M, 2), positions and velocities (M, 2, d) just after.
+        """The events recorded: time (M,), bodies (M, 2), positions and velocities (M, 2, d) just after; with
+        rough contacts also spins, (M, 2) in 2D and (M, 2, 3) in 3D.
 
         The second of `bodies` is -1 - face for a hit at a face of the container or the edge of its well,
         -1 - 2d - n for one at interior wall n.

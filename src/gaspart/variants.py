@@ -6,15 +6,15 @@ import hashlib
 import json
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import MISSING, fields, is_dataclass
+from dataclasses import fields, is_dataclass
 
 from gaspart import grid
 from gaspart.errors import SimulationError
 from gaspart.point import Point
 
 _FEW = 8  # bodies, walls and the like that a tiny run has of each kind
-# in every kernel, or in none
 _MATTER = {"species.Species", "bodies.Body", "restitution.Restitution"}  # whose properties are features
+# in every kernel, or in none
 _NO_FEATURE = ("container", "count", "radius", "speed", "temperature", "centres_to_walls")
 
 
@@ -53,8 +53,11 @@ def features(scene) -> set[str]:
 def _differing(thing, prefix: str = "") -> Iterator[str]:
     for field in fields(thing):
         value, name = getattr(thing, field.name), f"{prefix}{field.name}"
-        if field.name in _NO_FEATURE or value == field.default:
+        required = field.default is field.default_factory  # both MISSING: no default
+        if field.name in _NO_FEATURE or value == field.default or value == "lattice":
             continue
+        if isinstance(value, dict):
+            value = tuple(value.values())
         parts = value if isinstance(value, tuple) else (value,)
         for part in parts:
             if is_dataclass(part):
@@ -62,7 +65,7 @@ def _differing(thing, prefix: str = "") -> Iterator[str]:
                 yield from _differing(part, f"{name}.")
             elif isinstance(part, str):
                 yield f"{name}={part}"
-            elif (isinstance(part, dict) and part) or (field.default is not MISSING and part):
+            elif not required and part:  # an acceleration of zero is none
                 yield name
 
 
@@ -74,6 +77,8 @@ def task(point: Point) -> str:
     }
     for kind in scene.get("species", ()):
         kind["count"] = min(kind["count"], _FEW)
+        if kind["arrangement"] == "lattice":  # which needs fewer kernels
+            kind["arrangement"] = "random"
     engine = recipe.get("engine") or recipe.get("engines", [None])[0]
     return json.dumps({"scene": scene, "engine": engine})
 

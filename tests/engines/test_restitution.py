@@ -258,6 +258,24 @@ def test_a_collapse_comes_at_the_same_event_however_often_the_run_is_resumed():
     assert (resumed.time, resumed.tally.collisions) == (whole.time, whole.tally.collisions)
 
 
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_events_tell_spins(dimension):
+    scene = replace(gas(dimension, 20, 0.1, "wall"), restitution=gp.Restitution(0.9, 0.5))
+    sim = events_of(scene, "boxes", 100)
+    spins, bodies = sim.events["spins"], sim.events["bodies"]
+    assert spins.shape == (100, 2) + (3,) * (dimension == 3)
+    assert np.array_equal(np.isnan(spins[:, 1]).reshape(100, -1).any(axis=1), bodies[:, 1] < 0)
+    last = {
+        body: spin
+        for pair, of in zip(bodies, spins, strict=True)
+        for body, spin in zip(pair, of, strict=True)
+    }
+    for body in range(20):
+        assert np.array_equal(sim.state.spins[body], last.get(body, 0 * sim.state.spins[body]))
+    smooth = events_of(replace(scene, restitution=gp.Restitution(0.9)), "boxes", 10)
+    assert "spins" not in smooth.events
+
+
 def test_a_stack_at_rest_is_reported_not_looped_over():
     bodies = [gp.Body((5.0, 0.5), (0.0, 0.0), 0.5), gp.Body((5.0, 1.5), (0.0, 0.0), 0.5)]
     scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=bodies, gravity=(0.0, -1.0))

@@ -100,7 +100,7 @@ def run_pairs(
         last = soon
         done += 1
         if record is not None:
-            note(record, soon, rows, first, second, space.lengths)
+            note(record, soon, rows, first, second, space.lengths, law)
         if watch is not None:
             if second >= 0 or second < -2 * d:
                 if crowded(watch, first, soon) or (second >= 0 and crowded(watch, second, soon)):

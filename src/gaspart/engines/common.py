@@ -82,11 +82,12 @@ def aligned(shape: tuple[int, ...], dtype) -> np.ndarray:
 
 
 class EventLog:
-    """Events as they happened: bodies, and their positions and velocities just after."""
+    """Events as they happened: bodies, and their positions, velocities and, if wanted, spins just after."""
 
-    def __init__(self, dimension: int):
+    def __init__(self, dimension: int, spins: bool = False):
         from gaspart.engines.layout import Record
 
+        self._keys = ("time", "bodies", "positions", "velocities", *(("spins",) if spins else ()))
         self._dimension = dimension
         self._parts: list[tuple[np.ndarray, ...]] = []
         self.room = Record(
@@ -95,22 +96,29 @@ class EventLog:
             bodies=np.empty((_ROOM, 2), dtype=np.int64),
             positions=np.empty((_ROOM, 2, dimension)),
             velocities=np.empty((_ROOM, 2, dimension)),
+            spins=np.empty((_ROOM, 2, 3)),
         )
+
+    def _copy(self, count: int) -> tuple[np.ndarray, ...]:
+        """The first events in the kernel's record; of spins in two dimensions what stands on the plane."""
+        found = {key: getattr(self.room, key)[:count] for key in self._keys}
+        if "spins" in found and self._dimension == 2:
+            found["spins"] = found["spins"][..., 2]
+        return tuple(array.copy() for array in found.values())
 
     def take(self, start: float) -> None:
         """Empty the kernel's record, whose times count from `start`."""
         n = int(self.room.filled[0])
         self.room.filled[0] = 0
         if n:
-            time, *others = (array[:n].copy() for array in self.room[1:])
+            time, *others = self._copy(n)
             self._parts.append((start + time, *others))
 
     @property
     def events(self) -> dict[str, np.ndarray]:
-        """time (M,), bodies (M, 2), positions and velocities (M, 2, d).
+        """time (M,), bodies (M, 2), positions and velocities (M, 2, d), and spins (M, 2) or (M, 2, 3).
 
-        The second of `bodies` is -1 - face for a hit at a wall, and its position and velocity are NaN.
+        The second of `bodies` is -1 - face for a hit at a wall, and what the second has is NaN.
         """
-        keys = ("time", "bodies", "positions", "velocities")
-        empty = tuple(array[:0] for array in self.room[1:])
-        return dict(zip(keys, map(np.concatenate, zip(*(self._parts or [empty]), strict=True)), strict=True))
+        parts = zip(*(self._parts or [self._copy(0)]), strict=True)
+        return dict(zip(self._keys, map(np.concatenate, parts), strict=True))

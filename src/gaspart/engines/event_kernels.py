@@ -140,7 +140,7 @@ def cross(rows, plans, calendar, body, space, partition, counters, now, gravity,
 
 
 @kernel
-def note(record, time, rows, i, j, lengths):
+def note(record, time, rows, i, j, lengths, law):
     """Write an event down; j is the partner, or -1 - face for a wall."""
     d = len(lengths)
     n = record.filled[0]
@@ -152,6 +152,10 @@ def note(record, time, rows, i, j, lengths):
         record.velocities[n, 0, k] = rows[i, d + k]
         record.positions[n, 1, k] = rows[j, k] if j >= 0 else np.nan
         record.velocities[n, 1, k] = rows[j, d + k] if j >= 0 else np.nan
+    if law is not None:
+        for k in range(3):
+            record.spins[n, 0, k] = law.spins[i, k]
+            record.spins[n, 1, k] = law.spins[j, k] if j >= 0 else np.nan
     record.filled[0] = n + 1
 
 
@@ -238,7 +242,7 @@ def run_boxes(
         last = time
         done += 1
         if record is not None:
-            note(record, time, rows, body, partner, space.lengths)
+            note(record, time, rows, body, partner, space.lengths, law)
         if watch is not None:
             faces = 2 * len(space.lengths)
             if partner >= 0 or partner < -faces:

@@ -99,10 +99,12 @@ class Counters(NamedTuple):
 
 
 class Record(NamedTuple):
-    """Room for events: filled (1,), time (M,), bodies (M, 2), positions and velocities (M, 2, d)."""
+    """Room for events: filled (1,), time (M,), bodies (M, 2), positions and velocities (M, 2, d), spins
+    (M, 2, 3), which only a `Law` fills in."""
 
     filled: np.ndarray
     time: np.ndarray
     bodies: np.ndarray
     positions: np.ndarray
     velocities: np.ndarray
+    spins: np.ndarray
