@@ -56,11 +56,12 @@ def widest(scene: Scene) -> float:
     return 2.0 * scene.largest_radius
 
 
-def sides_for(scene: Scene, per_body: float) -> tuple[int, ...]:
-    """Boxes per side (d,) for about `per_body` boxes per body, none narrower than a diameter."""
+def sides_for(scene: Scene, per_body: float, narrowest: float | None = None) -> tuple[int, ...]:
+    """Boxes per side (d,) for about `per_body` boxes per body, none narrower than the largest diameter, or
+    than `narrowest` if bigger bodies are kept beside the boxes."""
     lengths = scene.container.lengths
     width = (scene.container.volume / max(1.0, per_body * scene.count)) ** (1.0 / scene.dimension)
-    width = max(width, widest(scene))
+    width = max(width, widest(scene) if narrowest is None else narrowest)
     return tuple(max(1, int(length / width)) for length in lengths)
 
 

@@ -100,6 +100,7 @@ def random_insertion(
     Returns positions (N, d) and failures (N,), the failed attempts before each body found its place.
     Raises SceneError when one body has failed `patience` times: the container is as good as full.
     """
+    from gaspart.beside import largest_in_boxes
     from gaspart.boxes import make_boxes, sides_for
     from gaspart.insertion import place
 
@@ -113,7 +114,8 @@ def random_insertion(
         [[body.radius for body in scene.bodies]]
         + [np.full(scene.species[n].count, scene.species[n].radius) for n in species]
     ).astype(float)
-    boxes = make_boxes(scene, sides_for(scene, per_body=1.0), images=False)
+    largest = largest_in_boxes(scene)
+    boxes = make_boxes(scene, sides_for(scene, 1.0, 2 * largest), images=False, narrowest=2 * largest)
     segments = None
     if scene.walls:
         from gaspart.segments import segments_of
@@ -136,10 +138,13 @@ def random_insertion(
         failures = 0
         while placed < stop:
             draws = rng.random((max(256, min(1_000_000, 2 * (stop - placed))), dimension))
+            # a body too big for the boxes is tried against all that stand already, and alone
+            big = kind.radius > largest
+            beside = np.arange(placed) if big else np.flatnonzero(radii[:placed] > largest)
             placed, failures, _ = place(
-                draws, positions, radii, placed, stop, lower, upper, lengths, scene.container.periodic,
-                boxes.per_side, boxes.widths, boxes.neighbour, head, following, boxes.strides,
-                failures, patience, failed, segments,
+                draws, positions, radii, placed, placed + 1 if big else stop, lower, upper, lengths,
+                scene.container.periodic, boxes.per_side, boxes.widths, boxes.neighbour, head,
+                following, boxes.strides, failures, patience, failed, segments, beside,
             )  # fmt: skip
             if failures >= patience:
                 eta = scene.packing_fraction * placed / scene.count

@@ -3,8 +3,21 @@
 import numpy as np
 
 from gaspart.boxes import box_coordinate
-from gaspart.kernel import allocating_kernel
+from gaspart.kernel import allocating_kernel, helper
 from gaspart.segments import square_from_segment
+
+
+@helper
+def overlap(trial, body, other, positions, radii, lengths, periodic):
+    """Whether a body at the place `trial` (d,) would overlap another that is placed already."""
+    square = 0.0
+    for k in range(len(lengths)):
+        gap = abs(trial[k] - positions[other, k])
+        if periodic[k]:
+            gap = min(gap, lengths[k] - gap)
+        square += gap * gap
+    reach = radii[body] + radii[other]
+    return square < reach * reach
 
 
 @allocating_kernel
@@ -28,13 +41,15 @@ def place(
     patience,
     attempts_at,
     segments,
+    beside,
 ):
     """Try the `draws` (M, d) in [0, 1) as places for bodies start, start + 1, ... stop - 1, in that order.
 
     A place is free if no body already there is nearer than the sum of the radii. lower, upper: (d,) corners
     of the region for the centres. `failures` counts the current body's failed attempts across calls; at
     `patience` the search gives up. attempts_at: (N,) number of failed attempts of each placed body.
-    segments: (M, 5) interior walls to keep clear of (see `segments`), or None.
+    segments: (M, 5) interior walls to keep clear of (see `segments`), or None. beside: (K,) bodies that may
+    reach further than the boxes tell.
 
     Returns (next body to place, failures so far, draws used).
     """
@@ -53,6 +68,8 @@ def place(
             for m in range(len(segments)):
                 square = square_from_segment(segments, m, trial[0], trial[1])
                 free = free and square >= radii[body] * radii[body]
+        for other in beside:
+            free = free and not overlap(trial, body, other, positions, radii, lengths, periodic)
         for dz in range(3):
             z = neighbour[2, at[2], dz]
             for dy in range(3):
@@ -63,14 +80,7 @@ def place(
                         continue
                     other = head[x + y + z]
                     while other >= 0:
-                        square = 0.0
-                        for k in range(dimension):
-                            gap = abs(trial[k] - positions[other, k])
-                            if periodic[k]:
-                                gap = min(gap, lengths[k] - gap)
-                            square += gap * gap
-                        reach = radii[body] + radii[other]
-                        if square < reach * reach:
+                        if overlap(trial, body, other, positions, radii, lengths, periodic):
                             free = False
                             break
                         other = following[other]

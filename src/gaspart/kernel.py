@@ -27,6 +27,7 @@ KERNEL_MODULES = (
     "engines/layout.py",
     "engines/flight.py",
     "engines/lists.py",
+    "engines/big.py",
     "engines/impact.py",
     "engines/faces.py",
     "engines/surfaces.py",

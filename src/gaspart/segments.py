@@ -34,7 +34,8 @@ def segments_of(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 def segments_near(segments: np.ndarray, boxes: Boxes, reach: float) -> tuple[np.ndarray, np.ndarray]:
-    """The segments within `reach` of each box: those of box b are listed[first[b] : first[b + 1]]."""
+    """The segments within `reach` of each box: those of box b are listed[first[b] : first[b + 1]]. All of
+    them follow the last box, for bodies that reach further."""
     reach *= 1 + _SLACK
     half = boxes.widths[:2] / 2
     found = []
@@ -50,7 +51,8 @@ def segments_near(segments: np.ndarray, boxes: Boxes, reach: float) -> tuple[np.
         found += [(box, m) for box in (x * boxes.strides[0] + y * boxes.strides[1])[near]]
     found = np.array(sorted(found), dtype=np.int64).reshape(-1, 2)
     first = np.searchsorted(found[:, 0], np.arange(boxes.count + 1))
-    return first.astype(np.int64), np.ascontiguousarray(found[:, 1])
+    listed = np.concatenate([found[:, 1], np.arange(len(segments))])
+    return np.append(first, len(listed)).astype(np.int64), listed
 
 
 @helper

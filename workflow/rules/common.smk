@@ -81,6 +81,7 @@ def flagged(path, kind):
 # families use beside. tests/workflow/test_modules.py compares these tables with the import graph of the scripts.
 SCENE = ["__init__", "errors", "files", "matter", "scene", "surfaces", "validation"]
 ENGINES = [
+    "beside",
     "boxes",
     "contact",
     "draws",

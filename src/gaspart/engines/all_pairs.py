@@ -32,7 +32,7 @@ def run_pairs(
     walls,
     surfaces,
 ):
-    """What `run_boxes` does, with the same arguments and answers but for the calendar.
+    """What `run_boxes` does, with the same arguments and answers but for the calendar and big bodies.
 
     `partition` has one box and the plans are not used, so nothing can be out of date: the referee of
     `run_boxes`.
@@ -54,7 +54,7 @@ def run_pairs(
         second = NOTHING
         face = NOTHING
         for i in range(count):
-            time, code = find_face(rows, plans, i, space, partition, -inf, gravity, surfaces)
+            time, code = find_face(rows, plans, i, space, partition, -inf, gravity, surfaces, None)
             if walls is not None:
                 time, code = find_wall(rows, plans, i, space, partition, gravity, walls, time, code)
             if time < soon:

@@ -16,6 +16,7 @@ from math import inf
 
 import numpy as np
 
+from gaspart.engines.big import find_beside
 from gaspart.engines.calendar import fill, reschedule, soonest, time_of
 from gaspart.engines.faces import find_face, meet_face
 from gaspart.engines.flight import pair_time
@@ -85,9 +86,9 @@ def find_contact(rows, plans, body, space, partition, counters, low, high, gravi
 
 
 @helper
-def plan_face(rows, plans, body, space, partition, now, gravity, walls, surfaces):
+def plan_face(rows, plans, body, space, partition, now, gravity, walls, surfaces, big):
     """Note the next face or wall that the body comes to."""
-    time, face = find_face(rows, plans, body, space, partition, now, gravity, surfaces)
+    time, face = find_face(rows, plans, body, space, partition, now, gravity, surfaces, big)
     if walls is not None:
         time, face = find_wall(rows, plans, body, space, partition, gravity, walls, time, face)
     plans[body].face_time = time
@@ -95,20 +96,22 @@ def plan_face(rows, plans, body, space, partition, now, gravity, walls, surfaces
 
 
 @kernel
-def foresee(rows, plans, body, space, partition, counters, now, gravity, walls, surfaces):
+def foresee(rows, plans, body, space, partition, counters, now, gravity, walls, surfaces, big):
     """Make a body's plans afresh."""
     plans[body].contact = inf
     plans[body].partner = NOTHING
     find_contact(rows, plans, body, space, partition, counters, (-1, -1, -1), (1, 1, 1), gravity)
-    plan_face(rows, plans, body, space, partition, now, gravity, walls, surfaces)
+    if big is not None:
+        find_beside(rows, plans, body, space, partition, counters, gravity, big, (0, 0, 0))
+    plan_face(rows, plans, body, space, partition, now, gravity, walls, surfaces, big)
 
 
 @kernel
-def foresee_all(rows, plans, calendar, space, partition, counters, now, gravity, walls, surfaces):
+def foresee_all(rows, plans, calendar, space, partition, counters, now, gravity, walls, surfaces, big):
     """Sort all bodies into their boxes, make all plans and fill the calendar."""
     sort_in(plans, partition)
     for body in range(len(rows)):
-        foresee(rows, plans, body, space, partition, counters, now, gravity, walls, surfaces)
+        foresee(rows, plans, body, space, partition, counters, now, gravity, walls, surfaces, big)
     fill(calendar, plans, now)
 
 
@@ -120,7 +123,7 @@ def refill(plans, calendar, partition, now):
 
 
 @kernel
-def cross(rows, plans, calendar, body, space, partition, counters, now, gravity, walls, surfaces):
+def cross(rows, plans, calendar, body, space, partition, counters, now, gravity, walls, surfaces, big):
     """Let a body pass into the next box, and look about in the boxes that have become neighbours."""
     code = plans[body].face - INNER
     axis = code // 2
@@ -135,7 +138,9 @@ def cross(rows, plans, calendar, body, space, partition, counters, now, gravity,
     low = (x if x else -1, y if y else -1, z if z else -1)
     high = (x if x else 1, y if y else 1, z if z else 1)
     find_contact(rows, plans, body, space, partition, counters, low, high, gravity)
-    plan_face(rows, plans, body, space, partition, now, gravity, walls, surfaces)
+    if big is not None:
+        find_beside(rows, plans, body, space, partition, counters, gravity, big, (x, y, z))
+    plan_face(rows, plans, body, space, partition, now, gravity, walls, surfaces, big)
     reschedule(calendar, plans, body)
 
 
@@ -177,11 +182,12 @@ def run_boxes(
     watch,
     walls,
     surfaces,
+    big,
 ):
     """Process all events up to time `stop`, at most `most` of them (collisions and wall hits).
 
-    masses: (N,), or None if all are 1; record, gravity, law, watch, walls, surfaces: a Record, Gravity, Law,
-    Watch, Walls and Surfaces, or None each. Returns (reason, number of events, time of the last).
+    masses: (N,), or None if all are 1; record, gravity, law, watch, walls, surfaces, big: a Record, Gravity,
+    Law, Watch, Walls, Surfaces and Big, or None each. Returns (reason, number of events, time of the last).
     """
     done = 0
     last = -inf
@@ -200,12 +206,14 @@ def run_boxes(
         face = plans[body].face
         meets_face = plans[body].face_time <= plans[body].contact
         if meets_face and INNER <= face < EDGES:
-            cross(rows, plans, calendar, body, space, partition, counters, time, gravity, walls, surfaces)
+            cross(
+                rows, plans, calendar, body, space, partition, counters, time, gravity, walls, surfaces, big
+            )
             continue
         partner = plans[body].partner
         if not meets_face and plans[partner].changes != plans[body].partner_changes:
             counters.counts[STALE] += 1
-            foresee(rows, plans, body, space, partition, counters, time, gravity, walls, surfaces)
+            foresee(rows, plans, body, space, partition, counters, time, gravity, walls, surfaces, big)
             reschedule(calendar, plans, body)
             continue
         if meets_face:
@@ -229,15 +237,15 @@ def run_boxes(
                 axis = face // 2
                 plans[body].at[axis] = 0 if face % 2 else partition.per_side[axis] - 1
                 put(plans, partition, body)
-                foresee(rows, plans, body, space, partition, counters, time, gravity, walls, surfaces)
+                foresee(rows, plans, body, space, partition, counters, time, gravity, walls, surfaces, big)
                 reschedule(calendar, plans, body)
                 continue
         else:
             body, partner = min(body, partner), max(body, partner)
             collide(rows, plans, body, partner, time, space, masses, counters, gravity, law)
-            foresee(rows, plans, partner, space, partition, counters, time, gravity, walls, surfaces)
+            foresee(rows, plans, partner, space, partition, counters, time, gravity, walls, surfaces, big)
             reschedule(calendar, plans, partner)
-        foresee(rows, plans, body, space, partition, counters, time, gravity, walls, surfaces)
+        foresee(rows, plans, body, space, partition, counters, time, gravity, walls, surfaces, big)
         reschedule(calendar, plans, body)
         last = time
         done += 1

@@ -12,17 +12,23 @@ from gaspart.kernel import helper, kernel
 
 
 @helper
-def plane_of(rows, plans, body, axis, upper, space, partition):
-    """The lower or upper face of the body's box along an axis: (coordinate for its centre, face code)."""
+def plane_of(rows, plans, body, axis, upper, space, partition, big):
+    """The lower or upper face of the body's box along an axis: (coordinate for its centre, face code). A wall
+    stops a big body some boxes before the last."""
     at = plans[body].at[axis]
     code = 2 * axis + (1 if upper else 0)
     if at == (partition.per_side[axis] - 1 if upper else 0):
         return face_plane(rows, body, axis, upper, space), code
-    return (at + 1 if upper else at) * partition.widths[axis], code + INNER
+    plane = (at + 1 if upper else at) * partition.widths[axis]
+    if big is not None:
+        outer = face_plane(rows, body, axis, upper, space)
+        if outer <= plane if upper else outer >= plane:
+            return outer, code
+    return plane, code + INNER
 
 
 @helper
-def find_face(rows, plans, body, space, partition, now, gravity, surfaces):
+def find_face(rows, plans, body, space, partition, now, gravity, surfaces, big):
     """The next face that the body comes to, of its box or of the container, or the edge of a well: (time,
     face code).
 
@@ -37,7 +43,7 @@ def find_face(rows, plans, body, space, partition, now, gravity, surfaces):
         if gravity is not None:
             pull = acceleration(rows, body, k, space, gravity)
             if pull != 0.0:
-                time, code = find_face_pulled(rows, plans, body, k, pull, space, partition, now)
+                time, code = find_face_pulled(rows, plans, body, k, pull, space, partition, now, big)
                 if time < soon:
                     soon = time
                     face = code
@@ -49,7 +55,7 @@ def find_face(rows, plans, body, space, partition, now, gravity, surfaces):
             if time < soon:
                 soon = time
                 face = code
-        plane, code = plane_of(rows, plans, body, k, v > 0.0, space, partition)
+        plane, code = plane_of(rows, plans, body, k, v > 0.0, space, partition, big)
         time = rows[body, 2 * d] + time_to_plane(rows[body, k], v, plane)
         if time < soon:
             soon = time
@@ -58,7 +64,7 @@ def find_face(rows, plans, body, space, partition, now, gravity, surfaces):
 
 
 @kernel
-def find_face_pulled(rows, plans, body, axis, pull, space, partition, now):
+def find_face_pulled(rows, plans, body, axis, pull, space, partition, now, big):
     """The same along one axis with a pull: (time, face code).
 
     Until a body that rises against the pull turns, it can only leave through the face ahead, and afterwards
@@ -73,7 +79,7 @@ def find_face_pulled(rows, plans, body, axis, pull, space, partition, now):
     along = rows[body, d + axis] if upper else -rows[body, d + axis]  # speed towards where the pull leads
     turn = clock if along >= 0.0 else clock - along / strength
     if along < 0.0:
-        plane, code = plane_of(rows, plans, body, axis, not upper, space, partition)
+        plane, code = plane_of(rows, plans, body, axis, not upper, space, partition, big)
         gap = x - plane if upper else plane - x
         time = clock + time_against(gap, -along, strength)
         if code < INNER:
@@ -81,7 +87,7 @@ def find_face_pulled(rows, plans, body, axis, pull, space, partition, now):
                 return time, code
         elif now < turn and time < inf:
             return min(time, turn), code
-    plane, code = plane_of(rows, plans, body, axis, upper, space, partition)
+    plane, code = plane_of(rows, plans, body, axis, upper, space, partition, big)
     gap = plane - x if upper else x - plane
     time = clock + time_along(gap, along, strength)
     if code >= INNER:

@@ -44,12 +44,21 @@ class Law(NamedTuple):
 
 
 class Walls(NamedTuple):
-    """segments (M, 5) and wall (M,), see `segments`; listed[first[b] : first[b + 1]] are those near box b."""
+    """segments (M, 5) and wall (M,), see `segments`; listed[first[b] : first[b + 1]] are those near box b,
+    for bodies of a radius up to `above`; those for bigger bodies, all, follow the last box."""
 
     segments: np.ndarray
     wall: np.ndarray
     first: np.ndarray
     listed: np.ndarray
+    above: float
+
+
+class Big(NamedTuple):
+    """The bodies (B,) that are too big for the boxes of the partition: those with a radius above `above`."""
+
+    bodies: np.ndarray
+    above: float
 
 
 class Surfaces(NamedTuple):

@@ -79,6 +79,8 @@ def time_to_wall(rows, body, segments, m, space, gravity):
 def find_wall(rows, plans, body, space, partition, gravity, walls, soon, face):
     """The next wall that the body comes to of those near its box, if before `soon`: (time, code)."""
     box = box_of(plans, partition, body)
+    if rows[body, 5] > walls.above:
+        box = len(walls.first) - 2
     for n in range(walls.first[box], walls.first[box + 1]):
         m = walls.listed[n]
         time = time_to_wall(rows, body, walls.segments, m, space, gravity)

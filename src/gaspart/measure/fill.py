@@ -54,6 +54,7 @@ def _fill_once(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.n
             draws, positions, radii, placed, scene.count, lower, upper, scene.container.lengths,
             scene.container.periodic, boxes.per_side, boxes.widths, boxes.neighbour, head, following,
             boxes.strides, failures, attempts + 1, before, None,
+            np.empty(0, dtype=np.int64),
         )  # fmt: skip
         used += tried
     return before, used

@@ -1,0 +1,68 @@
+"""Bodies too big for the boxes: the same events as without a partition, in less work."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from referee import events_of, same_bits
+from scenes import gas, uneven
+
+import gaspart as gp
+from gaspart.beside import largest_in_boxes, work
+from gaspart.initial import initial_state
+
+
+@given(uneven(), st.integers(0, 2**32), st.integers(8, 16))
+def test_big_bodies_beside_the_boxes_give_the_same_events_bit_for_bit(scene, seed, per_side):
+    referee = events_of(scene, "pairs", 150, seed, may_collapse=True)
+    found = events_of(scene, "boxes", 150, seed, may_collapse=True, boxes_per_side=per_side)
+    assert same_bits(referee, found)
+    assert found.tally.worst_contact == referee.tally.worst_contact
+
+
+def uneven_gas(dimension, count, ratio):
+    """Small bodies of radius 1/ratio around a big one of radius 1 in the middle of a container of side 4."""
+    big = gp.Body((2.0,) * dimension, (0.0,) * dimension, 1.0, mass=10.0)
+    small = gp.Species(count, 1.0 / ratio, temperature=1.0)
+    return gp.Scene(gp.Container((4.0,) * dimension), [small], [big])
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_size_ratios_to_ten_thousand(dimension):
+    """The same events, from less than a tenth of the bodies looked at, and no energy lost."""
+    scene = uneven_gas(dimension, 300 if dimension == 2 else 3000, 1e4)
+    beside, direct = (events_of(scene, search, 500) for search in ("boxes", "direct"))
+    assert same_bits(beside, direct)
+    assert (beside.events["bodies"] == 0).any()
+    assert beside.tally.pair_tests < 0.1 * direct.tally.pair_tests
+    beside.check_invariants()
+
+
+def test_which_bodies_stand_beside():
+    assert largest_in_boxes(uneven_gas(2, 1000, 100.0)) == 0.01
+    assert work(uneven_gas(2, 1000, 100.0), 0.01) < 0.1 * work(uneven_gas(2, 1000, 100.0), 1.0)
+    assert largest_in_boxes(gas(3, 1000, 0.1)) == 0.5
+    alike = gp.Scene(gp.Container((40.0, 40.0)), [gp.Species(50, 0.5), gp.Species(50, 1.0)])
+    assert largest_in_boxes(alike) == 1.0
+    assert largest_in_boxes(gp.Scene(gp.Container((4.0, 4.0)))) == 0.0
+
+
+def test_boxes_narrower_than_most_bodies_are_refused():
+    scene = gp.Scene(gp.Container((10.0, 10.0)), [gp.Species(5, 0.1), gp.Species(5, 0.6)])
+    with pytest.raises(gp.SceneError, match="boxes_per_side = 9: boxes must not be narrower"):
+        gp.Simulation(scene, gp.EventDriven(boxes_per_side=9))
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_big_bodies_among_ten_thousand_small_ones_are_placed(dimension):
+    side = 60.0 if dimension == 3 else 600.0
+    species = [gp.Species(10_000, 0.5), gp.Species(3, 8.0)]
+    scene = gp.Scene(gp.Container((side,) * dimension, "periodic"), species)
+    state = initial_state(scene, 1)
+    for n in range(10_000, 10_003):
+        gaps = np.abs(state.positions - state.positions[n])
+        squares = (np.minimum(gaps, side - gaps) ** 2).sum(axis=1)
+        squares[n] = math.inf
+        assert (squares >= (state.radii + 8.0) ** 2).all()
