@@ -25,14 +25,15 @@ FAMILIES = {
     "barometric": "gravity",
     "separation": "gravity",
     "heat_capacity": "gravity",
-    "buoyancy": "buoyancy",
-    "thin_film": "film",
     "freezing_discs": "freezing",
     "freezing_spheres": "freezing",
     "gas_render": "pictures",
     "brownian_paths": "brownian",
     "brownian_render": "pictures",
     "brownian_msd": "brownian",
+    "equipartition": "granular",
+    "cooling": "granular",
+    "velocity_autocorrelation": "velocity",
 }
 
 TITLES = {
@@ -44,9 +45,9 @@ TITLES = {
     "displacement": "Mean-squared displacement",
     "wall_pressure": "Pressure on walls",
     "gravity": "Under gravity",
-    "buoyancy": "Under gravity",
-    "film": "Thin films",
     "freezing": "Freezing and melting",
     "brownian": "A large body in a gas",
     "pictures": "Pictures",
+    "granular": "Rough and inelastic bodies",
+    "velocity": "Memory of velocities",
 }

@@ -140,12 +140,6 @@ def test_the_slope_against_the_logarithm_is_found(monkeypatch):
     assert float(ds["fit_to"]) == pytest.approx(float(ds["sound_time"]))
 
 
-def test_sound_in_a_dilute_gas():
-    """sqrt(5/3) and sqrt(2) in units of the thermal speed."""
-    assert displacement._speed_of_sound(1e-4, 3) == pytest.approx((5 / 3) ** 0.5, rel=1e-3)
-    assert displacement._speed_of_sound(1e-4, 2) == pytest.approx(2**0.5, rel=1e-3)
-
-
 @pytest.mark.parametrize(
     ("change", "key"),
     [

@@ -165,3 +165,9 @@ def test_importing_theory_loads_nothing_heavy():
     )
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert out.stdout.strip() == "[]"
+
+
+def test_sound_in_a_dilute_gas():
+    """sqrt(5/3) and sqrt(2) in units of the thermal speed."""
+    assert theory.speed_of_sound(1e-4, 3) == pytest.approx((5 / 3) ** 0.5, rel=1e-3)
+    assert theory.speed_of_sound(1e-4, 2) == pytest.approx(2**0.5, rel=1e-3)

@@ -131,10 +131,9 @@ MODULES = {
 }
 FAMILY_MODULES = {
     ("measure", "gravity"): ["measure/columns"],
-    ("measure", "buoyancy"): ["measure/columns"],
-    ("judge", "buoyancy"): ["statistics"],
     ("measure", "radius"): ["measure/pressure"],
     ("measure", "displacement"): ["measure/correlations"],
+    ("measure", "velocity"): ["measure/correlations"],
     ("measure", "virial"): ["measure/pressure"],
     ("measure", "freezing"): ["measure/plateau", "measure/pressure", "measure/structure"],
     ("measure", "scaling"): ["measure/timings"],

@@ -35,17 +35,24 @@ def correlate(displacements: np.ndarray, velocities: np.ndarray, interval: float
     r = np.asarray(displacements, dtype=float).reshape(frames, -1)
     v = np.asarray(velocities, dtype=float).reshape(frames, -1)
     # Sums over bodies and axes for every pair of frames at once; a lag is a diagonal of these T x T matrices.
-    rr, rv, vv = r @ r.T, r @ v.T, v @ v.T
+    rr, rv = r @ r.T, r @ v.T
     square, product = np.diag(rr), np.diag(rv)
-    msd, correlation, running = np.empty(lags), np.empty(lags), np.empty(lags)
+    msd, running = np.empty(lags), np.empty(lags)
     for lag in range(lags):
         late, early = slice(lag, frames), slice(0, frames - lag)
         pairs = (frames - lag) * count
         msd[lag] = (square[late] + square[early] - 2.0 * np.diag(rr, lag)).sum() / pairs
-        correlation[lag] = np.diag(vv, lag).sum() / (pairs * dimension)
         crossed = np.diag(rv, -lag) - np.diag(rv, lag)
         running[lag] = (product[late] - product[early] + crossed).sum() / (2 * dimension * pairs)
-    return Curves(interval * np.arange(lags), msd, correlation, running)
+    return Curves(interval * np.arange(lags), msd, autocorrelation(velocities, lags), running)
+
+
+def autocorrelation(values: np.ndarray, lags: int) -> np.ndarray:
+    """(lags,) mean over bodies, axes and all time origins of values(0) values(t); values: (T, N, d)."""
+    frames = len(values)
+    flat = np.asarray(values, dtype=float).reshape(frames, -1)
+    products = flat @ flat.T
+    return np.array([np.diag(products, lag).mean() for lag in range(lags)]) / flat.shape[1]
 
 
 def centred(values: np.ndarray) -> np.ndarray:

@@ -106,15 +106,8 @@ def _state(point: grid.Point) -> dict:
         "mean_free_path": float(theory.mean_free_path(eta, dimension)),
         "viscosity": viscosity,
         "shear_time": (side / (2.0 * math.pi)) ** 2 / spreading,
-        "sound_time": side / _speed_of_sound(eta, dimension),
+        "sound_time": side / float(theory.speed_of_sound(eta, dimension)),
     }
-
-
-def _speed_of_sound(eta: float, dimension: int, step: float = 1e-5) -> float:
-    """sqrt(d(eta Z)/d eta + 2 Z^2 / d), reduced: adiabatic, d/2 the heat capacity per body (exact)."""
-    high, low = (x * theory.compressibility_factor(x, dimension) for x in (eta + step, eta - step))
-    z = theory.compressibility_factor(eta, dimension)
-    return float(np.sqrt((high - low) / (2.0 * step) + 2.0 * z**2 / dimension))
 
 
 def _common(point: grid.Point, state: dict, curves: list[Curves]) -> dict:

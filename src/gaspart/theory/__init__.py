@@ -43,7 +43,6 @@ from .equations import (
     scaled_particle,
     van_der_waals,
 )
-from .film import excess_chemical_potential, white_bear_pressure, white_bear_slit
 from .freezing import (
     COEXISTENCE_DENSITY,
     COEXISTENCE_PRESSURE,
@@ -95,6 +94,7 @@ from .state import (
     compressibility_uncertainty,
     contact_value,
     finite_size_correction,
+    speed_of_sound,
     virial_with_tail,
 )
 from .virial import (
@@ -145,7 +145,6 @@ __all__ = [
     "enskog_viscosity",
     "erpenbeck_wood_diffusion",
     "erpenbeck_wood_ratio",
-    "excess_chemical_potential",
     "failures_per_body",
     "finite_size_correction",
     "fourth_cumulant",
@@ -180,6 +179,7 @@ __all__ = [
     "rough_temperatures",
     "santos_haro_yuste",
     "scaled_particle",
+    "speed_of_sound",
     "speedy_crystal",
     "surface_tension",
     "surface_tension_uncertainty",
@@ -190,7 +190,5 @@ __all__ = [
     "virial_coefficients",
     "virial_with_tail",
     "wall_pressure",
-    "white_bear_pressure",
-    "white_bear_slit",
     "yeh_hummer",
 ]

@@ -87,6 +87,13 @@ def _slope_and_curvature(eta, dimension):
     return (high - low) / (2.0 * _STEP), (high - 2.0 * mid + low) / _STEP**2
 
 
+def speed_of_sound(packing_fraction, dimension):
+    """sqrt(d(eta Z)/d eta + 2 Z^2 / d), in sqrt(k_B T / m): adiabatic, d/2 the heat capacity (exact)."""
+    eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
+    slope, _ = _slope_and_curvature(eta, dimension)
+    return np.sqrt(slope + 2.0 / dimension * compressibility_factor(eta, dimension) ** 2)
+
+
 def finite_size_correction(packing_fraction, dimension, count, ensemble="dynamics"):
     """Z_N - Z_infinity of `count` bodies in a periodic container, to first order in 1/N.
 

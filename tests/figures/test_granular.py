@@ -1,0 +1,14 @@
+import pytest
+from granular_data import inelastic, rough
+
+from gaspart.figures import granular, style
+
+
+@pytest.mark.parametrize(
+    ("draw", "dataset", "panels"), [(granular.equipartition, rough(), 3), (granular.cooling, inelastic(), 4)]
+)
+def test_it_draws_all_its_panels(draw, dataset, panels, tmp_path):
+    with style.applied():
+        figure = draw(dataset)
+        style.save(figure, tmp_path / "figure.svg")
+    assert len(figure.axes) == panels and all(axis.get_ylabel() for axis in figure.axes)

@@ -1,0 +1,69 @@
+"""Made-up rough and inelastic gases with known answers, in the form that `measure.granular` gives."""
+
+import numpy as np
+import xarray as xr
+
+from gaspart import theory
+
+
+def rough(noise=1.0, rate=1.0, ratio=1.0, steady=0.97, seed=1):
+    """Discs of three moments of inertia; rate, ratio and steady ratio are theirs over theory's."""
+    rng = np.random.default_rng(seed)
+    inertia = np.array([0.1, 0.5, 1.0])
+    expected = 3.0 * inertia / (1.0 + inertia) ** 2
+    s = np.tile(np.linspace(0.0, 4.0, 9), (3, 1))
+    error = np.where(s > 0.0, 0.002, 0.0)
+    rotation = 2.0 / 3.0 * (1.0 - np.exp(-rate * expected[:, None] * s))
+    rotation = rotation + noise * error * rng.standard_normal(s.shape)
+    tangential = np.array([-0.5, 0.0, 0.5])
+    theoretical = np.array([theory.rough_ratio(0.5, value) for value in tangential])
+    return xr.Dataset({
+        "collisions": (("start", "frame"), s),
+        "translation": (("start", "frame"), 1.0 - 0.5 * rotation),
+        "translation_error": (("start", "frame"), 0.5 * error),
+        "rotation": (("start", "frame"), rotation),
+        "rotation_error": (("start", "frame"), error),
+        "inertia": ("start", inertia),
+        "rate": ("start", expected * (rate + 0.004 * noise * rng.standard_normal(3))),
+        "rate_error": ("start", 0.004 * expected),
+        "equilibrium_inertia": ("equilibrium", inertia),
+        "equilibrium_ratio": ("equilibrium", ratio + 0.002 * noise * rng.standard_normal(3)),
+        "equilibrium_ratio_error": ("equilibrium", np.full(3, 0.002)),
+        "tangential": ("cooling", tangential),
+        "cooling_inertia": ("cooling", np.full(3, 0.5)),
+        "steady_ratio": ("cooling", steady * theoretical),
+        "steady_ratio_error": ("cooling", 0.005 * theoretical),
+    })  # fmt: skip
+
+
+def inelastic(rate=1.0, exponent=-2.0, clustered=True, seed=1):
+    """Two gases of each dimension, and a clustering and an elastic one; rate over theory's."""
+    rng = np.random.default_rng(seed)
+    dimension, restitution = np.array([2, 2, 3, 3]), np.array([0.9, 0.7, 0.9, 0.7])
+    expected = np.array([theory.cooling_rate(e, d) for e, d in zip(restitution, dimension, strict=True)])
+    time = np.tile(np.linspace(0.0, 5.0, 11), (4, 1))
+    s = np.tile(np.linspace(0.0, 100.0, 21), (2, 1))
+    excess = np.exp(0.03 * s) if clustered else np.ones_like(s)
+    return xr.Dataset(
+        {
+            "dimension": ("gas", dimension),
+            "restitution": ("gas", restitution),
+            "collisions": (("gas", "frame"), 2.0 / expected[:, None] * np.log1p(time)),
+            "time": (("gas", "frame"), time),
+            "temperature": (("gas", "frame"), (1.0 + time) ** -2.0),
+            "temperature_error": (("gas", "frame"), np.full(time.shape, 1e-4)),
+            "rate": ("gas", expected * (rate + 0.002 * rng.standard_normal(4))),
+            "rate_error": ("gas", 0.002 * expected),
+            "exponent": ("gas", exponent + 0.005 * rng.standard_normal(4)),
+            "exponent_error": ("gas", np.full(4, 0.005)),
+            "cluster_restitution": ("clusters", np.array([0.8, 1.0])),
+            "cluster_collisions": (("clusters", "step"), s),
+            "cluster_excess": (("clusters", "step"), np.stack([excess[0], np.ones(21)])),
+            "cluster_excess_error": (("clusters", "step"), 0.05 * excess),
+            "variance": (("clusters", "step"), 0.5 * np.stack([excess[0], np.ones(21)])),
+            "variance_error": (("clusters", "step"), np.full(s.shape, 0.02)),
+            "x": ("body", rng.uniform(0.0, 20.0, 50)),
+            "y": ("body", rng.uniform(0.0, 20.0, 50)),
+        },
+        attrs={"side": 20.0, "radius": 0.5},
+    )

@@ -1,0 +1,56 @@
+"""The autocorrelation from frames: of independent and of moving-average velocities, and of a real gas."""
+
+import numpy as np
+import pytest
+
+import gaspart as gp
+from gaspart import grid
+from gaspart.measure import velocity
+from gaspart.measure.correlations import autocorrelation
+
+
+def test_autocorrelation_is_the_mean_over_all_pairs_of_frames():
+    values = np.random.default_rng(2).standard_normal((7, 5, 2))
+    for lag, found in enumerate(autocorrelation(values, 4)):
+        assert found == pytest.approx(np.mean(values[: 7 - lag] * values[lag:]), rel=1e-12)
+
+
+def test_the_start_of_a_gas_is_enskogs_and_momentum_is_put_back(tmp_path):
+    settings = {
+        "dimension": 3, "count": 256, "radius": 0.5, "boundary": "periodic", "packing_fraction": 0.2,
+        "temperature": 2.0, "arrangement": "lattice", "collisions_per_body": 12, "equilibration": 20,
+        "samples": 240, "replicas": 3,
+    }  # fmt: skip
+    point = grid.Point("memory", "single", "simulate", settings, str(tmp_path), 3)
+    recipe = grid.recipe(point)
+    (tmp_path / "memory/single").mkdir(parents=True)
+    for seed, path in zip(recipe["seeds"], point.replica_paths, strict=True):
+        gp.run(
+            grid.scene(point),
+            grid.engine(point),
+            tuple(seed),
+            recipe["duration"],
+            recipe["sample_interval"],
+            path,
+        )
+    fitted = {"start_to": 0.4, "tail": [2.0, 4.0]}
+    ds = velocity.velocity_autocorrelation([point], fitted).isel(point=0)
+    assert abs(ds["start_rate"].item() - 2.0 / 3.0) < 4.0 * ds["start_rate_error"].item() < 0.1
+    assert ds["correlation"][0].item() == pytest.approx(1.0, rel=1e-12)  # (1 - 1/N) + 1/N
+    assert ds["collisions"][1].item() == pytest.approx(0.05, rel=0.1)
+    assert np.isnan(ds["tail_exponent"].item())
+    ds = velocity.velocity_autocorrelation([point], fitted | {"start_to": 0.1}).isel(point=0)
+    assert np.isnan(ds["start_rate"].item()) and np.isfinite(ds["tail_exponent"].item())
+
+
+def test_a_power_is_found_to_first_order():
+    time = np.linspace(4.0, 9.0, 16)
+    assert velocity._exponent(time, 0.3 * time**-1.5) == pytest.approx(-1.5, abs=1e-10)
+    noise = 1e-4 * np.random.default_rng(1).standard_normal((200, 16))
+    found = [velocity._exponent(time, 0.3 * time**-1.5 + one) for one in noise]
+    assert np.mean(found) == pytest.approx(-1.5, abs=4 * np.std(found) / 200**0.5)
+
+
+def test_the_initial_rate_is_that_of_the_logarithm():
+    s = np.linspace(0.05, 0.3, 6)
+    assert velocity._initial_rate(s, np.exp(-0.7 * s + 0.1 * s**2)) == pytest.approx(0.7, rel=1e-10)
