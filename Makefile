@@ -1,6 +1,6 @@
 # make            set up, reproduce every figure, write results/report.html
 # make test       set up, run all tests (a small copy of the whole workflow among them)
-# make check-all  the linters, the tests, and a thousand new random scenes for each property
+# make check-all  the linters, the tests, and 2500 new random scenes for each property of the engines
 # make smoke      all figures, small
 # make lint | report | clean | distclean
 #
@@ -38,7 +38,7 @@ test: setup
 	.venv/bin/python -m pytest --numprocesses=auto
 
 check-all: lint test
-	.venv/bin/python -m pytest --numprocesses=auto tests/engines tests/test_contact.py tests/test_initial.py --hypothesis-profile=search
+	.venv/bin/python -m pytest --numprocesses=auto -m hypothesis --hypothesis-profile=search
 
 smoke: setup
 	$(SNAKEMAKE) --quiet rules --configfile config/smoke.yaml

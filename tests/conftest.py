@@ -5,7 +5,7 @@ from xdist.scheduler import LoadScopeScheduling
 
 # The same scenes every time, or new ones with `--hypothesis-profile=search`.
 settings.register_profile("fixed", max_examples=50, derandomize=True, deadline=None)
-settings.register_profile("search", max_examples=1000, deadline=None)
+settings.register_profile("search", max_examples=2500, deadline=None)
 settings.load_profile("fixed")
 
 

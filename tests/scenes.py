@@ -16,6 +16,13 @@ def gas(dimension, count, packing_fraction, boundary="periodic", **properties):
     return gp.Scene(gp.Container((side,) * dimension, boundary), [gp.Species(count, **properties)])
 
 
+def sent(position, velocity, walls, radius=0.5, boxes_per_side=None, side=12.0, boundary="wall", **rest):
+    """One body among walls."""
+    body = gp.Body(position, velocity, radius)
+    scene = gp.Scene(gp.Container((side, side), boundary), bodies=[body], walls=walls, **rest)
+    return gp.Simulation(scene, gp.EventDriven(boxes_per_side=boxes_per_side))
+
+
 @st.composite
 def mixtures(draw, most=12):
     """Small scenes of one or two species, any boundary, uneven sides, moderate density."""

@@ -120,7 +120,10 @@ def test_newtons_cradle_passes_the_momentum_through_touching_discs():
     assert sim.tally.collisions == 4
 
 
-@pytest.mark.parametrize(("ratio", "count"), [(1.0, 3), (1e2, 31), (1e4, 314), (1e6, 3141), (1e8, 31415)])
+@pytest.mark.parametrize(
+    ("ratio", "count"),
+    [(1.0, 3), (1e2, 31), (1e4, 314), (1e6, 3141), (1e8, 31415), (1e10, 314159), (1e12, 3141592)],
+)
 def test_pi_by_billiards(ratio, count):
     """A heavy ball, a light one at rest, a wall: ceil(pi/arctan sqrt(m/M)) - 1 hits (Galperin 2003)."""
     bodies = [gp.Body((2.0, 1.0), (0.0, 0.0), 0.5), gp.Body((4.0, 1.0), (-1.0, 0.0), 0.5, mass=ratio)]
@@ -129,6 +132,25 @@ def test_pi_by_billiards(ratio, count):
     assert sim.tally.collisions + sim.tally.wall_hits[0] == count
     assert sim.tally.wall_hits[1] == 0
     assert count == math.ceil(math.pi / math.atan(math.sqrt(1 / ratio))) - 1
+
+
+def test_two_balls_into_a_cradle_and_two_leave_it():
+    """A chain of simultaneous contacts: those that came together are a touching pair themselves."""
+    row = [gp.Body((x, 5.0), (1.0 if x < 4.0 else 0.0, 0.0), 0.5) for x in (1.0, 2.0, 5.0, 6.0, 7.0)]
+    for search in ("boxes", "pairs"):
+        sim = gp.Simulation(gp.Scene(gp.Container((20.0, 10.0)), bodies=row), gp.EventDriven(search))
+        sim.advance(duration=4.0)
+        assert sim.state.velocities[:, 0].tolist() == [0.0, 0.0, 0.0, 1.0, 1.0]
+        assert sim.state.positions[:, 0].tolist() == [3.0, 4.0, 5.0, 8.0, 9.0]
+        assert sim.tally.collisions == 6
+
+
+def test_a_corner_of_three_faces_is_met_at_once():
+    body = gp.Body((5.0,) * 3, (1.0,) * 3, 0.5)
+    sim = gp.Simulation(gp.Scene(gp.Container((10.0,) * 3), bodies=[body]), gp.EventDriven())
+    sim.advance(duration=5.5)
+    assert sim.tally.wall_hits.tolist() == [0, 1, 0, 1, 0, 1]
+    assert sim.state.positions.tolist() == [[8.5] * 3]
 
 
 def test_a_corner_is_two_walls_at_once():
