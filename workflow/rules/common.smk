@@ -131,6 +131,8 @@ MODULES = {
 }
 FAMILY_MODULES = {
     ("measure", "gravity"): ["measure/columns"],
+    ("measure", "buoyancy"): ["measure/columns"],
+    ("judge", "buoyancy"): ["statistics"],
     ("measure", "radius"): ["measure/pressure"],
     ("measure", "displacement"): ["measure/correlations"],
     ("measure", "velocity"): ["measure/correlations"],

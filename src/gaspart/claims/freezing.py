@@ -23,7 +23,7 @@ FREE_VOLUME_ERROR = 3e-3
 """Relative uncertainty taken for Alder, Hoover and Young's fit of discs (recalled; their stated scatter)."""
 LIQUID_ERROR = 1e-3
 """Relative uncertainty taken for Erpenbeck and Luban's Z, 1/N corrections included."""
-SPEEDY_ERROR = 1e-3
+SPEEDY_ERROR = 3e-4
 """Relative uncertainty taken for Speedy's fit (recalled)."""
 DISCS_SOURCE = "Bernard and Krauth 2011, Engel and others 2013 (recalled)"
 SPHERES_SOURCE = "Fernandez and others 2012 (recalled)"
@@ -62,11 +62,13 @@ def freezing_spheres(dataset: xr.Dataset) -> list[Claim]:
         at = crystal.isel(packing_fraction=mask)
         if at.sizes["packing_fraction"]:
             claims.append(_lattice(at, most))
+    melting = theory.coexistence_packing_fractions(3)[1]
     for k, start in enumerate(dataset["start"].values):
         for at in (
             dataset.isel(start=k, packing_fraction=j) for j in range(dataset.sizes["packing_fraction"])
         ):
-            if np.isfinite(at["reference"]) and (int(at["crystalline"]) or start == "fluid"):
+            superheated = int(at["crystalline"]) and float(at["packing_fraction"]) < melting
+            if np.isfinite(at["pressure"] * at["reference"]) and not superheated:
                 claims.append(_branch(at, str(start)))
     return [*claims, *_slab(dataset)]
 
@@ -181,7 +183,7 @@ def _lattice(at: xr.Dataset, melted: bool) -> Claim:
 
 
 def _branch(at: xr.Dataset, start: str) -> Claim:
-    """Z on the branch that a run is on: the fluid from a fluid start, the crystal as long as it lasts."""
+    """Z on the branch that a run is on. A superheated crystal claims nothing: it may be melting."""
     solid, reference = bool(at["crystalline"]), float(at["reference"])
     eta = float(at["packing_fraction"])
     relative = SPEEDY_ERROR if solid else float(theory.compressibility_uncertainty(eta, 3)) / reference

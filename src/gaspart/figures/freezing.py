@@ -209,7 +209,7 @@ def _residuals(axis, dataset):
         _points(
             axis, ratio.isel(packing_fraction=known), "r", kind, settled[known], scale=100.0, shift=-100.0
         )
-    axis.set_ylim(-1.0, 1.0)
+    axis.set_ylim(-0.5, 0.5)
     axis.set_ylabel("$Z/Z_\\mathrm{branch}-1$  (%)")
 
 

@@ -111,7 +111,7 @@ def separation(ds: xr.Dataset):
 def heat_capacity(ds: xr.Dataset):
     """Heat capacity against x, from neighbouring energies and from fluctuations, and what is left over."""
     figure, (top, bottom) = style.new(rows=2, height=3.8, height_ratios=(3, 1.2))
-    x = np.linspace(0.0, 10.0, 300)
+    x = np.linspace(0.0, 6.0, 300)
     top.plot(x, ideal_heat_capacity(x, 2), color=style.DATA, label="canonical, ideal gas")
     style.level(top, 1.0, ls="--")
     style.level(top, 2.0, ls="--")
@@ -136,8 +136,9 @@ def heat_capacity(ds: xr.Dataset):
     top.set_ylabel(r"heat capacity $C_V/Nk$")
     top.set_ylim(0.9, 2.1)
     top.legend(loc="lower right", bbox_to_anchor=(1.0, 0.08))
-    bottom.set_ylabel("measured /\nexact - 1 (%)")
-    bottom.set_xlim(-0.3, 10.0)
+    bottom.set_ylabel("off exact (%)")
+    bottom.set_xlim(-0.2, 6.0)
+    bottom.set_ylim(-4.5, 4.5)
     bottom.set_xlabel(r"height of the box $x = mgH/kT$")
     style.letter(top, "a")
     style.letter(bottom, "b")

@@ -6,6 +6,8 @@ independent, and errors are the jackknife's over them. The temperature is always
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import xarray as xr
 
@@ -81,119 +83,143 @@ def profiles(points: list[grid.Point], settings: dict) -> xr.Dataset:
     )
 
 
+@dataclass(frozen=True)
+class Bins:
+    """The bins of height of one column, and what follows from averages in them.
+
+    place: the column; masses (S,) of its species; height (B,) of the middles, width of each; used (B,), which
+    are clear of floor and ceiling. Arguments of the methods are averages over time: density (S, B); energy
+    (B,), density times temperature; pressure (B,); temperature, of the whole column.
+    """
+
+    place: Field
+    masses: np.ndarray
+    height: np.ndarray
+    width: float
+    used: np.ndarray
+
+    @classmethod
+    def of(cls, place: Field, number: int, clear: float) -> Bins:
+        """`number` bins, of which those within `clear` diameters of floor and ceiling are not used."""
+        width = place.height / number
+        height = (np.arange(number) + 0.5) * width
+        margin = clear * place.diameter + 0.5 * width
+        masses = [place.masses[place.species == n][0] for n in range(int(place.species.max()) + 1)]
+        used = (height > margin) & (height < place.height - margin)
+        return cls(place, np.array(masses), height, width, used)
+
+    def packing_fraction(self, density):
+        """(B,) of all species."""
+        return density.sum(axis=0) * body_volume(2, self.place.diameter)
+
+    def pressure_ratio(self, density, pressure, energy):
+        """(B,) pressure over that of the reference at this density and temperature."""
+        return pressure / (energy * compressibility_factor(self.packing_fraction(density), 2))
+
+    def slope_ratio(self, density, temperature):
+        """(S,) slopes of ln eta_i + mu_excess(eta) over -m_i g / T."""
+        volume = body_volume(2, self.place.diameter)
+        excess = excess_chemical_potential(self.packing_fraction(density), 2)
+        with np.errstate(divide="ignore"):
+            slopes = [self._slope(np.log(row * volume) + excess, row) for row in density]
+        return -np.array(slopes) * temperature / (self.masses * self.place.strength)
+
+    def log_ratio(self, density):
+        """(B,) ln of the last over the first species' density."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.log(density[-1] / density[0])
+
+    def exchange_ratio(self, density, temperature):
+        """Slope of `log_ratio` over -(M - m) g / T; NaN for one species."""
+        if self.masses.size < 2:
+            return np.nan
+        slope = self._slope(self.log_ratio(density), density[0] * density[-1] / density.sum(axis=0))
+        return -slope * temperature / ((self.masses[-1] - self.masses[0]) * self.place.strength)
+
+    def temperature_gradient(self, energy, density):
+        """dT/dz over the mean weight of a body: d ln T / dz in scale heights."""
+        total = density.sum(axis=0)
+        return self._slope(energy / total, total) / (self.place.weight / len(self.place.masses))
+
+    def mean_height_ratio(self, height, temperature):
+        """(S,) mean heights over those of ideal gases."""
+        return height / ideal_mean_height(self.place.height, self.masses * self.place.strength / temperature)
+
+    def exchange_line(self, value, error, temperature):
+        """(B,) what `log_ratio` is if its slope is exact, through its weighted mean over the used bins."""
+        line = -(self.masses[-1] - self.masses[0]) * self.place.strength / temperature * self.height
+        known = self.used & np.isfinite(error) & (error > 0.0)
+        if self.masses.size < 2 or not known.any():
+            return line
+        return line + np.average((value - line)[known], weights=1.0 / error[known] ** 2)
+
+    def hydrostatics(self, density, temperature):
+        """(S, B) hydrostatic densities with as many bodies of each kind as there are in the used bins."""
+        first, last = np.flatnonzero(self.used)[[0, -1]]
+        z = np.linspace(first, last + 1, 8 * (last - first + 1) + 1) * self.width
+        numbers = density[:, self.used].sum(axis=1) * self.width
+        weights = self.masses * self.place.strength / temperature
+        curves = hydrostatic_profiles(z, numbers, weights, 2, self.place.diameter)
+        shown = np.full(density.shape, np.nan)
+        shown[:, self.used] = [np.interp(self.height[self.used], z, curve) for curve in curves]
+        return shown
+
+    def _slope(self, y, weight) -> float:
+        """Of the line through the used bins where something was; variances are as 1 / weight."""
+        seen = self.used & (weight > 0.0)
+        return float(np.polyfit(self.height[seen], y[seen], 1, w=np.sqrt(weight[seen]))[0])
+
+
 def _column(point: grid.Point, settings: dict) -> dict:
     """The numbers of one point."""
-    place, bins = field(point), settings["bins"]
-    found = stretches(point, settings["blocks"])
-    temperatures = np.array([temperature(place, stretch) for stretch in found])
-    parts = [profile(place, stretch, bins) for stretch in found]
+    place, found = field(point), stretches(point, settings["blocks"])
+    bins = Bins.of(place, settings["bins"], settings["clear"])
+    parts = [profile(place, stretch, settings["bins"]) for stretch in found]
     density = np.array([part.density for part in parts])
     pressure = np.array([part.pressure for part in parts])
-    kinds = density.shape[1]
-    masses = np.array([place.masses[place.species == n][0] for n in range(kinds)])
-    width = place.height / bins
-    height = (np.arange(bins) + 0.5) * width
-    margin = settings["clear"] * place.diameter
-    used = (height - 0.5 * width > margin) & (height + 0.5 * width < place.height - margin)
-    volume = body_volume(2, place.diameter)
-    eta = density.mean(axis=0).sum(axis=0) * volume
-    ranges = [used & (eta >= low) & (eta < high) for low, high in settings["ranges"]]
-
-    def pressure_ratio(density, pressure, energy):
-        eta = density.sum(axis=0) * volume
-        return pressure / (energy * compressibility_factor(eta, 2))
+    # Where a stretch found nothing its temperature is not known, and weighs nothing.
+    energy = np.array([np.nan_to_num(part.temperature) * part.density.sum(axis=0) for part in parts])
+    warm = np.array([temperature(place, stretch) for stretch in found])
+    own = [place.species == n for n in range(bins.masses.size)]
+    heights = np.array([[stretch.heights[:, kind].mean() for kind in own] for stretch in found])
+    kinetic = np.array([[stretch.energies[:, kind].mean() for kind in own] for stretch in found])
+    eta = bins.packing_fraction(density.mean(axis=0))
+    ranges = [bins.used & (eta >= low) & (eta < high) for low, high in settings["ranges"]]
 
     def range_ratio(*means):
-        ratio = pressure_ratio(*means)
+        ratio = bins.pressure_ratio(*means)
         return np.array([ratio[mask].mean() if mask.any() else np.nan for mask in ranges])
 
-    def slope_ratio(density, temperature):
-        potential = np.log(density * volume) + excess_chemical_potential(density.sum(axis=0) * volume, 2)
-        slopes = [_slope(height, values, row, used) for values, row in zip(potential, density, strict=True)]
-        return -np.array(slopes) * temperature / (masses * place.strength)
-
-    def log_ratio(density):
-        return np.log(density[-1] / density[0])
-
-    def exchange_ratio(density, temperature):
-        if kinds < 2:
-            return np.nan
-        weight = density[0] * density[-1] / density.sum(axis=0)
-        slope = _slope(height, log_ratio(density), weight, used)
-        return -slope * temperature / ((masses[-1] - masses[0]) * place.strength)
-
-    def gradient(energy, density, temperature):
-        total = density.sum(axis=0)
-        slope = _slope(height, energy / total, total, used)
-        return slope / (place.weight / len(place.masses))
-
-    # The temperature of a bin where a stretch found nothing is not known: weights say how much it counts.
-    energies = np.array([np.nan_to_num(part.temperature) * part.density.sum(axis=0) for part in parts])
-    means = np.array([[s.heights[:, place.species == n].mean() for n in range(kinds)] for s in found])
-    hot = np.array([[s.energies[:, place.species == n].mean() for n in range(kinds)] for s in found])
-    made = {
-        "density": jackknife(lambda rho: rho, density),
-        "packing_fraction": jackknife(lambda rho: rho.sum(axis=0) * volume, density),
-        "temperature": jackknife(lambda t: t, temperatures),
-        "temperature_ratio": jackknife(
-            lambda e, rho, t: e / (rho.sum(axis=0) * t), energies, density, temperatures
-        ),
-        "compressibility": jackknife(lambda e, p: p / e, energies, pressure),
-        "pressure_ratio": jackknife(pressure_ratio, density, pressure, energies),
-        "range_ratio": jackknife(range_ratio, density, pressure, energies),
-        "temperature_gradient": jackknife(gradient, energies, density, temperatures),
-        "slope_ratio": jackknife(slope_ratio, density, temperatures),
-        "exchange_ratio": jackknife(exchange_ratio, density, temperatures),
-        "log_ratio": jackknife(log_ratio, density),
-        "mean_height_ratio": jackknife(
-            lambda z, t: z / ideal_mean_height(place.height, masses * place.strength / t), means, temperatures
-        ),
-        "species_temperature_ratio": jackknife(lambda e: e / e[0], hot),
-    }
+    with np.errstate(invalid="ignore", divide="ignore"):  # bins where nothing was
+        made = {
+            "density": jackknife(lambda rho: rho, density),
+            "packing_fraction": jackknife(bins.packing_fraction, density),
+            "temperature": jackknife(lambda t: t, warm),
+            "temperature_ratio": jackknife(lambda e, rho, t: e / rho.sum(axis=0) / t, energy, density, warm),
+            "temperature_gradient": jackknife(bins.temperature_gradient, energy, density),
+            "compressibility": jackknife(lambda e, p: p / e, energy, pressure),
+            "pressure_ratio": jackknife(bins.pressure_ratio, density, pressure, energy),
+            "range_ratio": jackknife(range_ratio, density, pressure, energy),
+            "slope_ratio": jackknife(bins.slope_ratio, density, warm),
+            "exchange_ratio": jackknife(bins.exchange_ratio, density, warm),
+            "log_ratio": jackknife(bins.log_ratio, density),
+            "mean_height_ratio": jackknife(bins.mean_height_ratio, heights, warm),
+            "species_temperature_ratio": jackknife(lambda k: k / k[0], kinetic),
+        }
     row = {name: value for name, (value, _) in made.items()}
     row |= {f"{name}_error": error for name, (_, error) in made.items()}
-    mean = float(temperatures.mean())
     return row | {
-        "height": height,
-        "used": used,
-        "mass": masses,
+        "height": bins.height,
+        "used": bins.used,
+        "mass": bins.masses,
         "strength": place.strength,
-        "diameter": place.diameter,
         "top": place.height,
         "count": len(place.masses),
         "mean_density": len(place.masses) / (place.width * place.height),
-        "blocks": len(found),
-        "hydrostatic": _hydrostatics(place, row["density"], masses, mean, used, width),
-        "log_ratio_expected": _exchange(made["log_ratio"], height, masses, place.strength / mean, used),
+        "hydrostatic": bins.hydrostatics(row["density"], row["temperature"]),
+        "log_ratio_expected": bins.exchange_line(*made["log_ratio"], row["temperature"]),
         "imbalance": max(abs(s.floor - s.ceiling - place.weight - s.gain) / place.weight for s in found),
     }
-
-
-def _slope(x: np.ndarray, y: np.ndarray, weight: np.ndarray, used: np.ndarray) -> float:
-    """Of the line fitted to the used points, whose variances are as 1 / weight."""
-    return float(np.polyfit(x[used], y[used], 1, w=np.sqrt(weight[used]))[0])
-
-
-def _exchange(log_ratio, height, masses, slope: float, used) -> np.ndarray:
-    """(B,) ln of the last over the first kind's density: the exact slope, through the weighted mean."""
-    value, error = log_ratio
-    line = -(masses[-1] - masses[0]) * slope * height
-    if masses.size < 2:
-        return line
-    return line + np.average((value - line)[used], weights=1.0 / error[used] ** 2)
-
-
-def _hydrostatics(place: Field, density, masses, temperature: float, used, width: float) -> np.ndarray:
-    """(S, B) hydrostatic densities between the first and the last used bin, with as many bodies there."""
-    first, last = np.flatnonzero(used)[[0, -1]]
-    fine = 8
-    z = (np.arange(fine * (last - first + 1) + 1) / fine + first) * width
-    numbers = density[:, first : last + 1].sum(axis=1) * width
-    curves = hydrostatic_profiles(z, numbers, masses * place.strength / temperature, 2, place.diameter)
-    shown = np.full(density.shape, np.nan)
-    middle = (np.arange(first, last + 1) + 0.5) * width
-    shown[:, first : last + 1] = [np.interp(middle, z, curve) for curve in curves]
-    return shown
 
 
 def heat_capacity(points: list[grid.Point], settings: dict) -> xr.Dataset:

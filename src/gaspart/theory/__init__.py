@@ -43,6 +43,7 @@ from .equations import (
     scaled_particle,
     van_der_waals,
 )
+from .film import excess_chemical_potential, white_bear_pressure, white_bear_slit
 from .freezing import (
     COEXISTENCE_DENSITY,
     COEXISTENCE_PRESSURE,
@@ -145,6 +146,7 @@ __all__ = [
     "enskog_viscosity",
     "erpenbeck_wood_diffusion",
     "erpenbeck_wood_ratio",
+    "excess_chemical_potential",
     "failures_per_body",
     "finite_size_correction",
     "fourth_cumulant",
@@ -190,5 +192,7 @@ __all__ = [
     "virial_coefficients",
     "virial_with_tail",
     "wall_pressure",
+    "white_bear_pressure",
+    "white_bear_slit",
     "yeh_hummer",
 ]

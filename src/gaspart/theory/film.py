@@ -1,0 +1,102 @@
+"""Hard spheres between two flat hard walls: density profile and pressure by density functional theory.
+
+Diameter 1 and k_B T = 1; densities in 1 / sigma^3. The width H of a slit is the distance of its walls'
+surfaces, so that centres have H - 1.
+"""
+
+import numpy as np
+
+from .equations import carnahan_starling
+from .geometry import packing_fraction
+from .state import compressibility_factor
+
+_RADIUS = 0.5
+
+
+def excess_chemical_potential(eta, steps=400):
+    """Spheres: mu_ex / k_B T = Z - 1 + integral from 0 to eta of (Z - 1) / eta' (thermodynamics, exact).
+
+    Z is the reference `compressibility_factor`; the integral is by Gauss and Legendre. Dimensionless.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    inner = 0.5 * eta * (nodes + 1.0)
+    integral = np.sum(weights * (compressibility_factor(inner, 3) - 1.0) / inner) * 0.5 * eta
+    return float(compressibility_factor(eta, 3) - 1.0 + integral)
+
+
+def white_bear_slit(bulk_density, width, spacing=0.01, tolerance=1e-8):
+    """Density profile in a slit in equilibrium with a fluid of `bulk_density`: places (n,) of centres above
+    the lower wall's contact plane, from 0 to H - 1, and densities (n,).
+
+    White Bear functional: Roth, Evans, Lang and Kahl, J. Phys.: Condens. Matter 14, 12063 (2002; recalled),
+    solved by damped iteration. Its bulk is Carnahan and Starling's, 0.3 % low at eta = 0.35; it obeys the
+    contact theorem exactly, so rho(0) is its pressure on the walls. `spacing` is adapted to divide the
+    width and the radius.
+
+    Raises ValueError if the width leaves no room, and RuntimeError if the iteration does not converge.
+    """
+    if not width > 1.0:
+        raise ValueError(f"width: {width} (must be larger than a diameter)")
+    cells = max(4, round((width - 1.0) / spacing))
+    step = (width - 1.0) / cells
+    half = round(_RADIUS / step)
+    offset = step * np.arange(-half, half + 1)
+    # Weights of a sphere's slices, normalised so that the bulk's measures are exact on the grid.
+    ends = np.where(np.abs(np.arange(-half, half + 1)) == half, 0.5, 1.0) * step
+    volume = np.maximum(_RADIUS**2 - offset**2, 0.0) * ends
+    volume *= np.pi / 6.0 / volume.sum()
+    surface = ends * (np.pi / ends.sum())
+    vector = 2.0 * np.pi * offset * ends
+    weight = np.where((np.arange(cells + 1) == 0) | (np.arange(cells + 1) == cells), 0.5, 1.0)
+
+    excess = _derivatives(*(np.array([value]) for value in (*_bulk_measures(bulk_density), 0.0)))
+    bulk_excess = float(excess[0][0] * np.pi / 6.0 + excess[1][0] * np.pi)
+    density = np.full(cells + 1, bulk_density)
+    mixing = 0.015  # more oscillates without end in slits of less than two diameters
+    for _ in range(20_000):
+        weighted = density * weight
+        n3, n2 = np.convolve(weighted, volume), np.convolve(weighted, surface)
+        towards = np.convolve(weighted, vector)
+        by_volume, by_surface, by_vector = _derivatives(n3, n2, towards)
+        felt = (
+            np.correlate(by_volume, volume, "valid")
+            + np.correlate(by_surface, surface, "valid")
+            + np.correlate(by_vector, vector, "valid")
+        )
+        wanted = bulk_density * np.exp(np.clip(bulk_excess - felt, -20.0, 5.0))
+        change = wanted - density
+        density = density + mixing * change
+        if np.max(np.abs(change)) < tolerance * bulk_density:
+            return step * np.arange(cells + 1), density
+    raise RuntimeError(f"the profile at density {bulk_density:g}, width {width:g} does not converge")
+
+
+def white_bear_pressure(bulk_density):
+    """The functional's bulk pressure, Carnahan and Starling's (k_B T / sigma^3)."""
+    return bulk_density * float(carnahan_starling(packing_fraction(bulk_density, 3)))
+
+
+def _bulk_measures(density):
+    return density * np.pi / 6.0, density * np.pi
+
+
+def _derivatives(n3, n2, vector):
+    """Of the free energy density by n_3, n_2 and n_V2, the lower measures expressed by these."""
+    void = 1.0 - n3
+    logarithm = np.log(void)
+    small = n3 < 1e-4
+    safe = np.where(small, 0.5, n3)
+    ratio = np.where(
+        small, 1.5 + 8.0 * n3 / 3.0, (safe + (1 - safe) ** 2 * np.log(1 - safe)) / (safe * (1 - safe)) ** 2
+    )
+    slope = np.where(
+        small,
+        8.0 / 3.0 + 7.5 * n3,
+        (-2.0 * np.log(1 - safe) / safe**3 - (2.0 - 5.0 * safe + safe**2) / (safe**2 * (1 - safe) ** 3)),
+    )
+    n0, n1, v1 = n2 / np.pi, n2 / (2.0 * np.pi), vector / (2.0 * np.pi)
+    cube = (n2**3 - 3.0 * n2 * vector**2) / (36.0 * np.pi)
+    by_volume = n0 / void + (n1 * n2 - v1 * vector) / void**2 + cube * slope
+    by_surface = -logarithm / np.pi + 2.0 * n1 / void + (n2**2 - vector**2) / (12.0 * np.pi) * ratio
+    by_vector = -2.0 * v1 / void - n2 * vector / (6.0 * np.pi) * ratio
+    return by_volume, by_surface, by_vector

@@ -1,0 +1,10 @@
+from film_data import slits
+
+from gaspart.figures import film, style
+
+
+def test_it_draws_all_its_panels(tmp_path):
+    with style.applied():
+        figure = film.thin_film(slits())
+        style.save(figure, tmp_path / "figure.svg")
+    assert len(figure.axes) == 3 and all(axis.get_ylabel() for axis in figure.axes)
