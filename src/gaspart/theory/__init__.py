@@ -11,6 +11,10 @@ from .brownian import (
     langevin_msd_from_rest,
     tagged_diffusion,
 )
+from .buoyancy import (
+    displaced_area,
+    insertion_work,
+)
 from .diffusion import (
     ERPENBECK_WOOD_UNCERTAINTY,
     YEH_HUMMER_CONSTANT,
@@ -68,6 +72,16 @@ from .granular import (
     rough_matrix,
     rough_ratio,
     rough_temperatures,
+)
+from .gravity import (
+    excess_chemical_potential,
+    hydrostatic_profiles,
+    ideal_energy_moments,
+    ideal_heat_capacity,
+    ideal_mean_height,
+    ideal_profile,
+    lebowitz_percus_verlet,
+    packing_fraction_at,
 )
 from .insertion import (
     RSA_SATURATION,
@@ -139,6 +153,7 @@ __all__ = [
     "contact_value",
     "cooling_rate",
     "crystal_finite_size_correction",
+    "displaced_area",
     "enskog_bulk_viscosity",
     "enskog_conductivity",
     "enskog_diffusion",
@@ -153,14 +168,21 @@ __all__ = [
     "friction_rate",
     "haff_time",
     "henderson",
+    "hydrostatic_profiles",
+    "ideal_energy_moments",
+    "ideal_heat_capacity",
+    "ideal_mean_height",
+    "ideal_profile",
     "initial_kurtosis_slope",
     "insertion_saturation",
     "insertion_saturation_uncertainty",
+    "insertion_work",
     "kolafa_1986",
     "kolafa_labik_malijevsky",
     "kurtosis",
     "langevin_msd",
     "langevin_msd_from_rest",
+    "lebowitz_percus_verlet",
     "linear_tail",
     "liu",
     "logarithmic_slope",
@@ -171,6 +193,7 @@ __all__ = [
     "mean_speed",
     "number_density",
     "packing_fraction",
+    "packing_fraction_at",
     "partial_sum",
     "partial_sum_uncertainty",
     "percus_yevick_compressibility",
