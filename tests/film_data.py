@@ -16,7 +16,7 @@ def slits(error=0.003, seed=1):
     bulk = density * float(theory.compressibility_factor(BULK, 3))
     solvation = 1.5 * np.exp(2.0 - WIDTHS) * np.cos(2.0 * np.pi * WIDTHS)
     pressure, one = bulk + solvation, np.ones(WIDTHS.size)
-    potential = np.log(density) + theory.excess_chemical_potential(BULK)
+    potential = np.log(density) + theory.excess_chemical_potential(BULK, 3)
 
     def noisy(values, scale):
         return values + scale * rng.standard_normal(values.shape)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from gaspart import theory
-from gaspart.theory import buoyancy, gravity
+from gaspart.theory import buoyancy
 
 ETA = np.linspace(0.02, 0.6, 12)
 
@@ -15,7 +15,7 @@ def test_a_disc_of_the_fluids_own_size_costs_its_chemical_potential():
     # Gibbs and Duhem, with the theory's own pressure: eta d mu_excess / d eta = d(eta Z) / d eta - 1.
     pressure = slope(lambda eta: eta * theory.scaled_particle(eta), ETA)
     assert ETA * slope(lambda eta: buoyancy.insertion_work(eta, 1.0), ETA) == pytest.approx(pressure - 1.0)
-    exact = gravity.excess_chemical_potential(0.2, 2)
+    exact = theory.excess_chemical_potential(0.2, 2)
     assert buoyancy.insertion_work(0.2, 1.0) == pytest.approx(exact, rel=0.02)
 
 

@@ -40,13 +40,3 @@ def test_a_narrow_slit_pushes_where_layers_fit():
 def test_no_slit_narrower_than_a_sphere():
     with pytest.raises(ValueError, match="width"):
         theory.white_bear_slit(BULK, 1.0)
-
-
-def test_excess_chemical_potential():
-    # Virial series: mu_ex = sum of n/(n-1) b_n eta^(n-1); Carnahan and Starling's closed form when dense.
-    exact, _ = theory.virial_coefficients(3, 6)
-    series = sum(n / (n - 1) * exact[n - 1] * 0.05 ** (n - 1) for n in range(2, 7))
-    assert theory.excess_chemical_potential(0.05) == pytest.approx(series, rel=1e-5)
-    eta = 0.35
-    starling = (8.0 * eta - 9.0 * eta**2 + 3.0 * eta**3) / (1.0 - eta) ** 3
-    assert theory.excess_chemical_potential(eta) == pytest.approx(starling, rel=4e-3)

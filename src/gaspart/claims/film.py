@@ -76,7 +76,9 @@ def _bulk(dataset: xr.Dataset, widest: xr.Dataset) -> Claim:
 def _potential(dataset: xr.Dataset, widest: xr.Dataset) -> Claim:
     density, error = float(dataset["middle"]), float(dataset["middle_error"])
     step = 1e-4
-    here, above = (math.log(x) + theory.excess_chemical_potential(_eta(x)) for x in (density, density + step))
+    here, above = (
+        math.log(x) + float(theory.excess_chemical_potential(_eta(x), 3)) for x in (density, density + step)
+    )
     return Claim(
         f"chemical potential by insertion less the bulk's at the density in the middle, k_B T, "
         f"width {float(widest['width']):g}",

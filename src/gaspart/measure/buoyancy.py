@@ -15,7 +15,8 @@ from gaspart.measure.columns import Field, Stretch, field, stretches, temperatur
 from gaspart.statistics import jackknife
 from gaspart.theory.buoyancy import displaced_area, insertion_work
 from gaspart.theory.geometry import body_volume
-from gaspart.theory.gravity import excess_chemical_potential, hydrostatic_profiles, packing_fraction_at
+from gaspart.theory.gravity import hydrostatic_profiles
+from gaspart.theory.potential import excess_chemical_potential, packing_fraction_at
 
 
 def buoyancy(points: list[grid.Point], settings: dict) -> xr.Dataset:

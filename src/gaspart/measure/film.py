@@ -53,7 +53,7 @@ def thin_film(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """
     points = sorted(points, key=lambda point: grid.extents(point)[2][2])
     bulk = theory.number_density(settings["bulk_packing_fraction"], 3)
-    potential = math.log(bulk) + theory.excess_chemical_potential(settings["bulk_packing_fraction"])
+    potential = math.log(bulk) + float(theory.excess_chemical_potential(settings["bulk_packing_fraction"], 3))
     names = ("pressure", "contact", "chemical_potential")
     columns = {f"{name}{kind}": [] for name in names for kind in ("", "_error")}
     truncation, functional, widths = [], [], []

@@ -17,12 +17,12 @@ from gaspart.measure.columns import Field, field, profile, stretches, temperatur
 from gaspart.statistics import jackknife
 from gaspart.theory.geometry import body_volume
 from gaspart.theory.gravity import (
-    excess_chemical_potential,
     hydrostatic_profiles,
     ideal_energy_moments,
     ideal_mean_height,
     lebowitz_percus_verlet,
 )
+from gaspart.theory.potential import excess_chemical_potential
 from gaspart.theory.state import compressibility_factor
 from gaspart.trajectory import open_trajectory
 

@@ -47,7 +47,7 @@ from .equations import (
     scaled_particle,
     van_der_waals,
 )
-from .film import excess_chemical_potential, white_bear_pressure, white_bear_slit
+from .film import white_bear_pressure, white_bear_slit
 from .freezing import (
     COEXISTENCE_DENSITY,
     COEXISTENCE_PRESSURE,
@@ -74,14 +74,12 @@ from .granular import (
     rough_temperatures,
 )
 from .gravity import (
-    excess_chemical_potential,
     hydrostatic_profiles,
     ideal_energy_moments,
     ideal_heat_capacity,
     ideal_mean_height,
     ideal_profile,
     lebowitz_percus_verlet,
-    packing_fraction_at,
 )
 from .insertion import (
     RSA_SATURATION,
@@ -91,6 +89,7 @@ from .insertion import (
     insertion_saturation,
     insertion_saturation_uncertainty,
 )
+from .potential import excess_chemical_potential, packing_fraction_at
 from .speeds import (
     KURTOSIS_RELAXATION_RATE,
     RELAXATION_UNCERTAINTY,

@@ -8,20 +8,8 @@ import numpy as np
 
 from .equations import carnahan_starling
 from .geometry import packing_fraction
-from .state import compressibility_factor
 
 _RADIUS = 0.5
-
-
-def excess_chemical_potential(eta, steps=400):
-    """Spheres: mu_ex / k_B T = Z - 1 + integral from 0 to eta of (Z - 1) / eta' (thermodynamics, exact).
-
-    Z is the reference `compressibility_factor`; the integral is by Gauss and Legendre. Dimensionless.
-    """
-    nodes, weights = np.polynomial.legendre.leggauss(40)
-    inner = 0.5 * eta * (nodes + 1.0)
-    integral = np.sum(weights * (compressibility_factor(inner, 3) - 1.0) / inner) * 0.5 * eta
-    return float(compressibility_factor(eta, 3) - 1.0 + integral)
 
 
 def white_bear_slit(bulk_density, width, spacing=0.01, tolerance=1e-8):

@@ -8,11 +8,9 @@ import math
 
 import numpy as np
 
-from ._arguments import checked_dimension, checked_packing_fraction
+from ._arguments import checked_dimension
 from .geometry import body_volume
-from .state import HIGHEST_PACKING_FRACTION, compressibility_factor
-
-_TABLE = 4001  # packing fractions at which the excess chemical potential is tabulated
+from .potential import packing_fraction_at
 
 
 def ideal_profile(z, height, weight):
@@ -101,51 +99,6 @@ def lebowitz_percus_verlet(mean, variance, count, dimension):
     half = 0.5 * dimension
     relative = variance / (half * count * (mean / (half * count)) ** 2)
     return half / (1.0 - relative)
-
-
-def excess_chemical_potential(packing_fraction, dimension):
-    """mu / (k_B T) beyond that of an ideal gas: Z - 1 + the integral of (Z - 1) / eta from 0 to eta.
-
-    Exact thermodynamics with `compressibility_factor` (same range; to 1e-6 by its table).
-    """
-    eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
-    table, excess, _ = _thermodynamics(dimension)
-    return np.interp(eta, table, excess)
-
-
-_TABLES = {}
-
-
-def _thermodynamics(dimension):
-    """(eta, excess chemical potential, ln of the activity) on a grid, made once."""
-    if dimension not in _TABLES:
-        eta = np.linspace(0.0, HIGHEST_PACKING_FRACTION[dimension], _TABLE)
-        over = np.empty_like(eta)  # (Z - 1) / eta, which starts at b_2 = 2^{d-1}
-        over[1:] = (compressibility_factor(eta[1:], dimension) - 1.0) / eta[1:]
-        over[0] = 2.0 ** (dimension - 1)
-        integral = np.concatenate([[0.0], np.cumsum(0.5 * (over[1:] + over[:-1])) * eta[1]])
-        excess = eta * over + integral
-        with np.errstate(divide="ignore"):
-            _TABLES[dimension] = eta, excess, np.log(eta) + excess
-    return _TABLES[dimension]
-
-
-def packing_fraction_at(activity, dimension):
-    """The packing fraction at which eta e^{mu_excess} is `activity` (number or array, > 0).
-
-    Raises ValueError where that is above the reference's range.
-    """
-    logarithm = np.log(np.asarray(activity, dtype=float))
-    eta, excess, table = _thermodynamics(checked_dimension(dimension))
-    if np.any(logarithm > table[-1]):
-        raise ValueError(f"activity: {np.max(activity):g} (too dense: above a packing fraction of {eta[-1]})")
-    dense = np.exp(np.interp(logarithm, table[1:], np.log(eta[1:])))
-    # Below the table's first step mu_excess = 2 b_2 eta is small, and two iterations are exact enough.
-    slope = excess[1] / eta[1]
-    dilute = np.exp(logarithm)
-    for _ in range(3):
-        dilute = np.exp(logarithm - slope * dilute)
-    return np.where(logarithm < table[1], dilute, dense)
 
 
 def hydrostatic_profiles(z, numbers, weights, dimension, diameter=1.0):
