@@ -78,3 +78,23 @@ def tangential_impulse(inverse_mass, lever, restitution):
 def time_to_plane(x, v, plane):
     """Time at which a coordinate x, moving at v != 0, reaches `plane` (Spencer 2022, Eqs. 10 and 13)."""
     return (plane - x) / v
+
+
+@helper
+def time_to_growing_contact(rr, rv, vv, sigma, rate):
+    """Time until a pair touches whose distance at contact grows, sigma + rate t; inf if it never does.
+
+    The first root of a t^2 + 2 b t + c, a = vv - rate^2, in the form that does not cancel (Lubachevsky &
+    Stillinger, J. Stat. Phys. 60, 561 (1990)); 0 for a pair that touches or overlaps, and approaches.
+    """
+    a = vv - rate * rate
+    b = rv - sigma * rate
+    c = rr - sigma * sigma
+    if c <= 0.0 and b < 0.0:
+        return 0.0
+    square = b * b - a * c
+    if square < 0.0 or (a >= 0.0 and b >= 0.0):
+        return inf
+    if b < 0.0:
+        return c / (sqrt(square) - b)
+    return (sqrt(square) + b) / -a

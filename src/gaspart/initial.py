@@ -37,11 +37,16 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
     if explicit:
         spins[:explicit] = [body.spin_vector for body in scene.bodies]
     rng = stream(seed, _POSITIONS)
-    ordered = {kind.arrangement for kind in scene.species if kind.count} & set(LATTICES)
+    arrangements = {kind.arrangement for kind in scene.species if kind.count}
+    ordered = arrangements & set(LATTICES)
     if ordered:
         positions = lattice(scene, rng, slab="slab" in ordered)
         if any(scene.wall_at(place, radius) for place, radius in zip(positions, radii, strict=True)):
             raise SceneError("arrangement", *ordered, "a body would overlap an interior wall; use random")
+    elif "compressed" in arrangements:
+        from gaspart.compression import compressed
+
+        positions = compressed(scene, seed)
     else:
         positions, _ = random_insertion(scene, rng)
     return State(

@@ -33,6 +33,7 @@ KERNEL_MODULES = (
     "engines/surfaces.py",
     "engines/walls.py",
     "engines/event_kernels.py",
+    "engines/growth.py",
     "engines/all_pairs.py",
     "engines/step_layout.py",
     "engines/step_motion.py",

@@ -9,8 +9,9 @@ from gaspart.errors import SceneError
 from gaspart.validation import count_of, number, settle, vector
 
 LATTICES = ("lattice", "slab")
+SHARED = (*LATTICES, "compressed")
 """Arrangements that all bodies of a scene share."""
-ARRANGEMENTS = ("random", *LATTICES)
+ARRANGEMENTS = ("random", *SHARED)
 
 
 def _check_matter(thing) -> None:
@@ -36,8 +37,9 @@ class Species:
     """`count` like bodies, placed by the program.
 
     Velocities are isotropic: of one fixed `speed`, or Maxwellian at `temperature`; with neither the bodies
-    start at rest. `arrangement` is "random" (sequential insertion), "lattice", or "slab": a
-    lattice whose empty sites all lie in one half, so that this half melts. moment_of_inertia: by
+    start at rest. `arrangement` is "random" (sequential insertion), "lattice", "slab": a
+    lattice whose empty sites all lie in one half, so that this half melts, or "compressed": grown among one
+    another to a density beyond that of insertion (see `compression`). moment_of_inertia: by
     default that of a uniform disc or sphere. A `fixed` body never moves: it has infinite mass. With a
     `vibration`, the energy at the start, or a `temperature`, it has one mode of vibration: a contact swaps
     that energy with the normal energy of the other body.

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from gaspart.errors import SceneError
 from gaspart.files import read_yaml, write_yaml
-from gaspart.matter import LATTICES, Body, Restitution, Species, Wall
+from gaspart.matter import SHARED, Body, Restitution, Species, Wall
 from gaspart.surfaces import Sticky, Thermal, Well, check_faces, surface_from_dict, surface_to_dict
 from gaspart.validation import count_of, from_mapping, number, settle, vector
 
@@ -105,9 +105,9 @@ class Scene:
             if kind.count:
                 self._fits(f"species[{n}].radius", kind.radius)
         arrangements = {kind.arrangement for kind in self.species}
-        for shared in arrangements & set(LATTICES):
+        for shared in arrangements & set(SHARED):
             if self.bodies or arrangements != {shared}:
-                raise SceneError("arrangement", shared, "a lattice is shared by all bodies of a scene")
+                raise SceneError("arrangement", shared, "is shared by all bodies of a scene")
         for n, body in enumerate(self.bodies):
             self._check_body(n, body)
         if self.packing_fraction > math.pi / math.sqrt(12 if self.dimension == 2 else 18):

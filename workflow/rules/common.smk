@@ -83,6 +83,7 @@ SCENE = ["__init__", "errors", "files", "matter", "scene", "surfaces", "validati
 ENGINES = [
     "beside",
     "boxes",
+    "compression",
     "contact",
     "draws",
     "engines/*",
