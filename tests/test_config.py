@@ -133,3 +133,16 @@ def test_the_projects_configs_hold_every_figure_and_smoke_says_nothing_new():
     check(full, str(SCHEMA), [])
     assert set(smoke["experiments"]) <= set(full["experiments"])
     assert smoke["points"] != full["points"]
+
+
+def test_a_film_is_of_trajectories(schema):
+    check(
+        with_value(["animations"], {"gas": {"experiment": "gas", "colour": "speed"}, "no": None}), schema, []
+    )
+    for wrong, complaint in (
+        ({"experiment": "oil"}, "animations.gas.experiment = 'oil': must be the name of an experiment"),
+        ({"colour": "speed"}, "animations.gas.experiment = None: is required"),
+        ({"experiment": "gas", "colour": "red"}, "animations.gas.colour = 'red': must be one of"),
+    ):
+        with pytest.raises(SceneError, match=complaint):
+            check(with_value(["animations"], {"gas": wrong}), schema, [])

@@ -28,8 +28,19 @@ def check(config: dict, schema_path: str, files: list[str]) -> None:
             if figure not in FAMILIES:
                 raise SceneError(f"figures.{figure}", figure, "has no line in gaspart.families")
             grid.figure_points(config, figure)
+        for animation, block in config.get("animations", {}).items():
+            _animation(config, animation, block)
     except SceneError as error:
         raise error.inside("", error.file or _file_of(error.key, files)) from None
+
+
+def _animation(config: dict, animation: str, block: dict | None) -> None:
+    """A film is of trajectories, which an experiment of the config makes."""
+    experiment = block["experiment"] if block else None
+    kinds = {name: made.get("job", "simulate") for name, made in config["experiments"].items()}
+    if block and kinds.get(experiment) != "simulate":
+        rule = "must be the name of an experiment that makes trajectories"
+        raise SceneError(f"animations.{animation}.experiment", experiment, rule)
 
 
 def _experiment(config: dict, experiment: str, schema: dict) -> None:

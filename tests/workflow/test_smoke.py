@@ -45,6 +45,11 @@ def test_the_report_holds_every_figure_and_needs_no_other_file(smoke):
     assert 'name="viewport"' in page
 
 
+def test_films_are_made(smoke):
+    (film,) = (smoke.path / "results/animations").iterdir()
+    assert film.name == "relaxation.mp4" and film.stat().st_size > 5_000
+
+
 def test_nothing_half_written_is_left(smoke):
     assert not list((smoke.path / "results").rglob("*.partial"))
 

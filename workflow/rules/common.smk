@@ -28,6 +28,7 @@ except SceneError as error:
     sys.exit(2)
 
 FIGURES = [figure for figure in FAMILIES if figure in config["figures"]]
+ANIMATIONS = [name for name, block in config.get("animations", {}).items() if block]
 POINTS = {
     experiment: {point.name: point for point in grid.points(config, experiment)}
     for experiment in config["experiments"]
@@ -50,6 +51,16 @@ def recipe_of(wildcards):
 
 def figure_points(wildcards):
     return grid.figure_points(config, wildcards.figure)
+
+
+def animated(wildcards):
+    """The point whose film is made: the first one of the experiment."""
+    return next(iter(POINTS[config["animations"][wildcards.animation]["experiment"]].values()))
+
+
+def settings_of_animation(wildcards):
+    block = config["animations"][wildcards.animation]
+    return {key: value for key, value in block.items() if key != "experiment"}
 
 
 def family(wildcards):
@@ -101,6 +112,7 @@ ENGINES = [
 TRAJECTORY = ["amber", "checkpoint", "provenance", "recipe", "recording", "trajectory"]
 SIMULATE = [*SCENE, *ENGINES, *TRAJECTORY]
 THEORY = ["theory/*", "theory/data/*.csv"]
+RENDERING = [f"rendering/{name}" for name in ("__init__", "bodies", "camera", "discs", "pictures", "tracer")]
 CLAIMS = ["__init__", "errors", "files", "claims/__init__"]
 MODULES = {
     "simulate": SIMULATE,
@@ -128,6 +140,7 @@ MODULES = {
     "judge": [*CLAIMS, *THEORY, "claims/{family}"],
     "claims": CLAIMS,
     "draw": ["__init__", "errors", "files", *THEORY, "figures/__init__", "figures/style", "figures/{family}"],
+    "animate": [*SIMULATE, "figures/__init__", "figures/style", *RENDERING, "rendering/films"],
     "report": ["__init__", "errors", "families", "files", "provenance"],
 }
 FAMILY_MODULES = {
@@ -147,12 +160,7 @@ FAMILY_MODULES = {
     ("judge", "wall_pressure"): ["statistics"],
     ("draw", "pictures"): [
         "kernel",
-        "rendering/__init__",
-        "rendering/bodies",
-        "rendering/camera",
-        "rendering/discs",
-        "rendering/pictures",
-        "rendering/tracer",
+        *RENDERING,
         "state",
         "validation",
     ],
@@ -200,5 +208,6 @@ wildcard_constraints:
     experiment="[a-z][a-z0-9_]*",
     point="[^/]+",
     figure="|".join(FIGURES),
+    animation="|".join(ANIMATIONS) or "(?!)",
     digest="[0-9a-f]+",
     variant="[^/]+",

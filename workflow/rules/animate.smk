@@ -1,0 +1,24 @@
+# Films of the scenes that are worth seeing move: all frames of the first replica of an experiment's first point.
+
+
+rule animate:
+    input:
+        trajectories=lambda wildcards: animated(wildcards).path,
+        modules=module_files("animate"),
+    output:
+        "results/animations/{animation}.mp4",
+    log:
+        "results/logs/animate/{animation}.log",
+    benchmark:
+        "results/benchmarks/animate/{animation}.tsv"
+    conda:
+        "../envs/gaspart.yaml"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        trajectory=lambda wildcards: animated(wildcards).replica_path(0),
+        settings=lambda wildcards: settings_of_animation(wildcards),
+    script:
+        "../scripts/animate.py"
