@@ -10,6 +10,7 @@ from dataclasses import fields, is_dataclass
 
 from gaspart import grid
 from gaspart.errors import SimulationError
+from gaspart.matter import LATTICES
 from gaspart.point import Point
 
 _FEW = 8  # bodies, walls and the like that a tiny run has of each kind
@@ -47,6 +48,11 @@ def features(scene) -> set[str]:
         found -= {"species.mass", "bodies.mass"}  # equal masses are left out of the kernels
     if scene.vibrates:  # which a temperature alone may tell
         found.add("vibrates")
+    if len({kind.radius for kind in (*scene.species, *scene.bodies)}) > 1:
+        from gaspart.beside import largest_in_boxes
+
+        if largest_in_boxes(scene) < scene.largest_radius:
+            found.add("beside")
     return found
 
 
@@ -54,7 +60,7 @@ def _differing(thing, prefix: str = "") -> Iterator[str]:
     for field in fields(thing):
         value, name = getattr(thing, field.name), f"{prefix}{field.name}"
         required = field.default is field.default_factory  # both MISSING: no default
-        if field.name in _NO_FEATURE or value == field.default or value == "lattice":
+        if field.name in _NO_FEATURE or value == field.default or value in LATTICES:
             continue
         if isinstance(value, dict):
             value = tuple(value.values())
@@ -70,15 +76,20 @@ def _differing(thing, prefix: str = "") -> Iterator[str]:
 
 
 def task(point: Point) -> str:
-    """What `warm` is to do for a point, as JSON: its recipe, of a few bodies, and without what it varies."""
-    recipe = grid.recipe(point)
+    """What `warm` is to do for a point, as JSON: its scene, with only a few bodies if these have all of its
+    features, and its engine."""
+    from gaspart.scene import Scene
+
+    recipe, whole = grid.recipe(point), grid.scene(point)
     scene = {
         key: value[:_FEW] if isinstance(value, list) else value for key, value in recipe["scene"].items()
     }
     for kind in scene.get("species", ()):
         kind["count"] = min(kind["count"], _FEW)
-        if kind["arrangement"] == "lattice":  # which needs fewer kernels
+        if kind["arrangement"] in LATTICES:  # which need fewer kernels
             kind["arrangement"] = "random"
+    if features(Scene.from_dict(scene)) != features(whole):
+        scene = whole.to_dict()
     engine = recipe.get("engine") or recipe.get("engines", [None])[0]
     return json.dumps({"scene": scene, "engine": engine})
 
