@@ -157,3 +157,25 @@ def uneven(draw, most=16):
         restitution=gp.Restitution(1.0, 0.5),
         walls=[gp.Wall((1.0, 1.0), (4.5, draw(st.floats(0.0, 2.0))))],
     )
+
+
+@st.composite
+def partitioned(draw, most=10):
+    """Spheres that fall among plates, which may cross, lie askew, and be met across periodic faces."""
+    lengths = draw(st.lists(st.floats(5.0, 8.0), min_size=3, max_size=3))
+    kinds = st.sampled_from(["wall", "periodic"])
+    boundary = (draw(kinds), draw(kinds), "wall")
+    walls = []
+    for _ in range(draw(st.integers(1, 3))):
+        angle, size = draw(st.floats(0.0, 3.1)), draw(st.floats(0.5, 2.0))
+        one = (size * math.cos(angle), size * math.sin(angle), 0.0)
+        tilt, height = draw(st.floats(0.0, 3.1)), draw(st.floats(0.5, 2.0))
+        across = (-height * math.sin(angle) * math.cos(tilt), height * math.cos(angle) * math.cos(tilt))
+        corner = tuple(draw(st.floats(2.0 if k == 2 else 2.3, lengths[k] - 2.3)) for k in range(3))
+        plate = gp.Plate(corner, (one, (*across, height * math.sin(tilt))))
+        ends = plate.corners.values()
+        inside = all(0.0 <= x <= size for end in ends for x, size in zip(end, lengths, strict=True))
+        walls += [plate] if inside else []
+    species = [gp.Species(draw(st.integers(1, most)), draw(st.floats(0.1, 0.4)), temperature=1.0)]
+    gravity = (0.0, 0.0, draw(st.sampled_from([-0.5, -2.0])))
+    return gp.Scene(gp.Container(lengths, boundary), species, gravity=gravity, walls=walls)

@@ -11,6 +11,7 @@ _HOMES = {
     "Body": "matter",
     "Container": "scene",
     "EventDriven": "engines",
+    "Plate": "matter",
     "Restitution": "matter",
     "Scene": "scene",
     "SceneError": "errors",

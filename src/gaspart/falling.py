@@ -49,6 +49,28 @@ def time_along(gap, speed, pull):
 
 
 @helper
+def time_to_side(gap, closing, pull):
+    """Time until a body touches the side that it is on: `gap` from it, approaching at `closing`, drawn
+    towards it by `pull`; inf if it never does."""
+    if pull > 0.0:
+        return time_along(gap, closing, pull)
+    if closing <= 0.0:
+        return inf
+    if pull < 0.0:
+        return time_against(gap, closing, -pull)
+    return max(0.0, gap / closing)
+
+
+@helper
+def time_to_far_side(gap, closing, pull):
+    """The same for the side that it is not on yet (gap < 0): it must pass the line, turn and come back."""
+    if closing >= 0.0 or pull <= 0.0:
+        return inf
+    square = closing * closing + 2.0 * pull * gap
+    return (sqrt(square) - closing) / pull if square > 0.0 else inf
+
+
+@helper
 def _polynomial(c0, c1, c2, c3, c4, t):
     return (((c4 * t + c3) * t + c2) * t + c1) * t + c0
 
@@ -121,3 +143,20 @@ def time_to_contact_pulled(gap, rv, vv, ra, va, aa):
                 return _root_between(c0, c1, c2, c3, c4, low, high)
         start, slope = stop, end_slope
     return inf
+
+
+@kernel
+def time_of_summit(rv, vv, ra, va, aa):
+    """When the distance of such two bodies is greatest between two approaches; inf if there is only one."""
+    c1, c2, c3, c4 = 2.0 * rv, vv + ra, va, 0.25 * aa
+    square = 9.0 * c3 * c3 - 24.0 * c4 * c2
+    if square <= 0.0:
+        return inf
+    first, second = (-3.0 * c3 - sqrt(square)) / (12.0 * c4), (-3.0 * c3 + sqrt(square)) / (12.0 * c4)
+    slopes = 2.0 * c2, 3.0 * c3, 4.0 * c4
+    if not (
+        _polynomial(c1, slopes[0], slopes[1], slopes[2], 0.0, first) > 0.0
+        and _polynomial(c1, slopes[0], slopes[1], slopes[2], 0.0, second) < 0.0
+    ):
+        return inf
+    return _root_between(c1, slopes[0], slopes[1], slopes[2], 0.0, first, second)

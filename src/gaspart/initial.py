@@ -121,11 +121,12 @@ def random_insertion(
     ).astype(float)
     largest = largest_in_boxes(scene)
     boxes = make_boxes(scene, sides_for(scene, 1.0, 2 * largest), images=False, narrowest=2 * largest)
-    segments = None
+    walls = None
     if scene.walls:
+        from gaspart.plates import plates_of
         from gaspart.segments import segments_of
 
-        segments, _ = segments_of(scene)
+        walls, _ = segments_of(scene) if dimension == 2 else plates_of(scene)
     head = np.full(boxes.count, -1, dtype=np.int64)
     following = np.full(scene.count, -1, dtype=np.int64)
     positions = np.empty((scene.count, dimension))
@@ -149,7 +150,7 @@ def random_insertion(
             placed, failures, _ = place(
                 draws, positions, radii, placed, placed + 1 if big else stop, lower, upper, lengths,
                 scene.container.periodic, boxes.per_side, boxes.widths, boxes.neighbour, head,
-                following, boxes.strides, failures, patience, failed, segments, beside,
+                following, boxes.strides, failures, patience, failed, walls, beside,
             )  # fmt: skip
             if failures >= patience:
                 eta = scene.packing_fraction * placed / scene.count

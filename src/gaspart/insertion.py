@@ -4,6 +4,7 @@ import numpy as np
 
 from gaspart.boxes import box_coordinate
 from gaspart.kernel import allocating_kernel, helper
+from gaspart.plates import gap_to_plate
 from gaspart.segments import square_from_segment
 
 
@@ -40,7 +41,7 @@ def place(
     failures,
     patience,
     attempts_at,
-    segments,
+    walls,
     beside,
 ):
     """Try the `draws` (M, d) in [0, 1) as places for bodies start, start + 1, ... stop - 1, in that order.
@@ -48,8 +49,8 @@ def place(
     A place is free if no body already there is nearer than the sum of the radii. lower, upper: (d,) corners
     of the region for the centres. `failures` counts the current body's failed attempts across calls; at
     `patience` the search gives up. attempts_at: (N,) number of failed attempts of each placed body.
-    segments: (M, 5) interior walls to keep clear of (see `segments`), or None. beside: (K,) bodies that may
-    reach further than the boxes tell.
+    walls: (M, 5) or (M, 11) interior walls to keep clear of (see `segments`, `plates`), or None. beside: (K,)
+    bodies that may reach further than the boxes tell.
 
     Returns (next body to place, failures so far, draws used).
     """
@@ -64,9 +65,13 @@ def place(
             at[k] = box_coordinate(trial[k], widths[k], per_side[k])
         used += 1
         free = True
-        if segments is not None:
-            for m in range(len(segments)):
-                square = square_from_segment(segments, m, trial[0], trial[1])
+        if walls is not None:
+            for m in range(len(walls)):
+                if dimension == 2:
+                    square = square_from_segment(walls, m, trial[0], trial[1])
+                else:
+                    x, y, z = gap_to_plate(walls, m, trial[0], trial[1], trial[2])
+                    square = x * x + y * y + z * z
                 free = free and square >= radii[body] * radii[body]
         for other in beside:
             free = free and not overlap(trial, body, other, positions, radii, lengths, periodic)

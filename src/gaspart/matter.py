@@ -159,6 +159,11 @@ class Wall:
         if self.start == self.end:
             raise SceneError("end", self.end, "a wall must have a length; for a post take a fixed body")
 
+    @property
+    def corners(self) -> dict[str, tuple[float, ...]]:
+        """Both ends, by their keys."""
+        return {"start": self.start, "end": self.end}
+
     def distance(self, point: tuple[float, float]) -> float:
         """How far a point is from the wall, its ends included."""
         (ax, ay), (bx, by), (x, y) = self.start, self.end, point
@@ -167,8 +172,54 @@ class Wall:
         return math.hypot(x - ax - s * (bx - ax), y - ay - s * (by - ay))
 
 
-def box_of_walls(lower: tuple[float, float], upper: tuple[float, float]) -> tuple[Wall, ...]:
-    """The four walls of a rectangle, given two opposite corners."""
-    (x, y), (u, v) = vector("lower", lower, 2), vector("upper", upper, 2)
-    corners = ((x, y), (u, y), (u, v), (x, v))
-    return tuple(Wall(corners[n], corners[(n + 1) % 4]) for n in range(4))
+@dataclass(frozen=True)
+class Plate:
+    """A flat rectangular wall inside a container of three dimensions: a `corner` (3,), and the `edges` (2, 3)
+    that lead from it, at right angles. Hit from both sides, at its edges and its corners, which are solid."""
+
+    corner: tuple[float, float, float]
+    edges: tuple[tuple[float, float, float], tuple[float, float, float]]
+
+    def __post_init__(self):
+        rule = "must be two lists of 3 numbers"
+        if not isinstance(self.edges, (tuple, list)) or len(self.edges) != 2:
+            raise SceneError("edges", self.edges, rule)
+        one, other = (vector("edges", edge, 3) for edge in self.edges)
+        settle(self, corner=vector("corner", self.corner, 3), edges=(one, other))
+        sizes = math.hypot(*one), math.hypot(*other)
+        if not min(sizes) > 0.0:
+            raise SceneError("edges", self.edges, "a plate must have a length and a width")
+        if abs(sum(x * y for x, y in zip(one, other, strict=True))) > 1e-9 * sizes[0] * sizes[1]:
+            raise SceneError("edges", self.edges, "must be at right angles")
+
+    @property
+    def corners(self) -> dict[str, tuple[float, ...]]:
+        """The four corners, by the key that places each."""
+        one, other = self.edges
+        ends = {"edges[0]": (one,), "edges[1]": (other,), "edges": (one, other)}
+        far = {key: tuple(map(sum, zip(self.corner, *edges, strict=True))) for key, edges in ends.items()}
+        return {"corner": self.corner, **far}
+
+    def distance(self, point: tuple[float, float, float]) -> float:
+        """How far a point is from the plate, its rim included."""
+        away = [x - y for x, y in zip(point, self.corner, strict=True)]
+        for edge in self.edges:
+            along = sum(x * y for x, y in zip(away, edge, strict=True)) / sum(x * x for x in edge)
+            share = min(max(along, 0.0), 1.0)
+            away = [x - share * y for x, y in zip(away, edge, strict=True)]
+        return math.hypot(*away)
+
+
+def box_of_walls(lower: tuple[float, ...], upper: tuple[float, ...]) -> tuple[Wall | Plate, ...]:
+    """The four walls of a rectangle, or the six of a cuboid, given two opposite corners."""
+    low = vector("lower", lower)
+    high = vector("upper", upper, len(low))
+    if len(low) == 2:
+        (x, y), (u, v) = low, high
+        corners = ((x, y), (u, y), (u, v), (x, v))
+        return tuple(Wall(corners[n], corners[(n + 1) % 4]) for n in range(4))
+    plates = []
+    for corner, opposite in ((low, high), (high, low)):
+        edges = [tuple(opposite[k] - corner[k] if k == n else 0.0 for k in range(3)) for n in range(3)]
+        plates += [Plate(corner, (edges[n], edges[(n + 1) % 3])) for n in range(3)]
+    return tuple(plates)

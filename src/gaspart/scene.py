@@ -13,7 +13,7 @@ from pathlib import Path
 
 from gaspart.errors import SceneError
 from gaspart.files import read_yaml, write_yaml
-from gaspart.matter import SHARED, Body, Restitution, Species, Wall
+from gaspart.matter import SHARED, Body, Plate, Restitution, Species, Wall
 from gaspart.surfaces import Sticky, Thermal, Well, check_faces, surface_from_dict, surface_to_dict
 from gaspart.validation import count_of, from_mapping, number, settle, vector
 
@@ -64,14 +64,20 @@ class Container:
         return tuple(kind == "periodic" for kind in self.boundary)
 
 
+def _wall_kind(container: Container) -> type[Wall] | type[Plate]:
+    """What stands in such a container as an interior wall."""
+    return Wall if container.dimension == 2 else Plate
+
+
 @dataclass(frozen=True)
 class Scene:
     """A container and its bodies: first `bodies` in their order, then each of `species` in turn.
 
     With `centres_to_walls` the walls stop the bodies' centres instead of their surfaces (the rule of
     Frederickx & Meerts 2010, whose spheres stick out of the container). gravity: (d,) a uniform acceleration.
-    restitution: the law of all contacts; without it they are elastic and smooth. walls: straight
-    ones inside a container of two dimensions. faces: kinds of the container's faces, by name (x_low, ...).
+    restitution: the law of all contacts; without it they are elastic and smooth. walls: inside the
+    container, each a Wall in two dimensions, a Plate in three. faces: kinds of the container's faces, by name
+    (x_low, ...).
 
     Raises SceneError for a scene that cannot be.
     """
@@ -82,7 +88,7 @@ class Scene:
     centres_to_walls: bool = False
     gravity: tuple[float, ...] | None = None
     restitution: Restitution | None = None
-    walls: tuple[Wall, ...] = ()
+    walls: tuple[Wall | Plate, ...] = ()
     faces: dict[str, Thermal | Well | Sticky] = field(default_factory=dict, hash=False)
 
     def __post_init__(self):
@@ -124,11 +130,12 @@ class Scene:
 
     def _check_walls(self) -> None:
         for n, wall in enumerate(self.walls):
-            if self.dimension != 2:
-                raise SceneError("walls", self.walls, "interior walls need a container of two dimensions")
+            if not isinstance(wall, _wall_kind(self.container)):
+                rule = "a Wall needs a container of two dimensions, a Plate one of three"
+                raise SceneError("walls", self.walls, rule)
             if self.centres_to_walls:
                 raise SceneError("centres_to_walls", True, "interior walls stop the bodies' surfaces")
-            for key, point in (("start", wall.start), ("end", wall.end)):
+            for key, point in wall.corners.items():
                 if not all(
                     0.0 <= x <= length for x, length in zip(point, self.container.lengths, strict=True)
                 ):
@@ -236,7 +243,7 @@ class Scene:
         """A new scene with these species added."""
         return replace(self, species=self.species + species)
 
-    def with_walls(self, *walls: Wall) -> Scene:
+    def with_walls(self, *walls: Wall | Plate) -> Scene:
         """A new scene with these walls added."""
         return replace(self, walls=self.walls + walls)
 
@@ -266,7 +273,8 @@ class Scene:
             if isinstance(parts.get("faces"), dict):
                 faces = parts["faces"].items()
                 parts["faces"] = {name: surface_from_dict(face, f"faces.{name}") for name, face in faces}
-            for key, kind in (("species", Species), ("bodies", Body), ("walls", Wall)):
+            wall = _wall_kind(parts["container"])
+            for key, kind in (("species", Species), ("bodies", Body), ("walls", wall)):
                 items = parts.get(key, ())
                 if not isinstance(items, (list, tuple)):
                     raise SceneError(key, items, "must be a list")

@@ -11,7 +11,7 @@ from gaspart.engines import EventDriven, TimeStepped
 from gaspart.engines.common import EventLog
 from gaspart.errors import SceneError, SimulationError
 from gaspart.initial import initial_state
-from gaspart.matter import Body, Species, Wall, box_of_walls
+from gaspart.matter import Body, Plate, Species, Wall, box_of_walls
 from gaspart.scene import Scene
 from gaspart.state import State
 from gaspart.tally import Tally
@@ -68,8 +68,13 @@ class Simulation:
         """Add an interior wall from `start` to `end`. Refused after the first advance."""
         self._change(self.scene.with_walls(Wall(tuple(start), tuple(end))))
 
+    def add_plate(self, corner, edges) -> None:
+        """Add an interior wall of three dimensions (see `Plate`). Refused after the first advance."""
+        self._change(self.scene.with_walls(Plate(tuple(corner), tuple(map(tuple, edges)))))
+
     def add_box(self, lower, upper) -> None:
-        """Add the four walls of a rectangle, given opposite corners. Refused after the first advance."""
+        """Add the walls of a rectangle or of a cuboid, given opposite corners. Refused after the first
+        advance."""
         self._change(self.scene.with_walls(*box_of_walls(tuple(lower), tuple(upper))))
 
     def _change(self, scene: Scene) -> None:

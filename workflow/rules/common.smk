@@ -102,6 +102,7 @@ ENGINES = [
     "initial",
     "insertion",
     "kernel",
+    "plates",
     "random",
     "segments",
     "simulation",
@@ -122,6 +123,7 @@ MODULES = {
         "boxes",
         "insertion",
         "kernel",
+        "plates",
         "random",
         "segments",
         "measure/__init__",
@@ -182,7 +184,7 @@ def modules_of(stage):
 
 
 # The modules among them whose code is compiled.
-KERNELS = ["boxes", "contact", "draws", "engines/*", "falling", "insertion", "kernel", "segments"]
+KERNELS = ["boxes", "contact", "draws", "engines/*", "falling", "insertion", "kernel", "plates", "segments"]
 
 
 @cache

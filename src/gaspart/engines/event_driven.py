@@ -89,11 +89,11 @@ class EventDynamics:
         )  # fmt: skip
         self._walls = None
         if scene.walls:
-            from gaspart.segments import segments_near, segments_of
+            from gaspart import plates, segments
 
-            segments, wall = segments_of(scene)
-            near = segments_near(segments, boxes, largest)
-            self._walls = layout.Walls(segments, wall, *near, largest)
+            pieces, wall = segments.segments_of(scene) if d == 2 else plates.plates_of(scene)
+            find = segments.segments_near if d == 2 else plates.plates_near
+            self._walls = layout.Walls(pieces, wall, *find(pieces, boxes, largest), largest)
         self._calendar = empty_calendar(n)
         self._law = law_for_kernel(scene, state)
         self._unit_mass, self._masses = (1.0, None) if self._law else masses_for_kernel(state.masses)

@@ -9,7 +9,7 @@ VIRIAL, WORST, LOSS = range(3)
 NOTHING = -1
 INNER = 6  # face codes: 2 axis + side for the container's faces, INNER more for those between boxes
 EDGES = 12  # EDGES more for the edges of the wells at the container's faces
-WALLS = 18  # and from here on the segments of interior walls
+WALLS = 18  # and from here on the pieces of interior walls
 HARD, THERMAL, THERMAL_NORMAL, STICKY = range(4)  # kinds of faces
 STOP, EVENTS, FULL, COLLAPSE = range(4)  # why a run ended: the time, the number of events, the record, a loop
 
@@ -44,10 +44,11 @@ class Law(NamedTuple):
 
 
 class Walls(NamedTuple):
-    """segments (M, 5) and wall (M,), see `segments`; listed[first[b] : first[b + 1]] are those near box b,
-    for bodies of a radius up to `above`; those for bigger bodies, all, follow the last box."""
+    """pieces (M, 5) or (M, 11) and wall (M,), see `segments` and `plates`; listed[first[b] : first[b + 1]]
+    are those near box b, for bodies of a radius up to `above`; those for bigger bodies, all, follow the
+    last box."""
 
-    segments: np.ndarray
+    pieces: np.ndarray
     wall: np.ndarray
     first: np.ndarray
     listed: np.ndarray

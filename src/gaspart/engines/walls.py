@@ -1,36 +1,16 @@
-"""Interior walls: segments that are hit from both sides, with solid ends."""
+"""Interior walls, hit from both sides: segments with solid ends, and plates with solid rims."""
 
 from math import inf, sqrt
 
 from gaspart.contact import normal_change, time_to_contact
 from gaspart.engines.flight import acceleration, advance_row
-from gaspart.engines.impact import LEAST, strike_wall
+from gaspart.engines.impact import LEAST, push, strike_wall
 from gaspart.engines.layout import WALLS, WORST
 from gaspart.engines.lists import box_of
-from gaspart.falling import time_against, time_along, time_to_contact_pulled
-from gaspart.kernel import helper, kernel
-
-
-@helper
-def time_to_side(gap, closing, pull):
-    """Time until a body touches the side that it is on: `gap` from it, approaching at `closing`, drawn
-    towards it by `pull`; inf if it never does."""
-    if pull > 0.0:
-        return time_along(gap, closing, pull)
-    if closing <= 0.0:
-        return inf
-    if pull < 0.0:
-        return time_against(gap, closing, -pull)
-    return max(0.0, gap / closing)
-
-
-@helper
-def time_to_far_side(gap, closing, pull):
-    """The same for the side that it is not on yet (gap < 0): it must pass the line, turn and come back."""
-    if closing >= 0.0 or pull <= 0.0:
-        return inf
-    square = closing * closing + 2.0 * pull * gap
-    return (sqrt(square) - closing) / pull if square > 0.0 else inf
+from gaspart.engines.plates import time_to_plate
+from gaspart.falling import time_to_contact_pulled, time_to_far_side, time_to_side
+from gaspart.kernel import kernel
+from gaspart.plates import gap_to_plate
 
 
 @kernel
@@ -79,11 +59,14 @@ def time_to_wall(rows, body, segments, m, space, gravity):
 def find_wall(rows, plans, body, space, partition, gravity, walls, soon, face):
     """The next wall that the body comes to of those near its box, if before `soon`: (time, code)."""
     box = box_of(plans, partition, body)
-    if rows[body, 5] > walls.above:
+    if rows[body, 2 * len(space.lengths) + 1] > walls.above:
         box = len(walls.first) - 2
     for n in range(walls.first[box], walls.first[box + 1]):
         m = walls.listed[n]
-        time = time_to_wall(rows, body, walls.segments, m, space, gravity)
+        if len(space.lengths) == 2:
+            time = time_to_wall(rows, body, walls.pieces, m, space, gravity)
+        else:
+            time = time_to_plate(rows, body, walls.pieces, m, space, gravity)
         if time < soon:
             soon = time
             face = WALLS + m
@@ -91,30 +74,45 @@ def find_wall(rows, plans, body, space, partition, gravity, walls, soon, face):
 
 
 @kernel
+def gap_to_wall(rows, body, m, space, walls):
+    """The vector from the centre of a body to the nearest point of a wall."""
+    if len(space.lengths) == 3:
+        return gap_to_plate(walls.pieces, m, rows[body, 0], rows[body, 1], rows[body, 2])
+    ux, uy = walls.pieces[m, 2], walls.pieces[m, 3]
+    dx = rows[body, 0] - walls.pieces[m, 0]
+    dy = rows[body, 1] - walls.pieces[m, 1]
+    s = min(max(ux * dx + uy * dy, 0.0), walls.pieces[m, 4])
+    return s * ux - dx, s * uy - dy, 0.0
+
+
+@kernel
 def meet_wall(rows, plans, body, m, time, space, masses, counters, gravity, law, walls):
-    """Reflect a body at a segment, from its side or its end. Returns the number of the wall."""
+    """Reflect a body at a wall, from its side or its rim. Returns the number of the wall."""
+    d = len(space.lengths)
     advance_row(rows, body, time, space, gravity)
     plans[body].changes += 1
-    ux, uy = walls.segments[m, 2], walls.segments[m, 3]
-    dx = rows[body, 0] - walls.segments[m, 0]
-    dy = rows[body, 1] - walls.segments[m, 1]
-    s = min(max(ux * dx + uy * dy, 0.0), walls.segments[m, 4])
-    x, y = s * ux - dx, s * uy - dy  # from the centre to the point of contact
-    distance = sqrt(x * x + y * y)
+    x, y, z = gap_to_wall(rows, body, m, space, walls)
+    distance = sqrt(x * x + y * y + z * z)
     x /= distance
     y /= distance
-    least = LEAST * max(abs(rows[body, 2]), abs(rows[body, 3]))
+    z /= distance
+    least = 0.0
+    for k in range(d):
+        least = max(least, abs(rows[body, d + k]))
+    least *= LEAST
     if law is None:
         mass = 1.0 if masses is None else masses[body]
-        change = normal_change(x * rows[body, 2] + y * rows[body, 3], 1.0, least)
-        rows[body, 2] -= change * x
-        rows[body, 3] -= change * y
+        approach = x * rows[body, d] + y * rows[body, d + 1]
+        if d == 3:
+            approach += z * rows[body, d + 2]
+        change = normal_change(approach, 1.0, least)
+        push(rows, body, -(change * x), -(change * y), -(change * z), space)
         impulse = mass * change
     else:
-        impulse = strike_wall(rows, body, x, y, 0.0, least, space, counters, law)
-    wall = 4 + walls.wall[m]
+        impulse = strike_wall(rows, body, x, y, z, least, space, counters, law)
+    wall = 2 * d + walls.wall[m]
     counters.wall_hits[wall] += 1
     counters.wall_impulse[wall] += impulse
-    square = distance / rows[body, 5]
+    square = distance / rows[body, 2 * d + 1]
     counters.sums[WORST] = max(counters.sums[WORST], abs(square * square - 1.0))
     return wall
