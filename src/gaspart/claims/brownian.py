@@ -8,8 +8,8 @@ from gaspart.claims import Claim
 
 LANGEVIN = "the Langevin equation with the friction of a dilute gas (Chapman and Cowling)"
 EQUAL_SPEEDS = 0.1
-"""How far friction and diffusion in the source's gas, of equal speeds, may lie from those in Maxwell's: its
-mean speed is 8.5 % higher at the same temperature."""
+"""How far energy, friction and diffusion in the source's gas, of equal speeds, may lie from those in
+Maxwell's, for which theory holds: at the same temperature its mean speed is 8.5 % higher."""
 MOMENTUM_SHARE = 0.2
 """Relative uncertainty of the effect of a finite gas: that recoil is shared by all of it at once."""
 

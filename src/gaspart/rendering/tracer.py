@@ -23,7 +23,7 @@ NOTHING, FLOOR, EDGE, SPHERE = 0, 2, 4, 6
 
 _AMBIENT, _LAMP, _GLOSS = 0.55, 0.75, 0.18
 _HAZE = 0.22  # what the far end of the container loses of its colour
-_FLOOR_LIGHT, _EDGE_LIGHT = 0.86, 0.16
+_FLOOR_LIGHT, _EDGE_LIGHT = 0.72, 0.16
 _EDGE_PIXELS = 0.8  # half the width of the container's edges
 _GAMMA = 2.2
 
