@@ -15,7 +15,7 @@ from gaspart.statistics import block_average, mean_of
 from gaspart.trajectory import open_trajectory
 
 STARTS = {"lattice": "crystal", "compressed": "fluid"}
-"""What a run starts from, by its arrangement: a perfect lattice, or a fluid compressed at random."""
+"""What a run starts from, by its arrangement: a perfect lattice, or a disordered fluid."""
 CRYSTAL_ORDER = 0.3
 """Global Q_6 above which a run of spheres is taken for a crystal: 0.45 and more near melting, 0.03 in the
 fluid."""
