@@ -89,6 +89,11 @@ def check(point: Point) -> None:
         if "attempts" not in settings:
             raise SceneError(f"{where}.attempts", None, "is required with job: fill")
         return
+    if point.job == "pack":
+        if ("attempts" in settings) == (settings.get("arrangement") == "compressed"):
+            rule = "is required with job: pack, unless the arrangement is compressed"
+            raise SceneError(f"{where}.attempts", settings.get("attempts"), rule)
+        return
     engine = settings.get("engine", "event")
     if engine == "step" and "time_step" not in settings:
         raise SceneError(f"{where}.time_step", None, "must be given with engine: step")
@@ -183,6 +188,8 @@ def recipe(point: Point) -> dict:
     }
     if point.job == "fill":
         return {**made, "attempts": point.settings["attempts"]}
+    if point.job == "pack":
+        return {**made, "attempts": point.settings.get("attempts")}
     from gaspart.engines import engine_to_dict
 
     times = schedule(point)

@@ -26,7 +26,7 @@ def variant(point: Point) -> str:
     Kernels are compiled for what is there at all, not for its numbers. Raises SceneError.
     """
     scene = grid.scene(point)
-    engine = "fill" if point.job == "fill" else point.settings.get("engine", "event")
+    engine = "fill" if point.job in ("fill", "pack") else point.settings.get("engine", "event")
     boxes = any(key in point.settings for key in ("boxes_per_side", "boxes_per_body", *grid.SCANS))
     choice = {
         "fill": "random",

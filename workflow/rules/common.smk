@@ -129,6 +129,13 @@ MODULES = {
         "measure/__init__",
         "measure/fill",
     ],
+    "pack": [
+        *SCENE,
+        *[name for name in ENGINES if name != "simulation"],
+        "measure/__init__",
+        "measure/fill",
+        "measure/pack",
+    ],
     "measure": [
         *SIMULATE,
         *THEORY,
@@ -163,6 +170,17 @@ FAMILY_MODULES = {
     ("draw", "pictures"): [
         "kernel",
         *RENDERING,
+        "state",
+        "validation",
+    ],
+    ("draw", "packing"): [
+        "kernel",
+        "rendering/__init__",
+        "rendering/bodies",
+        "rendering/camera",
+        "rendering/discs",
+        "rendering/pictures",
+        "rendering/tracer",
         "state",
         "validation",
     ],

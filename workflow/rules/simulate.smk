@@ -73,3 +73,27 @@ rule fill:
         recipe=recipe_of,
     script:
         "../scripts/fill.py"
+
+
+rule pack:
+    input:
+        kernels=lambda wildcards: ancient(stamp_of(wildcards)),
+        modules=module_files("pack"),
+    output:
+        f"{config['points']}/{{experiment}}/{{point}}.nc",
+    log:
+        "results/logs/pack/{experiment}/{point}.log",
+    benchmark:
+        "results/benchmarks/pack/{experiment}/{point}.tsv"
+    wildcard_constraints:
+        experiment=experiments("pack"),
+    conda:
+        "../envs/gaspart.yaml"
+    threads: 1
+    resources:
+        mem_mb=memory_of,
+        runtime=120,
+    params:
+        recipe=recipe_of,
+    script:
+        "../scripts/pack.py"

@@ -40,6 +40,13 @@ def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> xr.Datase
 
 def _fill_once(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarray, int]:
     """Failures before each body (N,), -1 where there was no room; and the attempts that were made."""
+    before, used, _ = insert(scene, attempts, seed)
+    return before, used
+
+
+def insert(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarray, int, np.ndarray]:
+    """Failures before each body (N,), -1 where there was no room; the attempts that were made; and the places
+    of the bodies (M, d) that found one."""
     boxes = make_boxes(scene, sides_for(scene, per_body=1.0), images=False)
     lower, upper = scene.reach(scene.largest_radius)
     head = np.full(boxes.count, -1, dtype=np.int64)
@@ -57,4 +64,4 @@ def _fill_once(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.n
             np.empty(0, dtype=np.int64),
         )  # fmt: skip
         used += tried
-    return before, used
+    return before, used, positions[:placed]
