@@ -12,8 +12,7 @@ from scenes import gas
 from test_initial import closest
 
 import gaspart as gp
-from gaspart import compression
-from gaspart.compression import compress
+from gaspart import compress, compression
 from gaspart.contact import time_to_growing_contact
 from gaspart.initial import initial_state
 

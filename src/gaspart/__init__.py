@@ -25,6 +25,7 @@ _HOMES = {
     "TimeStepped": "engines",
     "Wall": "matter",
     "Well": "surfaces",
+    "compress": "compression",
     "engine_from_dict": "engines",
     "engine_to_dict": "engines",
     "film": "rendering.films",
