@@ -100,7 +100,7 @@ def _mp4(partial: Path, shown: Iterator[np.ndarray], size: tuple[int, int], rate
     from imageio_ffmpeg import write_frames
 
     options = ["-f", "mp4", "-fflags", "+bitexact", "-flags:v", "+bitexact"]  # no date, no program in it
-    writer = write_frames(str(partial), size, fps=rate, quality=7, macro_block_size=2, output_params=options)
+    writer = write_frames(str(partial), size, fps=rate, macro_block_size=2, output_params=options)
     writer.send(None)
     for image in shown:
         writer.send(np.ascontiguousarray(image))
