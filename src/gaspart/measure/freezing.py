@@ -44,7 +44,8 @@ def freezing_discs(points: list[grid.Point], settings: dict) -> xr.Dataset:
     last frame x, y and angle, the argument of psi_6, over `body`; positions in units of the diameter.
     """
     dataset = _states(points, lambda frame, lengths: abs(structure.hexatic(frame, lengths).mean()))
-    sides = [_plateau(dataset.isel(start=k)) for k in range(dataset.sizes["start"])]
+    unlike = dataset["pressure"].max("start") - dataset["pressure"].min("start")
+    sides = [_plateau(dataset.isel(start=k), unlike) for k in range(dataset.sizes["start"])]
     for k, name in enumerate(("plateau", "plateau_error", "plateau_low", "plateau_high")):
         dataset[name] = ("start", np.array([side[k] for side in sides]))
     chosen = {start: _of_start(points, start) for start in dataset["start"].values}
@@ -143,11 +144,12 @@ def _disagreement(dataset: xr.Dataset) -> xr.DataArray:
     return xr.concat(worst, "what").max("what")
 
 
-def _plateau(side: xr.Dataset) -> tuple[float, float, float, float]:
-    """The plateau of one start. A point's uncertainty holds its drift: a run that has not settled is not
-    known."""
-    side = side.dropna("packing_fraction", subset=["pressure"])
-    error = np.hypot(side["pressure_error"], 0.5 * side["pressure_drift"]).values
+def _plateau(side: xr.Dataset, unlike: xr.DataArray) -> tuple[float, float, float, float]:
+    """The plateau of one start. A point's uncertainty holds half of its drift and of how `unlike` the
+    starts are: a run that has not settled is not known."""
+    side = side.assign(unlike=unlike).dropna("packing_fraction", subset=["pressure"])
+    parts = side["pressure_error"], 0.5 * side["pressure_drift"], 0.5 * side["unlike"]
+    error = np.sqrt(sum(part.values**2 for part in parts))
     pressure, uncertainty, (large, small) = plateau(
         1.0 / side["density"].values, side["pressure"].values, error
     )

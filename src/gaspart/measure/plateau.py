@@ -19,7 +19,8 @@ def plateau(volume, pressure, error, seed: int = 0) -> tuple[float, float, tuple
     region has a loop (Mayer and Wood, J. Chem. Phys. 42, 4268 (1965)) because its interface costs free
     energy; the area between the ends is the difference in free energy, so the line is where both phases
     have the same chemical potential. The loop is interpolated monotonically between points (Fritsch and
-    Carlson). The error is the scatter over loops redrawn from the points' errors. Without a loop, or if
+    Carlson). The error is half of the width of the middle 68 % of loops redrawn from
+    the points' errors. Without a loop, or if
     less than half of those redrawn have one: NaN, NaN, (NaN, NaN).
     """
     order = np.argsort(volume)
@@ -30,7 +31,7 @@ def plateau(volume, pressure, error, seed: int = 0) -> tuple[float, float, tuple
     found = redrawn[np.isfinite(redrawn)]
     if math.isnan(value) or found.size < REPEATS / 2:
         return math.nan, math.nan, (math.nan, math.nan)
-    return value, float(found.std(ddof=1)), ends
+    return value, float(0.5 * np.diff(np.percentile(found, [15.87, 84.13]))[0]), ends
 
 
 def _equal_areas(volume, pressure) -> tuple[float, tuple[float, float]]:
