@@ -17,6 +17,7 @@ from gaspart.errors import SceneError, SimulationError
 from gaspart.rendering.command import add_render
 
 _ENGINE_SETTINGS = ("time_step", "boxes_per_side", "precision", "rewind", "search")
+_ENGINE_SETTINGS += ("passes", "skin", "near_boxes", "threads")
 
 # `gaspart theory`: name -> (function of gaspart.theory, the body's properties it takes, what it is)
 _BODY = ("diameter", "temperature", "mass")
@@ -114,6 +115,11 @@ def _add_run(commands) -> None:
     add("--precision", metavar="TYPE", help="step engine: float64 (default) or float32")
     text = "step engine: collide pairs as they lie after the step, not as they were at their contact"
     add("--no-rewind", dest="rewind", action="store_false", default=None, help=text)
+    add("--passes", type=int, metavar="N", help="step engine: how often a step may look for overlaps (4)")
+    add("--skin", type=float, metavar="L", help="step engine: of its neighbour list; by default it chooses")
+    text = "step engine: look only into boxes within reach of a contact"
+    add("--near-boxes", action="store_true", default=None, help=text)
+    add("--threads", type=int, metavar="N", help="step engine: how many share the work (1)")
     add("--search", metavar="NAME", help="event engine: boxes (default), direct or pairs")
     add("--force", action="store_true", help="replace a trajectory of another run")
     _add_progress(run)
@@ -268,6 +274,11 @@ def _run_options(path: Path, recipe, stored: dict) -> list[str]:
     for key in ("precision", "search"):
         if key in settings:
             options += [f"--{key}", settings[key]]
+    for key in ("passes", "skin", "threads"):
+        if key in settings:
+            options += [f"--{key}", repr(settings[key])]
+    if settings.get("near_boxes"):
+        options.append("--near-boxes")
     if settings.get("rewind") is False:
         options.append("--no-rewind")
     if recipe.displacements:

@@ -29,6 +29,7 @@ ENGINE_KEYS = {
         "rewind",
         "passes",
         "skin",
+        "threads",
     ),
 }
 SCANS = ("scan_boxes_per_side", "scan_boxes_per_body")

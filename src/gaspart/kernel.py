@@ -42,6 +42,7 @@ KERNEL_MODULES = (
     "engines/step_contacts.py",
     "engines/step_boxes.py",
     "engines/step_list.py",
+    "engines/step_threads.py",
     "engines/step_kernels.py",
 )
 
@@ -106,3 +107,9 @@ def helper(function):
 def allocating_kernel(function):
     """The same for a function that makes arrays."""
     return _compile(function)
+
+
+def parallel_kernel(function):
+    """The same for a function whose `prange` loops are shared among threads. What its parts write must not
+    depend on one another, so that it does not matter which is done when."""
+    return _compile(function, parallel=True)

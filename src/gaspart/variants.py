@@ -31,7 +31,10 @@ def variant(point: Point) -> str:
     choice = {
         "fill": "random",
         "event": point.settings.get("search", "boxes"),
-        "step": ("boxes" if boxes else "list") + "-" + point.settings.get("precision", "float64"),
+        "step": "-".join(
+            ["boxes" if boxes else "list", point.settings.get("precision", "float64")]
+            + (["threads"] if point.settings.get("threads", 1) > 1 else [])
+        ),
     }
     boundary = "".join(kind[0] for kind in scene.container.boundary)
     parts = [engine, choice[engine], f"{scene.dimension}d", boundary]

@@ -32,7 +32,7 @@ def test_any_search_gives_the_same_bits(scene, precision, rewind, passes, seed):
         try:
             sim = gp.Simulation(scene, engine, seed=seed)
         except gp.SceneError as error:
-            assert error.key in ("boxes_per_side", "lengths")
+            assert error.key in ("boxes_per_side", "lengths", "time_step")
             continue
         sim.advance(duration=3.0)
         tally = sim.tally
@@ -41,8 +41,21 @@ def test_any_search_gives_the_same_bits(scene, precision, rewind, passes, seed):
         assert all(np.array_equal(one, other) for one, other in zip(ends[0], end, strict=True))
 
 
+@pytest.mark.parametrize("boundary", ["wall", "periodic", ("wall", "periodic")])
+def test_any_number_of_threads_gives_the_same_bits(boundary):
+    ends = []
+    for threads in (1, 2, 4):
+        sim = gp.Simulation(gas(2, 300, 0.3, boundary), gp.TimeStepped(0.02, threads=threads), seed=3)
+        sim.advance(duration=4.0)
+        assert sim.tally.collisions > 500
+        ends.append((sim.state.unwrapped, str(sim.tally)))
+    for positions, tally in ends[1:]:
+        assert np.array_equal(positions, ends[0][0])
+        assert tally == ends[0][1]
+
+
 def test_one_box_tests_each_pair_once_a_step():
-    sim = gp.Simulation(gas(3, 40, 0.01), gp.TimeStepped(0.01, boxes_per_side=1), seed=1)
+    sim = gp.Simulation(gas(3, 40, 0.01), gp.TimeStepped(0.01, boxes_per_side=1, passes=1), seed=1)
     sim.advance(duration=1.0)
     assert sim.tally.steps == 100
     assert sim.tally.pair_tests == 100 * 40 * 39 // 2
@@ -182,3 +195,72 @@ def test_what_it_cannot_do_it_refuses():
         sim.advance(max_events=3)
     with pytest.raises(gp.SceneError, match="record_events"):
         sim.record_events = True
+
+
+def test_a_bouncing_ball_follows_its_parabolas():
+    """Whatever the step, the ball is where the event-driven engine has it; many bounces fit into one step."""
+    ball = gp.Body((2.0, 3.0), (1.0, 0.0), 0.5)
+    scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=[ball], gravity=(0.0, -2.0))
+    exact = gp.Simulation(scene, gp.EventDriven())
+    exact.advance(duration=16.0)
+    for time_step in (8.0, 0.25, 0.001):
+        sim = gp.Simulation(scene, gp.TimeStepped(time_step))
+        sim.advance(duration=16.0)
+        assert sim.tally.wall_hits.tolist() == exact.tally.wall_hits.tolist()
+        assert np.allclose(sim.state.positions, exact.state.positions, atol=1e-9)
+        assert np.allclose(sim.tally.wall_impulse, exact.tally.wall_impulse, rtol=1e-7)
+
+
+def test_a_falling_gas_keeps_its_energy_whatever_the_search():
+    scene = gp.Scene(
+        gp.Container((12.0, 20.0), ("periodic", "wall")),
+        [gp.Species(40, 0.4, temperature=1.0), gp.Species(5, 0.6, mass=7.0, temperature=1.0)],
+        gravity=(0.0, -1.0),
+    )
+    ends = []
+    for search in ({}, {"skin": 0.1}, {"boxes_per_side": (5, 4)}):
+        sim = gp.Simulation(scene, gp.TimeStepped(0.01, **search), seed=2)
+        sim.advance(duration=10.0)
+        assert sim.tally.collisions > 100
+        assert sim.state.energy == pytest.approx(sim.initial_state.energy, rel=1e-12)
+        ends.append(sim.state.positions)
+    assert all(np.array_equal(ends[0], end) for end in ends[1:])
+
+
+def test_a_giant_and_fixed_bodies_follow_the_event_driven_engine():
+    """A body larger than a box is kept beside the partition, a fixed one passes no momentum on."""
+    giant = gp.Body((10.0, 10.0), (0.1, 0.0), 4.0, mass=50.0)
+    bodies = [giant, gp.Body((3.0, 16.0), (0.0, 0.0), 0.5, fixed=True)]
+    kinds = [gp.Species(12, 0.3, temperature=1.0)]
+    scene = gp.Scene(gp.Container((20.0, 20.0), "periodic"), kinds, bodies)
+    exact = gp.Simulation(scene, gp.EventDriven(), seed=5)
+    exact.advance(duration=5.0)
+    assert exact.tally.collisions > 5
+    for search in ({}, {"boxes_per_side": 20}):  # boxes of 1, the giant of 8
+        sim = gp.Simulation(scene, gp.TimeStepped(0.0005, **search), seed=5)
+        sim.advance(duration=5.0)
+        assert sim.tally.collisions == exact.tally.collisions
+        assert np.allclose(sim.state.unwrapped, exact.state.unwrapped, atol=1e-8)
+
+
+def test_more_passes_find_what_one_misses():
+    """Of dilute discs one pass misses (v_th dt/sigma)^2 of the contacts, several a quarter of that."""
+    scene, time_step = gas(2, 400, 0.02), 0.25
+    met = {}
+    for passes in (1, 4):
+        sim = gp.Simulation(scene, gp.TimeStepped(time_step, passes=passes), seed=1)
+        sim.advance(duration=4000.0)
+        met[passes] = sim.tally.collisions
+        assert sim.tally.overlaps_left < 0.01 * met[passes]
+    missed = (1 - 1 / 4) * time_step**2
+    assert 1 - met[1] / met[4] == pytest.approx(missed, abs=4 / math.sqrt(met[4]), rel=0.3)
+
+
+@pytest.mark.parametrize(("count", "eta", "time_step"), [(100, 0.01, 0.6), (200, 0.4, 0.5)])
+def test_a_step_that_is_too_long_is_refused(count, eta, time_step):
+    with pytest.raises(gp.SceneError, match=r"time_step = .* a step of \S+ would do") as refused:
+        gp.Simulation(gas(3, count, eta, arrangement="lattice"), gp.TimeStepped(time_step), seed=1)
+    would_do = float(str(refused.value).split("a step of ")[1].split()[0])
+    gp.Simulation(gas(3, count, eta, arrangement="lattice"), gp.TimeStepped(0.98 * would_do), seed=1)
+    with pytest.warns(UserWarning, match="would do"):
+        gp.Simulation(gas(3, count, eta, arrangement="lattice"), gp.TimeStepped(1.1 * would_do), seed=1)

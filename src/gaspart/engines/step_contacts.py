@@ -165,18 +165,18 @@ def resolve(bodies, space, i, j, dt, step, rewind, parting, watch, counters):
 
 
 @kernel
-def resolve_all(bodies, space, found, order, dt, step, rewind, parting, watch, counters):
+def resolve_all(bodies, space, pairs, order, dt, step, rewind, parting, watch, counters):
     """Resolve what one search has found, in order."""
     for n in order:
-        i, j = found.pairs[0, n, 0], found.pairs[0, n, 1]
+        i, j = pairs[n, 0], pairs[n, 1]
         resolve(bodies, space, i, j, dt, step, rewind, parting, watch, counters)
 
 
 @kernel
-def count_left(bodies, space, found, counters):
+def count_left(bodies, space, pairs, counters):
     """Count the pairs found that overlap and approach even now."""
-    for n in range(found.number[0]):
-        i, j = found.pairs[0, n, 0], found.pairs[0, n, 1]
+    for n in range(len(pairs)):
+        i, j = pairs[n, 0], pairs[n, 1]
         rr, rv, _ = invariants(bodies, space, i, j)
         sigma = bodies.radii[i] + bodies.radii[j]
         if rr < sigma * sigma and rv < 0.0:

@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gaspart.kernel import helper
+
 COLLISIONS, PAIR_TESTS, BOX_VISITS, OVERLAPS_LEFT, MULTIPLE, REBUILDS = range(6)
 VIRIAL, DEEPEST, WORST = range(3)
 FASTEST, STRAYED, SPENT, PENDING = range(4)
@@ -68,3 +70,9 @@ class Watch(NamedTuple):
     met: np.ndarray
     strayed: np.ndarray
     reach: np.ndarray
+
+
+@helper
+def share(part, parts, count):
+    """Where part `part` of `count` things divided among `parts` begins."""
+    return part * count // parts

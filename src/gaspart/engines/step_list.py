@@ -14,13 +14,11 @@ from gaspart.boxes import box_coordinate
 from gaspart.engines.step_contacts import distance_squared, examine
 from gaspart.engines.step_layout import (
     FASTEST,
-    PAIR_TESTS,
     PENDING,
-    REBUILDS,
     SPENT,
     STRAYED,
+    share,
 )
-from gaspart.engines.step_motion import note_fastest
 from gaspart.kernel import allocating_kernel, helper, kernel
 
 _BLOCK = 128  # bodies whose candidates are gathered before any is tested
@@ -157,11 +155,14 @@ def near(bodies, arranged, s, t, skin):
 
 
 @allocating_kernel
-def list_pairs(bodies, cells, arranged, low, high, pairs, counters):
-    """Write down all pairs (first, second) (room,) of slots nearer than a contact and the skin, whose first
-    lies from `low` to `high` among the sorted; their number, or -1 if there is not room enough."""
-    first, second = pairs
+def list_pairs(bodies, cells, arranged, part, pairs, done):
+    """Write down all pairs of slots nearer than a contact and the skin whose first is of one part of the
+    sorted, into pairs[part] (room, 2). done[part] (2,): their number, or -1 if there is not room enough; and
+    the number of tests."""
+    first, second = pairs[part, :, 0], pairs[part, :, 1]
     dimension = bodies.positions.shape[0]
+    low = share(part, len(pairs), len(arranged.slot))
+    high = share(part + 1, len(pairs), len(arranged.slot))
     from_ = np.empty(_BLOCK * 5 * _AHEAD + 1, np.int32)
     to = np.empty(_BLOCK * 5 * _AHEAD + 1, np.int32)
     begin = np.empty(5, np.int64)
@@ -169,6 +170,7 @@ def list_pairs(bodies, cells, arranged, low, high, pairs, counters):
     room = len(first)
     last = len(arranged.slot) - 1
     tests = found = 0
+    done[part, 0] = -1
     block = low
     while block < high:
         stop = min(block + _BLOCK, high)
@@ -195,14 +197,14 @@ def list_pairs(bodies, cells, arranged, low, high, pairs, counters):
                     t += 1
                 if t < after:
                     if found + after - t > room:
-                        return -1
+                        return
                     tests += after - t
                     for other in range(t, after):
                         first[found] = arranged.slot[s]
                         second[found] = arranged.slot[other]
                         found += near(bodies, arranged, s, other, cells.skin)
         if found + number > room:
-            return -1
+            return
         tests += number
         for n in range(number):
             s, t = from_[n], to[n]
@@ -210,8 +212,7 @@ def list_pairs(bodies, cells, arranged, low, high, pairs, counters):
             second[found] = arranged.slot[t]
             found += near(bodies, arranged, s, t, cells.skin)
         block = stop
-    counters.counts[PAIR_TESTS] += tests
-    return found
+    done[part, 0], done[part, 1] = found, tests
 
 
 @helper
@@ -221,28 +222,11 @@ def is_stale(cells, watch, dt):
     return not way + way < _SAFE * cells.skin
 
 
-@allocating_kernel
-def make_list(bodies, space, cells, pairs, watch, counters):
-    """Make the list anew. Returns the pairs, in larger arrays if need be, and their number."""
-    arranged = sort_by_cell(bodies, space, cells)
-    number = -1
-    while number < 0:
-        number = list_pairs(bodies, cells, arranged, 0, len(arranged.slot), pairs, counters)
-        if number < 0:
-            room = 2 * len(pairs[0]) + bodies.ordinary + 64
-            pairs = (np.empty(room, np.int32), np.empty(room, np.int32))
-    note_fastest(bodies, watch)
-    watch.reach[SPENT] = watch.reach[STRAYED] = watch.reach[PENDING] = 0.0
-    counters.counts[REBUILDS] += 1
-    return pairs, number
-
-
 @kernel
 def search_pairs(bodies, space, pairs, low, high, dt, parting, found, thread):
-    """Write down the pairs of the list, from `low` to `high`, that are to be resolved."""
-    first, second = pairs
+    """Write down the pairs (n, 2) of the list, from `low` to `high`, that are to be resolved."""
     for n in range(low, high):
-        i, j = first[n], second[n]
+        i, j = pairs[n, 0], pairs[n, 1]
         sigma = bodies.radii[i] + bodies.radii[j]
         if distance_squared(bodies, space, i, j) < sigma * sigma:
             examine(bodies, space, i, j, dt, parting, found, thread)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 
 import numpy as np
 
@@ -12,6 +13,11 @@ from gaspart.state import State
 
 _GIANTS = 16  # at most so many bodies are tested against all others
 _GIANT = 2.0  # radii of the next smaller body that make one of them
+MISSED, MISSED_MOST = 0.01, 0.1
+"""The part of all contacts that a step may overlook before the engine warns, and refuses."""
+CROWDED, CROWDED_MOST = {True: 2.5, False: 0.5}, {True: 5.0, False: 1.0}
+"""Contacts of a body in a step, with several passes or with one, before the engine warns, and refuses. Up to
+the first the pressure is right to about 1 % (measured: docs/time-stepped.md)."""
 
 
 def giants_of(state: State) -> np.ndarray:
@@ -48,13 +54,65 @@ def check_scene(scene: Scene, state: State, giants: np.ndarray) -> None:
             raise SceneError("lengths", scene.container.lengths, rule)
 
 
-def check_step(engine, scene: Scene, state: State) -> None:
-    """Raise SceneError for a step with which the engine would be wrong."""
+def missed_contacts(time_step: float, several: bool, state: State) -> float:
+    """The part of all contacts that a step overlooks: pairs that touch and part again within it.
+
+    (2/3) (v_th dt / sigma)^2 of a dilute gas of spheres, 1/4 instead of 2/3 for discs, v_th = sqrt(kT/m);
+    four times that if only growing overlaps are resolved (not `several` passes). From the flux of pairs
+    through chords that they cross within a step. v_th is that of each species now; the mean over the pairs
+    that collide.
+    """
+    square, radius, number = [], [], []
+    for kind in np.unique(state.species):
+        of = state.species == kind
+        square.append((state.velocities[of] ** 2).mean())
+        radius.append(state.radii[of].mean())
+        number.append(of.sum())
+    square, radius, number = (np.array(values, dtype=float) for values in (square, radius, number))
+    sigma = radius[:, None] + radius
+    relative = (square[:, None] + square) / (2 * state.dimension)
+    pairs = number[:, None] * (number - np.eye(len(number)))
+    rate = np.maximum(0.0, pairs) * sigma ** (state.dimension - 1) * np.sqrt(relative)
+    if not rate.sum() > 0.0:
+        return 0.0
+    missed = relative * (time_step / sigma) ** 2
+    factor = {2: 1.0 / 4.0, 3: 2.0 / 3.0}[state.dimension] * (1.0 if several else 4.0)
+    return float(factor * (rate * missed).sum() / rate.sum())
 
 
-def passes_for(engine, scene: Scene, state: State) -> int:
-    """How often a step looks for overlaps."""
-    return engine.passes or 1
+def check_step(engine, state: State) -> None:
+    """Raise SceneError for a step with which the engine would be wrong by much, warn of one that costs
+    percents, and name the step that would do."""
+    if state.count < 2:
+        return
+    several = engine.passes > 1
+    missed = missed_contacts(engine.time_step, several, state)
+    met = contacts_per_step(engine.time_step, state)
+    worst = max(math.sqrt(missed / MISSED), met / CROWDED[several])
+    if worst <= 1.0:
+        return
+    rule = (
+        f"misses {100 * missed:.2g} % of all contacts (fit is {100 * MISSED:g} %), and a body has {met:.2g} "
+        f"in a step (fit is {CROWDED[several]:g}); a step of {engine.time_step / worst:.2g} would do"
+    )
+    if missed > MISSED_MOST or met > CROWDED_MOST[several]:
+        raise SceneError("time_step", engine.time_step, rule)
+    warnings.warn(f"gaspart: time_step = {engine.time_step:g} {rule}", stacklevel=4)
+
+
+def contacts_per_step(time_step: float, state: State) -> float:
+    """How often a body meets another in a step: Enskog's rate for equal bodies of the same packing fraction
+    (0 beyond the densities for which it is known)."""
+    from gaspart import theory
+
+    size = float((state.radii**state.dimension).mean() ** (1.0 / state.dimension))
+    ball = (math.pi if state.dimension == 2 else 4.0 / 3.0 * math.pi) * size**state.dimension
+    fraction = float(state.count * ball / state.lengths.prod())
+    temperature = float((state.velocities**2).mean())
+    try:
+        return time_step * float(theory.collision_rate(fraction, state.dimension, 2.0 * size, temperature))
+    except ValueError:
+        return 0.0
 
 
 def quantum_for(scene: Scene, state: State, masses: np.ndarray) -> float:

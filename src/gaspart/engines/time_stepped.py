@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gaspart.engines.common import EventLog, masses_for_kernel
-from gaspart.engines.step_settings import check_scene, check_step, giants_of, passes_for, quantum_for
+from gaspart.engines.step_settings import check_scene, check_step, giants_of, quantum_for
 from gaspart.errors import SceneError
 from gaspart.scene import Scene, count_of, number
 from gaspart.state import State
@@ -24,19 +24,23 @@ class TimeStepped:
     per axis, down to 1 (all pairs); by default a neighbour list is used instead, with a `skin` (a length)
     that the engine chooses unless it is given. near_boxes: look only into boxes within reach of a contact.
     precision: "float64" or "float32". rewind: collide pairs as they were at their contact (off: as they lie
-    after the step, to measure what rewinding buys). passes: how often a step may look for overlaps; from the
-    second pass on, those that part again within the step count too. By default 1 or 4, by density and step.
+    after the step, to measure what rewinding buys). passes: how often a step may look for overlaps; it ends
+    with the first pass that finds none. With more than one, overlaps that grew and shrank within the step
+    count too; one is the rule of Frederickx & Meerts. docs/time-stepped.md tells what each of these buys.
 
-    The result is the same, bit for bit, for any boxes_per_side, near_boxes and skin.
+    threads: how many share the work of a list; they pay from about 5e4 bodies on.
+
+    The result is the same, bit for bit, for any boxes_per_side, near_boxes, skin and threads.
     """
 
     time_step: float
     boxes_per_side: int | tuple[int, ...] | None = None
     precision: str = "float64"
     rewind: bool = True
-    passes: int | None = None
+    passes: int = 4
     skin: float | None = None
     near_boxes: bool = False
+    threads: int = 1
 
     name = "step"
 
@@ -48,8 +52,8 @@ class TimeStepped:
         for key in ("rewind", "near_boxes"):
             if not isinstance(getattr(self, key), bool):
                 raise SceneError(key, getattr(self, key), "must be true or false")
-        if self.passes is not None:
-            count_of("passes", self.passes, least=1)
+        for key in ("passes", "threads"):
+            count_of(key, getattr(self, key), least=1)
         if self.skin is not None:
             if self.boxes_per_side is not None:
                 raise SceneError("skin", self.skin, "excludes boxes_per_side")
@@ -74,7 +78,7 @@ class StepDynamics:
 
         giants = giants_of(state)
         check_scene(scene, state, giants)
-        check_step(engine, scene, state)
+        check_step(engine, state)
         self._kernels, self._layout = kernels, layout
         self._engine, self._scene, self._reference = engine, scene, state
         self._real = real = np.dtype(engine.precision).type
@@ -102,10 +106,10 @@ class StepDynamics:
         self._partition = search.partition_for(engine, scene, state, ordinary)
         self._cells = search.cells_for(engine, scene, state, ordinary)
         self._gravity = None if scene.gravity is None else tuple(real(g) for g in scene.gravity)
-        self._passes = passes_for(engine, scene, state)
         self._watch = layout.Watch(np.empty(state.count, np.int64), np.zeros(state.count, real), np.zeros(4))
         self._watch.reach[layout.SPENT] = np.inf  # no list is made yet
-        self._pairs = (np.empty(0, np.int32), np.empty(0, np.int32))
+        self._pairs = np.empty((0, 2), np.int32)
+        self._threads = engine.threads if engine.threads > 1 else None
         self._quantum = quantum_for(scene, state, masses)
         self._step = real(engine.time_step)
         self._start, self._steps = state.time, 0
@@ -128,7 +132,7 @@ class StepDynamics:
 
     def reset_tally(self) -> None:
         """Begin to count anew."""
-        faces = (1, 2 * self._scene.dimension)
+        faces = (self._engine.threads, 2 * self._scene.dimension)
         self._counters = self._layout.Counters(
             counts=np.zeros(6, dtype=np.int64),
             sums=np.zeros(3),
@@ -154,10 +158,14 @@ class StepDynamics:
         steps = (until - self._start) / self._engine.time_step
         target = int(np.floor(steps * (1.0 + 4e-16) + 1e-9))
         if target > self._steps:
+            if self._threads is not None:
+                from numba import config, set_num_threads
+
+                set_num_threads(min(self._threads, config.NUMBA_NUM_THREADS))
             self._pairs = self._kernels.run_steps(
                 self._bodies, self._space, self._partition, self._cells, self._pairs, self._gravity,
-                self._inset, self._step, target - self._steps, self._engine.rewind, self._passes,
-                self._passes > 1, self._watch, self._counters,
+                self._inset, self._step, target - self._steps, self._engine.rewind, self._engine.passes,
+                self._watch, self._counters, self._threads,
             )  # fmt: skip
             self._steps = target
 
@@ -202,8 +210,7 @@ class StepDynamics:
             "velocities": self._by_body(bodies.velocities, self._real),
             "images": self._by_body(bodies.images, np.int32),
             "slots": bodies.index.copy(),
-            "first": self._pairs[0].copy(),
-            "second": self._pairs[1].copy(),
+            "pairs": self._pairs.copy(),
             "reach": self._watch.reach.copy(),
             **{key: np.array(value) for key, value in self._counters._asdict().items()},
         }
@@ -211,7 +218,7 @@ class StepDynamics:
     def restore(self, parts: dict[str, np.ndarray]) -> None:
         """Go on from a checkpoint of the same scene and engine."""
         self._place(*(parts[key] for key in ("slots", "positions", "velocities", "images")))
-        self._pairs = (parts["first"].copy(), parts["second"].copy())
+        self._pairs = parts["pairs"].copy()
         self._watch.reach[...] = parts["reach"]
         for key in ("counts", "sums", "wall_hits", "wall_impulse"):
             getattr(self._counters, key)[...] = parts[key]
