@@ -231,7 +231,7 @@ def test_a_giant_and_fixed_bodies_follow_the_event_driven_engine():
     """A body larger than a box is kept beside the partition, a fixed one passes no momentum on."""
     giant = gp.Body((10.0, 10.0), (0.1, 0.0), 4.0, mass=50.0)
     bodies = [giant, gp.Body((3.0, 16.0), (0.0, 0.0), 0.5, fixed=True)]
-    kinds = [gp.Species(12, 0.3, temperature=1.0)]
+    kinds = [gp.Species(25, 0.3, temperature=1.0)]
     scene = gp.Scene(gp.Container((20.0, 20.0), "periodic"), kinds, bodies)
     exact = gp.Simulation(scene, gp.EventDriven(), seed=5)
     exact.advance(duration=5.0)
