@@ -70,7 +70,7 @@ def missed_contacts(time_step: float, several: bool, state: State) -> float:
         number.append(of.sum())
     square, radius, number = (np.array(values, dtype=float) for values in (square, radius, number))
     sigma = radius[:, None] + radius
-    relative = (square[:, None] + square) / (2 * state.dimension)
+    relative = 0.5 * (square[:, None] + square)
     pairs = number[:, None] * (number - np.eye(len(number)))
     rate = np.maximum(0.0, pairs) * sigma ** (state.dimension - 1) * np.sqrt(relative)
     if not rate.sum() > 0.0:
@@ -120,5 +120,5 @@ def quantum_for(scene: Scene, state: State, masses: np.ndarray) -> float:
     speeds = np.sqrt((state.velocities**2).sum(axis=1))
     if scene.gravity is not None:
         speeds = speeds + math.sqrt(2.0 * float(np.abs(scene.gravity) @ np.array(scene.container.lengths)))
-    most = float(np.where(np.isinf(masses), 0.0, masses * speeds).max(initial=0.0))
+    most = float((np.where(np.isinf(masses), 0.0, masses) * speeds).max(initial=0.0))
     return 2.0 ** (math.frexp(most or 1.0)[1] - 28)
