@@ -37,6 +37,7 @@ FAMILIES = {
     "equipartition": "granular",
     "cooling": "granular",
     "velocity_autocorrelation": "velocity",
+    "heat_conduction_gas": "heat",
 }
 
 TITLES = {
@@ -56,4 +57,5 @@ TITLES = {
     "pictures": "Pictures",
     "granular": "Rough and inelastic bodies",
     "velocity": "Memory of velocities",
+    "heat": "Heat between walls",
 }

@@ -81,6 +81,12 @@ from .gravity import (
     ideal_profile,
     lebowitz_percus_verlet,
 )
+from .heat import (
+    TEMPERATURE_JUMP,
+    conducting_slab,
+    dilute_fourier_flux,
+    free_molecular_flux,
+)
 from .insertion import (
     RSA_SATURATION,
     RSA_SATURATION_UNCERTAINTY,
@@ -138,6 +144,7 @@ __all__ = [
     "RELAXATION_UNCERTAINTY",
     "RSA_SATURATION",
     "RSA_SATURATION_UNCERTAINTY",
+    "TEMPERATURE_JUMP",
     "YEH_HUMMER_CONSTANT",
     "Relaxation",
     "alder_hoover_young_crystal",
@@ -150,8 +157,10 @@ __all__ = [
     "compressibility_factor",
     "compressibility_uncertainty",
     "contact_value",
+    "conducting_slab",
     "cooling_rate",
     "crystal_finite_size_correction",
+    "dilute_fourier_flux",
     "displaced_area",
     "enskog_bulk_viscosity",
     "enskog_conductivity",
@@ -164,6 +173,7 @@ __all__ = [
     "failures_per_body",
     "finite_size_correction",
     "fourth_cumulant",
+    "free_molecular_flux",
     "friction_rate",
     "haff_time",
     "henderson",

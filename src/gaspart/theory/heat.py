@@ -1,0 +1,95 @@
+"""Heat between two walls: a gas from free flight to Fourier's law, and electrons among vibrating scatterers.
+
+The walls are diffuse with full accommodation unless said otherwise; k_B = 1. Fluxes are energies per area (in
+2D per length) and time, from the hot wall to the cold one.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ._arguments import checked_dimension
+from .enskog import enskog_conductivity, mean_free_path
+from .geometry import number_density, packing_fraction
+from .state import compressibility_factor
+
+TEMPERATURE_JUMP = 2.127
+"""T_gas - T_wall over l_0 dT/dn at a diffuse wall, hard spheres, l_0 = 1 / (sqrt 2 pi n sigma^2): 2.4001
+sqrt(pi) / 2, Sone, Ohwada and Aoki, Phys. Fluids A 1, 363 (1989) (recalled)."""
+
+
+def free_molecular_flux(density, hot, cold, dimension, mass=1.0, components="all"):
+    """Flux through a gas whose bodies meet nothing but the walls, (d + 1) n sqrt(T_1 T_2 / (2 pi m))
+    (sqrt T_1 - sqrt T_2).
+
+    A body brings (d + 1) T / 2 from a wall; where a wall changes the normal component alone ("normal",
+    Frederickx & Meerts 2010), T: 2 / (d + 1) of the flux, 1/2 in 3D and 2/3 in 2D. Exact (closed form).
+    """
+    carried = {"all": checked_dimension(dimension) + 1, "normal": 2}[components]
+    roots = np.sqrt(hot * cold) * (np.sqrt(hot) - np.sqrt(cold))
+    return carried * density * roots / np.sqrt(2.0 * np.pi * mass)
+
+
+def dilute_fourier_flux(length, hot, cold, diameter=1.0):
+    """(2/3) lambda_0 (T_1^(3/2) - T_2^(3/2)) / length of spheres of mass 1: Fourier's law with lambda_0
+    proportional to sqrt T, in the limit of a wide gap and a dilute gas. It does not depend on the density
+    (Maxwell 1860). Exact in that limit, as good as lambda_0.
+    """
+    conductivity = enskog_conductivity(0.0, 3, diameter, 1.0)
+    return 2.0 / 3.0 * conductivity * (hot**1.5 - cold**1.5) / length
+
+
+@dataclass(frozen=True)
+class Slab:
+    """A steady gas between walls: position (P,) from the hot one, temperature and number density there (P,);
+    flux."""
+
+    position: np.ndarray
+    temperature: np.ndarray
+    density: np.ndarray
+    flux: float
+
+
+def conducting_slab(length, density, hot, cold, diameter=1.0, jump=TEMPERATURE_JUMP):
+    """Fourier's law in a gas of spheres of mass 1 and mean number density `density`, with temperature jumps.
+
+    q = -lambda(n, T) dT/dx with Enskog's conductivity and one pressure n T Z(eta) everywhere. In the dilute
+    limit, without jumps, T^(3/2) is linear and q = (2/3) lambda_0 (T_1^(3/2) - T_2^(3/2)) / length (closed
+    form). At each wall the gas is `jump` mean free paths times dT/dx off the wall's temperature: good to the
+    square of the Knudsen number. The layer of a mean free path next to a wall, where no fluid theory holds,
+    is not described. Computed. Raises ValueError for a Knudsen number above 0.1.
+    """
+    knudsen = float(mean_free_path(packing_fraction(density, 3, diameter), 3, diameter)) / length
+    if knudsen > 0.1:
+        raise ValueError(f"density: {density} (a Knudsen number of {knudsen:.2g}; this holds up to 0.1)")
+    ends = np.array([hot, cold], dtype=float)
+    for _ in range(60):
+        slab = _between(length, density, *ends, diameter)
+        eta = packing_fraction(slab.density[[0, -1]], 3, diameter)
+        slope = slab.flux / enskog_conductivity(eta, 3, diameter, 1.0) / np.sqrt(ends)
+        shift = jump * mean_free_path(eta, 3, diameter) * slope
+        ends = 0.5 * (ends + np.array([hot - shift[0], cold + shift[1]]))  # half way: steps do not overshoot
+    return slab
+
+
+def _between(length, density, hot, cold, diameter):
+    """The same for a gas that has the temperatures `hot` and `cold` at the walls."""
+    temperature = np.linspace(hot, cold, 401)
+    eta = np.linspace(0.0, 0.45, 4001)
+    table = number_density(eta, 3, diameter) * compressibility_factor(eta, 3)  # pressure over temperature
+    steps = -np.diff(temperature)
+
+    def at(pressure):
+        local = np.interp(pressure / temperature, table, eta)
+        conductivity = enskog_conductivity(local, 3, diameter, 1.0) * np.sqrt(temperature)
+        weights = 0.5 * (conductivity[1:] + conductivity[:-1]) * steps  # flux times dx
+        number = number_density(local, 3, diameter)
+        return number, weights, 0.5 * (number[1:] + number[:-1]) @ weights / weights.sum()
+
+    low, high = 0.0, table[-1] * cold
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if at(middle)[2] < density else (low, middle)
+    number, weights, _ = at(high)
+    position = np.concatenate([[0.0], np.cumsum(weights)]) * length / weights.sum()
+    return Slab(position, temperature, number, float(weights.sum() / length))

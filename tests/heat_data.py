@@ -1,0 +1,50 @@
+"""What the measurements of heat between walls give if theory is right."""
+
+import numpy as np
+import xarray as xr
+
+from gaspart.theory.heat import (
+    TEMPERATURE_JUMP,
+    conducting_slab,
+    dilute_fourier_flux,
+    free_molecular_flux,
+)
+
+
+def gases(error=0.002):
+    """A dense gas, and thin ones between walls of both rules in two and three dimensions."""
+    length, bins = 200.0, 10
+    position = (np.arange(bins) + 0.5) * length / bins
+    rows = []
+    for number, knudsen, dimension, rule in (
+        (0.04, 0.03, 3, "all"),
+        (0.001, 2000.0, 3, "all"),
+        (0.001, 2000.0, 3, "normal"),
+        (0.001, 2000.0, 2, "all"),
+        (0.001, 2000.0, 2, "normal"),
+    ):
+        free = free_molecular_flux(number, 2.0, 1.0, dimension, components=rule)
+        row = {"dimension": dimension, "normal": rule == "normal", "number": number, "knudsen": knudsen}
+        row |= {"length": length, "hot": 2.0, "cold": 1.0, "imbalance": 1e-12, "free": free, "flux": free}
+        row |= {"full": free_molecular_flux(number, 2.0, 1.0, dimension), "wall_ratio": 1.0}
+        row |= {"fourier": dilute_fourier_flux(length, 2.0, 1.0), "half_ratio": 1.0}
+        row |= dict.fromkeys(("slab_flux", "profile_ratio", "jump"), np.nan)
+        row |= {"position": position, "used": position > 20.0}
+        row |= {"temperature": np.full(bins, 1.4), "density": np.full(bins, number)}
+        row |= dict.fromkeys(("slab_temperature", "slab_density"), np.full(bins, np.nan))
+        if knudsen < 0.1:
+            slab = conducting_slab(length, number, 2.0, 1.0)
+            row |= {"flux": slab.flux, "slab_flux": slab.flux}
+            row |= {"profile_ratio": 1.0, "jump": TEMPERATURE_JUMP}
+            for name in ("temperature", "density"):
+                row[name] = np.interp(position, slab.position, getattr(slab, name))
+                row[f"slab_{name}"] = row[name]
+        for name in ("flux", "wall_ratio", "half_ratio", "profile_ratio", "jump", "temperature", "density"):
+            row[f"{name}_error"] = np.abs(row[name]) * error
+        rows.append(row)
+    return xr.Dataset(
+        {
+            name: (("point", "bin") if np.ndim(value) else "point", np.stack([row[name] for row in rows]))
+            for name, value in rows[0].items()
+        }
+    )

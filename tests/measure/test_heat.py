@@ -1,0 +1,68 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import gaspart as gp
+from gaspart import grid
+from gaspart.measure import heat
+from gaspart.theory.heat import free_molecular_flux
+
+
+def run(tmp_path, scene, **settings):
+    """A point of this scene with its runs made."""
+    scene.to_file(tmp_path / "scene.yaml")
+    settings |= {"scene": str(tmp_path / "scene.yaml")}
+    point = grid.Point("heat", "single", "simulate", settings, str(tmp_path / "points"), 1)
+    times = grid.schedule(point)
+    for k, path in enumerate(point.replica_paths):
+        Path(path).parent.mkdir(parents=True, exist_ok=True)
+        engine = grid.engine(point)
+        gp.run(grid.scene(point), engine, point.seed(k), times.duration, times.sample_interval, path)
+    return point
+
+
+def gas(count, radius, components="all"):
+    """Spheres between walls at 2 and 1."""
+    container = gp.Container((10.0 + 2 * radius, 6.0, 6.0), ("wall", "periodic", "periodic"))
+    faces = {"x_low": gp.Thermal(2.0, components), "x_high": gp.Thermal(1.0, components)}
+    return gp.Scene(container, [gp.Species(count, radius, temperature=1.4)], faces=faces)
+
+
+def test_a_thin_gas_carries_what_free_flight_does(tmp_path):
+    """Uniform too, with the temperature sqrt(T1 T2) of two half Maxwellians."""
+    point = run(tmp_path, gas(40, 0.01), duration=6000.0, equilibration=100.0, samples=400)
+    ds = heat.heat_conduction_gas([point], {"bins": 5, "blocks": 10, "clear": 3}).isel(point=0)
+    assert float(ds["number"]) == pytest.approx(40 / 360)
+    assert float(ds["full"]) == pytest.approx(free_molecular_flux(40 / 360, 2.0, 1.0, 3))
+    assert float(ds["flux_error"]) < 0.05 * float(ds["full"])
+    assert abs(float(ds["flux"] - ds["full"])) < 3.5 * float(ds["flux_error"])
+    assert float(ds["imbalance"]) < 1e-9
+    sigma = ds["density_error"].values.mean()
+    assert np.abs(ds["density"].values / (40 / 360) - 1.0).max() < 4.0 * sigma / (40 / 360)
+    assert ds["temperature"].values == pytest.approx(np.full(5, np.sqrt(2.0)), rel=0.05)
+    assert np.isnan(ds["slab_flux"])
+
+
+def test_the_jump_of_a_made_up_profile_comes_back():
+    """T^(3/2) linear between 1.9 and 1.05, where the walls have 2 and 1: slopes and paths by hand."""
+    gap = heat.Gap(100.0, 1.0, 2.0, 1.0, 3)
+    position = np.linspace(5.0, 95.0, 30)
+    power = 1.9**1.5 + (1.05**1.5 - 1.9**1.5) * position / 100.0
+    temperature, pressure = power ** (2 / 3), 1e-4
+    found = heat._jump(gap, position, np.full(30, pressure), pressure / temperature, 1.0)
+    slope = (1.9**1.5 - 1.05**1.5) / 100.0
+    path = 1.0 / (np.sqrt(2.0) * np.pi * pressure)
+    hot = 0.1 / (path * 1.9 * slope / (1.5 * np.sqrt(1.9)))
+    cold = 0.05 / (path * 1.05 * slope / (1.5 * np.sqrt(1.05)))
+    assert found == pytest.approx(0.5 * (hot + cold), rel=1e-3)
+
+
+def test_a_dense_gas_is_compared_with_fourier(tmp_path):
+    point = run(tmp_path, gas(100, 0.5), duration=300.0, equilibration=100.0, samples=60, boxes_per_side=1)
+    ds = heat.heat_conduction_gas([point], {"bins": 5, "blocks": 5, "clear": 1}).isel(point=0)
+    assert float(ds["knudsen"]) < heat.FLUID
+    assert float(ds["density"].mean()) == pytest.approx(100 / 360, rel=1e-3)
+    assert float(ds["profile_ratio"]) == pytest.approx(1.0, abs=0.1)
+    with pytest.raises(ValueError, match="blocks"):
+        heat.heat_conduction_gas([point], {"bins": 5, "blocks": 1000, "clear": 1})

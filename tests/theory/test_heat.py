@@ -1,0 +1,55 @@
+import numpy as np
+import pytest
+
+from gaspart.theory import heat
+from gaspart.theory.enskog import enskog_conductivity, mean_free_path
+from gaspart.theory.geometry import packing_fraction
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_free_flight_is_the_sum_of_what_bodies_carry(dimension):
+    """Flux-weighted energies drawn from both walls, times how often a body goes there and back."""
+    rng = np.random.default_rng(1)
+    energies, times = {}, 0.0
+    for temperature in (2.0, 1.0):
+        normal = np.sqrt(-2.0 * temperature * np.log(rng.random(400_000)))
+        across = temperature * rng.chisquare(dimension - 1, normal.size) / 2.0
+        energies[temperature] = 0.5 * normal**2 + across
+        times += (1.0 / normal).mean()
+    carried = (energies[2.0] - energies[1.0]).mean()
+    found = 0.3 * carried / times  # for a gap of length 1
+    assert found == pytest.approx(heat.free_molecular_flux(0.3, 2.0, 1.0, dimension), rel=0.01)
+
+
+@pytest.mark.parametrize(("dimension", "share"), [(2, 2 / 3), (3, 1 / 2)])
+def test_the_normal_component_alone_carries_a_part(dimension, share):
+    whole = heat.free_molecular_flux(0.1, 2.0, 1.0, dimension)
+    assert heat.free_molecular_flux(0.1, 2.0, 1.0, dimension, components="normal") == pytest.approx(
+        share * whole
+    )
+
+
+def test_a_wide_dilute_gap_obeys_the_power_law():
+    """T^(3/2) linear, and the flux of the dilute limit, whatever the density."""
+    number, length = 1e-4, 1e7
+    slab = heat.conducting_slab(length, number, 2.0, 1.0)
+    assert slab.flux == pytest.approx(heat.dilute_fourier_flux(length, 2.0, 1.0), rel=2e-3)
+    straight = 2.0**1.5 + (1.0 - 2.0**1.5) * slab.position / length
+    assert slab.temperature**1.5 == pytest.approx(straight, rel=1e-3)
+    assert slab.density * slab.temperature == pytest.approx(slab.density[0] * slab.temperature[0], rel=1e-3)
+
+
+def test_the_slab_has_its_bodies_and_its_jumps():
+    slab = heat.conducting_slab(200.0, 0.04, 2.0, 1.0)
+    mean = np.trapezoid(slab.density, slab.position) / 200.0
+    assert mean == pytest.approx(0.04, rel=1e-6)
+    eta = packing_fraction(slab.density[0], 3)
+    slope = slab.flux / (enskog_conductivity(eta, 3) * np.sqrt(slab.temperature[0]))
+    jump = 2.0 - slab.temperature[0]
+    assert jump == pytest.approx(heat.TEMPERATURE_JUMP * mean_free_path(eta, 3) * slope, rel=1e-6)
+    assert 0.0 < slab.temperature[-1] - 1.0 < jump  # the cold gas is denser
+
+
+def test_a_thin_gas_is_no_fluid():
+    with pytest.raises(ValueError, match="Knudsen"):
+        heat.conducting_slab(200.0, 0.005, 2.0, 1.0)
