@@ -115,7 +115,9 @@ def surfaced(draw, most=12):
                 faces[f"{'xyz'[axis]}_{side}"] = draw(kinds[kind])
     count, radius = st.integers(1, most // 2), st.floats(0.1, 0.4)
     species = [gp.Species(draw(count), draw(radius), mass, temperature=1.0) for mass in (1.0, 2.0)]
-    discs = {"gravity": (0.0, -0.5), "restitution": gp.Restitution(draw(st.sampled_from([1.0, 0.9])), 0.5)}
+    elastic = any(isinstance(face, gp.Sticky) for face in faces.values())  # stuck bodies vibrate
+    law = gp.Restitution(1.0 if elastic else draw(st.sampled_from([1.0, 0.9])), 0.5)
+    discs = {"gravity": (0.0, -0.5), "restitution": law}
     container = gp.Container(lengths, boundary)
     return gp.Scene(container, species, faces=faces, **(discs if dimension == 2 else {}))
 
