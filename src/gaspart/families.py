@@ -38,6 +38,7 @@ FAMILIES = {
     "cooling": "granular",
     "velocity_autocorrelation": "velocity",
     "heat_conduction_gas": "heat",
+    "adsorption": "adsorption",
 }
 
 TITLES = {
@@ -58,4 +59,5 @@ TITLES = {
     "granular": "Rough and inelastic bodies",
     "velocity": "Memory of velocities",
     "heat": "Heat between walls",
+    "adsorption": "Walls that hold bodies",
 }

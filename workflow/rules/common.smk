@@ -155,6 +155,7 @@ MODULES = {
 FAMILY_MODULES = {
     ("measure", "gravity"): ["measure/columns"],
     ("measure", "buoyancy"): ["measure/columns"],
+    ("judge", "adsorption"): ["statistics"],
     ("judge", "buoyancy"): ["statistics"],
     ("measure", "radius"): ["measure/pressure"],
     ("measure", "displacement"): ["measure/correlations"],
