@@ -96,9 +96,9 @@ def _layer(ds: xr.Dataset) -> list[Claim]:
 
 def _sticky(ds: xr.Dataset, wells: xr.Dataset) -> list[Claim]:
     power = fit_power_law(ds["gas_density"].values, ds["coverage"].values, ds["coverage_error"].values)
-    thin = ds.isel(point=int(ds["gas_density"].values.argmin()))
+    slow = float(slow_flux_share(ds["slow_speed"].values[0]))
+    stuck = combine(ds["slow_share"].values, ds["slow_share_error"].values)
     well = combine(wells["slow_share"].values, wells["slow_share_error"].values)
-    slow = float(slow_flux_share(thin["slow_speed"]))
     return [
         Claim.at_most(
             "sticky rule: power of the gas' density in the coverage of a wall that is hardly covered",
@@ -107,19 +107,17 @@ def _sticky(ds: xr.Dataset, wells: xr.Dataset) -> list[Claim]:
             power.exponent_error,
             0.1,
             0.2,
-            "collisions with the gas both bring and free bodies: both rates go as its density (in equilibrium, "
-            "the power is 1: Henry's law)",
+            "the gas both brings bodies and frees them, both as its density; Henry's law asks for 1",
             "a coverage that follows the pressure, as it does if detailed balance holds",
         ),
         Claim.at_most(
-            f"sticky rule: bodies that leave below its momentum, over those in equilibrium ({slow:.3f} of all)",
+            "sticky rule: slow bodies that leave the wall, over those that would in equilibrium",
             "test",
-            thin["slow_share"] / slow,
-            thin["slow_share_error"] / slow,
+            stuck.value / slow,
+            stuck.error / slow,
             0.1,
-            0.25,
-            "none leaves the wall so slowly, though that many come: detailed balance is broken (a few are made "
-            "so by collisions close by)",
+            0.5,
+            "slow ones stick, and none is sent back so slowly: only those that lose speed when freed remain",
             "a wall that sends back as many slow bodies as it takes",
         ),
         Claim(

@@ -123,12 +123,12 @@ def _leaving(axis, wells: xr.Dataset, ds: xr.Dataset) -> None:
     speed = ds["speed"].values
     line = np.linspace(0.0, speed[-1], 200)
     axis.plot(line, flux_density(line), color=style.REFERENCE, label=r"$v\,e^{-v^2/2}$")
-    thin = ds.isel(point=int(ds["gas_density"].values.argmin()))
+    dense = ds.isel(point=int(ds["gas_density"].values.argmax()))
     well = wells.isel(point=0)
-    for row, kind, label in ((well, 0, "well"), (thin, 1, "sticky wall")):
+    for row, kind, label in ((well, 0, "well"), (dense, 1, "sticky wall")):
         value, error = row["flux"].values, row["flux_error"].values
         style.points(axis, speed, value, error, kind=kind, hollow=not kind, label=label)
-    axis.axvline(float(thin["slow_speed"]), color=style.GREY, ls=":")
+    axis.axvline(float(dense["slow_speed"]), color=style.GREY, ls=":")
     axis.set_ylim(bottom=0.0)
     axis.set_ylabel("share of those who leave")
     axis.set_xlabel(r"normal speed $v\sqrt{m/kT}$")

@@ -93,8 +93,8 @@ class Holder:
 def adsorption(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """Walls that hold bodies, point by point.
 
-    settings: `blocks` of each replica; `near`, the distance from the edge of the well, or from the place where
-    bodies stick, within which the velocities of leaving bodies are read; `bins` of their speeds.
+    settings: `blocks` of each replica; `near`, the distance from the edge of the well, or from where bodies
+    stick, within which the velocities of leaving bodies are read; `bins` of their speeds.
 
     Dimensions point, bin. Of every point: kind, temperature, depth, width, momentum, mass and outside, as in
     `Holder`; with _error: held, the mean number of held bodies; ratio, of it to the others, and log_ratio;
