@@ -113,6 +113,8 @@ def _sticky_coverage(axis, ds: xr.Dataset) -> None:
     axis.set_xscale("log")
     axis.set_yscale("log")
     axis.set_xlim(line[0], line[-1])
+    axis.set_xticks([0.01, 0.02, 0.05], ["0.01", "0.02", "0.05"])
+    axis.minorticks_off()
     axis.set_ylabel(r"coverage $\eta$")
     axis.set_xlabel(r"density of the gas $\rho\sigma^3$")
     axis.legend(loc="lower right")

@@ -100,9 +100,9 @@ def adsorption(points: list[grid.Point], settings: dict) -> xr.Dataset:
     `Holder`; with _error: held, the mean number of held bodies; ratio, of it to the others, and log_ratio;
     length, what stands in the place of the thermal wavelength; coverage, the share of the wall's area that
     they cover; gas_density far from both walls; flux (bin), the density of the normal speeds of bodies that
-    leave, in units of sqrt(kT/m), and slow_share, that of those below `slow_speed`, which is the sticky
-    wall's limit (1 for wells). Of layers: activity, beta P w e^(depth/kT) pi sigma^2/4, and filling, the
-    coverage over that of hard discs in equilibrium with it, whose uncertainty is layer_uncertainty.
+    leave, in units of sqrt(kT/m), and slow_share, that of those below `slow_speed`, the sticky wall's limit
+    (1 for wells; NaN both for layers). Of layers: activity, beta P w e^(depth/kT) pi sigma^2/4, and filling,
+    the coverage over that of hard discs in equilibrium with it, whose uncertainty is layer_uncertainty.
     """
     rows = [_measured(point, settings) for point in points]
     values = {}
@@ -141,6 +141,7 @@ def _measured(point: grid.Point, settings: dict) -> dict:
     def density(counted):
         return counted / (empty * holder.area)
 
+    layer = holder.kind == "layer"
     made = {
         "held": jackknife(lambda inside: inside, held),
         "ratio": jackknife(ratio, held, free),
@@ -154,10 +155,16 @@ def _measured(point: grid.Point, settings: dict) -> dict:
         ),
         "coverage": jackknife(coverage, held),
         "gas_density": jackknife(density, far),
-        "flux": jackknife(lambda share: share / (share.sum() * step), flux),
-        "slow_share": jackknife(lambda some, share: some / share.sum(), slowly, flux),
     }
-    layer = holder.kind == "layer"
+    # From layers hardly any leave.
+    made |= {
+        "flux": (np.full(settings["bins"], np.nan),) * 2
+        if layer
+        else jackknife(lambda share: share / (share.sum() * step), flux),
+        "slow_share": (np.nan, np.nan)
+        if layer
+        else jackknife(lambda some, share: some / share.sum(), slowly, flux),
+    }
     made["activity"] = (
         jackknife(lambda counted: holder.activity(density(counted)), far) if layer else (np.nan, np.nan)
     )
