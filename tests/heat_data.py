@@ -48,3 +48,25 @@ def gases(error=0.002):
             for name, value in rows[0].items()
         }
     )
+
+
+def metals(error=0.002):
+    """A metal between different walls, and between walls at 1 and at 2."""
+    ones, bins = np.ones(3), 8
+    position = (np.arange(bins) + 0.5) / bins
+    values = {
+        "share": ones,
+        "energy_ratio": ones,
+        "fluctuation": ones,
+        "mode_ratio": ones,
+        "flux": 0.1 * ones,
+    }
+    ds = xr.Dataset({name: ("point", value) for name, value in values.items()})
+    for name in ("electrons", "modes"):
+        ds[name] = (("point", "bin"), np.tile(2.0 - position, (3, 1)))
+    for name in list(ds):
+        ds[f"{name}_error"] = error * ds[name]
+    ds["position"] = (("point", "bin"), np.tile(position, (3, 1)))
+    for name, value in {"hot": [2, 1, 2], "cold": [1, 1, 2], "expected": [360] * 3}.items():
+        ds[name] = ("point", np.array(value, dtype=float))
+    return ds.assign(electrons_part=("point", ones * 5 / 9), slope=1.0, slope_error=error)

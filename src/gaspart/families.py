@@ -39,6 +39,7 @@ FAMILIES = {
     "velocity_autocorrelation": "velocity",
     "heat_conduction_gas": "heat",
     "adsorption": "adsorption",
+    "heat_conduction_metal": "heat",
 }
 
 TITLES = {

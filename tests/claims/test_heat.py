@@ -1,5 +1,5 @@
 import pytest
-from heat_data import gases
+from heat_data import gases, metals
 
 from gaspart.claims import heat, judge
 
@@ -45,3 +45,21 @@ def test_the_shares_of_the_source_are_not_those_of_full_accommodation():
 def test_too_short_runs_are_inconclusive():
     found = verdicts(heat.heat_conduction_gas(gases(error=0.3)))
     assert {verdict for claim, verdict in found.items() if "went through" not in claim} == {"inconclusive"}
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("share", "electrons around it"),
+        ("mode_ratio", "mean energy of a mode over kT"),
+        ("energy_ratio", "E / T over"),
+        ("fluctuation", "var E"),
+        ("slope", "dE/dT"),
+    ],
+)
+def test_each_claim_about_metals_can_fail(name, text):
+    ds = metals()
+    assert set(verdicts(heat.heat_conduction_metal(ds)).values()) == {"agrees"}
+    ds[name] = ds[name] * 1.1
+    found = verdicts(heat.heat_conduction_metal(ds))
+    assert {verdict for claim, verdict in found.items() if text in claim} == {"disagrees"}

@@ -1,5 +1,5 @@
 import numpy as np
-from heat_data import gases
+from heat_data import gases, metals
 
 from gaspart.figures import heat, style
 
@@ -17,3 +17,14 @@ def test_the_flux_is_drawn_between_its_limits_and_profiles_with_theory(tmp_path)
         assert any(np.array_equal(line.get_ydata(), theory) for line in axis.lines)
     assert len(share.containers) == 4
     assert len(off.containers) == 1
+
+
+def test_the_metal_is_drawn_with_dulong_and_petit(tmp_path):
+    with style.applied():
+        figure = heat.heat_conduction_metal(metals())
+        style.save(figure, tmp_path / "metal.png")
+    top, bottom, _ = figure.axes
+    line, frozen = bottom.lines[0], bottom.lines[-1]
+    assert np.array_equal(line.get_xdata(), line.get_ydata())
+    assert np.allclose(frozen.get_ydata(), 5 / 9 * frozen.get_xdata())
+    assert len(top.containers) == 2

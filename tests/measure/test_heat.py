@@ -66,3 +66,21 @@ def test_a_dense_gas_is_compared_with_fourier(tmp_path):
     assert float(ds["profile_ratio"]) == pytest.approx(1.0, abs=0.1)
     with pytest.raises(ValueError, match="blocks"):
         heat.heat_conduction_gas([point], {"bins": 5, "blocks": 1000, "clear": 1})
+
+
+def test_modes_and_electrons_have_the_temperature_of_the_walls(tmp_path):
+    """Whatever they began with; two temperatures give the heat capacity."""
+    points = []
+    for warm in (1.0, 2.0):
+        faces = dict.fromkeys(("x_low", "x_high"), gp.Thermal(warm))
+        species = [gp.Species(30, 0.02, temperature=1.0), gp.Species(10, 0.5, fixed=True, vibration=0.0)]
+        scene = gp.Scene(gp.Container((8.0, 8.0), ("wall", "periodic")), species, faces=faces)
+        folder = tmp_path / str(warm)
+        folder.mkdir()
+        points.append(run(folder, scene, duration=6000.0, equilibration=100.0, samples=600))
+    ds = heat.heat_conduction_metal(points, {"bins": 2, "blocks": 10})
+    assert ds["expected"].values == pytest.approx([40.0, 40.0])
+    for name in ("energy_ratio", "mode_ratio", "fluctuation"):
+        assert (np.abs(ds[name] - 1.0) < 4.0 * ds[f"{name}_error"]).all()
+    assert ds["mode_ratio"].values == pytest.approx([1.0, 1.0], abs=0.05)
+    assert float(ds["slope"]) == pytest.approx(1.0, abs=0.05)

@@ -119,3 +119,57 @@ def _fluid(row: xr.Dataset, at: str) -> list[Claim]:
             fails_if="a gas that has the temperature of the wall, or one that the wall does not warm",
         ),
     ]
+
+
+def heat_conduction_metal(ds: xr.Dataset) -> list[Claim]:
+    """Equipartition among electrons and modes, and the law of Dulong and Petit."""
+    claims = []
+    law = f"N_e d/2 + N_s = {float(ds['expected'][0]):g} (classical statistical mechanics, exact)"
+    for n in range(ds.sizes["point"]):
+        row = ds.isel(point=n)
+        if row["hot"] != row["cold"]:
+            claims.append(
+                Claim.within(
+                    "energy of a mode over the temperature of the electrons around it, between two walls",
+                    "test",
+                    row["share"],
+                    row["share_error"],
+                    1.0,
+                    0.05,
+                    "local equilibrium, to the square of the slope over a mean free path",
+                    "modes that do not take the temperature of the electrons",
+                )
+            )
+            continue
+        at = f"T = {float(row['hot']):g}"
+        for name, text, required in (
+            ("mode_ratio", "mean energy of a mode over kT of the walls", 0.01),
+            ("energy_ratio", "E / T over the heat capacity", 0.01),
+            ("fluctuation", "var E / T^2 over the heat capacity", 0.1),
+        ):
+            source = "equipartition, <E> = kT" if name == "mode_ratio" else law
+            claims.append(
+                Claim(
+                    f"{text}, {at}",
+                    "test",
+                    row[name],
+                    row[f"{name}_error"],
+                    required,
+                    1.0,
+                    source,
+                    fails_if="energy that electrons, modes and walls do not share as kT a mode",
+                )
+            )
+    claims.append(
+        Claim(
+            "heat capacity dE/dT from runs at several temperatures",
+            "test",
+            ds["slope"],
+            ds["slope_error"],
+            0.02,
+            1.0,
+            law,
+            fails_if="modes that freeze out, or take more than kT",
+        )
+    )
+    return claims

@@ -108,3 +108,40 @@ def _profiles(warm, off, dense, row: xr.Dataset, kind: int) -> None:
     used = row["used"].values
     ratio = 100.0 * (temperature / theory - 1.0)
     style.points(off, position[used], ratio[used], 100.0 * (error / theory)[used], **small)
+
+
+def heat_conduction_metal(ds: xr.Dataset):
+    """Temperatures of electrons and modes between two walls; energy against temperature."""
+    figure, (top, bottom, off) = style.new(rows=3, height=5.6, height_ratios=(2.6, 2.4, 1.1), share_x=False)
+    for n in np.flatnonzero(ds["hot"] != ds["cold"]):
+        row = ds.isel(point=n)
+        for kind, (name, label) in enumerate((("electrons", "electrons"), ("modes", "modes"))):
+            values = (row["position"], row[name], row[f"{name}_error"])
+            style.points(top, *values, kind=kind, hollow=bool(kind), label=label)
+        for wall in ("hot", "cold"):
+            top.axhline(float(row[wall]), color=style.GREY, lw=0.6, ls=":")
+    top.set_xlabel("position between the walls $x/L$")
+    top.set_ylabel(r"$T$ of electrons, $\langle E\rangle$ of modes")
+    top.legend(loc="upper right", bbox_to_anchor=(1.0, 0.93))
+    still = ds.isel(point=np.flatnonzero(ds["hot"] == ds["cold"]))
+    warm, capacity = still["hot"].values, float(ds["expected"][0])
+    line = np.array([0.0, 1.1 * warm.max()])
+    bottom.plot(line, line, color=style.REFERENCE, label=r"$(N_e d/2 + N_s)\,kT$")
+    level, error = still["energy_ratio"].values, still["energy_ratio_error"].values
+    style.points(bottom, warm, level * warm, error * warm, kind=1, label="electrons and modes")
+    electrons = float(ds["electrons_part"][0])
+    bottom.plot(line, electrons * line, color=style.GREY, ls="--", label="frozen modes")
+    bottom.set_ylabel(rf"energy / {capacity:g}")
+    bottom.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
+    style.level(off, 0.0)
+    style.points(off, warm, 100.0 * (level - 1.0), 100.0 * error, kind=1)
+    modes = (100.0 * (still["mode_ratio"] - 1.0), 100.0 * still["mode_ratio_error"])
+    style.points(off, 1.02 * warm, *modes, kind=0, hollow=True)
+    off.set_ylim(-3.5, 3.5)
+    off.set_ylabel("off (%)")
+    off.set_xlabel("temperature of both walls $kT$")
+    off.sharex(bottom)
+    bottom.tick_params(labelbottom=False)
+    for axis, letter in zip((top, bottom), "ab", strict=True):
+        style.letter(axis, letter)
+    return figure

@@ -1,4 +1,4 @@
-"""Heat between a hot and a cold wall: fluxes, profiles and jumps of temperature.
+"""Heat between two walls, through gases and metals: fluxes, profiles, and what a degree of temperature costs.
 
 The walls are the two faces of the first axis, whose positions count from the hot one on, where centres can
 be. Runs are cut into stretches of time, whose averages are taken as independent; errors are the jackknife's.
@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart import grid
-from gaspart.statistics import jackknife
+from gaspart.statistics import fit_polynomial, jackknife
 from gaspart.theory.enskog import mean_free_path
 from gaspart.theory.geometry import packing_fraction
 from gaspart.theory.heat import conducting_slab, dilute_fourier_flux, free_molecular_flux
@@ -179,3 +179,90 @@ def _jump(gap: Gap, position, energy, density, diameter) -> float:
     gradient = -slope / (1.5 * np.sqrt(gas))
     path = mean_free_path(packing_fraction(energy.mean() / gas, 3, diameter), 3, diameter)
     return float(np.mean(np.array([gap.hot - gas[0], gas[1] - gap.cold]) / (path * gradient)))
+
+
+def heat_conduction_metal(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Electrons, the first species, among fixed vibrating scatterers, the second: profiles between walls of
+    two temperatures, and the specific heat between walls of one.
+
+    settings: `bins` across the gap; `blocks` of each replica. `expected` is the heat capacity N_e d/2 + N_s,
+    `electrons_part` what the electrons have of it.
+
+    Dimensions point, bin: electrons, the temperature of the electrons; modes, the mean energy of a mode; and
+    `share`, the mean over the bins of modes over electrons; hot, cold, flux, position. Over point
+    too: energy_ratio, E / T over the expected heat capacity, fluctuation, var E / T^2 over it (both with T of
+    the walls, and NaN between different ones), mode_ratio, the mean energy of all modes over T. `slope` is
+    dE/dT over the expected, from a line through the points in equilibrium, of which there must be two.
+    """
+    rows = [_metal(point, settings) for point in points]
+    long = {name for name, value in rows[0].items() if np.ndim(value)}
+    ds = xr.Dataset(
+        {
+            name: (("point", "bin") if name in long else "point", np.stack([row[name] for row in rows]))
+            for name in rows[0]
+        }
+    )
+    still = ds.isel(point=np.flatnonzero(ds["hot"] == ds["cold"]))
+    warm, energy = still["hot"].values, (still["energy_ratio"] * still["hot"]).values
+    fit = fit_polynomial(warm, energy, still["energy_ratio_error"].values * warm, powers=(0, 1))
+    return ds.assign(slope=fit.values[1], slope_error=fit.errors[1])
+
+
+def _metal(point: grid.Point, settings: dict) -> dict:
+    """The numbers of one point."""
+    scene = grid.scene(point)
+    gap, (moving, fixed) = Gap.of(scene), scene.species
+    bins, blocks = settings["bins"], settings["blocks"]
+    capacity = 0.5 * gap.dimension * moving.count + fixed.count
+    first = grid.schedule(point).equilibration_frames
+    sums, totals, squares, heats, modes = [], [], [], [], []
+    for path in point.replica_paths:
+        with open_trajectory(path) as trajectory:
+            part = trajectory.isel(frame=slice(first, None))
+            time, heat = part["time"].values, part["wall_energy"].values[:, :2]
+            places = part["coordinates"].values[1:, :, 0]
+            speeds = (part["velocities"].values[1:, : moving.count].astype(float) ** 2).sum(axis=2)
+            vibrations = part["vibrations"].values[1:, moving.count :].astype(float)
+        length = (len(time) - 1) // blocks
+        if length < 1:
+            raise ValueError(f"blocks: {blocks} (more than the {len(time) - 1} intervals of {path})")
+        used = length * blocks
+        bin_of = np.clip((places[:used] - moving.radius) * (bins / gap.length), 0, bins - 1).astype(int)
+        slot = bin_of + np.repeat(np.arange(blocks), length)[:, None] * bins
+        here, there = slot[:, : moving.count].ravel(), slot[:, moving.count :].ravel()
+        table = [
+            np.bincount(where, weights, minlength=blocks * bins).reshape(blocks, bins)
+            for where, weights in (
+                (here, None),
+                (here, speeds[:used].ravel() / gap.dimension),
+                (there, None),
+                (there, vibrations[:used].ravel()),
+            )
+        ]
+        sums.append(np.stack(table, axis=1))
+        energy = (0.5 * speeds.sum(axis=1) + vibrations.sum(axis=1))[:used].reshape(blocks, length)
+        totals.append(energy.mean(axis=1))
+        squares.append(((energy - capacity * gap.hot) ** 2).mean(axis=1))
+        modes.append(vibrations[:used].mean(axis=1).reshape(blocks, length).mean(axis=1))
+        ends = slice(None, used + 1, length)
+        heats.append(np.diff(heat[ends], axis=0) / np.diff(time[ends])[:, None] / gap.area)
+    bodies, kinetic, scatterers, vibrating = np.moveaxis(np.concatenate(sums), 1, 0)
+    given, taken = np.concatenate(heats).T
+    total, square, mode = (np.concatenate(values) for values in (totals, squares, modes))
+    made = {
+        "electrons": jackknife(lambda k, n: k / n, kinetic, bodies),
+        "modes": jackknife(lambda v, s: v / s, vibrating, scatterers),
+        "share": jackknife(lambda k, n, v, s: (v / s * n / k).mean(), kinetic, bodies, vibrating, scatterers),
+        "flux": jackknife(lambda out, into: 0.5 * (into - out), given, taken),
+    }
+    warm = gap.hot if gap.hot == gap.cold else np.nan
+    made["energy_ratio"] = jackknife(lambda e: e / (capacity * warm), total)
+    made["mode_ratio"] = jackknife(lambda e: e / warm, mode)
+    made["fluctuation"] = jackknife(
+        lambda q, e: (q - (e - capacity * gap.hot) ** 2) / (capacity * warm**2), square, total
+    )
+    row = {name: value for name, (value, _) in made.items()}
+    row |= {f"{name}_error": error for name, (_, error) in made.items()}
+    position = (np.arange(bins) + 0.5) * gap.length / bins
+    row |= {"electrons_part": 1.0 - fixed.count / capacity, "expected": capacity}
+    return row | {"hot": gap.hot, "cold": gap.cold, "position": position / gap.length}
