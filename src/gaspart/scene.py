@@ -100,13 +100,13 @@ class Scene:
         if self.centres_to_walls and self.rough:
             rule = "rough bodies (tangential above -1) touch walls with their surfaces"
             raise SceneError("centres_to_walls", True, rule)
-        if self.vibrates and self.restitution is not None and self.restitution.normal != 1.0:
-            rule = "must be 1 where bodies vibrate, lest energy be lost twice"
-            raise SceneError("restitution.normal", self.restitution.normal, rule)
         if not isinstance(self.centres_to_walls, bool):
             raise SceneError("centres_to_walls", self.centres_to_walls, "must be true or false")
         self._check_walls()
         check_faces(self)
+        if self.vibrates and self.restitution is not None and self.restitution.normal != 1.0:
+            rule = "must be 1 where bodies vibrate, lest energy be lost twice"
+            raise SceneError("restitution.normal", self.restitution.normal, rule)
         for n, kind in enumerate(self.species):
             if kind.count:
                 self._fits(f"species[{n}].radius", kind.radius)

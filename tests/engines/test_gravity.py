@@ -231,5 +231,3 @@ def test_what_is_refused():
         gp.Scene(container, gravity=(0.0, -1.0, 0.0))
     scene = gp.Scene(container, gravity=(1.0, 0.0))
     assert gp.Scene.from_dict(scene.to_dict()) == scene
-    with pytest.raises(gp.SceneError, match="gravity"):
-        gp.Simulation(scene, gp.TimeStepped(0.1))
