@@ -43,7 +43,8 @@ def dataset(tmp_path_factory):
     root = tmp_path_factory.mktemp("points")
     common = {"dimension": 3, "side": 10, "boundary": "periodic", "temperature": 1.0, "boxes_per_body": 1}
     event = {"engine": "event", "collisions_per_body": 60, "equilibration": 10, "samples": 20}
-    step = {"engine": "step", "time_step": 0.02, "passes": 1, "steps": 200, "equilibration": 100, "samples": 4}
+    step = {"engine": "step", "time_step": 0.02, "passes": 1, "steps": 200, "equilibration": 100}
+    step |= {"samples": 4}
     experiments = {
         "fraction": [event | {"packing_fraction": 0.1, "count": n} for n in (64, 125, 216)],
         "count": [event | {"count": 125, "radius": r} for r in (0.4, 0.5, 0.6)],
