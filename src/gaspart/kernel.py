@@ -101,7 +101,7 @@ def kernel(function):
 def helper(function):
     """The same for a small function that is inlined where it is used: LLVM by itself leaves a call, which
     passes every array as seven words."""
-    return _compile(function, _nrt=False, inline="always")
+    return _compile(function, _nrt=False, forceinline=True)
 
 
 def allocating_kernel(function):
