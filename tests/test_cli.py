@@ -10,8 +10,8 @@ import sys
 import pytest
 
 import gaspart as gp
-from gaspart import cli, theory
-from gaspart.cli import main
+from gaspart import theory
+from gaspart.cli import main, progress
 
 GAS = """\
 container: {lengths: [12.0, 12.0], boundary: wall}
@@ -137,13 +137,13 @@ def test_a_broken_invariant_is_exit_code_1_and_ctrl_c_130(folder, capsys, monkey
 
 
 def test_progress_is_one_line_on_a_terminal_and_nothing_elsewhere(monkeypatch):
-    assert cli._progress(quiet=False) is None and cli._progress(quiet=True) is None
+    assert progress.progress(quiet=False) is None and progress.progress(quiet=True) is None
     terminal = io.StringIO()
     terminal.isatty = lambda: True
     monkeypatch.setattr(sys, "stderr", terminal)
     clock = iter([100.0, 110.0])
-    monkeypatch.setattr(cli.time, "monotonic", lambda: next(clock))
-    show = cli._progress(quiet=False)
+    monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock))
+    show = progress.progress(quiet=False)
     show(20.0, 100.0, 1000)
     show(40.0, 100.0, 51000)
     assert terminal.getvalue() == "\r\033[K 40.0%  5e+03 collisions/s  0:00:30 left"

@@ -16,7 +16,7 @@ def add_render(commands) -> None:
         "A picture (.png) of one frame of a trajectory, or a film (.mp4, .gif) of all: spheres with light "
         "and shadow, discs as seen from above."
     )
-    render = commands.add_parser("render", help="a picture or a film", description=text, allow_abbrev=False)
+    render = commands.add_parser("render", help="a picture or a film", description=text)
     render.set_defaults(command=_render)
     add = render.add_argument
     add("trajectory", metavar="FILE")

@@ -1,0 +1,75 @@
+"""`gaspart info`: what a trajectory holds, and the command that makes it again."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+from pathlib import Path
+
+
+def add_info(commands) -> None:
+    text = "What a trajectory holds, and the command that makes it again."
+    info = commands.add_parser("info", help="what a trajectory holds", description=text)
+    info.set_defaults(command=_info)
+    info.add_argument("trajectory", metavar="FILE")
+    info.add_argument("--scene", action="store_true", help="print the scene file and nothing else")
+
+
+def _info(given: argparse.Namespace) -> None:
+    from gaspart.recipe import opened, read_recipe
+    from gaspart.trajectory import partial_path
+
+    path = Path(given.trajectory)
+    found = path if path.exists() or not partial_path(path).exists() else partial_path(path)
+    recipe = read_recipe(found)
+    with opened(found) as file:
+        stored, frames = file.__dict__, len(file.dimensions["frame"])
+    if given.scene:
+        print(stored["scene"], end="")
+        return
+    scene = recipe.scene
+    state = "whole" if frames == recipe.frames else "unfinished: `gaspart resume` goes on with it"
+    versions = [f"{key.removesuffix('_version')} {stored[key]}" for key in stored if key.endswith("_version")]
+    remake = [
+        f"gaspart info --scene {shlex.quote(str(found))} > scene.yaml",
+        "gaspart run scene.yaml " + shlex.join(_run_options(path, recipe, stored)),
+    ]
+    print(f"{found}: {stored['title']}, {frames} of {recipe.frames} frames, {state}")
+    print(f"packing fraction {scene.packing_fraction:.6g}, number density {scene.number_density:.6g}")
+    print(f"written by {', '.join(versions)}; revision {stored.get('git_revision', 'none')}")
+    print("made again, to the same bits, by")
+    print("\n".join(f"    {line}" for line in remake))
+    print("scene:")
+    print("".join(f"    {line}\n" for line in stored["scene"].splitlines()), end="")
+
+
+def _run_options(path: Path, recipe, stored: dict) -> list[str]:
+    """The options of `gaspart run` that stand for a recipe."""
+    from gaspart.engines import engine_to_dict
+
+    settings = engine_to_dict(recipe.engine)
+    options = ["-o", str(path), "--engine", settings["name"], "--seed", _joined(recipe.seed)]
+    options += ["--duration", repr(recipe.duration), "--sample-interval", repr(recipe.sample_interval)]
+    if "time_step" in settings:
+        options += ["--time-step", repr(settings["time_step"])]
+    if "boxes_per_side" in settings:
+        options += ["--boxes-per-side", _joined(settings["boxes_per_side"])]
+    for key in ("precision", "search"):
+        if key in settings:
+            options += [f"--{key}", settings[key]]
+    for key in ("passes", "skin", "threads"):
+        if key in settings:
+            options += [f"--{key}", repr(settings[key])]
+    if settings.get("near_boxes"):
+        options.append("--near-boxes")
+    if settings.get("rewind") is False:
+        options.append("--no-rewind")
+    if recipe.displacements:
+        options.append("--displacements")
+    if recipe.follow is not None:
+        options += ["--follow", str(recipe.follow)]
+    return options
+
+
+def _joined(numbers: int | tuple[int, ...]) -> str:
+    return ",".join(map(str, numbers)) if isinstance(numbers, tuple) else str(numbers)

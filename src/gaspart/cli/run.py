@@ -1,0 +1,100 @@
+"""`gaspart run` and `gaspart resume`: write a trajectory."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+import sys
+from pathlib import Path
+
+from gaspart.cli.arguments import several
+from gaspart.cli.progress import clear_line, progress
+
+_ENGINE_SETTINGS = ("time_step", "boxes_per_side", "precision", "rewind", "search")
+_ENGINE_SETTINGS += ("passes", "skin", "near_boxes", "threads")
+
+
+def add_run(commands) -> None:
+    text = (
+        "Run a scene and write its trajectory. A run of the same settings that was cut short is continued, "
+        "and one that is whole is left as it is; another one is replaced only with --force."
+    )
+    run = commands.add_parser("run", help="run a scene", description=text)
+    run.set_defaults(command=_run)
+    add, whole = run.add_argument, several(int)
+    add("scene", help="scene file (YAML)")
+    add("-o", "--output", required=True, metavar="FILE", help="trajectory (AMBER NetCDF)")
+    add("--engine", default="event", metavar="NAME", help="event (exact; the default) or step")
+    add("--duration", type=float, required=True, metavar="T", help="in the scene's time")
+    add("--sample-interval", type=float, required=True, metavar="T", help="a whole part of the duration")
+    add("--seed", type=whole, default=(1,), metavar="N[,N...]", help="default: 1")
+    add(
+        "--displacements", action="store_true", help="write unwrapped float64 displacements since time 0, too"
+    )
+    add("--follow", type=int, metavar="N", help="write the first N bodies only")
+    add("--time-step", type=float, metavar="T", help="step engine: a whole part of the sample interval")
+    add("--boxes-per-side", type=whole, metavar="N[,N...]", help="one number for all sides, or one per side")
+    add("--precision", metavar="TYPE", help="step engine: float64 (default) or float32")
+    text = "step engine: collide pairs as they lie after the step, not as they were at their contact"
+    add("--no-rewind", dest="rewind", action="store_false", default=None, help=text)
+    add("--passes", type=int, metavar="N", help="step engine: how often a step may look for overlaps (4)")
+    add("--skin", type=float, metavar="L", help="step engine: of its neighbour list; by default it chooses")
+    text = "step engine: look only into boxes within reach of a contact"
+    add("--near-boxes", action="store_true", default=None, help=text)
+    add("--threads", type=int, metavar="N", help="step engine: how many share the work (1)")
+    add("--search", metavar="NAME", help="event engine: boxes (default), direct or pairs")
+    add("--force", action="store_true", help="replace a trajectory of another run")
+    _add_progress(run)
+
+
+def add_resume(commands) -> None:
+    text = "Finish a run that was cut short, from FILE.partial and FILE.checkpoint.npz alone."
+    resume = commands.add_parser("resume", help="finish a run that was cut short", description=text)
+    resume.set_defaults(command=_resume)
+    resume.add_argument("trajectory", metavar="FILE", help="the trajectory that the run was to write")
+    _add_progress(resume)
+
+
+def _add_progress(parser) -> None:
+    text = "time between checkpoints, default 30: what a kill may cost"
+    parser.add_argument("--checkpoint-seconds", type=float, default=30.0, metavar="S", help=text)
+    parser.add_argument("--quiet", action="store_true", help="show no progress")
+
+
+def _run(given: argparse.Namespace) -> None:
+    from gaspart.engines import engine_from_dict
+    from gaspart.scene import Scene
+    from gaspart.trajectory import run
+
+    settings = {key: getattr(given, key) for key in _ENGINE_SETTINGS if getattr(given, key) is not None}
+    if "boxes_per_side" in settings:
+        settings["boxes_per_side"] = _alone(settings["boxes_per_side"])
+    path = run(
+        Scene.from_file(given.scene),
+        engine_from_dict({"name": given.engine, **settings}),
+        seed=_alone(given.seed),
+        duration=given.duration,
+        sample_interval=given.sample_interval,
+        path=given.output,
+        displacements=given.displacements,
+        follow=given.follow,
+        checkpoint_seconds=given.checkpoint_seconds,
+        progress=progress(given.quiet),
+        overwrite=given.force,
+    )
+    _tell(path)
+
+
+def _alone(numbers: tuple[int, ...]) -> int | tuple[int, ...]:
+    return numbers[0] if len(numbers) == 1 else numbers
+
+
+def _resume(given: argparse.Namespace) -> None:
+    from gaspart.trajectory import resume
+
+    _tell(resume(given.trajectory, given.checkpoint_seconds, progress(given.quiet)))
+
+
+def _tell(path: Path) -> None:
+    print(f"{clear_line()}", end="", file=sys.stderr)
+    print(f"{path} is whole; `gaspart info {shlex.quote(str(path))}` tells what it holds")
