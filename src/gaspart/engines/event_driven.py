@@ -15,6 +15,7 @@ from gaspart.wells import well_energies
 
 SEARCHES = ("boxes", "direct", "pairs")
 _LAP = 10  # a lap of the clocks is some 2^10 times of flight over a diameter
+_QUIET = 1000  # laps without an event after which a run without an end is given up
 _STILL = 2.0**960  # the lap of a scene in which nothing moves
 _BLINK = 2.0**-44  # of a lap: the longest bounce on a floor that is taken for rest
 # More contacts of one body than these, within so much of a lap, are taken for a collapse. Intervals between
@@ -148,8 +149,10 @@ class EventDynamics:
     def advance(self, until: float, most: int | None = None, log: EventLog | None = None) -> None:
         """Process events up to time `until`, at most `most` of them (collisions and wall hits).
 
-        Raises SimulationError, with the state kept, if bodies collapse: they would meet for ever in no time.
+        Raises SimulationError, with the state kept, if bodies collapse: they would meet for ever in no time;
+        and if nothing happens in a thousand laps of a run that only events would end.
         """
+        quiet = 0
         left = np.iinfo(np.int64).max if most is None else most
         room = None if log is None else log.room
         while left > 0:
@@ -164,6 +167,11 @@ class EventDynamics:
                     self._clock = stop
                     return
                 self._turn_lap()
+                quiet = 0 if done else quiet + 1
+                if until == np.inf and quiet > _QUIET:
+                    raise SimulationError(
+                        f"no event from time {self.time - quiet * self._lap:g} on: bodies miss one another"
+                    )
             elif done:
                 self._clock = max(self._clock, last)
             if reason == self._layout.COLLAPSE:

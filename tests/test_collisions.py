@@ -1,0 +1,71 @@
+"""The data set of collisions: rows that follow from one another, and what kinetic theory says of them."""
+
+import numpy as np
+import pytest
+from scenes import gas
+from scipy import stats
+
+import gaspart as gp
+from gaspart import theory
+
+
+@pytest.mark.parametrize("boundary", ["periodic", "wall"])
+def test_rows_are_what_the_events_say(boundary):
+    scene = gas(2, 20, 0.2, boundary)
+    data = gp.collision_data(scene, 200, seed=3)
+    assert data.sizes["collision"] >= 200
+    assert np.all(data["approach"] > 0.0)
+    assert np.all(data["approach"] <= data["relative_speed"] * (1 + 1e-12))
+    assert np.allclose((data["normal"] ** 2).sum("axis"), 1.0)
+    sim = gp.Simulation(scene, gp.EventDriven(), seed=3)
+    sim.record_events = True
+    sim.advance(until=float(data["time"][-1]))
+    times, bodies = sim.events["time"], sim.events["bodies"]
+    last = dict.fromkeys(range(20), np.nan)
+    expected = []
+    for time, pair in zip(times, bodies, strict=True):
+        if pair[1] >= 0:
+            expected.append([time - last[body] for body in pair])
+        last.update({body: time for body in pair if body >= 0})
+    assert np.array_equal(data["free_time"], np.array(expected), equal_nan=True)
+    assert np.array_equal(data["bodies"], bodies[bodies[:, 1] >= 0])
+
+
+@pytest.fixture(scope="module", params=[2, 3])
+def data(request):
+    return gp.collision_data(gas(request.param, 200, 0.2), 30_000, seed=5, equilibration=5.0)
+
+
+def test_the_contact_value_is_that_of_theory(data):
+    dimension = data.sizes["axis"]
+    chi = gp.contact_value(data)
+    finite = theory.collision_rate_finite_size_factor(0.2, dimension, 200)
+    assert chi.error < 0.01 * chi.value
+    assert abs(chi.value - float(theory.contact_value(0.2, dimension)) * float(finite)) < 3 * chi.error
+
+
+def test_bodies_meet_at_every_offset_alike(data):
+    """The offset's power d - 1 is uniform, for the flux of pairs through a disc (a line) is."""
+    cosine = (data["approach"] / data["relative_speed"]).values
+    offset = np.sqrt(1.0 - cosine**2) ** (data.sizes["axis"] - 1)
+    assert stats.kstest(offset, "uniform").pvalue > 0.001
+
+
+def test_the_mean_free_path_is_that_of_theory(data):
+    path = data["free_path"].values
+    path = path[np.isfinite(path)]
+    expected = float(theory.mean_free_path(0.2, data.sizes["axis"]))
+    # neighbouring flights share a collision; twice the error of independent ones covers that
+    assert abs(path.mean() - expected) < 3 * 2 * path.std() / np.sqrt(len(path))
+
+
+def test_what_is_refused():
+    with pytest.raises(gp.SceneError, match="gravity"):
+        gp.collision_data(gp.Scene(gp.Container((9.0, 9.0)), gravity=(0.0, -1.0)), 10)
+    with pytest.raises(gp.SceneError, match="collisions = 0"):
+        gp.collision_data(gas(2, 20, 0.2), 0)
+    with pytest.raises(gp.SimulationError, match="no event"):
+        gp.collision_data(gp.Scene(gp.Container((9.0, 9.0), "periodic"), [gp.Species(1, 0.5)]), 10)
+    mixed = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(5, r, speed=1.0) for r in (0.3, 0.5)])
+    with pytest.raises(gp.SceneError, match="equal bodies"):
+        gp.contact_value(gp.collision_data(mixed, 50))
