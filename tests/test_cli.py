@@ -8,6 +8,7 @@ import subprocess
 import sys
 
 import pytest
+import xarray as xr
 
 import gaspart as gp
 from gaspart import theory
@@ -116,9 +117,18 @@ def test_a_mistake_costs_one_line(tmp_path, scene, options, complaint):
     assert {file.name for file in tmp_path.iterdir()} <= {"scene.yaml"}
 
 
+def test_collisions_become_a_data_set(folder, capsys):
+    assert main(["collisions", "scene.yaml", "-o", "met.nc", "--count", "100", "--seed", "4"]) == 0
+    assert "collisions, mean free path" in capsys.readouterr().out
+    with xr.open_dataset(folder / "met.nc") as data:
+        same = gp.collision_data(gp.Scene.from_file("scene.yaml"), 100, seed=4)
+        assert data.identical(same)
+    assert main(["collisions", "scene.yaml", "-o", "nowhere/met.nc", "--count", "5"]) == 2
+
+
 def test_no_command_is_a_mistake_and_help_is_not(tmp_path):
     assert shell(folder=tmp_path).returncode == 2
-    for command in ([], ["run"], ["resume"], ["info"], ["render"], ["theory"]):
+    for command in ([], ["run"], ["resume"], ["info"], ["render"], ["collisions"], ["theory"]):
         done = shell(*command, "--help", folder=tmp_path)
         assert done.returncode == 0 and "usage: gaspart" in done.stdout
     assert shell("--version", folder=tmp_path).stdout == f"gaspart {gp.__version__}\n"

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 from gaspart import __version__
 from gaspart.cli.arguments import Parser, UsageError
+from gaspart.cli.collisions import add_collisions
 from gaspart.cli.info import add_info
 from gaspart.cli.progress import clear_line
 from gaspart.cli.render import add_render
@@ -22,6 +23,7 @@ _COMMANDS = {
     "resume": add_resume,
     "info": add_info,
     "render": add_render,
+    "collisions": add_collisions,
     "theory": add_theory,
 }
 

@@ -62,7 +62,7 @@ def _render(given: argparse.Namespace) -> None:
 
 
 def _picture(trajectory: Path, output: Path, options: dict) -> None:
-    from gaspart.rendering.films import writing
+    from gaspart.files import writing
     from gaspart.rendering.pictures import render
     from gaspart.trajectory import open_trajectory
 

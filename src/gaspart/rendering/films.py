@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.files import whole_file
+from gaspart.files import writing
 from gaspart.rendering.bodies import FASTEST, bodies_of, colours_of
 from gaspart.rendering.pictures import SIZE, checked_size, picture
 from gaspart.trajectory import open_trajectory
@@ -105,16 +104,3 @@ def _mp4(partial: Path, shown: Iterator[np.ndarray], size: tuple[int, int], rate
     for image in shown:
         writer.send(np.ascontiguousarray(image))
     writer.close()
-
-
-@contextmanager
-def writing(path: Path):
-    """A `.partial` path to write to, as `whole_file`; one SceneError for a missing folder, a full disk ..."""
-    try:
-        with whole_file(path) as partial:
-            partial.touch()  # what cannot be written is found out before anything is drawn
-            yield partial
-    except OSError as error:
-        partial.unlink(missing_ok=True)
-        why = error.strerror or "the encoder has stopped"
-        raise SceneError("path", str(path), f"cannot be written: {why}") from None
