@@ -113,7 +113,7 @@ class _Growing:
 
     def __init__(self, scene: Scene, seed: int | tuple[int, ...], scale: float, end: float):
         from gaspart.boxes import make_boxes, sides_for
-        from gaspart.engines import growth, layout
+        from gaspart.engines import growth, layout, lists
         from gaspart.initial import per_body, random_insertion
 
         start = replace(scene, species=_scaled(scene, scale), faces={})
@@ -133,10 +133,7 @@ class _Growing:
         )
         self._plans = aligned((n,), PLAN)
         self._plans["at"] = self._boxes.coordinates(positions)
-        self._partition = layout.Partition(
-            self._boxes.per_side, self._boxes.widths, self._boxes.strides, self._boxes.neighbour,
-            self._boxes.shift, head=np.full(self._boxes.count, -1, dtype=np.int32),
-        )  # fmt: skip
+        self._partition = lists.empty_partition(self._boxes, scene.container.lengths, n)
         self._calendar = empty_calendar(n)
 
     def grow(self, rate: float, end: float) -> None:

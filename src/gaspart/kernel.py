@@ -27,6 +27,7 @@ KERNEL_MODULES = (
     "engines/calendar.py",
     "engines/layout.py",
     "engines/flight.py",
+    "engines/search.py",
     "engines/lists.py",
     "engines/big.py",
     "engines/impact.py",

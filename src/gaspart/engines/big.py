@@ -118,10 +118,10 @@ def find_around(rows, plans, body, space, partition, counters, gravity, big, cro
                     continue
                 counters.counts[BOX_VISITS] += 1
                 other = partition.head[line + (i - lap_x * n[0]) * partition.strides[0]]
-                while other >= 0:
+                while other < len(rows):
                     if other != body:
                         consider(rows, plans, body, other, lap_x, lap_y, lap_z, space, counters, gravity)
-                    other = plans[other].box_after
+                    other = partition.following[other]
 
 
 @kernel

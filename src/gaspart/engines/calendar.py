@@ -23,9 +23,8 @@ PLAN = np.dtype(
         ("face", "i4"),  # which
         ("changes", "i4"),  # changes of flight that this body has seen
         ("at", "i4", 3),  # coordinates of its box
-        ("box_before", "i4"),  # its neighbours in the lists of its box
-        ("box_after", "i4"),
-        ("before", "i4"),  # and of its bucket of the calendar,
+        ("box", "i4"),  # and its linear index
+        ("before", "i4"),  # its neighbours in its bucket of the calendar,
         ("after", "i4"),
         ("slot", "i4"),  # which is this one, or -1
     ],

@@ -59,7 +59,7 @@ class EventDynamics:
 
     def __init__(self, engine: EventDriven, scene: Scene, state: State, seed: int | tuple[int, ...]):
         from gaspart.beside import boxes_and_largest
-        from gaspart.engines import all_pairs, event_kernels, flight, layout
+        from gaspart.engines import all_pairs, event_kernels, flight, layout, lists
         from gaspart.engines.calendar import PLAN, empty_calendar
 
         self._kernels, self._all_pairs = event_kernels, all_pairs
@@ -84,10 +84,7 @@ class EventDynamics:
         self._plans = aligned((n,), PLAN)
         self._plans["partner"] = -1
         self._plans["at"] = boxes.coordinates(state.positions)
-        self._partition = layout.Partition(
-            boxes.per_side, boxes.widths, boxes.strides, boxes.neighbour, boxes.shift,
-            head=np.full(boxes.count, -1, dtype=np.int32),
-        )  # fmt: skip
+        self._partition = lists.empty_partition(boxes, scene.container.lengths, n)
         self._walls = None
         if scene.walls:
             from gaspart import plates, segments

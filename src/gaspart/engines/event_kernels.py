@@ -19,10 +19,8 @@ import numpy as np
 from gaspart.engines.big import find_beside
 from gaspart.engines.calendar import fill, reschedule, soonest, time_of
 from gaspart.engines.faces import find_face, meet_face
-from gaspart.engines.flight import pair_time
 from gaspart.engines.impact import collide, crowded
 from gaspart.engines.layout import (
-    BOX_VISITS,
     COLLAPSE,
     CROSSINGS,
     EDGES,
@@ -30,59 +28,15 @@ from gaspart.engines.layout import (
     FULL,
     INNER,
     NOTHING,
-    PAIR_TESTS,
     STALE,
     STOP,
     WALLS,
 )
 from gaspart.engines.lists import put, sort_in, take
+from gaspart.engines.search import find_contact
 from gaspart.engines.surfaces import meet_edge
 from gaspart.engines.walls import find_wall, meet_wall
 from gaspart.kernel import helper, kernel
-
-
-@kernel
-def find_contact(rows, plans, body, space, partition, counters, low, high, gravity):
-    """Look for an earlier contact of the body in the boxes at steps low..high (3,) from its own."""
-    d = len(space.lengths)
-    ax, ay, az = plans[body].at[0], plans[body].at[1], plans[body].at[2]
-    best = plans[body].contact
-    partner = plans[body].partner
-    found = False
-    tests = 0
-    visits = 0
-    for dz in range(low[2], high[2] + 1):
-        z = partition.neighbour[2, az, dz + 1]
-        if z < 0:
-            continue
-        far_z = partition.shift[2, az, dz + 1] * space.lengths[d - 1]  # 0 in two dimensions
-        for dy in range(low[1], high[1] + 1):
-            y = partition.neighbour[1, ay, dy + 1]
-            if y < 0:
-                continue
-            far_y = partition.shift[1, ay, dy + 1] * space.lengths[1]
-            for dx in range(low[0], high[0] + 1):
-                x = partition.neighbour[0, ax, dx + 1]
-                if x < 0:
-                    continue
-                offset = (partition.shift[0, ax, dx + 1] * space.lengths[0], far_y, far_z)
-                visits += 1
-                other = partition.head[x + y + z]
-                while other >= 0:
-                    if other != body:
-                        tests += 1
-                        time = pair_time(rows, body, other, offset, space, gravity)
-                        if time < best or (time == best and time < inf and other < partner):
-                            best = time
-                            partner = other
-                            found = True
-                    other = plans[other].box_after
-    if found:
-        plans[body].contact = best
-        plans[body].partner = partner
-        plans[body].partner_changes = plans[partner].changes
-    counters.counts[PAIR_TESTS] += tests
-    counters.counts[BOX_VISITS] += visits
 
 
 @helper

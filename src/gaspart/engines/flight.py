@@ -62,44 +62,61 @@ def synchronise(rows, time, space, gravity):
 
 
 @helper
-def pair_time(rows, i, j, offset, space, gravity):
-    """When bodies i and j touch, j displaced by `offset` (d,); inf if they do not."""
+def encounter(rows, i, j, offset, space, gravity):
+    """Bodies i and j, the latter displaced by `offset` (d,), at the later of their clocks: that time, and of
+    their separation r, relative velocity v and acceleration a the products rr, rv, vv, ra, va, aa."""
     d = len(space.lengths)
     start = max(rows[i, 2 * d], rows[j, 2 * d])
     late_i = start - rows[i, 2 * d]
     late_j = start - rows[j, 2 * d]
-    rr = 0.0
-    rv = 0.0
-    vv = 0.0
-    if gravity is None:
-        for k in range(d):
+    rr = rv = vv = ra = va = aa = 0.0
+    for k in range(d):
+        if gravity is None:
             v = rows[j, d + k] - rows[i, d + k]
             r = (rows[j, k] + rows[j, d + k] * late_j) - (rows[i, k] + rows[i, d + k] * late_i) + offset[k]
-            rr += r * r
-            rv += r * v
-            vv += v * v
-        sigma = rows[i, 2 * d + 1] + rows[j, 2 * d + 1]
-        return start + time_to_contact(rr, rv, vv, sigma * sigma)
-    ra = 0.0
-    va = 0.0
-    aa = 0.0
-    for k in range(d):
-        pull_i = acceleration(rows, i, k, space, gravity)
-        pull_j = acceleration(rows, j, k, space, gravity)
-        a = pull_j - pull_i
-        v = (rows[j, d + k] + pull_j * late_j) - (rows[i, d + k] + pull_i * late_i)
-        r = (
-            flown(rows[j, k], rows[j, d + k], pull_j, late_j)
-            - flown(rows[i, k], rows[i, d + k], pull_i, late_i)
-            + offset[k]
-        )
+        else:
+            pull_i = acceleration(rows, i, k, space, gravity)
+            pull_j = acceleration(rows, j, k, space, gravity)
+            a = pull_j - pull_i
+            v = (rows[j, d + k] + pull_j * late_j) - (rows[i, d + k] + pull_i * late_i)
+            r = (
+                flown(rows[j, k], rows[j, d + k], pull_j, late_j)
+                - flown(rows[i, k], rows[i, d + k], pull_i, late_i)
+                + offset[k]
+            )
+            ra += r * a
+            va += v * a
+            aa += a * a
         rr += r * r
         rv += r * v
         vv += v * v
-        ra += r * a
-        va += v * a
-        aa += a * a
-    sigma = rows[i, 2 * d + 1] + rows[j, 2 * d + 1]
-    if aa > 0.0:
-        return start + time_to_contact_pulled(rr - sigma * sigma, rv, vv, ra, va, aa)
-    return start + time_to_contact(rr, rv, vv, sigma * sigma)
+    return start, rr, rv, vv, ra, va, aa
+
+
+@helper
+def contact_square(rows, i, j, space):
+    """The square of the distance at which two bodies touch."""
+    radius = 2 * len(space.lengths) + 1
+    sigma = rows[i, radius] + rows[j, radius]
+    return sigma * sigma
+
+
+@helper
+def may_touch(rows, i, j, offset, space, gravity):
+    """Whether `pair_time` may be finite: a test without a branch, that spares the roots of most pairs."""
+    _, rr, rv, vv, _, _, aa = encounter(rows, i, j, offset, space, gravity)
+    meets = (rv < 0.0) & (rv * rv >= vv * (rr - contact_square(rows, i, j, space)))
+    if gravity is None:
+        return meets
+    return meets | (aa > 0.0)
+
+
+@helper
+def pair_time(rows, i, j, offset, space, gravity):
+    """When bodies i and j touch, j displaced by `offset` (d,); inf if they do not."""
+    start, rr, rv, vv, ra, va, aa = encounter(rows, i, j, offset, space, gravity)
+    ss = contact_square(rows, i, j, space)
+    if gravity is not None:
+        if aa > 0.0:
+            return start + time_to_contact_pulled(rr - ss, rv, vv, ra, va, aa)
+    return start + time_to_contact(rr, rv, vv, ss)

@@ -88,13 +88,13 @@ def foresee(rows, plans, body, space, partition, rate):
                     partition.shift[2, at[2], dz] * space.lengths[d - 1],
                 )
                 other = partition.head[x + y + z]
-                while other >= 0:
+                while other < len(rows):
                     if other != body:
                         time = pair_time(rows, body, other, offset, space, rate)
                         if time < best or (time == best and time < inf and other < partner):
                             best = time
                             partner = other
-                    other = plans[other].box_after
+                    other = partition.following[other]
     plans[body].contact = best
     plans[body].partner = partner
     plans[body].partner_changes = plans[partner].changes if partner >= 0 else 0
@@ -210,7 +210,7 @@ def closest(rows, plans, space, partition):
             if x < 0 or y < 0 or z < 0:
                 continue
             other = partition.head[x + y + z]
-            while other >= 0:
+            while other < len(rows):
                 if other != body:
                     rr = 0.0
                     for k in range(d):
@@ -218,7 +218,7 @@ def closest(rows, plans, space, partition):
                         rr += gap * gap
                     sigma = rows[body, 2 * d + 1] + rows[other, 2 * d + 1]
                     least = min(least, rr / (sigma * sigma))
-                other = plans[other].box_after
+                other = partition.following[other]
     return least
 
 

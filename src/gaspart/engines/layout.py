@@ -88,7 +88,9 @@ class Watch(NamedTuple):
 
 
 class Partition(NamedTuple):
-    """The grid of boxes (see `boxes.Boxes`), and the first body in each."""
+    """The grid of boxes (see `boxes.Boxes`); head (boxes,), the first body in each, and following (N + 1,),
+    the next after each body, see `lists`; offset (27, d), where the images of a body stand; near (M,), room
+    for the candidates of a search."""
 
     per_side: np.ndarray
     widths: np.ndarray
@@ -96,6 +98,9 @@ class Partition(NamedTuple):
     neighbour: np.ndarray
     shift: np.ndarray
     head: np.ndarray
+    following: np.ndarray
+    offset: np.ndarray
+    near: np.ndarray
 
 
 class Counters(NamedTuple):
