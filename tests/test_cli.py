@@ -6,6 +6,7 @@ import re
 import shlex
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 import xarray as xr
@@ -19,6 +20,7 @@ container: {lengths: [12.0, 12.0], boundary: wall}
 species:
 - {count: 20, radius: 0.5, temperature: 1.0}
 """
+COMMANDS = ("run", "resume", "info", "render", "collisions", "export", "theory", "check")
 BRIEFLY = ["--duration", "1", "--sample-interval", "0.5"]
 
 
@@ -47,6 +49,8 @@ def test_run_info_and_the_command_that_makes_it_again(folder, capsys):
         told = capsys.readouterr().out
         assert "20 hard discs, 3 of 3 frames, whole" in told
         assert f"gaspart {gp.__version__}, python " in told
+        assert re.search(r"drift of the energy: \d\.\de-\d\d", told)
+        assert " collisions per body" in told
         assert main(["info", "run.nc", "--scene"]) == 0
         (folder / "again.yaml").write_text(capsys.readouterr().out)
         command = shlex.split(re.search(r"gaspart (run scene.yaml .*)", told)[1])
@@ -126,11 +130,14 @@ def test_collisions_become_a_data_set(folder, capsys):
     assert main(["collisions", "scene.yaml", "-o", "nowhere/met.nc", "--count", "5"]) == 2
 
 
-def test_no_command_is_a_mistake_and_help_is_not(tmp_path):
+def test_no_command_is_a_mistake_and_help_is_not(tmp_path, capsys):
     assert shell(folder=tmp_path).returncode == 2
-    for command in ([], ["run"], ["resume"], ["info"], ["render"], ["collisions"], ["theory"]):
-        done = shell(*command, "--help", folder=tmp_path)
-        assert done.returncode == 0 and "usage: gaspart" in done.stdout
+    for command in ([], *([name] for name in COMMANDS)):
+        with pytest.raises(SystemExit) as leaving:
+            main([*command, "--help"])
+        told = capsys.readouterr().out
+        assert leaving.value.code == 0 and "usage: gaspart" in told
+        assert "example" in told or command in ([], ["resume"])
     assert shell("--version", folder=tmp_path).stdout == f"gaspart {gp.__version__}\n"
 
 
@@ -164,14 +171,16 @@ def throw(error):
 
 
 def test_theory(capsys):
-    assert main(["theory", "Z", "--eta", "0.3", "--dimension", "3"]) == 0
+    assert main(["theory", "Z", "--eta", "0.3"]) == 0
     told = capsys.readouterr().out
-    value, error = re.fullmatch(r"Z\(eta = 0\.3, dimension = 3\) = (\S+) \+- (\S+)\n", told).groups()
+    first, source, domain = told.splitlines()
+    value, error = re.fullmatch(r"Z\(eta = 0\.3, dimension = 3\) = (\S+) \+- (\S+)", first).groups()
+    assert "Kolafa" in source and "from 0 to 0.539" in domain
     assert float(value) == pytest.approx(float(theory.compressibility_factor(0.3, 3)), rel=1e-9)
     assert 0 < float(error) < 1e-3
 
     assert main(["theory", "collision_rate", "--eta", "0.1,0.2", "--dimension", "2", "--mass", "4"]) == 0
-    values = [float(line.split(" = ")[-1]) for line in capsys.readouterr().out.splitlines()]
+    values = [float(line.split(" = ")[-1]) for line in capsys.readouterr().out.splitlines()[:2]]
     assert values == pytest.approx([float(theory.collision_rate(eta, 2, mass=4.0)) for eta in (0.1, 0.2)])
 
     for name in ("contact_value", "mean_free_path", "diffusion_coefficient", "viscosity"):
@@ -188,3 +197,41 @@ def test_theory(capsys):
         assert main(["theory", *wrong]) == 2
         told = capsys.readouterr().err
         assert complaint in told and told.count("\n") == 1
+
+
+def test_check_tells_what_is_wrong_by_its_exit_code(folder, capsys):
+    assert main(["check", "scene.yaml"]) == 0
+    assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY]) == 0
+    assert main(["check", "run.nc"]) == 0
+    capsys.readouterr()
+    assert main(["check", "run.nc", "--radius", "2"]) == 1
+    assert "WRONG overlaps: the deepest is 0." in capsys.readouterr().out
+    assert main(["check", "run.nc", "--lengths", "8,12"]) == 1
+    assert "WRONG container" in capsys.readouterr().out
+    for wrong, complaint in (
+        (["scene.yaml", "--radius", "1"], "radius = 1.0: has a meaning for trajectories only"),
+        (["nowhere.gsd"], "cannot be read: No such file"),
+        (["run.pdb"], "must end in .nc, .gsd, .xyz"),
+    ):
+        assert main(["check", *wrong]) == 2
+        told = capsys.readouterr().err
+        assert complaint in told and told.count("\n") == 1
+
+
+def test_check_of_a_config_is_that_of_the_workflow(folder, capsys):
+    config = Path(__file__).parents[1] / "config"
+    assert main(["check", str(config / "smoke.yaml")]) == 0
+    assert re.search(r"ok +config: \d+ experiments of \d+ points", capsys.readouterr().out)
+    (folder / "alone.yaml").write_text("experiments: {}\n")
+    assert main(["check", "alone.yaml"]) == 2
+    assert "must lie in a folder beside workflow/schemas" in capsys.readouterr().err
+
+
+def test_export_says_where(folder, capsys):
+    assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY]) == 0
+    capsys.readouterr()
+    assert main(["export", "run.nc", "-o", "state.gsd"]) == 0
+    assert capsys.readouterr().out == "state.gsd\n"
+    assert main(["export", "run.nc", "-o", "state.pdb"]) == 2
+    assert main(["export", "run.nc", "-o", "state.gsd", "--frame", "3"]) == 2
+    assert "frame = 3: the trajectory has 3" in capsys.readouterr().err

@@ -30,6 +30,7 @@ _HOMES = {
     "contact_value": "collisions",
     "engine_from_dict": "engines",
     "engine_to_dict": "engines",
+    "export": "exports",
     "film": "rendering.films",
     "open_trajectory": "trajectory",
     "render": "rendering.pictures",

@@ -1,6 +1,7 @@
 """The command line: a module for each command, which adds it to the parser and carries it out.
 
-A user's mistake is one line on stderr and exit code 2; a run that broke an invariant, 1; Ctrl-C, 130.
+A user's mistake is one line on stderr and exit code 2; a run that broke an invariant, or something that
+`check` finds wrong, 1; Ctrl-C, 130.
 """
 
 from __future__ import annotations
@@ -10,7 +11,9 @@ from collections.abc import Sequence
 
 from gaspart import __version__
 from gaspart.cli.arguments import Parser, UsageError
+from gaspart.cli.check import Wrong, add_check
 from gaspart.cli.collisions import add_collisions
+from gaspart.cli.export import add_export
 from gaspart.cli.info import add_info
 from gaspart.cli.progress import clear_line
 from gaspart.cli.render import add_render
@@ -24,7 +27,9 @@ _COMMANDS = {
     "info": add_info,
     "render": add_render,
     "collisions": add_collisions,
+    "export": add_export,
     "theory": add_theory,
+    "check": add_check,
 }
 
 
@@ -35,6 +40,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         given.command(given)
     except (SceneError, UsageError) as error:
         return _complain(error, 2)
+    except Wrong:
+        return 1
     except MemoryError:
         return _complain("there is not enough memory for this", 2)
     except SimulationError as error:

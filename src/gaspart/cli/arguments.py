@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from textwrap import fill
 
 
 class UsageError(Exception):
@@ -13,8 +14,8 @@ class Parser(argparse.ArgumentParser):
     """Raises what argparse would print, takes options in full only, and leaves lines of text as they are."""
 
     def __init__(self, **settings):
-        settings = {"formatter_class": argparse.RawDescriptionHelpFormatter, **settings}
-        super().__init__(allow_abbrev=False, **settings)
+        settings["description"] = fill(settings["description"], width=100)
+        super().__init__(allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter, **settings)
 
     def error(self, message: str):
         raise UsageError(message)

@@ -6,16 +6,22 @@ import argparse
 import shlex
 from pathlib import Path
 
+_EXAMPLES = """examples:
+  gaspart info run.nc
+  gaspart info run.nc --scene > scene.yaml      and then the command that it prints, for the same bits"""
+
 
 def add_info(commands) -> None:
-    text = "What a trajectory holds, and the command that makes it again."
-    info = commands.add_parser("info", help="what a trajectory holds", description=text)
+    """Add the command to the others."""
+    text = "What a trajectory holds, how good it is, and the command that makes it again."
+    info = commands.add_parser("info", help="what a trajectory holds", description=text, epilog=_EXAMPLES)
     info.set_defaults(command=_info)
     info.add_argument("trajectory", metavar="FILE")
     info.add_argument("--scene", action="store_true", help="print the scene file and nothing else")
 
 
 def _info(given: argparse.Namespace) -> None:
+    from gaspart.inspection.certificate import certificate
     from gaspart.recipe import opened, read_recipe
     from gaspart.trajectory import partial_path
 
@@ -36,6 +42,7 @@ def _info(given: argparse.Namespace) -> None:
     ]
     print(f"{found}: {stored['title']}, {frames} of {recipe.frames} frames, {state}")
     print(f"packing fraction {scene.packing_fraction:.6g}, number density {scene.number_density:.6g}")
+    print("\n".join(certificate(found)))
     print(f"written by {', '.join(versions)}; revision {stored.get('git_revision', 'none')}")
     print("made again, to the same bits, by")
     print("\n".join(f"    {line}" for line in remake))

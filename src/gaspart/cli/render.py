@@ -10,13 +10,18 @@ from gaspart.errors import SceneError
 PICTURES = (".png",)
 
 
+_EXAMPLES = """examples:
+  gaspart render run.nc -o run.png
+  gaspart render run.nc -o run.mp4 --frames-per-second 30 --colour species"""
+
+
 def add_render(commands) -> None:
     """Add the command to the others."""
     text = (
         "A picture (.png) of one frame of a trajectory, or a film (.mp4, .gif) of all: spheres with light "
         "and shadow, discs as seen from above."
     )
-    render = commands.add_parser("render", help="a picture or a film", description=text)
+    render = commands.add_parser("render", help="a picture or a film", description=text, epilog=_EXAMPLES)
     render.set_defaults(command=_render)
     add = render.add_argument
     add("trajectory", metavar="FILE")

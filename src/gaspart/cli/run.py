@@ -14,12 +14,19 @@ _ENGINE_SETTINGS = ("time_step", "boxes_per_side", "precision", "rewind", "searc
 _ENGINE_SETTINGS += ("passes", "skin", "near_boxes", "threads")
 
 
+_EXAMPLES = """examples:
+  gaspart run scene.yaml -o run.nc --duration 100 --sample-interval 1 --seed 1
+  gaspart run scene.yaml -o run.nc --engine step --time-step 0.01 --duration 100 --sample-interval 1
+  gaspart info run.nc"""
+
+
 def add_run(commands) -> None:
+    """Add `run` to the other commands."""
     text = (
         "Run a scene and write its trajectory. A run of the same settings that was cut short is continued, "
         "and one that is whole is left as it is; another one is replaced only with --force."
     )
-    run = commands.add_parser("run", help="run a scene", description=text)
+    run = commands.add_parser("run", help="run a scene", description=text, epilog=_EXAMPLES)
     run.set_defaults(command=_run)
     add, whole = run.add_argument, several(int)
     add("scene", help="scene file (YAML)")
@@ -48,6 +55,7 @@ def add_run(commands) -> None:
 
 
 def add_resume(commands) -> None:
+    """Add `resume` to the other commands."""
     text = "Finish a run that was cut short, from FILE.partial and FILE.checkpoint.npz alone."
     resume = commands.add_parser("resume", help="finish a run that was cut short", description=text)
     resume.set_defaults(command=_resume)

@@ -1,51 +1,81 @@
-"""`gaspart theory`: a number that theory says, how sure it is, and where it is from."""
+"""`gaspart theory`: a number that theory says, how sure it is, where it is from, and where it holds."""
 
 from __future__ import annotations
 
 import argparse
+from dataclasses import dataclass
 
 from gaspart.cli.arguments import UsageError, several
 from gaspart.errors import SceneError
 
-# `gaspart theory`: name -> (function of gaspart.theory, the body's properties it takes, what it is)
 _BODY = ("diameter", "temperature", "mass")
-_QUANTITIES = {
-    "Z": ("compressibility_factor", (), "compressibility factor PV/(N k_B T), best reference"),
-    "contact_value": ("contact_value", (), "pair distribution at contact g(sigma)"),
-    "mean_free_path": ("mean_free_path", ("diameter",), "mean free path"),
-    "collision_rate": ("collision_rate", _BODY, "collisions per body and time"),
-    "diffusion_coefficient": ("enskog_diffusion", _BODY, "self-diffusion coefficient of Enskog's theory"),
-    "viscosity": ("enskog_viscosity", _BODY, "shear viscosity of Enskog's theory"),
+_STATE = {
+    2: "virial series to B10 with a linear tail (Clisby and McCoy 2006)",
+    3: "Kolafa, Labik and Malijevsky 2004",
 }
+_FLUID = {2: "the fluid of discs", 3: "the fluid of spheres (metastable from 0.4915)"}
+
+
+@dataclass(frozen=True)
+class _Quantity:
+    """A function of gaspart.theory, the body's properties it takes, what it is, and where it is from."""
+
+    function: str
+    takes: tuple[str, ...]
+    meaning: str
+    source: dict[int, str]
+
+
+_RATE = {d: f"exact in equilibrium, with g(sigma) from: {source}" for d, source in _STATE.items()}
+_ENSKOG = {
+    2: "Enskog's theory (Gass 1971), with g(sigma) from: " + _STATE[2],
+    3: "Enskog's theory (Chapman and Cowling 1970), with g(sigma) from: " + _STATE[3],
+}
+_QUANTITIES = {
+    "Z": _Quantity("compressibility_factor", (), "compressibility factor PV/(N k_B T)", _STATE),
+    "contact_value": _Quantity("contact_value", (), "pair distribution at contact g(sigma)", _RATE),
+    "mean_free_path": _Quantity("mean_free_path", ("diameter",), "mean free path", _RATE),
+    "collision_rate": _Quantity("collision_rate", _BODY, "collisions per body and time", _RATE),
+    "diffusion_coefficient": _Quantity("enskog_diffusion", _BODY, "self-diffusion coefficient", _ENSKOG),
+    "viscosity": _Quantity("enskog_viscosity", _BODY, "shear viscosity", _ENSKOG),
+}
+_EXAMPLES = """examples:
+  gaspart theory Z --eta 0.3
+  gaspart theory collision_rate --eta 0.1,0.2,0.3 --dimension 2 --diameter 0.1"""
 
 
 def add_theory(commands) -> None:
-    names = "; ".join(f"{name}: {meaning}" for name, (_, _, meaning) in _QUANTITIES.items())
-    theory = commands.add_parser("theory", help="what theory says", description=f"{names}. Units: k_B = 1.")
-    theory.set_defaults(command=_theory)
-    theory.add_argument("quantity", choices=_QUANTITIES, metavar="QUANTITY", help=", ".join(_QUANTITIES))
-    theory.add_argument(
-        "--eta", type=several(float), required=True, metavar="X[,X...]", help="packing fraction"
+    """Add the command to the others."""
+    names = "; ".join(f"{name}: {quantity.meaning}" for name, quantity in _QUANTITIES.items())
+    theory = commands.add_parser(
+        "theory", help="what theory says", description=f"{names}. Units: k_B = 1.", epilog=_EXAMPLES
     )
-    theory.add_argument("--dimension", type=int, choices=(2, 3), required=True)
+    theory.set_defaults(command=_theory)
+    add = theory.add_argument
+    add("quantity", choices=_QUANTITIES, metavar="QUANTITY", help=", ".join(_QUANTITIES))
+    add("--eta", type=several(float), required=True, metavar="X[,X...]", help="packing fraction")
+    add("--dimension", type=int, choices=(2, 3), default=3, help="default: 3")
     for name in _BODY:
-        theory.add_argument(f"--{name}", type=float, help="default: 1")
+        add(f"--{name}", type=float, help="default: 1")
 
 
 def _theory(given: argparse.Namespace) -> None:
     from gaspart import theory
 
-    function, takes, _ = _QUANTITIES[given.quantity]
+    quantity, dimension = _QUANTITIES[given.quantity], given.dimension
     properties = {key: getattr(given, key) for key in _BODY}
     properties = {key: value for key, value in properties.items() if value is not None}
     for key in properties:
-        if key not in takes:
+        if key not in quantity.takes:
             raise SceneError(key, properties[key], f"{given.quantity} does not depend on it")
     for eta in given.eta:
         try:
-            value = getattr(theory, function)(eta, given.dimension, **properties)
-            spread = theory.compressibility_uncertainty(eta, given.dimension)
+            value = getattr(theory, quantity.function)(eta, dimension, **properties)
+            spread = theory.compressibility_uncertainty(eta, dimension)
         except ValueError as error:
             raise UsageError(error) from None
         error = f" +- {float(spread):.1g}" if given.quantity == "Z" else ""
-        print(f"{given.quantity}(eta = {eta:g}, dimension = {given.dimension}) = {float(value):.10g}{error}")
+        print(f"{given.quantity}(eta = {eta:g}, dimension = {dimension}) = {float(value):.10g}{error}")
+    highest = theory.HIGHEST_PACKING_FRACTION[dimension]
+    print(f"{quantity.meaning}, {quantity.source[dimension]}")
+    print(f"holds for eta from 0 to {highest:g}, {_FLUID[dimension]}")

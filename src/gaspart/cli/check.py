@@ -1,0 +1,71 @@
+"""`gaspart check`: is this scene, config or trajectory, of whatever program, as it should be?"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from gaspart.cli.arguments import several
+from gaspart.errors import SceneError
+
+_EXAMPLES = """examples:
+  gaspart check scene.yaml                          can it be, and can its bodies be placed?
+  gaspart check config/paper.yaml                   every point of every grid
+  gaspart check run.nc                              a trajectory of gaspart, AMBER or LAMMPS (dump netcdf)
+  gaspart check dump.gsd --time-step 0.005          of HOOMD, which counts steps
+  gaspart check frames.xyz --radius 0.5 --lengths 10,10,10
+
+exit code: 0 if nothing is wrong, 1 if something is, 2 if it cannot be read"""
+
+
+class Wrong(Exception):
+    """Something that was checked is wrong; it has been told already."""
+
+
+def add_check(commands) -> None:
+    """Add the command to the others."""
+    text = (
+        "Judge a scene, a config, or a trajectory of any program (AMBER or LAMMPS netCDF, GSD, XYZ): "
+        "overlaps, the container, the speed law, g(sigma) and with it Z, and D; a line each."
+    )
+    check = commands.add_parser("check", help="is it as it should be?", description=text, epilog=_EXAMPLES)
+    check.set_defaults(command=_check)
+    add = check.add_argument
+    add("file", metavar="FILE", help=".yaml, .nc, .gsd or .xyz")
+    add("--radius", type=float, metavar="R", help="of all bodies, where the file does not tell")
+    add("--lengths", type=several(float), metavar="X,Y[,Z]", help="sides of the container, likewise")
+    add("--boundary", metavar="NAME", help="periodic (default for other programs' files) or wall")
+    add("--time-step", type=float, metavar="T", help="time of a step (GSD) or of a frame (XYZ)")
+    add("--tolerance", type=float, metavar="X", help="let overlaps of this part of a diameter pass")
+
+
+def _check(given: argparse.Namespace) -> None:
+    if Path(given.file).suffix in (".yaml", ".yml"):
+        for key in ("radius", "lengths", "boundary", "time_step"):
+            if getattr(given, key) is not None:
+                raise SceneError(key, getattr(given, key), "has a meaning for trajectories only")
+        found = _written(Path(given.file), given.tolerance)
+    else:
+        from gaspart.inspection.checks import judge
+        from gaspart.inspection.readers import read_frames
+
+        told = (given.radius, given.lengths, given.boundary, given.time_step)
+        frames = read_frames(given.file, *told)
+        kind = "discs" if frames.dimension == 2 else "spheres"
+        print(f"{given.file}: {frames.count} {kind} in {len(frames.positions)} frames")
+        found = judge(frames, given.tolerance)
+    for check in found:
+        print(check)
+    if any(check.passed is False for check in found):
+        raise Wrong
+
+
+def _written(path: Path, tolerance: float | None) -> list:
+    """The checks of a YAML file: a scene, or a config of the workflow."""
+    from gaspart.files import read_yaml
+    from gaspart.inspection.written import judge_config, judge_scene
+
+    content = read_yaml(path)
+    if isinstance(content, dict) and ("experiments" in content or "figures" in content):
+        return judge_config(path)
+    return judge_scene(path, tolerance)

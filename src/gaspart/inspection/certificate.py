@@ -1,0 +1,51 @@
+"""How good a run of gaspart was, from what it counted: a few lines to trust it by, or not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from gaspart.recipe import opened, read_recipe
+from gaspart.statistics import autocorrelation_time
+
+
+def certificate(path: Path) -> list[str]:
+    """Lines on the drift of the energy, the worst contact, and how many independent samples there are."""
+    scene = read_recipe(path).scene
+    with opened(path) as file:
+        if not len(file.dimensions["frame"]):
+            return ["no frame yet"]
+        names = ("kinetic_energy", "collisions", "virial_sum", "worst_contact", "deepest_overlap")
+        names += ("overlaps_left", "steps", "time")
+        series = {name: np.asarray(file[name][:], dtype=float) for name in names}
+    return [_drift(scene, series["kinetic_energy"]), _contacts(series), _samples(scene, series)]
+
+
+def _drift(scene, energy: np.ndarray) -> str:
+    """Of the kinetic energy, where nothing may change it."""
+    elastic = scene.restitution is None or (scene.restitution.normal == 1.0 and not scene.rough)
+    if not elastic or scene.gravity is not None or scene.faces or scene.vibrates:
+        return f"kinetic energy from {energy[0]:.6g} to {energy[-1]:.6g}: this scene does not conserve it"
+    drift = np.abs(energy - energy[0]).max() / max(energy[0], np.finfo(float).tiny)
+    return f"drift of the energy: {drift:.1e} of it at most"
+
+
+def _contacts(series: dict) -> str:
+    """What the engine got wrong, as it counted it."""
+    told = f"{series['collisions'][-1]:.0f} collisions"
+    if series["steps"][-1]:
+        deepest, left = series["deepest_overlap"][-1], series["overlaps_left"][-1]
+        return f"{told}; deepest overlap {deepest:.2g} of a contact distance, {left:.0f} left after a step"
+    return f"{told}; worst contact off by {series['worst_contact'][-1]:.1e} of its distance, squared"
+
+
+def _samples(scene, series: dict) -> str:
+    """Independent values of the pressure: intervals between frames over twice their correlation time."""
+    counted = np.diff(series["virial_sum"])
+    per_body = 2.0 * series["collisions"][-1] / max(scene.count, 1)
+    told = f"{per_body:.4g} collisions per body"
+    if len(counted) < 4:
+        return told
+    independent = len(counted) / (2.0 * autocorrelation_time(counted))
+    return f"{told}; {independent:.3g} independent samples of the pressure in {len(counted)} intervals"

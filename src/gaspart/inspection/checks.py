@@ -1,0 +1,174 @@
+"""What can be wrong with a trajectory of hard bodies: a check each, which says what it found in one line."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gaspart import theory
+from gaspart.inspection.contact_value import FIT_ERROR, contact_values
+from gaspart.inspection.diffusion import diffusion, expected_diffusion, why_not
+from gaspart.inspection.frames import Frames
+from gaspart.statistics import block_average, histogram_chi_square
+
+TOUCH = 1e-5
+"""Of a diameter: overlaps up to here are put down to rounding; more where the file itself is coarser."""
+LIMIT = 4.0
+"""Standard errors from theory beyond which a number is called wrong: by chance once in 16 000."""
+MOST_FRAMES = 200
+"""As many, evenly spaced, are looked at for overlaps and contact values."""
+_LEAST_FRAMES = 16
+_RARE = 1e-4  # a probability below which speeds are called wrong
+
+
+@dataclass(frozen=True)
+class Check:
+    """The outcome of one check: whether it is passed (None: it could not be made), and why."""
+
+    name: str
+    passed: bool | None
+    text: str
+
+    def __str__(self):
+        word = {True: "ok", False: "WRONG", None: "-"}[self.passed]
+        return f"{word:6}{self.name}: {self.text}"
+
+
+def judge(frames: Frames, tolerance: float | None = None) -> list[Check]:
+    """All checks of a trajectory. tolerance: overlaps up to this part of a diameter are let pass."""
+    seen = np.unique(np.linspace(0, len(frames.positions) - 1, MOST_FRAMES).astype(int))
+    checks = [*judge_places(frames, tolerance), _speeds(frames), _kurtosis(frames)]
+    return [*checks, _pressure(frames, seen), _diffusion(frames)]
+
+
+def judge_places(frames: Frames, tolerance: float | None = None) -> list[Check]:
+    """Do bodies overlap, or stick out of the container?"""
+    seen = np.unique(np.linspace(0, len(frames.positions) - 1, MOST_FRAMES).astype(int))
+    return [_overlaps(frames, seen, tolerance), _inside(frames, tolerance)]
+
+
+def _tolerated(frames: Frames, tolerance: float | None) -> float:
+    """As a part of the smallest diameter."""
+    coarse = 4.0 * frames.resolution / (2.0 * float(frames.radii.min()))
+    return max(TOUCH, coarse) if tolerance is None else tolerance
+
+
+def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Check:
+    """The deepest overlap of two bodies, as a part of their contact distance."""
+    from scipy.spatial import cKDTree
+
+    sides, most = np.where(frames.periodic, frames.lengths, 0.0), 2.0 * float(frames.radii.max())
+    if np.any((sides > 0.0) & (sides <= 2.0 * most)):
+        return Check("overlaps", None, "the container is too small to look for them by nearest images")
+    deepest, where = 0.0, 0
+    for n in seen:
+        pairs = cKDTree(frames.positions[n], boxsize=sides).query_pairs(most, output_type="ndarray")
+        if len(pairs):
+            first, second = pairs.T
+            gap = frames.positions[n][first] - frames.positions[n][second]
+            gap -= np.where(sides > 0.0, sides * np.round(gap / frames.lengths), 0.0)
+            contact = frames.radii[first] + frames.radii[second]
+            worst = float((1.0 - np.sqrt((gap**2).sum(axis=1)) / contact).max())
+            if worst > deepest:
+                deepest, where = worst, int(n)
+    allowed = _tolerated(frames, tolerance)
+    text = (
+        f"the deepest is {deepest:.2g} of a contact distance, in frame {where} (up to {allowed:.1g} allowed)"
+    )
+    return Check("overlaps", deepest <= allowed, text)
+
+
+def _inside(frames: Frames, tolerance: float | None) -> Check:
+    """How far a centre lies outside of the walls; on periodic axes nothing can."""
+    walls = ~np.array(frames.periodic)
+    if not walls.any():
+        return Check("container", None, "periodic, so that nothing can leave it")
+    places, lengths = frames.positions[:, :, walls], frames.lengths[walls]
+    out = float(np.maximum(-places, places - lengths).max()) / (2.0 * float(frames.radii.min()))
+    text = "all centres are inside" if out <= 0.0 else f"a centre is {out:.2g} diameters outside"
+    return Check("container", out <= _tolerated(frames, tolerance), text)
+
+
+def _judged_speeds(frames: Frames) -> str | None:
+    """Why the speeds cannot be judged, if so."""
+    if frames.velocities is None or not np.any(frames.velocities[-1]):
+        return "the file has no velocities"
+    if not frames.plain or frames.diameter is None:
+        return "bodies differ, or something else than elastic contacts moves them"
+    return None
+
+
+def _speeds(frames: Frames) -> Check:
+    """The last frame's speeds against Maxwell's law, of their own temperature."""
+    name = "speed law"
+    if reason := _judged_speeds(frames):
+        return Check(name, None, reason)
+    moving = frames.velocities[-1] - frames.velocities[-1].mean(axis=0)
+    bins = min(30, frames.count // 10)
+    if bins < 4:
+        return Check(name, None, f"{frames.count} bodies are too few for a histogram")
+    temperature = float((moving**2).sum() / (frames.dimension * (frames.count - 1)))
+    speeds = np.sqrt((moving**2).sum(axis=1))
+    found = histogram_chi_square(speeds, lambda v: theory.maxwell_cdf(v, frames.dimension, temperature), bins)
+    text = f"chi-square {found.chi_square:.3g} of {found.degrees_of_freedom} about Maxwell's, last frame"
+    return Check(name, found.p_value > _RARE, f"{text} (p = {found.p_value:.2g})")
+
+
+def _kurtosis(frames: Frames) -> Check:
+    """<v^4> / <v^2>^2 of all frames but the first quarter, in which a run may still relax."""
+    name = "kurtosis of speeds"
+    if reason := _judged_speeds(frames):
+        return Check(name, None, reason)
+    moving = frames.velocities[len(frames.velocities) // 4 :]
+    if len(moving) < _LEAST_FRAMES:
+        return Check(name, None, f"frames are too few for an error: {len(moving)}")
+    rest = all(frames.periodic)
+    if rest:
+        moving = moving - moving.mean(axis=1, keepdims=True)
+    square = (moving**2).sum(axis=2)
+    found = block_average((square**2).mean(axis=1) / square.mean(axis=1) ** 2)
+    expected = theory.kurtosis(frames.dimension, frames.count, zero_momentum=rest)
+    return _compared(name, found.mean, found.error, expected, 0.0, "Maxwell's")
+
+
+def _pressure(frames: Frames, seen: np.ndarray) -> Check:
+    """Z by the pair distribution at contact against the equation of state of so many bodies."""
+    name = "pressure Z"
+    if not all(frames.periodic) or frames.diameter is None or not frames.plain:
+        return Check(
+            name, None, "needs equal bodies in a periodic container, moved by elastic contacts alone"
+        )
+    eta, d = frames.packing_fraction, frames.dimension
+    if eta > theory.HIGHEST_PACKING_FRACTION[d]:
+        return Check(name, None, f"packing fraction {eta:.3g} is beyond the fluid's equation of state")
+    if frames.lengths.min() <= 4.0 * frames.diameter:
+        return Check(name, None, "the container is narrower than four diameters")
+    chosen = seen[len(seen) // 4 :]
+    if len(chosen) < _LEAST_FRAMES:
+        return Check(name, None, f"frames are too few for an error: {len(chosen)}")
+    found = block_average(contact_values(replace(frames, positions=frames.positions[chosen])))
+    first = 2.0 ** (d - 1) * eta
+    expected = float(theory.compressibility_factor(eta, d))
+    expected += float(theory.finite_size_correction(eta, d, frames.count, "canonical"))
+    unsure = float(theory.compressibility_uncertainty(eta, d))
+    error = first * math.hypot(found.error, FIT_ERROR * found.mean)
+    return _compared(name, 1.0 + first * found.mean, error, expected, unsure, f"fluid, eta = {eta:.4g}")
+
+
+def _diffusion(frames: Frames) -> Check:
+    """D of spheres by their mean-squared displacement against Enskog's theory and its corrections."""
+    name = "diffusion coefficient D"
+    if reason := _judged_speeds(frames) or why_not(frames):
+        return Check(name, None, reason)
+    expected, unsure = expected_diffusion(frames)
+    return _compared(name, *diffusion(frames), expected, unsure, "Erpenbeck and Wood, Yeh and Hummer")
+
+
+def _compared(name, value, error, expected, unsure, source) -> Check:
+    """Passed within `LIMIT` standard errors, those of both sides in quadrature."""
+    sigma = abs(value - expected) / math.hypot(error, unsure)
+    text = f"{value:.5g} +- {error:.2g}, theory {expected:.5g}"
+    text += f" +- {unsure:.2g}" if unsure else ""
+    return Check(name, sigma <= LIMIT, f"{text}: {sigma:.1f} standard errors ({source})")

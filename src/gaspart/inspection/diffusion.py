@@ -1,0 +1,84 @@
+"""The diffusion coefficient of spheres from a trajectory, and what theory says of so many in such a cube."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from gaspart import theory
+from gaspart.inspection.frames import Frames
+from gaspart.statistics import mean_of
+
+_SETTLED = 12.0  # collisions per body, from which on the displacement's square grows evenly
+_DENSEST = 0.4915  # where spheres freeze, and the range of Erpenbeck and Wood ends
+
+
+def why_not(frames: Frames) -> str | None:
+    """Why no D can be taken from a trajectory of equal bodies with velocities; None if it can."""
+    if frames.dimension == 2:
+        return "discs have none: the displacement's square grows like t ln t"
+    if frames.time is None or not all(frames.periodic):
+        return "needs times (--time-step) and a periodic container"
+    if frames.packing_fraction > _DENSEST or np.ptp(frames.lengths) > 1e-6 * frames.lengths[0]:
+        return "needs a fluid in a cube"
+    interval = np.diff(frames.time)
+    if len(interval) == 0 or np.ptp(interval) > 1e-3 * interval.mean():
+        return "needs frames at even times"
+    if np.abs(_steps(frames)).max() > 0.45 * frames.lengths[0]:
+        return "frames are too far apart to follow a body over the boundary"
+    first, last = _lags(frames)
+    if last - first < 1 or len(interval) < 2 * last:
+        start = first * interval.mean()
+        return f"needs frames closer than {start:.2g} over a time of {4.0 * start:.2g} or more"
+    return None
+
+
+def diffusion(frames: Frames) -> tuple[float, float]:
+    """D and its standard error, by the rise of the mean-squared displacement from 12 to 24 collisions a body.
+
+    Of N bodies whose total momentum is zero D is (N - 1) / N of what it is without this condition; that is
+    made up for. The error is the scatter of groups of bodies.
+    """
+    steps, n = _steps(frames), frames.count
+    way = np.concatenate([np.zeros_like(steps[:1]), np.cumsum(steps, axis=0)])
+    way -= way.mean(axis=1, keepdims=True)
+    first, last = _lags(frames)
+    squares = [((way[lag:] - way[:-lag]) ** 2).sum(axis=2).mean(axis=0) for lag in (first, last)]  # (N,) each
+    time = (last - first) * float(np.diff(frames.time).mean())
+    rise = (squares[1] - squares[0]) / (6.0 * time) * n / (n - 1.0)
+    found = mean_of(np.array([part.mean() for part in np.array_split(rise, min(n, 32))]))
+    return found.value, found.error
+
+
+def expected_diffusion(frames: Frames) -> tuple[float, float]:
+    """D in this cube and its uncertainty: Enskog's, Erpenbeck and Wood's ratio, Yeh and Hummer's shift.
+
+    The shift is taken as sure to a half of itself, because hydrodynamics overestimates that of a dilute gas.
+    """
+    eta, sigma, temperature = frames.packing_fraction, frames.diameter, _thermal_speed(frames) ** 2
+    infinite = float(theory.erpenbeck_wood_diffusion(eta, sigma, temperature))
+    viscosity = float(theory.enskog_viscosity(eta, 3, sigma, temperature))
+    shift = float(theory.yeh_hummer(frames.lengths[0], viscosity, temperature))
+    return infinite - shift, math.hypot(theory.ERPENBECK_WOOD_UNCERTAINTY * infinite, 0.5 * shift)
+
+
+def _steps(frames: Frames) -> np.ndarray:
+    """(T - 1, N, d) ways from frame to frame, by the nearest image."""
+    steps = np.diff(frames.positions, axis=0)
+    return steps - frames.lengths * np.round(steps / frames.lengths)
+
+
+def _thermal_speed(frames: Frames) -> float:
+    """sqrt(k_B T / m), of the motion about the centre of mass."""
+    moving = frames.velocities - frames.velocities.mean(axis=1, keepdims=True)
+    return math.sqrt((moving**2).sum() / (len(moving) * frames.dimension * (frames.count - 1)))
+
+
+def _lags(frames: Frames) -> tuple[int, int]:
+    """Frames between which the rise is taken."""
+    rate = float(
+        theory.collision_rate(frames.packing_fraction, 3, frames.diameter, _thermal_speed(frames) ** 2)
+    )
+    interval = float(np.diff(frames.time).mean())
+    return math.ceil(_SETTLED / rate / interval), math.ceil(2.0 * _SETTLED / rate / interval)

@@ -1,0 +1,99 @@
+"""Each check lets a good run pass and finds what is wrong with a bad one."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scenes import gas
+
+import gaspart as gp
+from gaspart import theory
+from gaspart.inspection.checks import judge
+from gaspart.inspection.contact_value import contact_values
+from gaspart.inspection.diffusion import diffusion
+from gaspart.inspection.frames import Frames
+from gaspart.inspection.readers import read_frames
+
+RUNS = {"spheres": (3, 0.3), "discs": (2, 0.3), "dense": (3, 0.45)}
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    """Frames of good runs, by name."""
+    folder, engine = tmp_path_factory.mktemp("runs"), gp.EventDriven()
+    found = {}
+    for name, (dimension, eta) in RUNS.items():
+        start = "random" if eta < 0.4 else "lattice"
+        scene = gas(dimension, 500, eta, arrangement=start)
+        found[name] = read_frames(gp.run(scene, engine, 1, 24.0, 0.2, folder / f"{name}.nc"))
+    return found
+
+
+def verdicts(frames, **settings):
+    return {check.name: check.passed for check in judge(frames, **settings)}
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_a_good_run_passes_every_check_that_can_be_made(runs, name):
+    found = verdicts(runs[name])
+    assert False not in found.values()
+    unmade = {"container"} | ({"diffusion coefficient D"} if name == "discs" else set())
+    assert {name for name, passed in found.items() if passed is None} == unmade
+
+
+def test_wrong_positions(runs):
+    good = runs["spheres"]
+    rng = np.random.default_rng(1)
+    ideal = replace(good, positions=rng.random(good.positions.shape) * good.lengths)
+    found = verdicts(ideal)
+    assert found["overlaps"] is False and found["pressure Z"] is False
+    near = good.positions.copy()
+    near[3, 5] = near[3, 6] + [0.0, 0.0, 1.0 - 1e-3]
+    assert verdicts(replace(good, positions=near % good.lengths))["overlaps"] is False
+    assert verdicts(replace(good, positions=near % good.lengths), tolerance=1.0)["overlaps"] is True
+
+
+def test_bodies_behind_walls(runs):
+    good = replace(runs["discs"], periodic=(False, False))
+    assert verdicts(good)["container"] is True
+    out = good.positions.copy()
+    out[-1, 0, 1] = -0.01
+    assert verdicts(replace(good, positions=out))["container"] is False
+
+
+def test_wrong_speeds(runs):
+    good = runs["spheres"]
+    same = good.velocities / np.linalg.norm(good.velocities, axis=2, keepdims=True)
+    found = verdicts(replace(good, velocities=same))
+    assert found["speed law"] is False and found["kurtosis of speeds"] is False
+
+
+def test_wrong_times(runs):
+    good = runs["spheres"]
+    assert verdicts(replace(good, time=2.0 * good.time))["diffusion coefficient D"] is False
+
+
+def test_ideal_points_have_no_order_at_contact():
+    rng = np.random.default_rng(2)
+    side = np.full(3, 10.0)
+    points = Frames(rng.random((40, 400, 3)) * side, side, np.full(400, 0.5), (True,) * 3)
+    values = contact_values(points)
+    assert abs(values.mean() - 1.0) < 4.0 * values.std() / np.sqrt(len(values))
+
+
+def test_diffusion_of_a_random_walk_is_known():
+    rng = np.random.default_rng(3)
+    side, sigma = np.full(3, 8.0), 0.1
+    walk = np.cumsum(sigma * rng.standard_normal((400, 200, 3)), axis=0)
+    frames = Frames(
+        (walk - 8.0 * np.floor(walk / 8.0)),
+        side,
+        np.full(200, 0.5),
+        (True,) * 3,
+        velocities=rng.standard_normal((400, 200, 3)),
+        time=np.arange(400) * 0.1,
+    )
+    value, error = diffusion(frames)
+    assert abs(value - 0.5 * sigma**2 / 0.1) < 4.0 * error
+    assert error < 0.05 * value
+    assert theory.collision_rate(frames.packing_fraction, 3) > 0.5  # or the lags would not fit
