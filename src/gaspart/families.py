@@ -40,6 +40,7 @@ FAMILIES = {
     "heat_conduction_gas": "heat",
     "adsorption": "adsorption",
     "heat_conduction_metal": "heat",
+    "speed_accuracy": "tradeoff",
 }
 
 TITLES = {
@@ -61,4 +62,5 @@ TITLES = {
     "velocity": "Memory of velocities",
     "heat": "Heat between walls",
     "adsorption": "Walls that hold bodies",
+    "tradeoff": "Speed against accuracy",
 }

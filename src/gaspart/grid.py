@@ -32,7 +32,7 @@ ENGINE_KEYS = {
         "threads",
     ),
 }
-SCANS = ("scan_boxes_per_side", "scan_boxes_per_body")
+SCANS = ("scan_boxes_per_side", "scan_boxes_per_body", "scan_time_steps")
 
 
 @dataclass(frozen=True)
@@ -101,6 +101,8 @@ def check(point: Point) -> None:
     for key in set().union(*ENGINE_KEYS.values()) - set(ENGINE_KEYS[engine]):
         if key in settings:
             raise SceneError(f"{where}.{key}", settings[key], f"has no meaning with engine: {engine}")
+    if point.job == "compare" and engine != "step":
+        raise SceneError(f"{where}.engine", engine, "must be step with job: compare")
     if "boxes_per_side" in settings and "boxes_per_body" in settings:
         raise SceneError(f"{where}.boxes_per_body", settings["boxes_per_body"], "excludes boxes_per_side")
     lengths = [key for key in LENGTHS if key in settings]
@@ -133,8 +135,9 @@ def engine(point: Point):
 
 
 def engines(point: Point) -> list:
-    """The engines that a ``measure_cost`` job times in turn: the point's own, or one for each partition of
-    its scan (``scan_boxes_per_side`` or ``scan_boxes_per_body``; the same partition is timed once).
+    """The engines that a ``measure_cost`` or ``compare`` job runs in turn: the point's own, or one for each
+    value of its scan (``scan_boxes_per_side``, ``scan_boxes_per_body`` or ``scan_time_steps``; the same
+    partition is timed once).
 
     Raises SceneError.
     """
@@ -145,6 +148,10 @@ def engines(point: Point) -> list:
     if not given:
         return [own]
     where = f"experiments.{point.experiment}.{given[0]}"
+    if given == ["scan_time_steps"]:
+        if own.name != "step":
+            raise SceneError(where, settings[given[0]], "has no meaning with engine: event")
+        return [replace(own, time_step=step) for step in settings[given[0]]]
     if len(given) > 1 or "boxes_per_side" in settings or "boxes_per_body" in settings:
         raise SceneError(where, settings[given[0]], "a scan excludes every other choice of boxes")
     if not settings[given[0]]:
@@ -197,7 +204,7 @@ def recipe(point: Point) -> dict:
     follow, count = point.settings.get("follow"), extents(point)[0]
     if follow is not None and follow > count:
         raise SceneError(f"experiments.{point.experiment}.follow", follow, f"there are {count} bodies")
-    if point.job == "measure_cost":
+    if point.job in ("measure_cost", "compare"):
         return {
             **made,
             "engines": [engine_to_dict(chosen) for chosen in engines(point)],

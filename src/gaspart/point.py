@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 
 from gaspart.errors import SceneError
 
-SUFFIX = {"simulate": "", "measure_cost": ".nc", "fill": ".nc", "pack": ".nc"}
+SUFFIX = {"simulate": "", "measure_cost": ".nc", "compare": ".nc", "fill": ".nc", "pack": ".nc"}
 
 
 @dataclass(frozen=True)

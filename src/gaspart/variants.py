@@ -27,7 +27,7 @@ def variant(point: Point) -> str:
     """
     scene = grid.scene(point)
     engine = "fill" if point.job in ("fill", "pack") else point.settings.get("engine", "event")
-    boxes = any(key in point.settings for key in ("boxes_per_side", "boxes_per_body", *grid.SCANS))
+    boxes = any(key in point.settings for key in ("boxes_per_side", "boxes_per_body", *grid.SCANS[:2]))
     choice = {
         "fill": "random",
         "event": point.settings.get("search", "boxes"),

@@ -118,6 +118,7 @@ CLAIMS = ["__init__", "errors", "files", "claims/__init__"]
 MODULES = {
     "simulate": SIMULATE,
     "measure_cost": [*SCENE, *ENGINES, "measure/__init__", "measure/cost"],
+    "compare": [*SCENE, *ENGINES, "measure/__init__", "measure/compare"],
     "fill": [
         *SCENE,
         "boxes",
@@ -164,6 +165,7 @@ FAMILY_MODULES = {
     ("measure", "freezing"): ["measure/plateau", "measure/pressure", "measure/structure"],
     ("measure", "scaling"): ["measure/timings"],
     ("measure", "brownian"): ["measure/correlations"],
+    ("measure", "tradeoff"): ["measure/pressure", "measure/timings"],
     ("judge", "displacement"): ["statistics"],
     ("judge", "radius"): ["statistics"],
     ("judge", "virial"): ["statistics"],

@@ -51,6 +51,30 @@ rule measure_cost:
         "../scripts/measure_cost.py"
 
 
+rule compare:
+    input:
+        kernels=lambda wildcards: ancient(stamp_of(wildcards)),
+        modules=module_files("compare"),
+    output:
+        f"{config['points']}/{{experiment}}/{{point}}.nc",
+    log:
+        "results/logs/compare/{experiment}/{point}.log",
+    benchmark:
+        "results/benchmarks/compare/{experiment}/{point}.tsv"
+    wildcard_constraints:
+        experiment=experiments("compare"),
+    conda:
+        "../envs/gaspart.yaml"
+    threads: 1
+    resources:
+        mem_mb=memory_of,
+        runtime=120,
+    params:
+        recipe=recipe_of,
+    script:
+        "../scripts/compare.py"
+
+
 rule fill:
     input:
         kernels=lambda wildcards: ancient(stamp_of(wildcards)),

@@ -1,0 +1,248 @@
+"""What accuracy costs: errors and costs of the time-stepped engine beside the event-driven one.
+
+Errors are those of `gaspart.measure.compare` and costs those of `gaspart.measure.cost`, of the same gases and
+settings. The diffusion coefficient is that of Enskog's theory, kT / m over the rate at which a body forgets
+its velocity, taken from the memory after about one collision per body.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from gaspart import grid, statistics
+from gaspart.measure.pressure import pressure
+from gaspart.measure.timings import median
+
+OBSERVABLES = ("collision_rate", "Z", "D")
+SEEN = 3.5
+"""An error counts as seen, in fits of its order, if it is so many standard errors from 0."""
+
+
+def setting_name(rewind: bool, passes: int, precision: str) -> str:
+    """How figures and claims call a setting of the time-stepped engine."""
+    name = f"{passes} passes" if passes > 1 else "1 pass"
+    return name + ("" if rewind else ", no rewinding") + (", float32" if precision == "float32" else "")
+
+
+def speed_accuracy(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Errors and costs over the time steps of each gas and setting.
+
+    points: `compare` jobs; `measure_cost` jobs of both engines; and runs of the time-stepped engine long
+    enough to see its errors in its steady state. settings: ``order_up_to``, the largest error that the fits
+    of the order take; ``accuracies`` of the frontier.
+
+    Over (``row``, ``step``), NaN beyond a row's own: ``time_step``; ``bias`` and ``bias_error`` (also over
+    ``observable``), relative to the exact run, an error being that of the snapshots and at least that of one
+    contact; ``missed``, ``made_up`` as parts of all contacts; ``energy_drift``, ``deepest_overlap`` (worst);
+    ``seconds`` (processor time per exact collision, with ``seconds_error``) and ``pair_tests`` (per exact
+    collision), NaN where not timed. Over ``row``: ``dimension``, ``packing_fraction``, ``setting``,
+    ``contacts`` (of the exact runs), ``event_seconds`` with its error. Over (``row``, ``observable``):
+    ``order`` of the error in the time step, with ``order_error`` (NaN without two errors of one sign). Over
+    (``gas``, ``observable``, ``accuracy``): see `frontier`. Over ``steady``: ``steady_z`` of long runs,
+    with error, their gas and setting, and ``steady_paired``, the relative error in the paired runs.
+    """
+    rows = [_row(point) for point in points if point.job == "compare"]
+    rows = sorted(rows, key=lambda row: (-row["dimension"], row["packing_fraction"]))
+    timed = [_timed(point) for point in points if point.job == "measure_cost"]
+    for row in rows:
+        _add_costs(row, timed)
+    longest = max(len(row["time_step"]) for row in rows)
+    over_steps = ("time_step", "missed", "made_up", "energy_drift", "deepest_overlap", "pair_tests")
+    over_steps += ("seconds", "seconds_error")
+    dataset = xr.Dataset(
+        {
+            name: (("row", "step"), np.array([_padded(row[name], longest) for row in rows]))
+            for name in over_steps
+        }
+        | {
+            name: (("row", "observable", "step"), np.array([_padded(row[name], longest) for row in rows]))
+            for name in ("bias", "bias_error")
+        }
+        | {
+            name: ("row", np.array([row[name] for row in rows]))
+            for name in (
+                "dimension",
+                "packing_fraction",
+                "setting",
+                "contacts",
+                "event_seconds",
+                "event_error",
+            )
+        },
+        coords={"observable": list(OBSERVABLES), "accuracy": settings["accuracies"]},
+    )
+    orders = np.array([_orders(row, settings["order_up_to"]) for row in rows])
+    dataset["order"] = (("row", "observable"), orders[..., 0])
+    dataset["order_error"] = (("row", "observable"), orders[..., 1])
+    steady = [_steady(point, rows) for point in points if point.job == "simulate"]
+    for name in steady[0] if steady else ():
+        dataset[name] = ("steady", np.array([one[name] for one in steady]))
+    return dataset.merge(frontier(dataset))
+
+
+def frontier(dataset: xr.Dataset) -> xr.Dataset:
+    """The cheapest time-stepped setting whose error, with two standard errors of it, is within each accuracy.
+
+    Over ``gas``: ``gas_dimension``, ``gas_packing_fraction``. Over (``gas``, ``observable``, ``accuracy``):
+    ``best_seconds`` per exact collision (NaN if none is known to do), ``best_ratio`` of it to the
+    event-driven engine's with ``best_ratio_error``, ``best_step``, ``best_setting``.
+    """
+    gases = list(dict.fromkeys(zip(dataset.dimension.values, dataset.packing_fraction.values, strict=True)))
+    shape = (len(gases), dataset.sizes["observable"], dataset.sizes["accuracy"])
+    found = {name: np.full(shape, np.nan) for name in ("seconds", "ratio", "ratio_error", "step")}
+    chosen = np.full(shape, "none", dtype=object)
+    for g, (dimension, fraction) in enumerate(gases):
+        of = dataset.isel(
+            row=np.flatnonzero((dataset.dimension == dimension) & (dataset.packing_fraction == fraction))
+        )
+        within = (np.abs(of.bias) + 2.0 * of.bias_error).values
+        cost = of.seconds.values
+        for o in range(shape[1]):
+            for a, accuracy in enumerate(dataset.accuracy.values):
+                fit = np.where((within[:, o] <= accuracy) & np.isfinite(cost), cost, np.inf)
+                best = np.unravel_index(np.argmin(fit), fit.shape)
+                if not np.isfinite(fit[best]):
+                    continue
+                event, event_error = (float(of[name][best[0]]) for name in ("event_seconds", "event_error"))
+                ratio = cost[best] / event
+                spread = np.hypot(float(of.seconds_error.values[best]) / cost[best], event_error / event)
+                values = (cost[best], ratio, ratio * spread, float(of.time_step.values[best]))
+                for name, value in zip(found, values, strict=True):
+                    found[name][g, o, a] = value
+                chosen[g, o, a] = str(of.setting.values[best[0]])
+    axes = ("gas", "observable", "accuracy")
+    return xr.Dataset(
+        {f"best_{name}": (axes, values) for name, values in found.items()}
+        | {
+            "best_setting": (axes, chosen.astype(str)),
+            "gas_dimension": ("gas", [int(dimension) for dimension, _ in gases]),
+            "gas_packing_fraction": ("gas", [float(fraction) for _, fraction in gases]),
+        }
+    )
+
+
+def _padded(values: np.ndarray, length: int) -> np.ndarray:
+    """With NaN at the end of the last axis."""
+    return np.pad(
+        values, [(0, 0)] * (values.ndim - 1) + [(0, length - values.shape[-1])], constant_values=np.nan
+    )
+
+
+def _row(point: grid.Point) -> dict:
+    """Errors over the accepted time steps of a `compare` point, the longest first."""
+    run = xr.load_dataset(point.path)
+    run = run.isel(setting=np.flatnonzero(run.refused == 0)).sortby("time_step", ascending=False)
+    contacts = run.exact_collisions.sum("snapshot").values
+    z = run.exact_z.mean("snapshot").values
+    rate = _difference(run, "collisions", 1.0 / contacts)
+    share = (z - 1.0) / z
+    pressure_bias = _difference(run, "virial", 1.0 / contacts) * share
+    memory = [
+        statistics.jackknife(lambda own, exact: exact / own - 1.0, np.log(own), np.log(exact))
+        for own, exact in zip(run.memory.values, run.exact_memory.values, strict=True)
+    ]
+    memory = np.array(
+        [
+            [float(value), max(float(error), 1.0 / n)]
+            for (value, error), n in zip(memory, contacts, strict=True)
+        ]
+    )
+    both = np.stack([rate, pressure_bias, memory.T])
+    listed = run.listed.sum("snapshot", skipna=False).values
+    return {
+        "dimension": run.attrs["dimension"],
+        "packing_fraction": round(run.attrs["packing_fraction"], 12),
+        "setting": setting_name(bool(run.attrs["rewind"]), run.attrs["passes"], run.attrs["precision"]),
+        "contacts": int(contacts.max()),
+        "time_step": run.time_step.values,
+        "bias": both[:, 0],
+        "bias_error": both[:, 1],
+        "missed": run.missed.sum("snapshot", skipna=False).values / listed,
+        "made_up": run.made_up.sum("snapshot", skipna=False).values / listed,
+        "energy_drift": np.abs(run.energy_drift).max("snapshot").values,
+        "deepest_overlap": run.deepest_overlap.max("snapshot").values,
+        "pair_tests": run.pair_tests.sum("snapshot").values / contacts,
+    }
+
+
+def _difference(run: xr.Dataset, name: str, least: np.ndarray) -> np.ndarray:
+    """(2, setting) relative difference from the exact runs' sum, and its error from the snapshots."""
+    exact = run[f"exact_{name}"].values
+    apart = run[name].values - exact
+    error = apart.std(axis=1, ddof=1) * np.sqrt(apart.shape[1]) / exact.sum(axis=1)
+    return np.stack([apart.sum(axis=1) / exact.sum(axis=1), np.maximum(error, least)])
+
+
+def _timed(point: grid.Point) -> dict:
+    """The costs of a `measure_cost` point, per time simulated."""
+    run = xr.load_dataset(point.path)
+    seconds, error = median(run.seconds.values)
+    own = point.settings
+    name = setting_name(own.get("rewind", True), own.get("passes", 4), own.get("precision", "float64"))
+    return {
+        "gas": (run.attrs["dimension"], round(run.attrs["packing_fraction"], 12)),
+        "setting": name if run.attrs["engine"] == "step" else "event",
+        "time_step": (run.duration / np.maximum(run.steps, 1)).values,
+        "seconds": seconds / run.duration.values,
+        "error": error / run.duration.values,
+        "collisions": (run.collisions / run.duration).values,
+        "pair_tests": (run.pair_tests / run.duration).values,
+    }
+
+
+def _add_costs(row: dict, timed: list[dict]) -> None:
+    """What its steps cost, where they were timed, and the event-driven engine in the same gas."""
+    same = [one for one in timed if one["gas"] == (row["dimension"], row["packing_fraction"])]
+    event = next(one for one in same if one["setting"] == "event")
+    rate = float(event["collisions"][0])
+    row["event_seconds"], row["event_error"] = (
+        float(event["seconds"][0]) / rate,
+        float(event["error"][0]) / rate,
+    )
+    row["seconds"], row["seconds_error"] = (np.full(len(row["time_step"]), np.nan) for _ in range(2))
+    row["pair_tests"] = row["seconds"].copy()
+    for one in same:
+        if one["setting"] == row["setting"]:
+            for n, step in enumerate(row["time_step"]):
+                at = np.flatnonzero(np.isclose(one["time_step"], step))
+                if at.size:
+                    row["seconds"][n] = one["seconds"][at[0]] / rate
+                    row["seconds_error"][n] = one["error"][at[0]] / rate
+                    row["pair_tests"][n] = one["pair_tests"][at[0]] / rate
+
+
+def _orders(row: dict, largest: float) -> list[tuple[float, float]]:
+    """The order of each observable's error in the time step, with its error, scaled by the scatter."""
+    found = []
+    for bias, error in zip(row["bias"], row["bias_error"], strict=True):
+        size = np.abs(bias)
+        seen = (size > SEEN * error) & (size < largest)
+        if seen.sum() < 2 or np.unique(np.sign(bias[seen])).size > 1:
+            found.append((np.nan, np.nan))
+            continue
+        law = statistics.fit_power_law(row["time_step"][seen], size[seen], error[seen])
+        scatter = max(1.0, law.chi_square / max(1, law.degrees_of_freedom)) ** 0.5
+        found.append((law.exponent, law.exponent_error * scatter))
+    return found
+
+
+def _steady(point: grid.Point, rows: list[dict]) -> dict:
+    """Z in a long run of the time-stepped engine, beside the exact Z of the paired runs with their error."""
+    own = point.settings
+    long = pressure(point)
+    name = setting_name(own.get("rewind", True), own.get("passes", 4), own.get("precision", "float64"))
+    gas = (own["dimension"], own["packing_fraction"], name)
+    row = next(row for row in rows if (row["dimension"], row["packing_fraction"], row["setting"]) == gas)
+    at = int(np.argmin(np.abs(row["time_step"] - own["time_step"])))
+    return {
+        "steady_dimension": own["dimension"],
+        "steady_packing_fraction": own["packing_fraction"],
+        "steady_count": grid.extents(point)[0],
+        "steady_setting": name,
+        "steady_step": own["time_step"],
+        "steady_z": long.value,
+        "steady_z_error": long.error,
+        "steady_paired": row["bias"][1, at],
+        "steady_paired_error": row["bias_error"][1, at],
+    }

@@ -1,0 +1,30 @@
+from tradeoff_data import speed_accuracy_measurement
+
+from gaspart.claims import judge, tradeoff
+
+
+def verdicts(dataset):
+    claims = tradeoff.speed_accuracy(dataset)
+    return {claim.claim: verdict for claim, verdict in zip(claims, judge(claims), strict=True)}
+
+
+def test_orders_losses_and_frontier_agree_where_theory_holds(tmp_path):
+    found = verdicts(speed_accuracy_measurement(tmp_path))
+    assert set(found.values()) == {"agrees"}
+    assert any("order of the error of Z" in claim and "no rewinding" in claim for claim in found)
+    assert any("collisions lost to steps of 0.16" in claim for claim in found)
+
+
+def test_contacts_late_by_half_a_step_are_noticed(tmp_path):
+    dataset = speed_accuracy_measurement(tmp_path)
+    dataset["order"] = dataset.order * 0.5
+    found = verdicts(dataset)
+    assert sum(verdict == "disagrees" for verdict in found.values()) == 3
+
+
+def test_steps_cheaper_than_events_in_a_dilute_gas_are_noticed(tmp_path):
+    dataset = speed_accuracy_measurement(tmp_path)
+    for name in ("best_ratio", "best_ratio_error"):
+        dataset[name] = 0.1 * dataset[name]
+    costs = [verdict for claim, verdict in verdicts(dataset).items() if "time of steps" in claim]
+    assert costs and set(costs) == {"disagrees"}

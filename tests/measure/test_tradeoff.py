@@ -1,0 +1,37 @@
+"""Orders of convergence and the frontier, from made-up runs."""
+
+import numpy as np
+import pytest
+from tradeoff_data import STEPS, speed_accuracy_measurement
+
+
+@pytest.fixture(scope="module")
+def dataset(tmp_path_factory):
+    return speed_accuracy_measurement(tmp_path_factory.mktemp("points"))
+
+
+def test_orders_of_convergence(dataset):
+    orders = dataset.set_index(row="setting").order.sel(row="4 passes")
+    assert orders.sel(observable="collision_rate") == pytest.approx(2.0, abs=0.02)
+    assert orders.sel(observable="Z") == pytest.approx(3.0, abs=0.02)
+    late = dataset.set_index(row="setting").order.sel(row="1 pass, no rewinding")
+    assert late.sel(observable="Z") == pytest.approx(1.0, abs=0.02)
+
+
+def test_a_pressure_error_is_weighed_by_its_part_in_z(dataset):
+    row = dataset.isel(row=0).sel(observable="Z")
+    assert row.bias.values[:3] == pytest.approx(-(STEPS[:3] ** 3) / 3.0, rel=1e-2)
+
+
+def test_a_refused_step_is_left_out(dataset):
+    late = dataset.set_index(row="setting").sel(row="1 pass, no rewinding")
+    assert late.time_step.values[:3] == pytest.approx(STEPS[1:])
+    assert np.isnan(late.time_step.values[3])
+
+
+def test_the_frontier_takes_the_longest_step_that_will_do(dataset):
+    rate = dataset.isel(gas=0).sel(observable="collision_rate")
+    assert rate.best_step.sel(accuracy=0.01) == 0.08  # 2/3 0.08^2 = 0.4 %
+    assert rate.best_ratio.sel(accuracy=0.01) == pytest.approx(2.0 * 1.125)
+    assert np.isnan(rate.best_ratio.sel(accuracy=0.0001))
+    assert str(rate.best_setting.sel(accuracy=0.01).values) == "4 passes"
