@@ -1,6 +1,6 @@
 # make            set up, reproduce every figure, write results/report.html
 # make test       set up, run all tests (a small copy of the whole workflow among them)
-# make check-all  the linters, the tests, and 2500 new random scenes for each property of the engines
+# make check-all  the linters, the tests, 2500 new random scenes for each property of the engines, and what takes long
 # make smoke      all figures, small
 # make lint | report | clean | distclean
 #
@@ -39,6 +39,7 @@ test: setup
 
 check-all: lint test
 	.venv/bin/python -m pytest --numprocesses=auto -m hypothesis --hypothesis-profile=search
+	.venv/bin/python -m pytest -m thorough
 
 smoke: setup
 	$(SNAKEMAKE) --quiet rules --configfile config/smoke.yaml

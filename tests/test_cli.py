@@ -220,7 +220,7 @@ def test_check_tells_what_is_wrong_by_its_exit_code(folder, capsys):
 
 def test_check_of_a_config_is_that_of_the_workflow(folder, capsys):
     config = Path(__file__).parents[1] / "config"
-    assert main(["check", str(config / "smoke.yaml")]) == 0
+    assert main(["check", str(config / "paper.yaml")]) == 0
     assert re.search(r"ok +config: \d+ experiments of \d+ points", capsys.readouterr().out)
     (folder / "alone.yaml").write_text("experiments: {}\n")
     assert main(["check", "alone.yaml"]) == 2
