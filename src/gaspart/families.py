@@ -41,6 +41,7 @@ FAMILIES = {
     "adsorption": "adsorption",
     "heat_conduction_metal": "heat",
     "speed_accuracy": "tradeoff",
+    "reversibility": "reversibility",
 }
 
 TITLES = {
@@ -63,4 +64,5 @@ TITLES = {
     "heat": "Heat between walls",
     "adsorption": "Walls that hold bodies",
     "tradeoff": "Speed against accuracy",
+    "reversibility": "Speed against accuracy",
 }

@@ -212,6 +212,14 @@ def recipe(point: Point) -> dict:
             "stretch": times.sample_interval,
             "repeats": times.samples,
         }
+    if point.job == "echo":
+        return {
+            **made,
+            "engine": engine_to_dict(engine(point)),
+            "equilibration": times.equilibration,
+            "interval": times.sample_interval,
+            "samples": times.samples,
+        }
     return {
         **made,
         "engine": engine_to_dict(engine(point)),

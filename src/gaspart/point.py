@@ -8,7 +8,14 @@ from dataclasses import asdict, dataclass
 
 from gaspart.errors import SceneError
 
-SUFFIX = {"simulate": "", "measure_cost": ".nc", "compare": ".nc", "fill": ".nc", "pack": ".nc"}
+SUFFIX = {
+    "simulate": "",
+    "measure_cost": ".nc",
+    "compare": ".nc",
+    "echo": ".nc",
+    "fill": ".nc",
+    "pack": ".nc",
+}
 
 
 @dataclass(frozen=True)

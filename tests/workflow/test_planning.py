@@ -9,7 +9,7 @@ from gaspart.files import dump_yaml, read_yaml
 
 pytestmark = pytest.mark.workflow
 
-SIMULATIONS = {"simulate", "measure_cost", "compare", "fill", "pack"}
+SIMULATIONS = {"simulate", "measure_cost", "compare", "echo", "fill", "pack"}
 PACKING_FRACTIONS = read_yaml(ROOT / "config/smoke.yaml")["experiments"]["virial_discs"]["grid"][
     "packing_fraction"
 ]

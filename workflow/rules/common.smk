@@ -119,6 +119,7 @@ MODULES = {
     "simulate": SIMULATE,
     "measure_cost": [*SCENE, *ENGINES, "measure/__init__", "measure/cost"],
     "compare": [*SCENE, *ENGINES, "measure/__init__", "measure/compare"],
+    "echo": [*SCENE, *ENGINES, "measure/__init__", "measure/echo"],
     "fill": [
         *SCENE,
         "boxes",
@@ -167,6 +168,7 @@ FAMILY_MODULES = {
     ("measure", "brownian"): ["measure/correlations"],
     ("measure", "tradeoff"): ["measure/pressure", "measure/timings"],
     ("judge", "displacement"): ["statistics"],
+    ("draw", "reversibility"): ["claims/__init__", "claims/reversibility"],
     ("judge", "radius"): ["statistics"],
     ("judge", "virial"): ["statistics"],
     ("judge", "wall_pressure"): ["statistics"],

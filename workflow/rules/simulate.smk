@@ -75,6 +75,30 @@ rule compare:
         "../scripts/compare.py"
 
 
+rule echo:
+    input:
+        kernels=lambda wildcards: ancient(stamp_of(wildcards)),
+        modules=module_files("echo"),
+    output:
+        f"{config['points']}/{{experiment}}/{{point}}.nc",
+    log:
+        "results/logs/echo/{experiment}/{point}.log",
+    benchmark:
+        "results/benchmarks/echo/{experiment}/{point}.tsv"
+    wildcard_constraints:
+        experiment=experiments("echo"),
+    conda:
+        "../envs/gaspart.yaml"
+    threads: 1
+    resources:
+        mem_mb=memory_of,
+        runtime=120,
+    params:
+        recipe=recipe_of,
+    script:
+        "../scripts/echo.py"
+
+
 rule fill:
     input:
         kernels=lambda wildcards: ancient(stamp_of(wildcards)),

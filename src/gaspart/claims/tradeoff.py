@@ -91,12 +91,13 @@ def _frontier(ds: xr.Dataset) -> list[Claim]:
     claims = []
     for g in range(ds.sizes["gas"]):
         gas = ds.isel(gas=g)
+        dilute = float(gas.gas_packing_fraction) <= 0.01
         dense = float(gas.gas_packing_fraction) >= 0.3 and int(gas.gas_dimension) == 3
         for accuracy in ds.accuracy.values:
             at = gas.sel(observable="Z", accuracy=accuracy)
-            if not np.isfinite(at.best_ratio):
+            if not np.isfinite(at.best_ratio) or (accuracy > 0.001 and not (dilute or dense)):
                 continue
-            form = Claim.at_most if dense and accuracy >= 0.01 else Claim.at_least
+            form = Claim.at_most if dense and accuracy > 0.001 else Claim.at_least
             claims.append(
                 form(
                     f"time of steps over that of events for {100 * accuracy:g} % of Z, "

@@ -36,7 +36,7 @@ def echo(
     Returns over ``seed`` and ``sample``, of runs of 1 ... `samples` intervals: ``collisions`` per body on the
     way there, twice the number of contacts over that of bodies; ``echo``, the root-mean-square distance from
     the start after the way back, in diameters; ``divergence``, that of two event-driven runs which start
-    `NUDGE` apart, after the way there.
+    `NUDGE` apart, after the way there. Attributes: the gas (`side` in diameters) and engine.
     """
     shape = (len(seeds), samples)
     found = {name: np.empty(shape) for name in ("collisions", "echo", "divergence")}
@@ -64,6 +64,7 @@ def echo(
         attrs={
             "count": scene.count,
             "dimension": scene.dimension,
+            "side": max(scene.container.lengths) / (2.0 * scene.largest_radius),
             "packing_fraction": scene.packing_fraction,
             "engine": engine.name,
             "precision": getattr(engine, "precision", "float64"),

@@ -1,0 +1,21 @@
+"""Loschmidt's echoes at one point."""
+
+from _job import job
+
+with job(snakemake):
+    from gaspart.engines import engine_from_dict
+    from gaspart.files import whole_file
+    from gaspart.measure.echo import echo
+    from gaspart.scene import Scene
+
+    recipe = snakemake.params.recipe
+    dataset = echo(
+        Scene.from_dict(recipe["scene"]),
+        engine_from_dict(recipe["engine"]),
+        seeds=[tuple(seed) for seed in recipe["seeds"]],
+        equilibration=recipe["equilibration"],
+        interval=recipe["interval"],
+        samples=recipe["samples"],
+    )
+    with whole_file(snakemake.output[0]) as partial:
+        dataset.to_netcdf(partial)
