@@ -14,8 +14,7 @@ from gaspart.engines.step_layout import (
     FASTEST,
     MULTIPLE,
     OVERLAPS_LEFT,
-    PENDING,
-    STRAYED,
+    SPENT,
     VIRIAL,
     WORST,
 )
@@ -131,21 +130,31 @@ def kicks(rr, rv, mass1, mass2):
 
 
 @helper
-def stray(body, way, covered, step, watch, counters):
-    """Remember by how far contacts put a body off its flight, if that is more than its speed explains."""
-    if watch.met[body] == step:
-        counters.counts[MULTIPLE] += 1
-    else:
-        watch.met[body] = step
-        watch.strayed[body] = way - way
-        if covered:
-            return
-    watch.strayed[body] += way
-    watch.reach[STRAYED] = max(watch.reach[STRAYED], watch.strayed[body])
+def strayed(bodies, space, cells, slot):
+    """How far a body is from where it was when the list was made."""
+    square = space.margin - space.margin
+    for k in range(len(space.lengths)):
+        gap = bodies.positions[k, slot] - cells.origin[k, slot]
+        gap = nearest(gap, space.lengths[k], space.periodic[k])
+        square += gap * gap
+    return np.sqrt(square)
+
+
+@helper
+def note(bodies, space, slot, speed_squared, step, cells, watch, counters):
+    """Remember a contact of a body: how many it has in this step, how fast it is now, and how far from where
+    it was when the list was made."""
+    body = bodies.index[slot]
+    counters.counts[MULTIPLE] += watch.met[body] == step
+    watch.met[body] = step
+    watch.reach[FASTEST] = max(watch.reach[FASTEST], np.sqrt(speed_squared))
+    if cells is not None:
+        if slot < bodies.ordinary:
+            watch.reach[SPENT] = max(watch.reach[SPENT], strayed(bodies, space, cells, slot))
 
 
 @kernel
-def resolve(bodies, space, i, j, dt, step, rewind, parting, watch, counters):
+def resolve(bodies, space, i, j, dt, step, rewind, parting, cells, watch, counters):
     """Collide a pair, if it is still to be resolved: rewind it to its contact, pass the momentum along the
     normal at contact, and play the rest of the step with the new velocities."""
     rr, rv, vv = invariants(bodies, space, i, j)
@@ -164,7 +173,7 @@ def resolve(bodies, space, i, j, dt, step, rewind, parting, watch, counters):
     to_i, to_j, passed = kicks(rr, rv, bodies.masses[one], bodies.masses[other])
     counters.counts[COLLISIONS] += 1
     counters.sums[VIRIAL] += passed
-    speed_i = speed_j = way = ago - ago
+    speed_i = speed_j = ago - ago
     for k in range(len(space.lengths)):
         gap = bodies.positions[k, j] - bodies.positions[k, i]
         r = nearest(gap, space.lengths[k], space.periodic[k])
@@ -175,23 +184,19 @@ def resolve(bodies, space, i, j, dt, step, rewind, parting, watch, counters):
         bodies.positions[k, j] += ago * (to_j * r)
         speed_i += bodies.velocities[k, i] * bodies.velocities[k, i]
         speed_j += bodies.velocities[k, j] * bodies.velocities[k, j]
-        way += r * r
         if rewind and space.periodic[k]:
             wrap(bodies, i, k, space.lengths[k])
             wrap(bodies, j, k, space.lengths[k])
-    way = -ago * np.sqrt(way)
-    watch.reach[FASTEST] = max(watch.reach[FASTEST], np.sqrt(max(speed_i, speed_j)))
-    covered = watch.reach[PENDING] > 0.0 and -ago <= dt
-    stray(one, way * abs(to_i), covered, step, watch, counters)
-    stray(other, way * abs(to_j), covered, step, watch, counters)
+    note(bodies, space, i, speed_i, step, cells, watch, counters)
+    note(bodies, space, j, speed_j, step, cells, watch, counters)
 
 
 @kernel
-def resolve_all(bodies, space, pairs, order, dt, step, rewind, parting, watch, counters):
+def resolve_all(bodies, space, pairs, order, dt, step, rewind, parting, cells, watch, counters):
     """Resolve what one search has found, in order."""
     for n in order:
         i, j = pairs[n, 0], pairs[n, 1]
-        resolve(bodies, space, i, j, dt, step, rewind, parting, watch, counters)
+        resolve(bodies, space, i, j, dt, step, rewind, parting, cells, watch, counters)
 
 
 @kernel

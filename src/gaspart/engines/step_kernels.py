@@ -8,7 +8,7 @@ keeps the precision of the positions (float32 or float64): hence dt - dt for 0 a
 
 from gaspart.engines.step_boxes import search_all, search_boxes, sort_in
 from gaspart.engines.step_contacts import count_left, in_order, resolve_all
-from gaspart.engines.step_layout import FASTEST, PAIR_TESTS, PENDING, SPENT, STRAYED
+from gaspart.engines.step_layout import FASTEST, PAIR_TESTS, SPENT
 from gaspart.engines.step_list import is_stale, search_pairs
 from gaspart.engines.step_motion import move
 from gaspart.engines.step_threads import gathered, make_list, move_shared, room_for, search_shared
@@ -22,8 +22,8 @@ def run_steps(
 ):  # fmt: skip
     """Make `steps` steps of length `dt`.
 
-    partition: the boxes to search, or cells: those of a list; the other is None. pairs (n, 2): the list as it
-    stands. gravity: (d,) or None; inset: the largest radius that a wall stops; threads: their number, or None
+    partition: the boxes to search, or cells: those of a list; the other is None. pairs (threads, room, 2): the
+    list as it stands. gravity: (d,) or None; inset: the largest radius that a wall stops; threads: their number, or None
     for one. Returns the list as it stands then.
     """
     count = bodies.positions.shape[1]
@@ -37,7 +37,7 @@ def run_steps(
             pull += abs(component)
     for step in range(steps):
         watch.reach[FASTEST] += pull * dt
-        watch.reach[PENDING] = 1.0
+        watch.reach[SPENT] += watch.reach[FASTEST] * dt
         if threads is None:
             move(bodies, space, gravity, inset, dt, 0, count, counters, 0)
         else:
@@ -47,19 +47,27 @@ def run_steps(
         number = 0
         for _ in range(passes):
             if cells is not None:
-                if is_stale(cells, watch, dt):
-                    pairs = make_list(bodies, space, cells, watch, counters, threads)
+                if is_stale(bodies, space, cells, watch):
+                    pairs = make_list(bodies, space, cells, pairs, watch, counters, threads)
             if partition is not None:
                 sort_in(bodies, partition)
             while True:
                 found.number[:] = 0
                 if cells is not None:
-                    counters.counts[PAIR_TESTS] += len(pairs)
+                    counters.counts[PAIR_TESTS] += cells.listed.sum()
                     if threads is None:
-                        search_pairs(bodies, space, pairs, 0, len(pairs), dt, parting, found, 0)
+                        search_pairs(bodies, space, pairs[0], 0, cells.listed[0], dt, parting, found, 0)
                     else:
                         search_shared(
-                            bodies, space.lengths, space.periodic, space.margin, pairs, dt, parting, found
+                            bodies,
+                            space.lengths,
+                            space.periodic,
+                            space.margin,
+                            cells,
+                            pairs,
+                            dt,
+                            parting,
+                            found,
                         )
                 if partition is not None:
                     search_boxes(bodies, space, partition, dt, parting, found, counters)
@@ -73,9 +81,7 @@ def run_steps(
                 break
             contacts, times = gathered(found)
             order = in_order(bodies.index, contacts, times)
-            resolve_all(bodies, space, contacts, order, dt, step, rewind, parting, watch, counters)
+            resolve_all(bodies, space, contacts, order, dt, step, rewind, parting, cells, watch, counters)
         if number > 0:
             count_left(bodies, space, contacts, counters)
-        watch.reach[SPENT] += watch.reach[PENDING] * watch.reach[FASTEST] * dt + watch.reach[STRAYED]
-        watch.reach[STRAYED] = 0.0
     return pairs

@@ -13,7 +13,7 @@ from gaspart.kernel import helper
 
 COLLISIONS, PAIR_TESTS, BOX_VISITS, OVERLAPS_LEFT, MULTIPLE, REBUILDS = range(6)
 VIRIAL, DEEPEST, WORST = range(3)
-FASTEST, STRAYED, SPENT, PENDING = range(4)
+FASTEST, SPENT = range(2)
 
 
 class Space(NamedTuple):
@@ -25,7 +25,7 @@ class Space(NamedTuple):
 
 
 class Bodies(NamedTuple):
-    """By slot: positions, velocities, images (d, N), radii, index (N,). By body: masses (N,).
+    """By slot: positions, velocities (d, N), radii, index (N,). By body: images (d, N), masses (N,).
 
     ordinary: how many slots the partition holds; the bodies beyond, too large for it, are the last ones.
     """
@@ -52,23 +52,19 @@ class Counters(NamedTuple):
 
 class Found(NamedTuple):
     """Contacts to resolve, by thread: pairs (threads, room, 2) of slots, times (threads, room), number
-    (threads,), which may exceed the room."""
+    (threads,), which may exceed the room; touching (threads, n), room for those of a block that touch."""
 
     pairs: np.ndarray
     times: np.ndarray
     number: np.ndarray
+    touching: np.ndarray
 
 
 class Watch(NamedTuple):
-    """How far anybody may have come since the list was made, and what that follows from.
-
-    By body: met (N,) the last step with a contact; strayed (N,) how far contacts put it off its flight in
-    that step. reach (4,): the FASTEST speed of any body, or more; the most that any STRAYED in this step; the
-    way SPENT before this step; PENDING, 1 if the list is older than this step's move.
-    """
+    """met (N,), the last step with a contact, by body. reach (2,): the FASTEST speed of any body, or more; the
+    most that any may have SPENT of the skin since the list was made."""
 
     met: np.ndarray
-    strayed: np.ndarray
     reach: np.ndarray
 
 

@@ -23,7 +23,7 @@ def wrap(bodies, slot, axis, length):
             x -= length
             laps += 1
         bodies.positions[axis, slot] = x
-        bodies.images[axis, slot] += int(laps)
+        bodies.images[axis, bodies.index[slot]] += int(laps)
 
 
 @helper

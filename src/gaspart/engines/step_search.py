@@ -6,7 +6,7 @@ import numpy as np
 
 from gaspart.boxes import make_boxes
 from gaspart.engines.step_boxes import Partition
-from gaspart.engines.step_list import Cells
+from gaspart.engines.step_cells import Cells
 from gaspart.scene import Scene
 from gaspart.state import State
 
@@ -44,17 +44,18 @@ def cells_for(engine, scene: Scene, state: State, radii: np.ndarray) -> Cells | 
         (0.5 * length - contact for length, p in zip(lengths, periodic, strict=True) if p), default=np.inf
     )
     skin = min(skin, max(0.0, room))
-    width = max((contact + skin) * (1.0 + 1e-6), _width(scene, state.count))
+    width = max((contact + skin) * (1.0 + 1e-4), _width(scene, state.count))
     sides = [max(2 if p else 1, int(length / width)) for length, p in zip(lengths, periodic, strict=True)]
     dimension = scene.dimension
     per_side = np.array(sides + [1] * (3 - dimension), dtype=np.int64)
-    widths = np.array(
-        [length / n for length, n in zip(lengths, sides, strict=True)] + [1.0] * (3 - dimension)
-    )
+    inverse = per_side / np.array([*lengths, *[1.0] * (3 - dimension)])
     layers = per_side + 2
     strides = np.array([1, layers[0], layers[0] * layers[1]], dtype=np.int64)
-    count = int(layers[:dimension].prod())
-    return Cells(per_side, widths.astype(real), strides, np.empty(count + 1, dtype=np.int32), real(skin))
+    ends = np.empty((engine.threads, int(layers[:dimension].prod())), np.uint32)
+    origin = np.empty((dimension, state.count), real)
+    return Cells(
+        per_side, inverse.astype(real), strides, ends, real(skin), origin, np.zeros(engine.threads, int)
+    )
 
 
 def _width(scene: Scene, count: int) -> float:

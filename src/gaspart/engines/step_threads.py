@@ -7,19 +7,25 @@ rows of its own, and which contacts are found does not depend on who finds them.
 import numpy as np
 from numba import prange
 
-from gaspart.engines.step_layout import PAIR_TESTS, PENDING, REBUILDS, SPENT, STRAYED, Found, Space, share
-from gaspart.engines.step_list import list_pairs, search_pairs, sort_by_cell
+from gaspart.engines.step_cells import Places, begin_cells, count_part, place_part, tidy
+from gaspart.engines.step_layout import PAIR_TESTS, REBUILDS, SPENT, Found, Space, share
+from gaspart.engines.step_list import list_part, search_pairs
 from gaspart.engines.step_motion import move, note_fastest
 from gaspart.kernel import allocating_kernel, parallel_kernel
+
+
+_BLOCK = 256  # pairs that are tested before those that touch are looked at
+_TIDY = 8  # every so many lists the bodies are sorted in memory
 
 
 @allocating_kernel
 def room_for(threads, room, like):
     """Empty arrays for contacts to resolve."""
     return Found(
-        np.empty((threads, room, 2), np.int32),
+        np.empty((threads, room, 2), np.uint32),
         np.empty((threads, room), like.dtype),
         np.zeros(threads, np.int64),
+        np.empty((threads, _BLOCK), np.uint32),
     )
 
 
@@ -34,57 +40,84 @@ def move_shared(bodies, lengths, periodic, margin, gravity, inset, dt, counters,
 
 
 @parallel_kernel
-def list_shared(bodies, cells, arranged, pairs, done):
-    """`list_pairs` for all parts."""
-    for part in prange(len(pairs)):
-        list_pairs(bodies, cells, arranged, part, pairs, done)
+def count_shared(bodies, lengths, periodic, margin, cells, cell, edge):
+    """`count_part` for all parts."""
+    for part in prange(len(cells.ends)):
+        count_part(bodies, Space(lengths, periodic, margin), cells, cell, edge, part)
 
 
 @parallel_kernel
-def search_shared(bodies, lengths, periodic, margin, pairs, dt, parting, found):
+def place_shared(bodies, lengths, periodic, margin, cells, places):
+    """`place_part` for all parts."""
+    for part in prange(len(cells.ends)):
+        place_part(bodies, Space(lengths, periodic, margin), cells, places, part)
+
+
+@parallel_kernel
+def list_shared(bodies, cells, places, pairs, tests):
+    """`list_part` for all parts."""
+    for part in prange(len(pairs)):
+        list_part(bodies, cells, places, part, pairs, tests)
+
+
+@parallel_kernel
+def search_shared(bodies, lengths, periodic, margin, cells, pairs, dt, parting, found):
     """`search_pairs` for the whole list."""
-    parts = len(found.number)
-    for part in prange(parts):
-        low, high = share(part, parts, len(pairs)), share(part + 1, parts, len(pairs))
+    for part in prange(len(pairs)):
         space = Space(lengths, periodic, margin)
-        search_pairs(bodies, space, pairs, low, high, dt, parting, found, part)
+        search_pairs(bodies, space, pairs[part], 0, cells.listed[part], dt, parting, found, part)
 
 
 @allocating_kernel
-def make_list(bodies, space, cells, watch, counters, threads):
-    """Make the list anew: its pairs (n, 2)."""
-    arranged = sort_by_cell(bodies, space, cells)
-    parts = 1 if threads is None else threads
-    room = bodies.ordinary // parts + 64
-    done = np.empty((parts, 2), np.int64)
-    pairs = np.empty((parts, room, 2), np.int32)
+def settle(bodies, space, cells, threads):
+    """Give all ordinary bodies and their ghosts their places."""
+    count = bodies.ordinary
+    cell, place = np.empty(count, np.uint32), np.empty(count, np.uint32)
+    edge = np.empty(count, np.uint8)
+    if threads is None:
+        count_part(bodies, space, cells, cell, edge, 0)
+    else:
+        count_shared(bodies, space.lengths, space.periodic, space.margin, cells, cell, edge)
+    total = begin_cells(cells.ends)
+    spots, own = np.empty((total, 4), cells.origin.dtype), np.empty((count, 4), cells.origin.dtype)
+    places = Places(spots, np.empty(total, np.uint32), own, cell, place, edge)
+    if threads is None:
+        place_part(bodies, space, cells, places, 0)
+    else:
+        place_shared(bodies, space.lengths, space.periodic, space.margin, cells, places)
+    return places
+
+
+@allocating_kernel
+def make_list(bodies, space, cells, pairs, watch, counters, threads):
+    """Make the list anew: its pairs (threads, room, 2), in the old room or in more."""
+    places = settle(bodies, space, cells, threads)
+    if counters.counts[REBUILDS] % _TIDY == 0:
+        tidy(bodies, places)
+        places = settle(bodies, space, cells, threads)
+    tests = np.zeros(len(pairs), np.int64)
     while True:
         if threads is None:
-            list_pairs(bodies, cells, arranged, 0, pairs, done)
+            list_part(bodies, cells, places, 0, pairs, tests)
         else:
-            list_shared(bodies, cells, arranged, pairs, done)
-        if done[:, 0].min() >= 0:
+            list_shared(bodies, cells, places, pairs, tests)
+        if cells.listed.min() >= 0:
             break
-        room *= 2
-        pairs = np.empty((parts, room, 2), np.int32)
+        room = max(pairs.shape[1] * 3 // 2, bodies.ordinary // len(pairs)) + 8192
+        pairs = np.empty((len(pairs), room, 2), np.uint32)
+    cells.origin[:] = bodies.positions
     note_fastest(bodies, watch)
-    watch.reach[SPENT] = watch.reach[STRAYED] = watch.reach[PENDING] = 0.0
+    watch.reach[SPENT] = 0.0
     counters.counts[REBUILDS] += 1
-    counters.counts[PAIR_TESTS] += done[:, 1].sum()
-    whole = np.empty((done[:, 0].sum(), 2), np.int32)
-    start = 0
-    for part in range(parts):
-        number = done[part, 0]
-        whole[start : start + number] = pairs[part, :number]
-        start += number
-    return whole
+    counters.counts[PAIR_TESTS] += tests.sum()
+    return pairs
 
 
 @allocating_kernel
 def gathered(found):
     """What the threads have found: pairs (n, 2) and times (n,)."""
     number = found.number.sum()
-    pairs = np.empty((number, 2), np.int32)
+    pairs = np.empty((number, 2), np.uint32)
     times = np.empty(number, found.times.dtype)
     start = 0
     for part in range(len(found.number)):

@@ -106,9 +106,9 @@ class StepDynamics:
         self._partition = search.partition_for(engine, scene, state, ordinary)
         self._cells = search.cells_for(engine, scene, state, ordinary)
         self._gravity = None if scene.gravity is None else tuple(real(g) for g in scene.gravity)
-        self._watch = layout.Watch(np.empty(state.count, np.int64), np.zeros(state.count, real), np.zeros(4))
+        self._watch = layout.Watch(np.empty(state.count, np.int64), np.zeros(2))
         self._watch.reach[layout.SPENT] = np.inf  # no list is made yet
-        self._pairs = np.empty((0, 2), np.int32)
+        self._pairs = np.empty((engine.threads, 0, 2), np.uint32)
         self._threads = engine.threads if engine.threads > 1 else None
         self._quantum = quantum_for(scene, state, masses)
         self._step = real(engine.time_step)
@@ -120,7 +120,7 @@ class StepDynamics:
         bodies = self._bodies
         bodies.positions[...] = positions[slots].T
         bodies.velocities[...] = velocities[slots].T
-        bodies.images[...] = images[slots].T
+        bodies.images[...] = images.T
         bodies.radii[...] = self._reference.radii[slots]
         bodies.index[...] = slots
 
@@ -177,7 +177,7 @@ class StepDynamics:
             time=self.time,
             positions=self._by_body(self._bodies.positions, float),
             velocities=self._by_body(self._bodies.velocities, float),
-            images=self._by_body(self._bodies.images, self._reference.images.dtype),
+            images=self._bodies.images.T.astype(self._reference.images.dtype),
         )
 
     @property
@@ -208,17 +208,28 @@ class StepDynamics:
             "since": np.array(self._since),
             "positions": self._by_body(bodies.positions, self._real),
             "velocities": self._by_body(bodies.velocities, self._real),
-            "images": self._by_body(bodies.images, np.int32),
+            "images": bodies.images.T.copy(),
             "slots": bodies.index.copy(),
-            "pairs": self._pairs.copy(),
+            **self._list_parts(),
             "reach": self._watch.reach.copy(),
             **{key: np.array(value) for key, value in self._counters._asdict().items()},
         }
 
+    def _list_parts(self) -> dict[str, np.ndarray]:
+        """What a checkpoint keeps of the neighbour list, if there is one."""
+        if self._cells is None:
+            return {}
+        listed = self._cells.listed.copy()
+        pairs = self._pairs[:, : listed.max()].copy()
+        return {"pairs": pairs, "listed": listed, "origin": self._cells.origin.copy()}
+
     def restore(self, parts: dict[str, np.ndarray]) -> None:
         """Go on from a checkpoint of the same scene and engine."""
         self._place(*(parts[key] for key in ("slots", "positions", "velocities", "images")))
-        self._pairs = parts["pairs"].copy()
+        if self._cells is not None:
+            self._pairs = parts["pairs"].copy()
+            self._cells.listed[...] = parts["listed"]
+            self._cells.origin[...] = parts["origin"]
         self._watch.reach[...] = parts["reach"]
         for key in ("counts", "sums", "wall_hits", "wall_impulse"):
             getattr(self._counters, key)[...] = parts[key]
