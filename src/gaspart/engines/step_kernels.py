@@ -22,9 +22,9 @@ def run_steps(
 ):  # fmt: skip
     """Make `steps` steps of length `dt`.
 
-    partition: the boxes to search, or cells: those of a list; the other is None. pairs (threads, room, 2): the
-    list as it stands. gravity: (d,) or None; inset: the largest radius that a wall stops; threads: their number, or None
-    for one. Returns the list as it stands then.
+    partition: the boxes to search, or cells: those of a list; the other is None. pairs (threads, room, 2):
+    the list as it stands. gravity: (d,) or None; inset: the largest radius that a wall stops; threads: their
+    number, or None for one. Returns the list as it stands then.
     """
     count = bodies.positions.shape[1]
     parts = 1 if threads is None else threads

@@ -61,8 +61,8 @@ class Found(NamedTuple):
 
 
 class Watch(NamedTuple):
-    """met (N,), the last step with a contact, by body. reach (2,): the FASTEST speed of any body, or more; the
-    most that any may have SPENT of the skin since the list was made."""
+    """met (N,), the last step with a contact, by body. reach (2,): the FASTEST speed of any body, or more;
+    the most that any may have SPENT of the skin since the list was made."""
 
     met: np.ndarray
     reach: np.ndarray

@@ -9,13 +9,15 @@ import numpy as np
 from gaspart.engines.step_layout import FASTEST
 from gaspart.kernel import helper, kernel
 
-_BLOCK = 512
+_BLOCK = 128
 
 
 @helper
 def wrap(bodies, slot, axis, length):
     """Bring a body back into the container on a periodic axis."""
     x = bodies.positions[axis, slot]
+    if 0.0 <= x < length:
+        return
     laps = np.floor(x / length)
     if laps != 0.0:
         x -= laps * length
@@ -96,6 +98,17 @@ def mend(bodies, space, gravity, slot, dt, counters, thread):
                 reflect_falling(bodies, slot, k, inset, upper, gravity[k], dt, counters, thread)
 
 
+@helper
+def is_outside(bodies, space, inset, slot):
+    """Whether an ordinary body may need to be mended."""
+    outside = False
+    for k in range(len(space.lengths)):
+        x = bodies.positions[k, slot]
+        lower = inset - inset if space.periodic[k] else inset
+        outside |= (x < lower) | (x >= space.lengths[k] - lower)
+    return outside
+
+
 @kernel
 def fly(x, v, lower, upper, dt):
     """Move bodies along one axis; the number that are not in [lower, upper) then."""
@@ -140,7 +153,8 @@ def move(bodies, space, gravity, inset, dt, low, high, counters, thread):
                 outside += fall(x, v, gravity[k], lower, upper, dt)
         if outside > 0 or stop > bodies.ordinary:
             for slot in range(start, stop):
-                mend(bodies, space, gravity, slot, dt, counters, thread)
+                if slot >= bodies.ordinary or is_outside(bodies, space, inset, slot):
+                    mend(bodies, space, gravity, slot, dt, counters, thread)
         start = stop
 
 

@@ -13,7 +13,6 @@ from gaspart.engines.step_list import list_part, search_pairs
 from gaspart.engines.step_motion import move, note_fastest
 from gaspart.kernel import allocating_kernel, parallel_kernel
 
-
 _BLOCK = 256  # pairs that are tested before those that touch are looked at
 _TIDY = 8  # every so many lists the bodies are sorted in memory
 
