@@ -26,6 +26,13 @@ include: "workflow/rules/figures.smk"
 include: "workflow/rules/animate.smk"
 
 
+# Snakemake wakes its scheduler once a second for every job that has ended (snakemake/snakemake#3744), lest more
+# start in a second than it allows: after a few hundred jobs that takes a core. On one machine no limit is needed.
+onstart:
+    if workflow.local_exec:
+        workflow.scheduler.job_rate_limiter = None
+
+
 localrules:
     all,
     animations,
