@@ -20,7 +20,12 @@ container: {lengths: [12.0, 12.0], boundary: wall}
 species:
 - {count: 20, radius: 0.5, temperature: 1.0}
 """
-COMMANDS = ("run", "resume", "info", "render", "collisions", "export", "theory", "check")
+PERIODIC = """\
+container: {lengths: [20.0, 20.0], boundary: periodic}
+species:
+- {count: 200, radius: 0.5, temperature: 1.0}
+"""
+COMMANDS = ("run", "resume", "info", "render", "collisions", "export", "theory", "check", "advise")
 BRIEFLY = ["--duration", "1", "--sample-interval", "0.5"]
 
 
@@ -235,3 +240,23 @@ def test_export_says_where(folder, capsys):
     assert main(["export", "run.nc", "-o", "state.pdb"]) == 2
     assert main(["export", "run.nc", "-o", "state.gsd", "--frame", "3"]) == 2
     assert "frame = 3: the trajectory has 3" in capsys.readouterr().err
+
+
+def test_advice_names_engine_length_cost_and_reason(folder, capsys):
+    (folder / "gas.yaml").write_text(PERIODIC)
+    assert main(["advise", "gas.yaml", "--observable", "Z", "--accuracy", "0.01", "--budget", "60s"]) == 0
+    told = capsys.readouterr().out
+    for part in ("engine ", "replicas ", "run length ", "predicted cost ", "half-width ", "why: "):
+        assert part in told
+    assert main(["advise", "gas.yaml", "--accuracy", "2"]) == 2
+    assert "accuracy = 2" in capsys.readouterr().err
+    assert main(["advise"]) == 2
+
+
+def test_what_a_config_costs(folder, capsys):
+    (folder / "config.yaml").write_text(
+        "seed: 1\nexperiments:\n  gas:\n    point: {dimension: 3, count: 500, radius: 0.5, "
+        "packing_fraction: 0.1, boundary: periodic, temperature: 1.0, engine: auto, accuracy: 0.01}\n"
+    )
+    assert main(["advise", "--config", "config.yaml"]) == 0
+    assert "core-hours" in capsys.readouterr().out

@@ -176,3 +176,18 @@ def test_planning_imports_nothing_heavy():
         [sys.executable, "-c", code], cwd=source, capture_output=True, text=True, check=True
     )
     assert result.stdout.strip() == "[]"
+
+
+def test_engine_auto_becomes_the_engine_for_the_accuracy():
+    wanted = {"engine": "auto", "accuracy": 0.01, "collisions_per_body": None, "equilibration": None}
+    point = only(point=wanted)
+    assert point.settings["engine"] in ("event", "step")
+    assert point.settings["collisions_per_body"] >= 20 and "accuracy" not in point.settings
+    finer = only(point={**wanted, "accuracy": 0.001})
+    runs = [grid.schedule(one).duration * one.replicas for one in (point, finer)]
+    assert runs[1] > 30 * runs[0]
+    assert only(point={**wanted, "collisions_per_body": 7}).settings["collisions_per_body"] == 7
+    with pytest.raises(SceneError, match="accuracy.*required"):
+        only(point={"engine": "auto"})
+    with pytest.raises(SceneError, match="accuracy.*needs engine: auto"):
+        only(point={"accuracy": 0.01})

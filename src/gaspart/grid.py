@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from importlib import import_module
 
 from gaspart.errors import SceneError
 from gaspart.point import Point, name_of
@@ -58,18 +59,34 @@ def points(config: dict, experiment: str) -> list[Point]:
     varied = block.get("grid")
     for varying in _combinations({} if varied is None else varied, f"{where}.grid"):
         settings = {**block.get("point", {}), **varying}
-        point = Point(
-            experiment=experiment,
-            name=name_of(varying, f"{where}.grid"),
-            job=block.get("job", "simulate"),
-            settings={key: value for key, value in settings.items() if value is not None},
-            root=config.get("points", "results/points"),
-            config_seed=config["seed"],
+        point = _chosen(
+            Point(
+                experiment=experiment,
+                name=name_of(varying, f"{where}.grid"),
+                job=block.get("job", "simulate"),
+                settings={key: value for key, value in settings.items() if value is not None},
+                root=config.get("points", "results/points"),
+                config_seed=config["seed"],
+            )
         )
         if point.name in found:
             raise SceneError(f"{where}.grid", point.name, "every point of a grid must be different")
         found[point.name] = point
     return list(found.values())
+
+
+def _chosen(point: Point) -> Point:
+    """With the engine that `engine: auto` stands for. Raises SceneError."""
+    where = f"experiments.{point.experiment}"
+    if point.settings.get("engine") == "auto":
+        # By name: only planning needs it, and what measures points, which have their engine then, does not
+        # depend on the table.
+        chosen = import_module("gaspart.tradeoff.grids").chosen
+        return replace(point, settings=chosen(point.settings, scene(point), where))
+    for key in ("accuracy", "observable"):
+        if key in point.settings:
+            raise SceneError(f"{where}.{key}", point.settings[key], "needs engine: auto")
+    return point
 
 
 def figure_points(config: dict, figure: str) -> list[Point]:
@@ -141,8 +158,6 @@ def engines(point: Point) -> list:
 
     Raises SceneError.
     """
-    from dataclasses import replace
-
     own, settings = engine(point), point.settings
     given = [key for key in SCANS if key in settings]
     if not given:

@@ -10,6 +10,7 @@ import sys
 from collections.abc import Sequence
 
 from gaspart import __version__
+from gaspart.cli.advise import add_advise
 from gaspart.cli.arguments import Parser, UsageError
 from gaspart.cli.check import Wrong, add_check
 from gaspart.cli.collisions import add_collisions
@@ -29,6 +30,7 @@ _COMMANDS = {
     "collisions": add_collisions,
     "export": add_export,
     "theory": add_theory,
+    "advise": add_advise,
     "check": add_check,
 }
 

@@ -1,0 +1,200 @@
+"""Which engine, with which settings and for how long, gives a wanted accuracy at the least cost.
+
+The result of a run of n contacts of two bodies is off by at most |bias| + 1.96 sqrt(noise / n) in 95 % of
+all runs, bias being that of the time step. For each setting the n follows that makes this the wanted
+accuracy, and from it the cost; the cheapest setting is advised.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from gaspart import theory
+from gaspart.engines import EventDriven, TimeStepped
+from gaspart.errors import SceneError
+from gaspart.scene import Scene
+from gaspart.tradeoff import speed, table
+
+QUANTILE = 1.96
+SETTLING = 30.0
+"""Collisions per body before anything is measured."""
+_PER_SETTLING = 10.0  # a replica is to be so many times longer than its start
+_LEAST = 20.0  # collisions per body: a shorter run is no average over time
+_BULK = 4.0  # the finite size of a gas should cost no more than this part of the accuracy
+
+
+@dataclass(frozen=True)
+class Gas:
+    """What the advice depends on: one species of equal smooth bodies."""
+
+    dimension: int
+    packing_fraction: float
+    count: int
+    diameter: float
+    thermal_speed: float
+
+    @property
+    def collision_rate(self) -> float:
+        """Of one body."""
+        temperature = self.thermal_speed**2
+        return float(theory.collision_rate(self.packing_fraction, self.dimension, self.diameter, temperature))
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One way of doing it. bias: bound on the error of its steps; contacts: to be measured, in all replicas;
+    seconds: of processor time, settling included; half_width: of the 95 % interval, relative."""
+
+    engine: EventDriven | TimeStepped
+    bias: float
+    contacts: float
+    seconds: float
+    half_width: float
+
+
+@dataclass(frozen=True)
+class Advice:
+    """The setting to take, the best one of each other kind, and what follows for the run.
+
+    collisions_per_body: measured, in each replica; duration: the same in the scene's time; settling: before
+    it, in collisions per body. finite_size: relative difference from the infinite gas; bulk_count: bodies for
+    which that is a quarter of the accuracy. Both NaN where no theory says.
+    """
+
+    gas: Gas
+    observable: str
+    accuracy: float
+    setting: Setting
+    others: tuple[Setting, ...]
+    replicas: int
+    collisions_per_body: float
+    finite_size: float
+    bulk_count: float
+
+    @property
+    def duration(self) -> float:
+        return self.collisions_per_body / self.gas.collision_rate
+
+    @property
+    def within_budget(self) -> bool:
+        return self.setting.half_width <= self.accuracy * (1.0 + 1e-9)
+
+
+def gas_of(scene: Scene) -> Gas:
+    """Raises SceneError for a scene whose errors nobody has measured."""
+    kinds = scene.species
+    plain = Scene(scene.container, kinds, centres_to_walls=scene.centres_to_walls)
+    if len(kinds) != 1 or kinds[0].fixed or scene != plain:
+        rule = "advice is known for one species of smooth bodies alone, without gravity or obstacles"
+        raise SceneError("species", len(kinds), rule)
+    kind, dimension = kinds[0], scene.dimension
+    temperature = kind.temperature
+    if temperature is None:
+        temperature = kind.mass * (kind.speed or 0.0) ** 2 / dimension
+    if not temperature > 0.0:
+        raise SceneError("temperature", temperature, "advice is for bodies that move")
+    highest = theory.HIGHEST_PACKING_FRACTION[dimension]
+    if scene.packing_fraction > highest:
+        raise SceneError(
+            "packing_fraction", scene.packing_fraction, f"advice is for fluids, up to {highest:g}"
+        )
+    speed = math.sqrt(temperature / kind.mass)
+    return Gas(dimension, scene.packing_fraction, kind.count, 2.0 * kind.radius, speed)
+
+
+def advise(
+    scene: Scene,
+    observable: str,
+    accuracy: float,
+    budget: float | None = None,
+    speed_of: Callable[[int, str, str, int], float] = speed.factor,
+) -> Advice:
+    """The cheapest way to a relative `accuracy` (95 % half-width) of an observable: Z, collision_rate or D.
+
+    budget: processor time in seconds; if it does not suffice, the most accurate way within it is advised.
+    speed_of: this machine's time over the table's (see `gaspart.tradeoff.speed`).
+
+    Raises SceneError for what the table does not know.
+    """
+    if observable not in table.OBSERVABLES:
+        raise SceneError("observable", observable, f"must be one of {', '.join(table.OBSERVABLES)}")
+    if not 0.0 < accuracy < 1.0:
+        raise SceneError("accuracy", accuracy, "must be between 0 and 1")
+    gas = gas_of(scene)
+    noise = table.noise(gas.dimension, gas.packing_fraction, observable)
+    if not math.isfinite(noise):
+        raise SceneError(
+            "observable", observable, "discs have no diffusion coefficient: it grows with the size"
+        )
+    settings = [
+        made
+        for engine, precision, step in _engines(gas)
+        if (made := _setting(gas, engine, precision, step, observable, accuracy, noise, budget, speed_of))
+    ]
+    best = min(settings, key=lambda made: (max(made.half_width, accuracy), made.seconds))
+    others = tuple(
+        min(kind, key=lambda made: made.seconds)
+        for kind in (
+            [made for made in settings if made.engine.name == name and made is not best]
+            for name in ("event", "step")
+        )
+        if kind
+    )
+    per_body = 2.0 * best.contacts / gas.count
+    replicas = max(1, min(os.cpu_count() or 1, int(per_body / (_PER_SETTLING * SETTLING))))
+    finite_size = _finite_size(gas, observable)
+    return Advice(
+        gas,
+        observable,
+        accuracy,
+        best,
+        others,
+        replicas,
+        per_body / replicas,
+        finite_size,
+        gas.count * (abs(finite_size) * _BULK / accuracy) ** (gas.dimension if observable == "D" else 1),
+    )
+
+
+def _engines(gas: Gas):
+    """(engine, precision, its time step in the table's unit) of all settings that might do."""
+    yield EventDriven(), "float64", 0.0
+    unit = gas.diameter / gas.thermal_speed
+    for precision, step in table.steps(gas.dimension):
+        yield TimeStepped(step * unit, precision=precision), precision, step
+
+
+def _setting(gas, engine, precision, step, observable, accuracy, noise, budget, speed_of) -> Setting | None:
+    """None if the error of its steps leaves no room, or nothing is known of it."""
+    bias = 0.0
+    if engine.name == "step":
+        bias = table.bias(gas.dimension, gas.packing_fraction, precision, step, observable)
+    room = (accuracy - bias) / QUANTILE
+    each = table.seconds(gas.dimension, gas.packing_fraction, engine.name, precision, step)
+    if room <= 0.0 or not math.isfinite(each):
+        return None
+    each *= speed_of(gas.dimension, engine.name, precision, gas.count)
+    settling = 0.5 * gas.count * SETTLING
+    contacts = max(noise / room**2, 0.5 * gas.count * _LEAST)
+    if budget is not None:
+        contacts = min(contacts, max(budget / each - settling, 1.0))
+    half_width = bias + QUANTILE * math.sqrt(noise / contacts)
+    return Setting(engine, bias, contacts, (contacts + settling) * each, half_width)
+
+
+def _finite_size(gas: Gas, observable: str) -> float:
+    """Relative difference from the infinite gas, to first order; periodic containers."""
+    fraction, dimension, count = gas.packing_fraction, gas.dimension, gas.count
+    if count < 2:
+        return math.nan
+    if observable == "Z":
+        shift = theory.finite_size_correction(fraction, dimension, count, ensemble="canonical")
+        return float(shift / theory.compressibility_factor(fraction, dimension))
+    if observable == "collision_rate":
+        return float(theory.collision_rate_finite_size_factor(fraction, dimension, count)) - 1.0
+    side = (count * theory.body_volume(dimension) / fraction) ** (1.0 / dimension)
+    lost = theory.yeh_hummer(side, float(theory.enskog_viscosity(fraction, dimension)))
+    return -float(lost / theory.enskog_diffusion(fraction, dimension))

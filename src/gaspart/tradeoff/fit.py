@@ -1,0 +1,98 @@
+"""The model's table from the workflow's measurements.
+
+    python -m gaspart.tradeoff.fit results/measurements > src/gaspart/tradeoff/data/tradeoff.csv
+
+takes speed_accuracy.nc (errors and times of both engines), virial_spheres.nc and virial_discs.nc (noise of Z
+and of the collision rate) and msd_spheres.nc (noise of D) from the folder it is given.
+"""
+
+from __future__ import annotations
+
+import csv
+import sys
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from gaspart.tradeoff.table import COLUMNS
+
+SETTINGS = {"4 passes": "float64", "4 passes, float32": "float32"}
+"""The settings of the time-stepped engine that are worth advising, and their precision."""
+
+
+def rows(folder: Path) -> list[dict]:
+    """All rows of the table; see `gaspart.tradeoff.table` for what they mean."""
+    accuracy = xr.load_dataset(folder / "speed_accuracy.nc")
+    found = [
+        *_engines(accuracy),
+        *_noise(xr.load_dataset(folder / "virial_spheres.nc"), 3),
+        *_noise(xr.load_dataset(folder / "virial_discs.nc"), 2),
+        *_diffusion(xr.load_dataset(folder / "msd_spheres.nc")),
+    ]
+    return [{**row, "value": f"{row['value']:.4g}", "error": f"{row['error']:.2g}"} for row in found]
+
+
+def _row(dimension, fraction, engine, precision, step, quantity, value, error) -> dict:
+    values = (int(dimension), f"{float(fraction):g}", engine, precision, f"{step:g}", quantity, float(value))
+    return dict(zip(COLUMNS, (*values, float(error)), strict=True))
+
+
+def _engines(accuracy: xr.Dataset):
+    """Errors, and times of both engines."""
+    for n in range(accuracy.sizes["row"]):
+        row = accuracy.isel(row=n)
+        gas = row.dimension, row.packing_fraction
+        setting = str(row.setting.values)
+        if setting == "4 passes":
+            yield _row(*gas, "event", "float64", 0.0, "seconds", row.event_seconds, row.event_error)
+        if setting not in SETTINGS:
+            continue
+        for k in np.flatnonzero(np.isfinite(row.time_step.values)):
+            step = float(row.time_step[k])
+            of = (*gas, "step", SETTINGS[setting], step)
+            for observable in row.observable.values:
+                at = row.sel(observable=observable).isel(step=k)
+                if np.isfinite(at.bias):
+                    yield _row(*of, f"bias_{observable}", at.bias, at.bias_error)
+            if np.isfinite(row.seconds[k]):
+                yield _row(*of, "seconds", row.seconds[k], row.seconds_error[k])
+
+
+def _noise(virial: xr.Dataset, dimension: int):
+    """Relative variances of Z and of the collision rate, times the contacts that they come from."""
+    for n, fraction in enumerate(virial.packing_fraction.values):
+        contacts = float(virial.collisions[n])
+        for name, quantity in (("Z", "Z"), ("collision_rate", "collision_rate")):
+            relative = float(virial[f"{name}_error"][n] / virial[name][n])
+            value = relative**2 * contacts
+            yield _row(dimension, fraction, "event", "float64", 0.0, f"noise_{quantity}", value, 0.3 * value)
+
+
+def _diffusion(msd: xr.Dataset):
+    """The same for D of spheres: one number, the median of all gases (each has few replicas)."""
+    length = msd.time.max("lag") * 2.0 * msd.collision_rate  # lags reach to half a run
+    contacts = 0.5 * msd["count"] * length * msd.replicas
+    values = ((msd.diffusion_error / msd.diffusion) ** 2 * contacts).values
+    values = values[np.isfinite(values)]
+    yield _row(
+        3, 0.1, "event", "float64", 0.0, "noise_D", np.median(values), values.std() / len(values) ** 0.5
+    )
+
+
+def main(folder: str) -> None:
+    """Write the table to the standard output."""
+    from gaspart import provenance
+
+    revision = provenance.git_revision()
+    print(
+        "# What accuracy costs; columns in gaspart/tradeoff/table.py. Made by python -m gaspart.tradeoff.fit"
+    )
+    print(f"# from the full reproduction, revision {revision}. Times are of the machine that it ran on.")
+    writer = csv.DictWriter(sys.stdout, COLUMNS, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows(Path(folder)))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

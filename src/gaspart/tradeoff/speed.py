@@ -1,0 +1,52 @@
+"""How fast this machine is: the table's times, carried over by a run of a tenth of a second."""
+
+from __future__ import annotations
+
+import math
+import statistics
+import time
+from functools import cache
+
+from gaspart.tradeoff import table
+
+REFERENCE = 0.1
+"""Packing fraction of the gas that is timed; it is in the table."""
+STEP = 0.08
+"""Time step with which it is timed, in diameters over the thermal speed."""
+_LEAST, _MOST = 500, 100_000  # bodies that are timed
+_CONTACTS = 2e4
+
+
+@cache
+def factor(dimension: int, engine: str, precision: str, count: int) -> float:
+    """Processor time of a contact here over that of the table, at this number of bodies.
+
+    Timed is the reference gas, from a lattice that has forgotten itself a little, three times.
+    """
+    from gaspart import theory
+    from gaspart.engines import EventDriven, TimeStepped
+    from gaspart.scene import Container, Scene, Species
+    from gaspart.simulation import Simulation
+
+    count = min(max(count, _LEAST), _MOST)
+    side = (count * theory.body_volume(dimension) / REFERENCE) ** (1.0 / dimension)
+    bodies = Species(count, 0.5, temperature=1.0, arrangement="lattice")
+    gas = Scene(Container((side,) * dimension, boundary="periodic"), species=(bodies,))
+    chosen = EventDriven() if engine == "event" else TimeStepped(STEP, precision=precision)
+    rate = float(theory.collision_rate(REFERENCE, dimension))
+    run = Simulation(gas, chosen, seed=1)
+    run.advance(duration=1.0 / rate)
+    stretch = 2.0 * max(_CONTACTS, 0.5 * count) / (count * rate)
+    taken = []
+    for _ in range(3):
+        before, start = run.time, time.process_time()
+        run.advance(duration=stretch)
+        taken.append((time.process_time() - start) / (0.5 * count * rate * (run.time - before)))
+    step = 0.0 if engine == "event" else STEP
+    known = table.seconds(dimension, REFERENCE, engine, precision, step)
+    return statistics.median(taken) / known if math.isfinite(known) else math.inf
+
+
+def as_measured(dimension: int, engine: str, precision: str, count: int) -> float:
+    """The machine of the table: for choices that must be the same everywhere."""
+    return 1.0

@@ -1,0 +1,88 @@
+"""The table of what was measured, and what lies between its points.
+
+Columns: ``dimension``, ``packing_fraction``; ``engine`` (event or step, the latter with its standard four
+passes and rewinding), ``precision``, ``time_step`` in diameters over the thermal speed (kT / m)^(1/2);
+``quantity``, its ``value`` and standard ``error``. Quantities: ``seconds`` of processor time for one exact
+contact of two bodies; ``bias_<observable>``, relative error; ``noise_<observable>``, the relative variance of
+an estimate times the contacts that it is made of. Observables: Z, collision_rate, D.
+"""
+
+from __future__ import annotations
+
+import csv
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+COLUMNS = ("dimension", "packing_fraction", "engine", "precision", "time_step", "quantity", "value", "error")
+OBSERVABLES = ("Z", "collision_rate", "D")
+PATH = Path(__file__).parent / "data" / "tradeoff.csv"
+_SAFE = 2.0  # standard errors added to a bias
+_BEYOND = 1.05  # a packing fraction may exceed those of the table by this factor
+
+
+@cache
+def read() -> tuple[dict, ...]:
+    """All rows, with numbers as numbers."""
+    with PATH.open(encoding="utf-8") as file:
+        lines = [line for line in file if not line.startswith("#")]
+    kinds = (int, float, str, str, float, str, float, float)
+    return tuple(
+        {key: kind(row[key]) for key, kind in zip(COLUMNS, kinds, strict=True)}
+        for row in csv.DictReader(lines)
+    )
+
+
+def steps(dimension: int) -> list[tuple[str, float]]:
+    """(precision, time_step) of all measured settings of the time-stepped engine."""
+    found = (row for row in read() if row["engine"] == "step" and row["dimension"] == dimension)
+    return list(dict.fromkeys((row["precision"], row["time_step"]) for row in found))
+
+
+def bias(dimension: int, fraction: float, precision: str, step: float, observable: str) -> float:
+    """A bound on the relative error of time steps, with two standard errors; inf where none was measured.
+
+    Between packing fractions the larger of the neighbours' is taken: errors change their sign between them.
+    """
+    eta, value, error = _curve(dimension, "step", precision, step, f"bias_{observable}")
+    if not eta.size or not eta[0] / _BEYOND <= fraction <= eta[-1] * _BEYOND:
+        return np.inf
+    bound = np.abs(value) + _SAFE * error
+    at = int(np.clip(np.searchsorted(eta, fraction * 0.999), 0, eta.size - 1))
+    near = {at, max(0, at - 1)} if not np.isclose(eta[at], fraction, rtol=1e-3) else {at}
+    return float(max(bound[n] for n in near))
+
+
+def seconds(
+    dimension: int, fraction: float, engine: str, precision: str = "float64", step: float = 0.0
+) -> float:
+    """Processor time of one exact contact, on the machine of the table; inf where it was not measured."""
+    eta, value, _ = _curve(dimension, engine, precision, step, "seconds")
+    if not eta.size or (engine == "step" and not eta[0] / _BEYOND <= fraction <= eta[-1] * _BEYOND):
+        return np.inf
+    return float(np.exp(np.interp(np.log(fraction), np.log(eta), np.log(value))))
+
+
+def noise(dimension: int, fraction: float, observable: str) -> float:
+    """Relative variance of an observable, times the contacts that it is made of; inf if there is none."""
+    eta, value, _ = _curve(dimension, "event", "float64", 0.0, f"noise_{observable}")
+    if not eta.size:
+        return np.inf
+    # A line through the logarithms: single values come from few blocks.
+    order = min(2, eta.size - 1)
+    fit = np.polyfit(np.log(eta), np.log(value), order)
+    return float(np.exp(np.polyval(fit, np.log(np.clip(fraction, eta[0], eta[-1])))))
+
+
+@cache
+def _curve(dimension: int, engine: str, precision: str, step: float, quantity: str):
+    """(packing fractions, values, errors) of one quantity."""
+    wanted = (dimension, engine, precision, step, quantity)
+    keys = ("dimension", "engine", "precision", "time_step", "quantity")
+    found = sorted(
+        (row["packing_fraction"], row["value"], row["error"])
+        for row in read()
+        if tuple(row[key] for key in keys) == wanted
+    )
+    return tuple(np.array(column) for column in zip(*found, strict=True)) if found else (np.empty(0),) * 3

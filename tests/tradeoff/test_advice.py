@@ -1,0 +1,86 @@
+"""Advice from a table of known errors, noises and times."""
+
+import math
+
+import pytest
+
+from gaspart import theory
+from gaspart.errors import SceneError
+from gaspart.matter import Restitution
+from gaspart.scene import Container, Scene, Species
+from gaspart.tradeoff import speed, table
+from gaspart.tradeoff.advice import QUANTILE, SETTLING, advise
+
+
+def gas(fraction, count=1000, dimension=3, **more):
+    side = (count * theory.body_volume(dimension) / fraction) ** (1.0 / dimension)
+    species = Species(count, 0.5, temperature=1.0, arrangement="lattice")
+    return Scene(Container((side,) * dimension, boundary="periodic"), species=(species,), **more)
+
+
+def advice(fraction, accuracy, observable="Z", budget=None, speed_of=speed.as_measured, **more):
+    return advise(gas(fraction, **more), observable, accuracy, budget, speed_of)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("observable", ["Z", "collision_rate"])
+@pytest.mark.parametrize("accuracy", [1e-2, 1e-3, 1e-4])
+def test_bias_and_noise_make_up_the_wanted_accuracy(dimension, observable, accuracy):
+    found = advice(0.2, accuracy, observable, dimension=dimension)
+    noise = table.noise(dimension, 0.2, observable)
+    best = found.setting
+    assert best.bias + QUANTILE * math.sqrt(noise / best.contacts) <= accuracy * (1.0 + 1e-9)
+    assert found.replicas * found.collisions_per_body * found.gas.count == pytest.approx(2.0 * best.contacts)
+    assert all(best.seconds <= other.seconds for other in found.others)
+
+
+def test_a_ten_thousandth_takes_the_exact_engine():
+    assert advice(0.01, 1e-4).setting.engine.name == "event"
+    assert advice(0.3, 1e-4).setting.engine.name == "event"
+
+
+def test_a_fast_time_stepped_engine_is_taken():
+    fast = lambda dimension, engine, precision, count: 1e-3 if engine == "step" else 1.0  # noqa: E731
+    found = advice(0.3, 1e-2, speed_of=fast)
+    assert found.setting.engine.name == "step" and found.setting.bias < 1e-2
+    assert found.others[0].engine.name == "event"
+
+
+def test_a_budget_that_does_not_suffice_gives_the_best_within_it():
+    wanted = advice(0.2, 1e-4)
+    short = advice(0.2, 1e-4, budget=0.25 * wanted.setting.seconds)
+    assert not short.within_budget and wanted.within_budget
+    assert short.setting.seconds <= 0.2501 * wanted.setting.seconds
+    assert 1e-4 < short.setting.half_width < 3e-4
+
+
+def test_time_steps_scale_with_the_scene():
+    fast = lambda dimension, engine, precision, count: 1e-3 if engine == "step" else 1.0  # noqa: E731
+    slow = advise(gas(0.3), "Z", 1e-2, None, fast)
+    hot = Scene(
+        Container(tuple(2.0 * length for length in gas(0.3).container.lengths), boundary="periodic"),
+        species=(Species(1000, 1.0, temperature=16.0, arrangement="lattice"),),
+    )
+    assert advise(hot, "Z", 1e-2, None, fast).setting.engine.time_step == pytest.approx(
+        0.5 * slow.setting.engine.time_step
+    )
+
+
+def test_settling_and_finite_size_are_told():
+    found = advice(0.3, 1e-3, count=100)
+    assert found.finite_size < 0.0 and found.bulk_count > 100
+    assert found.setting.seconds > 0.5 * 100 * SETTLING * table.seconds(3, 0.3, "event")
+
+
+@pytest.mark.parametrize(
+    ("scene", "observable", "accuracy", "key"),
+    [
+        (gas(0.2, restitution=Restitution(normal=0.9)), "Z", 0.01, "species"),
+        (gas(0.2), "viscosity", 0.01, "observable"),
+        (gas(0.2), "Z", 0.0, "accuracy"),
+        (gas(0.2, dimension=2), "D", 0.01, "observable"),
+    ],
+)
+def test_what_nobody_measured_is_refused(scene, observable, accuracy, key):
+    with pytest.raises(SceneError, match=key):
+        advise(scene, observable, accuracy, None, speed.as_measured)

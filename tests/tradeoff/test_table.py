@@ -1,0 +1,42 @@
+"""The table as it is kept: what must hold of any measurement."""
+
+import math
+
+import numpy as np
+import pytest
+
+from gaspart.tradeoff import speed, table
+
+
+def test_every_row_is_a_number_with_an_error_of_a_known_quantity():
+    known = {"seconds", *(f"{kind}_{name}" for kind in ("bias", "noise") for name in table.OBSERVABLES)}
+    assert {row["quantity"] for row in table.read()} == known
+    assert all(np.isfinite((row["value"], row["error"])).all() for row in table.read())
+    assert {row["dimension"] for row in table.read()} == {2, 3}
+
+
+def test_longer_steps_lose_more_contacts():
+    steps = [0.04, 0.08, 0.16, 0.32]
+    for fraction in (0.01, 0.03, 0.1):
+        lost = [table.bias(3, fraction, "float64", step, "collision_rate") for step in steps]
+        assert lost == sorted(lost)
+        assert lost[-1] > 2.0 / 3.0 * 0.9 * 0.32**2
+
+
+def test_nothing_is_said_of_steps_where_nobody_measured_them():
+    assert math.isinf(table.bias(3, 0.45, "float64", 0.08, "Z"))
+    assert math.isinf(table.bias(3, 0.1, "float64", 0.123, "Z"))
+    assert math.isinf(table.seconds(3, 0.45, "step", "float64", 0.08))
+    assert math.isfinite(table.seconds(3, 0.45, "event"))
+
+
+def test_noise_of_the_pressure_of_a_dilute_gas_is_that_of_independent_contacts():
+    """Z - 1 is a sum over contacts whose momenta have <p^2> / <p>^2 = 4 / pi: the variance of Z is that of
+    Poisson's law, 4 / pi, times (Z - 1)^2 / Z^2."""
+    z = 1.0 + 4.0 * 0.01 + 10.0 * 0.01**2
+    expected = 4.0 / math.pi * ((z - 1.0) / z) ** 2
+    assert table.noise(3, 0.01, "Z") == pytest.approx(expected, rel=0.5)
+
+
+def test_this_machine_is_timed_in_less_than_some_seconds():
+    assert 0.05 < speed.factor(3, "event", "float64", 500) < 20.0
