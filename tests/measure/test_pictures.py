@@ -43,6 +43,6 @@ def test_a_scene_is_counted_and_kept_for_drawing(tmp_path):
     run(grid.scene(point), grid.engine(point), 1, 2.0, 2.0, point.replica_path(0))
     ds = pictures.brownian_render([point], {})
     assert ds.sizes["body"] == ds.attrs["count"] == 201
-    assert float(ds["overlaps"]) == 0.0 and float(ds["overlaps_expected"]) == 0.0
+    assert float(ds["overlaps"]) == 0.0 and float(ds["resolved"]) == 0.0
     assert ds["radius"].values.tolist() == [10.0] + [0.5] * 200
     assert float(ds["mean_speed"]) == pytest.approx(1.0, abs=0.1)

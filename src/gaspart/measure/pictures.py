@@ -28,9 +28,8 @@ def brownian_render(points: list[grid.Point], settings: dict) -> xr.Dataset:
 def _scene(point: grid.Point) -> xr.Dataset:
     """Bodies of one frame, and counts over replicas.
 
-    `overlaps`: pairs that overlap by more than rounding. `overlaps_expected`: with the time-stepped engine,
-    the collisions of one step, since a pair that collides within a step is found, and rewound, at its end;
-    with the other none. `mean_speed` of the last species, with the standard error over bodies.
+    `overlaps`: pairs that overlap by more than rounding. `resolved`: with the time-stepped engine, the
+    collisions of the step before each frame, overlaps that it found and put right; with the other none. `mean_speed` of the last species, with the standard error over bodies.
     """
     scene, overlaps, collisions, speeds = grid.scene(point), [], [], []
     for path in point.replica_paths:
@@ -57,7 +56,7 @@ def _scene(point: grid.Point) -> xr.Dataset:
             "speed": ("body", speeds[0], {"units": "length/time"}),
             "length": ("axis", np.array(scene.container.lengths), {"units": "length"}),
             "overlaps": float(sum(overlaps)),
-            "overlaps_expected": step * sum(collisions),
+            "resolved": step * sum(collisions),
             "mean_speed": float(chosen.mean()),
             "mean_speed_error": float(chosen.std(ddof=1) / math.sqrt(len(chosen))),
             "mean_square_speed": float((chosen**2).mean()),
