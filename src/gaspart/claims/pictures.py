@@ -11,7 +11,7 @@ from gaspart.claims import Claim
 
 
 def gas_render(ds: xr.Dataset) -> list[Claim]:
-    """All are there, as thin as the source says, put right at the end of each step, with Maxwell's mean speed."""
+    """All are there, as thin as the source says, put right by each step, with Maxwell's mean speed."""
     resolved = float(ds["resolved"])
     expected = 2.0 * resolved**2 / ds.attrs["count"]
     scatter = math.sqrt(max(expected, 1.0))
@@ -35,7 +35,7 @@ def gas_render(ds: xr.Dataset) -> list[Claim]:
             scatter,
             scatter,
             expected,
-            f"next to none of the {resolved:.3g} that were found: one body in two contacts (at most, Poisson)",
+            f"next to none of the {resolved:.3g} found: a body in two contacts (at most, Poisson)",
             fails_if="overlaps that a step finds and does not put right",
         ),
         Claim(

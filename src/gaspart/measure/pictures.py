@@ -29,7 +29,8 @@ def _scene(point: grid.Point) -> xr.Dataset:
     """Bodies of one frame, and counts over replicas.
 
     `overlaps`: pairs that overlap by more than rounding. `resolved`: with the time-stepped engine, the
-    collisions of the step before each frame, overlaps that it found and put right; with the other none. `mean_speed` of the last species, with the standard error over bodies.
+    collisions of the step before each frame, overlaps that it found and put right; with the other none.
+    `mean_speed` of the last species, with the standard error over bodies.
     """
     scene, overlaps, collisions, speeds = grid.scene(point), [], [], []
     for path in point.replica_paths:
