@@ -166,7 +166,7 @@ def place_part(bodies, space, cells, places, part):
 
 
 @allocating_kernel
-def tidy(bodies, places):
+def tidy(bodies, places, watch):
     """Bring the ordinary bodies' slots into the order of their cells."""
     order = np.empty(bodies.ordinary + 1, np.uint32)
     number = 0
@@ -180,6 +180,7 @@ def tidy(bodies, places):
         permute(bodies.velocities[k], order)
     permute(bodies.radii, order)
     permute(bodies.index, order)
+    permute(watch.met, order)
 
 
 @allocating_kernel

@@ -72,7 +72,7 @@ def counts(rr, rv, vv, ss, dt, parting):
     return rv < 0.0 or (parting and rv > 0.0 and -entered(rr, rv, vv, ss) < dt)
 
 
-@kernel
+@helper
 def examine(bodies, space, i, j, dt, parting, found, thread):
     """Write a pair of overlapping slots down if it is to be resolved."""
     if bodies.index[i] > bodies.index[j]:
@@ -194,20 +194,19 @@ def strayed(bodies, space, cells, slot):
 
 
 @helper
-def note(bodies, space, slot, speed_squared, step, cells, watch, counters):
+def note(bodies, space, slot, speed_squared, turn, cells, watch, counters):
     """Remember a contact of a body: how many it has in this step, how fast it is now, and how far from where
     it was when the list was made."""
-    body = bodies.index[slot]
-    counters.counts[MULTIPLE] += watch.met[body] == step
-    watch.met[body] = step
+    counters.counts[MULTIPLE] += watch.met[slot] >= turn.first
+    watch.met[slot] = turn.now
     watch.reach[FASTEST] = max(watch.reach[FASTEST], np.sqrt(speed_squared))
     if cells is not None:
         if slot < bodies.ordinary:
             watch.reach[SPENT] = max(watch.reach[SPENT], strayed(bodies, space, cells, slot))
 
 
-@kernel
-def resolve(bodies, space, i, j, dt, step, rewind, parting, cells, watch, counters):
+@helper
+def resolve(bodies, space, i, j, dt, turn, rewind, parting, cells, watch, counters):
     """Collide a pair, if it is still to be resolved: rewind it to its contact, pass the momentum along the
     normal at contact, and play the rest of the step with the new velocities."""
     rr, rv, vv = invariants(bodies, space, i, j)
@@ -240,16 +239,16 @@ def resolve(bodies, space, i, j, dt, step, rewind, parting, cells, watch, counte
         if rewind and space.periodic[k]:
             wrap(bodies, i, k, space.lengths[k])
             wrap(bodies, j, k, space.lengths[k])
-    note(bodies, space, i, speed_i, step, cells, watch, counters)
-    note(bodies, space, j, speed_j, step, cells, watch, counters)
+    note(bodies, space, i, speed_i, turn, cells, watch, counters)
+    note(bodies, space, j, speed_j, turn, cells, watch, counters)
 
 
 @kernel
-def resolve_all(bodies, space, pairs, order, dt, step, rewind, parting, cells, watch, counters):
+def resolve_all(bodies, space, pairs, order, dt, turn, rewind, parting, cells, watch, counters):
     """Resolve what one search has found, in order."""
     for n in order:
         i, j = pairs[n, 0], pairs[n, 1]
-        resolve(bodies, space, i, j, dt, step, rewind, parting, cells, watch, counters)
+        resolve(bodies, space, i, j, dt, turn, rewind, parting, cells, watch, counters)
 
 
 @kernel

@@ -8,10 +8,10 @@ keeps the precision of the positions (float32 or float64): hence dt - dt for 0 a
 
 from gaspart.engines.step_boxes import search_all, search_boxes, sort_in
 from gaspart.engines.step_contacts import count_left, in_order, resolve_all
-from gaspart.engines.step_layout import FASTEST, PAIR_TESTS, SPENT
-from gaspart.engines.step_list import is_stale, search_pairs
+from gaspart.engines.step_layout import FASTEST, PAIR_TESTS, SPENT, Turn
+from gaspart.engines.step_list import is_stale
 from gaspart.engines.step_motion import move
-from gaspart.engines.step_threads import gathered, make_list, move_shared, room_for, search_shared
+from gaspart.engines.step_threads import gathered, make_list, move_shared, room_for, search_list
 from gaspart.kernel import allocating_kernel
 
 
@@ -44,44 +44,35 @@ def run_steps(
             move_shared(
                 bodies, space.lengths, space.periodic, space.margin, gravity, inset, dt, counters, threads
             )
-        number = 0
-        for _ in range(passes):
+        number, before = 0, -1
+        for again in range(passes):
+            turn = Turn(step * passes + again, step * passes)
             if cells is not None:
                 if is_stale(bodies, space, cells, watch):
                     pairs = make_list(bodies, space, cells, pairs, watch, counters, threads)
+                    before = -1
             if partition is not None:
                 sort_in(bodies, partition)
             while True:
                 found.number[:] = 0
+                found.tests[:] = 0
                 if cells is not None:
-                    counters.counts[PAIR_TESTS] += cells.listed.sum()
-                    if threads is None:
-                        search_pairs(bodies, space, pairs[0], 0, cells.listed[0], dt, parting, found, 0)
-                    else:
-                        search_shared(
-                            bodies,
-                            space.lengths,
-                            space.periodic,
-                            space.margin,
-                            cells,
-                            pairs,
-                            dt,
-                            parting,
-                            found,
-                        )
+                    search_list(bodies, space, cells, pairs, watch, before, dt, parting, found, threads)
                 if partition is not None:
                     search_boxes(bodies, space, partition, dt, parting, found, counters)
                 for slot in range(bodies.ordinary, count):
-                    counters.counts[PAIR_TESTS] += search_all(bodies, space, slot, dt, parting, found, 0)
+                    found.tests[0] += search_all(bodies, space, slot, dt, parting, found, 0)
                 if found.number.max() <= found.times.shape[1]:
                     break
                 found = room_for(parts, 2 * found.number.max(), bodies.positions)
+            counters.counts[PAIR_TESTS] += found.tests.sum()
             number = found.number.sum()
             if number == 0:
                 break
             contacts, times = gathered(found)
             order = in_order(bodies.index, contacts, times)
-            resolve_all(bodies, space, contacts, order, dt, step, rewind, parting, cells, watch, counters)
+            resolve_all(bodies, space, contacts, order, dt, turn, rewind, parting, cells, watch, counters)
+            before = turn.now
         if number > 0:
             count_left(bodies, space, contacts, counters)
     return pairs

@@ -52,20 +52,29 @@ class Counters(NamedTuple):
 
 class Found(NamedTuple):
     """Contacts to resolve, by thread: pairs (threads, room, 2) of slots, times (threads, room), number
-    (threads,), which may exceed the room; touching (threads, n), room for those of a block that touch."""
+    (threads,), which may exceed the room; tests (threads,), how many pairs were tested; touching
+    (threads, n), room for those of a block that touch."""
 
     pairs: np.ndarray
     times: np.ndarray
     number: np.ndarray
+    tests: np.ndarray
     touching: np.ndarray
 
 
 class Watch(NamedTuple):
-    """met (N,), the last step with a contact, by body. reach (2,): the FASTEST speed of any body, or more;
+    """met (N,), by slot: the turn of the last contact. reach (2,): the FASTEST speed of any body, or more;
     the most that any may have SPENT of the skin since the list was made."""
 
     met: np.ndarray
     reach: np.ndarray
+
+
+class Turn(NamedTuple):
+    """The number of this pass, among those of all steps, and of the first pass of this step."""
+
+    now: int
+    first: int
 
 
 @helper

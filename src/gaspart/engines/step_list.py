@@ -103,12 +103,13 @@ def is_stale(bodies, space, cells, watch):
 
 
 @kernel
-def search_pairs(bodies, space, pairs, low, high, dt, parting, found, thread):
-    """Write down the pairs (n, 2) of the list, from `low` to `high`, that are to be resolved."""
+def search_pairs(bodies, space, pairs, dt, parting, found, thread):
+    """Write down the pairs (n, 2) that are to be resolved."""
     touching = found.touching[thread]
-    while low < high:
+    found.tests[thread] += len(pairs)
+    for low in range(0, len(pairs), len(touching)):
+        block = pairs[low : low + len(touching)]
         number = np.uint64(0)
-        block = pairs[low : min(low + len(touching), high)]
         for n in range(len(block)):
             i, j = block[n, 0], block[n, 1]
             sigma = bodies.radii[i] + bodies.radii[j]
@@ -116,4 +117,22 @@ def search_pairs(bodies, space, pairs, low, high, dt, parting, found, thread):
             number += np.uint64(distance_squared(bodies, space, i, j) < sigma * sigma)
         for n in touching[:number]:
             examine(bodies, space, block[n, 0], block[n, 1], dt, parting, found, thread)
-        low += len(block)
+
+
+@kernel
+def search_stirred(bodies, space, pairs, watch, before, dt, parting, found, thread):
+    """The same, only for pairs of which one body at least had a contact in the turn before: for all others
+    nothing has changed since it was searched."""
+    met, touching = watch.met, found.touching[thread]
+    for low in range(0, len(pairs), len(touching)):
+        block = pairs[low : low + len(touching)]
+        number = np.uint64(0)
+        for n in range(len(block)):
+            touching[number] = n
+            number += np.uint64((met[block[n, 0]] == before) | (met[block[n, 1]] == before))
+        found.tests[thread] += np.int64(number)
+        for n in touching[:number]:
+            i, j = block[n, 0], block[n, 1]
+            sigma = bodies.radii[i] + bodies.radii[j]
+            if distance_squared(bodies, space, i, j) < sigma * sigma:
+                examine(bodies, space, i, j, dt, parting, found, thread)

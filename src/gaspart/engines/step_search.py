@@ -11,7 +11,8 @@ from gaspart.scene import Scene
 from gaspart.state import State
 
 _CELLS_PER_BODY = 6.0
-_REBUILD, _PAIR = 35.0, 1.5  # ns a body and ns a pair of the list; only their ratio matters
+_REBUILD, _TEST, _PAIR = 25.0, 3.5, 4.5  # ns a body, a candidate and a pair of the list: their ratios matter
+_LEAST = 1.6  # of the way that the fastest two come nearer in a step
 
 
 def partition_for(engine, scene: Scene, state: State, radii: np.ndarray) -> Partition | None:
@@ -64,14 +65,19 @@ def _width(scene: Scene, count: int) -> float:
 
 def _skin(engine, scene: Scene, state: State, contact: float) -> float:
     """The skin that costs least: a thin one is spent soon, a thick one lists many pairs."""
-    speeds = np.sqrt((state.velocities**2).sum(axis=1))
+    dimension, density = scene.dimension, state.count / scene.container.volume
+    squares = (state.velocities**2).sum(axis=1)
+    fastest = np.sqrt(squares.max(initial=0.0))
+    if state.count > 1:  # at last, whatever the speeds are now
+        fastest = max(fastest, np.sqrt(squares.mean() / dimension * (2.0 * np.log(state.count) + 2.0)))
     gravity = 0.0 if scene.gravity is None else float(np.abs(scene.gravity).max())
-    fastest = max(speeds.max(initial=0.0), 1.7 * np.sqrt((speeds**2).mean()) if len(speeds) else 0.0)
     way = 2.0 * (fastest * engine.time_step + gravity * engine.time_step**2)
-    unit = np.pi if scene.dimension == 2 else 4.0 / 3.0 * np.pi
-    density = 0.5 * unit * state.count / scene.container.volume
     skins = contact * np.geomspace(0.02, 30.0, 60)
-    steps = np.maximum(1.0, np.floor(skins / way)) if way > 0.0 else np.full(60, np.inf)
-    pairs = density * (contact + skins) ** scene.dimension
-    cost = (_REBUILD + 3.0 * _PAIR * pairs) / steps + _PAIR * pairs
-    return float(skins[np.argmin(cost)])
+    steps = np.maximum(skins / way, 1.0) if way > 0.0 else np.full(60, np.inf)
+    ball = np.pi if dimension == 2 else 4.0 / 3.0 * np.pi
+    pairs = 0.5 * ball * density * (contact + skins) ** dimension
+    stretches = 4.5 if dimension == 2 else 13.5  # cells in which partners are looked for
+    tests = stretches * density * np.maximum(contact + skins, _width(scene, state.count)) ** dimension
+    cost = (_REBUILD + _TEST * tests) / steps + _PAIR * pairs
+    cost[skins < _LEAST * way] = np.inf  # contacts would spend it in the very step
+    return float(skins[np.argmin(cost)]) if np.isfinite(cost).any() else _LEAST * way

@@ -9,9 +9,9 @@ from numba import prange
 
 from gaspart.engines.step_cells import Places, begin_cells, count_part, place_part, tidy
 from gaspart.engines.step_layout import PAIR_TESTS, REBUILDS, SPENT, Found, Space, share
-from gaspart.engines.step_list import list_part, search_pairs
+from gaspart.engines.step_list import list_part, search_pairs, search_stirred
 from gaspart.engines.step_motion import move, note_fastest
-from gaspart.kernel import allocating_kernel, parallel_kernel
+from gaspart.kernel import allocating_kernel, helper, parallel_kernel
 
 _BLOCK = 256  # pairs that are tested before those that touch are looked at
 _TIDY = 8  # every so many lists the bodies are sorted in memory
@@ -23,6 +23,7 @@ def room_for(threads, room, like):
     return Found(
         np.empty((threads, room, 2), np.uint32),
         np.empty((threads, room), like.dtype),
+        np.zeros(threads, np.int64),
         np.zeros(threads, np.int64),
         np.empty((threads, _BLOCK), np.uint32),
     )
@@ -59,12 +60,32 @@ def list_shared(bodies, cells, places, pairs, tests):
         list_part(bodies, cells, places, part, pairs, tests)
 
 
+@helper
+def search_part(bodies, space, cells, pairs, watch, before, dt, parting, found, part):
+    """Search one thread's list: all of it, or, with a turn `before`, what was stirred then."""
+    listed = pairs[part, : cells.listed[part]]
+    if before < 0:
+        search_pairs(bodies, space, listed, dt, parting, found, part)
+    else:
+        search_stirred(bodies, space, listed, watch, before, dt, parting, found, part)
+
+
 @parallel_kernel
-def search_shared(bodies, lengths, periodic, margin, cells, pairs, dt, parting, found):
-    """`search_pairs` for the whole list."""
+def search_shared(bodies, lengths, periodic, margin, cells, pairs, watch, before, dt, parting, found):
+    """`search_part` for the whole list."""
     for part in prange(len(pairs)):
         space = Space(lengths, periodic, margin)
-        search_pairs(bodies, space, pairs[part], 0, cells.listed[part], dt, parting, found, part)
+        search_part(bodies, space, cells, pairs, watch, before, dt, parting, found, part)
+
+
+@allocating_kernel
+def search_list(bodies, space, cells, pairs, watch, before, dt, parting, found, threads):
+    """Search the whole list."""
+    if threads is None:
+        search_part(bodies, space, cells, pairs, watch, before, dt, parting, found, 0)
+    else:
+        apart = space.lengths, space.periodic, space.margin
+        search_shared(bodies, *apart, cells, pairs, watch, before, dt, parting, found)
 
 
 @allocating_kernel
@@ -92,7 +113,7 @@ def make_list(bodies, space, cells, pairs, watch, counters, threads):
     """Make the list anew: its pairs (threads, room, 2), in the old room or in more."""
     places = settle(bodies, space, cells, threads)
     if counters.counts[REBUILDS] % _TIDY == 0:
-        tidy(bodies, places)
+        tidy(bodies, places, watch)
         places = settle(bodies, space, cells, threads)
     tests = np.zeros(len(pairs), np.int64)
     while True:
