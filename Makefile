@@ -2,6 +2,7 @@
 # make test       set up, run all tests (a small copy of the whole workflow among them)
 # make check-all  the linters, the tests, 2500 new random scenes for each property of the engines, and what takes long
 # make smoke      all figures, small
+# make docs       public names, and a page for each family of figures: results/docs/index.html
 # make lint | report | clean | distclean
 #
 # Needs Python 3.11 or later with venv and pip, and make. Everything else is installed into .venv.
@@ -9,7 +10,7 @@
 SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := all
-.PHONY: all setup test check-all smoke lint report clean distclean
+.PHONY: all setup test check-all smoke lint report docs clean distclean
 
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 CORES ?= all
@@ -52,6 +53,9 @@ lint: setup
 
 report: setup
 	$(SNAKEMAKE) report --quiet rules
+
+docs: setup
+	.venv/bin/python docs/build.py results/docs
 
 clean:
 	rm -rf results .snakemake
