@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 
 import pytest
+from browser import CHROMIUM, found_by
 from digests import digests
 
 from gaspart.families import FAMILIES
@@ -43,6 +44,46 @@ def test_the_report_holds_every_figure_and_needs_no_other_file(smoke):
     assert 'src="data:image/svg+xml;base64,' in page
     assert "http://" not in page.split("</style>")[1].split("data:image")[0]
     assert 'name="viewport"' in page
+
+
+CLICKS = """
+const table = document.querySelector("table.sortable"), rows = () => [...table.tBodies[0].rows];
+const heads = [...table.querySelectorAll("th button")];
+const deviations = () => rows().map(row => row.cells[heads.findIndex(
+  head => head.textContent === "deviation")].dataset.value).filter(text => text !== "").map(Number);
+const deviation = heads.find(head => head.textContent === "deviation");
+const before = rows().length;
+deviation.click(); const up = deviations();
+deviation.click(); const down = deviations();
+const agrees = [...document.querySelectorAll("#filter button")].find(one => one.dataset.verdict === "agrees");
+agrees.click();
+return {
+  before, up, down, after: rows().length, width: document.documentElement.scrollWidth,
+  shown: rows().filter(row => !row.hidden).map(row => row.dataset.verdict),
+  images: [...document.images].map(image => image.naturalWidth),
+  films: document.querySelectorAll("video").length,
+  font: Math.min(...[...document.querySelectorAll("p, td, figcaption")].map(
+    one => parseFloat(getComputedStyle(one).fontSize))),
+  broken: [...document.querySelectorAll('a[href^="#"]')].filter(
+    link => !document.getElementById(link.hash.slice(1))).length,
+};
+"""
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium here to click through the report with")
+@pytest.mark.parametrize("width", [390, 1280])
+def test_the_report_reads_and_clicks_on_a_phone_and_on_a_desk(smoke, tmp_path, width):
+    found = found_by(CLICKS, smoke.path / "results/report.html", tmp_path, width)
+    with (smoke.path / "results/tables/claims.csv").open(newline="") as file:
+        claims = list(csv.DictReader(file))
+    assert found["before"] == found["after"] == len(claims)
+    assert found["up"] == sorted(found["up"]) and found["down"] == sorted(found["up"], reverse=True)
+    assert found["up"][0] < found["up"][-1]
+    assert found["shown"] == ["agrees"] * sum(row["verdict"] == "agrees" for row in claims)
+    assert len(found["images"]) == len(FIGURES) and min(found["images"]) > 0
+    assert found["films"] == len(list((smoke.path / "results/animations").iterdir()))
+    assert found["width"] <= width and found["font"] >= 12.0
+    assert found["broken"] == 0
 
 
 def test_films_are_made(smoke):

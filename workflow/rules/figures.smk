@@ -31,6 +31,7 @@ rule report:
         datasets=expand("results/measurements/{figure}.nc", figure=FIGURES),
         captions=expand("workflow/report/{figure}.rst", figure=FIGURES),
         claims="results/tables/claims.csv",
+        films=expand("results/animations/{animation}.mp4", animation=ANIMATIONS),
         template="workflow/report/report.html.j2",
         modules=module_files("report"),
     output:

@@ -84,6 +84,9 @@ with job(snakemake):
                 "points": made["points"].splitlines(),
             }
         )
+    films = {
+        Path(film).stem: base64.b64encode(Path(film).read_bytes()).decode() for film in snakemake.input.films
+    }
     verdicts = {}
     for row in claims:
         verdicts[row["verdict"]] = verdicts.get(row["verdict"], 0) + 1
@@ -93,6 +96,7 @@ with job(snakemake):
     text = environment.from_string(template).render(
         title=snakemake.params.title,
         sections=sections,
+        films=films,
         claims=claims,
         verdicts=verdicts,
         times=run_times("results/benchmarks"),

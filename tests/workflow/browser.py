@@ -1,0 +1,28 @@
+"""A page in headless Chromium: what a script finds after it has clicked through it."""
+
+import html
+import json
+import re
+import shutil
+import subprocess
+
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+
+
+def found_by(script, page, folder, width):
+    """What the JavaScript function body `script` returns on the page, in a frame of this width.
+
+    In a frame, because a window of the browser has a width below which it does not go.
+    """
+    run = f"parent.document.body.dataset.found = JSON.stringify((() => {{ {script} }})());"
+    inner = page.read_text(encoding="utf-8").replace("</body>", f"<script>{run}</script></body>")
+    frame = f'<iframe width="{width}" height="800" style="border: 0" srcdoc="{html.escape(inner)}"></iframe>'
+    outer = folder / "frame.html"
+    outer.write_text(f"<!doctype html><html><body>{frame}</body></html>", encoding="utf-8")
+    command = [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder}/profile"]
+    done = subprocess.run(
+        [*command, "--dump-dom", outer.as_uri()], capture_output=True, text=True, timeout=120
+    )
+    told = re.search(r'<body data-found="([^"]*)"', done.stdout)
+    assert told, done.stderr[-2000:]
+    return json.loads(html.unescape(told[1]))
