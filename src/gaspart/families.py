@@ -40,6 +40,7 @@ FAMILIES = {
     "heat_conduction_gas": "heat",
     "adsorption": "adsorption",
     "heat_conduction_metal": "heat",
+    "stability_extremes": "extremes",
     "speed_accuracy": "tradeoff",
     "reversibility": "reversibility",
 }
@@ -63,6 +64,7 @@ TITLES = {
     "velocity": "Memory of velocities",
     "heat": "Heat between walls",
     "adsorption": "Walls that hold bodies",
+    "extremes": "Speed, accuracy, stability",
     "tradeoff": "Speed against accuracy",
     "reversibility": "Speed against accuracy",
 }

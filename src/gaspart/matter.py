@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from gaspart.errors import SceneError
-from gaspart.validation import count_of, number, settle, vector
+from gaspart.validation import count_of, number, settle, size, vector
 
 LATTICES = ("lattice", "slab")
 SHARED = (*LATTICES, "compressed")
@@ -21,6 +21,8 @@ def _check_matter(thing) -> None:
         radius=number("radius", thing.radius, "must be positive", above=0.0),
         mass=number("mass", thing.mass, "must be positive", above=0.0),
     )
+    for key in ("radius", "mass"):
+        size(key, getattr(thing, key))
     if thing.moment_of_inertia is not None:
         value = number("moment_of_inertia", thing.moment_of_inertia, "must be positive", above=0.0)
         settle(thing, moment_of_inertia=value)
@@ -61,6 +63,7 @@ class Species:
         for key in ("speed", "temperature"):
             if getattr(self, key) is not None:
                 value = number(key, getattr(self, key), "must not be negative", least=0.0)
+                size(key, value)
                 settle(self, **{key: value})
         if self.speed is not None and self.temperature is not None:
             raise SceneError("temperature", self.temperature, "give speed or temperature, not both")
@@ -97,6 +100,7 @@ class Body:
             position=vector("position", self.position),
             velocity=vector("velocity", self.velocity),
         )
+        size("velocity", self.velocity)
         _check_matter(self)
         if self.spin is not None:
             flat = len(self.position) == 2

@@ -14,8 +14,9 @@ from pathlib import Path
 from gaspart.errors import SceneError
 from gaspart.files import read_yaml, write_yaml
 from gaspart.matter import SHARED, Body, Plate, Restitution, Species, Wall
+from gaspart.room import check_room
 from gaspart.surfaces import Sticky, Thermal, Well, check_faces, surface_from_dict, surface_to_dict
-from gaspart.validation import count_of, from_mapping, number, settle, vector
+from gaspart.validation import count_of, from_mapping, number, settle, size, vector
 
 __all__ = ["Body", "Container", "Restitution", "Scene", "Species", "Wall"]
 __all__ += ["count_of", "from_mapping", "number"]
@@ -41,6 +42,7 @@ class Container:
             raise SceneError("lengths", self.lengths, "a container has 2 or 3 sides")
         for length in lengths:
             number("lengths", length, "every side must be positive", above=0.0)
+            size("lengths", length)
         given = self.boundary
         boundary = (given,) * len(lengths) if isinstance(given, str) else given
         if not isinstance(boundary, (tuple, list)) or len(boundary) != len(lengths):
@@ -109,7 +111,7 @@ class Scene:
             raise SceneError("restitution.normal", self.restitution.normal, rule)
         for n, kind in enumerate(self.species):
             if kind.count:
-                self._fits(f"species[{n}].radius", kind.radius)
+                self._fits(f"species[{n}].radius", kind)
         arrangements = {kind.arrangement for kind in self.species}
         for shared in arrangements & set(SHARED):
             if self.bodies or arrangements != {shared}:
@@ -153,17 +155,14 @@ class Scene:
                     return f"walls[{n}]"
         return None
 
-    def _fits(self, key: str, radius: float) -> None:
-        shortest = min(self.container.lengths)
-        if not self.centres_to_walls and 2 * radius > shortest:
-            rule = f"a body must fit into the container, whose shortest side is {shortest:g}"
-            raise SceneError(key, radius, rule)
+    def _fits(self, key: str, thing: Body | Species) -> None:
+        check_room(self.container, self.centres_to_walls, key, thing.radius, thing.fixed)
 
     def _check_body(self, n: int, body: Body) -> None:
         where = f"bodies[{n}]"
         vector(f"{where}.position", body.position, self.dimension)
         vector(f"{where}.velocity", body.velocity, self.dimension)
-        self._fits(f"{where}.radius", body.radius)
+        self._fits(f"{where}.radius", body)
         lower, upper = self.reach(body.radius)
         for x, low, high in zip(body.position, lower, upper, strict=True):
             if not low <= x <= high:

@@ -8,6 +8,9 @@ from dataclasses import fields
 
 from gaspart.errors import SceneError
 
+SMALLEST, LARGEST = 1e-60, 1e60
+"""Sizes of what contacts multiply four of, which must be neither lost nor infinite."""
+
 
 def number(
     key: str, value: object, rule: str, *, above: float = -math.inf, least: float = -math.inf
@@ -18,6 +21,15 @@ def number(
     if not (value > above and value >= least):
         raise SceneError(key, value, rule)
     return float(value)
+
+
+def size(key: str, value: float | tuple[float, ...]) -> None:
+    """Raise SceneError for a number, or a vector by its largest component, that is not 0 and so small or
+    large that contacts would be lost."""
+    largest = max(map(abs, value), default=0.0) if isinstance(value, tuple) else abs(value)
+    if largest and not SMALLEST <= largest <= LARGEST:
+        rule = f"must be 0 or of a size from {SMALLEST:g} to {LARGEST:g}: choose other units"
+        raise SceneError(key, value, rule)
 
 
 def count_of(key: str, value: object, least: int = 0) -> int:

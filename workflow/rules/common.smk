@@ -90,7 +90,7 @@ def flagged(path, kind):
 # The modules of gaspart that each stage uses are inputs of its rules: editing one reruns what it touches.
 # `{family}` stands for the family of a figure, `*` for every module of a package; FAMILY_MODULES are what single
 # families use beside. tests/workflow/test_modules.py compares these tables with the import graph of the scripts.
-SCENE = ["__init__", "errors", "files", "matter", "scene", "surfaces", "validation"]
+SCENE = ["__init__", "errors", "files", "matter", "room", "scene", "surfaces", "validation"]
 ENGINES = [
     "beside",
     "boxes",
@@ -155,6 +155,7 @@ MODULES = {
     "report": ["__init__", "errors", "families", "files", "provenance"],
 }
 FAMILY_MODULES = {
+    ("measure", "extremes"): ["extremes/*"],
     ("measure", "gravity"): ["measure/columns"],
     ("measure", "buoyancy"): ["measure/columns"],
     ("judge", "adsorption"): ["statistics"],

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gaspart.engines.common import EventLog, aligned, law_for_kernel, masses_for_kernel, surfaces_for_kernel
+from gaspart.engines.progress import MANY, check_progress
 from gaspart.errors import SceneError, SimulationError
 from gaspart.scene import Scene
 from gaspart.state import State
@@ -152,11 +153,16 @@ class EventDynamics:
         quiet = 0
         left = np.iinfo(np.int64).max if most is None else most
         room = None if log is None else log.room
+        many, begun = MANY, self._clock
         while left > 0:
+            if many == 0:
+                check_progress(self.time, self._clock - begun, self._lap)
+                many, begun = MANY, self._clock
             stop = until - self._laps * self._lap
             ends_lap = stop > self._lap
-            reason, done, last = self._run(room, min(stop, self._lap), left)
+            reason, done, last = self._run(room, min(stop, self._lap), min(left, many))
             left -= done
+            many -= done
             if log is not None:
                 log.take(self._laps * self._lap)
             if reason == self._layout.STOP:
@@ -164,6 +170,7 @@ class EventDynamics:
                     self._clock = stop
                     return
                 self._turn_lap()
+                begun -= self._lap
                 quiet = 0 if done else quiet + 1
                 if until == np.inf and quiet > _QUIET:
                     raise SimulationError(

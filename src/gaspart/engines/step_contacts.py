@@ -12,8 +12,10 @@ from gaspart.engines.step_layout import (
     COLLISIONS,
     DEEPEST,
     FASTEST,
+    LATE,
     MULTIPLE,
     OVERLAPS_LEFT,
+    PASSED,
     SPENT,
     VIRIAL,
     WORST,
@@ -23,6 +25,7 @@ from gaspart.kernel import allocating_kernel, helper, kernel
 
 _ONE = np.uint32(1)
 _RUN = 16
+_LATE = 1.125  # steps ago: contacts before these belong to an earlier step, however float32 rounds
 
 
 @helper
@@ -219,6 +222,10 @@ def resolve(bodies, space, i, j, dt, turn, rewind, parting, cells, watch, counte
     ago = rr - rr
     if rewind:
         ago = entered(rr, rv, vv, ss)
+        if ago < -_LATE * dt:
+            counters.counts[LATE] += 1
+            if rr + rr + rr + rr < ss:
+                counters.counts[PASSED] += 1
         rr += ago * (rv + rv + vv * ago)  # the invariants as they were at the contact
         rv += ago * vv
         counters.sums[WORST] = max(counters.sums[WORST], abs(rr / ss - 1.0))

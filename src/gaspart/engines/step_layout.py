@@ -11,7 +11,7 @@ import numpy as np
 
 from gaspart.kernel import helper
 
-COLLISIONS, PAIR_TESTS, BOX_VISITS, OVERLAPS_LEFT, MULTIPLE, REBUILDS = range(6)
+COLLISIONS, PAIR_TESTS, BOX_VISITS, OVERLAPS_LEFT, MULTIPLE, REBUILDS, LATE, PASSED = range(8)
 VIRIAL, DEEPEST, WORST = range(3)
 FASTEST, SPENT = range(2)
 
@@ -40,7 +40,7 @@ class Bodies(NamedTuple):
 
 
 class Counters(NamedTuple):
-    """counts (6,) and sums (3,), see the names at the module's top; by thread: wall_hits and wall_impulse
+    """counts (8,) and sums (3,), see the names at the module's top; by thread: wall_hits and wall_impulse
     (threads, 2d), the impulse in whole numbers of `quantum`."""
 
     counts: np.ndarray

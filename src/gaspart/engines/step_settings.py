@@ -13,6 +13,8 @@ from gaspart.state import State
 
 _GIANTS = 16  # at most so many bodies are tested against all others
 _GIANT = 2.0  # radii of the next smaller body that make one of them
+_SINGLE = 1e9  # the largest length or speed in float32, whose squares are multiplied with each other
+_RESOLVED = 1e5  # diameters in the longest side, at most: float32 then tells contacts to a hundredth
 MISSED, MISSED_MOST = 0.01, 0.1
 """The part of all contacts that a step may overlook before the engine warns, and refuses."""
 CROWDED, CROWDED_MOST = {True: 2.5, False: 0.5}, {True: 5.0, False: 1.0}
@@ -52,6 +54,27 @@ def check_scene(scene: Scene, state: State, giants: np.ndarray) -> None:
         if periodic and length < reach:
             rule = "the time-stepped engine needs periodic sides of two largest diameters"
             raise SceneError("lengths", scene.container.lengths, rule)
+
+
+def check_precision(engine, scene: Scene, state: State) -> None:
+    """Raise SceneError for steps in which bodies move by less than their places are rounded by; and, in
+    float32, for lengths and speeds whose squares it cannot hold, and bodies so small in their container that
+    it cannot tell where they touch."""
+    longest, speeds = max(scene.container.lengths), np.sqrt((state.velocities**2).sum(axis=1))
+    typical, fastest = math.sqrt(float((speeds**2).mean())) if state.count else 0.0, speeds.max(initial=0.0)
+    if 0.0 < typical * engine.time_step < 0.5 * np.finfo(engine.precision).eps * longest:
+        rule = f"moves bodies by less than {engine.precision} can tell in a length of {longest:g}"
+        raise SceneError("time_step", engine.time_step, rule)
+    if engine.precision != "float32" or not state.count:
+        return
+    sizes = {"lengths": longest, "radius": scene.smallest_radius, "speed": fastest, "speed (rms)": typical}
+    for key, value in sizes.items():
+        if value and not 1.0 / _SINGLE <= value <= _SINGLE:
+            rule = f"float32 needs lengths and speeds of {1 / _SINGLE:g} to {_SINGLE:g}; take float64"
+            raise SceneError(key, float(value), rule)
+    if 2.0 * scene.smallest_radius * _RESOLVED < longest:
+        rule = f"float32 cannot tell where bodies of this size touch in a length of {longest:g}; take float64"
+        raise SceneError("radius", scene.smallest_radius, rule)
 
 
 def missed_contacts(time_step: float, several: bool, state: State) -> float:

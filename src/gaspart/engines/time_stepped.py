@@ -7,13 +7,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gaspart.engines.common import EventLog, masses_for_kernel
-from gaspart.engines.step_settings import check_scene, check_step, giants_of, quantum_for
-from gaspart.errors import SceneError
+from gaspart.engines.step_settings import check_precision, check_scene, check_step, giants_of, quantum_for
+from gaspart.errors import SceneError, SimulationError
 from gaspart.scene import Scene, count_of, number
 from gaspart.state import State
 from gaspart.tally import Tally
 
 PRECISIONS = ("float64", "float32")
+LATE_MOST, PASSED_MOST, FEW = 0.25, 0.01, 2
+"""The part of all contacts that may be found a step too late; and with bodies half-way through each other by
+then; so few are not judged. In gases, up to a step of which the engine warns, they are 0.05 and 0.004."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +81,7 @@ class StepDynamics:
 
         giants = giants_of(state)
         check_scene(scene, state, giants)
+        check_precision(engine, scene, state)
         check_step(engine, state)
         self._kernels, self._layout = kernels, layout
         self._engine, self._scene, self._reference = engine, scene, state
@@ -134,7 +138,7 @@ class StepDynamics:
         """Begin to count anew."""
         faces = (self._engine.threads, 2 * self._scene.dimension)
         self._counters = self._layout.Counters(
-            counts=np.zeros(6, dtype=np.int64),
+            counts=np.zeros(8, dtype=np.int64),
             sums=np.zeros(3),
             wall_hits=np.zeros(faces, dtype=np.int64),
             wall_impulse=np.zeros(faces, dtype=np.int64),
@@ -168,6 +172,19 @@ class StepDynamics:
                 self._watch, self._counters, self._threads,
             )  # fmt: skip
             self._steps = target
+            self._check_late()
+
+    def _check_late(self) -> None:
+        """Raise SimulationError if contacts are found a step too late, or bodies pass through each other:
+        speeds have come up, or gaps are so narrow, that the step is too long."""
+        layout, counts = self._layout, self._counters.counts
+        met, late, passed = (int(counts[n]) for n in (layout.COLLISIONS, layout.LATE, layout.PASSED))
+        most = [max(FEW, part * met) for part in (LATE_MOST, PASSED_MOST)]
+        if self._engine.passes > 1 and (late > most[0] or passed > most[1]):
+            raise SimulationError(
+                f"at time {self.time:g} {late} of {met} contacts were found a step too late, {passed} of them"
+                f" with bodies half-way through each other: a step of {self._engine.time_step:g} is too long"
+            )
 
     @property
     def state(self) -> State:

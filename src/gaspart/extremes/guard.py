@@ -1,0 +1,34 @@
+"""Work that may hang: done in a process of its own, which is ended when it does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+
+
+def guarded(work: Callable, items: Sequence, limit: float) -> list:
+    """`work(item)` for each item, in order; None for one that takes more than `limit` seconds, or kills its
+    process. Compiled code cannot be interrupted, so it is run in a child that can be."""
+    results: list = []
+    context = get_context("fork")
+    while len(results) < len(items):
+        receiver, sender = context.Pipe(duplex=False)
+        child = context.Process(target=_work, args=(sender, work, items[len(results) :]))
+        child.start()
+        sender.close()
+        try:
+            while len(results) < len(items) and receiver.poll(limit):
+                results.append(receiver.recv())
+        except EOFError:  # the child is gone
+            pass
+        if len(results) < len(items):
+            results.append(None)
+        child.kill()
+        child.join()
+    return results
+
+
+def _work(sender: Connection, work: Callable, items: Sequence) -> None:
+    for item in items:
+        sender.send(work(item))
