@@ -23,7 +23,7 @@ def _settled(row: xr.Dataset) -> Claim:
         for verdict, message in zip(row["verdict"].values, row["message"].values, strict=True)
     ]
     return Claim(
-        f"{row['group'].item()}, {row['row'].item()}: engines that pass, or refuse with one line",
+        f"{row['row'].item()} ({row['group'].item()}): engines that pass, or refuse with one line",
         "test",
         sum(bool(one) for one in good),
         0.0,
@@ -47,9 +47,6 @@ def _exact(dataset: xr.Dataset) -> list[Claim]:
     ):
         values = np.abs(passed[name].values.astype(float))
         measured = values.sum() if name == "missed" else np.nanmax(values)
-        claims.append(
-            Claim.at_most(
-                text, "test", measured, 0.0, 0.5, bound, source, "rounding is let grow, or a root is wrong"
-            )
-        )
+        fails_if = "rounding is let grow, or a root is wrong"
+        claims.append(Claim.at_most(text, "test", measured, 0.0, 0.5, bound, source, fails_if))
     return claims

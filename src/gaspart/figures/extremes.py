@@ -39,7 +39,7 @@ def stability_extremes(dataset: xr.Dataset):
     axis.set_xticks(np.arange(engines) + 0.5, [HEADS[name] for name in dataset["engine"].values], fontsize=7)
     axis.set_yticks(np.arange(rows) + 0.5, [str(name) for name in dataset["row"].values], fontsize=6.5)
     axis.tick_params(length=0, labeltop=True, labelbottom=False)
-    axis.set_xlabel("relative drift of the energy; – refused")
+    axis.set_xlabel("drift of the energy\n(– is refused)", fontsize=7)
     return figure
 
 
@@ -52,7 +52,7 @@ def _cell(verdict: str, energy: float, colours, norm) -> tuple[str, object, str]
     if not energy > FLOOR:
         return "0", "white", "black"
     power = np.log10(energy)
-    return f"$10^{{{power:.0f}}}$", colours(norm(power)), "black" if power < -7.0 else "white"
+    return f"$10^{{{power:.0f}}}$", colours(norm(power)), "black" if power < -6.5 else "white"
 
 
 def _box(left: float, top: float, colour):
