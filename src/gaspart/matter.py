@@ -142,6 +142,7 @@ class Restitution:
 
     @property
     def smooth_and_elastic(self) -> bool:
+        """Whether contacts are those of a scene without a Restitution."""
         return self.normal == 1.0 and self.tangential == -1.0
 
     @property

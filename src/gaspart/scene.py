@@ -54,10 +54,12 @@ class Container:
 
     @property
     def dimension(self) -> int:
+        """2 or 3."""
         return len(self.lengths)
 
     @property
     def volume(self) -> float:
+        """The container's volume, in two dimensions its area."""
         return math.prod(self.lengths)
 
     @property
@@ -175,6 +177,7 @@ class Scene:
 
     @property
     def dimension(self) -> int:
+        """2 or 3."""
         return self.container.dimension
 
     @property
@@ -195,6 +198,7 @@ class Scene:
 
     @property
     def number_density(self) -> float:
+        """Bodies per volume (area) of the container."""
         return self.count / self.container.volume
 
     @property

@@ -115,6 +115,7 @@ class Simulation:
 
     @property
     def time(self) -> float:
+        """The simulated time reached."""
         return self._dynamics.time
 
     @property

@@ -36,10 +36,12 @@ class State:
 
     @property
     def count(self) -> int:
+        """N, the number of bodies."""
         return len(self.positions)
 
     @property
     def dimension(self) -> int:
+        """2 or 3."""
         return self.positions.shape[1]
 
     @property
@@ -74,10 +76,12 @@ class State:
 
     @property
     def translational_energy(self) -> float:
+        """Kinetic energy of flight, of all bodies."""
         return 0.5 * float((_finite(self.masses)[:, None] * self.velocities**2).sum())
 
     @property
     def rotational_energy(self) -> float:
+        """Kinetic energy of spin, of all bodies."""
         return 0.5 * float((_finite(self.moments_of_inertia) * (self.spins**2).T).sum())
 
     @property
@@ -95,6 +99,7 @@ class State:
 
     @property
     def vibrational_energy(self) -> float:
+        """Of all bodies; 0 where none vibrates."""
         return 0.0 if self.vibrations is None else float(self.vibrations.sum())
 
     @property

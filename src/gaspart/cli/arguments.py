@@ -18,6 +18,7 @@ class Parser(argparse.ArgumentParser):
         super().__init__(allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter, **settings)
 
     def error(self, message: str):
+        """Raise what argparse would print and exit for."""
         raise UsageError(message)
 
 

@@ -30,10 +30,12 @@ def progress(quiet: bool):
 
 
 def clear_line() -> str:
+    """What wipes the line that progress is shown on, where it is."""
     return "\r\033[K" if sys.stderr.isatty() else ""
 
 
 def clock(seconds: float) -> str:
+    """Hours, minutes and seconds."""
     minutes, seconds = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     return f"{hours}:{minutes:02d}:{seconds:02d}"

@@ -31,10 +31,12 @@ class Bodies:
 
     @property
     def dimension(self) -> int:
+        """2 or 3."""
         return self.positions.shape[1]
 
     @property
     def root_mean_square_speed(self) -> float:
+        """Of all bodies; 0 if there are none."""
         return float(np.sqrt((self.speeds**2).mean())) if len(self.speeds) else 0.0
 
 
