@@ -42,6 +42,7 @@ FAMILIES = {
     "heat_conduction_metal": "heat",
     "stability_extremes": "extremes",
     "speed_accuracy": "tradeoff",
+    "time_to_accuracy": "tradeoff",
     "reversibility": "reversibility",
 }
 

@@ -139,3 +139,39 @@ def _steady(ds: xr.Dataset) -> list[Claim]:
             )
         )
     return claims
+
+
+def time_to_accuracy(ds: xr.Dataset) -> list[Claim]:
+    """The model foretells the cost of both engines, and picks the setting that is measured to be the best."""
+    claims = []
+    for engine in ds.engine.values:
+        ratio = np.log(ds.model.sel(engine=engine) / ds.measured.sel(engine=engine)).values
+        ratio = ratio[np.isfinite(ratio)]
+        claims.append(
+            Claim.within(
+                f"ln of the model's cost over that measured, mean, {engine} engine",
+                "test",
+                ratio.mean() if ratio.size else np.nan,
+                ratio.std() / max(1.0, ds.sizes["gas"]) ** 0.5 if ratio.size else np.nan,
+                0.0,
+                0.5,
+                "gaspart.tradeoff, fitted to other gases",
+                "cost or errors do not lie between those of the gases next to it",
+                required_uncertainty=0.4,
+            )
+        )
+    worst = ds.regret.where(np.isfinite(ds.regret)).argmax(...)
+    at = ds.isel(worst)
+    claims.append(
+        Claim.at_most(
+            "measured cost of the setting that the model picks over the best one's, the worst of all",
+            "test",
+            float(at.regret),
+            float(at.regret_error),
+            0.3,
+            1.5,
+            "what `gaspart advise` promises",
+            "the model picks the wrong engine or time step",
+        )
+    )
+    return claims

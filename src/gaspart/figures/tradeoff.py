@@ -84,3 +84,47 @@ def _costs(axis, rows: list[xr.Dataset]) -> None:
 
 def _kind(row: xr.Dataset) -> int:
     return SETTINGS.index(str(row.setting.values))
+
+
+def time_to_accuracy(ds: xr.Dataset):
+    """Cost against accuracy by each engine, measured and foretold; and what the model's choice costs more."""
+    figure, axes = style.new(rows=3, columns=max(2, ds.sizes["gas"]), height=6.6, height_ratios=(2, 2, 1))
+    for column, g in zip(axes.T, range(ds.sizes["gas"]), strict=False):
+        gas = ds.isel(gas=g)
+        for axis, observable in zip(column, ("Z", "D"), strict=False):
+            _times(axis, gas.sel(observable=observable))
+        for kind, observable in enumerate(("Z", "D")):
+            for count, hollow in zip(ds["count"].values, (False, True), strict=False):
+                at = gas.sel(observable=observable, count=count)
+                style.points(
+                    column[2], 100 * ds.accuracy, at.regret, at.regret_error, kind=2 + kind, hollow=hollow
+                )
+        column[2].axhline(1.5, color=style.GREY, ls=":")
+        column[2].set(ylim=(0.8, 2.0), xlabel="accuracy (%)")
+        column[0].set_title(rf"spheres, $\eta = {float(gas.gas_packing_fraction):g}$")
+    for axis in axes.T[ds.sizes["gas"] :].flat:
+        axis.set_visible(False)
+    for axis, label in zip(
+        axes[:, 0], ("time for $Z$ (s)", "time for $D$ (s)", "choice / best"), strict=True
+    ):
+        axis.set_ylabel(label)
+    axes[0, 0].legend(fontsize=6.5)
+    return figure
+
+
+def _times(axis, gas: xr.Dataset) -> None:
+    """Points measured, lines of the model; hollow and dashed for the larger number of bodies."""
+    axis.set(xscale="log", yscale="log")
+    names = {"event": "event-driven", "step": "time-stepped"}
+    for kind, engine in enumerate(gas.engine.values):
+        for n, count in enumerate(gas["count"].values):
+            at = gas.sel(engine=engine, count=count)
+            style.points(
+                axis,
+                100 * gas.accuracy,
+                at.measured,
+                kind=kind,
+                hollow=n > 0,
+                label=f"{names[str(engine)]}, $N = {count}$",
+            )
+            axis.plot(100 * gas.accuracy, at.model, color=style.COLOURS[kind], ls="--" if n else "-", lw=0.8)

@@ -13,6 +13,8 @@ import xarray as xr
 from gaspart import grid, statistics
 from gaspart.measure.pressure import pressure
 from gaspart.measure.timings import median
+from gaspart.tradeoff import table
+from gaspart.tradeoff.table import LEAST, PRECISIONS, QUANTILE, REFERENCE, SETTLING, STEP
 
 OBSERVABLES = ("collision_rate", "Z", "D")
 SEEN = 3.5
@@ -120,6 +122,106 @@ def frontier(dataset: xr.Dataset) -> xr.Dataset:
             "gas_packing_fraction": ("gas", [float(fraction) for _, fraction in gases]),
         }
     )
+
+
+def time_to_accuracy(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """What a wanted accuracy costs in gases that the model does not know, measured and by the model.
+
+    points: as for `speed_accuracy`, of gases that are not in the model's table; and timings of its reference
+    gas, which carry the table's times over to this machine. settings: ``counts`` of bodies, ``accuracies``.
+
+    Over (``gas``, ``observable``, ``count``, ``accuracy``, ``engine``): ``measured`` and ``model``, processor
+    time in s of the cheapest setting (see `gaspart.tradeoff.advice`), NaN where there is none. Without
+    ``engine``: ``regret``, measured cost of the setting that the model picks over that of the measured best,
+    with ``regret_error`` from the timings.
+    """
+    timed = [_timed(point) for point in points if point.job == "measure_cost"]
+    rows = [_row(point) for point in points if point.job == "compare"]
+    for row in rows:
+        _add_costs(row, timed)
+    speeds = _speeds(timed)
+    gases = sorted({(row["dimension"], row["packing_fraction"]) for row in rows})
+    shape = (len(gases), len(OBSERVABLES), len(settings["counts"]), len(settings["accuracies"]))
+    measured, model = np.full((*shape, 2), np.nan), np.full((*shape, 2), np.nan)
+    regret, error = np.full(shape, np.nan), np.full(shape, np.nan)
+    for g, o, c, a in np.ndindex(shape):
+        costs = _total_costs(
+            [row for row in rows if (row["dimension"], row["packing_fraction"]) == gases[g]],
+            o, settings["counts"][c], settings["accuracies"][a], speeds,
+        )  # fmt: skip
+        for e in range(2):
+            of = costs[costs[:, 0] == e]
+            if of.size:
+                measured[g, o, c, a, e], model[g, o, c, a, e] = of[:, 1].min(), of[:, 2].min()
+        if costs.size and np.isfinite(costs[:, 2].min()):
+            picked = costs[np.argmin(costs[:, 2])]
+            regret[g, o, c, a] = picked[1] / costs[:, 1].min()
+            error[g, o, c, a] = picked[3] * regret[g, o, c, a]
+    axes = ("gas", "observable", "count", "accuracy")
+    return xr.Dataset(
+        {
+            "measured": (
+                (*axes, "engine"),
+                np.where(np.isfinite(measured), measured, np.nan),
+                {"units": "s"},
+            ),
+            "model": ((*axes, "engine"), np.where(np.isfinite(model), model, np.nan), {"units": "s"}),
+            "regret": (axes, regret),
+            "regret_error": (axes, error),
+            "gas_dimension": ("gas", [dimension for dimension, _ in gases]),
+            "gas_packing_fraction": ("gas", [fraction for _, fraction in gases]),
+        },
+        coords={
+            "observable": list(OBSERVABLES),
+            "count": settings["counts"],
+            "accuracy": settings["accuracies"],
+            "engine": ["event", "step"],
+        },
+    )
+
+
+def _speeds(timed: list[dict]) -> dict[tuple[str, str], float]:
+    """Time of this machine over the table's, for each engine and precision, from the reference gas."""
+    found = {}
+    for one in timed:
+        if one["gas"] != (3, REFERENCE) or one["setting"] not in ("event", *PRECISIONS):
+            continue
+        engine = "event" if one["setting"] == "event" else "step"
+        precision = PRECISIONS.get(one["setting"], "float64")
+        at = 0 if engine == "event" else int(np.argmin(np.abs(one["time_step"] - STEP)))
+        event = next(other for other in timed if other["gas"] == one["gas"] and other["setting"] == "event")
+        here = one["seconds"][at] / event["collisions"][0]
+        found[engine, precision] = here / table.seconds(
+            3, REFERENCE, engine, precision, STEP * (engine == "step")
+        )
+    return found
+
+
+def _total_costs(rows: list[dict], observable: int, count: int, accuracy: float, speeds: dict) -> np.ndarray:
+    """(settings, 4): 0 for the event-driven engine or 1, measured cost, the model's, relative error of the
+    first; inf for a setting that does not reach the accuracy."""
+    dimension, fraction = rows[0]["dimension"], rows[0]["packing_fraction"]
+    name = OBSERVABLES[observable]
+    noise = table.noise(dimension, fraction, name)
+
+    def cost(bias: float, each: float) -> float:
+        room = (accuracy - bias) / QUANTILE
+        if room <= 0.0 or not np.isfinite(each):
+            return np.inf
+        return (max(noise / room**2, 0.5 * count * LEAST) + 0.5 * count * SETTLING) * each
+
+    known = table.seconds(dimension, fraction, "event") * speeds["event", "float64"]
+    event = rows[0]["event_seconds"]
+    found = [(0, cost(0.0, event), cost(0.0, known), rows[0]["event_error"] / event)]
+    for row in rows:
+        precision = PRECISIONS[row["setting"]]
+        bounds = np.abs(row["bias"][observable]) + 2.0 * row["bias_error"][observable]
+        for n, step in enumerate(row["time_step"]):
+            each = table.seconds(dimension, fraction, "step", precision, step) * speeds["step", precision]
+            bias = table.bias(dimension, fraction, precision, step, name)
+            spread = row["seconds_error"][n] / row["seconds"][n]
+            found.append((1, cost(bounds[n], row["seconds"][n]), cost(bias, each), spread))
+    return np.array(found)
 
 
 def _padded(values: np.ndarray, length: int) -> np.ndarray:

@@ -17,12 +17,9 @@ from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SceneError
 from gaspart.scene import Scene
 from gaspart.tradeoff import speed, table
+from gaspart.tradeoff.table import LEAST, QUANTILE, SETTLING
 
-QUANTILE = 1.96
-SETTLING = 30.0
-"""Collisions per body before anything is measured."""
 _PER_SETTLING = 10.0  # a replica is to be so many times longer than its start
-_LEAST = 20.0  # collisions per body: a shorter run is no average over time
 _BULK = 4.0  # the finite size of a gas should cost no more than this part of the accuracy
 
 
@@ -178,7 +175,7 @@ def _setting(gas, engine, precision, step, observable, accuracy, noise, budget, 
         return None
     each *= speed_of(gas.dimension, engine.name, precision, gas.count)
     settling = 0.5 * gas.count * SETTLING
-    contacts = max(noise / room**2, 0.5 * gas.count * _LEAST)
+    contacts = max(noise / room**2, 0.5 * gas.count * LEAST)
     if budget is not None:
         contacts = min(contacts, max(budget / each - settling, 1.0))
     half_width = bias + QUANTILE * math.sqrt(noise / contacts)

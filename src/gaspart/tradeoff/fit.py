@@ -15,10 +15,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from gaspart.tradeoff.table import COLUMNS
-
-SETTINGS = {"4 passes": "float64", "4 passes, float32": "float32"}
-"""The settings of the time-stepped engine that are worth advising, and their precision."""
+from gaspart.tradeoff.table import COLUMNS, PRECISIONS
 
 
 def rows(folder: Path) -> list[dict]:
@@ -46,11 +43,11 @@ def _engines(accuracy: xr.Dataset):
         setting = str(row.setting.values)
         if setting == "4 passes":
             yield _row(*gas, "event", "float64", 0.0, "seconds", row.event_seconds, row.event_error)
-        if setting not in SETTINGS:
+        if setting not in PRECISIONS:
             continue
         for k in np.flatnonzero(np.isfinite(row.time_step.values)):
             step = float(row.time_step[k])
-            of = (*gas, "step", SETTINGS[setting], step)
+            of = (*gas, "step", PRECISIONS[setting], step)
             for observable in row.observable.values:
                 at = row.sel(observable=observable).isel(step=k)
                 if np.isfinite(at.bias):

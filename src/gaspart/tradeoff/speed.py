@@ -8,11 +8,8 @@ import time
 from functools import cache
 
 from gaspart.tradeoff import table
+from gaspart.tradeoff.table import REFERENCE, STEP
 
-REFERENCE = 0.1
-"""Packing fraction of the gas that is timed; it is in the table."""
-STEP = 0.08
-"""Time step with which it is timed, in diameters over the thermal speed."""
 _LEAST, _MOST = 500, 100_000  # bodies that are timed
 _CONTACTS = 2e4
 

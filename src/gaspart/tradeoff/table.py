@@ -18,6 +18,15 @@ import numpy as np
 COLUMNS = ("dimension", "packing_fraction", "engine", "precision", "time_step", "quantity", "value", "error")
 OBSERVABLES = ("Z", "collision_rate", "D")
 PATH = Path(__file__).parent / "data" / "tradeoff.csv"
+PRECISIONS = {"4 passes": "float64", "4 passes, float32": "float32"}
+"""The settings of the time-stepped engine that are worth advising, by their names in figures."""
+QUANTILE = 1.96
+SETTLING = 30.0
+"""Collisions per body before anything is measured."""
+LEAST = 20.0
+"""Collisions per body that are measured at least: a shorter run is no average over time."""
+REFERENCE, STEP = 0.1, 0.08
+"""Packing fraction of the gas by which times are carried over, and the time step with which it is timed."""
 _SAFE = 2.0  # standard errors added to a bias
 _BEYOND = 1.05  # a packing fraction may exceed those of the table by this factor
 
