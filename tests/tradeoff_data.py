@@ -73,3 +73,31 @@ def speed_accuracy_measurement(folder):
         (folder / "gas").mkdir(exist_ok=True)
         dataset.to_netcdf(points[-1].path)
     return tradeoff.speed_accuracy(points, SETTINGS)
+
+
+def time_to_accuracy_measurement(dearer=1.0):
+    """What `measure.time_to_accuracy` gives if the model is right but for a factor of the steps' cost."""
+    accuracy = np.array([0.1, 0.01, 0.001, 0.0001])
+    axes = ("gas", "observable", "count", "accuracy")
+    shape = (2, 3, 2, 4)
+    event = 1.0 / accuracy**2 + np.zeros(shape)
+    step = 0.5 / accuracy**2 * (1.0 + 0.005 / accuracy) + np.zeros(shape)
+    measured = np.stack([event, step], axis=-1)
+    model = np.stack([event, dearer * step], axis=-1)
+    picked = np.where(model[..., 0] < model[..., 1], event, step)
+    return xr.Dataset(
+        {
+            "measured": ((*axes, "engine"), measured),
+            "model": ((*axes, "engine"), model),
+            "regret": (axes, picked / measured.min(axis=-1)),
+            "regret_error": (axes, np.full(shape, 0.02)),
+            "gas_dimension": ("gas", [3, 3]),
+            "gas_packing_fraction": ("gas", [0.05, 0.2]),
+        },
+        coords={
+            "observable": list(tradeoff.OBSERVABLES),
+            "count": [1000, 10000],
+            "accuracy": accuracy,
+            "engine": ["event", "step"],
+        },
+    )
