@@ -109,6 +109,13 @@ def test_bodies_are_added_before_the_start_only():
         sim.add_random(1, radius=0.3)
 
 
+def test_a_notebook_shows_what_a_simulation_is():
+    simulation = gp.Simulation(gas(2, 20, 0.1), gp.EventDriven(), 1)
+    simulation.advance(duration=2.0)
+    told = f"<Simulation of 20 discs, event engine: time 2, {simulation.tally.collisions} collisions>"
+    assert repr(simulation) == told
+
+
 @pytest.mark.parametrize(
     ("arguments", "key"),
     [

@@ -48,6 +48,11 @@ class Simulation:
         self._advanced = False
         self._set_up()
 
+    def __repr__(self) -> str:
+        kind = "discs" if self.scene.dimension == 2 else "spheres"
+        reached = f"time {self.time:g}, {self._dynamics.tally.collisions} collisions"
+        return f"<Simulation of {self.scene.count} {kind}, {self.engine.name} engine: {reached}>"
+
     def _set_up(self) -> None:
         self._initial = initial_state(self.scene, self.seed)
         self._energy = self._initial.energy

@@ -26,6 +26,8 @@ _REDUCED = {
     "angstrom/picosecond": "length/time",
     "1/picosecond": "1/time",
 }
+_ENERGIES = ("kinetic_energy", "wall_energy", "virial_sum", "dissipated_energy", "vibrations")
+_UNITS = dict.fromkeys(_ENERGIES, "mass length^2/time^2") | {"wall_impulse": "mass length/time"}
 
 
 def partial_path(path: Path) -> Path:
@@ -62,9 +64,10 @@ def open_trajectory(path: str | Path):
     data = data.drop_vars(["cell_spatial", "cell_angular"])
     faces = amber.face_names(scene.dimension, len(scene.walls))
     data = data.assign_coords(spatial=list("xyz"[: scene.dimension]), face=faces)
-    for variable in data.variables.values():
-        if variable.attrs.get("units") in _REDUCED:
-            variable.attrs["units"] = _REDUCED[variable.attrs["units"]]
+    for name, variable in data.variables.items():
+        told = variable.attrs.get("units", "1")
+        if variable.dtype.kind in "fi":  # what is no length, time or energy is a number of things, or a ratio
+            variable.attrs["units"] = _UNITS.get(name, _REDUCED.get(told, told))
     data.attrs = {key: value for key, value in attributes.items() if not key.endswith("_bytes")}
     data.set_close(opened.close)
     return data
