@@ -67,12 +67,17 @@ def speed_accuracy_measurement(folder):
         ("measure_cost", {"passes": 4}, timing("step", 2.0 * SECONDS * CONTACTS * (1.0 + 0.01 / STEPS))),
         ("measure_cost", {"engine": "event"}, timing("event", [SECONDS * CONTACTS])),
     ]
+    return tradeoff.speed_accuracy(written(folder, made), SETTINGS)
+
+
+def written(folder, made):
+    """Points of (job, settings, dataset), with their results in a folder."""
     points = []
     for n, (job, settings, dataset) in enumerate(made):
         points.append(grid.Point("gas", f"n={n}", job, settings, str(folder), 1))
         (folder / "gas").mkdir(exist_ok=True)
         dataset.to_netcdf(points[-1].path)
-    return tradeoff.speed_accuracy(points, SETTINGS)
+    return points
 
 
 def time_to_accuracy_measurement(dearer=1.0):

@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
-from tradeoff_data import STEPS, speed_accuracy_measurement
+from tradeoff_data import CONTACTS, SECONDS, STEPS, comparison, speed_accuracy_measurement, timing, written
+
+from gaspart.measure.tradeoff import time_to_accuracy
 
 
 @pytest.fixture(scope="module")
@@ -35,3 +37,22 @@ def test_the_frontier_takes_the_longest_step_that_will_do(dataset):
     assert rate.best_ratio.sel(accuracy=0.01) == pytest.approx(2.0 * 1.125)
     assert np.isnan(rate.best_ratio.sel(accuracy=0.0001))
     assert str(rate.best_setting.sel(accuracy=0.01).values) == "4 passes"
+
+
+def test_time_to_accuracy_of_the_reference_gas(tmp_path):
+    gas = {"packing_fraction": 0.1}
+    points = written(
+        tmp_path,
+        [
+            ("compare", {"passes": 4}, comparison(2.0, 3.0, 0, **gas)),
+            ("measure_cost", {"passes": 4}, timing("step", 2.0 * SECONDS * CONTACTS * np.ones(4), **gas)),
+            ("measure_cost", {"engine": "event"}, timing("event", [SECONDS * CONTACTS], **gas)),
+        ],
+    )
+    dataset = time_to_accuracy(points, {"counts": [100], "accuracies": [0.01, 0.0001]}).squeeze()
+    event = dataset.sel(engine="event", observable="Z")
+    assert event.measured.values == pytest.approx(event.model.values, rel=1e-6)  # timed by itself
+    assert float(event.measured[1] / event.measured[0]) == pytest.approx(1e4, rel=0.35)  # but for settling
+    steps = dataset.sel(engine="step", observable="Z", accuracy=0.01)
+    assert float(steps.measured) > 2.0 * float(event.measured[0])
+    assert (dataset.regret.sel(observable="Z") == 1.0).all()

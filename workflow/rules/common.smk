@@ -168,6 +168,7 @@ FAMILY_MODULES = {
     ("measure", "scaling"): ["measure/timings"],
     ("measure", "brownian"): ["measure/correlations"],
     ("measure", "tradeoff"): [
+        "measure/accuracy",
         "measure/pressure",
         "measure/timings",
         "tradeoff/__init__",

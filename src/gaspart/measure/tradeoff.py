@@ -11,20 +11,14 @@ import numpy as np
 import xarray as xr
 
 from gaspart import grid, statistics
+from gaspart.measure.accuracy import add_costs, costs, errors, setting_name
 from gaspart.measure.pressure import pressure
-from gaspart.measure.timings import median
 from gaspart.tradeoff import table
 from gaspart.tradeoff.table import LEAST, PRECISIONS, QUANTILE, REFERENCE, SETTLING, STEP
 
 OBSERVABLES = ("collision_rate", "Z", "D")
 SEEN = 3.5
 """An error counts as seen, in fits of its order, if it is so many standard errors from 0."""
-
-
-def setting_name(rewind: bool, passes: int, precision: str) -> str:
-    """How figures and claims call a setting of the time-stepped engine."""
-    name = f"{passes} passes" if passes > 1 else "1 pass"
-    return name + ("" if rewind else ", no rewinding") + (", float32" if precision == "float32" else "")
 
 
 def speed_accuracy(points: list[grid.Point], settings: dict) -> xr.Dataset:
@@ -44,11 +38,11 @@ def speed_accuracy(points: list[grid.Point], settings: dict) -> xr.Dataset:
     (``gas``, ``observable``, ``accuracy``): see `frontier`. Over ``steady``: ``steady_z`` of long runs,
     with error, their gas and setting, and ``steady_paired``, the relative error in the paired runs.
     """
-    rows = [_row(point) for point in points if point.job == "compare"]
+    rows = [errors(point) for point in points if point.job == "compare"]
     rows = sorted(rows, key=lambda row: (-row["dimension"], row["packing_fraction"]))
-    timed = [_timed(point) for point in points if point.job == "measure_cost"]
+    timed = [costs(point) for point in points if point.job == "measure_cost"]
     for row in rows:
-        _add_costs(row, timed)
+        add_costs(row, timed)
     longest = max(len(row["time_step"]) for row in rows)
     over_steps = ("time_step", "missed", "made_up", "energy_drift", "deepest_overlap", "pair_tests")
     over_steps += ("seconds", "seconds_error")
@@ -135,27 +129,27 @@ def time_to_accuracy(points: list[grid.Point], settings: dict) -> xr.Dataset:
     ``engine``: ``regret``, measured cost of the setting that the model picks over that of the measured best,
     with ``regret_error`` from the timings.
     """
-    timed = [_timed(point) for point in points if point.job == "measure_cost"]
-    rows = [_row(point) for point in points if point.job == "compare"]
+    timed = [costs(point) for point in points if point.job == "measure_cost"]
+    rows = [errors(point) for point in points if point.job == "compare"]
     for row in rows:
-        _add_costs(row, timed)
+        add_costs(row, timed)
     speeds = _speeds(timed)
     gases = sorted({(row["dimension"], row["packing_fraction"]) for row in rows})
     shape = (len(gases), len(OBSERVABLES), len(settings["counts"]), len(settings["accuracies"]))
     measured, model = np.full((*shape, 2), np.nan), np.full((*shape, 2), np.nan)
     regret, error = np.full(shape, np.nan), np.full(shape, np.nan)
     for g, o, c, a in np.ndindex(shape):
-        costs = _total_costs(
+        choices = _total_costs(
             [row for row in rows if (row["dimension"], row["packing_fraction"]) == gases[g]],
             o, settings["counts"][c], settings["accuracies"][a], speeds,
         )  # fmt: skip
         for e in range(2):
-            of = costs[costs[:, 0] == e]
+            of = choices[choices[:, 0] == e]
             if of.size:
                 measured[g, o, c, a, e], model[g, o, c, a, e] = of[:, 1].min(), of[:, 2].min()
-        if costs.size and np.isfinite(costs[:, 2].min()):
-            picked = costs[np.argmin(costs[:, 2])]
-            regret[g, o, c, a] = picked[1] / costs[:, 1].min()
+        if choices.size and np.isfinite(choices[:, 2].min()):
+            picked = choices[np.argmin(choices[:, 2])]
+            regret[g, o, c, a] = picked[1] / choices[:, 1].min()
             error[g, o, c, a] = picked[3] * regret[g, o, c, a]
     axes = ("gas", "observable", "count", "accuracy")
     return xr.Dataset(
@@ -229,89 +223,6 @@ def _padded(values: np.ndarray, length: int) -> np.ndarray:
     return np.pad(
         values, [(0, 0)] * (values.ndim - 1) + [(0, length - values.shape[-1])], constant_values=np.nan
     )
-
-
-def _row(point: grid.Point) -> dict:
-    """Errors over the accepted time steps of a `compare` point, the longest first."""
-    run = xr.load_dataset(point.path)
-    run = run.isel(setting=np.flatnonzero(run.refused == 0)).sortby("time_step", ascending=False)
-    contacts = run.exact_collisions.sum("snapshot").values
-    z = run.exact_z.mean("snapshot").values
-    rate = _difference(run, "collisions", 1.0 / contacts)
-    share = (z - 1.0) / z
-    pressure_bias = _difference(run, "virial", 1.0 / contacts) * share
-    memory = [
-        statistics.jackknife(lambda own, exact: exact / own - 1.0, np.log(own), np.log(exact))
-        for own, exact in zip(run.memory.values, run.exact_memory.values, strict=True)
-    ]
-    memory = np.array(
-        [
-            [float(value), max(float(error), 1.0 / n)]
-            for (value, error), n in zip(memory, contacts, strict=True)
-        ]
-    )
-    both = np.stack([rate, pressure_bias, memory.T])
-    listed = run.listed.sum("snapshot", skipna=False).values
-    return {
-        "dimension": run.attrs["dimension"],
-        "packing_fraction": round(run.attrs["packing_fraction"], 12),
-        "setting": setting_name(bool(run.attrs["rewind"]), run.attrs["passes"], run.attrs["precision"]),
-        "contacts": int(contacts.max()),
-        "time_step": run.time_step.values,
-        "bias": both[:, 0],
-        "bias_error": both[:, 1],
-        "missed": run.missed.sum("snapshot", skipna=False).values / listed,
-        "made_up": run.made_up.sum("snapshot", skipna=False).values / listed,
-        "energy_drift": np.abs(run.energy_drift).max("snapshot").values,
-        "deepest_overlap": run.deepest_overlap.max("snapshot").values,
-        "pair_tests": run.pair_tests.sum("snapshot").values / contacts,
-    }
-
-
-def _difference(run: xr.Dataset, name: str, least: np.ndarray) -> np.ndarray:
-    """(2, setting) relative difference from the exact runs' sum, and its error from the snapshots."""
-    exact = run[f"exact_{name}"].values
-    apart = run[name].values - exact
-    error = apart.std(axis=1, ddof=1) * np.sqrt(apart.shape[1]) / exact.sum(axis=1)
-    return np.stack([apart.sum(axis=1) / exact.sum(axis=1), np.maximum(error, least)])
-
-
-def _timed(point: grid.Point) -> dict:
-    """The costs of a `measure_cost` point, per time simulated."""
-    run = xr.load_dataset(point.path)
-    seconds, error = median(run.seconds.values)
-    own = point.settings
-    name = setting_name(own.get("rewind", True), own.get("passes", 4), own.get("precision", "float64"))
-    return {
-        "gas": (run.attrs["dimension"], round(run.attrs["packing_fraction"], 12)),
-        "setting": name if run.attrs["engine"] == "step" else "event",
-        "time_step": (run.duration / np.maximum(run.steps, 1)).values,
-        "seconds": seconds / run.duration.values,
-        "error": error / run.duration.values,
-        "collisions": (run.collisions / run.duration).values,
-        "pair_tests": (run.pair_tests / run.duration).values,
-    }
-
-
-def _add_costs(row: dict, timed: list[dict]) -> None:
-    """What its steps cost, where they were timed, and the event-driven engine in the same gas."""
-    same = [one for one in timed if one["gas"] == (row["dimension"], row["packing_fraction"])]
-    event = next(one for one in same if one["setting"] == "event")
-    rate = float(event["collisions"][0])
-    row["event_seconds"], row["event_error"] = (
-        float(event["seconds"][0]) / rate,
-        float(event["error"][0]) / rate,
-    )
-    row["seconds"], row["seconds_error"] = (np.full(len(row["time_step"]), np.nan) for _ in range(2))
-    row["pair_tests"] = row["seconds"].copy()
-    for one in same:
-        if one["setting"] == row["setting"]:
-            for n, step in enumerate(row["time_step"]):
-                at = np.flatnonzero(np.isclose(one["time_step"], step))
-                if at.size:
-                    row["seconds"][n] = one["seconds"][at[0]] / rate
-                    row["seconds_error"][n] = one["error"][at[0]] / rate
-                    row["pair_tests"][n] = one["pair_tests"][at[0]] / rate
 
 
 def _orders(row: dict, largest: float) -> list[tuple[float, float]]:
