@@ -3,6 +3,7 @@
 # make check-all  the linters, the tests, 2500 new random scenes for each property of the engines, and what takes long
 # make smoke      all figures, small
 # make docs       public names, and a page for each family of figures: results/docs/index.html
+# make benchmark  how fast the engines are on this machine, with nothing else running: results/tables/performance.csv
 # make lint | report | clean | distclean
 #
 # Needs Python 3.11 or later with venv and pip, and make. Everything else is installed into .venv.
@@ -10,7 +11,7 @@
 SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := all
-.PHONY: all setup test check-all smoke lint report docs clean distclean
+.PHONY: all setup test check-all smoke benchmark lint report docs clean distclean
 
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 CORES ?= all
@@ -44,6 +45,12 @@ check-all: lint test
 
 smoke: setup
 	$(SNAKEMAKE) --quiet rules --configfile config/smoke.yaml
+
+benchmark: setup
+	mkdir -p results/benchmarks
+	.venv/bin/python -m pytest benchmarks --numprocesses=0 --benchmark-json=results/benchmarks/performance.json
+	.venv/bin/python benchmarks/table.py results/benchmarks/performance.json \
+		results/tables/performance.csv results/figures/performance.png
 
 lint: setup
 	.venv/bin/python -m ruff check .
