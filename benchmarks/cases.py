@@ -4,8 +4,8 @@ The peers' numbers were taken by this project on another machine of this kind (t
 program at its best setting, on one core: Smallenburg's event-driven program in C, the best of its three
 variants (Eur. Phys. J. E 45, 22 (2022)); Spencer's *billiards* in C++ and Cython (2022); the C program of
 Frederickx & Meerts (2010), compiled with gcc -O3 -march=native, at its best number of boxes. DynamO
-(Bannerman et al., J. Comput. Chem. 32, 3329 (2011)) reached 0.11 to 0.18 million collisions a second at 10 000
-spheres.
+(Bannerman et al., J. Comput. Chem. 32, 3329 (2011)) reached 0.11 to 0.18 million collisions a second at 10
+thousand spheres.
 """
 
 from __future__ import annotations
