@@ -34,7 +34,7 @@ def test_random_insertion(benchmark, small):
     kind = gp.Species(case.count, 0.5, temperature=1.0)
     scene = gp.Scene(cases.scene(case).container, [kind])
     initial_state(gp.Scene(scene.container, [gp.Species(10, 0.5, temperature=1.0)]), seed=1)
-    benchmark.pedantic(lambda: initial_state(scene, seed=1), rounds=1 if small else 3)
+    benchmark.pedantic(lambda: initial_state(scene, seed=1), rounds=1)
     told(benchmark, "random insertion", "s", count=case.count, dimension=3, packing_fraction=0.3)
 
 
