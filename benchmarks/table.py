@@ -102,7 +102,7 @@ def _finish(axis, frame: pd.DataFrame, title: str) -> None:
     axis.set_title(title)
     if len(frame):
         axis.set_yscale("log")
-        axis.legend(ncols=2, fontsize=6.5)
+        axis.legend(fontsize=6.5)
 
 
 def main(source: str, csv: str, png: str) -> None:
