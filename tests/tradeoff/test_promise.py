@@ -17,12 +17,12 @@ from gaspart.tradeoff.advice import QUANTILE, SETTLING, advise
 
 SCENES = 60
 ALLOWED = 7
-"""Misses among 60 that a promise of 95 % allows: more have a chance of 0.3 %."""
+"""Misses among 60 that a promise of 95 % allows: more have a chance of 1 %."""
 DEARER = 1.5
 
 
 def scene(number):
-    """A random gas, with observable and accuracy; hexagonal and cubic counts, any units."""
+    """A random gas, with an observable and an accuracy."""
     rng = np.random.default_rng([2010, number])
     dimension = int(rng.integers(2, 4))
     fraction = float(np.exp(rng.uniform(math.log(0.012), math.log(0.42 if dimension == 3 else 0.5))))
