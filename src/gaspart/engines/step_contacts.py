@@ -13,6 +13,7 @@ from gaspart.engines.step_layout import (
     DEEPEST,
     FASTEST,
     LATE,
+    LOSS,
     MULTIPLE,
     OVERLAPS_LEFT,
     PASSED,
@@ -230,6 +231,8 @@ def resolve(bodies, space, i, j, dt, turn, rewind, parting, cells, watch, counte
         rv += ago * vv
         counters.sums[WORST] = max(counters.sums[WORST], abs(rr / ss - 1.0))
     to_i, to_j, passed = kicks(rr, rv, bodies.masses[one], bodies.masses[other])
+    counters.sums[LOSS] += 0.25 * (1.0 - space.normal * space.normal) * passed * abs(rv) / rr
+    to_i, to_j, passed = to_i * space.push, to_j * space.push, passed * space.push
     counters.counts[COLLISIONS] += 1
     counters.sums[VIRIAL] += passed
     speed_i = speed_j = ago - ago

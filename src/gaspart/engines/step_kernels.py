@@ -11,7 +11,7 @@ from gaspart.engines.step_contacts import count_left, in_order, resolve_all
 from gaspart.engines.step_layout import FASTEST, PAIR_TESTS, SPENT, Turn
 from gaspart.engines.step_list import is_stale
 from gaspart.engines.step_motion import move
-from gaspart.engines.step_threads import gathered, make_list, move_shared, room_for, search_list
+from gaspart.engines.step_threads import gathered, make_list, move_shared, numbers_of, room_for, search_list
 from gaspart.kernel import allocating_kernel
 
 
@@ -41,9 +41,8 @@ def run_steps(
         if threads is None:
             move(bodies, space, gravity, inset, dt, 0, count, counters, 0)
         else:
-            move_shared(
-                bodies, space.lengths, space.periodic, space.margin, gravity, inset, dt, counters, threads
-            )
+            apart = space.lengths, space.periodic, numbers_of(space)
+            move_shared(bodies, *apart, gravity, inset, dt, counters, threads)
         number, before = 0, -1
         for again in range(passes):
             turn = Turn(step * passes + again, step * passes)

@@ -12,16 +12,19 @@ import numpy as np
 from gaspart.kernel import helper
 
 COLLISIONS, PAIR_TESTS, BOX_VISITS, OVERLAPS_LEFT, MULTIPLE, REBUILDS, LATE, PASSED = range(8)
-VIRIAL, DEEPEST, WORST = range(3)
+VIRIAL, DEEPEST, WORST, LOSS = range(4)
 FASTEST, SPENT = range(2)
 
 
 class Space(NamedTuple):
-    """lengths (d,), periodic (d,); margin: 1 if walls stop surfaces, 0 if they stop centres."""
+    """lengths (d,), periodic (d,); margin: 1 if walls stop surfaces, 0 if they stop centres; normal: what a
+    contact leaves of the approach; push: what it passes of the elastic impulse, (1 + normal) / 2."""
 
     lengths: tuple
     periodic: tuple
     margin: float
+    normal: float
+    push: float
 
 
 class Bodies(NamedTuple):
@@ -40,14 +43,17 @@ class Bodies(NamedTuple):
 
 
 class Counters(NamedTuple):
-    """counts (8,) and sums (3,), see the names at the module's top; by thread: wall_hits and wall_impulse
-    (threads, 2d), the impulse in whole numbers of `quantum`."""
+    """counts (8,) and sums (4,), see the names at the module's top; by thread: wall_hits and wall_impulse
+    (threads, 2d), the impulse in whole numbers of `quantum`; wall_loss (threads,), energy in those of
+    `grain`."""
 
     counts: np.ndarray
     sums: np.ndarray
     wall_hits: np.ndarray
     wall_impulse: np.ndarray
+    wall_loss: np.ndarray
     quantum: float
+    grain: float
 
 
 class Found(NamedTuple):

@@ -29,18 +29,23 @@ def wrap(bodies, slot, axis, length):
 
 
 @helper
-def reflect(bodies, slot, axis, lower, upper, counters, thread):
+def reflect(bodies, space, slot, axis, lower, upper, counters, thread):
     """Mirror a body that left through a wall, as long as it moves outward."""
     x = bodies.positions[axis, slot]
     v = bodies.velocities[axis, slot]
     while (x < lower and v < 0.0) or (x > upper and v > 0.0):
         side = 0 if x < lower else 1
         plane = upper if side else lower
-        x = plane + plane - x
-        impulse = 2.0 * bodies.masses[bodies.index[slot]] * abs(v)
+        impulse = 2.0 * space.push * bodies.masses[bodies.index[slot]] * abs(v)
         counters.wall_hits[thread, 2 * axis + side] += 1
         counters.wall_impulse[thread, 2 * axis + side] += np.int64(np.rint(impulse / counters.quantum))
-        v = -v
+        if space.normal == 1.0:
+            x = plane + plane - x
+        else:  # it came through |x - plane| / |v| ago
+            x = plane + space.normal * (plane - x)
+            lost = 0.5 * impulse * abs(v) * (1.0 - space.normal)
+            counters.wall_loss[thread] += np.int64(np.rint(lost / counters.grain))
+        v = -v * space.normal
     bodies.positions[axis, slot] = x
     bodies.velocities[axis, slot] = v
 
@@ -93,7 +98,7 @@ def mend(bodies, space, gravity, slot, dt, counters, thread):
         else:
             upper = space.lengths[k] - inset
             if gravity is None:
-                reflect(bodies, slot, k, inset, upper, counters, thread)
+                reflect(bodies, space, slot, k, inset, upper, counters, thread)
             else:
                 reflect_falling(bodies, slot, k, inset, upper, gravity[k], dt, counters, thread)
 

@@ -35,17 +35,17 @@ def giants_of(state: State) -> np.ndarray:
 
 def check_scene(scene: Scene, state: State, giants: np.ndarray) -> None:
     """Raise SceneError for what this engine does not model."""
-    rough = scene.restitution is not None and not scene.restitution.smooth_and_elastic
-    fixed = np.isinf(state.masses).any()
-    for key, value in (
-        ("restitution", scene.restitution if rough else None),
-        ("walls", scene.walls or None),
-        ("faces", scene.faces or None),
-        ("vibration", scene.vibrates or None),
-        ("fixed", True if fixed and scene.gravity is not None else None),
+    law, fixed = scene.restitution, np.isinf(state.masses).any()
+    falls, none = scene.gravity is not None, "this one knows none"
+    for key, value, what in (
+        ("restitution", law if law and law.rough else None, "this one knows no rough bodies"),
+        ("restitution", law if law and law.normal < 1.0 and falls else None, "with gravity, " + none),
+        ("walls", scene.walls or None, none),
+        ("faces", scene.faces or None, none),
+        ("vibration", scene.vibrates or None, none),
+        ("fixed", True if fixed and falls else None, "this one knows no fixed bodies under gravity"),
     ):
         if value is not None:
-            what = "this one knows no fixed bodies under gravity" if key == "fixed" else "this one knows none"
             raise SceneError(key, value, f'needs the "event" engine; {what}')
     reach = 2.0 * state.radii.max(initial=0.0)
     if giants.any():
@@ -144,3 +144,10 @@ def quantum_for(scene: Scene, state: State, masses: np.ndarray) -> float:
         speeds = speeds + math.sqrt(2.0 * float(np.abs(scene.gravity) @ np.array(scene.container.lengths)))
     most = float((np.where(np.isinf(masses), 0.0, masses) * speeds).max(initial=0.0))
     return 2.0 ** (math.frexp(most or 1.0)[1] - 28)
+
+
+def grain_for(state: State, unit_mass: float) -> float:
+    """The unit in which energies that walls take are summed: a power of two, 2^-40 of the largest energy of a
+    body, so that even all that 8e6 bodies have can be counted."""
+    most = float(np.max(state.kinetic_energies, initial=0.0)) / unit_mass
+    return 2.0 ** (math.frexp(most or 1.0)[1] - 40)

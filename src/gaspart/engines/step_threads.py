@@ -29,28 +29,40 @@ def room_for(threads, room, like):
     )
 
 
+@helper
+def numbers_of(space):
+    """What a space is made of beside its tuples: numba passes no tuples in tuples to threads."""
+    return space.margin, space.normal, space.push
+
+
+@helper
+def space_of(lengths, periodic, numbers):
+    """The space that these are parts of."""
+    return Space(lengths, periodic, numbers[0], numbers[1], numbers[2])
+
+
 @parallel_kernel
-def move_shared(bodies, lengths, periodic, margin, gravity, inset, dt, counters, threads):
-    """`move` for all slots. The space comes in parts, for numba passes no tuples in tuples to threads."""
+def move_shared(bodies, lengths, periodic, numbers, gravity, inset, dt, counters, threads):
+    """`move` for all slots."""
     count = bodies.positions.shape[1]
     for part in prange(threads):
         low, high = share(part, threads, count), share(part + 1, threads, count)
-        space = Space(lengths, periodic, margin)
+        space = space_of(lengths, periodic, numbers)
         move(bodies, space, gravity, inset, dt, low, high, counters, part)
 
 
 @parallel_kernel
-def count_shared(bodies, lengths, periodic, margin, cells, cell, edge):
+def count_shared(bodies, lengths, periodic, numbers, cells, cell, edge):
     """`count_part` for all parts."""
     for part in prange(len(cells.ends)):
-        count_part(bodies, Space(lengths, periodic, margin), cells, cell, edge, part)
+        count_part(bodies, space_of(lengths, periodic, numbers), cells, cell, edge, part)
 
 
 @parallel_kernel
-def place_shared(bodies, lengths, periodic, margin, cells, places):
+def place_shared(bodies, lengths, periodic, numbers, cells, places):
     """`place_part` for all parts."""
     for part in prange(len(cells.ends)):
-        place_part(bodies, Space(lengths, periodic, margin), cells, places, part)
+        place_part(bodies, space_of(lengths, periodic, numbers), cells, places, part)
 
 
 @parallel_kernel
@@ -71,10 +83,10 @@ def search_part(bodies, space, cells, pairs, watch, before, dt, parting, found, 
 
 
 @parallel_kernel
-def search_shared(bodies, lengths, periodic, margin, cells, pairs, watch, before, dt, parting, found):
+def search_shared(bodies, lengths, periodic, numbers, cells, pairs, watch, before, dt, parting, found):
     """`search_part` for the whole list."""
     for part in prange(len(pairs)):
-        space = Space(lengths, periodic, margin)
+        space = space_of(lengths, periodic, numbers)
         search_part(bodies, space, cells, pairs, watch, before, dt, parting, found, part)
 
 
@@ -84,7 +96,7 @@ def search_list(bodies, space, cells, pairs, watch, before, dt, parting, found, 
     if threads is None:
         search_part(bodies, space, cells, pairs, watch, before, dt, parting, found, 0)
     else:
-        apart = space.lengths, space.periodic, space.margin
+        apart = space.lengths, space.periodic, numbers_of(space)
         search_shared(bodies, *apart, cells, pairs, watch, before, dt, parting, found)
 
 
@@ -97,14 +109,14 @@ def settle(bodies, space, cells, threads):
     if threads is None:
         count_part(bodies, space, cells, cell, edge, 0)
     else:
-        count_shared(bodies, space.lengths, space.periodic, space.margin, cells, cell, edge)
+        count_shared(bodies, space.lengths, space.periodic, numbers_of(space), cells, cell, edge)
     total = begin_cells(cells.ends)
     spots, own = np.empty((total, 4), cells.origin.dtype), np.empty((count, 4), cells.origin.dtype)
     places = Places(spots, np.empty(total, np.uint32), own, cell, place, edge)
     if threads is None:
         place_part(bodies, space, cells, places, 0)
     else:
-        place_shared(bodies, space.lengths, space.periodic, space.margin, cells, places)
+        place_shared(bodies, space.lengths, space.periodic, numbers_of(space), cells, places)
     return places
 
 

@@ -7,7 +7,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gaspart.engines.common import EventLog, masses_for_kernel
-from gaspart.engines.step_settings import check_precision, check_scene, check_step, giants_of, quantum_for
+from gaspart.engines.step_settings import (
+    check_precision,
+    check_scene,
+    check_step,
+    giants_of,
+    grain_for,
+    quantum_for,
+)
 from gaspart.errors import SceneError, SimulationError
 from gaspart.scene import Scene, count_of, number
 from gaspart.state import State
@@ -31,7 +38,7 @@ class TimeStepped:
     with the first pass that finds none. With more than one, overlaps that grew and shrank within the step
     count too; one is the rule of Frederickx & Meerts. docs/time-stepped.md tells what each of these buys.
 
-    threads: how many share the work of a list; they pay from about 5e4 bodies on.
+    threads: how many share the work of a list; not worth it below some 5e4 bodies (docs/performance.md).
 
     The result is the same, bit for bit, for any boxes_per_side, near_boxes, skin and threads.
     """
@@ -72,8 +79,6 @@ class TimeStepped:
 class StepDynamics:
     """A scene under way; its time is a whole number of steps."""
 
-    dissipated = 0.0
-
     def __init__(self, engine: TimeStepped, scene: Scene, state: State):
         from gaspart.engines import step_kernels as kernels
         from gaspart.engines import step_layout as layout
@@ -86,10 +91,12 @@ class StepDynamics:
         self._kernels, self._layout = kernels, layout
         self._engine, self._scene, self._reference = engine, scene, state
         self._real = real = np.dtype(engine.precision).type
+        normal = 1.0 if scene.restitution is None else scene.restitution.normal
         self._space = layout.Space(
             tuple(real(length) for length in scene.container.lengths),
             scene.container.periodic,
             real(not scene.centres_to_walls),
+            *(real(number) for number in (normal, 0.5 * (1.0 + normal))),
         )
         self._unit_mass, masses = masses_for_kernel(state.masses)
         masses = np.ones(state.count) if masses is None else masses
@@ -114,7 +121,8 @@ class StepDynamics:
         self._watch.reach[layout.SPENT] = np.inf  # no list is made yet
         self._pairs = np.empty((engine.threads, 0, 2), np.uint32)
         self._threads = engine.threads if engine.threads > 1 else None
-        self._quantum = quantum_for(scene, state, masses)
+        self._quantum, self._grain = quantum_for(scene, state, masses), grain_for(state, self._unit_mass)
+        self._lost, self._counters = 0.0, None
         self._step = real(engine.time_step)
         self._start, self._steps = state.time, 0
         self.reset_tally()
@@ -137,14 +145,30 @@ class StepDynamics:
     def reset_tally(self) -> None:
         """Begin to count anew."""
         faces = (self._engine.threads, 2 * self._scene.dimension)
+        if self._counters:
+            self._lost = self.dissipated
         self._counters = self._layout.Counters(
             counts=np.zeros(8, dtype=np.int64),
-            sums=np.zeros(3),
+            sums=np.zeros(4),
             wall_hits=np.zeros(faces, dtype=np.int64),
             wall_impulse=np.zeros(faces, dtype=np.int64),
+            wall_loss=np.zeros(self._engine.threads, dtype=np.int64),
             quantum=self._quantum,
+            grain=self._grain,
         )
         self._since = self._steps
+
+    @property
+    def dissipated(self) -> float:
+        """The energy that contacts have taken since time 0."""
+        return self._lost + self._loss
+
+    @property
+    def _loss(self) -> float:
+        """The same since the tally began."""
+        counters = self._counters
+        walls = float(counters.wall_loss.sum()) * counters.grain
+        return (float(counters.sums[self._layout.LOSS]) + walls) * self._unit_mass
 
     @property
     def time(self) -> float:
@@ -215,6 +239,7 @@ class StepDynamics:
             deepest_overlap=float(sums[layout.DEEPEST]),
             multiple_contacts=int(counts[layout.MULTIPLE]),
             rebuilds=int(counts[layout.REBUILDS]),
+            dissipated_energy=self._loss,
         )
 
     def checkpoint(self) -> dict[str, np.ndarray]:
@@ -223,6 +248,7 @@ class StepDynamics:
         return {
             "steps": np.array(self._steps),
             "since": np.array(self._since),
+            "lost": np.array(self._lost),
             "positions": self._by_body(bodies.positions, self._real),
             "velocities": self._by_body(bodies.velocities, self._real),
             "images": bodies.images.T.copy(),
@@ -248,6 +274,7 @@ class StepDynamics:
             self._cells.listed[...] = parts["listed"]
             self._cells.origin[...] = parts["origin"]
         self._watch.reach[...] = parts["reach"]
-        for key in ("counts", "sums", "wall_hits", "wall_impulse"):
+        for key in ("counts", "sums", "wall_hits", "wall_impulse", "wall_loss"):
             getattr(self._counters, key)[...] = parts[key]
         self._steps, self._since = int(parts["steps"]), int(parts["since"])
+        self._lost = float(parts["lost"])
