@@ -16,6 +16,7 @@ def measured(eta, time_step, body_steps, **settings):
     sim.advance(duration=max(10.0, 0.3 / eta))
     velocities = sim.state.velocities
     twice_energy = ((velocities - velocities.mean(axis=0)) ** 2).sum()
+    rate_expected = theory.collision_rate(eta, 3) * np.sqrt(twice_energy / (3 * (count - 1)))
     found = []
     for _ in range(blocks):
         sim.reset_tally()
@@ -23,7 +24,7 @@ def measured(eta, time_step, body_steps, **settings):
         tally = sim.tally
         z = 1 + tally.virial_sum / (twice_energy * tally.time)
         rate = 2 * tally.collisions / count / tally.time
-        found.append((z / theory.compressibility_factor(eta, 3), rate / theory.collision_rate(eta, 3)))
+        found.append((z / theory.compressibility_factor(eta, 3), rate / rate_expected))
     return np.mean(found, axis=0) - 1, np.std(found, axis=0, ddof=1) / np.sqrt(blocks)
 
 

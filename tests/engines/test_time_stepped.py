@@ -180,7 +180,7 @@ def test_a_granular_gas_cools_as_in_the_event_driven_engine():
     exact.advance(duration=20.0)
     assert exact.state.kinetic_energy < 0.4 * exact.initial_state.kinetic_energy
     ends = []
-    for search in ({}, {"threads": 2, "skin": 0.3}, {"boxes_per_side": 20}):
+    for search in ({}, {"skin": 0.3}, {"boxes_per_side": 20}):
         sim = gp.Simulation(scene, gp.TimeStepped(0.02, **search), seed=3)
         sim.advance(duration=10.0)
         sim.reset_tally()
