@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.kernel import helper
 from gaspart.scene import Scene, count_of
 
 NOWHERE = -1
@@ -111,21 +110,3 @@ def make_boxes(
                 neighbour[axis, c, step + 1] = target * strides[axis]
                 shift[axis, c, step + 1] = laps
     return Boxes(per_side, widths, strides, neighbour, shift)
-
-
-@helper
-def box_coordinate(x, width, per_side):
-    """Which box along an axis holds coordinate x; the outermost one for x outside."""
-    c = int(x / width)
-    return min(max(c, 0), per_side - 1)
-
-
-@helper
-def nearest(gap, length, periodic):
-    """A difference of two coordinates of the container, by the nearest image on a periodic axis."""
-    if periodic:
-        if gap + gap > length:
-            return gap - length
-        if gap + gap < -length:
-            return gap + length
-    return gap

@@ -15,7 +15,8 @@ from gaspart.errors import SceneError
 def _loader():
     import yaml
 
-    class Loader(yaml.SafeLoader):
+    # the same in C where PyYAML was built with it
+    class Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):
         """YAML 1.1 reads 1e-3 as text; people mean a number."""
 
     Loader.add_implicit_resolver(

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from gaspart.boxes import box_coordinate
+from gaspart.coordinates import box_coordinate
 from gaspart.kernel import allocating_kernel, helper
 from gaspart.plates import gap_to_plate
 from gaspart.segments import square_from_segment

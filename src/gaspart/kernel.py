@@ -20,7 +20,7 @@ KERNEL_MODULES = (
     "contact.py",
     "draws.py",
     "falling.py",
-    "boxes.py",
+    "coordinates.py",
     "plates.py",
     "segments.py",
     "insertion.py",

@@ -142,7 +142,7 @@ def test_a_falling_body_meets_one_that_lies():
     assert sim.events["bodies"].tolist() == [[0, 1], [0, -3]]
 
 
-@pytest.mark.parametrize("speed", [1e-3, 1e-6, 1e-12, 1e-200])
+@pytest.mark.parametrize("speed", [1e-3, 1e-6, 1e-12, 1e-59])
 def test_small_bounces_end_in_rest_not_in_a_loop(speed):
     sim = thrown((5.0, 0.5), (0.0, speed), gravity=(0.0, -1.0))
     sim.advance(duration=1e4 * speed)

@@ -96,6 +96,7 @@ ENGINES = [
     "boxes",
     "compression",
     "contact",
+    "coordinates",
     "draws",
     "engines/*",
     "falling",
@@ -123,6 +124,7 @@ MODULES = {
     "fill": [
         *SCENE,
         "boxes",
+        "coordinates",
         "insertion",
         "kernel",
         "plates",
@@ -215,7 +217,17 @@ def modules_of(stage):
 
 
 # The modules among them whose code is compiled.
-KERNELS = ["boxes", "contact", "draws", "engines/*", "falling", "insertion", "kernel", "plates", "segments"]
+KERNELS = [
+    "contact",
+    "coordinates",
+    "draws",
+    "engines/*",
+    "falling",
+    "insertion",
+    "kernel",
+    "plates",
+    "segments",
+]
 
 
 @cache
@@ -226,15 +238,22 @@ def digest(job):
     return hashlib.sha256(b"".join(path.read_bytes() for path in paths)).hexdigest()[:12]
 
 
+@cache
+def variant_of(experiment, point):
+    return variant(POINTS[experiment][point])
+
+
 def stamp_of(wildcards):
     point = point_of(wildcards)
-    return f"results/kernels/{digest(point.job)}/{variant(point)}.stamp"
+    return f"results/kernels/{digest(point.job)}/{variant_of(point.experiment, point.name)}.stamp"
 
 
 def task_of(wildcards):
     """What compiles a variant: a tiny run of the first point that needs it."""
     of_all = (point for experiment in POINTS.values() for point in experiment.values())
-    return next(task(point) for point in of_all if variant(point) == wildcards.variant)
+    return next(
+        task(point) for point in of_all if variant_of(point.experiment, point.name) == wildcards.variant
+    )
 
 
 wildcard_constraints:

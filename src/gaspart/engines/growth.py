@@ -7,8 +7,8 @@ is that at time 0 of the clocks, and 1 + rate t times that at time t. Queue, box
 
 from math import inf, sqrt
 
-from gaspart.boxes import nearest
 from gaspart.contact import time_to_growing_contact, time_to_plane
+from gaspart.coordinates import nearest
 from gaspart.engines.calendar import fill, reschedule, soonest, time_of
 from gaspart.engines.flight import advance_row, synchronise
 from gaspart.engines.layout import COLLISIONS, NOTHING, VIRIAL

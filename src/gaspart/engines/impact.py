@@ -6,8 +6,8 @@ Smooth elastic bodies know only their momenta. A `Law` brings restitution, spins
 
 from math import sqrt
 
-from gaspart.boxes import nearest
 from gaspart.contact import exchange, exchange_equal, normal_change, tangential_impulse
+from gaspart.coordinates import nearest
 from gaspart.engines.flight import advance_row
 from gaspart.engines.layout import COLLISIONS, LOSS, VIRIAL, WORST
 from gaspart.kernel import helper, kernel

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gaspart.boxes import box_coordinate
+from gaspart.coordinates import box_coordinate
 from gaspart.engines.step_contacts import distance_squared, examine
 from gaspart.engines.step_layout import BOX_VISITS, PAIR_TESTS
 from gaspart.kernel import helper, kernel

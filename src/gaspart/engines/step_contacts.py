@@ -6,8 +6,8 @@ does any bit of the result.
 
 import numpy as np
 
-from gaspart.boxes import nearest
 from gaspart.contact import exchange
+from gaspart.coordinates import nearest
 from gaspart.engines.step_layout import (
     COLLISIONS,
     DEEPEST,
