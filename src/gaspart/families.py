@@ -44,6 +44,7 @@ FAMILIES = {
     "speed_accuracy": "tradeoff",
     "time_to_accuracy": "tradeoff",
     "reversibility": "reversibility",
+    "price_of_features": "price",
 }
 
 TITLES = {
@@ -68,4 +69,5 @@ TITLES = {
     "extremes": "Speed, accuracy, stability",
     "tradeoff": "Speed against accuracy",
     "reversibility": "Speed against accuracy",
+    "price": "Speed against accuracy",
 }

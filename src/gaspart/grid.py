@@ -118,6 +118,9 @@ def check(point: Point) -> None:
     for key in set().union(*ENGINE_KEYS.values()) - set(ENGINE_KEYS[engine]):
         if key in settings:
             raise SceneError(f"{where}.{key}", settings[key], f"has no meaning with engine: {engine}")
+    if settings.get("record_events") and (point.job, engine) != ("measure_cost", "event"):
+        rule = "has a meaning with job: measure_cost and engine: event only"
+        raise SceneError(f"{where}.record_events", True, rule)
     if point.job == "compare" and engine != "step":
         raise SceneError(f"{where}.engine", engine, "must be step with job: compare")
     if "boxes_per_side" in settings and "boxes_per_body" in settings:
@@ -220,8 +223,12 @@ def recipe(point: Point) -> dict:
     if follow is not None and follow > count:
         raise SceneError(f"experiments.{point.experiment}.follow", follow, f"there are {count} bodies")
     if point.job in ("measure_cost", "compare"):
+        recording = (
+            {"record": point.settings.get("record_events", False)} if point.job == "measure_cost" else {}
+        )
         return {
             **made,
+            **recording,
             "engines": [engine_to_dict(chosen) for chosen in engines(point)],
             "equilibration": times.equilibration,
             "stretch": times.sample_interval,

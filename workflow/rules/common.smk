@@ -168,6 +168,7 @@ FAMILY_MODULES = {
     ("measure", "virial"): ["measure/pressure"],
     ("measure", "freezing"): ["measure/plateau", "measure/pressure", "measure/structure"],
     ("measure", "scaling"): ["measure/timings"],
+    ("measure", "price"): ["measure/stripped", "measure/timings"],
     ("measure", "brownian"): ["measure/correlations"],
     ("measure", "tradeoff"): [
         "measure/accuracy",
@@ -178,6 +179,7 @@ FAMILY_MODULES = {
         "tradeoff/data/*.csv",
     ],
     ("judge", "displacement"): ["statistics"],
+    ("draw", "price"): ["claims/__init__", "claims/price"],
     ("draw", "reversibility"): ["claims/__init__", "claims/reversibility"],
     ("judge", "radius"): ["statistics"],
     ("judge", "virial"): ["statistics"],

@@ -16,6 +16,7 @@ with job(snakemake):
         equilibration=recipe["equilibration"],
         stretch=recipe["stretch"],
         repeats=recipe["repeats"],
+        record=recipe["record"],
     )
     with whole_file(snakemake.output[0]) as partial:
         dataset.to_netcdf(partial)

@@ -15,6 +15,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.engines import EventDriven, TimeStepped
+from gaspart.engines.common import EventLog
 from gaspart.errors import SimulationError
 from gaspart.initial import initial_state
 from gaspart.scene import Scene
@@ -32,15 +33,17 @@ def measure_cost(
     equilibration: float,
     stretch: float,
     repeats: int,
+    record: bool = False,
 ) -> xr.Dataset:
     """Time `repeats` times, with each of the engines, the same stretch of simulated time of the same gas.
 
-    equilibration, stretch: in the scene's time. Returns a dataset over ``partition`` (the engines, in their
-    order) and ``repeat``: ``seconds`` (partition, repeat), processor time of the advance alone (filling the
-    container, setting up and compiling are left out); over ``partition``: ``boxes`` in all,
-    ``boxes_per_side`` (of the first axis; both 0 if the engine chooses itself), ``duration`` (scene's time)
-    and the counts of the tally. Attributes: count, dimension, radius, side (first axis), packing_fraction,
-    engine, search (event-driven) or time_step.
+    equilibration, stretch: in the scene's time; record: write down all events, and forget them.
+    Returns a dataset over ``partition`` (the engines, in their order) and ``repeat``: ``seconds``
+    (partition, repeat), processor time of the advance alone (filling the container, setting up and compiling
+    are left out); over ``partition``: ``boxes`` in all, ``boxes_per_side`` (of the first axis; both 0 if the
+    engine chooses itself), ``duration`` (scene's time) and the counts of the tally. Attributes: count,
+    dimension, radius, side (first axis), packing_fraction, engine, search (event-driven) or time_step,
+    recorded.
 
     Raises SceneError, and SimulationError if the counted work of a repeat differs from the first one's.
     """
@@ -50,7 +53,7 @@ def measure_cost(
     for repeat in range(repeats):
         order = range(len(engines))
         for n in order if repeat % 2 == 0 else reversed(order):
-            seconds[n, repeat], counted = _timed(scene, engines[n], state, stretch)
+            seconds[n, repeat], counted = _timed(scene, engines[n], state, stretch, record)
             if counts[n] is None:
                 counts[n] = counted
             elif counted != counts[n]:
@@ -73,6 +76,7 @@ def measure_cost(
             "engine": engines[0].name,
             "search": getattr(engines[0], "search", ""),
             "time_step": getattr(engines[0], "time_step", 0.0),
+            "recorded": int(record),
         },
     )
 
@@ -87,15 +91,18 @@ def _start(scene: Scene, engine, seed: tuple[int, ...], equilibration: float) ->
     return simulation.state
 
 
-def _timed(scene: Scene, engine, state: State, stretch: float) -> tuple[float, dict]:
+def _timed(scene: Scene, engine, state: State, stretch: float, record: bool) -> tuple[float, dict]:
     """Processor time of one stretch, in s, and what was counted in it."""
     dynamics = engine.start(scene, state)
+    log = {"log": EventLog(scene.dimension, scene.rough)} if record else {}
     step = getattr(engine, "time_step", 0.0)
-    dynamics.advance(state.time + step * (1 + _SLACK))  # loads the kernels; the first step touches all memory
+    dynamics.advance(
+        state.time + step * (1 + _SLACK), **log
+    )  # loads the kernels; the first step touches all memory
     dynamics.reset_tally()
     target = dynamics.time + stretch + step * _SLACK
     start = time.process_time()
-    dynamics.advance(target)
+    dynamics.advance(target, **log)
     seconds = time.process_time() - start
     tally = dynamics.tally
     counted = {name: int(np.sum(getattr(tally, name))) for name in COUNTED}
