@@ -142,6 +142,7 @@ class EventDynamics:
 
     @property
     def time(self) -> float:
+        """The time reached."""
         return self._laps * self._lap + self._clock
 
     def advance(self, until: float, most: int | None = None, log: EventLog | None = None) -> None:
@@ -206,6 +207,7 @@ class EventDynamics:
 
     @property
     def tally(self) -> Tally:
+        """What was counted since the last `reset_tally`."""
         layout, counters = self._layout, self._counters
         return Tally(
             time=self.time - self._since,

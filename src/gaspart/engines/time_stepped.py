@@ -172,6 +172,7 @@ class StepDynamics:
 
     @property
     def time(self) -> float:
+        """The time reached, at the end of a step."""
         return self._start + self._steps * self._engine.time_step
 
     def advance(self, until: float, most: int | None = None, log: EventLog | None = None) -> None:
@@ -223,6 +224,7 @@ class StepDynamics:
 
     @property
     def tally(self) -> Tally:
+        """What was counted since the last `reset_tally`."""
         layout, counts, sums = self._layout, self._counters.counts, self._counters.sums
         return Tally(
             time=(self._steps - self._since) * self._engine.time_step,
