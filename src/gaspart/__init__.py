@@ -4,6 +4,7 @@ The names below are loaded when first used, so that planning a workflow starts n
 """
 
 from importlib import import_module
+from typing import Any
 
 __version__ = "0.1.0"
 
@@ -41,11 +42,11 @@ _HOMES = {
 __all__ = ["__version__", *_HOMES]
 
 
-def __getattr__(name: str):
+def __getattr__(name: str) -> Any:
     if name in _HOMES:
         return getattr(import_module(f"gaspart.{_HOMES[name]}"), name)
     raise AttributeError(f"module 'gaspart' has no attribute {name!r}")
 
 
-def __dir__():
+def __dir__() -> list[str]:
     return sorted(__all__)

@@ -50,7 +50,7 @@ class Layout:
         walls: int = 0,
         spins: bool = False,
         vibrations: bool = False,
-    ):
+    ) -> None:
         self.sizes = {
             "spatial": 3,
             "atom": count,
@@ -151,7 +151,7 @@ class Frames:
     With `kept` = 0 the header is written too. Every method may raise OSError.
     """
 
-    def __init__(self, file: BinaryIO, layout: Layout, header: bytes, kept: int = 0):
+    def __init__(self, file: BinaryIO, layout: Layout, header: bytes, kept: int = 0) -> None:
         self._file, self._layout = file, layout
         self.count = kept
         if kept == 0:
@@ -178,11 +178,11 @@ class Frames:
             data = np.zeros(self._layout.shape(name) or 1, dtype=kind)
             given = np.asarray(values[name])
             data[..., : given.shape[-1] if given.ndim else 1] = given  # 2D leaves z = 0
-            self._write(data.view(np.uint8).ravel())
+            self._write(data.view(np.uint8).ravel().data)
         self.count += 1
         self._count_frames()
 
-    def _write(self, data) -> None:
+    def _write(self, data: bytes | memoryview) -> None:
         left = memoryview(data).cast("B")
         while left:
             left = left[self._file.write(left) :]

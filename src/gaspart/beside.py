@@ -26,7 +26,7 @@ def largest_in_boxes(scene: Scene) -> float:
         return scene.largest_radius
     beside = counts.sum() - counts.cumsum()
     works = {radius: work(scene, radius) for radius in radii[beside <= MOST]}
-    best = min(works, key=works.get)
+    best = min(works, key=works.__getitem__)
     return float(best if works[best] <= _GAIN * works[radii[-1]] else radii[-1])
 
 

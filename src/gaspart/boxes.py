@@ -47,7 +47,7 @@ class Boxes:
 
     def index_of(self, position: np.ndarray) -> int:
         """The linear index of the box that holds a position (d,)."""
-        return int(self.coordinates(np.asarray(position)[None])[0] @ self.strides)
+        return int(self.coordinates(position[None])[0] @ self.strides)
 
 
 def widest(scene: Scene) -> float:

@@ -7,6 +7,7 @@ import os
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -35,12 +36,13 @@ def remove_checkpoint(path: Path) -> None:
     _new(path).unlink(missing_ok=True)
 
 
-def write_checkpoint(path: Path, header: bytes, frames: int, arrays: dict[str, np.ndarray]) -> None:
+def write_checkpoint(path: Path, header: bytes, frames: int, arrays: dict[str, Any]) -> None:
     """Write the checkpoint of a run, which the header of its trajectory stands for. May raise OSError."""
     new = _new(path)
     try:
         with new.open("wb") as file:
-            np.savez(file, **arrays, **{_DIGEST: np.array(_digest(header)), _FRAMES: np.array(frames)})
+            parts: dict[str, Any] = {_DIGEST: np.array(_digest(header)), _FRAMES: np.array(frames)}
+            np.savez(file, **arrays, **parts)
             file.flush()
             os.fsync(file.fileno())
         os.replace(new, path)

@@ -78,7 +78,7 @@ def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
     Raises SceneError for a scene of several kinds of bodies.
     """
     scene = Scene.from_dict(json.loads(data.attrs["scene"]))
-    kinds = {(thing.radius, thing.mass) for thing in (*scene.species, *scene.bodies)}
+    kinds = {(thing.radius, thing.mass) for thing in scene.kinds}
     if len(kinds) != 1:
         raise SceneError("species", len(kinds), "the contact value is told of equal bodies only")
     diameter = 2.0 * kinds.pop()[0]

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
@@ -47,7 +48,7 @@ def compress(
     scene: Scene,
     seed: int | tuple[int, ...] = 0,
     growth_rate: float = RATES[0],
-    until: float | str | None = None,
+    until: float | Literal["jammed"] | None = None,
     jammed: float = JAMMED,
 ) -> Packing:
     """Grow the species of a scene from a random start until their packing fraction is `until` (by default the
@@ -111,7 +112,7 @@ def _scaled(scene: Scene, scale: float) -> tuple[Species, ...]:
 class _Growing:
     """The bodies of a scene, at `scale` times their radii, under way."""
 
-    def __init__(self, scene: Scene, seed: int | tuple[int, ...], scale: float, end: float):
+    def __init__(self, scene: Scene, seed: int | tuple[int, ...], scale: float, end: float) -> None:
         from gaspart.boxes import make_boxes, sides_for
         from gaspart.engines import growth, layout, lists
         from gaspart.initial import per_body, random_insertion

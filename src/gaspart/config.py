@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 from gaspart import grid
 from gaspart.errors import SceneError
@@ -62,7 +63,7 @@ def _experiment(config: dict, experiment: str, schema: dict) -> None:
             raise error if told else error.inside(f"{where}[{point.name}]") from None
 
 
-def _against(rule: dict, value, schema: dict, where: str) -> None:
+def _against(rule: dict, value: object, schema: dict, where: str) -> None:
     """Raise SceneError for the most telling way in which ``value`` breaks ``rule``."""
     from jsonschema import Draft202012Validator
     from jsonschema.exceptions import best_match
@@ -82,7 +83,7 @@ def _against(rule: dict, value, schema: dict, where: str) -> None:
     raise SceneError(key or "config", error.instance, _rule(error.validator, error.validator_value))
 
 
-def _rule(validator: str, wanted) -> str:
+def _rule(validator: str, wanted: Any) -> str:
     """A JSON schema's keyword in words."""
     if validator == "type":
         names = [wanted] if isinstance(wanted, str) else wanted
@@ -103,7 +104,7 @@ def _rule(validator: str, wanted) -> str:
     return words.get(validator, f"breaks the schema's {validator}:") + told
 
 
-def _grid_values(block) -> Iterator[tuple[str, object]]:
+def _grid_values(block: Any) -> Iterator[tuple[str, object]]:
     """Every (key, value) that a grid holds; an empty list is left to gaspart.grid to refuse."""
     if isinstance(block, list):
         for part in block:
@@ -114,7 +115,7 @@ def _grid_values(block) -> Iterator[tuple[str, object]]:
             yield key, value
 
 
-def _finite(value, where: str = "") -> None:
+def _finite(value: object, where: str = "") -> None:
     """JSON schema lets a NaN pass every comparison, so it is refused here."""
     if isinstance(value, dict):
         for key, item in value.items():

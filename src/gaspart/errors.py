@@ -4,12 +4,12 @@
 class SceneError(ValueError):
     """What was asked for cannot be: one line that names the key, the value and the rule it breaks."""
 
-    def __init__(self, key: str, value: object, rule: str, file: str | None = None):
+    def __init__(self, key: str, value: object, rule: str, file: str | None = None) -> None:
         self.key, self.value, self.rule, self.file = key, value, rule, file
         where = f"{file}: " if file else ""
         super().__init__(f"{where}{key} = {value!r}: {rule}")
 
-    def __reduce__(self):
+    def __reduce__(self) -> tuple:
         return (type(self), (self.key, self.value, self.rule, self.file))
 
     def inside(self, prefix: str, file: str | None = None) -> "SceneError":

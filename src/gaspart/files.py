@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from gaspart.errors import SceneError
 
 
 @cache
-def _loader():
+def _loader() -> type:
     import yaml
 
     # the same in C where PyYAML was built with it
-    class Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):
+    fastest: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+    class Loader(fastest):
         """YAML 1.1 reads 1e-3 as text; people mean a number."""
 
     Loader.add_implicit_resolver(
@@ -27,7 +31,7 @@ def _loader():
     return Loader
 
 
-def parse_yaml(text: str, name: str = "YAML") -> object:
+def parse_yaml(text: str, name: str = "YAML") -> Any:
     """The content of a YAML text, safely loaded. Raises SceneError naming `name`."""
     import yaml
 
@@ -38,7 +42,7 @@ def parse_yaml(text: str, name: str = "YAML") -> object:
         raise SceneError("YAML", first, "is not valid", name) from None
 
 
-def read_yaml(path: str | Path) -> object:
+def read_yaml(path: str | Path) -> Any:
     """The content of a YAML file. Raises SceneError if it cannot be read."""
     try:
         text = Path(path).read_text(encoding="utf-8")
@@ -61,7 +65,7 @@ def write_yaml(path: str | Path, content: object) -> None:
 
 
 @contextmanager
-def whole_file(path: str | Path):
+def whole_file(path: str | Path) -> Iterator[Path]:
     """Give a `.partial` path to write to; on success it is renamed to `path`, atomically."""
     path = Path(path)
     partial = path.with_name(path.name + ".partial")
@@ -70,7 +74,7 @@ def whole_file(path: str | Path):
 
 
 @contextmanager
-def writing(path: str | Path):
+def writing(path: str | Path) -> Iterator[Path]:
     """A `.partial` path, as `whole_file` gives; one SceneError for a missing folder, a full disk ..."""
     try:
         with whole_file(path) as partial:

@@ -13,10 +13,16 @@ import itertools
 import math
 from dataclasses import dataclass, replace
 from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from gaspart.errors import SceneError
 from gaspart.point import Point, name_of
 from gaspart.point_scene import check_scene, extents, scene
+
+if TYPE_CHECKING:
+    from gaspart.engines import EventDriven, TimeStepped
+    from gaspart.matter import Species
+    from gaspart.scene import Scene
 
 LENGTHS = ("collisions_per_body", "duration", "steps")
 ENGINE_KEYS = {
@@ -132,7 +138,7 @@ def check(point: Point) -> None:
         raise SceneError(f"{where}.steps", settings["steps"], f"has no meaning with engine: {engine}")
 
 
-def engine(point: Point):
+def engine(point: Point) -> EventDriven | TimeStepped:
     """The point's engine: ``EventDriven`` or ``TimeStepped``. Raises SceneError."""
     from gaspart.engines import EventDriven, TimeStepped
 
@@ -281,7 +287,7 @@ def _unit_of_time(point: Point, unit: str) -> float:
     return 1.0 / float(rate)
 
 
-def _only_species(made):
+def _only_species(made: Scene) -> Species | None:
     """The species of a scene that holds nothing else; None if there is more to it."""
     from gaspart.scene import Scene
 
@@ -290,7 +296,7 @@ def _only_species(made):
     return kinds[0] if len(kinds) == 1 and not kinds[0].fixed and made == plain else None
 
 
-def _combinations(grid, where: str) -> list[dict]:
+def _combinations(grid: Any, where: str) -> list[dict]:
     """The product of a mapping's lists; of a list of mappings, one after the other."""
     if isinstance(grid, list):
         if not grid:

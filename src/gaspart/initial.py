@@ -42,7 +42,7 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
     if ordered:
         positions = lattice(scene, rng, slab="slab" in ordered)
         if any(scene.wall_at(place, radius) for place, radius in zip(positions, radii, strict=True)):
-            raise SceneError("arrangement", *ordered, "a body would overlap an interior wall; use random")
+            raise SceneError("arrangement", min(ordered), "a body would overlap an interior wall; use random")
     elif "compressed" in arrangements:
         from gaspart.compression import compressed
 
@@ -134,7 +134,7 @@ def random_insertion(
 
     for n, body in enumerate(scene.bodies):  # their places are given, and the scene has checked them
         positions[n] = body.position
-        box = boxes.index_of(body.position)
+        box = boxes.index_of(np.array(body.position))
         following[n], head[box] = head[box], n
     placed = explicit
     for n in species:
@@ -211,14 +211,16 @@ def _periods(cells: np.ndarray, walled: np.ndarray, basis: np.ndarray) -> np.nda
     return np.where(walled, np.maximum(cells - 1 + basis.max(axis=0), 0.5), cells)
 
 
-def _spacing(lengths, cells, walled, basis) -> float:
+def _spacing(lengths: np.ndarray, cells: np.ndarray, walled: np.ndarray, basis: np.ndarray) -> float:
     """Shortest distance of two sites."""
     edge = lengths / _periods(np.asarray(cells), walled, basis)
     diagonals = (basis[1:] * edge) if len(basis) > 1 else np.empty((0, len(edge)))
     return float(min(np.sqrt((diagonals**2).sum(axis=1)).min(), edge.min()))
 
 
-def _cell_counts(lengths, shape, walled, count, per_cell):
+def _cell_counts(
+    lengths: np.ndarray, shape: np.ndarray, walled: np.ndarray, count: int, per_cell: int
+) -> list[np.ndarray]:
     """Numbers of cells (d,) near the ideal shape that hold `count` sites."""
     ideal = (lengths / shape) * (count / per_cell / np.prod(lengths / shape)) ** (1.0 / len(lengths))
     reach = np.stack(np.meshgrid(*([np.arange(-2, 4)] * len(lengths)), indexing="ij"), axis=-1)

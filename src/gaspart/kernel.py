@@ -10,10 +10,13 @@ from __future__ import annotations
 import hashlib
 import os
 import warnings
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any, TypeVar
 
 import numba
 
+F = TypeVar("F", bound=Callable)
 _HERE = Path(__file__).parent
 KERNEL_MODULES = (
     "kernel.py",
@@ -82,7 +85,7 @@ if not _CACHING:
     )
 
 
-def _compile(function, **options):
+def _compile(function: F, **options: Any) -> F:
     before = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = str(_CACHE)
     try:
@@ -91,7 +94,7 @@ def _compile(function, **options):
         numba.config.CACHE_DIR = before
 
 
-def kernel(function):
+def kernel(function: F) -> F:
     """Compile `function` with numba under the package's policy. It must not make arrays.
 
     Without numba's reference counting, that is: counting the arrays that pass between helpers costs several
@@ -100,18 +103,18 @@ def kernel(function):
     return _compile(function, _nrt=False)
 
 
-def helper(function):
+def helper(function: F) -> F:
     """The same for a small function that is inlined where it is used: LLVM by itself leaves a call, which
     passes every array as seven words."""
     return _compile(function, _nrt=False, forceinline=True)
 
 
-def allocating_kernel(function):
+def allocating_kernel(function: F) -> F:
     """The same for a function that makes arrays."""
     return _compile(function)
 
 
-def parallel_kernel(function):
+def parallel_kernel(function: F) -> F:
     """The same for a function whose `prange` loops are shared among threads. What its parts write must not
     depend on one another, so that it does not matter which is done when."""
     return _compile(function, parallel=True)

@@ -14,7 +14,7 @@ SHARED = (*LATTICES, "compressed")
 ARRANGEMENTS = ("random", *SHARED)
 
 
-def _check_matter(thing) -> None:
+def _check_matter(thing: Species | Body) -> None:
     """What species and bodies have in common: radius, mass, moment of inertia, fixed, vibration."""
     settle(
         thing,
@@ -57,7 +57,7 @@ class Species:
     fixed: bool = False
     vibration: float | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         settle(self, count=count_of("count", self.count))
         _check_matter(self)
         for key in ("speed", "temperature"):
@@ -94,7 +94,7 @@ class Body:
     fixed: bool = False
     vibration: float | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         settle(
             self,
             position=vector("position", self.position),
@@ -116,7 +116,7 @@ class Body:
         return self.vibration is not None
 
     @property
-    def spin_vector(self) -> tuple[float, float, float]:
+    def spin_vector(self) -> tuple[float, ...]:
         """(3,) the spin as a vector, which in 2D stands on the plane."""
         if self.spin is None:
             return 0.0, 0.0, 0.0
@@ -132,7 +132,7 @@ class Restitution:
     normal: float = 1.0
     tangential: float = -1.0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for key, least in (("normal", 0.0), ("tangential", -1.0)):
             rule = f"must be from {least:g} to 1"
             value = number(key, getattr(self, key), rule, least=least)
@@ -156,10 +156,10 @@ class Wall:
     """A straight wall inside a container of two dimensions, from `start` (2,) to `end` (2,): hit from both
     sides, and at its ends, which are solid."""
 
-    start: tuple[float, float]
-    end: tuple[float, float]
+    start: tuple[float, ...]
+    end: tuple[float, ...]
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         settle(self, start=vector("start", self.start, 2), end=vector("end", self.end, 2))
         if self.start == self.end:
             raise SceneError("end", self.end, "a wall must have a length; for a post take a fixed body")
@@ -169,7 +169,7 @@ class Wall:
         """Both ends, by their keys."""
         return {"start": self.start, "end": self.end}
 
-    def distance(self, point: tuple[float, float]) -> float:
+    def distance(self, point: tuple[float, ...]) -> float:
         """How far a point is from the wall, its ends included."""
         (ax, ay), (bx, by), (x, y) = self.start, self.end, point
         s = ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / ((bx - ax) ** 2 + (by - ay) ** 2)
@@ -182,10 +182,10 @@ class Plate:
     """A flat rectangular wall inside a container of three dimensions: a `corner` (3,), and the `edges` (2, 3)
     that lead from it, at right angles. Hit from both sides, at its edges and its corners, which are solid."""
 
-    corner: tuple[float, float, float]
-    edges: tuple[tuple[float, float, float], tuple[float, float, float]]
+    corner: tuple[float, ...]
+    edges: tuple[tuple[float, ...], ...]
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         rule = "must be two lists of 3 numbers"
         if not isinstance(self.edges, (tuple, list)) or len(self.edges) != 2:
             raise SceneError("edges", self.edges, rule)
@@ -205,7 +205,7 @@ class Plate:
         far = {key: tuple(map(sum, zip(self.corner, *edges, strict=True))) for key, edges in ends.items()}
         return {"corner": self.corner, **far}
 
-    def distance(self, point: tuple[float, float, float]) -> float:
+    def distance(self, point: tuple[float, ...]) -> float:
         """How far a point is from the plate, its rim included."""
         away = [x - y for x, y in zip(point, self.corner, strict=True)]
         for edge in self.edges:

@@ -10,6 +10,7 @@ import numpy as np
 
 from gaspart.boxes import Boxes
 from gaspart.kernel import helper
+from gaspart.matter import Plate
 from gaspart.scene import Scene
 
 _SLACK = 1e-9  # as in `segments`
@@ -25,7 +26,7 @@ def plates_of(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """(M, 11) plates, and (M,) the number of the wall that each stands for."""
     lengths, reach = np.array(scene.container.lengths), scene.largest_radius * (1 + _SLACK)
     rows, walls = [], []
-    for n, wall in enumerate(scene.walls):
+    for n, wall in enumerate(wall for wall in scene.walls if isinstance(wall, Plate)):
         edges = np.array(wall.edges)
         sizes = np.sqrt((edges**2).sum(axis=1, keepdims=True))
         units = np.hstack([edges / sizes, sizes]).ravel()

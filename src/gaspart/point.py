@@ -72,7 +72,7 @@ def name_of(varying: dict, where: str) -> str:
     return ",".join(f"{key}={_text(value, f'{where}.{key}')}" for key, value in varying.items()) or "single"
 
 
-def _text(value, where: str) -> str:
+def _text(value: object, where: str) -> str:
     if isinstance(value, (list, tuple)):
         return "x".join(_text(item, where) for item in value)
     text = str(value).lower() if isinstance(value, bool) or value is None else str(value)

@@ -9,10 +9,14 @@ import math
 from copy import deepcopy
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from gaspart.errors import SceneError
 from gaspart.files import read_yaml
 from gaspart.point import Point
+
+if TYPE_CHECKING:
+    from gaspart.scene import Scene
 
 EXTENTS = ("count", "radius", "packing_fraction", "side")
 _OTHERS = ("dimension", "boundary", "mass", "temperature", "speed", "arrangement", "centres_to_walls")
@@ -38,7 +42,7 @@ def check_scene(point: Point) -> None:
         raise SceneError(where, given, "exactly three of count, radius, packing_fraction, side must be given")
 
 
-def scene(point: Point):
+def scene(point: Point) -> Scene:
     """The point's ``Scene``. Raises SceneError."""
     check_scene(point)
     return _read(point) if "scene" in point.settings else _made(point)
@@ -57,8 +61,8 @@ def extents(point: Point) -> tuple[int, float, tuple[float, ...]]:
         return read.count, read.largest_radius, read.container.lengths
     dimension = settings["dimension"]
     unit = math.pi if dimension == 2 else 4.0 / 3.0 * math.pi
-    count, radius = settings.get("count"), settings.get("radius")
-    fraction, side = settings.get("packing_fraction"), settings.get("side")
+    given: list[Any] = [settings.get(key) for key in EXTENTS]
+    count, radius, fraction, side = given
     if side is not None:
         lengths = tuple(map(float, side)) if isinstance(side, (list, tuple)) else (float(side),) * dimension
         if len(lengths) != dimension:
@@ -73,7 +77,7 @@ def extents(point: Point) -> tuple[int, float, tuple[float, ...]]:
     return int(count), float(radius), lengths
 
 
-def _made(point: Point):
+def _made(point: Point) -> Scene:
     """The scene of one species that the settings describe."""
     from gaspart.scene import Container, Scene, Species
 
@@ -96,7 +100,7 @@ def _made(point: Point):
     )
 
 
-def _read(point: Point):
+def _read(point: Point) -> Scene:
     """The scene of the scene file, with the values that the settings replace."""
     from gaspart.scene import Scene
 
@@ -116,7 +120,7 @@ def _read(point: Point):
 
 
 @cache
-def _file(path: str, changed: int):
+def _file(path: str, changed: int) -> tuple[Any, Scene]:
     """What a scene file holds, and the scene that it is by itself. Read again when it has changed."""
     from gaspart.scene import Scene
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +17,9 @@ from gaspart.errors import SceneError
 from gaspart.files import dump_yaml, parse_yaml
 from gaspart.random import stream
 from gaspart.scene import Scene, count_of, number
+
+if TYPE_CHECKING:
+    import netCDF4
 
 ROUNDING = 1e-9
 """Relative deviation from a whole multiple that is put down to rounding."""
@@ -45,7 +50,7 @@ class Recipe:
     displacements: bool = False
     follow: int | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         stream(self.seed)  # complains of a seed that is none
         for key in ("duration", "sample_interval"):
             value = number(key, getattr(self, key), "must be positive", above=0.0)
@@ -116,7 +121,7 @@ class Recipe:
 
 
 @contextmanager
-def opened(path: Path):
+def opened(path: Path) -> Iterator[netCDF4.Dataset]:
     """A trajectory of ours as a netCDF4.Dataset. Raises SceneError for a file that is none, or truncated."""
     import netCDF4
 

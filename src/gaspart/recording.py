@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -38,7 +39,7 @@ class Recording:
         checkpoint: Path,
         every: float,
         progress: Progress | None,
-    ):
+    ) -> None:
         self._recipe, self._simulation, self._frames = recipe, simulation, frames
         self._header, self._checkpoint, self._every, self._progress = header, checkpoint, every, progress
         self._origin = simulation.initial_state.unwrapped
@@ -83,14 +84,16 @@ class Recording:
             goal = frame * multiple("sample_interval", recipe.sample_interval, "time_step", step)
             while (done := simulation.tally.steps) < goal:
                 # half a step more than wanted, lest rounding cost a step
-                yield self._advance(goal * step, until=(min(goal, done + self._stretch) + 0.5) * step)
+                self._advance(goal * step, until=(min(goal, done + self._stretch) + 0.5) * step)
+                yield
             return
         until = frame * recipe.sample_interval
         while simulation.time < until:
-            yield self._advance(until, until=until, max_events=self._stretch)
+            self._advance(until, until=until, max_events=self._stretch)
+            yield
         simulation.advance(until=until)  # events at this very time that a stretch may have left
 
-    def _advance(self, goal: float, **limits) -> None:
+    def _advance(self, goal: float, **limits: Any) -> None:
         """One stretch towards the time `goal`; the next one is fitted to take about `_STRETCH` seconds."""
         begun = time.monotonic()
         self._simulation.advance(**limits)

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from gaspart.errors import SceneError
+
+if TYPE_CHECKING:
+    from gaspart.scene import Container
 
 _RESOLVED = 1e12  # diameters in the longest side, at most: contacts are then right to a thousandth
 _ROOM = 1e-6  # of a radius: what a body between two walls must have at least
 
 
-def check_room(container, centres_to_walls: bool, key: str, radius: float, fixed: bool) -> None:
+def check_room(container: Container, centres_to_walls: bool, key: str, radius: float, fixed: bool) -> None:
     """Raise SceneError, with `key`, if a body of this radius does not fit into the container, cannot move in
     it though it is not `fixed`, or is so small that its contacts are lost in rounding."""
     shortest, longest = min(container.lengths), max(container.lengths)

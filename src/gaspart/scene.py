@@ -7,9 +7,11 @@ units; masses are relative to the reference species; k_B = 1.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field, replace
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 from gaspart.errors import SceneError
 from gaspart.files import read_yaml, write_yaml
@@ -36,7 +38,7 @@ class Container:
     lengths: tuple[float, ...]
     boundary: str | tuple[str, ...] = "wall"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         lengths = vector("lengths", self.lengths)
         if len(lengths) not in (2, 3):
             raise SceneError("lengths", self.lengths, "a container has 2 or 3 sides")
@@ -87,15 +89,15 @@ class Scene:
     """
 
     container: Container
-    species: tuple[Species, ...] = ()
-    bodies: tuple[Body, ...] = ()
+    species: Sequence[Species] = ()
+    bodies: Sequence[Body] = ()
     centres_to_walls: bool = False
     gravity: tuple[float, ...] | None = None
     restitution: Restitution | None = None
-    walls: tuple[Wall | Plate, ...] = ()
+    walls: Sequence[Wall | Plate] = ()
     faces: dict[str, Thermal | Well | Sticky] = field(default_factory=dict, hash=False)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         settle(self, species=tuple(self.species), bodies=tuple(self.bodies), walls=tuple(self.walls))
         if self.gravity is not None:
             self._check_gravity()
@@ -181,6 +183,11 @@ class Scene:
         return self.container.dimension
 
     @property
+    def kinds(self) -> tuple[Species | Body, ...]:
+        """Whatever has a radius and a mass: all species, and all single bodies."""
+        return (*self.species, *self.bodies)
+
+    @property
     def rough(self) -> bool:
         """Whether contacts change spins."""
         return self.restitution is not None and self.restitution.rough
@@ -194,7 +201,7 @@ class Scene:
     def vibrates(self) -> bool:
         """Whether any body may keep energy in a vibration: a fixed one, or one that sticks to a face."""
         sticky = any(isinstance(face, Sticky) for face in self.faces.values())
-        return sticky or any(thing.vibrates for thing in (*self.bodies, *self.species))
+        return sticky or any(thing.vibrates for thing in self.kinds)
 
     @property
     def number_density(self) -> float:
@@ -240,20 +247,20 @@ class Scene:
 
     def with_bodies(self, *bodies: Body) -> Scene:
         """A new scene with these bodies added."""
-        return replace(self, bodies=self.bodies + bodies)
+        return replace(self, bodies=(*self.bodies, *bodies))
 
     def with_species(self, *species: Species) -> Scene:
         """A new scene with these species added."""
-        return replace(self, species=self.species + species)
+        return replace(self, species=(*self.species, *species))
 
     def with_walls(self, *walls: Wall | Plate) -> Scene:
         """A new scene with these walls added."""
-        return replace(self, walls=self.walls + walls)
+        return replace(self, walls=(*self.walls, *walls))
 
     def to_dict(self) -> dict:
         """Plain lists and mappings, as they stand in a scene file."""
 
-        def plain(value):
+        def plain(value: Any) -> Any:
             if isinstance(value, dict):
                 return {k: plain(x) for k, x in value.items() if x is not None and (x or k not in _ABSENT)}
             return [plain(item) for item in value] if isinstance(value, tuple) else value

@@ -12,6 +12,7 @@ import numpy as np
 
 from gaspart.boxes import Boxes
 from gaspart.kernel import helper
+from gaspart.matter import Wall
 from gaspart.scene import Scene
 
 _SLACK = 1e-9  # by which neighbourhoods are drawn wider, lest rounding leave a wall out of a box's list
@@ -21,7 +22,7 @@ def segments_of(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """(M, 5) segments, and (M,) the number of the wall that each stands for."""
     lengths, reach = np.array(scene.container.lengths), scene.largest_radius * (1 + _SLACK)
     rows, walls = [], []
-    for n, wall in enumerate(scene.walls):
+    for n, wall in enumerate(wall for wall in scene.walls if isinstance(wall, Wall)):
         start, end = np.array(wall.start), np.array(wall.end)
         length = float(np.hypot(*(end - start)))
         for lap in product(*((0, -1, 1) if periodic else (0,) for periodic in scene.container.periodic)):

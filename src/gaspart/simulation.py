@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
+from typing import Any
 
 import numpy as np
 
@@ -42,7 +43,9 @@ class Simulation:
     Raises SceneError if the scene cannot be set up, or the engine cannot model it.
     """
 
-    def __init__(self, scene: Scene, engine: EventDriven | TimeStepped, seed: int | tuple[int, ...] = 0):
+    def __init__(
+        self, scene: Scene, engine: EventDriven | TimeStepped, seed: int | tuple[int, ...] = 0
+    ) -> None:
         self.scene, self.engine, self.seed = scene, engine, seed
         self._log: EventLog | None = None
         self._advanced = False
@@ -58,26 +61,33 @@ class Simulation:
         self._energy = self._initial.energy
         self._dynamics = self.engine.start(self.scene, self._initial, self.seed)
 
-    def add(self, position, velocity, radius: float, mass: float = 1.0, **properties) -> None:
+    def add(
+        self,
+        position: Iterable[float],
+        velocity: Iterable[float],
+        radius: float,
+        mass: float = 1.0,
+        **properties: Any,
+    ) -> None:
         """Add one body (properties as in `Body`): `scene` becomes a new, validated scene. Refused once the
         simulation has advanced."""
         self._change(
             self.scene.with_bodies(Body(tuple(position), tuple(velocity), radius, mass, **properties))
         )
 
-    def add_random(self, count: int, radius: float, **properties) -> None:
+    def add_random(self, count: int, radius: float, **properties: Any) -> None:
         """Add `count` bodies at random places (properties as in `Species`), before the first advance."""
         self._change(self.scene.with_species(Species(count, radius, **properties)))
 
-    def add_wall(self, start, end) -> None:
+    def add_wall(self, start: Iterable[float], end: Iterable[float]) -> None:
         """Add an interior wall from `start` to `end`. Refused after the first advance."""
         self._change(self.scene.with_walls(Wall(tuple(start), tuple(end))))
 
-    def add_plate(self, corner, edges) -> None:
+    def add_plate(self, corner: Iterable[float], edges: Iterable[Iterable[float]]) -> None:
         """Add an interior wall of three dimensions (see `Plate`). Refused after the first advance."""
         self._change(self.scene.with_walls(Plate(tuple(corner), tuple(map(tuple, edges)))))
 
-    def add_box(self, lower, upper) -> None:
+    def add_box(self, lower: Iterable[float], upper: Iterable[float]) -> None:
         """Add the walls of a rectangle or of a cuboid, given opposite corners. Refused after the first
         advance."""
         self._change(self.scene.with_walls(*box_of_walls(tuple(lower), tuple(upper))))

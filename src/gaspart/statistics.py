@@ -7,9 +7,12 @@ unequal length or not finite raise ValueError.
 """
 
 import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy import stats
 
 
@@ -62,7 +65,7 @@ class Fit:
     residuals: np.ndarray
 
     @property
-    def errors(self):
+    def errors(self) -> np.ndarray:
         """Standard errors of the parameters."""
         return np.sqrt(np.diag(self.covariance))
 
@@ -102,7 +105,7 @@ class Optimum:
     interior: bool
 
 
-def _series(name, values, shortest):
+def _series(name: str, values: ArrayLike, shortest: int) -> np.ndarray:
     values = np.asarray(values, dtype=float)
     if values.ndim != 1 or values.size < shortest:
         raise ValueError(f"{name}: shape {values.shape} (must be a series of at least {shortest} values)")
@@ -111,20 +114,20 @@ def _series(name, values, shortest):
     return values
 
 
-def _positive_errors(errors, size):
+def _positive_errors(errors: ArrayLike, size: int) -> np.ndarray:
     errors = np.broadcast_to(np.asarray(errors, dtype=float), (size,))
     if not np.all((errors > 0.0) & np.isfinite(errors)):
         raise ValueError("errors: must be positive and finite")
     return errors
 
 
-def mean_of(values):
+def mean_of(values: ArrayLike) -> Estimate:
     """Mean of independent numbers and its standard error from their scatter (N - 1). At least two."""
     values = _series("values", values, 2)
     return Estimate(float(values.mean()), float(values.std(ddof=1) / math.sqrt(values.size)), values.size)
 
 
-def combine(values, errors):
+def combine(values: ArrayLike, errors: ArrayLike) -> Combination:
     """Mean weighted by 1 / error^2, with the chi-square of the values about it."""
     values = _series("values", values, 1)
     weights = 1.0 / _positive_errors(errors, values.size) ** 2
@@ -135,7 +138,7 @@ def combine(values, errors):
     return Combination(mean, float(weights.sum() ** -0.5), chi_square, freedom, p_value)
 
 
-def block_average(series, minimum_blocks=16):
+def block_average(series: ArrayLike, minimum_blocks: int = 16) -> BlockAverage:
     """Mean and standard error of a stationary correlated series, by blocks of doubling length.
 
     Flyvbjerg and Petersen, J. Chem. Phys. 91, 461 (1989): the error from blocks of 1, 2, 4 ... samples grows
@@ -174,7 +177,7 @@ def block_average(series, minimum_blocks=16):
     )
 
 
-def autocorrelation_time(series, window=6.0):
+def autocorrelation_time(series: ArrayLike, window: float = 6.0) -> float:
     """Integrated autocorrelation time 1/2 + sum of rho(k), in samples: 1/2 for independent ones.
 
     The sum ends at the first k >= window * time (Sokal's self-consistent window; Madras and Sokal 1988). A
@@ -192,7 +195,7 @@ def autocorrelation_time(series, window=6.0):
     return float(max(0.5, times[reached[0] if reached.size else -1]))
 
 
-def fit_linear(design, y, errors=None):
+def fit_linear(design: ArrayLike, y: ArrayLike, errors: ArrayLike | None = None) -> Fit:
     """Least-squares fit of y = design @ values (design: (points, parameters)), weighted by 1 / errors^2.
 
     With errors: covariance from them, and a chi-square test of the model. Without: all points count alike,
@@ -224,7 +227,13 @@ def fit_linear(design, y, errors=None):
     return Fit(values, covariance, chi_square, freedom, p_value, residuals)
 
 
-def fit_polynomial(x, y, errors=None, powers=(0, 1), fixed=None):
+def fit_polynomial(
+    x: ArrayLike,
+    y: ArrayLike,
+    errors: ArrayLike | None = None,
+    powers: Sequence[int] = (0, 1),
+    fixed: Mapping[int, float] | None = None,
+) -> Fit:
     """Fit y = sum of values[i] x^powers[i] plus the terms held fixed, {power: coefficient}; see `fit_linear`.
 
     The result does not include the uncertainty of the fixed coefficients: repeat the fit with them shifted to
@@ -238,7 +247,7 @@ def fit_polynomial(x, y, errors=None, powers=(0, 1), fixed=None):
     return fit_linear(np.stack([x**power for power in powers], axis=1), y - held, errors)
 
 
-def fit_power_law(x, y, errors=None):
+def fit_power_law(x: ArrayLike, y: ArrayLike, errors: ArrayLike | None = None) -> PowerLaw:
     """Fit y = amplitude x^exponent as a line of ln y against ln x (x, y > 0; errors: of y); see `fit_linear`.
 
     The errors become errors / y of the logarithm, good while they are below some 20 %.
@@ -266,7 +275,7 @@ def fit_power_law(x, y, errors=None):
     )
 
 
-def histogram_chi_square(samples, cdf, bins):
+def histogram_chi_square(samples: ArrayLike, cdf: Callable[[np.ndarray], Any], bins: int) -> Histogram:
     """Chi-square of independent samples against a distribution without fitted parameters, given by its `cdf`.
 
     The bins have equal probability: cdf(samples) is uniform on [0, 1]. At least 5 samples a bin.
@@ -280,7 +289,9 @@ def histogram_chi_square(samples, cdf, bins):
     return Histogram(chi_square, bins - 1, float(stats.chi2.sf(chi_square, bins - 1)), counts, expected)
 
 
-def bootstrap(function, samples, repeats=1000, seed=0):
+def bootstrap(
+    function: Callable[..., float], samples: ArrayLike, repeats: int = 1000, seed: int = 0
+) -> Estimate:
     """function(samples) with its standard error from resampled data (with replacement, along axis 0).
 
     `seed`: of the resampling; the same seed gives the same error. `function` returns one number.
@@ -294,22 +305,22 @@ def bootstrap(function, samples, repeats=1000, seed=0):
     return Estimate(float(function(samples)), float(scatter), samples.shape[0])
 
 
-def jackknife(function, *samples):
+def jackknife(function: Callable[..., Any], *samples: ArrayLike) -> tuple[Any, Any]:
     """function(means of the samples) with its standard error, each block left out in turn.
 
     samples: arrays whose axis 0 runs over the same n independent blocks (at least two); `function` takes
     their means over blocks and returns a number or an array. For smooth functions the error is right to first
     order, correlations between the samples included (Tukey 1958). Returns (value, error), arrays.
     """
-    samples = [np.asarray(sample, dtype=float) for sample in samples]
-    blocks = samples[0].shape[0]
-    if blocks < 2 or any(sample.shape[0] != blocks for sample in samples):
-        raise ValueError(f"samples: {[len(sample) for sample in samples]} blocks (as many, and at least 2)")
-    sums = [sample.sum(axis=0) for sample in samples]
+    series = [np.asarray(sample, dtype=float) for sample in samples]
+    blocks = series[0].shape[0]
+    if blocks < 2 or any(sample.shape[0] != blocks for sample in series):
+        raise ValueError(f"samples: {[len(sample) for sample in series]} blocks (as many, and at least 2)")
+    sums = [sample.sum(axis=0) for sample in series]
     partial = np.array(
         [
             function(
-                *((total - sample[k]) / (blocks - 1) for total, sample in zip(sums, samples, strict=True))
+                *((total - sample[k]) / (blocks - 1) for total, sample in zip(sums, series, strict=True))
             )
             for k in range(blocks)
         ]
@@ -318,7 +329,7 @@ def jackknife(function, *samples):
     return np.asarray(function(*(total / blocks for total in sums)), dtype=float), error
 
 
-def optimum(x, cost, errors=None, within=3.0):
+def optimum(x: ArrayLike, cost: ArrayLike, errors: ArrayLike | None = None, within: float = 3.0) -> Optimum:
     """Where a cost is least: a parabola of ln cost against ln x, through the points near the minimum.
 
     Taken are the points whose cost is below `within` times the least one (at least four, the cheapest
@@ -352,7 +363,7 @@ def optimum(x, cost, errors=None, within=3.0):
     return Optimum(math.exp(vertex + middle), math.exp(low + middle), math.exp(high + middle), least, True)
 
 
-def _fieller(slope, curvature, covariance, quantile):
+def _fieller(slope: float, curvature: float, covariance: np.ndarray, quantile: float) -> tuple[float, float]:
     """Interval of u where slope + 2 curvature u differs from 0 by at most `quantile` standard errors."""
     # (slope + 2 c u)^2 <= q^2 (V_ss + 4 V_sc u + 4 V_cc u^2): a quadratic in u.
     square = quantile**2

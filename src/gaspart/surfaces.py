@@ -6,10 +6,13 @@ A face without a kind is hard, and follows the scene's law of contacts.
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from gaspart.errors import SceneError
 from gaspart.validation import from_mapping, number, settle
+
+if TYPE_CHECKING:
+    from gaspart.scene import Scene
 
 FACES = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
 COMPONENTS = ("all", "normal")
@@ -27,9 +30,9 @@ class Thermal:
     temperature: float
     components: str = "all"
 
-    kind: ClassVar[str] = "thermal"
+    kind: ClassVar[Literal["thermal"]] = "thermal"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         settle(self, temperature=number("temperature", self.temperature, "must be positive", above=0.0))
         if self.components not in COMPONENTS:
             raise SceneError("components", self.components, f"must be one of {COMPONENTS}")
@@ -45,9 +48,9 @@ class Well:
     width: float
     temperature: float | None = None
 
-    kind: ClassVar[str] = "well"
+    kind: ClassVar[Literal["well"]] = "well"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for key in ("depth", "width"):
             settle(self, **{key: number(key, getattr(self, key), "must be positive", above=0.0)})
         if self.temperature is not None:
@@ -66,13 +69,15 @@ class Sticky:
 
     momentum: float
 
-    kind: ClassVar[str] = "sticky"
+    kind: ClassVar[Literal["sticky"]] = "sticky"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         settle(self, momentum=number("momentum", self.momentum, "must be positive", above=0.0))
 
 
-KINDS = {surface.kind: surface for surface in (Thermal, Well, Sticky)}
+KINDS: dict[str, type[Thermal | Well | Sticky]] = {
+    surface.kind: surface for surface in (Thermal, Well, Sticky)
+}
 
 
 def surface_from_dict(mapping: object, where: str) -> Thermal | Well | Sticky:
@@ -91,7 +96,15 @@ def surface_to_dict(surface: Thermal | Well | Sticky) -> dict:
     return {"kind": surface.kind, **asdict(surface)}
 
 
-def check_faces(scene) -> None:
+def thermal_face(scene: Scene, name: str) -> Thermal:
+    """The face of this name, which must be at a temperature. Raises SceneError."""
+    face = scene.faces.get(name)
+    if not isinstance(face, Thermal):
+        raise SceneError(f"faces.{name}", face, "must be thermal")
+    return face
+
+
+def check_faces(scene: Scene) -> None:
     """Raise SceneError for faces that a scene cannot have."""
     if not isinstance(scene.faces, dict):
         raise SceneError("faces", scene.faces, "must be a mapping of faces to their kinds")

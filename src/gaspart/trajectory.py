@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import fcntl
 import os
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO
 
 from gaspart import amber, provenance
 from gaspart.checkpoint import read_checkpoint, remove_checkpoint
@@ -19,6 +21,9 @@ from gaspart.recipe import Recipe, begun_as, read_recipe, stored_revision
 from gaspart.recording import Progress, Recording
 from gaspart.scene import Scene, number
 from gaspart.simulation import Simulation
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _REDUCED = {
     "angstrom": "length",
@@ -40,7 +45,7 @@ def checkpoint_path(path: Path) -> Path:
     return path.with_name(path.name + ".checkpoint.npz")
 
 
-def open_trajectory(path: str | Path):
+def open_trajectory(path: str | Path) -> xr.Dataset:
     """A trajectory, or the finished part of a `.partial` one, as an xarray.Dataset, read as it is used.
 
     Dimensions frame, atom, spatial (d) and face (2d); time (frame), radius and type (atom) are coordinates.
@@ -64,7 +69,8 @@ def open_trajectory(path: str | Path):
     data = data.drop_vars(["cell_spatial", "cell_angular"])
     faces = amber.face_names(scene.dimension, len(scene.walls))
     data = data.assign_coords(spatial=list("xyz"[: scene.dimension]), face=faces)
-    for name, variable in data.variables.items():
+    for key, variable in data.variables.items():
+        name = str(key)
         told = variable.attrs.get("units", "1")
         if variable.dtype.kind in "fi":  # what is no length, time or energy is a number of things, or a ratio
             variable.attrs["units"] = _UNITS.get(name, _REDUCED.get(told, told))
@@ -156,7 +162,14 @@ def _is_blank(path: Path) -> bool:
         return amber.is_blank(file)
 
 
-def _record(wanted: Recipe, simulation: Simulation, file, path: Path, every: float, progress) -> None:
+def _record(
+    wanted: Recipe,
+    simulation: Simulation,
+    file: BinaryIO,
+    path: Path,
+    every: float,
+    progress: Progress | None,
+) -> None:
     """Write all frames that the open partial file is still without."""
     partial, checkpoint = partial_path(path), checkpoint_path(path)
     continued = begun_as(partial, wanted)
@@ -172,7 +185,7 @@ def _record(wanted: Recipe, simulation: Simulation, file, path: Path, every: flo
 
 
 @contextmanager
-def _writing(path: Path):
+def _writing(path: Path) -> Iterator[None]:
     """One line for a full disk, a folder that is read-only, and the like."""
     try:
         yield
@@ -182,7 +195,7 @@ def _writing(path: Path):
 
 
 @contextmanager
-def _locked(partial: Path):
+def _locked(partial: Path) -> Iterator[BinaryIO]:
     """The partial file, open to read and write, without a buffer, and to this process alone."""
     with open(os.open(partial, os.O_RDWR | os.O_CREAT, 0o666), "r+b", buffering=0) as file:
         try:

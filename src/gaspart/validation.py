@@ -5,20 +5,24 @@ from __future__ import annotations
 import math
 import numbers
 from dataclasses import fields
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from gaspart.errors import SceneError
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+T = TypeVar("T", bound="DataclassInstance")
 
 SMALLEST, LARGEST = 1e-60, 1e60
 """Sizes of what contacts multiply four of, which must be neither lost nor infinite."""
 
 
-def number(
-    key: str, value: object, rule: str, *, above: float = -math.inf, least: float = -math.inf
-) -> float:
+def number(key: str, value: Any, rule: str, *, above: float = -math.inf, least: float = -math.inf) -> float:
     """`value` as a finite float greater than `above` and at least `least`, or a SceneError with `rule`."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real) or not math.isfinite(value):
         raise SceneError(key, value, rule)
-    if not (value > above and value >= least):
+    if not (float(value) > above and float(value) >= least):
         raise SceneError(key, value, rule)
     return float(value)
 
@@ -32,7 +36,7 @@ def size(key: str, value: float | tuple[float, ...]) -> None:
         raise SceneError(key, value, rule)
 
 
-def count_of(key: str, value: object, least: int = 0) -> int:
+def count_of(key: str, value: Any, least: int = 0) -> int:
     """`value` as an integer of at least `least`."""
     rule = f"must be a whole number of at least {least}"
     if number(key, value, rule, least=least) != int(value):
@@ -40,7 +44,7 @@ def count_of(key: str, value: object, least: int = 0) -> int:
     return int(value)
 
 
-def vector(key: str, value: object, dimension: int | None = None) -> tuple[float, ...]:
+def vector(key: str, value: Any, dimension: int | None = None) -> tuple[float, ...]:
     """`value` as a tuple of finite floats, of length `dimension` where that is known."""
     size = f"{dimension} " if dimension else ""
     rule = f"must be a list of {size}finite numbers"
@@ -52,13 +56,13 @@ def vector(key: str, value: object, dimension: int | None = None) -> tuple[float
     return numbers_
 
 
-def settle(instance, **values) -> None:
+def settle(instance: object, **values: object) -> None:
     """Write the validated `values` into a frozen dataclass that is being made."""
     for name, value in values.items():
         object.__setattr__(instance, name, value)
 
 
-def from_mapping(cls, mapping: object, where: str):
+def from_mapping(cls: type[T], mapping: object, where: str) -> T:
     """Make the dataclass `cls` from a mapping whose keys must all be fields of it."""
     if not isinstance(mapping, dict):
         raise SceneError(where, mapping, "must be a mapping of keys to values")

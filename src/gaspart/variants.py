@@ -7,11 +7,15 @@ import json
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import fields, is_dataclass
+from typing import TYPE_CHECKING, Any
 
 from gaspart import grid
 from gaspart.errors import SimulationError
 from gaspart.matter import LATTICES
 from gaspart.point import Point
+
+if TYPE_CHECKING:
+    from gaspart.scene import Scene
 
 _FEW = 8  # bodies, walls and the like that a tiny run has of each kind
 _MATTER = {"species.Species", "bodies.Body", "restitution.Restitution"}  # whose properties are features
@@ -44,14 +48,14 @@ def variant(point: Point) -> str:
     return "-".join(parts)
 
 
-def features(scene) -> set[str]:
+def features(scene: Scene) -> set[str]:
     """Dotted names of all that differs from its default in a scene, with its value where that is a word."""
     found = set(_differing(scene)) - _MATTER
-    if len({kind.mass for kind in (*scene.species, *scene.bodies)}) <= 1:
+    if len({kind.mass for kind in scene.kinds}) <= 1:
         found -= {"species.mass", "bodies.mass"}  # equal masses are left out of the kernels
     if scene.vibrates:  # which a temperature alone may tell
         found.add("vibrates")
-    if len({kind.radius for kind in (*scene.species, *scene.bodies)}) > 1:
+    if len({kind.radius for kind in scene.kinds}) > 1:
         from gaspart.beside import largest_in_boxes
 
         if largest_in_boxes(scene) < scene.largest_radius:
@@ -59,7 +63,7 @@ def features(scene) -> set[str]:
     return found
 
 
-def _differing(thing, prefix: str = "") -> Iterator[str]:
+def _differing(thing: Any, prefix: str = "") -> Iterator[str]:
     for field in fields(thing):
         value, name = getattr(thing, field.name), f"{prefix}{field.name}"
         required = field.default is field.default_factory  # both MISSING: no default

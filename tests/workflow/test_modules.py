@@ -34,11 +34,18 @@ def path_of(module):
     return None
 
 
+class _Runs(ast.NodeTransformer):
+    """Leaves out what is imported for type hints only, on which no result depends."""
+
+    def visit_If(self, node):
+        return None if ast.unparse(node.test) == "TYPE_CHECKING" else node
+
+
 def imported(path):
     """Modules of gaspart that a file imports, anywhere in it, with the packages they lie in."""
     package = "gaspart." + ".".join(path.relative_to(SOURCE).parts[:-1]) if SOURCE in path.parents else ""
     found = set()
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in ast.walk(_Runs().visit(ast.parse(path.read_text()))):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):

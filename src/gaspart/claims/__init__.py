@@ -7,13 +7,22 @@ statement with the probability of one 3-sigma test (Holm's correction at the lev
 module holds the form of a claim and the judging; `claims/<family>.py` says what each figure claims.
 """
 
+from __future__ import annotations
+
 import csv
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from gaspart.files import whole_file
 
+if TYPE_CHECKING:
+    import pandas
+
+Scalar = Any
+"""A number of any library, an array without dimensions too; a `Claim` keeps it as a float."""
 KINDS = ("test", "identity", "reproduction")
 """test: could be false; identity: true by construction, checks the code; reproduction: a source's report."""
 VERDICTS = ("agrees", "disagrees", "inconclusive")
@@ -53,18 +62,18 @@ class Claim:
 
     claim: str
     kind: str
-    measured: float
-    uncertainty: float
-    required_uncertainty: float
-    expected: float
+    measured: Scalar
+    uncertainty: Scalar
+    required_uncertainty: Scalar
+    expected: Scalar
     source: str
-    expected_uncertainty: float = 0.0
+    expected_uncertainty: Scalar = 0.0
     fails_if: str = ""
     low: float | None = None
     high: float | None = None
     exact_deviation: float | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.kind not in KINDS:
             raise ValueError(f"kind: {self.kind!r} (must be one of {', '.join(KINDS)})")
         for name in ("claim", "source", "fails_if"):
@@ -77,7 +86,17 @@ class Claim:
                 raise ValueError(f"{name}: {getattr(self, name)} (must not be negative)")
 
     @classmethod
-    def at_least(cls, claim, kind, measured, uncertainty, required_uncertainty, bound, source, fails_if):
+    def at_least(
+        cls,
+        claim: str,
+        kind: str,
+        measured: Scalar,
+        uncertainty: Scalar,
+        required_uncertainty: Scalar,
+        bound: Scalar,
+        source: str,
+        fails_if: str,
+    ) -> Claim:
         """The measured number is `bound` or more."""
         return cls(
             f"{claim} (at least {bound:g})",
@@ -93,7 +112,17 @@ class Claim:
         )
 
     @classmethod
-    def at_most(cls, claim, kind, measured, uncertainty, required_uncertainty, bound, source, fails_if):
+    def at_most(
+        cls,
+        claim: str,
+        kind: str,
+        measured: Scalar,
+        uncertainty: Scalar,
+        required_uncertainty: Scalar,
+        bound: Scalar,
+        source: str,
+        fails_if: str,
+    ) -> Claim:
         """The measured number is `bound` or less."""
         return cls(
             f"{claim} (at most {bound:g})",
@@ -111,16 +140,16 @@ class Claim:
     @classmethod
     def within(
         cls,
-        claim,
-        kind,
-        measured,
-        uncertainty,
-        expected,
-        half_width,
-        source,
-        fails_if,
-        required_uncertainty=None,
-    ):
+        claim: str,
+        kind: str,
+        measured: Scalar,
+        uncertainty: Scalar,
+        expected: Scalar,
+        half_width: Scalar,
+        source: str,
+        fails_if: str,
+        required_uncertainty: Scalar = None,
+    ) -> Claim:
         """The measured number lies within `half_width` of `expected`.
 
         required_uncertainty defaults to half of half_width: the measurement's 95 % interval is then no wider
@@ -140,7 +169,9 @@ class Claim:
         )
 
     @classmethod
-    def chi_square(cls, claim, kind, chi_square, degrees_of_freedom, source, fails_if):
+    def chi_square(
+        cls, claim: str, kind: str, chi_square: Scalar, degrees_of_freedom: int, source: str, fails_if: str
+    ) -> Claim:
         """Chi-square of many deviations at once; measured is chi-square per degree of freedom, expected 1.
 
         The deviation is the Gaussian one of the same two-sided probability (a chi-square far too small is
@@ -165,12 +196,12 @@ class Claim:
         )
 
     @property
-    def is_bound(self):
+    def is_bound(self) -> bool:
         """Whether the claim states bounds rather than a value."""
         return self.low is not None
 
     @property
-    def deviation_sigma(self):
+    def deviation_sigma(self) -> float:
         """Signed distance from what was stated, in standard deviations; 0 inside stated bounds.
 
         (measured - expected) / sqrt(uncertainty^2 + expected_uncertainty^2), for bounds with the nearer bound
@@ -178,7 +209,7 @@ class Claim:
         """
         if self.exact_deviation is not None:
             return self.exact_deviation
-        if self.is_bound:
+        if self.low is not None and self.high is not None:
             difference = self.measured - min(max(self.measured, self.low), self.high)
         else:
             difference = self.measured - self.expected
@@ -188,25 +219,25 @@ class Claim:
         return difference / spread
 
     @property
-    def p_value(self):
+    def p_value(self) -> float:
         """Two-sided Gaussian probability of a deviation at least this large."""
         return math.erfc(abs(self.deviation_sigma) / math.sqrt(2.0))
 
     @property
-    def is_conclusive(self):
+    def is_conclusive(self) -> bool:
         """Whether all numbers are finite and the uncertainty is not above the required one."""
         numbers = (self.measured, self.uncertainty, self.expected, self.expected_uncertainty)
         return all(map(math.isfinite, numbers)) and self.uncertainty <= self.required_uncertainty
 
     @property
-    def stated_source(self):
+    def stated_source(self) -> str:
         """The source, with the expected value's own uncertainty where it has one."""
         if self.expected_uncertainty == 0.0:
             return self.source
         return f"{self.source} (± {self.expected_uncertainty:.2g})"
 
 
-def holm(p_values, level=FAMILY_LEVEL):
+def holm(p_values: Sequence[float], level: float = FAMILY_LEVEL) -> list[bool]:
     """Which of a family's hypotheses are rejected (list of bool), by Holm's step-down procedure.
 
     The smallest of m probabilities is compared with level / m, the next with level / (m-1) ... until one is
@@ -222,7 +253,7 @@ def holm(p_values, level=FAMILY_LEVEL):
     return rejected
 
 
-def judge(claims):
+def judge(claims: Sequence[Claim]) -> list[str]:
     """Verdicts of one figure's claims, in their order.
 
     inconclusive: a number is not finite, or the uncertainty is above the required one, or the number is
@@ -247,7 +278,7 @@ def judge(claims):
     return verdicts
 
 
-def write(path, figure, claims):
+def write(path: str | Path, figure: str, claims: Sequence[Claim]) -> None:
     """Judge the claims of `figure` and write them as CSV with COLUMNS, whole or not at all.
 
     Raises ValueError if two claims have the same text: a row could not be told from the other.
@@ -278,7 +309,7 @@ def write(path, figure, claims):
             )
 
 
-def read(path):
+def read(path: str | Path) -> list[dict[str, Any]]:
     """Rows of a claims table as dictionaries by column; the numbers as floats.
 
     Raises ValueError, naming the file, if its columns are not COLUMNS or a number or verdict is not one.
@@ -298,14 +329,14 @@ def read(path):
     return rows
 
 
-def collect(paths):
+def collect(paths: Iterable[str | Path]) -> pandas.DataFrame:
     """All claims of several tables as one pandas DataFrame with COLUMNS, in the order of `paths`."""
     import pandas
 
     return pandas.DataFrame([row for path in paths for row in read(path)], columns=list(COLUMNS))
 
 
-def summary(table):
+def summary(table: pandas.DataFrame) -> str:
     """One line that counts the verdicts of a `collect`ed table: "212 claims: 205 agree, 3 disagree, ..."."""
     counts = {verdict: int((table["verdict"] == verdict).sum()) for verdict in VERDICTS}
     return (

@@ -41,7 +41,7 @@ def msd_spheres(ds: xr.Dataset) -> list[Claim]:
     return claims + _short_times(ds, 3)
 
 
-def _error(row) -> float:
+def _error(row: xr.Dataset) -> float:
     return float(np.hypot(row["diffusion_error"], row["correction_uncertainty"]))
 
 
@@ -108,14 +108,14 @@ def msd_discs(ds: xr.Dataset) -> list[Claim]:
     return claims + _short_times(ds, 2)
 
 
-def _renormalisation(row) -> float:
+def _renormalisation(row: xr.Dataset) -> float:
     """Relative uncertainty of the predicted slope: what the measured D(t) for Enskog's D would change."""
     eta = float(row["packing_fraction"])
     enskog = float(theory.enskog_diffusion(eta, 2))
     middle = math.sqrt(float(row["fit_from"]) * float(row["fit_to"]))
     measured = float(np.interp(middle, row["time"].dropna("lag"), row["running"].dropna("lag")))
     kinematic = float(row["viscosity"]) / theory.number_density(eta, 2)
-    return abs(measured - enskog) / (enskog + kinematic)
+    return float(abs(measured - enskog) / (enskog + kinematic))
 
 
 def _short_times(ds: xr.Dataset, dimension: int) -> list[Claim]:

@@ -7,6 +7,7 @@ of theirs is a reproduction, in which disagreement is a result and not a fault.
 import math
 
 import numpy as np
+import xarray as xr
 
 from gaspart.claims import Claim
 
@@ -17,21 +18,30 @@ _INTERVAL = 2.0 * 1.96  # a 95 % interval in standard errors
 _OTHER_MACHINE = "another machine or program weighs tests and boxes differently"
 
 
-def _exponent(kind, what, ds, name, expected, half_width, source, fails_if):
+def _exponent(
+    kind: str,
+    what: str,
+    ds: xr.Dataset,
+    name: str,
+    expected: float,
+    half_width: float,
+    source: str,
+    fails_if: str,
+) -> Claim:
     """The exponent ``name`` of a dataset lies in a band."""
     value, error = float(ds[name]), float(ds[f"{name}_error"])
     what = f"exponent of the {what}"
     return Claim.within(what, kind, value, error, expected, half_width, source, fails_if)
 
 
-def _all_pairs(what, excess):
+def _all_pairs(what: str, excess: float) -> Claim:
     """Counted pair tests are N(N-1)/2."""
     claim = f"{what}: largest relative difference of the pair tests from N(N-1)/2"
     fails_if = "a pair is tested twice, or not at all"
     return Claim(claim, "identity", excess, 0.0, 1e-12, 0.0, "each pair once", fails_if=fails_if)
 
 
-def naive_scaling(ds):
+def naive_scaling(ds: xr.Dataset) -> list[Claim]:
     """Quadratic: exactly in pair tests, and in time as far as the caches let it be."""
     fails_if = "something else than the pair tests takes the time"
     return [
@@ -42,7 +52,7 @@ def naive_scaling(ds):
     ]
 
 
-def box_count(ds):
+def box_count(ds: xr.Dataset) -> list[Claim]:
     """An optimum exists, the counts are those expected, and round widths are no quicker."""
     seconds = ds.seconds.values
     error = ds.seconds_error.values / seconds
@@ -59,7 +69,7 @@ def box_count(ds):
     return claims + _counts(ds) + [_ideal_number(ds)] + _round_widths(ds) + _sectors(ds)
 
 
-def _counts(ds):
+def _counts(ds: xr.Dataset) -> list[Claim]:
     """Pair tests (where there is about one a body) and box visits (everywhere) are those expected."""
     source = "uniform density, gaspart.theory.partition"
     one = ds.isel(scan=int(np.argmin(np.abs(ds.expected_tests.values - 1.0))))
@@ -89,7 +99,7 @@ def _counts(ds):
     ]
 
 
-def _ideal_number(ds):
+def _ideal_number(ds: xr.Dataset) -> Claim:
     """The source's figure 6 at this number of bodies."""
     return Claim(
         f"ideal number of boxes per body, N = {int(ds['count'])}, r = {float(ds.radius):g}",
@@ -104,7 +114,7 @@ def _ideal_number(ds):
     )
 
 
-def _round_widths(ds):
+def _round_widths(ds: xr.Dataset) -> list[Claim]:
     """The source's explanation of its plateaus, tested."""
     widths = float(ds.container_side[0]) / ds.round_per_side.values
     return [
@@ -124,7 +134,7 @@ def _round_widths(ds):
     ]
 
 
-def _sectors(ds):
+def _sectors(ds: xr.Dataset) -> list[Claim]:
     """What a sector costs the event-driven engine."""
     value, error = float(ds.crossing_searches), float(ds.crossing_searches_error)
     source = f"{C}, section 4.4: of the nine adjacent sectors, three are new"
@@ -139,7 +149,7 @@ def _sectors(ds):
     ]
 
 
-def ideal_boxes(ds):
+def ideal_boxes(ds: xr.Dataset) -> list[Claim]:
     """The source's numbers of boxes per particle, and how much they matter."""
     worst = ds.isel(gas=int(np.nanargmax(ds.penalty.values)))
     ratio = np.log(ds.model / ds.ideal).values
@@ -180,7 +190,7 @@ def ideal_boxes(ds):
     return claims
 
 
-def _source_numbers(source, origin):
+def _source_numbers(source: xr.Dataset, origin: str) -> list[Claim]:
     """The source's number for one gas: is it the ideal one, and if not, how much slower?
 
     If no minimum lies between the partitions timed, its interval is infinite and the claim inconclusive."""
@@ -211,7 +221,7 @@ def _source_numbers(source, origin):
     ]
 
 
-def linear_scaling(ds):
+def linear_scaling(ds: xr.Dataset) -> list[Claim]:
     """Linear in counted work; in time, the source's three regimes; and its years of the naive method."""
     what, source = "pair tests and box visits per step in N, cheapest partition", f"{A}, section 1.2"
     claims = [
@@ -245,7 +255,7 @@ def linear_scaling(ds):
     return claims
 
 
-def event_scaling(ds):
+def event_scaling(ds: xr.Dataset) -> list[Claim]:
     """How the cost of an event grows with N, by each search."""
     claims = [_all_pairs("all pairs, every event", ds.pairs_excess)]
     expected = {

@@ -6,7 +6,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.claims import Claim
-from gaspart.theory.speeds import RELAXATION_UNCERTAINTY
+from gaspart.theory.speeds import RELAXATION_UNCERTAINTY, Relaxation
 
 ENGINES = {"step": "time-stepped", "event": "event-driven"}
 BOLTZMANN = "homogeneous Boltzmann equation from equal speeds (computed)"
@@ -66,7 +66,7 @@ def speed_relaxation(ds: xr.Dataset) -> list[Claim]:
     return claims
 
 
-def _collisions(ds, engine, by, relaxation) -> Claim:
+def _collisions(ds: xr.Dataset, engine: str, by: str, relaxation: Relaxation) -> Claim:
     last = ds.sel(engine=engine).isel(frame=-1)
     time = float(last["time"])
     return Claim(
@@ -82,7 +82,7 @@ def _collisions(ds, engine, by, relaxation) -> Claim:
     )
 
 
-def _initial_slope(ds, engine, by) -> Claim:
+def _initial_slope(ds: xr.Dataset, engine: str, by: str) -> Claim:
     row = ds.sel(engine=engine)
     return Claim(
         f"initial slope of the kurtosis per collision and body ({by})",

@@ -38,7 +38,7 @@ def wall_pressure(ds: xr.Dataset) -> list[Claim]:
 def _between_walls(part: xr.Dataset, name: str) -> list[Claim]:
     error = np.hypot(part["pressure_error"], part["expected_error"])
     sigmas = ((part["pressure"] - part["expected"]) / error).values
-    ratio = combine((part["pressure"] / part["expected"]).values, (error / part["expected"]).values)
+    ratio = combine((part["pressure"] / part["expected"]).values, np.asarray(error / part["expected"]))
     return [
         Claim(
             f"pressure of {name} between two walls over theory's, mean of {sigmas.size} slits",

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import argparse
 import math
+from typing import TYPE_CHECKING
 
-from gaspart.cli.arguments import UsageError
+from gaspart.cli.arguments import Commands, UsageError
+
+if TYPE_CHECKING:
+    from gaspart.tradeoff.advice import Advice, Setting
 
 _EXAMPLES = """examples:
   gaspart advise scene.yaml --observable Z --accuracy 1e-3
@@ -13,7 +17,7 @@ _EXAMPLES = """examples:
   gaspart advise --config config/config.yaml     what a whole grid costs, in core-hours"""
 
 
-def add_advise(commands) -> None:
+def add_advise(commands: Commands) -> None:
     """Add the command to the others."""
     text = (
         "The cheapest way to a relative accuracy (half the width of a 95 % interval) of an observable of a "
@@ -57,7 +61,7 @@ def _advise(given: argparse.Namespace) -> None:
     print("\n".join(_told(found)))
 
 
-def _told(advice) -> list[str]:
+def _told(advice: Advice) -> list[str]:
     """The advice in words."""
     from gaspart.tradeoff.advice import SETTLING
 
@@ -82,14 +86,14 @@ def _told(advice) -> list[str]:
     return lines
 
 
-def _name(setting) -> str:
+def _name(setting: Setting) -> str:
     engine = setting.engine
     if engine.name == "event":
         return "event, float64"
     return f"step, time_step {engine.time_step:.4g}, {engine.precision}, {engine.passes} passes"
 
 
-def _bulk(advice) -> str:
+def _bulk(advice: Advice) -> str:
     """What the finite size does."""
     if not math.isfinite(advice.finite_size):
         return ""

@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from textwrap import fill
+from typing import Any, NoReturn, TypeAlias
+
+Commands: TypeAlias = "argparse._SubParsersAction[Parser]"
+"""What a command adds itself to."""
 
 
 class UsageError(Exception):
@@ -13,16 +18,16 @@ class UsageError(Exception):
 class Parser(argparse.ArgumentParser):
     """Raises what argparse would print, takes options in full only, and leaves lines of text as they are."""
 
-    def __init__(self, **settings):
+    def __init__(self, **settings: Any) -> None:
         settings["description"] = fill(settings["description"], width=100)
         super().__init__(allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter, **settings)
 
-    def error(self, message: str):
+    def error(self, message: str) -> NoReturn:
         """Raise what argparse would print and exit for."""
         raise UsageError(message)
 
 
-def several(kind: type):
+def several(kind: type) -> Callable[[str], tuple]:
     """What reads `1` or `1,2,3` as a tuple of int or float."""
 
     def read(text: str) -> tuple:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from gaspart.cli.arguments import several
+from gaspart.cli.arguments import Commands, several
 from gaspart.errors import SceneError
 
 _EXAMPLES = """examples:
@@ -22,7 +22,7 @@ class Wrong(Exception):
     """Something that was checked is wrong; it has been told already."""
 
 
-def add_check(commands) -> None:
+def add_check(commands: Commands) -> None:
     """Add the command to the others."""
     text = (
         "Judge a scene, a config, or a trajectory of any program (AMBER or LAMMPS netCDF, GSD, XYZ): "

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import argparse
 
+from gaspart.cli.arguments import Commands
+
 _EXAMPLE = """
 example:
     gaspart collisions scene.yaml -o collisions.nc --count 100000 --equilibration 10
 """
 
 
-def add_collisions(commands) -> None:
+def add_collisions(commands: Commands) -> None:
     """Add the command to the others."""
     text = (
         "Run a scene under the event-driven engine and write down its collisions (netCDF): the bodies, the "

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import argparse
 
+from gaspart.cli.arguments import Commands
+
 _EXAMPLES = """examples:
   gaspart export run.nc -o state.gsd                the last frame, for HOOMD and OVITO
   gaspart export run.nc -o start.data --frame 0     the first, for LAMMPS: read_data start.data"""
 
 
-def add_export(commands) -> None:
+def add_export(commands: Commands) -> None:
     """Add the command to the others."""
     text = "One frame of a trajectory as a state for other programs: GSD, or LAMMPS data (atom_style sphere)."
     export = commands.add_parser(

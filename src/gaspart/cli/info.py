@@ -5,13 +5,19 @@ from __future__ import annotations
 import argparse
 import shlex
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gaspart.cli.arguments import Commands
+
+if TYPE_CHECKING:
+    from gaspart.recipe import Recipe
 
 _EXAMPLES = """examples:
   gaspart info run.nc
   gaspart info run.nc --scene > scene.yaml      and then the command that it prints, for the same bits"""
 
 
-def add_info(commands) -> None:
+def add_info(commands: Commands) -> None:
     """Add the command to the others."""
     text = "What a trajectory holds, how good it is, and the command that makes it again."
     info = commands.add_parser("info", help="what a trajectory holds", description=text, epilog=_EXAMPLES)
@@ -50,7 +56,7 @@ def _info(given: argparse.Namespace) -> None:
     print("".join(f"    {line}\n" for line in stored["scene"].splitlines()), end="")
 
 
-def _run_options(path: Path, recipe, stored: dict) -> list[str]:
+def _run_options(path: Path, recipe: Recipe, stored: dict) -> list[str]:
     """The options of `gaspart run` that stand for a recipe."""
     from gaspart.engines import engine_to_dict
 

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import sys
 import time
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from gaspart.recording import Progress
 
 
-def progress(quiet: bool):
+def progress(quiet: bool) -> Progress | None:
     """Something that shows the progress of a run on one line, or None where nobody would see it."""
     if quiet or not sys.stderr.isatty():
         return None
-    begun = None
+    begun: tuple[float, float, int] | None = None
 
     def show(reached: float, duration: float, collisions: int) -> None:
         nonlocal begun

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from gaspart.cli.arguments import Commands
 from gaspart.errors import SceneError
 
 PICTURES = (".png",)
@@ -15,7 +16,7 @@ _EXAMPLES = """examples:
   gaspart render run.nc -o run.mp4 --frames-per-second 30 --colour species"""
 
 
-def add_render(commands) -> None:
+def add_render(commands: Commands) -> None:
     """Add the command to the others."""
     text = (
         "A picture (.png) of one frame of a trajectory, or a film (.mp4, .gif) of all: spheres with light "

@@ -7,10 +7,10 @@ import shlex
 import sys
 from pathlib import Path
 
-from gaspart.cli.arguments import several
+from gaspart.cli.arguments import Commands, several
 from gaspart.cli.progress import clear_line, progress
 
-_ENGINE_SETTINGS = ("time_step", "boxes_per_side", "precision", "rewind", "search")
+_ENGINE_SETTINGS: tuple[str, ...] = ("time_step", "boxes_per_side", "precision", "rewind", "search")
 _ENGINE_SETTINGS += ("passes", "skin", "near_boxes", "threads")
 
 
@@ -20,7 +20,7 @@ _EXAMPLES = """examples:
   gaspart info run.nc"""
 
 
-def add_run(commands) -> None:
+def add_run(commands: Commands) -> None:
     """Add `run` to the other commands."""
     text = (
         "Run a scene and write its trajectory. A run of the same settings that was cut short is continued, "
@@ -54,7 +54,7 @@ def add_run(commands) -> None:
     _add_progress(run)
 
 
-def add_resume(commands) -> None:
+def add_resume(commands: Commands) -> None:
     """Add `resume` to the other commands."""
     text = "Finish a run that was cut short, from FILE.partial and FILE.checkpoint.npz alone."
     resume = commands.add_parser("resume", help="finish a run that was cut short", description=text)
@@ -63,7 +63,7 @@ def add_resume(commands) -> None:
     _add_progress(resume)
 
 
-def _add_progress(parser) -> None:
+def _add_progress(parser: argparse.ArgumentParser) -> None:
     text = "time between checkpoints, default 30: what a kill may cost"
     parser.add_argument("--checkpoint-seconds", type=float, default=30.0, metavar="S", help=text)
     parser.add_argument("--quiet", action="store_true", help="show no progress")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from dataclasses import dataclass
 
-from gaspart.cli.arguments import UsageError, several
+from gaspart.cli.arguments import Commands, UsageError, several
 from gaspart.errors import SceneError
 
 _BODY = ("diameter", "temperature", "mass")
@@ -44,7 +44,7 @@ _EXAMPLES = """examples:
   gaspart theory collision_rate --eta 0.1,0.2,0.3 --dimension 2 --diameter 0.1"""
 
 
-def add_theory(commands) -> None:
+def add_theory(commands: Commands) -> None:
     """Add the command to the others."""
     names = "; ".join(f"{name}: {quantity.meaning}" for name, quantity in _QUANTITIES.items())
     theory = commands.add_parser(
@@ -74,8 +74,8 @@ def _theory(given: argparse.Namespace) -> None:
             spread = theory.compressibility_uncertainty(eta, dimension)
         except ValueError as error:
             raise UsageError(error) from None
-        error = f" +- {float(spread):.1g}" if given.quantity == "Z" else ""
-        print(f"{given.quantity}(eta = {eta:g}, dimension = {dimension}) = {float(value):.10g}{error}")
+        about = f" +- {float(spread):.1g}" if given.quantity == "Z" else ""
+        print(f"{given.quantity}(eta = {eta:g}, dimension = {dimension}) = {float(value):.10g}{about}")
     highest = theory.HIGHEST_PACKING_FRACTION[dimension]
     print(f"{quantity.meaning}, {quantity.source[dimension]}")
     print(f"holds for eta from 0 to {highest:g}, {_FLUID[dimension]}")

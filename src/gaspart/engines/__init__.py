@@ -13,7 +13,9 @@ from gaspart.engines.time_stepped import TimeStepped
 from gaspart.errors import SceneError
 from gaspart.scene import from_mapping
 
-ENGINES = {engine.name: engine for engine in (EventDriven, TimeStepped)}
+ENGINES: dict[str, type[EventDriven | TimeStepped]] = {
+    engine.name: engine for engine in (EventDriven, TimeStepped)
+}
 
 
 def engine_from_dict(mapping: dict) -> EventDriven | TimeStepped:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
+from numpy.typing import DTypeLike
 
 from gaspart.initial import per_body
 from gaspart.matter import Restitution
@@ -11,6 +14,9 @@ from gaspart.scene import Scene
 from gaspart.state import State
 from gaspart.surfaces import FACES, Sticky, Thermal, Well
 from gaspart.wells import places_in_wells, wells_of
+
+if TYPE_CHECKING:
+    from gaspart.engines.layout import Law, Surfaces
 
 _ROOM = 4096  # events that the record holds before it is emptied
 _WALL_DRAWS = 2  # the purpose of the random numbers of thermal walls, after those of the initial state
@@ -23,7 +29,7 @@ def masses_for_kernel(masses: np.ndarray) -> tuple[float, np.ndarray | None]:
     return (float(masses[0]), None) if (masses == masses[0]).all() else (1.0, masses)
 
 
-def law_for_kernel(scene: Scene, state: State):
+def law_for_kernel(scene: Scene, state: State) -> Law | None:
     """The law of contacts, or None if all are elastic, smooth and between bodies that can move."""
     from gaspart.engines.layout import Law
 
@@ -37,13 +43,15 @@ def law_for_kernel(scene: Scene, state: State):
         spins[:] = state.spins
     vibrations = None
     modes = per_body(scene, "vibrates")
-    if modes.any():
+    if modes.any() and state.vibrations is not None:
         vibrations = np.where(modes, state.vibrations, -1.0)
     inverses = 1 / state.masses, 1 / state.moments_of_inertia
     return Law(rule.normal, rule.tangential, *inverses, spins, vibrations)
 
 
-def surfaces_for_kernel(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float):
+def surfaces_for_kernel(
+    scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float
+) -> Surfaces:
     """The kinds of the container's faces as the kernels' `Surfaces`, in units of `unit_mass`."""
     from gaspart.engines.layout import HARD, STICKY, THERMAL, THERMAL_NORMAL, Surfaces
 
@@ -73,7 +81,7 @@ def surfaces_for_kernel(scene: Scene, state: State, seed: int | tuple[int, ...],
     )
 
 
-def aligned(shape: tuple[int, ...], dtype) -> np.ndarray:
+def aligned(shape: tuple[int, ...], dtype: DTypeLike) -> np.ndarray:
     """An array of zeros that starts on a cache line."""
     size = int(np.prod(shape)) * np.dtype(dtype).itemsize
     buffer = np.zeros(size + 64, dtype=np.uint8)
@@ -84,7 +92,7 @@ def aligned(shape: tuple[int, ...], dtype) -> np.ndarray:
 class EventLog:
     """Events as they happened: bodies, and their positions, velocities and, if wanted, spins just after."""
 
-    def __init__(self, dimension: int, spins: bool = False):
+    def __init__(self, dimension: int, spins: bool = False) -> None:
         from gaspart.engines.layout import Record
 
         self._keys = ("time", "bodies", "positions", "velocities", *(("spins",) if spins else ()))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from gaspart.scene import Scene
 from gaspart.state import State
 from gaspart.tally import Tally
 from gaspart.wells import well_energies
+
+if TYPE_CHECKING:
+    from gaspart.engines.layout import Record
 
 SEARCHES = ("boxes", "direct", "pairs")
 _LAP = 10  # a lap of the clocks is some 2^10 times of flight over a diameter
@@ -42,9 +46,9 @@ class EventDriven:
     search: str = "boxes"
     boxes_per_side: int | tuple[int, ...] | None = None
 
-    name = "event"
+    name: ClassVar[Literal["event"]] = "event"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.search not in SEARCHES:
             raise SceneError("search", self.search, f"must be one of {SEARCHES}")
         if self.search != "boxes" and self.boxes_per_side is not None:
@@ -58,7 +62,7 @@ class EventDriven:
 class EventDynamics:
     """A scene under way. Clocks count from the start of the current lap, lest they lose precision."""
 
-    def __init__(self, engine: EventDriven, scene: Scene, state: State, seed: int | tuple[int, ...]):
+    def __init__(self, engine: EventDriven, scene: Scene, state: State, seed: int | tuple[int, ...]) -> None:
         from gaspart.beside import boxes_and_largest
         from gaspart.engines import all_pairs, event_kernels, flight, layout, lists
         from gaspart.engines.calendar import PLAN, empty_calendar
@@ -107,17 +111,20 @@ class EventDynamics:
             most, within = (_INELASTIC_CROWD, _INELASTIC_CROWDED) if inelastic else (_CROWD, _CROWDED)
             start = np.full(n, -np.inf)
             self._watch = layout.Watch(start, np.zeros(n, dtype=np.int64), within * self._lap, most)
-        self._lost, self._counters = 0.0, None
+        self._lost = 0.0
         self._laps, self._clock = divmod(state.time, self._lap)
         self._rows[:, 2 * d] = self._clock
-        self.reset_tally()
+        self._count()
         self._foresee()
 
     def reset_tally(self) -> None:
         """Begin to count anew."""
+        self._lost = self.dissipated
+        self._count()
+
+    def _count(self) -> None:
+        """Counters that stand at nothing."""
         faces = 2 * self._scene.dimension + len(self._scene.walls)
-        if self._counters:
-            self._lost = self.dissipated
         hits, impulse, energy = np.zeros(faces, dtype=np.int64), np.zeros(faces), np.zeros(faces)
         self._counters = self._layout.Counters(
             np.zeros(5, dtype=np.int64), np.zeros(3), hits, impulse, energy
@@ -179,14 +186,14 @@ class EventDynamics:
                     )
             elif done:
                 self._clock = max(self._clock, last)
-            if reason == self._layout.COLLAPSE:
+            if reason == self._layout.COLLAPSE and self._watch is not None:
                 body, most, within = self._watch.contacts.argmax(), self._watch.most, self._watch.blink
                 raise SimulationError(
                     f"at time {self.time:g} body {body} has had {most} contacts within a time of {within:g}: "
                     "an inelastic collapse, or a stack at rest; the state is that of the present time"
                 )
 
-    def _run(self, room, stop: float, most: int) -> tuple[int, int, float]:
+    def _run(self, room: Record | None, stop: float, most: int) -> tuple[int, int, float]:
         """Let the kernel of this search run: why it stopped, the events it did, the time of the last."""
         common = self._space, self._partition, self._masses, self._counters, room, stop, most
         common = *common, self._gravity, self._law, self._watch, self._walls, self._surfaces

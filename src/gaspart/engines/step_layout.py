@@ -37,7 +37,7 @@ class Bodies(NamedTuple):
     velocities: np.ndarray
     images: np.ndarray
     radii: np.ndarray
-    index: np.ndarray
+    index: np.ndarray  # type: ignore[assignment]  # tuples have a method of this name
     masses: np.ndarray
     ordinary: int
 

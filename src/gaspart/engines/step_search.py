@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from gaspart.boxes import make_boxes
@@ -10,12 +12,15 @@ from gaspart.engines.step_cells import Cells
 from gaspart.scene import Scene
 from gaspart.state import State
 
+if TYPE_CHECKING:
+    from gaspart.engines.time_stepped import TimeStepped
+
 _CELLS_PER_BODY = 6.0
 _REBUILD, _TEST, _PAIR = 25.0, 3.5, 4.5  # ns a body, a candidate and a pair of the list: their ratios matter
 _LEAST = 1.6  # of the way that the fastest two come nearer in a step
 
 
-def partition_for(engine, scene: Scene, state: State, radii: np.ndarray) -> Partition | None:
+def partition_for(engine: TimeStepped, scene: Scene, state: State, radii: np.ndarray) -> Partition | None:
     """The grid of boxes, if the engine is to have one."""
     if engine.boxes_per_side is None:
         return None
@@ -32,7 +37,7 @@ def partition_for(engine, scene: Scene, state: State, radii: np.ndarray) -> Part
     )  # fmt: skip
 
 
-def cells_for(engine, scene: Scene, state: State, radii: np.ndarray) -> Cells | None:
+def cells_for(engine: TimeStepped, scene: Scene, state: State, radii: np.ndarray) -> Cells | None:
     """The cells of the neighbour list, if the engine is to have one."""
     if engine.boxes_per_side is not None:
         return None
@@ -63,7 +68,7 @@ def _width(scene: Scene, count: int) -> float:
     return (scene.container.volume / max(1.0, _CELLS_PER_BODY * count)) ** (1.0 / scene.dimension)
 
 
-def _skin(engine, scene: Scene, state: State, contact: float) -> float:
+def _skin(engine: TimeStepped, scene: Scene, state: State, contact: float) -> float:
     """The skin that costs least: a thin one is spent soon, a thick one lists many pairs."""
     dimension, density = scene.dimension, state.count / scene.container.volume
     squares = (state.velocities**2).sum(axis=1)

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import math
 import warnings
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.scene import Scene
 from gaspart.state import State
+
+if TYPE_CHECKING:
+    from gaspart.engines.time_stepped import TimeStepped
 
 _GIANTS = 16  # at most so many bodies are tested against all others
 _GIANT = 2.0  # radii of the next smaller body that make one of them
@@ -56,7 +60,7 @@ def check_scene(scene: Scene, state: State, giants: np.ndarray) -> None:
             raise SceneError("lengths", scene.container.lengths, rule)
 
 
-def check_precision(engine, scene: Scene, state: State) -> None:
+def check_precision(engine: TimeStepped, scene: Scene, state: State) -> None:
     """Raise SceneError for steps in which bodies move by less than their places are rounded by; and, in
     float32, for lengths and speeds whose squares it cannot hold, and bodies so small in their container that
     it cannot tell where they touch."""
@@ -103,7 +107,7 @@ def missed_contacts(time_step: float, several: bool, state: State) -> float:
     return float(factor * (rate * missed).sum() / rate.sum())
 
 
-def check_step(engine, state: State) -> None:
+def check_step(engine: TimeStepped, state: State) -> None:
     """Raise SceneError for a step with which the engine would be wrong by much, warn of one that costs
     percents, and name the step that would do."""
     if state.count < 2:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import ClassVar, Literal
 
 import numpy as np
+from numpy.typing import DTypeLike
 
 from gaspart.engines.common import EventLog, masses_for_kernel
 from gaspart.engines.step_settings import (
@@ -52,9 +54,9 @@ class TimeStepped:
     near_boxes: bool = False
     threads: int = 1
 
-    name = "step"
+    name: ClassVar[Literal["step"]] = "step"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         step = number("time_step", self.time_step, "must be positive", above=0.0)
         object.__setattr__(self, "time_step", step)
         if self.precision not in PRECISIONS:
@@ -79,7 +81,7 @@ class TimeStepped:
 class StepDynamics:
     """A scene under way; its time is a whole number of steps."""
 
-    def __init__(self, engine: TimeStepped, scene: Scene, state: State):
+    def __init__(self, engine: TimeStepped, scene: Scene, state: State) -> None:
         from gaspart.engines import step_kernels as kernels
         from gaspart.engines import step_layout as layout
         from gaspart.engines import step_search as search
@@ -122,12 +124,14 @@ class StepDynamics:
         self._pairs = np.empty((engine.threads, 0, 2), np.uint32)
         self._threads = engine.threads if engine.threads > 1 else None
         self._quantum, self._grain = quantum_for(scene, state, masses), grain_for(state, self._unit_mass)
-        self._lost, self._counters = 0.0, None
+        self._lost = 0.0
         self._step = real(engine.time_step)
         self._start, self._steps = state.time, 0
-        self.reset_tally()
+        self._count()
 
-    def _place(self, slots: np.ndarray, positions, velocities, images) -> None:
+    def _place(
+        self, slots: np.ndarray, positions: np.ndarray, velocities: np.ndarray, images: np.ndarray
+    ) -> None:
         """Put the bodies into their slots: (N,) which body is in each."""
         bodies = self._bodies
         bodies.positions[...] = positions[slots].T
@@ -136,7 +140,7 @@ class StepDynamics:
         bodies.radii[...] = self._reference.radii[slots]
         bodies.index[...] = slots
 
-    def _by_body(self, values: np.ndarray, dtype) -> np.ndarray:
+    def _by_body(self, values: np.ndarray, dtype: DTypeLike) -> np.ndarray:
         """(N, d) of the bodies in their own order, from (d, N) by slot."""
         found = np.empty(values.shape[::-1], dtype)
         found[self._bodies.index] = values.T
@@ -144,9 +148,12 @@ class StepDynamics:
 
     def reset_tally(self) -> None:
         """Begin to count anew."""
+        self._lost = self.dissipated
+        self._count()
+
+    def _count(self) -> None:
+        """Counters that stand at nothing."""
         faces = (self._engine.threads, 2 * self._scene.dimension)
-        if self._counters:
-            self._lost = self.dissipated
         self._counters = self._layout.Counters(
             counts=np.zeros(8, dtype=np.int64),
             sums=np.zeros(4),

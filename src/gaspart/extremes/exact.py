@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 
 def galperin(ratio: float, heavy: float, light: float, time: float) -> int:
@@ -17,7 +18,9 @@ def galperin(ratio: float, heavy: float, light: float, time: float) -> int:
     return int(math.atan2(narrow * light, heavy - time) / math.atan(narrow))
 
 
-def hits_in_box(starts, velocities, rooms, time: float) -> int:
+def hits_in_box(
+    starts: Sequence[float], velocities: Sequence[float], rooms: Sequence[float], time: float
+) -> int:
     """Hits at the walls of a box by one body: by axis, where it starts, its velocity, and its room."""
     total = 0
     for start, velocity, room in zip(starts, velocities, rooms, strict=True):
@@ -26,7 +29,7 @@ def hits_in_box(starts, velocities, rooms, time: float) -> int:
     return total
 
 
-def contacts_on_line(starts, velocities, room: float, time: float) -> int:
+def contacts_on_line(starts: Sequence[float], velocities: Sequence[float], room: float, time: float) -> int:
     """Contacts of like bodies on a line between two walls, with walls and with each other.
 
     starts: their places less the diameters on their left; room: the length less all diameters. Equal bodies

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from gaspart.matter import Body, Restitution, Species
 from gaspart.scene import Container, Scene
@@ -11,7 +12,7 @@ GRAZE = 2.0**-50
 """Nearly 1e-15, and a number by which a distance of 1 can be changed exactly."""
 
 
-def between_walls(lengths, *bodies: Body, **rest) -> Scene:
+def between_walls(lengths: tuple[float, ...], *bodies: Body, **rest: Any) -> Scene:
     """A few bodies in a container with walls."""
     return Scene(Container(lengths), bodies=bodies, **rest)
 

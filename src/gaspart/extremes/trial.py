@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +16,7 @@ from gaspart.extremes.rows import Row
 from gaspart.simulation import ENERGY_DRIFT, Simulation
 from gaspart.state import State
 
-ENGINES = {
+ENGINES: dict[str, Callable[[Row], EventDriven | TimeStepped]] = {
     "event": lambda row: EventDriven(),
     "event, all pairs": lambda row: EventDriven("pairs"),
     "step": lambda row: TimeStepped(row.time_step),
@@ -102,7 +103,7 @@ def _advance(simulation: Simulation, until: float) -> bool:
     return simulation.time >= until * (1.0 - 1e-12)
 
 
-def _faults(row: Row, engine, found: dict, expected: int | None) -> dict:
+def _faults(row: Row, engine: EventDriven | TimeStepped, found: dict, expected: int | None) -> dict:
     """The verdict, if any of the numbers says that the run is wrong."""
     drift = ENERGY_DRIFT[getattr(engine, "precision", "float64")]
     allowed = 0.0

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from gaspart.figures import style
 from gaspart.theory.adsorption import (
@@ -14,7 +16,7 @@ from gaspart.theory.adsorption import (
 )
 
 
-def adsorption(ds: xr.Dataset):
+def adsorption(ds: xr.Dataset) -> Figure:
     """Ratio and prefactor of ideal gases, isotherms of a layer and of a sticky wall, speeds of who leaves."""
     figure, axes = style.new(rows=6, height=10.2, height_ratios=(2.6, 1.2, 1.9, 2.6, 1.7, 2.2), share_x=False)
     ideal, layer, sticky = (
@@ -30,7 +32,7 @@ def adsorption(ds: xr.Dataset):
     return figure
 
 
-def _ratios(top, bottom, ds: xr.Dataset) -> None:
+def _ratios(top: Axes, bottom: Axes, ds: xr.Dataset) -> None:
     """Held over free bodies against 1 / kT, and how far they are off."""
     style.level(bottom, 0.0)
     inverse = np.linspace(0.0, 1.05 / float(ds["temperature"].min()), 50)
@@ -57,7 +59,7 @@ def _ratios(top, bottom, ds: xr.Dataset) -> None:
     bottom.set_xlabel(r"inverse temperature $1/kT$")
 
 
-def _lengths(axis, ds: xr.Dataset) -> None:
+def _lengths(axis: Axes, ds: xr.Dataset) -> None:
     """The length in Langmuir's formula, in widths of the well, against temperature."""
     temperatures = np.geomspace(0.8 * ds["temperature"].min(), 1.25 * ds["temperature"].max(), 50)
     axis.plot(temperatures, temperatures**-0.5, color=style.DATA, ls=":", label=r"a thermal wavelength")
@@ -74,7 +76,7 @@ def _lengths(axis, ds: xr.Dataset) -> None:
     axis.legend(loc="upper right")
 
 
-def _isotherm(axis, ds: xr.Dataset) -> None:
+def _isotherm(axis: Axes, ds: xr.Dataset) -> None:
     """Coverage of a layer against the activity that fills it."""
     eta = np.linspace(1e-3, 0.52, 300)
     axis.plot(scaled_particle_activity(eta), eta, color=style.REFERENCE, label="hard discs (SPT)")
@@ -102,7 +104,7 @@ def _isotherm(axis, ds: xr.Dataset) -> None:
     axis.legend(loc="lower right")
 
 
-def _sticky_coverage(axis, ds: xr.Dataset) -> None:
+def _sticky_coverage(axis: Axes, ds: xr.Dataset) -> None:
     """Coverage of a sticky wall against the density of the gas."""
     density, coverage = ds["gas_density"].values, ds["coverage"].values
     style.points(axis, density, coverage, ds["coverage_error"].values, kind=1, label="sticky wall")
@@ -120,7 +122,7 @@ def _sticky_coverage(axis, ds: xr.Dataset) -> None:
     axis.legend(loc="lower right")
 
 
-def _leaving(axis, wells: xr.Dataset, ds: xr.Dataset) -> None:
+def _leaving(axis: Axes, wells: xr.Dataset, ds: xr.Dataset) -> None:
     """Normal speeds of the bodies that leave a well, and of those that leave a sticky wall."""
     speed = ds["speed"].values
     line = np.linspace(0.0, speed[-1], 200)

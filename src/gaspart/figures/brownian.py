@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.figures import style
@@ -12,7 +13,7 @@ LONGEST = 3.2
 """Friction times to which the velocity autocorrelation is shown: then noise takes over."""
 
 
-def brownian_paths(ds: xr.Dataset):
+def brownian_paths(ds: xr.Dataset) -> Figure:
     """Paths from above, a panel for each point; in the middle, the body in its size."""
     from matplotlib.patches import Circle
 
@@ -39,7 +40,7 @@ def brownian_paths(ds: xr.Dataset):
     return figure
 
 
-def brownian_msd(ds: xr.Dataset):
+def brownian_msd(ds: xr.Dataset) -> Figure:
     """Mean-squared displacement and velocity autocorrelation on those of the Langevin equation."""
     figure, axes = style.new(rows=4, height=6.4, height_ratios=(3, 1.2, 3, 1.2), share_x=False)
     t = np.geomspace(0.05, 1.05 * float(ds["time"].max()), 300)

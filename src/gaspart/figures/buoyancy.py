@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from gaspart.figures import style
 from gaspart.theory.buoyancy import displaced_area
@@ -11,7 +15,7 @@ from gaspart.theory.buoyancy import displaced_area
 WAYS = (("force", "force", "from the force"), ("missing", "count", "small discs missing"))
 
 
-def buoyancy(ds: xr.Dataset):
+def buoyancy(ds: xr.Dataset) -> Figure:
     """Force against density, the radius that counts as displaced, and the heights of free discs."""
     figure, (top, middle, bottom) = style.new(
         rows=3, height=6.4, height_ratios=(1.0, 1.0, 1.1), share_x=False
@@ -29,10 +33,11 @@ def buoyancy(ds: xr.Dataset):
         top.plot(eta, area * eta, ls=dashes, color=colour, label=label, zorder=2)
         middle.plot(eta, np.sqrt(area) - ratio, ls=dashes, color=colour, zorder=2)
     for kind, (mass, radius, label) in enumerate(WAYS):
-        look = {"kind": kind, "hollow": bool(kind)}
+        look: dict[str, Any] = {"kind": kind, "hollow": bool(kind)}
         for axis, name in ((top, mass), (middle, f"{radius}_radius")):
             value, error = (ds[f"fixed_{key}"].values for key in (name, f"{name}_error"))
-            style.points(axis, packing, value, error, label=label if axis is top else None, **look)
+            look["label"] = label if axis is top else None
+            style.points(axis, packing, value, error, **look)
     top.set_ylabel(r"mass displaced $F/mg$")
     top.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
     top.tick_params(labelbottom=False)
@@ -46,7 +51,7 @@ def buoyancy(ds: xr.Dataset):
     return figure
 
 
-def _heights(axis, ds: xr.Dataset) -> None:
+def _heights(axis: Axes, ds: xr.Dataset) -> None:
     """Free discs: mean heights, how far they wander, and what theory says of both."""
     axis.plot(ds["displaced"], ds["height"], color=style.DATA, label=r"displaces $M$", zorder=2)
     mass, height, spread = (ds[f"free_{name}"].values for name in ("mass", "height", "spread"))

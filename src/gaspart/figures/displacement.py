@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.figures import style
 
 
-def msd_spheres(ds: xr.Dataset):
+def msd_spheres(ds: xr.Dataset) -> Figure:
     """The msd; D(t) from displacements and from velocities; D against packing fraction; D against 1/L."""
     figure, axes = style.new(rows=4, height=8.6, share_x=False)
     _displacement(axes[0], ds, 3)
@@ -21,7 +25,7 @@ def msd_spheres(ds: xr.Dataset):
     return figure
 
 
-def msd_discs(ds: xr.Dataset):
+def msd_discs(ds: xr.Dataset) -> Figure:
     """The msd; D(t), which goes on growing; its slope against ln t, by packing fraction."""
     figure, axes = style.new(rows=3, height=7.0, share_x=False)
     long = np.isfinite(ds["logarithmic_slope"].values)
@@ -51,7 +55,7 @@ def _spread(first: int, last: int) -> np.ndarray:
     return np.unique(np.geomspace(first, max(last - 1, first), number).round().astype(int))
 
 
-def _pieces(ds: xr.Dataset, eta: float):
+def _pieces(ds: xr.Dataset, eta: float) -> Iterator[tuple[xr.Dataset, np.ndarray]]:
     """(row, lags) of one packing fraction: the finely sampled run up to where the long ones begin; those."""
     chosen = ds.isel(point=np.flatnonzero(np.isclose(ds["packing_fraction"], eta, atol=1e-5)))
     rows = [chosen.isel(point=point) for point in np.argsort(chosen["interval"].values, kind="stable")]
@@ -65,7 +69,7 @@ def _pieces(ds: xr.Dataset, eta: float):
             yield row, _spread(lags[0], lags[-1] + 1)
 
 
-def _displacement(axis, ds: xr.Dataset, dimension: int) -> None:
+def _displacement(axis: Axes, ds: xr.Dataset, dimension: int) -> None:
     """The msd against time, both in reduced units, with Enskog's curves and the ballistic line they leave."""
     longest = 0.0
     for kind, eta in enumerate(_fractions(ds)):
@@ -88,7 +92,7 @@ def _displacement(axis, ds: xr.Dataset, dimension: int) -> None:
     axis.legend(loc="lower right")
 
 
-def _running(axis, ds: xr.Dataset, dimension: int) -> None:
+def _running(axis: Axes, ds: xr.Dataset, dimension: int) -> None:
     """D(t), half the msd's slope over d, over Enskog's D: displacements as points, velocities as lines."""
     fractions = np.unique(ds["packing_fraction"].values.round(6))
     axis.set_xscale("log")
@@ -122,7 +126,7 @@ def _running(axis, ds: xr.Dataset, dimension: int) -> None:
     axis.legend(loc="lower right", ncols=1 + (len(fractions) > 3))
 
 
-def _predicted(axis, row, eta: float, rate: float, enskog: float, kind: int) -> None:
+def _predicted(axis: Axes, row: xr.Dataset, eta: float, rate: float, enskog: float, kind: int) -> None:
     """The logarithm's predicted slope over the fitted stretch, through D(t) in its middle."""
     ends = np.array([float(row["fit_from"]), float(row["fit_to"])])
     middle = np.sqrt(ends.prod())
@@ -131,7 +135,7 @@ def _predicted(axis, row, eta: float, rate: float, enskog: float, kind: int) -> 
     axis.plot(rate * ends, values / enskog, color=style.COLOURS[kind], lw=1.6, alpha=0.5, zorder=2)
 
 
-def _density(axis, ds: xr.Dataset) -> None:
+def _density(axis: Axes, ds: xr.Dataset) -> None:
     """D over Enskog's against packing fraction, as measured and corrected for the container's size."""
     row = ds.isel(point=ds["largest"].values).sortby("packing_fraction")
     eta = row["packing_fraction"].values
@@ -154,7 +158,7 @@ def _density(axis, ds: xr.Dataset) -> None:
     axis.legend(loc="upper right")
 
 
-def _size(axis, ds: xr.Dataset) -> None:
+def _size(axis: Axes, ds: xr.Dataset) -> None:
     """D_L against 1/L at one packing fraction: the fitted line, and the slope that hydrodynamics predicts."""
     row = ds.isel(point=ds["in_series"].values)
     if not row.sizes["point"]:
@@ -195,7 +199,7 @@ def _size(axis, ds: xr.Dataset) -> None:
     axis.legend(loc="upper right")
 
 
-def _slopes(axis, ds: xr.Dataset) -> None:
+def _slopes(axis: Axes, ds: xr.Dataset) -> None:
     """Slope of D(t) against ln t over packing fraction, with mode coupling's."""
     row = ds.sortby("packing_fraction")
     eta = row["packing_fraction"].values

@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
+from matplotlib import colormaps
+from matplotlib.colors import Colormap, Normalize
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
 from gaspart.figures import style
 
@@ -17,11 +23,8 @@ FLOOR = 1e-17
 """Drifts below this are drawn as 0: nothing at all."""
 
 
-def stability_extremes(dataset: xr.Dataset):
+def stability_extremes(dataset: xr.Dataset) -> Figure:
     """A line a row, a column an engine: how far the energy drifted, or that the row was refused or failed."""
-    from matplotlib import colormaps
-    from matplotlib.colors import Normalize
-
     rows, engines = dataset.sizes["row"], dataset.sizes["engine"]
     figure, axis = style.new(height=0.8 + 0.135 * rows)
     colours, norm = colormaps["YlGnBu"], Normalize(-18.0, 2.0)
@@ -43,7 +46,7 @@ def stability_extremes(dataset: xr.Dataset):
     return figure
 
 
-def _cell(verdict: str, energy: float, colours, norm) -> tuple[str, object, str]:
+def _cell(verdict: str, energy: float, colours: Colormap, norm: Normalize) -> tuple[str, object, str]:
     """Text, background and ink of one cell."""
     if verdict == "refused":
         return "–", "#e6e6e6", "black"
@@ -55,7 +58,5 @@ def _cell(verdict: str, energy: float, colours, norm) -> tuple[str, object, str]
     return f"$10^{{{power:.0f}}}$", colours(norm(power)), "black" if power < -6.5 else "white"
 
 
-def _box(left: float, top: float, colour):
-    from matplotlib.patches import Rectangle
-
+def _box(left: float, top: float, colour: Any) -> Rectangle:
     return Rectangle((left, top), 1, 1, facecolor=colour, edgecolor="white", linewidth=0.4)

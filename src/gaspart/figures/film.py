@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from gaspart.figures import style
 
 
-def thin_film(dataset: xr.Dataset):
+def thin_film(dataset: xr.Dataset) -> Figure:
     """Density above a wall, the contact theorem at every width, and the pressure against the width."""
     figure, (profile, contact, pressure) = style.new(
         rows=3, height=6.2, height_ratios=(2.0, 1.0, 2.0), share_x=False
@@ -24,7 +26,7 @@ def thin_film(dataset: xr.Dataset):
     return figure
 
 
-def _profile(axis, dataset):
+def _profile(axis: Axes, dataset: xr.Dataset) -> None:
     widest = dataset.isel(width=-1)
     axis.plot(dataset["place"], dataset["functional"], color=style.REFERENCE, label="White Bear", zorder=4)
     style.points(
@@ -45,7 +47,7 @@ def _profile(axis, dataset):
     axis.legend(loc="upper right")
 
 
-def _contact(axis, dataset):
+def _contact(axis: Axes, dataset: xr.Dataset) -> None:
     style.band(axis, -1.0, 1.0)
     style.level(axis, 0.0)
     ratio = dataset["contact"] / dataset["pressure"]
@@ -57,7 +59,7 @@ def _contact(axis, dataset):
     axis.set_ylabel("$\\rho(0)k_\\mathrm{B}T/P-1$  (%)")
 
 
-def _solvation(axis, dataset):
+def _solvation(axis: Axes, dataset: xr.Dataset) -> None:
     style.level(axis, 0.0)
     curve = dataset["curve"] - dataset.attrs["functional_bulk_pressure"]
     axis.plot(dataset["theory_width"], curve, color=style.REFERENCE, label="White Bear")
@@ -75,7 +77,7 @@ def _solvation(axis, dataset):
     axis.legend(loc="upper right")
 
 
-def _shown(dataset):
+def _shown(dataset: xr.Dataset) -> np.ndarray:
     """The widest slit is far off: it is drawn at the end of the axis, and labelled with its width."""
     width = dataset["width"].values.copy()
     width[-1] = min(width[-1], float(dataset["theory_width"].max()) + 0.3)

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import Any
+
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.figures import style
@@ -14,12 +19,12 @@ SETTLED = 3.0
 """Points whose starts or halves differ by more standard errors are drawn hollow: not in equilibrium."""
 
 
-def freezing_discs(dataset: xr.Dataset):
+def freezing_discs(dataset: xr.Dataset) -> Figure:
     """Pressure with the plateau, psi_6, g(r), and three snapshots with their structure factors."""
-    from matplotlib.figure import Figure
-
     shown = dataset.sizes["shown"]
-    rows = [[name] * shown for name in "abc"] + [[f"{name}{k}" for k in range(shown)] for name in "de"]
+    rows: list[Any] = [[name] * shown for name in "abc"] + [
+        [f"{name}{k}" for k in range(shown)] for name in "de"
+    ]
     figure = Figure(figsize=(style.COLUMN, 7.9), layout="constrained")
     axes = figure.subplot_mosaic(rows, gridspec_kw={"height_ratios": (2.2, 1.4, 1.5, 1.1, 1.1)})
     _loop(axes["a"], dataset)
@@ -47,7 +52,7 @@ def freezing_discs(dataset: xr.Dataset):
     return figure
 
 
-def freezing_spheres(dataset: xr.Dataset):
+def freezing_spheres(dataset: xr.Dataset) -> Figure:
     """Pressure of both branches, its residuals, Q_6, and the profiles of crystal beside fluid."""
     figure, axes = style.new(rows=4, height=7.6, height_ratios=(2.0, 1.2, 1.2, 1.4), share_x=False)
     upper, middle, order, slab = axes
@@ -65,14 +70,23 @@ def freezing_spheres(dataset: xr.Dataset):
     return figure
 
 
-def _starts(dataset: xr.Dataset):
+def _starts(dataset: xr.Dataset) -> Iterator:
     """Each start's name, points, colour, and which of them are in equilibrium."""
     for start in dataset["start"].values:
         side = dataset.sel(start=start).dropna("packing_fraction", subset=["pressure"])
         yield str(start), side, LOOKS[str(start)], (side["disagreement"] <= SETTLED).values
 
 
-def _points(axis, side, what: str, kind: int, settled, label: str | None = None, scale=1.0, shift=0.0):
+def _points(
+    axis: Axes,
+    side: xr.Dataset,
+    what: str,
+    kind: int,
+    settled: np.ndarray,
+    label: str | None = None,
+    scale: float = 1.0,
+    shift: float = 0.0,
+) -> None:
     """Full symbols in equilibrium, hollow ones not."""
     eta, value, error = (
         side["packing_fraction"].values,
@@ -92,7 +106,7 @@ def _points(axis, side, what: str, kind: int, settled, label: str | None = None,
             )
 
 
-def _loop(axis, dataset):
+def _loop(axis: Axes, dataset: xr.Dataset) -> None:
     expected = theory.COEXISTENCE_PRESSURE[2]
     style.band(axis, 0.98 * expected, 1.02 * expected)
     style.level(axis, expected)
@@ -129,7 +143,7 @@ def _loop(axis, dataset):
     axis.legend(loc="lower right")
 
 
-def _order(axis, dataset, label: str):
+def _order(axis: Axes, dataset: xr.Dataset, label: str) -> None:
     for edge in theory.coexistence_packing_fractions(2 if "shown" in dataset.dims else 3):
         axis.axvline(edge, color=style.GREY, linewidth=0.6, linestyle=":")
     for _, side, kind, settled in _starts(dataset):
@@ -138,7 +152,7 @@ def _order(axis, dataset, label: str):
     axis.set_ylabel(label)
 
 
-def _snapshot(axis, at, label: str):
+def _snapshot(axis: Axes, at: xr.Dataset, label: str) -> None:
     """Discs coloured by the direction of their bonds, which has a period of 60 degrees."""
     from matplotlib.collections import EllipseCollection
 
@@ -153,7 +167,7 @@ def _snapshot(axis, at, label: str):
     axis.set_title(f"$\\eta={label}$", pad=2)
 
 
-def _scattering(axis, at):
+def _scattering(axis: Axes, at: xr.Dataset) -> None:
     """S(k), black where it is large."""
     from matplotlib.colors import LogNorm
 
@@ -169,7 +183,7 @@ def _scattering(axis, at):
     axis.set(aspect="equal", xlabel="$k_x\\sigma$", xticks=[-10, 0, 10], yticks=[-10, 0, 10])
 
 
-def _branches(axis, dataset):
+def _branches(axis: Axes, dataset: xr.Dataset) -> None:
     expected = theory.COEXISTENCE_PRESSURE[3]
     volume = np.pi / 6.0
     style.level(axis, expected)
@@ -201,7 +215,7 @@ def _branches(axis, dataset):
     axis.legend(loc="upper left", bbox_to_anchor=(0.05, 1.0))
 
 
-def _residuals(axis, dataset):
+def _residuals(axis: Axes, dataset: xr.Dataset) -> None:
     style.level(axis, 0.0)
     for _, side, kind, settled in _starts(dataset):
         ratio = side.assign(r=side["Z"] / side["reference"], r_error=side["Z_error"] / side["reference"])
@@ -213,7 +227,7 @@ def _residuals(axis, dataset):
     axis.set_ylabel("$Z/Z_\\mathrm{branch}-1$  (%)")
 
 
-def _profiles(axis, dataset):
+def _profiles(axis: Axes, dataset: xr.Dataset) -> None:
     """Local order (left) and density (right) along the container, in both halves of the run."""
     other = axis.twinx()
     for half, line in ((0, ":"), (1, "-")):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.figures import style
@@ -11,7 +13,7 @@ from gaspart.figures import style
 NAMES = {2: "discs", 3: "spheres"}
 
 
-def equipartition(ds: xr.Dataset):
+def equipartition(ds: xr.Dataset) -> Figure:
     """Three panels: both temperatures against collisions, their difference less theory's, steady ratios."""
     figure, (upper, middle, lower) = style.new(
         rows=3, height=6.6, height_ratios=(2.0, 1.0, 1.8), share_x=False
@@ -27,7 +29,7 @@ def equipartition(ds: xr.Dataset):
     return figure
 
 
-def _temperatures(axis, ds: xr.Dataset) -> None:
+def _temperatures(axis: Axes, ds: xr.Dataset) -> None:
     s = np.linspace(0.0, 1.02 * float(ds["collisions"].max()), 200)
     for kind in range(ds.sizes["start"]):
         row = ds.isel(start=kind)
@@ -46,7 +48,7 @@ def _temperatures(axis, ds: xr.Dataset) -> None:
     axis.legend(loc="lower right")
 
 
-def _differences(axis, ds: xr.Dataset) -> None:
+def _differences(axis: Axes, ds: xr.Dataset) -> None:
     """100 (T_tr - T_rot - exp(-3 q s / (1 + q)^2)): in per cent of the initial temperature."""
     style.level(axis, 0.0)
     for kind in range(ds.sizes["start"]):
@@ -66,7 +68,7 @@ def _differences(axis, ds: xr.Dataset) -> None:
     axis.set_ylabel("less theory (%)")
 
 
-def _ratios(axis, ds: xr.Dataset) -> None:
+def _ratios(axis: Axes, ds: xr.Dataset) -> None:
     """T_rot / T_tr against the tangential restitution: theory, cooling discs, elastic rough ones."""
     curve = np.linspace(-0.99, 1.0, 200)
     for kind, q in enumerate(sorted(set(ds["equilibrium_inertia"].values))):
@@ -91,7 +93,7 @@ def _ratios(axis, ds: xr.Dataset) -> None:
     axis.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
 
 
-def cooling(ds: xr.Dataset):
+def cooling(ds: xr.Dataset) -> Figure:
     """Four panels: Haff's law, its rate, how a large gas leaves it, and what that looks like."""
     figure, axes = style.new(rows=2, columns=2, height=5.6, share_x=False)
     _haff(axes[0, 0], ds)
@@ -103,7 +105,7 @@ def cooling(ds: xr.Dataset):
     return figure
 
 
-def _haff(axis, ds: xr.Dataset) -> None:
+def _haff(axis: Axes, ds: xr.Dataset) -> None:
     """T against 1 + t / t_H; discs and spheres are a factor 3 apart so that they do not hide each other."""
     line = np.array([1.0, 1.1 * (1.0 + float(ds["time"].max()))])
     for dimension, factor in ((2, 1.0), (3, 1.0 / 3.0)):
@@ -132,7 +134,7 @@ def _haff(axis, ds: xr.Dataset) -> None:
     axis.legend(loc="lower left", fontsize=6.5)
 
 
-def _rates(axis, ds: xr.Dataset) -> None:
+def _rates(axis: Axes, ds: xr.Dataset) -> None:
     """-d ln T / ds over (1 - e^2)/d: 1 for Maxwell's distribution, 1 + a2/4 for the gas's own."""
     style.level(axis, 1.0)
     curve = np.linspace(0.55, 1.0, 100)
@@ -150,7 +152,7 @@ def _rates(axis, ds: xr.Dataset) -> None:
     axis.legend(loc="upper right")
 
 
-def _leaving(axis, ds: xr.Dataset) -> None:
+def _leaving(axis: Axes, ds: xr.Dataset) -> None:
     """T over Haff's and the variance of the number in a cell over the elastic gas's, against (1 - e^2) s."""
     style.level(axis, 1.0)
     restitution = ds["cluster_restitution"].values
@@ -182,7 +184,7 @@ def _leaving(axis, ds: xr.Dataset) -> None:
     axis.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
 
 
-def _picture(axis, ds: xr.Dataset) -> None:
+def _picture(axis: Axes, ds: xr.Dataset) -> None:
     """The discs of one run in the end, to scale."""
     from matplotlib.collections import EllipseCollection
 

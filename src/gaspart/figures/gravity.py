@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from gaspart.figures import style
 from gaspart.theory.gravity import ideal_heat_capacity, ideal_profile
@@ -13,7 +15,7 @@ KNOWN = 0.1
 """Relative errors up to which a bin of height is drawn: above, hardly anybody is there."""
 
 
-def barometric(ds: xr.Dataset):
+def barometric(ds: xr.Dataset) -> Figure:
     """Density and temperature against height, and the equation of state from the weight of the column."""
     figure, axes = style.new(rows=5, height=7.8, height_ratios=(3, 1.3, 1.3, 2.6, 1.3), share_x=False)
     top, ratio, warm, state, off = axes
@@ -44,7 +46,7 @@ def barometric(ds: xr.Dataset):
     factor, bar = (dense[key].values[used] for key in ("compressibility", "compressibility_error"))
     label = "weight above / $\\rho kT$"
     style.points(state, eta, factor, bar, kind=1, hollow=True, label=label)
-    _percent(off, eta, *(dense[key].values[used] for key in ("pressure_ratio", "pressure_ratio_error")), 1)
+    _percent(off, eta, dense["pressure_ratio"].values[used], dense["pressure_ratio_error"].values[used], 1)
     top.set_yscale("log")
     top.set_ylim(0.04, 12.0)
     top.set_ylabel(r"density $\rho/\bar\rho$")
@@ -63,7 +65,7 @@ def barometric(ds: xr.Dataset):
     return figure
 
 
-def separation(ds: xr.Dataset):
+def separation(ds: xr.Dataset) -> Figure:
     """Heavy and light discs: densities, dilute and dense, and the ratio of the two."""
     figure, axes = style.new(rows=4, height=7.0, height_ratios=(2.6, 2.6, 2.6, 1.2))
     names = ("light", "heavy")
@@ -108,7 +110,7 @@ def separation(ds: xr.Dataset):
     return figure
 
 
-def heat_capacity(ds: xr.Dataset):
+def heat_capacity(ds: xr.Dataset) -> Figure:
     """Heat capacity against x, from neighbouring energies and from fluctuations, and what is left over."""
     figure, (top, bottom) = style.new(rows=2, height=3.8, height_ratios=(3, 1.2))
     x = np.linspace(0.0, 6.0, 300)
@@ -159,14 +161,14 @@ def _ideal(row: xr.Dataset, kind: int) -> np.ndarray:
     return number * ideal_profile(own["height"].values, float(own["top"]), weight)
 
 
-def _percent(axis, x, ratio, error, kind: int) -> None:
+def _percent(axis: Axes, x: np.ndarray, ratio: np.ndarray, error: np.ndarray, kind: int) -> None:
     """A ratio's distance from 1 in per cent, with its zero line."""
     style.level(axis, 0.0)
     style.points(axis, x, 100.0 * (ratio - 1.0), 100.0 * error, kind=kind, hollow=True, markersize=2.5)
     axis.set_ylim(-4.5, 4.5)
 
 
-def _share(*panels) -> None:
+def _share(*panels: Axes) -> None:
     """One x axis for panels above each other."""
     for panel in panels[:-1]:
         panel.sharex(panels[-1])

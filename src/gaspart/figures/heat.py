@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from gaspart.figures import style
 from gaspart.theory.heat import conducting_slab
@@ -12,7 +16,7 @@ ENDLESS = 100.0
 """Knudsen number above which points are drawn at a place of their own, for infinity."""
 
 
-def heat_conduction_gas(ds: xr.Dataset):
+def heat_conduction_gas(ds: xr.Dataset) -> Figure:
     """Flux against density, and over that of free flight; profiles of temperature and of density."""
     figure, axes = style.new(rows=5, height=8.4, height_ratios=(2.6, 2.4, 2.4, 1.1, 2.0), share_x=False)
     flux, share, warm, off, dense = axes
@@ -39,7 +43,7 @@ def heat_conduction_gas(ds: xr.Dataset):
     return figure
 
 
-def _fluxes(axis, ds: xr.Dataset) -> None:
+def _fluxes(axis: Axes, ds: xr.Dataset) -> None:
     """Flux against density, with both limits."""
     row = ds.isel(point=0)
     number = np.geomspace(5e-4, 0.08, 100)
@@ -66,7 +70,7 @@ def _fluxes(axis, ds: xr.Dataset) -> None:
     axis.legend(loc="lower right", ncol=2, columnspacing=0.8)
 
 
-def _shares(axis, ds: xr.Dataset) -> None:
+def _shares(axis: Axes, ds: xr.Dataset) -> None:
     """Flux over that of free flight against the Knudsen number; the thinnest gases at infinity."""
     end = 20.0
     for level in (1.0, 2.0 / 3.0, 0.5):
@@ -90,13 +94,13 @@ def _shares(axis, ds: xr.Dataset) -> None:
     axis.legend(loc="lower right")
 
 
-def _profiles(warm, off, dense, row: xr.Dataset, kind: int) -> None:
+def _profiles(warm: Axes, off: Axes, dense: Axes, row: xr.Dataset, kind: int) -> None:
     """One gas's temperature, its distance from theory, and its density."""
     position = row["position"].values / float(row["length"])
     number = float(row["number"])
     temperature, error = row["temperature"].values, row["temperature_error"].values
     label = rf"$l/L = {float(row['knudsen']):.2g}$"
-    small = {"kind": kind, "hollow": True, "markersize": 2.5}
+    small: dict[str, Any] = {"kind": kind, "hollow": True, "markersize": 2.5}
     style.points(warm, position, temperature, error, label=label, **small)
     values = (row["density"].values / number, row["density_error"].values / number)
     style.points(dense, position, *values, **small)
@@ -110,7 +114,7 @@ def _profiles(warm, off, dense, row: xr.Dataset, kind: int) -> None:
     style.points(off, position[used], ratio[used], 100.0 * (error / theory)[used], **small)
 
 
-def heat_conduction_metal(ds: xr.Dataset):
+def heat_conduction_metal(ds: xr.Dataset) -> Figure:
     """Temperatures of electrons and modes between two walls; energy against temperature."""
     figure, (top, bottom, off) = style.new(rows=3, height=5.6, height_ratios=(2.6, 2.4, 1.1), share_x=False)
     for n in np.flatnonzero(ds["hot"] != ds["cold"]):

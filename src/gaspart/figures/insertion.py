@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.figures import style
@@ -19,7 +21,7 @@ SOURCE = 0.52
 """The packing fraction that source A's program reached."""
 
 
-def fill_failures(dataset: xr.Dataset):
+def fill_failures(dataset: xr.Dataset) -> Figure:
     """Failures per body, to saturation and at low density; packing fraction against attempts^(-1/d)."""
     figure, (upper, middle, lower) = style.new(rows=3, height=7.4, height_ratios=(1.5, 0.7, 1), share_x=False)
     for kind, (key, label) in enumerate(SERIES.items()):
@@ -46,7 +48,7 @@ def fill_failures(dataset: xr.Dataset):
     return figure
 
 
-def _failures(axis, one, kind: int, label: str):
+def _failures(axis: Axes, one: xr.Dataset, kind: int, label: str) -> None:
     style.points(
         axis, one["packing_fraction"], one["failures_per_body"].where(one["failures_per_body"] > 0),
         one["failures_per_body_error"], kind=kind, markersize=2.5,
@@ -54,7 +56,7 @@ def _failures(axis, one, kind: int, label: str):
     )  # fmt: skip
 
 
-def _limits(axis):
+def _limits(axis: Axes) -> None:
     """Where insertion ends: in an infinite container, and in source A's."""
     marks = [
         (theory.RSA_SATURATION[3], "3D: 0.384", style.COLOURS[1], -0.006, "right"),
@@ -71,7 +73,7 @@ def _limits(axis):
     axis.set_ylabel("failed attempts per body")
 
 
-def _low_density(axis):
+def _low_density(axis: Axes) -> None:
     """The first bodies of a large container, and the expansion that is exact there."""
     eta = np.linspace(0.0, 0.06, 60)
     for dimension in (2, 3):
@@ -84,7 +86,7 @@ def _low_density(axis):
     axis.set_ylabel("failures per body")
 
 
-def _saturation(axis, one, kind: int):
+def _saturation(axis: Axes, one: xr.Dataset, kind: int) -> None:
     """The growing packing fraction, its fitted line, and where the line should end."""
     dimension = int(one["dimension"])
     colour = style.COLOURS[kind]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.figure import Figure
 
 from gaspart.figures import style
 from gaspart.rendering.bodies import Bodies, colours_of
@@ -19,7 +20,7 @@ NAMES = {
 }
 
 
-def densest_fill(ds: xr.Dataset):
+def densest_fill(ds: xr.Dataset) -> Figure:
     """The source's fill and the compressed packing, with the packing fractions of all packings below."""
     figure, axes = style.new(1, 2, height=3.3)
     shown = [0, ds.sizes["packing"] - 1]

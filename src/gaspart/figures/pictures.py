@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from gaspart.figures import style
 from gaspart.rendering.bodies import FASTEST, Bodies, colours_of
@@ -15,7 +17,7 @@ HEIGHT = 0.75
 """Of a picture, over its width."""
 
 
-def gas_render(ds: xr.Dataset):
+def gas_render(ds: xr.Dataset) -> Figure:
     """The gas, coloured by speed."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
@@ -30,12 +32,12 @@ def gas_render(ds: xr.Dataset):
     return figure
 
 
-def brownian_render(ds: xr.Dataset):
+def brownian_render(ds: xr.Dataset) -> Figure:
     """The large body and its gas, coloured by species."""
     return _shown(ds, "species", height=style.COLUMN * HEIGHT)[0]
 
 
-def _shown(ds: xr.Dataset, colour: str, height: float):
+def _shown(ds: xr.Dataset, colour: str, height: float) -> tuple[Figure, Axes]:
     """A figure that is filled by the picture of the bodies of a dataset."""
     bodies = Bodies(
         positions=ds["position"].values,

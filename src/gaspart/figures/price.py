@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
+from matplotlib.figure import Figure
 
 from gaspart.claims.price import DEAREST
 from gaspart.figures import style
@@ -12,7 +15,7 @@ ENGINES = ("event", "step")
 WORK = {"pair_tests": "pair tests", "crossings": "crossings"}
 
 
-def price_of_features(ds: xr.Dataset):
+def price_of_features(ds: xr.Dataset) -> Figure:
     """Time per event over the plain scene's, and the counted work per event, for each feature."""
     figure, (left, right) = style.new(columns=2, height=2.9)
     names = list(dict.fromkeys(ds["feature"].values))
@@ -29,7 +32,7 @@ def price_of_features(ds: xr.Dataset):
         style.points(left, one["ratio"], rows, kind=kind, xerr=one["ratio_error"], label=label)
         for hollow, name in enumerate(WORK):
             if one[name].values.any():
-                look = {"hollow": bool(hollow), "label": f"{engine}: {WORK[name]}"}
+                look: dict[str, Any] = {"hollow": bool(hollow), "label": f"{engine}: {WORK[name]}"}
                 style.points(right, one[name], rows, kind=kind, **look)
     for axis in (left, right):
         axis.set_yticks(list(place.values()), names)

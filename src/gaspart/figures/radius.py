@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.figures import style
@@ -11,7 +15,7 @@ from gaspart.figures import style
 SERIES = ("packing fraction", "count")
 
 
-def radius_grid(dataset: xr.Dataset):
+def radius_grid(dataset: xr.Dataset) -> Figure:
     """Z, its residuals, and the counted work, against the radius."""
     figure, (upper, middle, lower) = style.new(rows=3, height=6.6, height_ratios=(1.5, 0.8, 1.9))
     event = dataset.isel(point=dataset["engine"].values == "event")
@@ -42,7 +46,7 @@ def radius_grid(dataset: xr.Dataset):
     return figure
 
 
-def _state(axis, one, kind: int, name: str):
+def _state(axis: Axes, one: xr.Dataset, kind: int, name: str) -> None:
     if name == "count":
         label = f"$N={int(one['count'][0])}$, $\\eta$ = {_range(one['packing_fraction'], '{:.2g}')}"
     else:
@@ -55,24 +59,24 @@ def _state(axis, one, kind: int, name: str):
     axis.plot(fine, theory.compressibility_factor(between, 3), color=style.COLOURS[kind])
 
 
-def _range(values, form: str) -> str:
+def _range(values: xr.DataArray, form: str) -> str:
     return f"{form.format(float(values.min()))} – {form.format(float(values.max()))}"
 
 
-def _event_costs(axis, one, kind: int):
+def _event_costs(axis: Axes, one: xr.Dataset, kind: int) -> None:
     """Circles or squares; crossings hollow, with the line of kinetic theory."""
-    look = {"kind": kind, "linestyle": "none"}
+    look: dict[str, Any] = {"kind": kind, "linestyle": "none"}
     style.points(axis, one["radius"], one["pair_tests"], **look)
     style.points(axis, one["radius"], one["crossings_counted"], hollow=True, **look)
     axis.plot(one["radius"], one["crossings_expected"], color=style.COLOURS[kind])
 
 
-def _step_costs(axis, one, kind: int):
+def _step_costs(axis: Axes, one: xr.Dataset, kind: int) -> None:
     style.points(axis, one["radius"], one["pair_tests"], kind=kind, marker="x")
     axis.plot(one["radius"], one["pair_tests_expected"], color=style.COLOURS[kind], linestyle="--")
 
 
-def _labels(axis, event, step):
+def _labels(axis: Axes, event: xr.Dataset, step: xr.Dataset) -> None:
     """What is counted, above each group of points."""
     texts = (
         (1.2 * float(event["pair_tests"].max()), "event-driven: pair tests per collision"),

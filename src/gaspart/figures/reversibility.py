@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from gaspart.claims.reversibility import EXPONENT
 from gaspart.figures import style
@@ -15,7 +17,7 @@ ENGINES = {
 }
 
 
-def reversibility(ds: xr.Dataset):
+def reversibility(ds: xr.Dataset) -> Figure:
     """Echoes against collisions, their growth against density, and the memory of each engine."""
     figure, axes = style.new(rows=3, height=7.0, height_ratios=(1.3, 1, 1), share_x=False)
     gases = sorted(set(zip(ds.dimension.values.tolist(), ds.packing_fraction.values.tolist(), strict=True)))
@@ -41,7 +43,7 @@ def reversibility(ds: xr.Dataset):
     return figure
 
 
-def _growth(axis, ds: xr.Dataset) -> None:
+def _growth(axis: Axes, ds: xr.Dataset) -> None:
     exact = ds.isel(row=(ds.engine == "event").values)
     for kind, dimension in enumerate((2, 3)):
         of = exact.isel(row=(exact.dimension == dimension).values)
@@ -66,7 +68,7 @@ def _growth(axis, ds: xr.Dataset) -> None:
     axis.legend(fontsize=6.5)
 
 
-def _memory(axis, ds: xr.Dataset) -> None:
+def _memory(axis: Axes, ds: xr.Dataset) -> None:
     for kind, ((engine, precision), (label, _)) in enumerate(ENGINES.items()):
         of = ds.isel(row=((ds.engine == engine) & (ds.precision == precision)).values)
         for dimension in (2, 3):

@@ -1,6 +1,12 @@
 """Pictures of what space partitioning buys. Source A: Frederickx and Meerts 2010."""
 
+from collections.abc import Iterator
+from typing import Any
+
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from gaspart.figures import style
 
@@ -9,7 +15,7 @@ _SOURCE = style.COLOURS[4]
 _SCAN = 27  # source A's program scans its one box once for each of the boxes around it
 
 
-def naive_scaling(ds):
+def naive_scaling(ds: xr.Dataset) -> Figure:
     """Time of a step against N, and per pair test."""
     figure, (top, bottom) = style.new(rows=2, height=3.8, height_ratios=(2.2, 1))
     count = ds["count"].values
@@ -30,7 +36,7 @@ def naive_scaling(ds):
     return figure
 
 
-def box_count(ds):
+def box_count(ds: xr.Dataset) -> Figure:
     """Time and work against the number of boxes; round widths; the event-driven engine's sectors."""
     figure, axes = style.new(rows=4, height=8.4, share_x=False, height_ratios=(1.2, 1.2, 1, 1.2))
     boxes = ds.boxes_per_side.values.astype(float) ** 3
@@ -45,7 +51,7 @@ def box_count(ds):
     return figure
 
 
-def _scan_time(axis, ds, boxes):
+def _scan_time(axis: Axes, ds: xr.Dataset, boxes: np.ndarray) -> None:
     model = ds.body_seconds + ds.test_seconds * ds.pair_tests + ds.box_seconds * ds.boxes_emptied
     style.points(axis, boxes, ds.seconds * _NS, ds.seconds_error * _NS, color=style.DATA, label="measured")
     near = (ds.seconds <= 3.0 * ds.seconds.min()).values
@@ -63,11 +69,11 @@ def _scan_time(axis, ds, boxes):
     axis.legend(loc="upper right")
 
 
-def _scan_work(axis, ds, boxes):
+def _scan_work(axis: Axes, ds: xr.Dataset, boxes: np.ndarray) -> None:
     axis.plot(boxes, ds.expected_tests, color=style.COLOURS[0])
     axis.plot(boxes, ds.expected_visits, color=style.COLOURS[1])
     kinds = {"pair_tests": "pair tests", "box_visits": "boxes looked into", "boxes_emptied": "boxes emptied"}
-    shown = [
+    shown: list[Any] = [
         style.points(axis, boxes, ds[name], kind=kind, label=label)
         for kind, (name, label) in enumerate(kinds.items())
     ]
@@ -78,7 +84,7 @@ def _scan_work(axis, ds, boxes):
     axis.legend(handles=shown, loc="upper right", fontsize=7)
 
 
-def _round_widths(axis, ds):
+def _round_widths(axis: Axes, ds: xr.Dataset) -> None:
     first, second = ds.isel(container=0), ds.isel(container=1)
     per_side = first.fine_boxes_per_side.values
     ratio = (first.fine_seconds / second.fine_seconds).values
@@ -100,7 +106,7 @@ def _round_widths(axis, ds):
     axis.legend(loc="upper left")
 
 
-def _sectors(axis, ds):
+def _sectors(axis: Axes, ds: xr.Dataset) -> None:
     sectors = ds.sector_boxes_per_side.values.astype(float) ** 2
     style.points(axis, sectors, ds.sector_pair_tests, kind=0, linestyle="-", label="pair tests")
     style.points(axis, sectors, ds.sector_box_visits, kind=1, linestyle="-", label="sectors looked into")
@@ -114,7 +120,7 @@ def _sectors(axis, ds):
     axis.legend(loc="upper right", ncols=2, columnspacing=0.8)
 
 
-def ideal_boxes(ds):
+def ideal_boxes(ds: xr.Dataset) -> Figure:
     """The ideal number of boxes against N; and how flat the minimum is."""
     figure, (top, bottom) = style.new(rows=2, height=5.4, share_x=False)
     count = ds["count"].values.astype(float)
@@ -150,12 +156,12 @@ def ideal_boxes(ds):
     return figure
 
 
-def _thousands(number):
+def _thousands(number: float | xr.DataArray) -> str:
     """A whole number with thin spaces, for mathematical text."""
     return f"{int(number):,}".replace(",", r"\,")
 
 
-def _ideal(axis, of, kind, label):
+def _ideal(axis: Axes, of: xr.Dataset, kind: int, label: str) -> None:
     """Ideal numbers with 95 % intervals. Hollow: without an interval; with an arrow where the time still
     falls at the finest partition timed."""
     count, interior = of["count"].values, of.ideal_interior.values.astype(bool)
@@ -169,7 +175,7 @@ def _ideal(axis, of, kind, label):
     style.points(axis, count[rest], ideal[rest], 0.6 * ideal[rest], kind=kind, hollow=True, lolims=True)
 
 
-def linear_scaling(ds):
+def linear_scaling(ds: xr.Dataset) -> Figure:
     """Time of a step with one box and with the cheapest partition; time and work per body."""
     figure, (top, middle, bottom) = style.new(rows=3, height=6.4, height_ratios=(2, 1.2, 1))
     count = ds["count"].values.astype(float)
@@ -220,12 +226,12 @@ def linear_scaling(ds):
     return figure
 
 
-def _by_radius(ds):
+def _by_radius(ds: xr.Dataset) -> Iterator:
     for radius in sorted(set(ds.radius.values.tolist()), reverse=True):
         yield radius, ds.isel(gas=np.flatnonzero(ds.radius.values == radius))
 
 
-def _duration(seconds):
+def _duration(seconds: float) -> str:
     """A time in the unit that reads best."""
     for unit, length in (("h", 3600.0), ("min", 60.0), ("s", 1.0)):
         if seconds >= length:
@@ -233,7 +239,7 @@ def _duration(seconds):
     return f"{seconds * _MS:.2g} ms a step"
 
 
-def event_scaling(ds):
+def event_scaling(ds: xr.Dataset) -> Figure:
     """Pair tests and time of an event against N, by each search."""
     figure, (top, bottom) = style.new(rows=2, height=4.8)
     names = {"pairs": "all pairs", "direct": "queue, all bodies", "boxes": "queue and sectors"}
@@ -255,6 +261,6 @@ def event_scaling(ds):
     return figure
 
 
-def _guide(axis, count, values, power, kind):
+def _guide(axis: Axes, count: np.ndarray, values: np.ndarray, power: float, kind: int) -> None:
     """The power law that the search should follow, through the last point."""
     axis.plot(count, values[-1] * (count / count[-1]) ** power, color=style.COLOURS[kind], lw=0.8, zorder=1)

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
 
 from gaspart import theory
 from gaspart.figures import style
@@ -13,7 +18,7 @@ KOLMOGOROV_BAND = 1.36
 """sqrt(n) times the Kolmogorov distance of n samples of the right distribution is below this in 95 %."""
 
 
-def speed_relaxation(ds: xr.Dataset):
+def speed_relaxation(ds: xr.Dataset) -> Figure:
     """Histograms at the source's three times; kurtosis and never-hit fraction against collisions per body."""
     figure, axes = style.new(rows=5, height=7.6, height_ratios=(3.2, 2.3, 1, 2.3, 1), share_x=False)
     _histograms(axes[0], ds)
@@ -50,7 +55,7 @@ def speed_relaxation(ds: xr.Dataset):
     return figure
 
 
-def _histograms(axis, ds: xr.Dataset) -> None:
+def _histograms(axis: Axes, ds: xr.Dataset) -> None:
     """Densities at the three times: outlines from the time-stepped engine, points from the other."""
     edges = np.append(ds["lower"].values, ds["upper"].values[-1])
     middle = 0.5 * (edges[1:] + edges[:-1])
@@ -84,7 +89,9 @@ def _histograms(axis, ds: xr.Dataset) -> None:
     axis.legend(loc="upper right")
 
 
-def _compare(top, bottom, ds: xr.Dataset, name: str, curve) -> None:
+def _compare(
+    top: Axes, bottom: Axes, ds: xr.Dataset, name: str, curve: Callable[[np.ndarray], ArrayLike]
+) -> None:
     """Both engines' points on the curve, and their residuals in standard errors of each."""
     style.band(bottom, -3.0, 3.0)
     style.level(bottom, 0.0)
@@ -97,17 +104,17 @@ def _compare(top, bottom, ds: xr.Dataset, name: str, curve) -> None:
     bottom.set_ylim(-4.5, 4.5)
 
 
-def speed_distribution_spheres(ds: xr.Dataset):
+def speed_distribution_spheres(ds: xr.Dataset) -> Figure:
     """Density, residual and cumulative difference in 3D."""
     return _distribution(ds)
 
 
-def speed_distribution_discs(ds: xr.Dataset):
+def speed_distribution_discs(ds: xr.Dataset) -> Figure:
     """Density, residual and cumulative difference in 2D."""
     return _distribution(ds)
 
 
-def _distribution(ds: xr.Dataset):
+def _distribution(ds: xr.Dataset) -> Figure:
     dimension = ds.attrs["dimension"]
     figure, axes = style.new(rows=4, height=6.4, height_ratios=(3, 1.3, 2.2, 1.3))
     u = np.linspace(0.0, float(ds["upper"][-1]), 400)

@@ -2,10 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
+
+if TYPE_CHECKING:  # the colours are wanted without it
+    from matplotlib.axes import Axes
+    from matplotlib.container import ErrorbarContainer
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Rectangle
+    from matplotlib.text import Text
 
 COLUMN = 3.4
 """Width of one column of a journal, in inches."""
@@ -22,7 +33,7 @@ REFERENCE = "#0072b2"
 GREY = "#8c8c8c"
 """For guides: zero lines, bands, limits."""
 
-RULES = {
+RULES: dict[Any, Any] = {
     "figure.figsize": (COLUMN, 2.6),
     "figure.dpi": 100,
     "figure.constrained_layout.use": True,
@@ -51,7 +62,7 @@ RULES = {
 
 
 @contextmanager
-def applied():
+def applied() -> Iterator[None]:
     """Draw in this style, without a display, inside the ``with`` block."""
     import matplotlib
     from cycler import cycler
@@ -62,8 +73,12 @@ def applied():
 
 
 def new(
-    rows: int = 1, columns: int = 1, height: float | None = None, height_ratios=None, share_x: bool = True
-):
+    rows: int = 1,
+    columns: int = 1,
+    height: float | None = None,
+    height_ratios: Sequence[float] | None = None,
+    share_x: bool = True,
+) -> tuple[Figure, Any]:
     """A figure one column wide (two, if it has several columns of panels), and its axes.
 
     height: in inches. height_ratios: (rows,). share_x: panels above each other have one x axis.
@@ -83,7 +98,15 @@ def new(
     return figure, axes
 
 
-def points(axis, x, y, error=None, kind: int = 0, hollow: bool = False, **options):
+def points(
+    axis: Axes,
+    x: ArrayLike,
+    y: ArrayLike,
+    error: ArrayLike | None = None,
+    kind: int = 0,
+    hollow: bool = False,
+    **options: Any,
+) -> ErrorbarContainer:
     """Measured points with error bars: colour and marker number `kind`, or `color` and `marker`."""
     colour = options.pop("color", COLOURS[kind % len(COLOURS)])
     options.setdefault("marker", MARKERS[kind % len(MARKERS)])
@@ -94,7 +117,9 @@ def points(axis, x, y, error=None, kind: int = 0, hollow: bool = False, **option
     return axis.errorbar(x, y, yerr=error, color=colour, markerfacecolor=face, markeredgewidth=0.8, **options)
 
 
-def residuals(axis, x, sigmas, kind: int = 0, gate: float = 3.0, **options):
+def residuals(
+    axis: Axes, x: ArrayLike, sigmas: ArrayLike, kind: int = 0, gate: float = 3.0, **options: Any
+) -> None:
     """A panel of deviations in standard deviations: one series, the zero line and the band of ± `gate`.
 
     The scale is at least ±1.3 gate, so that an innocent panel looks innocent.
@@ -106,22 +131,22 @@ def residuals(axis, x, sigmas, kind: int = 0, gate: float = 3.0, **options):
     axis.set_ylim(-widest, widest)
 
 
-def band(axis, low: float, high: float, **options):
+def band(axis: Axes, low: float, high: float, **options: Any) -> Rectangle:
     """A horizontal grey band, behind everything."""
     return axis.axhspan(low, high, color=GREY, alpha=0.18, linewidth=0, zorder=0, **options)
 
 
-def level(axis, value: float, **options):
+def level(axis: Axes, value: float, **options: Any) -> Line2D:
     """A horizontal grey line, behind the points."""
     return axis.axhline(value, color=GREY, linewidth=0.6, zorder=1, **options)
 
 
-def letter(axis, text: str, x: float = 0.02, y: float = 0.97):
+def letter(axis: Axes, text: str, x: float = 0.02, y: float = 0.97) -> Text:
     """(a), (b) ... or a short title in a panel's upper left corner; x, y: in parts of the panel."""
     return axis.text(x, y, text, transform=axis.transAxes, ha="left", va="top", fontweight="bold")
 
 
-def save(figure, path: str | Path) -> None:
+def save(figure: Figure, path: str | Path) -> None:
     """Write a figure, whole or not at all, as its suffix says; the same figure gives the same bytes."""
     from gaspart.files import whole_file
 

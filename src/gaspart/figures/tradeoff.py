@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from gaspart.figures import style
 
 SETTINGS = ("4 passes", "4 passes, float32", "1 pass", "1 pass, no rewinding")
 
 
-def speed_accuracy(ds: xr.Dataset):
+def speed_accuracy(ds: xr.Dataset) -> Figure:
     """Errors of the collision rate and of Z against the time step, and time against the error of Z."""
     fractions = sorted(set(ds.packing_fraction.values[ds.dimension.values == 3]))
     figure, axes = style.new(rows=3, columns=len(fractions), height=7.2, share_x=False)
@@ -34,7 +38,7 @@ def speed_accuracy(ds: xr.Dataset):
     return figure
 
 
-def _errors(axis, rows: list[xr.Dataset], observable: str) -> None:
+def _errors(axis: Axes, rows: list[xr.Dataset], observable: str) -> None:
     """Sizes of errors: filled if more than two standard errors, else hollow at that bound."""
     axis.set(xscale="log", yscale="log")
     for row in sorted(rows, key=lambda row: (-int(row.dimension), _kind(row))):
@@ -60,7 +64,7 @@ def _errors(axis, rows: list[xr.Dataset], observable: str) -> None:
     axis.set_ylim(1e-4, 100.0)
 
 
-def _costs(axis, rows: list[xr.Dataset]) -> None:
+def _costs(axis: Axes, rows: list[xr.Dataset]) -> None:
     """Time per collision against the size of the error, or its bound; the event-driven engine as a line."""
     axis.set(xscale="log", yscale="log")
     for row in rows:
@@ -69,7 +73,7 @@ def _costs(axis, rows: list[xr.Dataset]) -> None:
         z = row.sel(observable="Z")
         error = 100.0 * np.maximum(np.abs(z.bias), 2.0 * z.bias_error).values
         timed = np.isfinite(row.seconds.values) & np.isfinite(error)
-        options = {"kind": _kind(row), "linestyle": "-", "linewidth": 0.5}
+        options: dict[str, Any] = {"kind": _kind(row), "linestyle": "-", "linewidth": 0.5}
         style.points(
             axis,
             error[timed],
@@ -86,7 +90,7 @@ def _kind(row: xr.Dataset) -> int:
     return SETTINGS.index(str(row.setting.values))
 
 
-def time_to_accuracy(ds: xr.Dataset):
+def time_to_accuracy(ds: xr.Dataset) -> Figure:
     """Cost against accuracy by each engine, measured and foretold; and what the model's choice costs more."""
     figure, axes = style.new(rows=3, columns=max(2, ds.sizes["gas"]), height=6.6, height_ratios=(2, 2, 1))
     for column, g in zip(axes.T, range(ds.sizes["gas"]), strict=False):
@@ -112,7 +116,7 @@ def time_to_accuracy(ds: xr.Dataset):
     return figure
 
 
-def _times(axis, gas: xr.Dataset) -> None:
+def _times(axis: Axes, gas: xr.Dataset) -> None:
     """Points measured, lines of the model; hollow and dashed for the larger number of bodies."""
     axis.set(xscale="log", yscale="log")
     names = {"event": "event-driven", "step": "time-stepped"}

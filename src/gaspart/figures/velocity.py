@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.figures import style
@@ -11,7 +13,7 @@ from gaspart.figures import style
 NAMES = {2: "discs", 3: "spheres"}
 
 
-def velocity_autocorrelation(ds: xr.Dataset):
+def velocity_autocorrelation(ds: xr.Dataset) -> Figure:
     """Three panels: C over the collisions of a body, log-log; its start; C over theory's tail."""
     figure, (upper, middle, lower) = style.new(
         rows=3, height=6.8, height_ratios=(2.2, 1.5, 1.5), share_x=False
@@ -32,7 +34,7 @@ def _of(row: xr.Dataset) -> tuple[int, float, np.ndarray]:
     return int(row["dimension"]), float(row["packing_fraction"]), lags
 
 
-def _tails(axis, ds: xr.Dataset) -> None:
+def _tails(axis: Axes, ds: xr.Dataset) -> None:
     """Measured C, the initial exponentials exp(-2 s / d), and mode coupling's tails."""
     s = np.linspace(0.5, 9.0, 100)
     for dimension, line in ((2, "--"), (3, ":")):
@@ -64,7 +66,7 @@ def _tails(axis, ds: xr.Dataset) -> None:
     axis.legend(loc="lower left")
 
 
-def _starts(axis, ds: xr.Dataset) -> None:
+def _starts(axis: Axes, ds: xr.Dataset) -> None:
     """ln C against collisions, and the exact initial slopes."""
     for kind in range(ds.sizes["point"]):
         row = ds.isel(point=kind)
@@ -83,7 +85,7 @@ def _starts(axis, ds: xr.Dataset) -> None:
     axis.legend(loc="upper right")
 
 
-def _ratios(axis, ds: xr.Dataset) -> None:
+def _ratios(axis: Axes, ds: xr.Dataset) -> None:
     """C over theory's tail, to the time at which sound has crossed the container."""
     style.level(axis, 1.0)
     for kind in range(ds.sizes["point"]):
@@ -113,7 +115,7 @@ def _ratios(axis, ds: xr.Dataset) -> None:
     axis.set_ylabel("over theory's tail")
 
 
-def _whole_ticks(axis) -> None:
+def _whole_ticks(axis: Axes) -> None:
     low, high = axis.get_xlim()
     ticks = [tick for tick in (1, 2, 5, 10, 20, 40) if low <= tick <= high]
     axis.set_xticks(ticks, [str(tick) for tick in ticks])

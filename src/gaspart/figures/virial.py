@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.figures import style
@@ -14,18 +16,18 @@ WANTED = {2: 1e-3, 3: 1e-2, 4: 1e-1}
 """Scale of the lowest panel: the relative accuracy wanted of each coefficient."""
 
 
-def virial_discs(dataset: xr.Dataset):
+def virial_discs(dataset: xr.Dataset) -> Figure:
     """Z of discs, with Henderson's equation, van der Waals's and the partial sums."""
     return _draw(dataset, "$B_{10}$ and tail", {"Henderson": theory.henderson}, ceiling=7.0, percent=0.6)
 
 
-def virial_spheres(dataset: xr.Dataset):
+def virial_spheres(dataset: xr.Dataset) -> Figure:
     """Z of spheres, with Carnahan and Starling's, Kolafa's, van der Waals's equation and the partial sums."""
     curves = {"Carnahan–Starling": theory.carnahan_starling, "Kolafa 1986": theory.kolafa_1986}
     return _draw(dataset, "Kolafa–Labík–Malijevský", curves, ceiling=11.0, percent=0.5)
 
 
-def _draw(dataset: xr.Dataset, name: str, curves: dict, ceiling: float, percent: float):
+def _draw(dataset: xr.Dataset, name: str, curves: dict, ceiling: float, percent: float) -> Figure:
     """Three panels. name: the reference's; ceiling: top of Z's axis; percent: residuals' half height."""
     dimension = int(dataset.attrs["dimension"])
     eta = dataset["packing_fraction"].values
@@ -49,7 +51,7 @@ def _draw(dataset: xr.Dataset, name: str, curves: dict, ceiling: float, percent:
     return figure
 
 
-def _equations(grid, dimension: int, curves: dict) -> dict:
+def _equations(grid: np.ndarray, dimension: int, curves: dict) -> dict:
     """Curves by name: Z on the grid (NaN beyond an equation's divergence), and how to draw them."""
     limit = 0.999 / 2.0 ** (dimension - 1)
     waals = np.where(grid < limit, theory.van_der_waals(np.minimum(grid, limit), dimension), np.nan)
@@ -59,12 +61,19 @@ def _equations(grid, dimension: int, curves: dict) -> dict:
     return lines
 
 
-def _shade(order: int):
+def _shade(order: int) -> str:
     """Grey of a partial sum: the more terms, the darker."""
     return str(0.70 - 0.50 * SERIES.index(order) / (len(SERIES) - 1))
 
 
-def _state(axis, dataset, grid, lines, dimension: int, ceiling: float):
+def _state(
+    axis: Axes,
+    dataset: xr.Dataset,
+    grid: np.ndarray,
+    lines: dict[str, tuple[np.ndarray, dict]],
+    dimension: int,
+    ceiling: float,
+) -> None:
     for name, (curve, look) in lines.items():
         axis.plot(grid, curve, label=name, **look)
     for order in SERIES:
@@ -80,7 +89,15 @@ def _state(axis, dataset, grid, lines, dimension: int, ceiling: float):
     axis.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0), frameon=True, framealpha=0.9, edgecolor="none")
 
 
-def _residuals(axis, dataset, grid, reference, lines, dimension: int, percent: float):
+def _residuals(
+    axis: Axes,
+    dataset: xr.Dataset,
+    grid: np.ndarray,
+    reference: np.ndarray,
+    lines: dict[str, tuple[np.ndarray, dict]],
+    dimension: int,
+    percent: float,
+) -> None:
     """100 (Z / Z_reference - 1), with one standard error."""
     style.level(axis, 0.0)
     for order in SERIES:
@@ -102,7 +119,7 @@ def _residuals(axis, dataset, grid, reference, lines, dimension: int, percent: f
     axis.set_ylabel("$Z/Z_\\mathrm{ref}-1$  (%)")
 
 
-def _coefficients(axis, dataset):
+def _coefficients(axis: Axes, dataset: xr.Dataset) -> None:
     """Each fitted coefficient's distance from the exact one, in units of the accuracy wanted, by fit."""
     style.band(axis, -1.0, 1.0)
     style.level(axis, 0.0)
@@ -127,6 +144,6 @@ def _coefficients(axis, dataset):
     axis.legend(ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.0), columnspacing=1.0, handletextpad=0.1)
 
 
-def _name(fit) -> str:
+def _name(fit: xr.Dataset) -> str:
     higher = "held" if int(fit["held"]) else "zero"
     return f"$B_2$–$B_{int(fit['free'])}$\n$\\leq${float(fit['up_to']):g}\n{higher}"

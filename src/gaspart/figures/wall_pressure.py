@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.figures import style
@@ -11,7 +13,7 @@ from gaspart.figures import style
 NAMES = {2: "discs", 3: "spheres"}
 
 
-def wall_pressure(ds: xr.Dataset):
+def wall_pressure(ds: xr.Dataset) -> Figure:
     """Three panels: P against T; P/(n k T) against packing fraction, raw and corrected; residuals."""
     figure, (upper, middle, lower) = style.new(
         rows=3, height=6.6, height_ratios=(1.6, 2.2, 1.5), share_x=False
@@ -25,7 +27,7 @@ def wall_pressure(ds: xr.Dataset):
     return figure
 
 
-def _temperatures(axis, ds: xr.Dataset) -> None:
+def _temperatures(axis: Axes, ds: xr.Dataset) -> None:
     """P in the scene's units where one density has several temperatures; lines: theory, ideal gas."""
     density = ds["density"].values.round(9)
     series = [n for n in sorted(set(density)) if np.ptp(ds["temperature"].values[density == n]) > 1.0]
@@ -53,7 +55,7 @@ def _temperatures(axis, ds: xr.Dataset) -> None:
     axis.set_ylabel(r"pressure $P\ (1/\sigma^2)$")
 
 
-def _densities(axis, ds: xr.Dataset) -> None:
+def _densities(axis: Axes, ds: xr.Dataset) -> None:
     """P / (n k T): the force over the whole wall (hollow), and corrected to the infinite fluid (filled)."""
     for kind, dimension in enumerate(sorted(set(ds["dimension"].values))):
         part = ds.isel(point=(ds["dimension"] == dimension).values)
@@ -74,7 +76,7 @@ def _densities(axis, ds: xr.Dataset) -> None:
     axis.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
 
 
-def _residuals(axis, ds: xr.Dataset) -> None:
+def _residuals(axis: Axes, ds: xr.Dataset) -> None:
     """100 (P / theory - 1) of every container, with both uncertainties."""
     style.level(axis, 0.0)
     error = 100.0 * np.hypot(ds["pressure_error"], ds["expected_error"]) / ds["expected"]

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from gaspart.recipe import opened, read_recipe
+from gaspart.scene import Scene
 from gaspart.statistics import autocorrelation_time
 
 
@@ -16,13 +17,13 @@ def certificate(path: Path) -> list[str]:
     with opened(path) as file:
         if not len(file.dimensions["frame"]):
             return ["no frame yet"]
-        names = ("kinetic_energy", "collisions", "virial_sum", "worst_contact", "deepest_overlap")
-        names += ("overlaps_left", "steps", "time")
+        names = ["kinetic_energy", "collisions", "virial_sum", "worst_contact", "deepest_overlap"]
+        names += ["overlaps_left", "steps", "time"]
         series = {name: np.asarray(file[name][:], dtype=float) for name in names}
     return [_drift(scene, series["kinetic_energy"]), _contacts(series), _samples(scene, series)]
 
 
-def _drift(scene, energy: np.ndarray) -> str:
+def _drift(scene: Scene, energy: np.ndarray) -> str:
     """Of the kinetic energy, where nothing may change it."""
     elastic = scene.restitution is None or (scene.restitution.normal == 1.0 and not scene.rough)
     if not elastic or scene.gravity is not None or scene.faces or scene.vibrates:
@@ -40,7 +41,7 @@ def _contacts(series: dict) -> str:
     return f"{told}; worst contact off by {series['worst_contact'][-1]:.1e} of its distance, squared"
 
 
-def _samples(scene, series: dict) -> str:
+def _samples(scene: Scene, series: dict) -> str:
     """Independent values of the pressure: intervals between frames over twice their correlation time."""
     counted = np.diff(series["virial_sum"])
     per_body = 2.0 * series["collisions"][-1] / max(scene.count, 1)

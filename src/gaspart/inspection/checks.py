@@ -31,7 +31,7 @@ class Check:
     passed: bool | None
     text: str
 
-    def __str__(self):
+    def __str__(self) -> str:
         word = {True: "ok", False: "WRONG", None: "-"}[self.passed]
         return f"{word:6}{self.name}: {self.text}"
 
@@ -105,6 +105,7 @@ def _speeds(frames: Frames) -> Check:
     name = "speed law"
     if reason := _judged_speeds(frames):
         return Check(name, None, reason)
+    assert frames.velocities is not None
     moving = frames.velocities[-1] - frames.velocities[-1].mean(axis=0)
     bins = min(30, frames.count // 10)
     if bins < 4:
@@ -121,6 +122,7 @@ def _kurtosis(frames: Frames) -> Check:
     name = "kurtosis of speeds"
     if reason := _judged_speeds(frames):
         return Check(name, None, reason)
+    assert frames.velocities is not None
     moving = frames.velocities[len(frames.velocities) // 4 :]
     if len(moving) < _LEAST_FRAMES:
         return Check(name, None, f"frames are too few for an error: {len(moving)}")
@@ -166,7 +168,7 @@ def _diffusion(frames: Frames) -> Check:
     return _compared(name, *diffusion(frames), expected, unsure, "Erpenbeck and Wood, Yeh and Hummer")
 
 
-def _compared(name, value, error, expected, unsure, source) -> Check:
+def _compared(name: str, value: float, error: float, expected: float, unsure: float, source: str) -> Check:
     """Passed within `LIMIT` standard errors, those of both sides in quadrature."""
     sigma = abs(value - expected) / math.hypot(error, unsure)
     text = f"{value:.5g} +- {error:.2g}, theory {expected:.5g}"

@@ -22,6 +22,7 @@ def contact_values(frames: Frames) -> np.ndarray:
     from scipy.spatial import cKDTree
 
     n, d, sigma = frames.count, frames.dimension, frames.diameter
+    assert sigma is not None, "judged of equal bodies only"
     edges = 1.0 + _WIDTH * np.linspace(0.0, 1.0, _SHELLS + 1)
     volumes = unit_sphere_surface(d) / d * np.diff(edges**d)
     coefficients = _at_contact(edges, volumes, d)

@@ -45,7 +45,7 @@ def diffusion(frames: Frames) -> tuple[float, float]:
     way -= way.mean(axis=1, keepdims=True)
     first, last = _lags(frames)
     squares = [((way[lag:] - way[:-lag]) ** 2).sum(axis=2).mean(axis=0) for lag in (first, last)]  # (N,) each
-    time = (last - first) * float(np.diff(frames.time).mean())
+    time = (last - first) * _interval(frames)
     rise = (squares[1] - squares[0]) / (6.0 * time) * n / (n - 1.0)
     found = mean_of(np.array([part.mean() for part in np.array_split(rise, min(n, 32))]))
     return found.value, found.error
@@ -56,7 +56,7 @@ def expected_diffusion(frames: Frames) -> tuple[float, float]:
 
     The shift is taken as sure to a half of itself, because hydrodynamics overestimates that of a dilute gas.
     """
-    eta, sigma, temperature = frames.packing_fraction, frames.diameter, _thermal_speed(frames) ** 2
+    eta, sigma, temperature = frames.packing_fraction, _diameter(frames), _thermal_speed(frames) ** 2
     infinite = float(theory.erpenbeck_wood_diffusion(eta, sigma, temperature))
     viscosity = float(theory.enskog_viscosity(eta, 3, sigma, temperature))
     shift = float(theory.yeh_hummer(frames.lengths[0], viscosity, temperature))
@@ -69,16 +69,28 @@ def _steps(frames: Frames) -> np.ndarray:
     return steps - frames.lengths * np.round(steps / frames.lengths)
 
 
+def _interval(frames: Frames) -> float:
+    """Mean time between frames."""
+    assert frames.time is not None, "see `why_not`"
+    return float(np.diff(frames.time).mean())
+
+
+def _diameter(frames: Frames) -> float:
+    """That of all bodies."""
+    assert frames.diameter is not None, "judged of equal bodies only"
+    return frames.diameter
+
+
 def _thermal_speed(frames: Frames) -> float:
     """sqrt(k_B T / m), of the motion about the centre of mass."""
+    assert frames.velocities is not None, "see `why_not`"
     moving = frames.velocities - frames.velocities.mean(axis=1, keepdims=True)
     return math.sqrt((moving**2).sum() / (len(moving) * frames.dimension * (frames.count - 1)))
 
 
 def _lags(frames: Frames) -> tuple[int, int]:
     """Frames between which the rise is taken."""
-    rate = float(
-        theory.collision_rate(frames.packing_fraction, 3, frames.diameter, _thermal_speed(frames) ** 2)
-    )
-    interval = float(np.diff(frames.time).mean())
+    temperature = _thermal_speed(frames) ** 2
+    rate = float(theory.collision_rate(frames.packing_fraction, 3, _diameter(frames), temperature))
+    interval = _interval(frames)
     return math.ceil(_SETTLED / rate / interval), math.ceil(2.0 * _SETTLED / rate / interval)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -55,7 +56,7 @@ def _netcdf(path: Path) -> dict:
         if "coordinates" not in file.variables or "frame" not in file.dimensions:
             raise SceneError("file", str(path), "has no coordinates in frames: not AMBER's convention")
 
-        def read(name):
+        def read(name: str) -> np.ndarray | None:
             return np.ma.filled(file[name][:], np.nan) if name in file.variables else None
 
         found = {"positions": read("coordinates"), "velocities": read("velocities"), "time": read("time")}
@@ -65,7 +66,7 @@ def _netcdf(path: Path) -> dict:
         if origin is not None and len(origin):
             found["origin"] = origin[0]
         if "radius" in file.variables:
-            radii = read("radius")
+            radii = np.ma.filled(file["radius"][:], np.nan)
             found["radii"] = radii if radii.ndim == 1 else radii[0]
     if own:
         found |= _own(path)
@@ -79,8 +80,8 @@ def _own(path: Path) -> dict:
     scene = read_recipe(path).scene  # raises SceneError for one that is truncated
     elastic = scene.restitution is None or (scene.restitution.normal == 1.0 and not scene.rough)
     quiet = scene.gravity is None and not scene.faces and not scene.walls and not scene.vibrates
-    alike = len({kind.mass for kind in (*scene.species, *scene.bodies)}) == 1
-    free = not any(kind.fixed for kind in (*scene.species, *scene.bodies))
+    alike = len({kind.mass for kind in scene.kinds}) == 1
+    free = not any(kind.fixed for kind in scene.kinds)
     return {
         "boundary": scene.container.boundary,
         "flat": scene.dimension == 2,
@@ -120,7 +121,8 @@ def _gsd(path: Path) -> dict:
 def _xyz(path: Path) -> dict:
     """Count, comment, and a line per body; the extended form names the columns and the box in the comment."""
     lines = path.read_text(encoding="utf-8").splitlines()
-    frames, comments, at = [], [], 0
+    frames: list[list[list[str]]] = []
+    comments, at = [], 0
     while at < len(lines) and lines[at].strip():
         count = int(lines[at])
         rows = [line.split() for line in lines[at + 2 : at + 2 + count]]
@@ -131,13 +133,17 @@ def _xyz(path: Path) -> dict:
         at += count + 2
     columns = _columns(comments[0])
 
-    def read(name):
+    def read(name: str) -> np.ndarray | None:
         if name not in columns:
             return None
         first, width = columns[name]
         return np.array([[row[first : first + width] for row in rows] for rows in frames], dtype=float)
 
-    found = {"positions": read("pos"), "velocities": read("velo"), "steps": range(len(frames))}
+    found: dict[str, Any] = {
+        "positions": read("pos"),
+        "velocities": read("velo"),
+        "steps": range(len(frames)),
+    }
     radii = read("radius")
     found["radii"] = None if radii is None else radii[0, :, 0]
     digits = [len(word.partition(".")[2]) for word in frames[0][0][columns["pos"][0] :][:3]]
@@ -153,7 +159,7 @@ def _xyz(path: Path) -> dict:
         found["origin"] = np.array(origin[1].split(), dtype=float)
     times = [re.search(r"\btime=([-+.\deE]+)", comment, re.IGNORECASE) for comment in comments]
     if all(times):
-        found["time"] = np.array([float(match[1]) for match in times])
+        found["time"] = np.array([float(match[1]) for match in times if match])
     return {key: value for key, value in found.items() if value is not None}
 
 

@@ -6,6 +6,7 @@ stretches, `blocks` of each replica, which are taken as independent; errors are 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +14,7 @@ import xarray as xr
 
 from gaspart import grid
 from gaspart.statistics import jackknife
-from gaspart.surfaces import Well
+from gaspart.surfaces import Sticky, Well, thermal_face
 from gaspart.theory.adsorption import length_in_langmuirs_formula
 from gaspart.theory.geometry import body_volume
 from gaspart.theory.potential import excess_chemical_potential, packing_fraction_at
@@ -48,29 +49,32 @@ class Holder:
         scene = grid.scene(point)
         face, species = scene.faces["x_low"], scene.species[0]
         low, high = (ends[0] for ends in scene.reach(species.radius))
-        well = isinstance(face, Well)
-        width = face.width if well else 0.0
-        kind = ("layer" if width < species.radius else "ideal") if well else "sticky"
+        kind, depth, width, momentum = "sticky", 0.0, 0.0, 0.0
+        match face:
+            case Well(depth, width):
+                kind = "layer" if width < species.radius else "ideal"
+            case Sticky(momentum):
+                pass
         return cls(
             kind=kind,
-            temperature=scene.faces["x_high"].temperature,
-            depth=face.depth if well else 0.0,
+            temperature=thermal_face(scene, "x_high").temperature,
+            depth=depth,
             width=width,
-            momentum=0.0 if well else face.momentum,
+            momentum=momentum,
             mass=species.mass,
             radius=species.radius,
             area=scene.container.lengths[1] * scene.container.lengths[2],
             outside=high - low - width,
         )
 
-    def held(self, height, velocity):
+    def held(self, height: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         """Whether bodies are held: in the well, or without a velocity along x, as only stuck bodies are.
 
         height: of centres above the lowest place, of any shape, and velocity along x of the same.
         """
         return height < self.width if self.kind != "sticky" else velocity == 0.0
 
-    def activity(self, density):
+    def activity(self, density: float | np.ndarray) -> float | np.ndarray:
         """The pressure of the gas in k_B T, in terms of what it would hold if bodies in the layer did not
         meet: beta P w e^{depth/kT} pi sigma^2 / 4, a packing fraction (0 without a well)."""
         eta = density * body_volume(3, 2.0 * self.radius)
@@ -81,7 +85,7 @@ class Holder:
     def _hold(self) -> float:
         return self.width * np.exp(self.depth / self.temperature) * body_volume(2, 2.0 * self.radius)
 
-    def uncertainty(self, density) -> float:
+    def uncertainty(self, density: float) -> float:
         """Relative, of the coverage: the layer and the gas before it feel each other, which puts the gas'
         activity in the place of its pressure, wholly at most."""
         eta = density * body_volume(3, 2.0 * self.radius)
@@ -132,13 +136,13 @@ def _measured(point: grid.Point, settings: dict) -> dict:
     empty = holder.outside - 4.0 * holder.radius  # where `far` bodies are counted
     step = _REACH / settings["bins"]
 
-    def ratio(inside, others):
+    def ratio(inside: np.ndarray, others: np.ndarray) -> np.ndarray:
         return inside / others
 
-    def coverage(inside):
+    def coverage(inside: np.ndarray) -> np.ndarray:
         return inside * body_volume(2, 2.0 * holder.radius) / holder.area
 
-    def density(counted):
+    def density(counted: np.ndarray) -> np.ndarray:
         return counted / (empty * holder.area)
 
     layer = holder.kind == "layer"
@@ -187,7 +191,7 @@ def _measured(point: grid.Point, settings: dict) -> dict:
     return row | {"slow_speed": slow}
 
 
-def counts_of(holder: Holder, height, velocity, settings: dict, slow: float) -> tuple:
+def counts_of(holder: Holder, height: np.ndarray, velocity: np.ndarray, settings: dict, slow: float) -> tuple:
     """Means over the frames of one stretch: held bodies, the others, those of the gas that are a diameter and
     more from both walls (and from the well); and of those that leave near the wall, the flux below the speed
     `slow`, and (bins,) by speed.
@@ -206,7 +210,9 @@ def counts_of(holder: Holder, height, velocity, settings: dict, slow: float) -> 
     return tuple(part / frames for part in parts)
 
 
-def _parts(holder: Holder, point: grid.Point, path: str, blocks: int):
+def _parts(
+    holder: Holder, point: grid.Point, path: str, blocks: int
+) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """(height, velocity) of each stretch of a run, without its equilibration."""
     first = grid.schedule(point).equilibration_frames + 1
     with open_trajectory(path) as trajectory:

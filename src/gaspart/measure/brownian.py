@@ -7,6 +7,7 @@ friction: 1 / `friction`, from the gas that is really there, outside the large b
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -66,7 +67,7 @@ def setting_of(point: grid.Point) -> Setting:
     )
 
 
-def _followed(point: grid.Point):
+def _followed(point: grid.Point) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Of each replica: times (T,), displacements and velocities of the first body (T, 1, 3)."""
     if not point.settings.get("displacements", False):
         raise SceneError(f"experiments.{point.experiment}.displacements", False, "must be true")

@@ -7,6 +7,8 @@ ones its one species. Stretches and errors are those of `gaspart.measure.gravity
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import xarray as xr
 
@@ -58,7 +60,9 @@ def _far(place: Field, stretch: Stretch, settings: dict) -> np.ndarray:
     return counts / (len(stretch.heights) * area)
 
 
-def _fluid(place: Field, density: np.ndarray, temperature: float, settings: dict):
+def _fluid(
+    place: Field, density: np.ndarray, temperature: float, settings: dict
+) -> Callable[[np.ndarray], float | np.ndarray]:
     """The packing fraction at any heights: hydrostatics with as many discs as there are, layers excepted."""
     width = place.height / len(density)
     skip = int(np.ceil(settings["clear"] * place.diameter / width))
@@ -93,7 +97,7 @@ def _fixed(point: grid.Point, settings: dict) -> dict:
     inside = np.array([_inside(place, s, height, settings["near"]) for s in found])
     total = density.sum(axis=1) / density.mean(axis=0).sum()
 
-    def radius_of(displaced, density):
+    def radius_of(displaced: float, density: np.ndarray) -> float:
         return np.sqrt(displaced / (np.pi * (chord @ density))) / (0.5 * place.diameter) - ratio
 
     made = {

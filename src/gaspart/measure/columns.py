@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaspart import grid
+from gaspart.matter import Body, Species
 from gaspart.trajectory import open_trajectory
 
 
@@ -43,10 +44,10 @@ def field(point: grid.Point) -> Field:
     scene = grid.scene(point)
     radius = scene.smallest_radius
     lower, upper = scene.reach(radius)
-    parts = [(body, 1, len(scene.species)) for body in scene.bodies]
+    parts: list[tuple[Species | Body, int, int]] = [(body, 1, len(scene.species)) for body in scene.bodies]
     parts += [(kind, kind.count, n) for n, kind in enumerate(scene.species)]
     return Field(
-        strength=-scene.gravity[-1],
+        strength=-scene.gravity[-1] if scene.gravity else 0.0,
         width=upper[0] - lower[0],
         height=upper[1] - lower[1],
         diameter=2.0 * radius,
@@ -106,7 +107,14 @@ def stretches(point: grid.Point, number: int) -> list[Stretch]:
     return found
 
 
-def _stretch(place: Field, positions, velocities, ends, forces, duration) -> Stretch:
+def _stretch(
+    place: Field,
+    positions: np.ndarray,
+    velocities: np.ndarray,
+    ends: np.ndarray,
+    forces: np.ndarray,
+    duration: float,
+) -> Stretch:
     moving = np.isfinite(place.masses)
     masses = np.where(moving, place.masses, 0.0)
     drift = np.zeros((len(velocities), 1))

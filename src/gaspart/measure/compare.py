@@ -84,7 +84,7 @@ def compare(
     )
 
 
-def _run(scene: Scene, engine, state: State, duration: float) -> dict:
+def _run(scene: Scene, engine: EventDriven | TimeStepped, state: State, duration: float) -> dict:
     """What one engine makes of a state in a time."""
     dynamics = engine.start(scene, state)
     dynamics.advance(state.time + duration)

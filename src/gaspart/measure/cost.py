@@ -49,12 +49,12 @@ def measure_cost(
     """
     state = _start(scene, engines[0], seed, equilibration)
     seconds = np.empty((len(engines), repeats))
-    counts: list[dict | None] = [None] * len(engines)
+    counts: list[dict] = [{}] * len(engines)
     for repeat in range(repeats):
         order = range(len(engines))
         for n in order if repeat % 2 == 0 else reversed(order):
             seconds[n, repeat], counted = _timed(scene, engines[n], state, stretch, record)
-            if counts[n] is None:
+            if not counts[n]:
                 counts[n] = counted
             elif counted != counts[n]:
                 raise SimulationError(f"the same run twice: counted {counts[n]}, then {counted}")
@@ -81,35 +81,38 @@ def measure_cost(
     )
 
 
-def _start(scene: Scene, engine, seed: tuple[int, ...], equilibration: float) -> State:
+def _start(
+    scene: Scene, engine: EventDriven | TimeStepped, seed: tuple[int, ...], equilibration: float
+) -> State:
     """The state from which everything is timed. No partition or search changes a bit of it."""
     if equilibration <= 0.0:
         return initial_state(scene, seed)
-    quick = {"search": "boxes"} if isinstance(engine, EventDriven) else {}
-    simulation = Simulation(scene, replace(engine, boxes_per_side=None, **quick), seed=seed)
+    quick = EventDriven() if isinstance(engine, EventDriven) else replace(engine, boxes_per_side=None)
+    simulation = Simulation(scene, quick, seed=seed)
     simulation.advance(duration=equilibration)
     return simulation.state
 
 
-def _timed(scene: Scene, engine, state: State, stretch: float, record: bool) -> tuple[float, dict]:
+def _timed(
+    scene: Scene, engine: EventDriven | TimeStepped, state: State, stretch: float, record: bool
+) -> tuple[float, dict]:
     """Processor time of one stretch, in s, and what was counted in it."""
     dynamics = engine.start(scene, state)
-    log = {"log": EventLog(scene.dimension, scene.rough)} if record else {}
+    log = EventLog(scene.dimension, scene.rough) if record else None
     step = getattr(engine, "time_step", 0.0)
-    dynamics.advance(
-        state.time + step * (1 + _SLACK), **log
-    )  # loads the kernels; the first step touches all memory
+    # This loads the kernels, and the first step touches all memory.
+    dynamics.advance(state.time + step * (1 + _SLACK), log=log)
     dynamics.reset_tally()
     target = dynamics.time + stretch + step * _SLACK
     start = time.process_time()
-    dynamics.advance(target, **log)
+    dynamics.advance(target, log=log)
     seconds = time.process_time() - start
     tally = dynamics.tally
     counted = {name: int(np.sum(getattr(tally, name))) for name in COUNTED}
     return seconds, {"duration": tally.time, **counted}
 
 
-def _sides(engine, dimension: int) -> tuple[int, ...]:
+def _sides(engine: EventDriven | TimeStepped, dimension: int) -> tuple[int, ...]:
     """Boxes along each axis; zeros if the engine chooses them itself."""
     if getattr(engine, "search", "boxes") != "boxes":
         return (1,) * dimension

@@ -131,7 +131,7 @@ def _common(point: grid.Point, state: dict, curves: list[Curves]) -> dict:
     return {**rows, **_green_kubo(curves, state["collision_rate"], point.settings["dimension"])}
 
 
-def _absent(*names: str, empty=math.nan) -> dict:
+def _absent(*names: str, empty: float | np.ndarray = math.nan) -> dict:
     """Entries, and those of their errors, for what a point does not tell."""
     return {key: empty for name in names for key in (name, f"{name}_error")}
 
@@ -257,7 +257,7 @@ def _dataset(rows: list[dict], dimension: int) -> xr.Dataset:
         unit = UNITS.get(name.removesuffix("_error").removesuffix("_uncertainty"), "1")
         if name == "experiment":
             dataset[name] = ("point", [row[name] for row in rows])
-        elif any(np.ndim(row.get(name)) for row in rows):
+        elif any(np.ndim(row.get(name, 0.0)) for row in rows):
             padded = np.full((len(rows), lags), np.nan)
             for index, row in enumerate(rows):
                 values = row.get(name, ())

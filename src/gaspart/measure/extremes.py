@@ -32,7 +32,7 @@ def stability_extremes(points: list[grid.Point], settings: dict) -> xr.Dataset:
     lost = [Outcome(HANGS, f"not done within {limit:g} s")] * len(ENGINES)
     table = [outcome or lost for outcome in outcomes]
 
-    def column(name: str, unit: str):
+    def column(name: str, unit: str) -> tuple[tuple[str, str], np.ndarray, dict[str, str]]:
         values = np.array([[getattr(outcome, name) for outcome in line] for line in table])
         return ("row", "engine"), values, {"units": unit}
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -55,7 +56,7 @@ def thin_film(points: list[grid.Point], settings: dict) -> xr.Dataset:
     bulk = theory.number_density(settings["bulk_packing_fraction"], 3)
     potential = math.log(bulk) + float(theory.excess_chemical_potential(settings["bulk_packing_fraction"], 3))
     names = ("pressure", "contact", "chemical_potential")
-    columns = {f"{name}{kind}": [] for name in names for kind in ("", "_error")}
+    columns: dict[str, Any] = {f"{name}{kind}": [] for name in names for kind in ("", "_error")}
     truncation, functional, widths = [], [], []
     for point in points:
         slits = [read_slit(point, path) for path in point.replica_paths]
@@ -90,7 +91,8 @@ def thin_film(points: list[grid.Point], settings: dict) -> xr.Dataset:
         {name: ("width", np.array(values)) for name, values in columns.items()}, coords={"width": widths}
     )
     reference = theory.white_bear_pressure(bulk)
-    curve = np.linspace(*settings["theory_widths"][:2], int(settings["theory_widths"][2]))
+    first, last, number = settings["theory_widths"]
+    curve = np.linspace(first, last, int(number))
     dataset["curve"] = "theory_width", np.array([theory.white_bear_slit(bulk, w, 0.02)[1][0] for w in curve])
     dataset = dataset.assign_coords(theory_width=curve).merge(_profile(slits, place, density))
     dataset.attrs |= {
@@ -140,7 +142,7 @@ def _contact(slit: Slit) -> tuple[float, float]:
     return estimate.value, estimate.error
 
 
-def _widom(slit: Slit, insertions: int, seed) -> tuple[float, float]:
+def _widom(slit: Slit, insertions: int, seed: int | tuple[int, ...]) -> tuple[float, float]:
     """mu / k_B T = ln[(N + 1) / (V p)], p the chance that a further sphere fits (Widom, J. Chem. Phys. 39,
     2808 (1963)).
 
@@ -165,7 +167,7 @@ def _widom(slit: Slit, insertions: int, seed) -> tuple[float, float]:
     return math.log((slit.positions.shape[1] + 1) / (volume * chance.value)), chance.error / chance.value
 
 
-def _profile(slits: list[Slit], place, functional) -> xr.Dataset:
+def _profile(slits: list[Slit], place: np.ndarray, functional: np.ndarray) -> xr.Dataset:
     """Density above the nearer wall of the widest slit, to its middle, and its mean around the middle."""
     edges = np.linspace(0.0, 0.5 * (slits[0].width - 1.0), 4 * _BINS * round(slits[0].width / 4.0) + 1)
     blocks, middle = [], []
@@ -197,7 +199,7 @@ def _period(dataset: xr.Dataset) -> tuple[float, float]:
     if dataset.sizes["width"] < 6:
         return math.nan, math.nan
 
-    def wave(width, amplitude, decay, period, phase):
+    def wave(width: np.ndarray, amplitude: float, decay: float, period: float, phase: float) -> np.ndarray:
         return amplitude * np.exp(-(width - 2.0) / decay) * np.cos(2.0 * np.pi * (width - phase) / period)
 
     excess = dataset["at_bulk"].values - dataset.attrs["bulk_pressure"]

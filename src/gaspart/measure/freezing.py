@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -80,7 +81,7 @@ def _of_start(points: list[grid.Point], start: str) -> dict[float, grid.Point]:
     return dict(sorted(found.items()))
 
 
-def _read(point: grid.Point, path: str, order) -> Series:
+def _read(point: grid.Point, path: str, order: Callable[[np.ndarray, Sequence[float]], float]) -> Series:
     """A replica of a periodic point; `order(positions, lengths)` is one number of a frame."""
     run, scene = read_run(point, path), grid.scene(point)
     density = scene.number_density * (2.0 * scene.largest_radius) ** scene.dimension
@@ -97,7 +98,7 @@ def _halves(series: np.ndarray) -> tuple[float, float, float, float]:
     return block.mean, block.error, series[middle:].mean() - series[:middle].mean(), 2.0 * block.error
 
 
-def _states(points: list[grid.Point], order) -> xr.Dataset:
+def _states(points: list[grid.Point], order: Callable[[np.ndarray, Sequence[float]], float]) -> xr.Dataset:
     """Pressure and order of all starts and packing fractions (NaN where there is no run), replicas averaged.
 
     Returns over `start` and `packing_fraction`: pressure (k_B T / sigma^d), order, their _error, _drift and
@@ -173,7 +174,7 @@ def _pictures(chosen: dict[float, grid.Point], settings: dict) -> xr.Dataset:
     # Wave vectors are those of each container, which shrinks with the packing fraction: kept by number.
     least = [min(row[3][axis].size for row in rows) // 2 for axis in (0, 1)]
 
-    def inner(values, *axes):
+    def inner(values: np.ndarray, *axes: int) -> np.ndarray:
         cut = [
             slice(values.shape[k] // 2 - least[a], values.shape[k] // 2 + least[a] + 1)
             for k, a in enumerate(axes)
@@ -244,7 +245,7 @@ def _slab(points: list[grid.Point]) -> xr.Dataset:
             fractions.append((local[half] > LOCAL_CRYSTAL).mean())
     parts = np.array([_halves(run) for run in runs])
 
-    def halves(values):
+    def halves(values: list) -> np.ndarray:
         return np.array(values).reshape(len(runs), 2, -1).mean(axis=0)
 
     position = (np.arange(bins) + 0.5) * lengths[axis] / bins / diameter

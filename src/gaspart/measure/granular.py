@@ -12,6 +12,8 @@ import numpy as np
 import xarray as xr
 
 from gaspart import grid, theory
+from gaspart.matter import Restitution
+from gaspart.scene import Scene
 from gaspart.statistics import block_average, bootstrap, fit_polynomial, mean_of
 from gaspart.trajectory import open_trajectory
 
@@ -59,6 +61,11 @@ def read_runs(point: grid.Point) -> list[Run]:
     return [read_run(point, path) for path in point.replica_paths]
 
 
+def law(point: grid.Point) -> Restitution:
+    """That of the contacts of a point's scene."""
+    return grid.scene(point).restitution or Restitution()
+
+
 def equipartition(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """How the energies of rough discs become equal, that they do, and what they do when contacts dissipate.
 
@@ -71,7 +78,7 @@ def equipartition(points: list[grid.Point], settings: dict) -> xr.Dataset:
     `step`: cooling_collisions, cooling_ratio; over `cooling`: tangential, cooling_inertia, steady_ratio and
     its error.
     """
-    rough = [point for point in points if grid.scene(point).restitution.tangential == 1.0]
+    rough = [point for point in points if law(point).tangential == 1.0]
     still = [point for point in rough if grid.schedule(point).equilibration_frames]
     cooled = [_cooling(point, settings["steady_from"]) for point in points if point not in rough]
     return xr.merge([
@@ -158,7 +165,7 @@ def _cooling(point: grid.Point, steady_from: float) -> dict:
     steady = bootstrap(lambda chosen: np.divide(*chosen.mean(axis=(0, 2))), samples, repeats=200)
     rotation = np.mean([run.rotation for run in runs], axis=0)
     return {
-        "tangential": grid.scene(point).restitution.tangential,
+        "tangential": law(point).tangential,
         "cooling_inertia": inertia(point),
         "cooling_collisions": collisions,
         "cooling_ratio": rotation / np.mean([run.translation for run in runs], axis=0),
@@ -183,13 +190,13 @@ def cooling(points: list[grid.Point], settings: dict) -> xr.Dataset:
     gases = _table("gas", [_gas(point) for point in points if point not in apart], "frame")
     cells = settings["cells_per_side"]
     clusters = _table("clusters", [_clusters(point, cells) for point in apart], "step")
-    shown = min(apart, key=lambda point: grid.scene(point).restitution.normal)
+    shown = min(apart, key=lambda point: law(point).normal)
     return xr.merge([gases, clusters, _picture(shown)], combine_attrs="drop_conflicts")
 
 
 def _gas(point: grid.Point) -> dict:
     scene, runs = grid.scene(point), read_runs(point)
-    restitution, dimension, kind = scene.restitution.normal, scene.dimension, scene.species[0]
+    restitution, dimension, kind = law(point).normal, scene.dimension, scene.species[0]
     rates, exponents, times = [], [], []
     for run in runs:
         frequency = theory.collision_rate(
@@ -219,7 +226,7 @@ def _gas(point: grid.Point) -> dict:
 def _clusters(point: grid.Point, cells: int) -> dict:
     scene, runs = grid.scene(point), read_runs(point)
     collisions = np.mean([run.collisions for run in runs], axis=0)
-    restitution = scene.restitution.normal
+    restitution = law(point).normal
     rate = theory.cooling_rate(restitution, scene.dimension)
     # Of logarithms: after so many collisions replicas differ by factors.
     excess, relative = _spread([np.log(run.translation) + rate * run.collisions for run in runs])
@@ -234,7 +241,7 @@ def _clusters(point: grid.Point, cells: int) -> dict:
     }
 
 
-def _crowding(path: str, scene, cells: int) -> np.ndarray:
+def _crowding(path: str, scene: Scene, cells: int) -> np.ndarray:
     """(T,) variance of the number of bodies in a cell, over its mean: 1 for independent bodies."""
     with open_trajectory(path) as trajectory:
         positions = trajectory["coordinates"].values.astype(float)

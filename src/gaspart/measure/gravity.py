@@ -108,15 +108,15 @@ class Bins:
         used = (height > margin) & (height < place.height - margin)
         return cls(place, np.array(masses), height, width, used)
 
-    def packing_fraction(self, density):
+    def packing_fraction(self, density: np.ndarray) -> np.ndarray:
         """(B,) of all species."""
         return density.sum(axis=0) * body_volume(2, self.place.diameter)
 
-    def pressure_ratio(self, density, pressure, energy):
+    def pressure_ratio(self, density: np.ndarray, pressure: np.ndarray, energy: np.ndarray) -> np.ndarray:
         """(B,) pressure over that of the reference at this density and temperature."""
         return pressure / (energy * compressibility_factor(self.packing_fraction(density), 2))
 
-    def slope_ratio(self, density, temperature):
+    def slope_ratio(self, density: np.ndarray, temperature: float) -> np.ndarray:
         """(S,) slopes of ln eta_i + mu_excess(eta) over -m_i g / T."""
         volume = body_volume(2, self.place.diameter)
         excess = excess_chemical_potential(self.packing_fraction(density), 2)
@@ -124,28 +124,28 @@ class Bins:
             slopes = [self._slope(np.log(row * volume) + excess, row) for row in density]
         return -np.array(slopes) * temperature / (self.masses * self.place.strength)
 
-    def log_ratio(self, density):
+    def log_ratio(self, density: np.ndarray) -> np.ndarray:
         """(B,) ln of the last over the first species' density."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.log(density[-1] / density[0])
 
-    def exchange_ratio(self, density, temperature):
+    def exchange_ratio(self, density: np.ndarray, temperature: float) -> float:
         """Slope of `log_ratio` over -(M - m) g / T; NaN for one species."""
         if self.masses.size < 2:
             return np.nan
         slope = self._slope(self.log_ratio(density), density[0] * density[-1] / density.sum(axis=0))
         return -slope * temperature / ((self.masses[-1] - self.masses[0]) * self.place.strength)
 
-    def temperature_gradient(self, energy, density):
+    def temperature_gradient(self, energy: np.ndarray, density: np.ndarray) -> float:
         """dT/dz over the mean weight of a body: d ln T / dz in scale heights."""
         total = density.sum(axis=0)
         return self._slope(energy / total, total) / (self.place.weight / len(self.place.masses))
 
-    def mean_height_ratio(self, height, temperature):
+    def mean_height_ratio(self, height: np.ndarray, temperature: float) -> np.ndarray:
         """(S,) mean heights over those of ideal gases."""
         return height / ideal_mean_height(self.place.height, self.masses * self.place.strength / temperature)
 
-    def exchange_line(self, value, error, temperature):
+    def exchange_line(self, value: np.ndarray, error: np.ndarray, temperature: float) -> np.ndarray:
         """(B,) what `log_ratio` is if its slope is exact, through its weighted mean over the used bins."""
         line = -(self.masses[-1] - self.masses[0]) * self.place.strength / temperature * self.height
         known = self.used & np.isfinite(error) & (error > 0.0)
@@ -153,7 +153,7 @@ class Bins:
             return line
         return line + np.average((value - line)[known], weights=1.0 / error[known] ** 2)
 
-    def hydrostatics(self, density, temperature):
+    def hydrostatics(self, density: np.ndarray, temperature: float) -> np.ndarray:
         """(S, B) hydrostatic densities with as many bodies of each kind as there are in the used bins."""
         first, last = np.flatnonzero(self.used)[[0, -1]]
         z = np.linspace(first, last + 1, 8 * (last - first + 1) + 1) * self.width
@@ -164,7 +164,7 @@ class Bins:
         shown[:, self.used] = [np.interp(self.height[self.used], z, curve) for curve in curves]
         return shown
 
-    def _slope(self, y, weight) -> float:
+    def _slope(self, y: np.ndarray, weight: np.ndarray) -> float:
         """Of the line through the used bins where something was; variances are as 1 / weight."""
         seen = self.used & (weight > 0.0)
         return float(np.polyfit(self.height[seen], y[seen], 1, w=np.sqrt(weight[seen]))[0])
@@ -186,7 +186,7 @@ def _column(point: grid.Point, settings: dict) -> dict:
     eta = bins.packing_fraction(density.mean(axis=0))
     ranges = [bins.used & (eta >= low) & (eta < high) for low, high in settings["ranges"]]
 
-    def range_ratio(*means):
+    def range_ratio(*means: np.ndarray) -> np.ndarray:
         ratio = bins.pressure_ratio(*means)
         return np.array([ratio[mask].mean() if mask.any() else np.nan for mask in ranges])
 
@@ -275,7 +275,7 @@ def _energies(point: grid.Point, blocks: int) -> dict:
         ((parts - shift) ** 2).mean(axis=1),
     )
     temperature, error = jackknife(lambda mean: mean, parts.mean(axis=1))
-    mean, variance = ideal_energy_moments(energy, count, place.height, force, 2)
+    mean, variance = ideal_energy_moments(float(energy), count, place.height, force, 2)
     return {
         "count": count,
         "strength": place.strength,

@@ -12,7 +12,9 @@ import numpy as np
 import xarray as xr
 
 from gaspart import grid
+from gaspart.scene import Scene
 from gaspart.statistics import fit_polynomial, jackknife
+from gaspart.surfaces import thermal_face
 from gaspart.theory.enskog import mean_free_path
 from gaspart.theory.geometry import packing_fraction
 from gaspart.theory.heat import conducting_slab, dilute_fourier_flux, free_molecular_flux
@@ -34,10 +36,10 @@ class Gap:
     dimension: int
 
     @classmethod
-    def of(cls, scene) -> Gap:
+    def of(cls, scene: Scene) -> Gap:
         """That of a scene whose walls are thermal."""
         lower, upper = scene.reach(scene.smallest_radius)
-        walls = (scene.faces["x_low"].temperature, scene.faces["x_high"].temperature)
+        walls = thermal_face(scene, "x_low").temperature, thermal_face(scene, "x_high").temperature
         area = float(np.prod(scene.container.lengths[1:]))
         return cls(upper[0] - lower[0], area, *walls, scene.dimension)
 
@@ -124,7 +126,7 @@ def _gas(point: grid.Point, settings: dict) -> dict:
     position = (np.arange(settings["bins"]) + 0.5) * gap.length / settings["bins"]
     number = scene.species[0].count / (gap.area * gap.length)
     path = float(mean_free_path(packing_fraction(number, gap.dimension, diameter), gap.dimension, diameter))
-    components = scene.faces["x_low"].components
+    components = thermal_face(scene, "x_low").components
     half = len(found.flux) // 2
     early, late = found.flux[:half], found.flux[-half:]
     made = {
@@ -171,7 +173,7 @@ def _gas(point: grid.Point, settings: dict) -> dict:
     return row | {f"{name}_error": error for name, (_, error) in made.items()}
 
 
-def _jump(gap: Gap, position, energy, density, diameter) -> float:
+def _jump(gap: Gap, position: np.ndarray, energy: np.ndarray, density: np.ndarray, diameter: float) -> float:
     """Mean over the walls of |T_gas - T_wall| / (l dT/dx), from bins (B,) away from them."""
     slope, start = np.polyfit(position, (energy / density) ** 1.5, 1)
     power = start + slope * np.array([0.0, gap.length])

@@ -164,7 +164,7 @@ def failures_by_density(fill: Fill, bins: int) -> tuple[np.ndarray, np.ndarray, 
         tried = (failures + successes)[:, bin_of == k].sum(axis=0) > 0
         own = np.sqrt(ratio * (1.0 + ratio) / won.sum())
         result[:, k] = states[bin_of == k][tried].mean() * fill.body, ratio, max(own, _jackknife(lost, won))
-    return tuple(result)
+    return result[0], result[1], result[2]
 
 
 def _jackknife(numerator: np.ndarray, denominator: np.ndarray) -> float:
@@ -195,7 +195,7 @@ def approach_exponent(fill: Fill, window: float) -> tuple[float, float]:
     times = np.geomspace(fill.last_time / window, fill.last_time, SAMPLES)
     gap = theory.RSA_SATURATION[fill.dimension] - fill.packing_fraction(times)
 
-    def exponent(mean_gap):
+    def exponent(mean_gap: np.ndarray) -> float:
         if np.any(mean_gap <= 0.0):
             return np.nan
         return -fit_polynomial(np.log(times), np.log(mean_gap)).values[1]

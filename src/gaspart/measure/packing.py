@@ -34,8 +34,8 @@ def densest_fill(points: list[grid.Point], settings: dict) -> xr.Dataset:
             for places, radius in zip(made[-1]["position"].values, made[-1]["radius"].values, strict=True)
             if compressed
         ] or [np.nan]
-        columns.append(("compressed" if compressed else rule, *_mean(made[-1]["packing_fraction"].values)))
-        columns[-1] += _mean(np.array(touching))
+        filled, touched = _mean(made[-1]["packing_fraction"].values), _mean(np.array(touching))
+        columns.append(("compressed" if compressed else rule, *filled, *touched))
     rules, fractions, errors, numbers, number_errors = zip(*columns, strict=True)
     bodies = max(one.sizes["body"] for one in made)
     shown = np.full((len(made), bodies, 3), np.nan)

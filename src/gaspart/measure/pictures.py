@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
@@ -66,14 +67,14 @@ def _scene(point: grid.Point) -> xr.Dataset:
     )
 
 
-def overlapping(places: np.ndarray, radii: np.ndarray, lengths: np.ndarray, periodic) -> int:
+def overlapping(places: np.ndarray, radii: np.ndarray, lengths: np.ndarray, periodic: Sequence[bool]) -> int:
     """How many pairs of bodies (N, d) overlap by more than rounding.
 
     The few bodies that are larger than twice the median radius are compared with all others.
     """
     box = np.where(periodic, lengths, 0.0)
 
-    def deep(i, j) -> int:
+    def deep(i: int | np.ndarray, j: np.ndarray) -> int:
         gap = np.abs(places[i] - places[j])
         gap = np.where(box > 0.0, np.minimum(gap, np.abs(box - gap)), gap)
         touch = radii[i] + radii[j]

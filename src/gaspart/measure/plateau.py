@@ -11,7 +11,9 @@ REPEATS = 100
 _FINE = 2000
 
 
-def plateau(volume, pressure, error, seed: int = 0) -> tuple[float, float, tuple[float, float]]:
+def plateau(
+    volume: np.ndarray, pressure: np.ndarray, error: np.ndarray, seed: int = 0
+) -> tuple[float, float, tuple[float, float]]:
     """Pressure of the horizontal line that cuts off equal areas of the loop, its error, and the volumes at
     its ends.
 
@@ -34,7 +36,7 @@ def plateau(volume, pressure, error, seed: int = 0) -> tuple[float, float, tuple
     return value, float(0.5 * np.diff(np.percentile(found, [15.87, 84.13]))[0]), ends
 
 
-def _equal_areas(volume, pressure) -> tuple[float, tuple[float, float]]:
+def _equal_areas(volume: np.ndarray, pressure: np.ndarray) -> tuple[float, tuple[float, float]]:
     """The line's height and its ends, largest volume first."""
     from scipy.interpolate import PchipInterpolator
     from scipy.optimize import brentq
@@ -50,11 +52,11 @@ def _equal_areas(volume, pressure) -> tuple[float, tuple[float, float]]:
     if not low < high:
         return nothing
 
-    def ends(level):
+    def ends(level: float) -> tuple[int, int]:
         inside = np.flatnonzero((p[:-1] - level) * (p[1:] - level) <= 0.0)
         return inside[0], inside[-1] + 1
 
-    def excess(level):
+    def excess(level: float) -> float:
         first, last = ends(level)
         return float(np.trapezoid(p[first : last + 1] - level, v[first : last + 1]))
 

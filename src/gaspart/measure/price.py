@@ -8,6 +8,7 @@ import xarray as xr
 from gaspart import grid
 from gaspart.measure.stripped import instructions
 from gaspart.measure.timings import per_event
+from gaspart.scene import Scene
 
 PLAIN = "plain"
 WORK = ("pair_tests", "box_visits", "crossings")
@@ -55,7 +56,7 @@ def _row(point: grid.Point) -> dict:
     }
 
 
-def _feature(scene, recorded: bool) -> str:
+def _feature(scene: Scene, recorded: bool) -> str:
     """What a scene has that a plain periodic gas of equal spheres has not."""
     has = {
         "recording": recorded,

@@ -24,7 +24,8 @@ import numpy as np
 import xarray as xr
 
 from gaspart import grid, theory
-from gaspart.measure.pressure import combine_runs, read_run, totals
+from gaspart.measure.pressure import Run, combine_runs, read_run, totals
+from gaspart.scene import Scene
 from gaspart.statistics import block_average
 
 _STEP = 1e-4
@@ -60,6 +61,7 @@ def radius_grid(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 def _row(point: grid.Point) -> dict[str, float]:
     scene, per_side = grid.scene(point), grid.engine(point).boxes_per_side
+    assert isinstance(per_side, tuple), "every point of this figure gives its boxes"
     eta, dimension = scene.packing_fraction, scene.dimension
     row = {
         "radius": scene.largest_radius,
@@ -96,7 +98,7 @@ def _row(point: grid.Point) -> dict[str, float]:
     }
 
 
-def _crossings(runs, scene, per_side: int) -> tuple[float, float]:
+def _crossings(runs: list[Run], scene: Scene, per_side: int) -> tuple[float, float]:
     """Crossings per body and time over the kinetic theory's, and the standard error."""
     between = scene.dimension * (per_side - 1) / scene.container.lengths[0] * math.sqrt(2.0 / math.pi)
     ratios = [
@@ -126,7 +128,7 @@ def expected_pair_tests(count: int, per_side: int, packing_fraction: float, dime
 def structure_factor(packing_fraction: float, dimension: int) -> float:
     """S(0) = 1 / (d(eta Z) / d eta) of the reference equation of state: the relative fluctuation of N."""
 
-    def pressure(eta):
+    def pressure(eta: float) -> float:
         return eta * float(theory.compressibility_factor(eta, dimension))
 
     low, high = max(0.0, packing_fraction - _STEP), packing_fraction + _STEP

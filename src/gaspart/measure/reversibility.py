@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import xarray as xr
 
@@ -67,7 +69,7 @@ def _row(run: xr.Dataset) -> dict:
     return row
 
 
-def _pairs(run: xr.Dataset, name: str):
+def _pairs(run: xr.Dataset, name: str) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     return zip(run.collisions.values, run[name].values, strict=True)
 
 

@@ -5,16 +5,17 @@ time and ideal numbers, and where their errors come from, stands in `gaspart.mea
 """
 
 import math
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from gaspart import statistics
+from gaspart import grid, statistics
 from gaspart.measure.timings import carry_on, ideal, one_box, penalty, per_body, per_event, weights
 from gaspart.theory import partition as theory
 
 
-def naive_scaling(points, settings):
+def naive_scaling(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """One box: the cost of a step against the number of bodies N.
 
     Over ``count``: ``pair_tests`` per step, ``seconds`` per step with ``seconds_error``. Scalars:
@@ -35,7 +36,7 @@ def naive_scaling(points, settings):
     )
 
 
-def box_count(points, settings):
+def box_count(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """One gas: cost against the number of boxes, time-stepped and event-driven.
 
     settings: ``round_per_side``, the boxes per side that source A found quicker for their round width;
@@ -90,7 +91,7 @@ def box_count(points, settings):
     )
 
 
-def ideal_boxes(points, settings):
+def ideal_boxes(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """The ideal number of boxes of many gases.
 
     settings: ``rule``, source A's boxes per body; ``source_numbers``, those that it found for the largest gas
@@ -116,14 +117,16 @@ def ideal_boxes(points, settings):
     slower = [penalty(cost, settings["rule"]) for cost in costs]
     most = [int(run.side / (2.0 * run.radius)) ** run.dimension / run.attrs["count"] for run in runs]
     numbered = [cost.assign_coords(partition=np.arange(cost.sizes["partition"])) for cost in costs]
+    by_gas: dict[str, Any] = {name: ("gas", values) for name, values in found.items()}
+    by_source: dict[str, Any] = {name: ("source", [one[name] for one in sources]) for name in sources[0]}
     return xr.concat(numbered, "gas", join="outer").assign(
-        **{name: ("gas", values) for name, values in found.items()},
+        **by_gas,
         count=("gas", count),
         radius=("gas", radius),
         most=("gas", most),
         penalty=("gas", [value for value, _ in slower]),
         penalty_error=("gas", [error for _, error in slower]),
-        **{name: ("source", [one[name] for one in sources]) for name in sources[0]},
+        **by_source,
         rule=settings["rule"],
         series_radius=("series", radii),
         exponent=("series", [value for value, _ in trend]),
@@ -131,7 +134,7 @@ def ideal_boxes(points, settings):
     )
 
 
-def linear_scaling(points, settings):
+def linear_scaling(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """The cost of a step with the cheapest partition of each gas, against the number of bodies N.
 
     settings: ``source_figures``, radius and range of counts of source A's figures 8, 9 and 10;
@@ -183,7 +186,7 @@ def linear_scaling(points, settings):
     )
 
 
-def event_scaling(points, settings):
+def event_scaling(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """The cost of an event, by each way of searching for the next one, against the number of bodies N.
 
     settings: ``fit_from``, for each search the least N in the fits. Over ``run``: ``search``, ``dimension``,
@@ -227,16 +230,16 @@ def event_scaling(points, settings):
     )
 
 
-def _run(point):
+def _run(point: grid.Point) -> xr.Dataset:
     """The dataset of a `measure_cost` point."""
     return xr.load_dataset(point.path)
 
 
-def _names(prefix, costs):
-    return {name: f"{prefix}_{name}" for name in costs.data_vars}
+def _names(prefix: str, costs: xr.Dataset) -> dict[str, Any]:
+    return {str(name): f"{prefix}_{name}" for name in costs.data_vars}
 
 
-def _expected(run):
+def _expected(run: xr.Dataset) -> dict:
     """Expected counts per body of a scan, for `box_count`."""
     gas = {"dimension": run.dimension, "side": run.side, "radius": run.radius}
     count, sides = run.attrs["count"], run.boxes_per_side.values
@@ -251,7 +254,9 @@ def _expected(run):
     }
 
 
-def _source(given, costs, found, count, radius):
+def _source(
+    given: dict, costs: list[xr.Dataset], found: dict[str, np.ndarray], count: np.ndarray, radius: np.ndarray
+) -> dict:
     """What was found for the gas of one of source A's numbers, for `ideal_boxes`."""
     at = int(np.flatnonzero((count == given["count"]) & (radius == given["radius"]))[0])
     slower = penalty(costs[at], given["boxes_per_body"])
@@ -267,7 +272,7 @@ def _source(given, costs, found, count, radius):
     }
 
 
-def _advantage(fine, per_side, around=0.1):
+def _advantage(fine: xr.Dataset, per_side: int, around: float = 0.1) -> tuple[float, float]:
     """By how much (ln of time) `per_side` is quicker than the partitions within the part `around` of it, in
     the container of the lower side (round widths), less the same in the other; and its standard error.
 
@@ -281,7 +286,7 @@ def _advantage(fine, per_side, around=0.1):
     return value, math.sqrt(variance[at][0] + variance[near].sum() / near.sum() ** 2)
 
 
-def _trend(count, values):
+def _trend(count: np.ndarray, values: np.ndarray) -> tuple[float, float]:
     """Exponent of a power law and its error from the scatter; NaN if fewer than three points can be used."""
     usable = np.isfinite(values)
     if usable.sum() < 3:

@@ -13,6 +13,7 @@ import xarray as xr
 
 from gaspart import grid, theory
 from gaspart.errors import SceneError
+from gaspart.scene import Scene
 from gaspart.statistics import histogram_chi_square, mean_of
 from gaspart.trajectory import open_trajectory
 
@@ -146,7 +147,7 @@ def speed_relaxation(points: list[grid.Point], settings: dict) -> xr.Dataset:
     return dataset
 
 
-def _rate_between_walls(scene, temperature: float) -> float:
+def _rate_between_walls(scene: Scene, temperature: float) -> float:
     """Collisions per body and time of a dilute gas whose centres are confined to the container.
 
     Enskog's rate times (N - 1) / N, as a body has N - 1 partners, and times the chance that the other body of
@@ -156,7 +157,7 @@ def _rate_between_walls(scene, temperature: float) -> float:
     """
     diameter = 2.0 * scene.largest_radius
     accessible = [upper - lower for lower, upper in zip(*scene.reach(scene.largest_radius), strict=True)]
-    fraction = scene.packing_fraction * np.prod(scene.container.lengths) / np.prod(accessible)
+    fraction = float(scene.packing_fraction * np.prod(scene.container.lengths) / np.prod(accessible))
     mean_cosine = {2: 2.0 / np.pi, 3: 0.5}[scene.dimension]
     share = 1.0 - mean_cosine * sum(
         diameter / length
@@ -237,7 +238,9 @@ def distribution(points: list[grid.Point], settings: dict) -> xr.Dataset:
     return dataset
 
 
-def _distribution(point, dimension: int, edges, steps, classes: int) -> dict:
+def _distribution(
+    point: grid.Point, dimension: int, edges: np.ndarray, steps: np.ndarray, classes: int
+) -> dict:
     """The numbers of one point. Speeds are over the root-mean-square speed: Maxwell's temperature is 1/d."""
     temperature = 1.0 / dimension
     found = runs(point, drop=grid.schedule(point).equilibration_frames)

@@ -42,7 +42,7 @@ class Strip(ast.NodeTransformer):
                 return isinstance(is_or_not, ast.Is) if name in FEATURES else None
         return None
 
-    def visit_If(self, node: ast.If) -> ast.AST | list[ast.AST]:
+    def visit_If(self, node: ast.If) -> ast.stmt | list[ast.stmt]:
         """Keep the branch that is taken."""
         self.generic_visit(node)
         known = self._known(node.test)

@@ -7,7 +7,10 @@ how the workflow counts jobs.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
+from types import ModuleType
+from typing import Any
 
 import numpy as np
 
@@ -16,14 +19,14 @@ NEIGHBOURS = 12
 
 
 @cache
-def _freud():
+def _freud() -> ModuleType:
     import freud
 
     freud.parallel.set_num_threads(1)
     return freud
 
 
-def _system(positions, lengths):
+def _system(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> tuple[Any, np.ndarray]:
     """Box and positions as freud takes them: the origin in the middle, and z = 0 for discs."""
     box = _freud().box.Box(*map(float, lengths), is2D=len(lengths) == 2)
     points = np.zeros((len(positions), 3), dtype=np.float32)
@@ -31,7 +34,7 @@ def _system(positions, lengths):
     return box, box.wrap(points)
 
 
-def hexatic(positions, lengths) -> np.ndarray:
+def hexatic(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> np.ndarray:
     """(N,) complex psi_6 = mean of exp(6 i theta) over the bonds of a disc to its Voronoi neighbours.
 
     |psi_6| is 1 in a triangular lattice; the mean over discs measures whether all have one orientation.
@@ -42,7 +45,7 @@ def hexatic(positions, lengths) -> np.ndarray:
     return order.particle_order
 
 
-def global_steinhardt(positions, lengths) -> float:
+def global_steinhardt(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> float:
     """Q_6 of all bonds of spheres to their 12 nearest neighbours: 0.5745 in a face-centred cubic lattice,
     about 1 / sqrt(12 N) in a fluid. Steinhardt, Nelson and Ronchetti, Phys. Rev. B 28, 784 (1983)."""
     order = _freud().order.Steinhardt(l=6)
@@ -50,7 +53,7 @@ def global_steinhardt(positions, lengths) -> float:
     return float(order.order)
 
 
-def local_steinhardt(positions, lengths) -> np.ndarray:
+def local_steinhardt(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> np.ndarray:
     """(N,) q_6 of each sphere, averaged over it and its 12 neighbours: some 0.48 in a crystal near melting,
     0.15 in the fluid. Lechner and Dellago, J. Chem. Phys. 129, 114707 (2008)."""
     order = _freud().order.Steinhardt(l=6, average=True)
@@ -58,7 +61,9 @@ def local_steinhardt(positions, lengths) -> np.ndarray:
     return order.particle_order
 
 
-def radial_distribution(frames, lengths, bins: int, furthest: float) -> tuple[np.ndarray, np.ndarray]:
+def radial_distribution(
+    frames: np.ndarray, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Centres (bins,) of shells up to `furthest` and g(r) there, mean over frames (T, N, d)."""
     rdf = _freud().density.RDF(bins=bins, r_max=furthest)
     for positions in frames:
@@ -66,7 +71,9 @@ def radial_distribution(frames, lengths, bins: int, furthest: float) -> tuple[np
     return rdf.bin_centers, rdf.rdf
 
 
-def structure_factor(frames, lengths, highest: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def structure_factor(
+    frames: np.ndarray, lengths: Sequence[float] | np.ndarray, highest: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Wave numbers (K,), (L,) along x and y up to `highest`, and S(k) = |sum exp(i k.r)|^2 / N there, (K, L).
 
     Discs: mean over frames (T, N, 2), at the wave vectors that the container admits; S(0) is NaN. By

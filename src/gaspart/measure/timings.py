@@ -8,6 +8,7 @@ processor time: the median of the repeats, with that median's standard error.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -80,7 +81,7 @@ def _dataset(columns: dict, **units: str) -> xr.Dataset:
     )
 
 
-def weights(seconds, error, *work) -> statistics.Fit:
+def weights(seconds: np.ndarray, error: np.ndarray, *work: float | np.ndarray) -> statistics.Fit:
     """What each kind of work costs: seconds = sum of weight x work, by relative least squares.
 
     seconds, error and every work: (points,). The covariance is scaled up by the scatter if that is larger
@@ -93,7 +94,7 @@ def weights(seconds, error, *work) -> statistics.Fit:
     return fit
 
 
-def ideal(costs: xr.Dataset, dimension: int) -> dict[str, float]:
+def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
     """The ideal number of boxes per body of one gas, from its `per_body` costs; each with its 95 % interval.
 
     By time: the minimum of a parabola of ln seconds against ln boxes (``ideal``, ``ideal_low``,
@@ -148,7 +149,7 @@ def penalty(costs: xr.Dataset, boxes_per_body: float) -> tuple[float, float]:
     return ratio, ratio * math.sqrt(np.sum((share * error / seconds) ** 2))
 
 
-def one_box(runs):
+def one_box(runs: list[xr.Dataset]) -> xr.Dataset:
     """Over ``count``: pair tests and time of one step with one box."""
     runs = sorted(runs, key=lambda run: run.attrs["count"])
     steps = np.array([int(run.steps[0]) for run in runs])
@@ -164,7 +165,7 @@ def one_box(runs):
     )
 
 
-def carry_on(naive, count):
+def carry_on(naive: xr.Dataset, count: float) -> tuple[float, float]:
     """Time of one naive step with `count` bodies, and its error, from time = a N + b tests."""
     bodies = naive["count"].values.astype(float)
     fit = weights(naive.seconds.values, naive.seconds_error.values, bodies, naive.pair_tests.values)

@@ -7,7 +7,7 @@ import xarray as xr
 
 from gaspart import grid, theory
 from gaspart.measure.pressure import pressure
-from gaspart.statistics import fit_polynomial
+from gaspart.statistics import Fit, fit_polynomial
 from gaspart.theory.virial import linear_tail_uncertainty
 
 
@@ -114,7 +114,9 @@ def fit_table(dataset: xr.Dataset, choices: list[dict]) -> xr.Dataset:
     )
 
 
-def fit_coefficients(eta, z, error, dimension: int, free: int, held: bool):
+def fit_coefficients(
+    eta: np.ndarray, z: np.ndarray, error: np.ndarray, dimension: int, free: int, held: bool
+) -> tuple[Fit, np.ndarray]:
     """Weighted fit of (Z-1)/eta = b_2 + b_3 eta + ... with b_2 ... b_free free.
 
     held: the higher coefficients, to B10, are held at their literature values and the terms beyond at

@@ -30,7 +30,8 @@ def wall_pressure(points: list[grid.Point], settings: dict) -> xr.Dataset:
     dataset = xr.Dataset({name: ("point", np.array([row[name] for row in rows])) for name in rows[0]})
     reduced = "k_B T / sigma^d"
     units = {"length": "diameters", "density": "1 / sigma^d", "temperature": "scene's energy"}
-    for name, variable in dataset.data_vars.items():
+    for key, variable in dataset.data_vars.items():
+        name = str(key)
         pressures = "pressure" in name or name.startswith("expected")
         variable.attrs["units"] = reduced if pressures else units.get(name, "1")
     return dataset
@@ -73,7 +74,9 @@ def _row(point: grid.Point) -> dict:
     }
 
 
-def _replica(point: grid.Point, path: str, walled: np.ndarray, diameter: float):
+def _replica(
+    point: grid.Point, path: str, walled: np.ndarray, diameter: float
+) -> tuple[np.ndarray, float, int]:
     """One replica: (samples, w) force on a wall of each walled axis, in reduced units; the temperature in
     the scene's; the number of hits."""
     schedule = grid.schedule(point)

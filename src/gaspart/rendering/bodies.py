@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,6 +12,9 @@ from gaspart.figures.style import COLOURS
 from gaspart.files import parse_yaml
 from gaspart.state import State
 from gaspart.validation import count_of
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 COLOURINGS = ("speed", "species")
 FASTEST = 2.0
@@ -40,7 +44,7 @@ class Bodies:
         return float(np.sqrt((self.speeds**2).mean())) if len(self.speeds) else 0.0
 
 
-def bodies_of(source, frame: int = -1) -> Bodies:
+def bodies_of(source: State | xr.Dataset, frame: int = -1) -> Bodies:
     """The bodies of a `State`, or of a frame (counted from the end if negative) of an open trajectory.
 
     Raises SceneError for a frame that is not there. A state knows of no interior walls.

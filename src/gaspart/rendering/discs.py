@@ -16,7 +16,7 @@ INK = (0.16, 0.16, 0.16)
 class Canvas:
     """A white picture of `size` (W, H) pixels, in the middle of which lies a container of `lengths` (2,)."""
 
-    def __init__(self, lengths: np.ndarray, size: tuple[int, int]):
+    def __init__(self, lengths: np.ndarray, size: tuple[int, int]) -> None:
         width, height = size
         margin = max(2.0, _MARGIN * min(size))
         self.scale = float(min((width - 2 * margin) / lengths[0], (height - 2 * margin) / lengths[1]))
@@ -33,7 +33,7 @@ class Canvas:
         """Discs, later ones over earlier ones; none smaller than half a pixel in radius."""
         _discs(self.image, self._pixels(positions), np.maximum(self.scale * radii, 0.5), colours)
 
-    def line(self, points: np.ndarray, colour=INK) -> None:
+    def line(self, points: np.ndarray, colour: tuple[float, float, float] = INK) -> None:
         """A line through points (N, 2)."""
         places = self._pixels(points)
         _segments(self.image, places[:-1], places[1:], np.array(colour, dtype=float))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,11 +15,14 @@ from gaspart.rendering.pictures import SIZE, checked_size, picture
 from gaspart.trajectory import open_trajectory
 from gaspart.validation import count_of, number
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 FORMATS = (".mp4", ".gif")
 
 
 def film(
-    trajectory,
+    trajectory: str | Path | xr.Dataset,
     path: str | Path,
     size: tuple[int, int] = SIZE,
     colour: str | np.ndarray = "speed",
@@ -45,7 +49,14 @@ def film(
     return _write(trajectory, path, size, colour, rate, trail)
 
 
-def _write(trajectory, path: Path, size, colour, rate: float, trail: int | None) -> Path:
+def _write(
+    trajectory: xr.Dataset,
+    path: Path,
+    size: tuple[int, int],
+    colour: str | np.ndarray,
+    rate: float,
+    trail: int | None,
+) -> Path:
     """See `film`; all is checked before the first frame is drawn."""
     frames = trajectory.sizes["frame"]
     if frames == 0:
@@ -66,7 +77,13 @@ def _write(trajectory, path: Path, size, colour, rate: float, trail: int | None)
     return path
 
 
-def _shown(trajectory, frames: int, size, colour, trail: int | None) -> Iterator[np.ndarray]:
+def _shown(
+    trajectory: xr.Dataset,
+    frames: int,
+    size: tuple[int, int],
+    colour: str | np.ndarray,
+    trail: int | None,
+) -> Iterator[np.ndarray]:
     """The pictures, one after the other."""
     fastest = FASTEST * max(bodies_of(trajectory, n).root_mean_square_speed for n in range(frames))
     way = []

@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.rendering.bodies import Bodies, bodies_of, colours_of
 from gaspart.validation import count_of
 
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from gaspart.state import State
+
 SIZE = (1000, 750)
 LARGEST_SIDE = 20_000
 
 
 def render(
-    source,
+    source: State | xr.Dataset,
     frame: int = -1,
     size: tuple[int, int] = SIZE,
     colour: str | np.ndarray = "speed",
@@ -32,7 +40,7 @@ def render(
     return picture(bodies, checked_size(size), colours_of(bodies, colour, fastest))
 
 
-def checked_size(size) -> tuple[int, int]:
+def checked_size(size: tuple[int, int]) -> tuple[int, int]:
     """(W, H), or a SceneError."""
     if not isinstance(size, (tuple, list)) or len(size) != 2:
         raise SceneError("size", size, "must be a width and a height in pixels")
@@ -42,7 +50,9 @@ def checked_size(size) -> tuple[int, int]:
     return int(size[0]), int(size[1])
 
 
-def picture(bodies: Bodies, size: tuple[int, int], colours: np.ndarray, lines=()) -> np.ndarray:
+def picture(
+    bodies: Bodies, size: tuple[int, int], colours: np.ndarray, lines: Sequence[np.ndarray] = ()
+) -> np.ndarray:
     """The pixels, uint8 (H, W, 3), of bodies in these colours (N, 3); lines, (M, 2) each, lie over discs."""
     if bodies.dimension == 3:
         from gaspart.rendering.camera import camera_for
@@ -55,7 +65,9 @@ def picture(bodies: Bodies, size: tuple[int, int], colours: np.ndarray, lines=()
     return np.rint(255.0 * image).astype(np.uint8)
 
 
-def _plane(bodies: Bodies, size: tuple[int, int], colours: np.ndarray, lines) -> np.ndarray:
+def _plane(
+    bodies: Bodies, size: tuple[int, int], colours: np.ndarray, lines: Sequence[np.ndarray]
+) -> np.ndarray:
     from gaspart.rendering.discs import Canvas
 
     canvas = Canvas(bodies.lengths, size)

@@ -29,7 +29,12 @@ _GAMMA = 2.2
 
 
 def trace(
-    positions: np.ndarray, radii: np.ndarray, colours: np.ndarray, lengths: np.ndarray, camera: Camera, size
+    positions: np.ndarray,
+    radii: np.ndarray,
+    colours: np.ndarray,
+    lengths: np.ndarray,
+    camera: Camera,
+    size: tuple[int, int],
 ) -> tuple[np.ndarray, np.ndarray]:
     """The picture (H, W, 3), from 0 to 1, and what stands in the middle of each pixel (H, W).
 

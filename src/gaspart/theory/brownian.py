@@ -7,12 +7,20 @@ import math
 
 import numpy as np
 
+from ._arguments import Numbers, Values
+
 SONINE_EQUAL_MASSES = 1.01895
 """D of a body as heavy as the gas's, over the first Sonine approximation k_B T / (M rate) (recalled, as in
 `enskog`)."""
 
 
-def friction_rate(number_density, contact_distance, mass, gas_mass=1.0, temperature=1.0):
+def friction_rate(
+    number_density: Numbers,
+    contact_distance: float,
+    mass: Numbers,
+    gas_mass: float = 1.0,
+    temperature: Numbers = 1.0,
+) -> Values:
     """Initial decay rate of a sphere's velocity autocorrelation: (8/3) n a^2 sqrt(2 pi mu k_B T) / M.
 
     Unit 1 / time. Exact for a dilute gas in equilibrium whose mean free path is much longer than the contact
@@ -24,7 +32,7 @@ def friction_rate(number_density, contact_distance, mass, gas_mass=1.0, temperat
     return 8.0 / 3.0 * number_density * contact_distance**2 * momentum / mass
 
 
-def tagged_diffusion(rate, mass, gas_mass=1.0, temperature=1.0):
+def tagged_diffusion(rate: Numbers, mass: float, gas_mass: float = 1.0, temperature: float = 1.0) -> Values:
     """D = k_B T / (M rate), the Langevin equation's; times 1.01895 for a body as heavy as the gas's.
 
     For other masses the correction lies below this one, and vanishes as the body becomes heavy. Unit
@@ -34,7 +42,7 @@ def tagged_diffusion(rate, mass, gas_mass=1.0, temperature=1.0):
     return factor * temperature / (mass * rate)
 
 
-def langevin_msd(time, diffusion, rate, dimension=3):
+def langevin_msd(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: int = 3) -> Values:
     """2 d D [t - (1 - exp(-g t)) / g], of a body in equilibrium (Ornstein and Fuerth; length^2).
 
     From an exponential velocity autocorrelation of rate g: ballistic at short times, 2 d D t at long ones.
@@ -46,7 +54,7 @@ def langevin_msd(time, diffusion, rate, dimension=3):
     return 2.0 * dimension * diffusion / rate * shape
 
 
-def langevin_msd_from_rest(time, diffusion, rate, dimension=3):
+def langevin_msd_from_rest(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: int = 3) -> Values:
     """2 d D [t - 2 (1 - exp(-g t)) / g + (1 - exp(-2 g t)) / (2 g)]: the same of a body that starts at rest.
 
     Begins as 2 d D g^2 t^3 / 3 (length^2).

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from ._arguments import checked_packing_fraction
+from ._arguments import Numbers, Values, checked_packing_fraction
 from .brownian import langevin_msd
 from .enskog import collision_rate, enskog_diffusion, enskog_viscosity
 from .geometry import number_density
@@ -18,7 +18,7 @@ YEH_HUMMER_CONSTANT = 2.837297
 """Madelung-like constant of a cubic periodic container (Yeh and Hummer 2004; recalled)."""
 
 
-def erpenbeck_wood_ratio(packing_fraction):
+def erpenbeck_wood_ratio(packing_fraction: Numbers) -> Values:
     """Spheres: D / D_Enskog = 1 + 0.05403 y + 6.3656 y^2 - 10.9425 y^3, y = rho sigma^3 / sqrt 2.
 
     Erpenbeck and Wood, Phys. Rev. A 43, 4254 (1991); recalled, good to 3 %. Range: the fluid, eta <= 0.4915.
@@ -29,13 +29,15 @@ def erpenbeck_wood_ratio(packing_fraction):
     return 1.0 + 0.05403 * y + 6.3656 * y**2 - 10.9425 * y**3
 
 
-def erpenbeck_wood_diffusion(packing_fraction, diameter=1.0, temperature=1.0, mass=1.0):
+def erpenbeck_wood_diffusion(
+    packing_fraction: Numbers, diameter: float = 1.0, temperature: float = 1.0, mass: float = 1.0
+) -> Values:
     """Spheres: D of the infinite system, `erpenbeck_wood_ratio` times Enskog's (3 %; length^2 / time)."""
     enskog = enskog_diffusion(packing_fraction, 3, diameter, temperature, mass)
     return erpenbeck_wood_ratio(packing_fraction) * enskog
 
 
-def yeh_hummer(length, viscosity, temperature=1.0):
+def yeh_hummer(length: Numbers, viscosity: Numbers, temperature: float = 1.0) -> Values:
     """Spheres: D_infinity - D_L = 2.837297 k_B T / (6 pi viscosity L): to be added to D_L (length^2 / time).
 
     Yeh and Hummer, J. Phys. Chem. B 108, 15873 (2004); recalled. `length`: side of the cubic periodic
@@ -45,7 +47,13 @@ def yeh_hummer(length, viscosity, temperature=1.0):
     return YEH_HUMMER_CONSTANT * temperature / (6.0 * math.pi * viscosity * length)
 
 
-def velocity_decay_rate(packing_fraction, dimension, diameter=1.0, temperature=1.0, mass=1.0):
+def velocity_decay_rate(
+    packing_fraction: Numbers,
+    dimension: int,
+    diameter: float = 1.0,
+    temperature: float = 1.0,
+    mass: float = 1.0,
+) -> Values:
     """Initial decay rate of the velocity autocorrelation, 2 nu / d (exact in equilibrium; 1 / time).
 
     nu is `enskog.collision_rate`; k_B T / (m rate) is Enskog's D in the first Sonine approximation.
@@ -54,8 +62,13 @@ def velocity_decay_rate(packing_fraction, dimension, diameter=1.0, temperature=1
 
 
 def enskog_mean_squared_displacement(
-    time, packing_fraction, dimension, diameter=1.0, temperature=1.0, mass=1.0
-):
+    time: Numbers,
+    packing_fraction: Numbers,
+    dimension: int,
+    diameter: float = 1.0,
+    temperature: float = 1.0,
+    mass: float = 1.0,
+) -> Values:
     """Mean-squared displacement 2 d D [t - (1 - exp(-g t)) / g], g = k_B T / (m D), D Enskog's (length^2).
 
     From an exponential velocity autocorrelation: ballistic d (k_B T / m) t^2 at short times (exact), 2 d D t
@@ -67,7 +80,9 @@ def enskog_mean_squared_displacement(
     return langevin_msd(time, diffusion, rate, dimension)
 
 
-def _spreading(packing_fraction, dimension, diameter, temperature, mass):
+def _spreading(
+    packing_fraction: Numbers, dimension: int, diameter: float, temperature: float, mass: float
+) -> tuple[Values, Values]:
     """Number density, and diffusion coefficient plus kinematic viscosity, both Enskog's."""
     density = number_density(np.asarray(packing_fraction, dtype=float), dimension, diameter)
     diffusion = enskog_diffusion(packing_fraction, dimension, diameter, temperature, mass)
@@ -75,7 +90,14 @@ def _spreading(packing_fraction, dimension, diameter, temperature, mass):
     return density, diffusion + viscosity / (mass * density)
 
 
-def velocity_autocorrelation_tail(time, packing_fraction, dimension, diameter=1.0, temperature=1.0, mass=1.0):
+def velocity_autocorrelation_tail(
+    time: Numbers,
+    packing_fraction: Numbers,
+    dimension: int,
+    diameter: float = 1.0,
+    temperature: float = 1.0,
+    mass: float = 1.0,
+) -> Values:
     """Long-time tail of <v(0).v(t)> / <v^2>: ((d-1) / (d rho)) [4 pi (D + nu) t]^(-d/2) (dimensionless).
 
     Mode coupling, Ernst, Hauge and van Leeuwen (1970); recalled. D and the kinematic viscosity nu are
@@ -86,7 +108,9 @@ def velocity_autocorrelation_tail(time, packing_fraction, dimension, diameter=1.
     return amplitude * (4.0 * math.pi * spreading * np.asarray(time)) ** (-0.5 * dimension)
 
 
-def logarithmic_slope(packing_fraction, diameter=1.0, temperature=1.0, mass=1.0):
+def logarithmic_slope(
+    packing_fraction: Numbers, diameter: float = 1.0, temperature: float = 1.0, mass: float = 1.0
+) -> Values:
     """Discs: dD(t) / d ln t = k_B T / (8 pi m rho (D + nu)), D(t) the integral of the tail (length^2 / time).
 
     In 2D the tail falls as 1/t, so D(t) grows without limit and no diffusion coefficient exists. Range and

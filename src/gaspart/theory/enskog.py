@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from ._arguments import checked_dimension
+from ._arguments import Numbers, Values, checked_dimension
 from .geometry import number_density, unit_sphere_surface
 from .speeds import mean_speed
 from .state import compressibility_factor, contact_value, finite_size_correction
@@ -23,12 +23,18 @@ _DILUTE_VISCOSITY = {2: 0.28829, 3: 0.17913}
 _DILUTE_CONDUCTIVITY = {2: 1.16192, 3: 0.67783}
 
 
-def _density_and_contact(packing_fraction, dimension, diameter):
+def _density_and_contact(packing_fraction: Numbers, dimension: int, diameter: float) -> tuple[Values, Values]:
     density = number_density(np.asarray(packing_fraction, dtype=float), dimension, diameter)
     return density, contact_value(packing_fraction, dimension)
 
 
-def collision_rate(packing_fraction, dimension, diameter=1.0, temperature=1.0, mass=1.0):
+def collision_rate(
+    packing_fraction: Numbers,
+    dimension: int,
+    diameter: float = 1.0,
+    temperature: float = 1.0,
+    mass: float = 1.0,
+) -> Values:
     """Collisions of one body per time, nu = S rho sigma^(d-1) chi sqrt(k_B T / (pi m)).
 
     S = 2 pi (2D), 4 pi (3D), so 2 rho sigma chi sqrt(pi k_B T / m) and 4 rho sigma^2 chi sqrt(pi k_B T / m).
@@ -40,7 +46,7 @@ def collision_rate(packing_fraction, dimension, diameter=1.0, temperature=1.0, m
     return unit_sphere_surface(dimension) * density * diameter ** (dimension - 1) * contact * speed
 
 
-def collision_rate_finite_size_factor(packing_fraction, dimension, count):
+def collision_rate_finite_size_factor(packing_fraction: Numbers, dimension: int, count: int) -> Values:
     """nu_N / nu of `count` bodies in a periodic container, fixed energy, total momentum zero.
 
     Contacts: the canonical Z_N - 1 over Z - 1 (to O(1/N), see `state.finite_size_correction`).
@@ -55,7 +61,7 @@ def collision_rate_finite_size_factor(packing_fraction, dimension, count):
     return speeds * (1.0 + shift / (compressibility_factor(eta, dimension) - 1.0))
 
 
-def mean_free_path(packing_fraction, dimension, diameter=1.0):
+def mean_free_path(packing_fraction: Numbers, dimension: int, diameter: float = 1.0) -> Values:
     """Mean path between collisions, <v> / nu.
 
     1 / (sqrt 2 pi rho sigma^2 chi) in 3D, 1 / (2 sqrt 2 rho sigma chi) in 2D.
@@ -65,7 +71,13 @@ def mean_free_path(packing_fraction, dimension, diameter=1.0):
         return mean_speed(dimension) / collision_rate(packing_fraction, dimension, diameter)
 
 
-def enskog_diffusion(packing_fraction, dimension, diameter=1.0, temperature=1.0, mass=1.0):
+def enskog_diffusion(
+    packing_fraction: Numbers,
+    dimension: int,
+    diameter: float = 1.0,
+    temperature: float = 1.0,
+    mass: float = 1.0,
+) -> Values:
     """Self-diffusion coefficient of Enskog theory, D = c sqrt(k_B T / (pi m)) / (rho sigma^(d-1) chi).
 
     c = (3/8) 1.01895 in 3D, (1/2) 1.02710 in 2D (recalled Sonine factors). 3D: exact at zero density;
@@ -80,7 +92,13 @@ def enskog_diffusion(packing_fraction, dimension, diameter=1.0, temperature=1.0,
     return first * _DIFFUSION_FACTOR[dimension] * speed * path
 
 
-def enskog_bulk_viscosity(packing_fraction, dimension, diameter=1.0, temperature=1.0, mass=1.0):
+def enskog_bulk_viscosity(
+    packing_fraction: Numbers,
+    dimension: int,
+    diameter: float = 1.0,
+    temperature: float = 1.0,
+    mass: float = 1.0,
+) -> Values:
     """Bulk viscosity of Enskog theory, (S / d^2) rho^2 sigma^(d+1) chi sqrt(m k_B T / pi).
 
     S = 2 pi (2D), 4 pi (3D). Exact within the theory: the first-order change of the collisional pressure
@@ -93,7 +111,13 @@ def enskog_bulk_viscosity(packing_fraction, dimension, diameter=1.0, temperature
     return surface / dimension**2 * density**2 * diameter ** (dimension + 1) * contact * thermal
 
 
-def enskog_viscosity(packing_fraction, dimension, diameter=1.0, temperature=1.0, mass=1.0):
+def enskog_viscosity(
+    packing_fraction: Numbers,
+    dimension: int,
+    diameter: float = 1.0,
+    temperature: float = 1.0,
+    mass: float = 1.0,
+) -> Values:
     """Shear viscosity of Enskog theory, (eta_0 / chi) [1 + 2 b chi / (d+2)]^2 + bulk viscosity d / (d+2).
 
     b = 2^(d-1) times the packing fraction, eta_0 the dilute value (0.17913 in 3D, 0.28829 in 2D, times
@@ -109,7 +133,13 @@ def enskog_viscosity(packing_fraction, dimension, diameter=1.0, temperature=1.0,
     return kinetic + dimension / (dimension + 2) * bulk
 
 
-def enskog_conductivity(packing_fraction, dimension, diameter=1.0, temperature=1.0, mass=1.0):
+def enskog_conductivity(
+    packing_fraction: Numbers,
+    dimension: int,
+    diameter: float = 1.0,
+    temperature: float = 1.0,
+    mass: float = 1.0,
+) -> Values:
     """Conductivity of heat, (lambda_0 / chi) [1 + 3 b chi / (d+2)]^2 + d / (2m) bulk viscosity (Enskog).
 
     b = 2^(d-1) times the packing fraction, lambda_0 the dilute value (0.67783 in 3D, 1.16192 in 2D, times

@@ -12,7 +12,9 @@ from .geometry import packing_fraction
 _RADIUS = 0.5
 
 
-def white_bear_slit(bulk_density, width, spacing=0.01, tolerance=1e-8):
+def white_bear_slit(
+    bulk_density: float, width: float, spacing: float = 0.01, tolerance: float = 1e-8
+) -> tuple[np.ndarray, np.ndarray]:
     """Density profile in a slit in equilibrium with a fluid of `bulk_density`: places (n,) of centres above
     the lower wall's contact plane, from 0 to H - 1, and densities (n,).
 
@@ -59,16 +61,18 @@ def white_bear_slit(bulk_density, width, spacing=0.01, tolerance=1e-8):
     raise RuntimeError(f"the profile at density {bulk_density:g}, width {width:g} does not converge")
 
 
-def white_bear_pressure(bulk_density):
+def white_bear_pressure(bulk_density: float) -> float:
     """The functional's bulk pressure, Carnahan and Starling's (k_B T / sigma^3)."""
     return bulk_density * float(carnahan_starling(packing_fraction(bulk_density, 3)))
 
 
-def _bulk_measures(density):
+def _bulk_measures(density: float) -> tuple[float, float]:
     return density * np.pi / 6.0, density * np.pi
 
 
-def _derivatives(n3, n2, vector):
+def _derivatives(
+    n3: np.ndarray, n2: np.ndarray, vector: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Of the free energy density by n_3, n_2 and n_V2, the lower measures expressed by these."""
     void = 1.0 - n3
     logarithm = np.log(void)

@@ -5,7 +5,7 @@ Diameter 1 and k_B T = 1: number densities in 1 / sigma^d, pressures in k_B T / 
 
 import numpy as np
 
-from ._arguments import checked_dimension
+from ._arguments import Numbers, Values, checked_dimension
 from .geometry import CLOSE_PACKING, packing_fraction
 
 COEXISTENCE_PRESSURE = {2: 9.185, 3: 11.573}
@@ -29,12 +29,12 @@ LOWEST_CRYSTAL = {2: 0.70, 3: 0.49}
 """Packing fraction below which the crystals' equations are not drawn: no crystal lives there for long."""
 
 
-def coexistence_packing_fractions(dimension):
+def coexistence_packing_fractions(dimension: int) -> np.ndarray:
     """Packing fractions of the freezing fluid and of the melting ordered phase, (2,)."""
     return packing_fraction(np.array(COEXISTENCE_DENSITY[checked_dimension(dimension)]), dimension)
 
 
-def _expansion(eta, dimension):
+def _expansion(eta: Numbers, dimension: int) -> np.ndarray:
     """alpha = V / V_closest - 1, after the check of the range."""
     eta = np.asarray(eta, dtype=float)
     if not np.all((eta >= LOWEST_CRYSTAL[dimension]) & (eta < CLOSE_PACKING[dimension])):
@@ -43,7 +43,7 @@ def _expansion(eta, dimension):
     return CLOSE_PACKING[dimension] / eta - 1.0
 
 
-def speedy_crystal(packing_fraction):
+def speedy_crystal(packing_fraction: Numbers) -> Values:
     """Face-centred cubic crystal of spheres: Z = 3/(1-z) - 0.5921 (z - 0.7072)/(z - 0.601), z = eta / eta_c.
 
     Speedy, J. Phys.: Condens. Matter 10, 4387 (1998; recalled). From LOWEST_CRYSTAL to close packing.
@@ -52,7 +52,7 @@ def speedy_crystal(packing_fraction):
     return 3.0 / (1.0 - z) - 0.5921 * (z - 0.7072) / (z - 0.601)
 
 
-def alder_hoover_young_crystal(packing_fraction, dimension):
+def alder_hoover_young_crystal(packing_fraction: Numbers, dimension: int) -> Values:
     """Z = d/alpha + a_0 + a_1 alpha + ..., alpha = V / V_c - 1: the free-volume limit and a fit beyond it.
 
     Alder, Hoover and Young, J. Chem. Phys. 49, 3688 (1968; recalled). Discs on the triangular lattice:
@@ -65,7 +65,7 @@ def alder_hoover_young_crystal(packing_fraction, dimension):
     return dimension / alpha + np.polynomial.polynomial.polyval(alpha, series)
 
 
-def crystal_finite_size_correction(compressibility_factor, count):
+def crystal_finite_size_correction(compressibility_factor: Values, count: Values) -> Values:
     """Z_N - Z_infinity = -(Z - 1) / N of a periodic crystal of N bodies, its centre of mass free.
 
     The centre of mass explores the whole volume V, the other N - 1 bodies their free volumes: Q_N ~ V

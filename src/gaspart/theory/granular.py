@@ -7,10 +7,10 @@ before clustering.
 
 import numpy as np
 
-from ._arguments import checked_dimension
+from ._arguments import Numbers, Values, checked_dimension
 
 
-def fourth_cumulant(restitution, dimension):
+def fourth_cumulant(restitution: Numbers, dimension: int) -> Values:
     """a2 = d <v^4> / ((d + 2) <v^2>^2) - 1 of the smooth inelastic gas that cools homogeneously.
 
     a2 = 16 (1-e) (1-2e^2) / (9 + 24 d + (8d - 41) e + 30 e^2 (1-e)); van Noije and Ernst, Granular Matter 1,
@@ -25,7 +25,7 @@ def fourth_cumulant(restitution, dimension):
     )
 
 
-def cooling_rate(restitution, dimension):
+def cooling_rate(restitution: Numbers, dimension: int) -> Values:
     """- d ln T / ds of the smooth inelastic gas: (1 - e^2) / d (1 + a2 / 4).
 
     The factor 1 - e^2 over d is exact for Maxwellian velocities, which the gas leaves within some collisions;
@@ -35,7 +35,7 @@ def cooling_rate(restitution, dimension):
     return (1.0 - e**2) / dimension * (1.0 + 0.25 * fourth_cumulant(e, dimension))
 
 
-def haff_time(restitution, dimension, collision_rate):
+def haff_time(restitution: Numbers, dimension: int, collision_rate: Numbers) -> Values:
     """t_H of Haff's law T = T_0 / (1 + t / t_H)^2; `collision_rate`: per body, of the elastic gas at T_0.
 
     T falls by d ln T = -`cooling_rate` ds, and collisions become as rare as sqrt(T): 1 / t_H is half of
@@ -46,7 +46,7 @@ def haff_time(restitution, dimension, collision_rate):
     return 2.0 / (cooling_rate(restitution, dimension) * slowed * collision_rate)
 
 
-def rough_matrix(inertia, tangential, normal=1.0):
+def rough_matrix(inertia: float, tangential: float, normal: float = 1.0) -> np.ndarray:
     """M (2, 2) of d(T_tr, T_rot)/ds = M (T_tr, T_rot), rough discs; inertia: q = I / (m R^2).
 
     M = [[-2A, 2B], [4B, -4C]] with A = (1 - normal^2)/4 + h (1 - h)/2, B = h^2 / 2q, C = h (1 - h/q) / 2q and
@@ -67,7 +67,13 @@ def rough_matrix(inertia, tangential, normal=1.0):
     return np.array([[-2.0 * a, 2.0 * b], [4.0 * b, -4.0 * c]])
 
 
-def rough_temperatures(collisions, inertia, tangential, normal=1.0, start=(1.0, 0.0)):
+def rough_temperatures(
+    collisions: Numbers,
+    inertia: float,
+    tangential: float,
+    normal: float = 1.0,
+    start: tuple[float, float] = (1.0, 0.0),
+) -> np.ndarray:
     """T_tr and T_rot (2, ...) after s collisions per body, from `start`; `rough_matrix` integrated."""
     values, vectors = np.linalg.eig(rough_matrix(inertia, tangential, normal))
     weights = np.linalg.solve(vectors, np.asarray(start, dtype=float))
@@ -75,7 +81,7 @@ def rough_temperatures(collisions, inertia, tangential, normal=1.0, start=(1.0, 
     return np.tensordot(vectors, weights.reshape(2, *[1] * s.ndim) * np.exp(np.multiply.outer(values, s)), 1)
 
 
-def rough_ratio(inertia, tangential, normal=1.0):
+def rough_ratio(inertia: float, tangential: float, normal: float = 1.0) -> float:
     """T_rot / T_tr that rough discs tend to, cooling or not; 1 if they are elastic and perfectly rough.
 
     The slower eigenvector of `rough_matrix`. Raises ValueError for smooth discs, whose spins never change.
@@ -87,7 +93,7 @@ def rough_ratio(inertia, tangential, normal=1.0):
     return float(slower[1] / slower[0])
 
 
-def _checked_restitution(restitution):
+def _checked_restitution(restitution: Numbers) -> np.ndarray:
     e = np.asarray(restitution, dtype=float)
     if not np.all((e >= 0.0) & (e <= 1.0)):
         raise ValueError(f"restitution: {restitution} (must be from 0 to 1)")

@@ -7,13 +7,14 @@ highest. A field is given by w = m g / (k_B T) of a body, one over its scale hei
 import math
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from ._arguments import checked_dimension
+from ._arguments import Numbers, Values, checked_dimension
 from .geometry import body_volume
 from .potential import packing_fraction_at
 
 
-def ideal_profile(z, height, weight):
+def ideal_profile(z: Numbers, height: float, weight: float) -> Values:
     """Chance per length of finding a body at z: w e^{-w z} / (1 - e^{-w height}) (exact; canonical)."""
     z = np.asarray(z, dtype=float)
     if weight == 0.0:
@@ -21,7 +22,7 @@ def ideal_profile(z, height, weight):
     return weight * np.exp(-weight * z) / -math.expm1(-weight * height)
 
 
-def ideal_mean_height(height, weight):
+def ideal_mean_height(height: float, weight: Numbers) -> Values:
     """<z> = 1/w - height / (e^x - 1), x = w height (exact; canonical). Without a field, height / 2."""
     x = np.asarray(weight, dtype=float) * height
     small = np.abs(x) < 1e-4  # where the two terms cancel; next is x^3 / 720
@@ -29,7 +30,7 @@ def ideal_mean_height(height, weight):
     return height * np.where(small, 0.5 - x / 12.0, 1.0 / safe + np.exp(-safe) / np.expm1(-safe))
 
 
-def ideal_heat_capacity(x, dimension):
+def ideal_heat_capacity(x: Numbers, dimension: int) -> Values:
     """C_V / (N k_B) = d/2 + 1 - x^2 e^x / (e^x - 1)^2, x = m g height / (k_B T) (exact; canonical).
 
     d/2 without gravity; d/2 + 1 in a box far higher than the gas, whose potential energy grows with T too.
@@ -39,7 +40,9 @@ def ideal_heat_capacity(x, dimension):
     return 0.5 * checked_dimension(dimension) + 1.0 - np.where(x == 0.0, 1.0, (half / np.sinh(half)) ** 2)
 
 
-def ideal_energy_moments(energy, count, height, force, dimension, points=2**14):
+def ideal_energy_moments(
+    energy: float, count: int, height: float, force: float, dimension: int, points: int = 2**14
+) -> tuple[float, float]:
     """<K> and the variance of the kinetic energy K of an ideal gas at fixed total energy (exact).
 
     energy: kinetic and potential, of `count` bodies that weigh `force` = m g each, floor at 0. The number of
@@ -77,7 +80,7 @@ def ideal_energy_moments(energy, count, height, force, dimension, points=2**14):
     return average, float(weight @ (kinetic - average) ** 2)
 
 
-def _canonical_temperature(energy, top, dimension):
+def _canonical_temperature(energy: float, top: float, dimension: int) -> float:
     """T at which a body of an ideal gas has this mean energy, by bisection; `top`: m g height."""
     half = 0.5 * dimension
     low, high = 0.5 * energy / (half + 1.0), energy / half
@@ -90,7 +93,7 @@ def _canonical_temperature(energy, top, dimension):
     return middle
 
 
-def lebowitz_percus_verlet(mean, variance, count, dimension):
+def lebowitz_percus_verlet(mean: Numbers, variance: Numbers, count: int, dimension: int) -> Values:
     """C_V / (N k_B) from the kinetic energy's mean and variance at fixed total energy.
 
     <dK^2> = (d/2) N T^2 (1 - (d/2) N k_B / C_V), to leading order in 1/N; Lebowitz, Percus and Verlet,
@@ -101,7 +104,9 @@ def lebowitz_percus_verlet(mean, variance, count, dimension):
     return half / (1.0 - relative)
 
 
-def hydrostatic_profiles(z, numbers, weights, dimension, diameter=1.0):
+def hydrostatic_profiles(
+    z: np.ndarray, numbers: ArrayLike, weights: ArrayLike, dimension: int, diameter: float = 1.0
+) -> np.ndarray:
     """Densities of species of one size at heights z, hydrostatics with the reference equation of state.
 
     Every species' chemical potential is uniform, ln eta_i + mu_excess(eta) + w_i z = c_i, where eta is the

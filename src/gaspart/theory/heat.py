@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ._arguments import checked_dimension
+from ._arguments import Numbers, Values, checked_dimension
 from .enskog import enskog_conductivity, mean_free_path
 from .geometry import number_density, packing_fraction
 from .state import compressibility_factor
@@ -18,7 +18,9 @@ TEMPERATURE_JUMP = 2.127
 sqrt(pi) / 2, Sone, Ohwada and Aoki, Phys. Fluids A 1, 363 (1989) (recalled)."""
 
 
-def free_molecular_flux(density, hot, cold, dimension, mass=1.0, components="all"):
+def free_molecular_flux(
+    density: Numbers, hot: float, cold: float, dimension: int, mass: float = 1.0, components: str = "all"
+) -> Values:
     """Flux through a gas whose bodies meet nothing but the walls, (d + 1) n sqrt(T_1 T_2 / (2 pi m))
     (sqrt T_1 - sqrt T_2).
 
@@ -30,7 +32,7 @@ def free_molecular_flux(density, hot, cold, dimension, mass=1.0, components="all
     return carried * density * roots / np.sqrt(2.0 * np.pi * mass)
 
 
-def dilute_fourier_flux(length, hot, cold, diameter=1.0):
+def dilute_fourier_flux(length: float, hot: float, cold: float, diameter: float = 1.0) -> float:
     """(2/3) lambda_0 (T_1^(3/2) - T_2^(3/2)) / length of spheres of mass 1: Fourier's law with lambda_0
     proportional to sqrt T, in the limit of a wide gap and a dilute gas. It does not depend on the density
     (Maxwell 1860). Exact in that limit, as good as lambda_0.
@@ -50,7 +52,14 @@ class Slab:
     flux: float
 
 
-def conducting_slab(length, density, hot, cold, diameter=1.0, jump=TEMPERATURE_JUMP):
+def conducting_slab(
+    length: float,
+    density: float,
+    hot: float,
+    cold: float,
+    diameter: float = 1.0,
+    jump: float = TEMPERATURE_JUMP,
+) -> Slab:
     """Fourier's law in a gas of spheres of mass 1 and mean number density `density`, with temperature jumps.
 
     q = -lambda(n, T) dT/dx with Enskog's conductivity and one pressure n T Z(eta) everywhere. In the dilute
@@ -64,7 +73,7 @@ def conducting_slab(length, density, hot, cold, diameter=1.0, jump=TEMPERATURE_J
         raise ValueError(f"density: {density} (a Knudsen number of {knudsen:.2g}; this holds up to 0.1)")
     ends = np.array([hot, cold], dtype=float)
     for _ in range(60):
-        slab = _between(length, density, *ends, diameter)
+        slab = _between(length, density, float(ends[0]), float(ends[1]), diameter)
         eta = packing_fraction(slab.density[[0, -1]], 3, diameter)
         slope = slab.flux / enskog_conductivity(eta, 3, diameter, 1.0) / np.sqrt(ends)
         shift = jump * mean_free_path(eta, 3, diameter) * slope
@@ -72,14 +81,14 @@ def conducting_slab(length, density, hot, cold, diameter=1.0, jump=TEMPERATURE_J
     return slab
 
 
-def _between(length, density, hot, cold, diameter):
+def _between(length: float, density: float, hot: float, cold: float, diameter: float) -> Slab:
     """The same for a gas that has the temperatures `hot` and `cold` at the walls."""
     temperature = np.linspace(hot, cold, 401)
     eta = np.linspace(0.0, 0.45, 4001)
     table = number_density(eta, 3, diameter) * compressibility_factor(eta, 3)  # pressure over temperature
     steps = -np.diff(temperature)
 
-    def at(pressure):
+    def at(pressure: float) -> tuple[np.ndarray, np.ndarray, float]:
         local = np.interp(pressure / temperature, table, eta)
         conductivity = enskog_conductivity(local, 3, diameter, 1.0) * np.sqrt(temperature)
         weights = 0.5 * (conductivity[1:] + conductivity[:-1]) * steps  # flux times dx

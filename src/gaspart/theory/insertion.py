@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from ._arguments import checked_dimension, checked_packing_fraction
+from ._arguments import Numbers, Values, checked_dimension, checked_packing_fraction
 
 RSA_SATURATION = {2: 0.547074, 3: 0.384131}
 """Packing fraction at which no further body fits, infinite container (Zhang, Torquato 2013; literature)."""
@@ -25,7 +25,7 @@ _WALL_EXCESS_UNCERTAINTY = {2: 0.04, 3: 0.005}
 _AVAILABLE_SECOND = {2: 6.0 * math.sqrt(3.0) / math.pi, 3: 17.0}
 
 
-def _shape_factor(excess, dimension, side_over_diameter, boundary):
+def _shape_factor(excess: float, dimension: int, side_over_diameter: float, boundary: str) -> float:
     """Saturation in the container over that of the infinite one, for a wall excess in diameters."""
     if boundary == "centres_to_walls":
         return (1.0 + excess / side_over_diameter) ** dimension
@@ -35,7 +35,9 @@ def _shape_factor(excess, dimension, side_over_diameter, boundary):
     raise ValueError(f"boundary: {boundary!r} (must be 'periodic', 'wall' or 'centres_to_walls')")
 
 
-def insertion_saturation(dimension, side_over_diameter=None, boundary="periodic"):
+def insertion_saturation(
+    dimension: int, side_over_diameter: float | None = None, boundary: str = "periodic"
+) -> float:
     """Packing fraction at saturation of a square or cubic container of side L (dimensionless).
 
     `boundary`: "periodic": the infinite value at every L (fluctuations only); "centres_to_walls": source A's
@@ -50,7 +52,9 @@ def insertion_saturation(dimension, side_over_diameter=None, boundary="periodic"
     return infinite * _shape_factor(_WALL_EXCESS[dimension], dimension, side_over_diameter, boundary)
 
 
-def insertion_saturation_uncertainty(dimension, side_over_diameter=None, boundary="periodic"):
+def insertion_saturation_uncertainty(
+    dimension: int, side_over_diameter: float | None = None, boundary: str = "periodic"
+) -> float:
     """Standard uncertainty of `insertion_saturation`: literature's and the wall excess's."""
     relative = RSA_SATURATION_UNCERTAINTY[checked_dimension(dimension)] / RSA_SATURATION[dimension]
     value = insertion_saturation(dimension, side_over_diameter, boundary)
@@ -62,7 +66,7 @@ def insertion_saturation_uncertainty(dimension, side_over_diameter=None, boundar
     return math.hypot(value * relative, 0.5 * (more - less) * RSA_SATURATION[dimension])
 
 
-def available_fraction(packing_fraction, dimension):
+def available_fraction(packing_fraction: Numbers, dimension: int) -> Values:
     """Chance that a random attempt fits: 1 - 2^d eta + c_2 eta^2, c_2 = 6 sqrt 3 / pi (2D), 17 (3D).
 
     Exact to eta^2, where insertion and equilibrium still agree (Widom 1966, Schaaf and Talbot 1989;
@@ -75,7 +79,7 @@ def available_fraction(packing_fraction, dimension):
     return 1.0 - first * eta + second * eta**2
 
 
-def failures_per_body(packing_fraction, dimension):
+def failures_per_body(packing_fraction: Numbers, dimension: int) -> Values:
     """Mean number of failed attempts before a body is placed at this packing fraction: 1 / available - 1.
 
     2^d eta at low density (exact); range that of `available_fraction`.

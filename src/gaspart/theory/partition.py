@@ -7,19 +7,20 @@ diameter (first order in the density, so for packing fractions below some 0.05).
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
-from ._arguments import checked_dimension
+from ._arguments import Numbers, Values, checked_dimension
 
 
-def _shares(per_side, side, radius):
+def _shares(per_side: int, side: float, radius: float) -> np.ndarray:
     """(n,) Chance that a coordinate, uniform between the walls, lies in each of the n boxes."""
     edges = np.linspace(0.0, side, per_side + 1)
     return np.diff(np.clip(edges, radius, side - radius)) / (side - 2.0 * radius)
 
 
-def _moments(per_side, side, radius):
+def _moments(per_side: int, side: float, radius: float) -> np.ndarray:
     """Along one axis: mean over a body's place of (boxes in its neighbourhood, its share, its share squared).
 
     The share of a neighbourhood is the chance that another body is in it.
@@ -34,7 +35,9 @@ def _moments(per_side, side, radius):
     return np.array([own @ boxes, own @ near, own @ near**2])
 
 
-def expected_pair_tests(count, per_side, dimension, side, radius):
+def expected_pair_tests(
+    count: float, per_side: int, dimension: int, side: float, radius: float
+) -> tuple[float, float]:
     """Mean and standard deviation (over random places of the bodies) of the pairs tested in one search.
 
     The mean is N(N-1)/2 times the chance that two bodies are neighbours, exactly N(N-1)/2 for one box; the
@@ -49,23 +52,25 @@ def expected_pair_tests(count, per_side, dimension, side, radius):
     return mean, math.sqrt(max(variance, 0.0))
 
 
-def neighbour_share(per_side, dimension, side, radius):
+def neighbour_share(
+    per_side: Sequence[int] | np.ndarray, dimension: int, side: float, radius: float
+) -> np.ndarray:
     """(n,) Chance that two bodies lie in the same box or in neighbouring ones, for `per_side` (n,)."""
     return np.array([_moments(int(n), side, radius)[1] for n in per_side]) ** checked_dimension(dimension)
 
 
-def expected_box_visits(per_side, dimension, side, radius):
+def expected_box_visits(per_side: int, dimension: int, side: float, radius: float) -> float:
     """Mean number of boxes that one body looks into: its own, and half of the others around it."""
     boxes, _, _ = _moments(per_side, side, radius) ** checked_dimension(dimension)
     return 0.5 * (1.0 + boxes)
 
 
-def boxes_in_reach(width, reach, dimension):
+def boxes_in_reach(width: Numbers, reach: Numbers, dimension: int) -> Values:
     """Mean number of boxes of side `width` that a cube of half side `reach` around a random point meets."""
     return (1.0 + 2.0 * np.asarray(reach) / width) ** checked_dimension(dimension)
 
 
-def ideal_boxes_per_body(test_cost, box_cost, dimension):
+def ideal_boxes_per_body(test_cost: Numbers, box_cost: Numbers, dimension: int) -> Values:
     """Boxes per body at which a step costs least, if a pair test and a box cost what is given (same unit).
 
     With M boxes and N bodies, away from the walls, there are 3^d N / (2 M) tests per body, while every box

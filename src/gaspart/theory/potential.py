@@ -7,14 +7,14 @@ from functools import cache
 
 import numpy as np
 
-from ._arguments import checked_dimension, checked_packing_fraction
+from ._arguments import Numbers, Values, checked_dimension, checked_packing_fraction
 from .state import HIGHEST_PACKING_FRACTION, compressibility_factor, contact_value
 
 _LOWEST = 1e-9
 """Packing fraction below which the fluid is an ideal gas to nine digits."""
 
 
-def excess_chemical_potential(packing_fraction, dimension):
+def excess_chemical_potential(packing_fraction: Numbers, dimension: int) -> Values:
     """mu_excess / (k_B T) = Z - 1 + integral from 0 to eta of (Z - 1) / eta' (exact thermodynamics).
 
     Z is `compressibility_factor` (same range, same shape); the integral is by Gauss and Legendre.
@@ -27,14 +27,14 @@ def excess_chemical_potential(packing_fraction, dimension):
 
 
 @cache
-def _table(dimension):
+def _table(dimension: int) -> tuple[np.ndarray, np.ndarray]:
     """(ln eta, ln activity) from `_LOWEST` to the end of the reference."""
     eta = np.geomspace(_LOWEST, HIGHEST_PACKING_FRACTION[dimension], 12001)
     eta[-1] = HIGHEST_PACKING_FRACTION[dimension]
     return np.log(eta), np.log(eta) + excess_chemical_potential(eta, dimension)
 
 
-def packing_fraction_at(activity, dimension):
+def packing_fraction_at(activity: Numbers, dimension: int) -> Values:
     """The packing fraction at which eta e^{mu_excess} is `activity` (number or array, > 0; to 1e-5 of it).
 
     Raises ValueError where that is above the reference's range.

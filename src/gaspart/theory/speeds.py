@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ._arguments import checked_dimension
+from ._arguments import Numbers, Values, checked_dimension
 
 _TABLES = Path(__file__).parent / "data"
 
@@ -20,13 +20,13 @@ RELAXATION_UNCERTAINTY = 3e-4
 """Standard uncertainty of the tabulated kurtosis and never-hit fraction (computed, Monte Carlo)."""
 
 
-def mean_speed(dimension, temperature=1.0, mass=1.0):
+def mean_speed(dimension: int, temperature: float = 1.0, mass: float = 1.0) -> float:
     """Mean speed in equilibrium: sqrt(pi k_B T / 2m) in 2D, sqrt(8 k_B T / (pi m)) in 3D (exact)."""
     ratio = {2: 0.5 * math.pi, 3: 8.0 / math.pi}[checked_dimension(dimension)]
     return math.sqrt(ratio * temperature / mass)
 
 
-def maxwell_pdf(speed, dimension, temperature=1.0, mass=1.0):
+def maxwell_pdf(speed: Numbers, dimension: int, temperature: float = 1.0, mass: float = 1.0) -> Values:
     """Maxwell's density of speeds (exact; time / length; 0 for negative speeds; same shape as `speed`).
 
     With u = v sqrt(m / k_B T): u exp(-u^2/2) in 2D, sqrt(2/pi) u^2 exp(-u^2/2) in 3D, times sqrt(m / k_B T).
@@ -38,7 +38,7 @@ def maxwell_pdf(speed, dimension, temperature=1.0, mass=1.0):
     return scale * factor * np.exp(-0.5 * u**2)
 
 
-def maxwell_cdf(speed, dimension, temperature=1.0, mass=1.0):
+def maxwell_cdf(speed: Numbers, dimension: int, temperature: float = 1.0, mass: float = 1.0) -> Values:
     """Fraction of bodies slower than `speed` (exact): incomplete gamma function P(d/2, m v^2 / 2 k_B T)."""
     from scipy.special import gammainc
 
@@ -47,7 +47,7 @@ def maxwell_cdf(speed, dimension, temperature=1.0, mass=1.0):
     return gammainc(0.5 * dimension, energy)
 
 
-def maxwell_ppf(probability, dimension, temperature=1.0, mass=1.0):
+def maxwell_ppf(probability: Numbers, dimension: int, temperature: float = 1.0, mass: float = 1.0) -> Values:
     """Speed below which the fraction `probability` of the bodies lies: inverse of `maxwell_cdf` (exact)."""
     from scipy.special import gammaincinv
 
@@ -56,7 +56,7 @@ def maxwell_ppf(probability, dimension, temperature=1.0, mass=1.0):
     return np.sqrt(2.0 * temperature / mass * energy)
 
 
-def kurtosis(dimension, count=None, zero_momentum=False):
+def kurtosis(dimension: int, count: int | None = None, zero_momentum: bool = False) -> float:
     """<v^4> / <v^2>^2 in equilibrium: (d+2)/d, that is 2 in 2D and 5/3 in 3D (exact).
 
     With `count` bodies at fixed energy the velocities are uniform on a sphere in D = d N dimensions (d (N-1)
@@ -69,7 +69,7 @@ def kurtosis(dimension, count=None, zero_momentum=False):
     return infinite * freedoms / (freedoms + 2.0)
 
 
-def initial_kurtosis_slope(dimension):
+def initial_kurtosis_slope(dimension: int) -> float:
     """dK/ds at s = 0 from equal speeds, s collisions per body: 64/225 in 2D, 8/35 in 3D (exact)."""
     return {2: 64.0 / 225.0, 3: 8.0 / 35.0}[checked_dimension(dimension)]
 
@@ -93,17 +93,17 @@ class Relaxation:
     mean_speed_table: np.ndarray
 
     @property
-    def longest(self):
+    def longest(self) -> float:
         """Largest tabulated s (dimensionless)."""
         return float(self.collisions_table[-1])
 
-    def _checked(self, s):
+    def _checked(self, s: Numbers) -> np.ndarray:
         s = np.asarray(s, dtype=float)
         if not np.all(s >= 0.0):
             raise ValueError(f"collisions per body: {s} (must not be negative)")
         return s
 
-    def kurtosis(self, s):
+    def kurtosis(self, s: Numbers) -> Values:
         """<v^4> / <v^2>^2 after `s` collisions per body: 1 at first, (d+2)/d in the end (dimensionless)."""
         s = self._checked(s)
         beyond = np.maximum(s - self.longest, 0.0) * KURTOSIS_RELAXATION_RATE[self.dimension]
@@ -111,21 +111,21 @@ class Relaxation:
         end = kurtosis(self.dimension)
         return end - (end - 1.0) * np.exp(log_excess)
 
-    def never_hit(self, s):
+    def never_hit(self, s: Numbers) -> Values:
         """Fraction of the bodies that have had no collision (dimensionless); slightly below exp(-s)."""
         s = self._checked(s)
         last_rate = -self.log_never_hit_table[-1] / self.longest
         log_fraction = np.interp(s, self.collisions_table, self.log_never_hit_table)
         return np.exp(log_fraction - last_rate * np.maximum(s - self.longest, 0.0))
 
-    def mean_speed(self, s):
+    def mean_speed(self, s: Numbers) -> Values:
         """Mean speed over the root-mean-square speed: 1 at first, `mean_speed(d) / sqrt(d)` in the end."""
         s = self._checked(s)
         decay = np.exp(-KURTOSIS_RELAXATION_RATE[self.dimension] * np.maximum(s - self.longest, 0.0))
         end = mean_speed(self.dimension) / math.sqrt(self.dimension)
         return end + (np.interp(s, self.collisions_table, self.mean_speed_table) - end) * decay
 
-    def collisions(self, equilibrium_collisions):
+    def collisions(self, equilibrium_collisions: Numbers) -> Values:
         """s at the time when a gas in equilibrium would have had `equilibrium_collisions` per body.
 
         The argument is nu t at the same energy, with nu = `enskog.collision_rate`. s is the larger:
@@ -137,7 +137,7 @@ class Relaxation:
 
 
 @cache
-def relaxation(dimension):
+def relaxation(dimension: int) -> Relaxation:
     """The `Relaxation` of discs (2) or spheres (3), from the tables in `theory/data` (computed)."""
     time, s, fourth, _, never, speed = np.loadtxt(
         _TABLES / f"relaxation_{checked_dimension(dimension)}d.csv", delimiter=",", skiprows=1, unpack=True

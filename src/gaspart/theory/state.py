@@ -6,7 +6,7 @@ Everything here is dimensionless and depends on the packing fraction alone.
 
 import numpy as np
 
-from ._arguments import checked_dimension, checked_packing_fraction
+from ._arguments import Numbers, Values, checked_dimension, checked_packing_fraction
 from .equations import METASTABLE_SPHERES, STABLE_DISCS, kolafa_labik_malijevsky, liu
 from .virial import (
     HIGHEST_ORDER,
@@ -30,7 +30,7 @@ _NEAR_FREEZING = 0.036, 0.6478, 45
 _STEP = 1e-4
 
 
-def virial_with_tail(packing_fraction, dimension=2):
+def virial_with_tail(packing_fraction: Numbers, dimension: int = 2) -> Values:
     """Z from the virial series to B10 and `virial.linear_tail` (literature and a computed extrapolation).
 
     2D: the reference, to eta = 0.70. 3D: only a check of the sphere reference at low density.
@@ -39,7 +39,7 @@ def virial_with_tail(packing_fraction, dimension=2):
     return partial_sum(eta, HIGHEST_ORDER, dimension) + linear_tail(eta, dimension)
 
 
-def compressibility_factor(packing_fraction, dimension):
+def compressibility_factor(packing_fraction: Numbers, dimension: int) -> Values:
     """Z = P / (rho k_B T) of the infinite fluid, best reference at hand (same shape as `packing_fraction`).
 
     2D: `virial_with_tail`, 0 <= eta <= 0.70. 3D: `kolafa_labik_malijevsky`, 0 <= eta <= 0.539.
@@ -50,7 +50,7 @@ def compressibility_factor(packing_fraction, dimension):
     return kolafa_labik_malijevsky(packing_fraction)
 
 
-def compressibility_uncertainty(packing_fraction, dimension):
+def compressibility_uncertainty(packing_fraction: Numbers, dimension: int) -> Values:
     """Standard uncertainty of `compressibility_factor` (computed estimate; same shape).
 
     2D, in quadrature: the coefficients' uncertainties; the tail's slope; the difference to Liu's independent
@@ -72,7 +72,7 @@ def compressibility_uncertainty(packing_fraction, dimension):
     return np.minimum(series, _SPHERE_DATA_ERROR * reference)
 
 
-def contact_value(packing_fraction, dimension):
+def contact_value(packing_fraction: Numbers, dimension: int) -> Values:
     """Pair distribution at contact, g(sigma) = (Z - 1) / (2^(d-1) eta), the virial theorem (exact).
 
     Z is `compressibility_factor`; at eta = 0 the value is its limit 1. Enskog theory calls it chi.
@@ -84,7 +84,7 @@ def contact_value(packing_fraction, dimension):
     return np.where(eta > 1e-8, excess / np.where(eta > 1e-8, first_order, 1.0), 1.0)
 
 
-def _slope_and_curvature(eta, dimension):
+def _slope_and_curvature(eta: np.ndarray, dimension: int) -> tuple[np.ndarray, np.ndarray]:
     """First and second derivative of eta Z(eta), by differences (central, but at the ends)."""
     centre = np.clip(eta, _STEP, HIGHEST_PACKING_FRACTION[dimension] - _STEP)
     low, mid, high = (
@@ -93,14 +93,16 @@ def _slope_and_curvature(eta, dimension):
     return (high - low) / (2.0 * _STEP), (high - 2.0 * mid + low) / _STEP**2
 
 
-def speed_of_sound(packing_fraction, dimension):
+def speed_of_sound(packing_fraction: Numbers, dimension: int) -> Values:
     """sqrt(d(eta Z)/d eta + 2 Z^2 / d), in sqrt(k_B T / m): adiabatic, d/2 the heat capacity (exact)."""
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     slope, _ = _slope_and_curvature(eta, dimension)
     return np.sqrt(slope + 2.0 / dimension * compressibility_factor(eta, dimension) ** 2)
 
 
-def finite_size_correction(packing_fraction, dimension, count, ensemble="dynamics"):
+def finite_size_correction(
+    packing_fraction: Numbers, dimension: int, count: int, ensemble: str = "dynamics"
+) -> Values:
     """Z_N - Z_infinity of `count` bodies in a periodic container, to first order in 1/N.
 
     `ensemble="canonical"`. In a periodic container the grand partition function is exp(P V / k_B T) up to

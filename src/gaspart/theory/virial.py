@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ._arguments import checked_dimension, checked_packing_fraction
+from ._arguments import Numbers, Values, checked_dimension, checked_packing_fraction
 from .geometry import CLOSE_PACKING
 
 HIGHEST_ORDER = 10
@@ -36,7 +36,7 @@ _EXACT = {
 
 
 @cache
-def _all_coefficients(dimension):
+def _all_coefficients(dimension: int) -> tuple[np.ndarray, np.ndarray]:
     exact = np.array(_EXACT[dimension])
     order, ratio, uncertainty = np.loadtxt(
         _TABLES / f"virial_{dimension}d.csv", delimiter=",", skiprows=1, unpack=True
@@ -48,7 +48,7 @@ def _all_coefficients(dimension):
     return coefficients, uncertainties
 
 
-def virial_coefficients(dimension, order=HIGHEST_ORDER):
+def virial_coefficients(dimension: int, order: int = HIGHEST_ORDER) -> tuple[np.ndarray, np.ndarray]:
     """Coefficients b_n of eta^(n-1) for n = 1 to `order`, and their standard uncertainties.
 
     Exact to B4 (closed forms); B5 to B10 from Clisby and McCoy, J. Stat. Phys. 122, 15 (2006) (literature).
@@ -63,7 +63,7 @@ def virial_coefficients(dimension, order=HIGHEST_ORDER):
     return coefficients[:order], uncertainties[:order]
 
 
-def partial_sum(packing_fraction, order, dimension):
+def partial_sum(packing_fraction: Numbers, order: int, dimension: int) -> Values:
     """Z cut after the coefficient B_order: sum of b_n eta^(n-1), n = 1 to `order`.
 
     Range: any packing fraction up to close packing; as an approximation of Z, only as far as
@@ -74,14 +74,14 @@ def partial_sum(packing_fraction, order, dimension):
     return np.polynomial.polynomial.polyval(eta, coefficients)
 
 
-def partial_sum_uncertainty(packing_fraction, order, dimension):
+def partial_sum_uncertainty(packing_fraction: Numbers, order: int, dimension: int) -> Values:
     """Standard uncertainty of `partial_sum` from the coefficients' own (independent); no truncation error."""
     _, uncertainties = virial_coefficients(dimension, order)
     eta = checked_packing_fraction(packing_fraction, CLOSE_PACKING[dimension])
     return np.sqrt(np.polynomial.polynomial.polyval(eta**2, uncertainties**2))
 
 
-def linear_tail(packing_fraction, dimension):
+def linear_tail(packing_fraction: Numbers, dimension: int) -> Values:
     """Terms beyond B10 if b_n goes on linearly with the last known difference (computed; an extrapolation).
 
     b_(10+k) = b_10 + k (b_10 - b_9), so the tail is eta^10 [b_10 / (1-eta) + (b_10 - b_9) / (1-eta)^2].
@@ -94,7 +94,7 @@ def linear_tail(packing_fraction, dimension):
     return eta**HIGHEST_ORDER * (coefficients[-1] / (1.0 - eta) + slope / (1.0 - eta) ** 2)
 
 
-def linear_tail_uncertainty(packing_fraction, dimension):
+def linear_tail_uncertainty(packing_fraction: Numbers, dimension: int) -> Values:
     """Standard uncertainty of `linear_tail`: of b_10, and of the slope (its last change and b_10's)."""
     coefficients, uncertainties = virial_coefficients(dimension)
     eta = checked_packing_fraction(packing_fraction, CLOSE_PACKING[dimension])

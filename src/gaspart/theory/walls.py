@@ -18,12 +18,13 @@ there are no edges and the walls feel just P. Everything here is in diameters an
 """
 
 import math
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 
-from ._arguments import checked_dimension, checked_packing_fraction
+from ._arguments import Numbers, Values, checked_dimension, checked_packing_fraction
 from .geometry import number_density
 from .state import compressibility_factor, compressibility_uncertainty, finite_size_correction
 
@@ -38,7 +39,7 @@ _STEP = 1e-4  # of the central differences, in packing fraction
 
 
 @cache
-def _shape(dimension):
+def _shape(dimension: int) -> tuple[np.ndarray, np.ndarray]:
     """Polynomials in eta for gamma (1 - eta)^d over its second-order form, which is 1 at eta = 0, and for its
     uncertainty: through the table's points to some 1e-4."""
     eta, tension, uncertainty = np.loadtxt(
@@ -51,14 +52,14 @@ def _shape(dimension):
     return np.concatenate([[1.0], excess]), np.concatenate([[0.0], spread])
 
 
-def _tension(packing_fraction, dimension, which):
+def _tension(packing_fraction: Numbers, dimension: int, which: int) -> Values:
     eta = checked_packing_fraction(packing_fraction, _DENSEST)
     scale = -_SURFACE[checked_dimension(dimension)] * number_density(eta, dimension) ** 2
     polynomial = np.polynomial.polynomial.polyval(eta, _shape(dimension)[which])
     return scale / (1.0 - eta) ** dimension * polynomial
 
 
-def surface_tension(packing_fraction, dimension):
+def surface_tension(packing_fraction: Numbers, dimension: int) -> Values:
     """gamma sigma^(d-1) / k_B T of the fluid at a hard wall, its area counted where centres touch (negative).
 
     Spheres: White Bear II, Hansen-Goos and Roth, J. Phys. Condens. Matter 18, 8413 (2006) (table, computed).
@@ -67,13 +68,15 @@ def surface_tension(packing_fraction, dimension):
     return _tension(packing_fraction, dimension, 0)
 
 
-def surface_tension_uncertainty(packing_fraction, dimension):
+def surface_tension_uncertainty(packing_fraction: Numbers, dimension: int) -> Values:
     """Standard uncertainty of `surface_tension`. Spheres: its distance from scaled particle theory, or 1 %;
     discs: a tenth of all that is beyond the exact second order (an estimate)."""
     return np.abs(_tension(packing_fraction, dimension, 1))
 
 
-def wall_pressure(length, density, count, dimension, axes):
+def wall_pressure(
+    length: float, density: float, count: int, dimension: int, axes: int
+) -> tuple[float, float]:
     """Mean pressure of `count` bodies on the walls of a container, and its uncertainty.
 
     The force on a wall over the area that centres can touch, of the canonical ensemble: the module's
@@ -102,17 +105,25 @@ def wall_pressure(length, density, count, dimension, axes):
     return value, math.hypot(*errors)
 
 
-def _in_container(inner, density, count, dimension, axes, tension=1.0, edge=1.0):
+def _in_container(
+    inner: float,
+    density: float,
+    count: int,
+    dimension: int,
+    axes: int,
+    tension: float = 1.0,
+    edge: float = 1.0,
+) -> tuple[float, float]:
     """Packing fraction of the bulk, and pressure on the walls, with gamma and tau multiplied."""
     surfaces, edges = 2 * axes / inner, 2 * axes * (axes - 1) / inner**2
 
-    def gamma(eta):
+    def gamma(eta: float) -> Values:
         return tension * surface_tension(eta, dimension)
 
-    def tau(eta):
+    def tau(eta: float) -> Values:
         return edge * _EDGE[dimension] * number_density(eta, dimension) ** 2
 
-    def excess(eta):
+    def excess(eta: float) -> float:
         """By how much the bodies at this density of the bulk are too many."""
         slope = _slope(lambda x: x * compressibility_factor(x, dimension), eta)
         adsorbed = -eta / slope * (surfaces * _slope(gamma, eta) + edges * _slope(tau, eta))
@@ -130,6 +141,6 @@ def _in_container(inner, density, count, dimension, axes, tension=1.0, edge=1.0)
     return low, float(number_density(low, dimension) * z - at_surface - at_edges)
 
 
-def _slope(function, eta):
+def _slope(function: Callable[[float], Values], eta: float) -> float:
     """d function / d eta, by a central difference."""
     return (function(eta + _STEP) - function(eta - _STEP)) / (2.0 * _STEP)

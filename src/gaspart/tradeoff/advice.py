@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from gaspart import theory
@@ -73,10 +73,12 @@ class Advice:
 
     @property
     def duration(self) -> float:
+        """What is measured of each replica, in the scene's time."""
         return self.collisions_per_body / self.gas.collision_rate
 
     @property
     def within_budget(self) -> bool:
+        """Whether the setting reaches the accuracy, which a budget may forbid."""
         return self.setting.half_width <= self.accuracy * (1.0 + 1e-9)
 
 
@@ -156,7 +158,7 @@ def advise(
     )
 
 
-def _engines(gas: Gas):
+def _engines(gas: Gas) -> Iterator[tuple[EventDriven | TimeStepped, str, float]]:
     """(engine, precision, its time step in the table's unit) of all settings that might do."""
     yield EventDriven(), "float64", 0.0
     unit = gas.diameter / gas.thermal_speed
@@ -164,7 +166,17 @@ def _engines(gas: Gas):
         yield TimeStepped(step * unit, precision=precision), precision, step
 
 
-def _setting(gas, engine, precision, step, observable, accuracy, noise, budget, speed_of) -> Setting | None:
+def _setting(
+    gas: Gas,
+    engine: EventDriven | TimeStepped,
+    precision: str,
+    step: float,
+    observable: str,
+    accuracy: float,
+    noise: float,
+    budget: float | None,
+    speed_of: Callable[[int, str, str, int], float],
+) -> Setting | None:
     """None if the error of its steps leaves no room, or nothing is known of it."""
     bias = 0.0
     if engine.name == "step":

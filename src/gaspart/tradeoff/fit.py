@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import csv
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -30,12 +31,21 @@ def rows(folder: Path) -> list[dict]:
     return [{**row, "value": f"{row['value']:.4g}", "error": f"{row['error']:.2g}"} for row in found]
 
 
-def _row(dimension, fraction, engine, precision, step, quantity, value, error) -> dict:
+def _row(
+    dimension: int,
+    fraction: float,
+    engine: str,
+    precision: str,
+    step: float,
+    quantity: str,
+    value: float,
+    error: float,
+) -> dict:
     values = (int(dimension), f"{float(fraction):g}", engine, precision, f"{step:g}", quantity, float(value))
     return dict(zip(COLUMNS, (*values, float(error)), strict=True))
 
 
-def _engines(accuracy: xr.Dataset):
+def _engines(accuracy: xr.Dataset) -> Iterator[dict]:
     """Errors, and times of both engines."""
     for n in range(accuracy.sizes["row"]):
         row = accuracy.isel(row=n)
@@ -56,7 +66,7 @@ def _engines(accuracy: xr.Dataset):
                 yield _row(*of, "seconds", row.seconds[k], row.seconds_error[k])
 
 
-def _noise(virial: xr.Dataset, dimension: int):
+def _noise(virial: xr.Dataset, dimension: int) -> Iterator[dict]:
     """Relative variances of Z and of the collision rate, times the contacts that they come from."""
     for n, fraction in enumerate(virial.packing_fraction.values):
         contacts = float(virial.collisions[n])
@@ -66,7 +76,7 @@ def _noise(virial: xr.Dataset, dimension: int):
             yield _row(dimension, fraction, "event", "float64", 0.0, f"noise_{quantity}", value, 0.3 * value)
 
 
-def _diffusion(msd: xr.Dataset):
+def _diffusion(msd: xr.Dataset) -> Iterator[dict]:
     """The same for D of spheres: one number, the median of all gases (each has few replicas)."""
     length = msd.time.max("lag") * 2.0 * msd.collision_rate  # lags reach to half a run
     contacts = 0.5 * msd["count"] * length * msd.replicas

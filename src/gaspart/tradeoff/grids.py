@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
 from gaspart.tradeoff import speed, table
+
+if TYPE_CHECKING:
+    from gaspart.point import Point
+    from gaspart.scene import Scene
+    from gaspart.tradeoff.advice import Gas
 
 WANTED = ("accuracy", "observable")
 """Keys of a point that go with `engine: auto`."""
 
 
-def chosen(settings: dict, scene, where: str) -> dict:
+def chosen(settings: dict, scene: Scene, where: str) -> dict:
     """The settings of a point with `engine: auto`, with those of the engine that it stands for.
 
     The choice is that of the table's machine, so that a config means the same everywhere. A length is set
@@ -63,7 +69,7 @@ def predict(path: str) -> list[str]:
     return lines
 
 
-def _seconds(point) -> float | None:
+def _seconds(point: Point) -> float | None:
     """Processor time of a point's simulations, from theory's contacts; None where neither is known."""
     from gaspart import grid
     from gaspart.tradeoff.advice import gas_of
@@ -91,6 +97,6 @@ def _seconds(point) -> float | None:
     )
 
 
-def _speed(gas, engine: str, precision: str) -> float:
+def _speed(gas: Gas, engine: str, precision: str) -> float:
     """By powers of ten of the number of bodies, so that few sizes are timed."""
     return speed.factor(gas.dimension, engine, precision, 10 ** round(math.log10(max(gas.count, 10))))

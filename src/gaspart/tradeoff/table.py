@@ -85,7 +85,9 @@ def noise(dimension: int, fraction: float, observable: str) -> float:
 
 
 @cache
-def _curve(dimension: int, engine: str, precision: str, step: float, quantity: str):
+def _curve(
+    dimension: int, engine: str, precision: str, step: float, quantity: str
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(packing fractions, values, errors) of one quantity."""
     wanted = (dimension, engine, precision, step, quantity)
     keys = ("dimension", "engine", "precision", "time_step", "quantity")
@@ -94,4 +96,5 @@ def _curve(dimension: int, engine: str, precision: str, step: float, quantity: s
         for row in read()
         if tuple(row[key] for key in keys) == wanted
     )
-    return tuple(np.array(column) for column in zip(*found, strict=True)) if found else (np.empty(0),) * 3
+    eta, value, error = np.array(found, dtype=float).reshape(-1, 3).T
+    return eta, value, error
