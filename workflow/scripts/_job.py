@@ -49,7 +49,7 @@ def function(module, name):
 
 
 def load_numba():
-    """Load numba without scipy's linear algebra, which no kernel uses, and coverage: a quarter of a second."""
+    """Load numba without what it looks for and no kernel uses, a quarter of a second of it."""
     kept_out = dict.fromkeys({"coverage", "scipy.linalg.cython_blas"} - set(sys.modules))
     sys.modules.update(kept_out)
     import_module("numba.np.arraymath")

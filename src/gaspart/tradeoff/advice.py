@@ -83,7 +83,7 @@ class Advice:
 
 
 def plain_gas(scene: Scene) -> Gas:
-    """The gas of a scene that holds nothing else. Raises SceneError for one whose costs nobody has measured."""
+    """The gas of a scene that holds nothing else. Raises SceneError where costs were not measured."""
     kinds = scene.species
     plain = Scene(scene.container, kinds, centres_to_walls=scene.centres_to_walls)
     if len(kinds) != 1 or kinds[0].fixed or scene != plain:
