@@ -134,7 +134,7 @@ class _Growing:
         )
         self._plans = aligned((n,), PLAN)
         self._plans["at"] = self._boxes.coordinates(positions)
-        self._partition = lists.empty_partition(self._boxes, scene.container.lengths, n)
+        self._partition = lists.empty_partition(self._boxes, n)
         self._calendar = empty_calendar(n)
 
     def grow(self, rate: float, end: float) -> None:

@@ -30,6 +30,7 @@ KERNEL_MODULES = (
     "engines/calendar.py",
     "engines/layout.py",
     "engines/flight.py",
+    "engines/eight.py",
     "engines/search.py",
     "engines/lists.py",
     "engines/big.py",

@@ -9,7 +9,8 @@ whose boxes are not. A body that passes into another box looks again at what has
 from math import inf, sqrt
 
 from gaspart.engines.flight import pair_time
-from gaspart.engines.layout import BOX_VISITS, PAIR_TESTS
+from gaspart.engines.layout import BOX_VISITS, NOTHING, PAIR_TESTS
+from gaspart.engines.lists import member
 from gaspart.kernel import helper, kernel
 
 _SLACK = 1e-9  # by which neighbourhoods are drawn wider, lest rounding hide a contact
@@ -117,11 +118,12 @@ def find_around(rows, plans, body, space, partition, counters, gravity, big, cro
                 ):
                     continue
                 counters.counts[BOX_VISITS] += 1
-                other = partition.head[line + (i - lap_x * n[0]) * partition.strides[0]]
-                while other < len(rows):
+                box = line + (i - lap_x * n[0]) * partition.strides[0]
+                other = NOTHING
+                for m in range(partition.filled[box]):
+                    other = int(member(partition, box, m, other))
                     if other != body:
                         consider(rows, plans, body, other, lap_x, lap_y, lap_z, space, counters, gravity)
-                    other = partition.following[other]
 
 
 @kernel

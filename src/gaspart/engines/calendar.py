@@ -155,7 +155,7 @@ def _leap(calendar, plans):
     return True
 
 
-@kernel
+@helper
 def soonest(calendar, plans):
     """The body whose event comes first, or -1 if nothing will ever happen again."""
     buckets = len(calendar.head) - 1

@@ -89,7 +89,7 @@ class EventDynamics:
         self._plans = aligned((n,), PLAN)
         self._plans["partner"] = -1
         self._plans["at"] = boxes.coordinates(state.positions)
-        self._partition = lists.empty_partition(boxes, scene.container.lengths, n)
+        self._partition = lists.empty_partition(boxes, n)
         self._walls = None
         if scene.walls:
             from gaspart import plates, segments

@@ -32,7 +32,7 @@ from gaspart.engines.layout import (
     STOP,
     WALLS,
 )
-from gaspart.engines.lists import put, sort_in, take
+from gaspart.engines.lists import move, sort_in
 from gaspart.engines.search import find_contact
 from gaspart.engines.surfaces import meet_edge
 from gaspart.engines.walls import find_wall, meet_wall
@@ -49,14 +49,16 @@ def plan_face(rows, plans, body, space, partition, now, gravity, walls, surfaces
     plans[body].face = face
 
 
-@kernel
-def foresee(rows, plans, body, space, partition, counters, now, gravity, walls, surfaces, big):
-    """Make a body's plans afresh."""
-    plans[body].contact = inf
-    plans[body].partner = NOTHING
-    find_contact(rows, plans, body, space, partition, counters, (-1, -1, -1), (1, 1, 1), gravity)
+@helper
+def foresee(rows, plans, body, space, partition, counters, now, crossed, gravity, walls, surfaces, big):
+    """Make a body's plans afresh; or, if it has just `crossed` (3,) into the next box, look about in the
+    boxes that have become neighbours."""
+    if crossed[0] == 0 and crossed[1] == 0 and crossed[2] == 0:
+        plans[body].contact = inf
+        plans[body].partner = NOTHING
+    find_contact(rows, plans, body, space, partition, counters, crossed, gravity)
     if big is not None:
-        find_beside(rows, plans, body, space, partition, counters, gravity, big, (0, 0, 0))
+        find_beside(rows, plans, body, space, partition, counters, gravity, big, crossed)
     plan_face(rows, plans, body, space, partition, now, gravity, walls, surfaces, big)
 
 
@@ -65,7 +67,7 @@ def foresee_all(rows, plans, calendar, space, partition, counters, now, gravity,
     """Sort all bodies into their boxes, make all plans and fill the calendar."""
     sort_in(plans, partition)
     for body in range(len(rows)):
-        foresee(rows, plans, body, space, partition, counters, now, gravity, walls, surfaces, big)
+        foresee(rows, plans, body, space, partition, counters, now, (0, 0, 0), gravity, walls, surfaces, big)
     fill(calendar, plans, now)
 
 
@@ -76,29 +78,7 @@ def refill(plans, calendar, partition, now):
     fill(calendar, plans, now)
 
 
-@kernel
-def cross(rows, plans, calendar, body, space, partition, counters, now, gravity, walls, surfaces, big):
-    """Let a body pass into the next box, and look about in the boxes that have become neighbours."""
-    code = plans[body].face - INNER
-    axis = code // 2
-    step = 1 if code % 2 else -1
-    take(plans, partition, body)
-    plans[body].at[axis] += step
-    put(plans, partition, body)
-    counters.counts[CROSSINGS] += 1
-    x = step if axis == 0 else 0
-    y = step if axis == 1 else 0
-    z = step if axis == 2 else 0
-    low = (x if x else -1, y if y else -1, z if z else -1)
-    high = (x if x else 1, y if y else 1, z if z else 1)
-    find_contact(rows, plans, body, space, partition, counters, low, high, gravity)
-    if big is not None:
-        find_beside(rows, plans, body, space, partition, counters, gravity, big, (x, y, z))
-    plan_face(rows, plans, body, space, partition, now, gravity, walls, surfaces, big)
-    reschedule(calendar, plans, body)
-
-
-@kernel
+@helper
 def note(record, time, rows, i, j, lengths, law):
     """Write an event down; j is the partner, or -1 - face for a wall."""
     d = len(lengths)
@@ -158,19 +138,19 @@ def run_boxes(
         if not time <= stop:
             return STOP, done, last
         face = plans[body].face
-        meets_face = plans[body].face_time <= plans[body].contact
-        if meets_face and INNER <= face < EDGES:
-            cross(
-                rows, plans, calendar, body, space, partition, counters, time, gravity, walls, surfaces, big
-            )
-            continue
         partner = plans[body].partner
-        if not meets_face and plans[partner].changes != plans[body].partner_changes:
-            counters.counts[STALE] += 1
-            foresee(rows, plans, body, space, partition, counters, time, gravity, walls, surfaces, big)
-            reschedule(calendar, plans, body)
-            continue
-        if meets_face:
+        meets_face = plans[body].face_time <= plans[body].contact
+        happens = True
+        first, second = body, NOTHING  # whose plans are to be made anew
+        x = y = z = 0
+        if meets_face and INNER <= face < EDGES:
+            happens = False
+            axis = (face - INNER) // 2
+            step = 1 if face % 2 else -1
+            x, y, z = step if axis == 0 else 0, step if axis == 1 else 0, step if axis == 2 else 0
+            move(plans, partition, body, axis, plans[body].at[axis] + step)
+            counters.counts[CROSSINGS] += 1
+        elif meets_face:
             partner = -1 - face
             if face >= WALLS:
                 if walls is not None:
@@ -187,20 +167,24 @@ def run_boxes(
             elif not meet_face(
                 rows, images, plans, body, face, time, space, masses, counters, gravity, law, surfaces
             ):
-                take(plans, partition, body)
+                happens = False
                 axis = face // 2
-                plans[body].at[axis] = 0 if face % 2 else partition.per_side[axis] - 1
-                put(plans, partition, body)
-                foresee(rows, plans, body, space, partition, counters, time, gravity, walls, surfaces, big)
-                reschedule(calendar, plans, body)
-                continue
+                move(plans, partition, body, axis, 0 if face % 2 else partition.per_side[axis] - 1)
+        elif plans[partner].changes != plans[body].partner_changes:
+            happens = False
+            counters.counts[STALE] += 1
         else:
             body, partner = min(body, partner), max(body, partner)
+            first, second = body, partner
             collide(rows, plans, body, partner, time, space, masses, counters, gravity, law)
-            foresee(rows, plans, partner, space, partition, counters, time, gravity, walls, surfaces, big)
-            reschedule(calendar, plans, partner)
-        foresee(rows, plans, body, space, partition, counters, time, gravity, walls, surfaces, big)
-        reschedule(calendar, plans, body)
+        while first >= 0:
+            foresee(
+                rows, plans, first, space, partition, counters, time, (x, y, z), gravity, walls, surfaces, big
+            )
+            reschedule(calendar, plans, first)
+            first, second = second, NOTHING
+        if not happens:
+            continue
         last = time
         done += 1
         if record is not None:

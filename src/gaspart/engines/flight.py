@@ -102,16 +102,6 @@ def contact_square(rows, i, j, space):
 
 
 @helper
-def may_touch(rows, i, j, offset, space, gravity):
-    """Whether `pair_time` may be finite: a test without a branch, that spares the roots of most pairs."""
-    _, rr, rv, vv, _, _, aa = encounter(rows, i, j, offset, space, gravity)
-    meets = (rv < 0.0) & (rv * rv >= vv * (rr - contact_square(rows, i, j, space)))
-    if gravity is None:
-        return meets
-    return meets | (aa > 0.0)
-
-
-@helper
 def pair_time(rows, i, j, offset, space, gravity):
     """When bodies i and j touch, j displaced by `offset` (d,); inf if they do not."""
     start, rr, rv, vv, ra, va, aa = encounter(rows, i, j, offset, space, gravity)

@@ -12,7 +12,7 @@ from gaspart.coordinates import nearest
 from gaspart.engines.calendar import fill, reschedule, soonest, time_of
 from gaspart.engines.flight import advance_row, synchronise
 from gaspart.engines.layout import COLLISIONS, NOTHING, VIRIAL
-from gaspart.engines.lists import put, sort_in, take
+from gaspart.engines.lists import member, move, sort_in
 from gaspart.kernel import helper, kernel
 
 _PART = 2.0**-30  # of the rate of growth: bodies part at least so fast
@@ -87,14 +87,15 @@ def foresee(rows, plans, body, space, partition, rate):
                     partition.shift[1, at[1], dy] * space.lengths[1],
                     partition.shift[2, at[2], dz] * space.lengths[d - 1],
                 )
-                other = partition.head[x + y + z]
-                while other < len(rows):
+                box = x + y + z
+                other = NOTHING
+                for n in range(partition.filled[box]):
+                    other = int(member(partition, box, n, other))
                     if other != body:
                         time = pair_time(rows, body, other, offset, space, rate)
                         if time < best or (time == best and time < inf and other < partner):
                             best = time
                             partner = other
-                    other = partition.following[other]
     plans[body].contact = best
     plans[body].partner = partner
     plans[body].partner_changes = plans[partner].changes if partner >= 0 else 0
@@ -138,14 +139,12 @@ def meet_face(rows, plans, body, face, time, space, partition, rate):
         rows[body, d + axis] = -speed if upper else speed
         plans[body].changes += 1
         return
-    take(plans, partition, body)
-    if not outermost:
-        plans[body].at[axis] += 2 * upper - 1
-    else:
+    to = plans[body].at[axis] + 2 * upper - 1
+    if outermost:
         rows[body, axis] = 0.0 if upper else space.lengths[axis]
-        plans[body].at[axis] = 0 if upper else partition.per_side[axis] - 1
+        to = 0 if upper else partition.per_side[axis] - 1
         plans[body].changes += 1
-    put(plans, partition, body)
+    move(plans, partition, body, axis, to)
 
 
 @kernel
@@ -209,8 +208,10 @@ def closest(rows, plans, space, partition):
             z = partition.neighbour[2, at[2], n // 9]
             if x < 0 or y < 0 or z < 0:
                 continue
-            other = partition.head[x + y + z]
-            while other < len(rows):
+            box = x + y + z
+            other = NOTHING
+            for m in range(partition.filled[box]):
+                other = int(member(partition, box, m, other))
                 if other != body:
                     rr = 0.0
                     for k in range(d):
@@ -218,7 +219,6 @@ def closest(rows, plans, space, partition):
                         rr += gap * gap
                     sigma = rows[body, 2 * d + 1] + rows[other, 2 * d + 1]
                     least = min(least, rr / (sigma * sigma))
-                other = partition.following[other]
     return least
 
 

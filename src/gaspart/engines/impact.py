@@ -184,7 +184,7 @@ def crowded(watch, body, time):
     return watch.contacts[body] > watch.most
 
 
-@kernel
+@helper
 def collide(rows, plans, i, j, time, space, masses, counters, gravity, law):
     """Advance two bodies to their contact and pass the momentum."""
     d = len(space.lengths)

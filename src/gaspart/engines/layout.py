@@ -11,6 +11,7 @@ INNER = 6  # face codes: 2 axis + side for the container's faces, INNER more for
 EDGES = 12  # EDGES more for the edges of the wells at the container's faces
 WALLS = 18  # and from here on the pieces of interior walls
 HARD, THERMAL, THERMAL_NORMAL, STICKY = range(4)  # kinds of faces
+PLACES = 4  # bodies that a box holds in places of its own
 STOP, EVENTS, FULL, COLLAPSE = range(4)  # why a run ended: the time, the number of events, the record, a loop
 
 
@@ -88,18 +89,20 @@ class Watch(NamedTuple):
 
 
 class Partition(NamedTuple):
-    """The grid of boxes (see `boxes.Boxes`); head (boxes,), the first body in each, and following (N + 1,),
-    the next after each body, see `lists`; offset (27, d), where the images of a body stand; near (M,), room
-    for the candidates of a search."""
+    """The grid of boxes (see `boxes.Boxes`); how many bodies each holds, filled (boxes,), the first of them,
+    places (boxes, PLACES), and of the others the first, head (boxes,), and the next after each body,
+    following (N,), see `lists`; near (M,), room for the
+    candidates of a search."""
 
     per_side: np.ndarray
     widths: np.ndarray
     strides: np.ndarray
     neighbour: np.ndarray
     shift: np.ndarray
+    filled: np.ndarray
+    places: np.ndarray
     head: np.ndarray
     following: np.ndarray
-    offset: np.ndarray
     near: np.ndarray
 
 

@@ -1,30 +1,31 @@
-"""Which bodies are in which box: a linked list a box.
+"""Which bodies are in which box: the first few in places of its own, any others in a linked list.
 
-Bodies have unsigned numbers, and N, which is nobody, ends every list and follows itself, so that lists can be
-read beyond their ends.
+Nearly all boxes hold a few bodies only, and a search then reads each in one go, whatever their number.
 """
 
 from __future__ import annotations
 
-from itertools import product
-
 import numpy as np
 
 from gaspart.boxes import Boxes
-from gaspart.engines.layout import Partition
-from gaspart.engines.search import ROOM
+from gaspart.engines.common import aligned
+from gaspart.engines.eight import WIDTH
+from gaspart.engines.layout import PLACES, Partition
+from gaspart.engines.search import MOST
 from gaspart.kernel import helper, kernel
 
+_NOBODY = np.uint32(0xFFFFFFFF)
 
-def empty_partition(boxes: Boxes, lengths: tuple[float, ...], count: int) -> Partition:
-    """The boxes of a container (d,) for `count` bodies, with nobody in them."""
-    laps = np.array(list(product((-1, 0, 1), repeat=3)))[:, ::-1]
+
+def empty_partition(boxes: Boxes, count: int) -> Partition:
+    """Boxes for `count` bodies, with nobody in them."""
     return Partition(
         boxes.per_side, boxes.widths, boxes.strides, boxes.neighbour, boxes.shift,
-        head=np.full(boxes.count, count, dtype=np.uint32),
-        following=np.full(count + 1, count, dtype=np.uint32),
-        offset=laps[:, : len(lengths)] * np.array(lengths),
-        near=np.zeros(ROOM, dtype=np.uint64),
+        filled=np.zeros(boxes.count, dtype=np.uint32),
+        places=aligned((boxes.count, PLACES), np.uint32),
+        head=np.zeros(boxes.count, dtype=np.uint32),
+        following=np.zeros(count, dtype=np.uint32),
+        near=np.zeros(MOST + WIDTH, dtype=np.uint64),
     )  # fmt: skip
 
 
@@ -36,31 +37,65 @@ def box_of(plans, partition, body):
 
 
 @helper
+def member(partition, box, n, other):
+    """The n-th body of a box that holds more; `other` is the one before it."""
+    if n < PLACES:
+        return partition.places[box, n]
+    return partition.head[box] if n == PLACES else partition.following[other]
+
+
+@helper
 def put(plans, partition, body):
-    """Put a body at the head of its box's list."""
+    """Put a body into its box."""
     box = np.uint64(box_of(plans, partition, body))
     plans[body].box = box
-    partition.following[np.uint64(body)] = partition.head[box]
-    partition.head[box] = body
+    filled = partition.filled[box]
+    if filled < PLACES:
+        partition.places[box, filled] = body
+    else:
+        partition.following[np.uint64(body)] = partition.head[box]
+        partition.head[box] = body
+    partition.filled[box] = filled + np.uint32(1)
 
 
-@kernel
+@helper
 def take(plans, partition, body):
-    """Take a body out of its box's list."""
+    """Take a body out of its box; another of the same box fills its place."""
     box = np.uint64(plans[body].box)
-    after = partition.following[np.uint64(body)]
-    other = partition.head[box]
-    if other == body:
-        partition.head[box] = after
-        return
-    while partition.following[other] != body:
-        other = partition.following[other]
-    partition.following[other] = after
+    places, head, following = partition.places, partition.head, partition.following
+    last = np.uint64(partition.filled[box]) - np.uint64(1)
+    partition.filled[box] = last
+    place = np.uint64(0)
+    for n in range(np.uint64(1), np.uint64(PLACES)):
+        place += n * np.uint64(places[box, n] == body)
+    if places[box, place] == body:
+        if last < PLACES:
+            places[box, place] = places[box, last]
+            places[box, last] = _NOBODY
+        else:
+            places[box, place] = head[box]
+            head[box] = following[head[box]]
+    elif head[box] == body:
+        head[box] = following[head[box]]
+    else:
+        other = head[box]
+        while following[other] != body:
+            other = following[other]
+        following[other] = following[np.uint64(body)]
+
+
+@helper
+def move(plans, partition, body, axis, to):
+    """Take a body to another box along an axis."""
+    take(plans, partition, body)
+    plans[body].at[axis] = to
+    put(plans, partition, body)
 
 
 @kernel
 def sort_in(plans, partition):
-    """Put all bodies into the lists of their boxes."""
-    partition.head[:] = len(plans)
+    """Put all bodies into their boxes."""
+    partition.filled[:] = 0
+    partition.places[:] = _NOBODY
     for body in range(len(plans)):
         put(plans, partition, body)

@@ -1,0 +1,225 @@
+"""Eight pairs at once: the test that drops those that part or miss, in vector instructions.
+
+What a compiler does not find by itself: eight rows, each a vector of eight numbers, are transposed into
+vectors of one number of eight bodies, and the test is worked out in these, in the same arithmetic and order
+as in `flight`, so that no contact is lost to rounding. LLVM makes of the vectors what the processor has, of
+whatever width.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.core.errors import TypingError
+from numba.extending import intrinsic
+
+WIDTH = 8
+LAP_BITS, LAP_FIRST = 2, 32  # of a candidate, above the number of the body: per axis 1 + the lap of its image
+_DOUBLE, _INT, _WORD = ir.DoubleType(), ir.IntType(32), ir.IntType(64)
+_STAGES = (  # of a transposition: swap single lanes, pairs of lanes, halves
+    (1, [0, 8, 2, 10, 4, 12, 6, 14], [1, 9, 3, 11, 5, 13, 7, 15]),
+    (2, [0, 1, 8, 9, 4, 5, 12, 13], [2, 3, 10, 11, 6, 7, 14, 15]),
+    (4, [0, 1, 2, 3, 8, 9, 10, 11], [4, 5, 6, 7, 12, 13, 14, 15]),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Lanes:
+    """Eight values, and the expressions in them that are written into the machine code."""
+
+    builder: ir.IRBuilder
+    value: ir.Value
+
+    def all(self, scalar: float | ir.Value) -> Lanes:
+        """The same number in every lane."""
+        if not isinstance(scalar, ir.Value):
+            scalar = ir.Constant(_DOUBLE, scalar)
+        one = ir.VectorType(scalar.type, WIDTH)
+        first = self.builder.insert_element(ir.Constant(one, ir.Undefined), scalar, _INT(0))
+        everywhere = ir.Constant(ir.VectorType(_INT, WIDTH), [0] * WIDTH)
+        return Lanes(self.builder, self.builder.shuffle_vector(first, first, everywhere))
+
+    def _with(self, name: str, other: Lanes | float | ir.Value) -> Lanes:
+        other = other if isinstance(other, Lanes) else self.all(other)
+        return Lanes(self.builder, getattr(self.builder, name)(self.value, other.value))
+
+    def _than(self, sign: str, other: Lanes | float | ir.Value) -> Lanes:
+        other = other if isinstance(other, Lanes) else self.all(other)
+        return Lanes(self.builder, self.builder.fcmp_ordered(sign, self.value, other.value))
+
+    def __add__(self, other):
+        return self._with("fadd", other)
+
+    def __sub__(self, other):
+        return self._with("fsub", other)
+
+    def __mul__(self, other):
+        return self._with("fmul", other)
+
+    def __and__(self, other):
+        return self._with("and_", other)
+
+    def __or__(self, other):
+        return self._with("or_", other)
+
+    def __lt__(self, other):
+        return self._than("<", other)
+
+    def __le__(self, other):
+        return self._than("<=", other)
+
+    def __gt__(self, other):
+        return self._than(">", other)
+
+    def __ge__(self, other):
+        return self._than(">=", other)
+
+    def equals(self, other):
+        """Lane by lane."""
+        return self._than("==", other)
+
+    def where(self, condition: Lanes, other: Lanes | float) -> Lanes:
+        """These where the condition holds, the others elsewhere."""
+        other = other if isinstance(other, Lanes) else self.all(other)
+        return Lanes(self.builder, self.builder.select(condition.value, self.value, other.value))
+
+
+def load_rows(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) -> list[Lanes]:
+    """The rows of eight bodies as eight columns."""
+    vector = ir.VectorType(_DOUBLE, WIDTH)
+    rows = []
+    for index in indices:
+        place = builder.gep(data, [builder.mul(index, _WORD(WIDTH))])
+        rows.append(builder.load(builder.bitcast(place, vector.as_pointer()), align=8))
+    for step, *halves in _STAGES:
+        swapped = list(rows)
+        for n in range(WIDTH):
+            if not n & step:
+                for place, mask in zip((n, n + step), halves, strict=True):
+                    which = ir.Constant(ir.VectorType(_INT, WIDTH), mask)
+                    swapped[place] = builder.shuffle_vector(rows[n], rows[n + step], which)
+        rows = swapped
+    return [Lanes(builder, row) for row in rows]
+
+
+def load_row(builder: ir.IRBuilder, data: ir.Value, index: ir.Value) -> list[Lanes]:
+    """The row of one body, in every lane."""
+    start = builder.mul(index, _WORD(WIDTH))
+    values = (builder.load(builder.gep(data, [builder.add(start, _WORD(k))])) for k in range(WIDTH))
+    return [Lanes(builder, value).all(value) for value in values]
+
+
+def touching(one, other, offset, pulls_one=None, pulls_other=None) -> Lanes:
+    """Whether `flight.pair_time` may be finite, for one body and eight others displaced by `offset` (d,): as
+    `flight.encounter`, in columns of rows. pulls_one, pulls_other: (d,), or None if there is no gravity."""
+    d = len(offset)
+    start = other[2 * d].where(other[2 * d] > one[2 * d], one[2 * d])
+    late, late_other = start - one[2 * d], start - other[2 * d]
+    rr = rv = vv = aa = start.all(0.0)
+    for k in range(d):
+        v, v_other = one[d + k], other[d + k]
+        if pulls_one is None:
+            r = (other[k] + v_other * late_other) - (one[k] + v * late) + offset[k]
+            v = v_other - v
+        else:
+            pull, pull_other = pulls_one[k], pulls_other[k]
+            x = one[k] + (v + pull * 0.5 * late) * late
+            r = (other[k] + (v_other + pull_other * 0.5 * late_other) * late_other) - x + offset[k]
+            v = (v_other + pull_other * late_other) - (v + pull * late)
+            a = pull_other - pull
+            aa = aa + a * a
+        rr = rr + r * r
+        rv = rv + r * v
+        vv = vv + v * v
+    sigma = one[2 * d + 1] + other[2 * d + 1]
+    meets = (rv < 0.0) & (rv * rv >= vv * (rr - sigma * sigma))
+    return meets if pulls_one is None else meets | (aa > 0.0)
+
+
+def pulls(body: list[Lanes], fixed: Lanes, space: dict, pull: list[ir.Value]) -> list[Lanes]:
+    """`flight.acceleration` of columns of rows, of bodies that may be fixed."""
+    found = []
+    d = len(pull)
+    for k in range(d):
+        all_of = body[k].all
+        inset = all_of(space["margin"]) * body[2 * d + 1]
+        inset = all_of(0.0).where(all_of(space["periodic"][k]), inset)
+        length, down = all_of(space["lengths"][k]), all_of(pull[k])
+        lies = ((down < 0.0) & (body[k] <= inset)) | ((down > 0.0) & (body[k] >= length - inset))
+        found.append(all_of(0.0).where(fixed | (lies & body[d + k].equals(0.0)), down))
+    return found
+
+
+def fields(builder: ir.IRBuilder, kind: types.BaseNamedTuple, value: ir.Value) -> dict:
+    """The members of a named tuple by name, those that are tuples as lists."""
+    members = {}
+    for n, (name, member) in enumerate(zip(kind.fields, kind.types, strict=True)):
+        part = builder.extract_value(value, n)
+        members[name] = cgutils.unpack_tuple(builder, part) if hasattr(member, "count") else part
+    return members
+
+
+@intrinsic
+def which_meet(typingctx, rows, near, first, body, space, gravity):
+    """A bit for each of the eight candidates from `first` on, whether the body may touch it."""
+    if not (isinstance(rows, types.Array) and isinstance(near, types.Array)):
+        raise TypingError("which_meet takes arrays")
+
+    def generate(context, builder, signature, arguments):
+        rows, near, first, body, space, gravity = arguments
+        space = fields(builder, signature.args[4], space)
+        rows = context.make_array(signature.args[0])(context, builder, rows).data
+        near = context.make_array(signature.args[1])(context, builder, near).data
+        words = ir.VectorType(_WORD, WIDTH)
+        candidates = Lanes(
+            builder, builder.load(builder.bitcast(builder.gep(near, [first]), words.as_pointer()), align=8)
+        )
+
+        def bits(start, count):
+            """So many bits of each candidate."""
+            shifted = builder.lshr(candidates.value, candidates.all(_WORD(start)).value)
+            return builder.and_(shifted, candidates.all(_WORD((1 << count) - 1)).value)
+
+        numbers = bits(0, LAP_FIRST)
+        indices = [builder.extract_element(numbers, _INT(n)) for n in range(WIDTH)]
+        one, others = load_row(builder, rows, body), load_rows(builder, rows, indices)
+        offset = []
+        for k, length in enumerate(space["lengths"]):
+            lap = builder.trunc(bits(LAP_FIRST + LAP_BITS * k, LAP_BITS), ir.VectorType(_INT, WIDTH))
+            lap = builder.sub(lap, candidates.all(_INT(1)).value)
+            lap = builder.sitofp(lap, ir.VectorType(_DOUBLE, WIDTH))
+            offset.append(Lanes(builder, lap) * length)
+        pulled = ()
+        if not isinstance(signature.args[5], types.NoneType):
+            gravity = fields(builder, signature.args[5], gravity)
+            fixed = context.make_array(signature.args[5].types[1])(context, builder, gravity["fixed"]).data
+
+            def is_fixed(index):
+                return builder.icmp_unsigned(
+                    "!=", builder.load(builder.gep(fixed, [index])), ir.IntType(8)(0)
+                )
+
+            mask = ir.Constant(ir.VectorType(ir.IntType(1), WIDTH), ir.Undefined)
+            for n, index in enumerate(indices):
+                mask = builder.insert_element(mask, is_fixed(index), _INT(n))
+            pulled = (
+                pulls(one, one[0].all(is_fixed(body)), space, gravity["pull"]),
+                pulls(others, Lanes(builder, mask), space, gravity["pull"]),
+            )
+        meets = touching(one, others, offset, *pulled)
+        return builder.zext(builder.bitcast(meets.value, ir.IntType(WIDTH)), _WORD)
+
+    return types.uint64(rows, near, first, body, space, gravity), generate
+
+
+@intrinsic
+def lowest(typingctx, bits):
+    """The number of the lowest bit that is set, of a word that is not 0."""
+
+    def generate(context, builder, signature, arguments):
+        return builder.cttz(arguments[0], ir.IntType(1)(1))
+
+    return types.uint64(types.uint64), generate
