@@ -1,0 +1,120 @@
+"""Short runs of every feature, so that kernels can be held against their own source, run as plain Python.
+
+    NUMBA_DISABLE_JIT=1 python tests/interpreted.py ends.npz
+
+writes how they end. Python looks at every index, and tells a coverage tool which lines have run.
+"""
+
+import sys
+import warnings
+
+import numba
+import numpy as np
+from scenes import gas
+
+import gaspart as gp
+from gaspart import compression
+from gaspart.engines import common, event_driven
+
+PYTHON = bool(numba.config.DISABLE_JIT)
+ROUGH, METAL = gp.Restitution(0.95, 0.4), gp.Restitution(1.0, 0.5)
+FINE = {"big": (6, 6, 5), "big and rough": (12, 10)}  # boxes narrower than the big bodies, which stand beside
+
+
+def event_scenes():
+    """Scenes of the event-driven engine, by name; each of another kind than the others."""
+    box, room = gp.Container((6.0, 5.0)), gp.Container((6.0, 6.0, 5.0), ("wall", "periodic", "wall"))
+    two = [gp.Species(6, 0.3, temperature=1.0), gp.Species(3, 0.4, 3.0, temperature=1.0)]
+    fixed = gp.Species(2, 0.3, fixed=True)
+    cross = [gp.Wall((1.0, 1.0), (4.0, 3.0)), gp.Wall((4.0, 1.5), (2.0, 4.0))]
+    plates = [
+        gp.Plate((2.5, 2.5, 1.5), ((1.0, 0.5, 0.0), (0.0, 0.0, 2.0))),
+        gp.Plate((3.0, 2.5, 2.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))),
+    ]
+    warm = {"x_low": gp.Thermal(2.0), "x_high": gp.Thermal(0.5, "normal"), "y_low": gp.Thermal(1.0)}
+    low = {"x_low": gp.Well(1.0, 0.5), "z_low": gp.Well(0.5, 0.3, 1.0)}
+    high = {"x_high": gp.Sticky(1.0), "z_high": gp.Thermal(1.5)}
+    electrons = [
+        gp.Species(6, 0.2, 0.5, temperature=1.0),
+        gp.Species(4, 0.3, fixed=True, temperature=2.0),
+        gp.Species(2, 0.2, fixed=True),
+    ]
+    small, large = gp.Species(12, 0.1, temperature=1.0), gp.Species(2, 0.6, 20.0, temperature=1.0)
+    heat = {"x_low": gp.Thermal(3.0), "x_high": gp.Thermal(1.0)}
+    down = (0.0, -1.0)
+    return {
+        "periodic": gas(3, 10, 0.3),
+        "two masses": gp.Scene(room, two),
+        "falling": gp.Scene(box, two, gravity=(0.2, -1.0)),
+        "rough": gp.Scene(box, [*two, fixed], restitution=ROUGH),
+        "granular": gp.Scene(box, [*two, fixed], gravity=down, restitution=ROUGH, walls=cross),
+        "walls": gp.Scene(box, two[:1], walls=cross),
+        "plates": gp.Scene(room, two[:1], gravity=(0.0, 0.0, -1.0), walls=plates),
+        "thermal": gp.Scene(box, two, gravity=(0.0, -0.5), restitution=ROUGH, faces=warm),
+        "holding": gp.Scene(room, two, faces=low | high),
+        "metal": gp.Scene(box, electrons, restitution=METAL, faces=heat),
+        "big": gp.Scene(room, [small, large]),
+        "big and rough": gp.Scene(box, [small, large], gravity=down, restitution=METAL, walls=cross),
+    }
+
+
+def step_scenes():
+    """Scenes of the time-stepped engine, by name, each with its time step."""
+    dense = gas(2, 40, 0.5, ("wall", "periodic"))
+    container, species = dense.container, dense.species
+    thin = [gp.Species(16, 0.1, temperature=1.0), gp.Species(1, 0.8, 9.0)]
+    return {
+        "steps": (dense, 0.05),
+        "steps that fall": (gp.Scene(container, species, gravity=(-1.0, 0.0)), 0.02),
+        "steps that lose": (gp.Scene(container, species, restitution=gp.Restitution(0.9)), 0.02),
+        "steps with a giant": (gp.Scene(container, thin), 0.02),
+    }
+
+
+def end_of(scene, engine, **limits):
+    """Positions, velocities and spins after a short run, and what was counted."""
+    sim = gp.Simulation(scene, engine, seed=1)
+    sim.record_events = engine.name == "event"
+    sim.advance(**limits)
+    state, tally = sim.state, sim.tally
+    parts = (state.unwrapped, state.velocities, state.spins, tally.wall_hits, tally.wall_impulse)
+    counted = [tally.collisions, tally.virial_sum, tally.worst_contact, tally.deepest_overlap]
+    return np.concatenate([np.ravel(part) for part in (*parts, counted)])
+
+
+def ends():
+    """All ends, by name. Compiled by one search; in Python by several, ``name/search``, whose bits are the
+    same."""
+    found = {}
+    for name, scene in event_scenes().items():
+        engines = {"": gp.EventDriven()}
+        if PYTHON:
+            fine = gp.EventDriven(boxes_per_side=FINE.get(name, 2))
+            engines |= {"/pairs": gp.EventDriven("pairs"), "/boxes": fine}
+        for how, engine in engines.items():
+            found[name + how] = end_of(scene, engine, max_events=100, duration=50.0)
+    for name, (scene, step) in step_scenes().items():
+        searches = {"": {}}
+        if PYTHON:
+            searches["/boxes"] = {"boxes_per_side": 3, "near_boxes": True}
+        if PYTHON and name == "steps":
+            searches |= {"/one box": {"boxes_per_side": 1}, "/threads": {"threads": 2}}
+        for how, search in searches.items():
+            found[name + how] = end_of(scene, gp.TimeStepped(step, **search), duration=0.8)
+    packing = gp.compress(gas(2, 12, 0.6), seed=1)
+    found["growth"] = np.append(packing.positions.ravel(), packing.pressure)
+    state = gp.Simulation(gas(3, 6, 0.2, "wall"), gp.EventDriven(), seed=2).state
+    found["picture"] = gp.render(state, size=(32, 24)).astype(float).ravel()
+    return found
+
+
+def read_fields():
+    """Let Python read the fields of plans as the compiled kernels do: plans[body].partner."""
+    for module in (event_driven, compression):
+        module.aligned = lambda shape, dtype: common.aligned(shape, dtype).view(np.recarray)
+
+
+if __name__ == "__main__":
+    read_fields()
+    warnings.simplefilter("ignore", RuntimeWarning)  # words of random numbers are meant to overflow
+    np.savez(sys.argv[1], **ends())
