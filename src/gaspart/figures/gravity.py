@@ -106,7 +106,7 @@ def separation(ds: xr.Dataset) -> Figure:
     axes[3].set_ylim(-4.5, 4.5)
     axes[3].set_yticks([-3, 0, 3])
     axes[3].set_xlabel("height $z$")
-    style.letter(axes[2], "c")
+    style.letter(axes[2], "c", y=0.13)
     return figure
 
 

@@ -143,7 +143,11 @@ def level(axis: Axes, value: float, **options: Any) -> Line2D:
 
 def letter(axis: Axes, text: str, x: float = 0.02, y: float = 0.97) -> Text:
     """(a), (b) ... or a short title in a panel's upper left corner; x, y: in parts of the panel."""
-    return axis.text(x, y, text, transform=axis.transAxes, ha="left", va="top", fontweight="bold")
+    from matplotlib.patheffects import withStroke
+
+    halo = [withStroke(linewidth=2.0, foreground="white")]  # over points it is read as well
+    where = {"transform": axis.transAxes, "ha": "left", "va": "top", "zorder": 10}
+    return axis.text(x, y, text, fontweight="bold", path_effects=halo, **where)
 
 
 def save(figure: Figure, path: str | Path) -> None:

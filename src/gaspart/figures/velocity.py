@@ -22,8 +22,8 @@ def velocity_autocorrelation(ds: xr.Dataset) -> Figure:
     _tails(upper, long)
     _starts(middle, ds.isel(point=np.isfinite(ds["start_rate"].values)))
     _ratios(lower, long)
-    for axis, text in zip((upper, middle, lower), "abc", strict=True):
-        style.letter(axis, text)
+    for axis, text, y in ((upper, "a", 0.97), (middle, "b", 0.15), (lower, "c", 0.97)):
+        style.letter(axis, text, y=y)
     figure.align_ylabels()
     return figure
 
@@ -82,7 +82,8 @@ def _starts(axis: Axes, ds: xr.Dataset) -> None:
     axis.set_xlim(0.0, 2.0)
     axis.set_ylabel("$C$")
     axis.set_xlabel(r"collisions of a body $s=\nu t$")
-    axis.legend(loc="upper right")
+    if ds.sizes["point"]:
+        axis.legend(loc="upper right")
 
 
 def _ratios(axis: Axes, ds: xr.Dataset) -> None:
