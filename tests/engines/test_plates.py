@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from referee import events_of, same_bits
 from scenes import partitioned
@@ -27,7 +27,6 @@ def sent(position, velocity, search="boxes", walls=(PLATE,), gravity=(0.0, 0.0, 
 
 
 @given(partitioned(), st.integers(0, 2**32))
-@settings(max_examples=30)
 def test_all_searches_agree_bit_for_bit_and_nobody_passes_a_plate(scene, seed):
     assume(scene.walls)
     referee = events_of(scene, "pairs", 100, seed, may_collapse=True)

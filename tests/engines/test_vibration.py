@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from referee import events_of, same_bits
 from scenes import metals
@@ -23,7 +23,6 @@ def metal(electrons=40, scatterers=20, side=10.0, faces=None, **modes):
 
 
 @given(metals(), st.integers(0, 2**32))
-@settings(max_examples=30)
 def test_all_searches_give_the_same_events_bit_for_bit_and_keep_the_energy(scene, seed):
     referee = events_of(scene, "pairs", 150, seed, may_collapse=True)
     referee.check_invariants()
