@@ -5,6 +5,7 @@
 #   snakemake --cores all claims                               results/tables/claims.csv
 #   snakemake --cores all report                               results/report.html
 #   snakemake --cores all animations                           results/animations/*.mp4
+#   snakemake --cores all points                               every simulation, and nothing of it measured
 #   snakemake --cores all --configfile config/smoke.yaml       all of it, small
 
 from snakemake.utils import min_version
@@ -36,11 +37,17 @@ onstart:
 localrules:
     all,
     animations,
+    points,
 
 
 rule animations:
     input:
         expand("results/animations/{animation}.mp4", animation=ANIMATIONS),
+
+
+rule points:
+    input:
+        share([point.path for experiment in POINTS.values() for point in experiment.values()]),
 
 
 rule all:

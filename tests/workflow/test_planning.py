@@ -1,10 +1,14 @@
 """What is run again after a change, and what is not."""
 
 import resource
+import subprocess
+import sys
 
 import pytest
 from workspace import ROOT, SMOKE
 
+from gaspart import grid
+from gaspart.config import laid_over
 from gaspart.files import dump_yaml, read_yaml
 
 pytestmark = pytest.mark.workflow
@@ -15,15 +19,72 @@ PACKING_FRACTIONS = read_yaml(ROOT / "config/smoke.yaml")["experiments"]["virial
 ]
 
 
+def processor_time(work):
+    """Seconds that the processes take which are started by `work`; the other tests here hardly change it."""
+    start = resource.getrusage(resource.RUSAGE_CHILDREN)
+    work()
+    end = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return end.ru_utime + end.ru_stime - start.ru_utime - start.ru_stime
+
+
 def test_nothing_to_do_takes_less_than_three_seconds(smoke):
-    """Of processor time, which the other tests on this machine hardly change."""
-    spent = []
-    for _ in range(3):
-        start = resource.getrusage(resource.RUSAGE_CHILDREN)
+    def nothing():
         assert smoke.plan(*SMOKE) == {}
-        end = resource.getrusage(resource.RUSAGE_CHILDREN)
-        spent.append(end.ru_utime + end.ru_stime - start.ru_utime - start.ru_stime)
-    assert min(spent) < 3.0
+
+    assert min(processor_time(nothing) for _ in range(3)) < 3.0
+
+
+@pytest.mark.thorough
+def test_ten_thousand_points_are_planned_in_less_than_thirty_seconds(fresh, tmp_path):
+    """Of two settings that vary, a hundred values each."""
+    big = tmp_path / "big.yaml"
+    fractions = [round(0.01 + 0.006 * n, 3) for n in range(100)]
+    varied = {"packing_fraction": fractions, "samples": list(range(2, 102))}
+    big.write_text(dump_yaml({"experiments": {"virial_discs": {"grid": varied}}}))
+
+    def plan():
+        assert fresh.plan(*SMOKE, str(big), "--", "results/figures/virial_discs.png")["simulate"] == 10_000
+
+    assert processor_time(plan) < 30.0
+
+
+def test_the_points_are_shared_among_few_cluster_jobs(fresh, monkeypatch):
+    monkeypatch.setenv("GASPART_SHARE", "2/3")
+    plan = fresh.plan(*SMOKE, "--", "points")
+    config, _ = laid_over(ROOT / "config/smoke.yaml")
+    number = sum(len(grid.points(config, experiment)) for experiment in config["experiments"])
+    assert sum(plan[job] for job in SIMULATIONS & set(plan)) == len(range(1, number, 3))
+
+
+START = """
+import sys
+sys.path.insert(0, {scripts!r})
+import _job
+_job.load_numba()
+import gaspart as gp
+gas = gp.Scene(gp.Container((9.0, 9.0), "periodic"), [gp.Species(16, 0.5, temperature=1.0)])
+gp.run(gas, gp.EventDriven(), 1, 0.1, 0.1, {path!r})
+print(*{{"scipy.linalg", "coverage", "xarray", "pandas", "matplotlib"}} & set(sys.modules))
+"""
+
+
+def start_job(folder):
+    """Do what the job of a tiny point does, and tell what it loaded in vain."""
+    path = folder / "run.nc"
+    path.unlink(missing_ok=True)
+    code = START.format(scripts=str(ROOT / "workflow/scripts"), path=str(path))
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.split()
+
+
+def test_a_job_that_starts_loads_nothing_in_vain(tmp_path):
+    assert start_job(tmp_path) == []
+
+
+@pytest.mark.thorough
+def test_a_job_starts_in_less_than_a_second(tmp_path):
+    assert min(processor_time(lambda: start_job(tmp_path)) for _ in range(7)) < 1.0
 
 
 def test_adding_a_point_simulates_that_point_only(smoke, tmp_path):

@@ -1,7 +1,9 @@
 """The workflow through a real Slurm: the same bits, though the node is lost in the middle of a job."""
 
 import json
+import os
 import subprocess
+import sys
 import threading
 import time
 from pathlib import Path
@@ -9,7 +11,7 @@ from pathlib import Path
 import pytest
 from cluster import cluster, told, why_not
 from digests import digests
-from workspace import SMOKE
+from workspace import SMOKE, copy_of_project, leave_one_figure
 
 pytestmark = [
     pytest.mark.workflow,
@@ -47,3 +49,27 @@ def test_a_grid_through_slurm_ends_in_the_same_bits_though_its_node_is_lost(fres
     made = digests(fresh.path / "results/smoke/points")
     assert made and made == {name: known[name] for name in made}
     assert all(name.startswith(EXPERIMENT) for name in made)
+
+
+def test_many_points_share_few_cluster_jobs_and_one_that_fails_harms_no_other(tmp_path):
+    workspace = copy_of_project(tmp_path)
+    leave_one_figure(tmp_path, EXPERIMENT, arrangement="random")
+    grid = tmp_path / "grid.yaml"
+    fractions = [0.05, 0.1, 0.15, 0.2, 0.25, 0.6]
+    grid.write_text(f"experiments: {{{EXPERIMENT}: {{grid: {{packing_fraction: {fractions}}}}}}}")
+    share = ["--configfile", str(grid)]
+    assert workspace.snakemake("--cores", "2", "--until", "warm", *share, "--", "points").returncode == 0
+    slurm = tmp_path / "slurm"
+    slurm.mkdir()
+    path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+    environment = {**os.environ, "PATH": path, "PYTHONPATH": str(tmp_path / "src")}
+    batch = ["sbatch", "--wait", "--array=1-2", "--cpus-per-task=1", "profiles/slurm/share.sh", *share]
+    with cluster(slurm):
+        assert subprocess.run(batch, cwd=tmp_path, env=environment).returncode != 0
+    told_by = [file.read_text() for file in sorted(tmp_path.glob("slurm-*.out"))]
+    assert len(told_by) == 2  # jobs of the cluster, for six points
+    assert "results/logs/simulate/virial_discs/packing_fraction=0.6.log" in told_by[1][-3000:]
+    assert "does not fit by random insertion" in told_by[1] and "Error" not in told_by[0]
+    points = tmp_path / f"results/smoke/points/{EXPERIMENT}"
+    assert {path.name for path in points.iterdir()} >= {f"packing_fraction={eta}" for eta in fractions[:-1]}
+    assert workspace.plan(*share, "--", "points") == {"simulate": 1, "points": 1}

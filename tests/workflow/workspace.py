@@ -8,6 +8,9 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+from gaspart.config import laid_over
+from gaspart.files import write_yaml
+
 ROOT = Path(__file__).parents[2]
 PARTS = ["Snakefile", "config", "profiles", "src", "workflow"]
 SMOKE = ["--configfile", "config/smoke.yaml"]
@@ -61,3 +64,13 @@ def copy_of_project(path):
         else:
             shutil.copy2(source, path / part)
     return Workspace(path)
+
+
+def leave_one_figure(path, figure, **point):
+    """Replace the config of a copy by that of one figure of the smoke config and the experiment of its name,
+    with these settings of its points beside its own."""
+    config, _ = laid_over(ROOT / "config/smoke.yaml")
+    for kind in ("experiments", "figures"):
+        config[kind] = {figure: config[kind][figure]}
+    config["experiments"][figure]["point"].update(point)
+    write_yaml(path / "config/config.yaml", config | {"animations": {}})

@@ -35,6 +35,12 @@ POINTS = {
 }
 
 
+def share(paths):
+    """What is this process's of them, where several share the work: GASPART_SHARE is k/n, k from 1; or all."""
+    number, of = map(int, os.environ.get("GASPART_SHARE", "1/1").split("/"))
+    return paths[number - 1 :: of]
+
+
 def experiments(job):
     """A pattern that matches the experiments made by one kind of job, and nothing if there are none."""
     names = [name for name, block in config["experiments"].items() if block.get("job", "simulate") == job]
