@@ -4,7 +4,6 @@
 rule animate:
     input:
         trajectories=lambda wildcards: animated(wildcards).path,
-        modules=module_files("animate"),
     output:
         "results/animations/{animation}.mp4",
     log:
@@ -18,6 +17,7 @@ rule animate:
         mem_mb=1500,
         runtime=30,
     params:
+        modules=modules("animate"),
         trajectory=lambda wildcards: animated(wildcards).replica_path(0),
         settings=lambda wildcards: settings_of_animation(wildcards),
     script:

@@ -1,7 +1,6 @@
 # What the rules share: the checked config, the points of its grids, and which modules each stage is made of.
 
 import hashlib
-import os
 import shlex
 import sys
 from functools import cache
@@ -19,13 +18,15 @@ from gaspart.errors import SceneError
 from gaspart.families import FAMILIES, TITLES
 from gaspart.variants import task, variant
 
-try:
-    files = ["config/config.yaml", *workflow.overwrite_configfiles]
-    check(config, str(ROOT / "workflow/schemas/config.schema.yaml"), [str(name) for name in files])
-except SceneError as error:
-    # A user's mistake: one line and exit code 2, instead of a WorkflowError with its place in this file.
-    print(f"gaspart: {error}", file=sys.stderr)
-    sys.exit(2)
+# A job on a cluster reads this file again, but need not judge ten thousand points again.
+if workflow.is_main_process:
+    try:
+        files = ["config/config.yaml", *workflow.overwrite_configfiles]
+        check(config, str(ROOT / "workflow/schemas/config.schema.yaml"), [str(name) for name in files])
+    except SceneError as error:
+        # A user's mistake: one line and exit code 2, instead of a WorkflowError with its place in this file.
+        print(f"gaspart: {error}", file=sys.stderr)
+        sys.exit(2)
 
 FIGURES = [figure for figure in FAMILIES if figure in config["figures"]]
 ANIMATIONS = [name for name, block in config.get("animations", {}).items() if block]
@@ -93,7 +94,8 @@ def flagged(path, kind):
     )
 
 
-# The modules of gaspart that each stage uses are inputs of its rules: editing one reruns what it touches.
+# A digest of the modules of gaspart that each stage uses is a parameter of its rules: editing one reruns what it
+# touches. As inputs they would be half a million files for ten thousand points, each of them asked after in turn.
 # `{family}` stands for the family of a figure, `*` for every module of a package; FAMILY_MODULES are what single
 # families use beside. tests/workflow/test_modules.py compares these tables with the import graph of the scripts.
 SCENE = ["__init__", "errors", "files", "matter", "room", "scene", "surfaces", "validation"]
@@ -215,13 +217,27 @@ def module_files(stage, family=None):
     names = [name.format(family=family) for name in MODULES[stage] + FAMILY_MODULES.get((stage, family), [])]
     patterns = [name if name.endswith(".csv") else f"{name}.py" for name in names]
     source = ROOT / "src/gaspart"
-    found = [sorted(source.glob(pattern)) or [source / pattern] for pattern in patterns]
-    return [os.path.relpath(path, ROOT) for paths in found for path in paths]
+    return [path for pattern in patterns for path in sorted(source.glob(pattern)) or [source / pattern]]
+
+
+def digest_of(paths):
+    return hashlib.sha256(b"".join(content(path) for path in paths)).hexdigest()[:12]
+
+
+@cache
+def content(path):
+    return path.read_bytes()
+
+
+@cache
+def modules(stage, family=None):
+    """A digest of the modules of a stage, and of a family there."""
+    return digest_of(module_files(stage, family))
 
 
 def modules_of(stage):
-    """The same for `input:`, where the figure is a wildcard."""
-    return lambda wildcards: module_files(stage, family(wildcards))
+    """The same where the figure is a wildcard."""
+    return lambda wildcards: modules(stage, family(wildcards))
 
 
 # The modules among them whose code is compiled.
@@ -242,8 +258,7 @@ KERNELS = [
 def digest(job):
     """A digest of the compiled modules that a job uses."""
     names = [name for name in KERNELS if name in MODULES[job]]
-    paths = [path for name in names for path in sorted((ROOT / "src/gaspart").glob(f"{name}.py"))]
-    return hashlib.sha256(b"".join(path.read_bytes() for path in paths)).hexdigest()[:12]
+    return digest_of(path for name in names for path in sorted((ROOT / "src/gaspart").glob(f"{name}.py")))
 
 
 @cache

@@ -4,7 +4,6 @@
 rule draw:
     input:
         dataset="results/measurements/{figure}.nc",
-        modules=modules_of("draw"),
     output:
         png=flagged("results/figures/{figure}.png", "png"),
         svg=flagged("results/figures/{figure}.svg", "svg"),
@@ -19,6 +18,7 @@ rule draw:
         mem_mb=1500,
         runtime=10,
     params:
+        modules=modules_of("draw"),
         family=family,
         caption=caption_of,
     script:
@@ -33,7 +33,6 @@ rule report:
         claims="results/tables/claims.csv",
         films=expand("results/animations/{animation}.mp4", animation=ANIMATIONS),
         template="workflow/report/report.html.j2",
-        modules=module_files("report"),
     output:
         "results/report.html",
     log:
@@ -47,6 +46,7 @@ rule report:
         mem_mb=1000,
         runtime=10,
     params:
+        modules=modules("report"),
         figures=FIGURES,
         title=config["title"],
     script:

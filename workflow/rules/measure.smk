@@ -4,7 +4,6 @@
 rule measure:
     input:
         points=lambda wildcards: [point.path for point in figure_points(wildcards)],
-        modules=modules_of("measure"),
     output:
         "results/measurements/{figure}.nc",
     log:
@@ -18,6 +17,7 @@ rule measure:
         mem_mb=4000,
         runtime=30,
     params:
+        modules=modules_of("measure"),
         family=family,
         points=lambda wildcards: [point.to_dict() for point in figure_points(wildcards)],
         settings=lambda wildcards: config["figures"][wildcards.figure],
@@ -29,7 +29,6 @@ rule measure:
 rule judge:
     input:
         dataset="results/measurements/{figure}.nc",
-        modules=modules_of("judge"),
     output:
         "results/claims/{figure}.csv",
     log:
@@ -43,6 +42,7 @@ rule judge:
         mem_mb=1000,
         runtime=10,
     params:
+        modules=modules_of("judge"),
         family=family,
     script:
         "../scripts/judge.py"
@@ -51,7 +51,6 @@ rule judge:
 rule claims:
     input:
         tables=expand("results/claims/{figure}.csv", figure=FIGURES),
-        modules=module_files("claims"),
     output:
         report(
             "results/tables/claims.csv",
@@ -69,5 +68,7 @@ rule claims:
     resources:
         mem_mb=1000,
         runtime=10,
+    params:
+        modules=modules("claims"),
     script:
         "../scripts/claims.py"

@@ -5,7 +5,6 @@
 rule simulate:
     input:
         kernels=lambda wildcards: ancient(stamp_of(wildcards)),
-        modules=module_files("simulate"),
     output:
         directory(f"{config['points']}/{{experiment}}/{{point}}"),
     log:
@@ -21,6 +20,7 @@ rule simulate:
         mem_mb=memory_of,
         runtime=120,
     params:
+        modules=modules("simulate"),
         recipe=recipe_of,
     script:
         "../scripts/simulate.py"
@@ -30,7 +30,6 @@ rule simulate:
 rule measure_cost:
     input:
         kernels=lambda wildcards: ancient(stamp_of(wildcards)),
-        modules=module_files("measure_cost"),
     output:
         f"{config['points']}/{{experiment}}/{{point}}.nc",
     log:
@@ -46,6 +45,7 @@ rule measure_cost:
         mem_mb=memory_of,
         runtime=120,
     params:
+        modules=modules("measure_cost"),
         recipe=recipe_of,
     script:
         "../scripts/measure_cost.py"
@@ -54,7 +54,6 @@ rule measure_cost:
 rule compare:
     input:
         kernels=lambda wildcards: ancient(stamp_of(wildcards)),
-        modules=module_files("compare"),
     output:
         f"{config['points']}/{{experiment}}/{{point}}.nc",
     log:
@@ -70,6 +69,7 @@ rule compare:
         mem_mb=memory_of,
         runtime=120,
     params:
+        modules=modules("compare"),
         recipe=recipe_of,
     script:
         "../scripts/compare.py"
@@ -78,7 +78,6 @@ rule compare:
 rule echo:
     input:
         kernels=lambda wildcards: ancient(stamp_of(wildcards)),
-        modules=module_files("echo"),
     output:
         f"{config['points']}/{{experiment}}/{{point}}.nc",
     log:
@@ -94,6 +93,7 @@ rule echo:
         mem_mb=memory_of,
         runtime=120,
     params:
+        modules=modules("echo"),
         recipe=recipe_of,
     script:
         "../scripts/echo.py"
@@ -102,7 +102,6 @@ rule echo:
 rule fill:
     input:
         kernels=lambda wildcards: ancient(stamp_of(wildcards)),
-        modules=module_files("fill"),
     output:
         f"{config['points']}/{{experiment}}/{{point}}.nc",
     log:
@@ -118,6 +117,7 @@ rule fill:
         mem_mb=memory_of,
         runtime=120,
     params:
+        modules=modules("fill"),
         recipe=recipe_of,
     script:
         "../scripts/fill.py"
@@ -126,7 +126,6 @@ rule fill:
 rule pack:
     input:
         kernels=lambda wildcards: ancient(stamp_of(wildcards)),
-        modules=module_files("pack"),
     output:
         f"{config['points']}/{{experiment}}/{{point}}.nc",
     log:
@@ -142,6 +141,7 @@ rule pack:
         mem_mb=memory_of,
         runtime=120,
     params:
+        modules=modules("pack"),
         recipe=recipe_of,
     script:
         "../scripts/pack.py"

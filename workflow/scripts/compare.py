@@ -1,8 +1,9 @@
 """What time stepping gets wrong at one point, beside exact runs from the same states."""
 
-from _job import job
+from _job import job, load_numba
 
 with job(snakemake):
+    load_numba()
     from gaspart.engines import engine_from_dict
     from gaspart.files import whole_file
     from gaspart.measure.compare import compare

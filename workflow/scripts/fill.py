@@ -1,8 +1,9 @@
 """Random insertion at one point: failed attempts against bodies placed."""
 
-from _job import job
+from _job import job, load_numba
 
 with job(snakemake):
+    load_numba()
     from gaspart.files import whole_file
     from gaspart.measure.fill import fill
     from gaspart.scene import Scene

@@ -1,8 +1,9 @@
 """What one point costs: counted work and repeated timings, with nothing running beside it."""
 
-from _job import job
+from _job import job, load_numba
 
 with job(snakemake):
+    load_numba()
     from gaspart.engines import engine_from_dict
     from gaspart.files import whole_file
     from gaspart.measure.cost import measure_cost

@@ -1,8 +1,9 @@
 """As many bodies as find room, or as large as they grow, at one point."""
 
-from _job import job
+from _job import job, load_numba
 
 with job(snakemake):
+    load_numba()
     from gaspart.files import whole_file
     from gaspart.measure.pack import pack
     from gaspart.scene import Scene

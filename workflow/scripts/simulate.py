@@ -2,9 +2,10 @@
 
 from pathlib import Path
 
-from _job import job
+from _job import job, load_numba
 
 with job(snakemake):
+    load_numba()
     from gaspart.engines import engine_from_dict
     from gaspart.scene import Scene
     from gaspart.trajectory import run

@@ -9,7 +9,6 @@ import numpy as np
 
 from gaspart import config, grid
 from gaspart.errors import SceneError
-from gaspart.files import read_yaml
 from gaspart.inspection.checks import Check, judge_places
 from gaspart.inspection.frames import Frames
 from gaspart.scene import Scene
@@ -38,11 +37,8 @@ def judge_config(path: Path) -> list[Check]:
     A config beside `config.yaml` is laid over that, as the workflow does; the schema is the one of the
     project that it lies in.
     """
-    base, path = path.resolve().parent / "config.yaml", path.resolve()
-    files = [base, path] if base.exists() and base != path else [path]
-    merged: dict = {}
-    for file in files:
-        _lay_over(merged, read_yaml(file))
+    path = path.resolve()
+    merged, files = config.laid_over(path)
     schema = path.parent.parent / SCHEMA
     if not schema.exists():
         raise SceneError("file", str(path), f"must lie in a folder beside {SCHEMA}, which says what may be")
@@ -52,12 +48,3 @@ def judge_config(path: Path) -> list[Check]:
         bodies = np.array([grid.extents(point)[0] for point in points])
     text = f"{len(merged['experiments'])} experiments of {len(points)} points, up to {bodies.max()} bodies; "
     return [Check("config", True, text + f"{len(merged['figures'])} figures")]
-
-
-def _lay_over(below: dict, above: dict) -> None:
-    """Mappings are merged, key by key; anything else is replaced."""
-    for key, value in above.items():
-        if isinstance(value, dict) and isinstance(below.get(key), dict):
-            _lay_over(below[key], value)
-        else:
-            below[key] = value

@@ -82,8 +82,8 @@ class Advice:
         return self.setting.half_width <= self.accuracy * (1.0 + 1e-9)
 
 
-def gas_of(scene: Scene) -> Gas:
-    """Raises SceneError for a scene whose errors nobody has measured."""
+def plain_gas(scene: Scene) -> Gas:
+    """The gas of a scene that holds nothing else. Raises SceneError where costs were not measured."""
     kinds = scene.species
     plain = Scene(scene.container, kinds, centres_to_walls=scene.centres_to_walls)
     if len(kinds) != 1 or kinds[0].fixed or scene != plain:
@@ -95,13 +95,18 @@ def gas_of(scene: Scene) -> Gas:
         temperature = kind.mass * (kind.speed or 0.0) ** 2 / dimension
     if not temperature > 0.0:
         raise SceneError("temperature", temperature, "advice is for bodies that move")
-    highest = theory.HIGHEST_PACKING_FRACTION[dimension]
-    if scene.packing_fraction > highest:
-        raise SceneError(
-            "packing_fraction", scene.packing_fraction, f"advice is for fluids, up to {highest:g}"
-        )
     speed = math.sqrt(temperature / kind.mass)
     return Gas(dimension, scene.packing_fraction, kind.count, 2.0 * kind.radius, speed)
+
+
+def gas_of(scene: Scene) -> Gas:
+    """The same for a fluid. Raises SceneError for a scene whose errors nobody has measured."""
+    gas = plain_gas(scene)
+    highest = theory.HIGHEST_PACKING_FRACTION[gas.dimension]
+    if gas.packing_fraction > highest:
+        rule = f"advice is for fluids, up to {highest:g}"
+        raise SceneError("packing_fraction", gas.packing_fraction, rule)
+    return gas
 
 
 def advise(

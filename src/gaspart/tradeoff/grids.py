@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import math
+from contextlib import chdir
+from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from gaspart import theory
 from gaspart.errors import SceneError
 from gaspart.tradeoff import speed, table
 
@@ -45,43 +49,48 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
 
 
 def predict(path: str) -> list[str]:
-    """Lines that tell the core-hours of each experiment of a config, and of all, on this machine."""
-    from gaspart import grid
-    from gaspart.files import read_yaml
+    """Lines that tell the core-hours of each experiment of a config, and of all, on this machine.
 
-    config = read_yaml(path)
+    A config beside `config.yaml` is laid over that, as the workflow does. Raises SceneError.
+    """
+    from gaspart import grid
+    from gaspart.config import laid_over
+
+    config, _ = laid_over(Path(path))
     lines, total, unknown = [], 0.0, []
-    for experiment in config["experiments"]:
-        known = 0.0
-        for point in grid.points(config, experiment):
-            seconds = _seconds(point)
-            if seconds is None:
+    with chdir(Path(path).resolve().parent.parent):  # where the workflow runs, and scene files are looked for
+        for experiment in config["experiments"]:
+            costs = [_seconds(point) for point in grid.points(config, experiment)]
+            known = [seconds for seconds in costs if seconds is not None]
+            if len(known) < len(costs):
                 unknown.append(experiment)
-            else:
-                known += seconds
-        total += known
-        if known:
-            lines.append(f"{experiment:28s} {known / 3600.0:10.4f} core-hours")
+                continue
+            total += sum(known)
+            lines.append(f"{experiment:28s} {sum(known) / 3600.0:10.4f} core-hours")
     lines.append(f"{'all of them':28s} {total / 3600.0:10.4f} core-hours")
     if unknown:
-        names = ", ".join(dict.fromkeys(unknown))
-        lines.append(f"not predicted (other jobs, or scenes whose collisions no theory counts): {names}")
+        rule = "not predicted (other jobs, or scenes whose collisions no theory counts)"
+        lines.append(f"{rule}: {', '.join(unknown)}")
     return lines
 
 
 def _seconds(point: Point) -> float | None:
     """Processor time of a point's simulations, from theory's contacts; None where neither is known."""
     from gaspart import grid
-    from gaspart.tradeoff.advice import gas_of
+    from gaspart.tradeoff.advice import plain_gas
 
     if point.job != "simulate":
         return None
+    scene = grid.scene(point)
     try:
-        gas = gas_of(grid.scene(point))
+        gas = plain_gas(scene)
     except SceneError:
         return None
     engine = grid.engine(point)
-    contacts = 0.5 * gas.count * gas.collision_rate * grid.schedule(point).duration * point.replicas
+    # Where discs or spheres freeze, the pressure stays as it is: so nearly does the number of contacts.
+    densest = theory.HIGHEST_PACKING_FRACTION[gas.dimension]
+    fluid = replace(gas, packing_fraction=min(gas.packing_fraction, densest))
+    contacts = 0.5 * gas.count * fluid.collision_rate * grid.schedule(point).duration * point.replicas
     if engine.name == "event":
         each = table.seconds(gas.dimension, gas.packing_fraction, "event")
         return contacts * each * _speed(gas, "event", "float64")
