@@ -43,6 +43,7 @@ KERNEL_MODULES = (
     "engines/growth.py",
     "engines/all_pairs.py",
     "engines/step_layout.py",
+    "engines/step_rules.py",
     "engines/step_motion.py",
     "engines/step_contacts.py",
     "engines/step_boxes.py",

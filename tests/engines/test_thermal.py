@@ -178,10 +178,8 @@ def test_what_is_refused(change, key):
     assert caught.value.key == key
 
 
-def test_files_and_the_other_engine(tmp_path):
+def test_files(tmp_path):
     scene = between(4.0, 1.0)
     scene.to_file(tmp_path / "scene.yaml")
     assert gp.Scene.from_file(tmp_path / "scene.yaml") == scene
     assert "faces" not in replace(scene, faces={}).to_dict()
-    with pytest.raises(gp.SceneError, match="faces"):
-        gp.Simulation(scene, gp.TimeStepped(0.1))

@@ -13,7 +13,7 @@ from gaspart.random import key_of
 from gaspart.scene import Scene
 from gaspart.state import State
 from gaspart.surfaces import FACES, Sticky, Thermal, Well
-from gaspart.wells import places_in_wells, wells_of
+from gaspart.wells import places_in_wells, well_energies, wells_of
 
 if TYPE_CHECKING:
     from gaspart.engines.layout import Law, Surfaces
@@ -79,6 +79,30 @@ def surfaces_for_kernel(
         draws=np.zeros(state.count, dtype=np.int64),
         key=key_of(seed, _WALL_DRAWS),
     )
+
+
+def face_energy(scene: Scene) -> float:
+    """The energy that a face with a kind may be expected to give a body, at most."""
+    hottest = max((getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()), default=0.0)
+    deepest = max((getattr(face, "depth", 0.0) for face in scene.faces.values()), default=0.0)
+    return scene.dimension * hottest + 2.0 * deepest
+
+
+def tell_inner(
+    state: State, scene: Scene, law: Law | None, surfaces: Surfaces | None, unit_mass: float
+) -> None:
+    """Write into a state what a law and surfaces (or None) keep beside the flights: spins, and the energies
+    in wells and in the vibrations of fixed bodies and of those stuck to a face."""
+    if law:
+        state.spins = (law.spins[:, 2] if state.dimension == 2 else law.spins).copy()
+    if surfaces:
+        state.well_energies = well_energies(scene, surfaces.place)
+    if state.vibrations is not None:
+        state.vibrations = np.zeros(state.count)
+        if surfaces:
+            state.vibrations += surfaces.held.sum(axis=1) * unit_mass
+        if law and law.vibrations is not None:
+            state.vibrations += np.maximum(law.vibrations, 0.0)
 
 
 def aligned(shape: tuple[int, ...], dtype: DTypeLike) -> np.ndarray:

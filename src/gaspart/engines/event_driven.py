@@ -7,13 +7,20 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
-from gaspart.engines.common import EventLog, aligned, law_for_kernel, masses_for_kernel, surfaces_for_kernel
+from gaspart.engines.common import (
+    EventLog,
+    aligned,
+    face_energy,
+    law_for_kernel,
+    masses_for_kernel,
+    surfaces_for_kernel,
+    tell_inner,
+)
 from gaspart.engines.progress import MANY, check_progress
 from gaspart.errors import SceneError, SimulationError
 from gaspart.scene import Scene
 from gaspart.state import State
 from gaspart.tally import Tally
-from gaspart.wells import well_energies
 
 if TYPE_CHECKING:
     from gaspart.engines.layout import Record
@@ -255,22 +262,8 @@ class EventDynamics:
             velocities=rows[:, d : 2 * d].copy(),
             images=self._images + beyond,
         )
-        if self._law:
-            state.spins = (self._law.spins[:, 2] if d == 2 else self._law.spins).copy()
-        if self._surfaces:
-            state.well_energies = well_energies(self._scene, self._surfaces.place)
-        if state.vibrations is not None:
-            state.vibrations = self._vibrations()
+        tell_inner(state, self._scene, self._law, self._surfaces, self._unit_mass)
         return state
-
-    def _vibrations(self) -> np.ndarray:
-        """(N,) the energies of the modes of fixed bodies, and of bodies stuck to a face."""
-        energies = np.zeros(len(self._rows))
-        if self._surfaces:
-            energies += self._surfaces.held.sum(axis=1) * self._unit_mass
-        if self._law and self._law.vibrations is not None:
-            energies += np.maximum(self._law.vibrations, 0.0)
-        return energies
 
     def _arrays(self) -> dict[str, np.ndarray]:
         """Everything that the kernels change and that cannot be made again, by name."""
@@ -307,9 +300,7 @@ def _lap_length(scene: Scene, state: State) -> float:
     if scene.gravity is not None:  # the square of the speed that a fall can add
         square += 2.0 * sum(abs(g) * length for g, length in zip(scene.gravity, state.lengths, strict=True))
     if scene.faces and state.count:  # and of those that a wall can give
-        hottest = max(getattr(face, "temperature", None) or 0.0 for face in scene.faces.values())
-        deepest = max(getattr(face, "depth", 0.0) for face in scene.faces.values())
-        square += (scene.dimension * hottest + 2.0 * deepest) / float(state.masses.min())
+        square += face_energy(scene) / float(state.masses.min())
     speed = float(np.sqrt(square))
     if not speed > 0.0:
         return _STILL

@@ -108,22 +108,31 @@ def meet_face(rows, images, plans, body, face, time, space, masses, counters, gr
         images[body, axis] += 1 if upper else -1
         return False
     rows[body, axis] = face_plane(rows, body, axis, upper, space)
+    hard = bounce(rows, body, face, space, masses, counters, law, surfaces)
+    if gravity is not None:
+        # a bounce too short for the clocks to tell is rest; otherwise it would be repeated for ever
+        if hard and abs(rows[body, d + axis]) < abs(gravity.pull[axis]) * gravity.blink:
+            rows[body, d + axis] = 0.0
+    return True
+
+
+@helper
+def bounce(rows, body, face, space, masses, counters, law, surfaces):
+    """Let a wall act on a body that has come to it. Returns whether it is a hard one."""
+    d = len(space.lengths)
+    axis = face // 2
     counters.wall_hits[face] += 1
     if surfaces is not None:
         if touch_surface(rows, body, face, space, masses, counters, law, surfaces):
-            return True
+            return False
     if law is None:
         mass = 1.0 if masses is None else masses[body]
         counters.wall_impulse[face] += 2.0 * mass * abs(rows[body, d + axis])
         rows[body, d + axis] = -rows[body, d + axis]
     else:
-        side = 1.0 if upper else -1.0
+        side = 1.0 if face % 2 else -1.0
         x = side if axis == 0 else 0.0
         y = side if axis == 1 else 0.0
         z = side if axis == 2 else 0.0
         counters.wall_impulse[face] += strike_wall(rows, body, x, y, z, 0.0, space, counters, law)
-    if gravity is not None:
-        # a bounce too short for the clocks to tell is rest; otherwise it would be repeated for ever
-        if abs(rows[body, d + axis]) < abs(gravity.pull[axis]) * gravity.blink:
-            rows[body, d + axis] = 0.0
     return True

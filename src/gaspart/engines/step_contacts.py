@@ -11,17 +11,16 @@ from gaspart.coordinates import nearest
 from gaspart.engines.step_layout import (
     COLLISIONS,
     DEEPEST,
-    FASTEST,
     LATE,
     LOSS,
     MULTIPLE,
     OVERLAPS_LEFT,
     PASSED,
-    SPENT,
     VIRIAL,
     WORST,
 )
-from gaspart.engines.step_motion import wrap
+from gaspart.engines.step_motion import note_change, wrap
+from gaspart.engines.step_rules import strike_in_rows
 from gaspart.kernel import allocating_kernel, helper, kernel
 
 _ONE = np.uint32(1)
@@ -187,34 +186,42 @@ def kicks(rr, rv, mass1, mass2):
 
 
 @helper
-def strayed(bodies, space, cells, slot):
-    """How far a body is from where it was when the list was made."""
-    square = space.margin - space.margin
-    for k in range(len(space.lengths)):
-        gap = bodies.positions[k, slot] - cells.origin[k, slot]
-        gap = nearest(gap, space.lengths[k], space.periodic[k])
-        square += gap * gap
-    return np.sqrt(square)
-
-
-@helper
 def note(bodies, space, slot, speed_squared, turn, cells, watch, counters):
     """Remember a contact of a body: how many it has in this step, how fast it is now, and how far from where
     it was when the list was made."""
     counters.counts[MULTIPLE] += watch.met[slot] >= turn.first
     watch.met[slot] = turn.now
-    watch.reach[FASTEST] = max(watch.reach[FASTEST], np.sqrt(speed_squared))
-    if cells is not None:
-        if slot < bodies.ordinary:
-            watch.reach[SPENT] = max(watch.reach[SPENT], strayed(bodies, space, cells, slot))
+    note_change(bodies, space, slot, speed_squared, cells, watch)
 
 
 @helper
-def resolve(bodies, space, i, j, dt, turn, rewind, parting, cells, watch, counters):
+def bump(bodies, space, i, j, ago, rr, rv, counters):
+    """A contact of smooth bodies, at the time `ago` with the invariants rr, rv; the squares of the two speeds
+    then."""
+    one, other = bodies.index[i], bodies.index[j]
+    to_i, to_j, passed = kicks(rr, rv, bodies.masses[one], bodies.masses[other])
+    counters.sums[LOSS] += 0.25 * (1.0 - space.normal * space.normal) * passed * abs(rv) / rr
+    to_i, to_j, passed = to_i * space.push, to_j * space.push, passed * space.push
+    counters.sums[VIRIAL] += passed
+    speed_i = speed_j = ago - ago
+    for k in range(len(space.lengths)):
+        gap = bodies.positions[k, j] - bodies.positions[k, i]
+        r = nearest(gap, space.lengths[k], space.periodic[k])
+        r += ago * (bodies.velocities[k, j] - bodies.velocities[k, i])
+        bodies.velocities[k, i] += to_i * r
+        bodies.velocities[k, j] -= to_j * r
+        bodies.positions[k, i] -= ago * (to_i * r)
+        bodies.positions[k, j] += ago * (to_j * r)
+        speed_i += bodies.velocities[k, i] * bodies.velocities[k, i]
+        speed_j += bodies.velocities[k, j] * bodies.velocities[k, j]
+    return speed_i, speed_j
+
+
+@helper
+def resolve(bodies, space, i, j, dt, turn, rewind, parting, rules, law, cells, watch, counters):
     """Collide a pair, if it is still to be resolved: rewind it to its contact, pass the momentum along the
     normal at contact, and play the rest of the step with the new velocities."""
     rr, rv, vv = invariants(bodies, space, i, j)
-    one, other = bodies.index[i], bodies.index[j]
     sigma = bodies.radii[i] + bodies.radii[j]
     ss = sigma * sigma
     if not counts(rr, rv, vv, ss, dt, parting):
@@ -230,22 +237,12 @@ def resolve(bodies, space, i, j, dt, turn, rewind, parting, cells, watch, counte
         rr += ago * (rv + rv + vv * ago)  # the invariants as they were at the contact
         rv += ago * vv
         counters.sums[WORST] = max(counters.sums[WORST], abs(rr / ss - 1.0))
-    to_i, to_j, passed = kicks(rr, rv, bodies.masses[one], bodies.masses[other])
-    counters.sums[LOSS] += 0.25 * (1.0 - space.normal * space.normal) * passed * abs(rv) / rr
-    to_i, to_j, passed = to_i * space.push, to_j * space.push, passed * space.push
     counters.counts[COLLISIONS] += 1
-    counters.sums[VIRIAL] += passed
-    speed_i = speed_j = ago - ago
+    if law is not None:
+        speed_i, speed_j = strike_in_rows(bodies, space, i, j, ago, rr, rv, rules, law, counters)
+    else:
+        speed_i, speed_j = bump(bodies, space, i, j, ago, rr, rv, counters)
     for k in range(len(space.lengths)):
-        gap = bodies.positions[k, j] - bodies.positions[k, i]
-        r = nearest(gap, space.lengths[k], space.periodic[k])
-        r += ago * (bodies.velocities[k, j] - bodies.velocities[k, i])
-        bodies.velocities[k, i] += to_i * r
-        bodies.velocities[k, j] -= to_j * r
-        bodies.positions[k, i] -= ago * (to_i * r)
-        bodies.positions[k, j] += ago * (to_j * r)
-        speed_i += bodies.velocities[k, i] * bodies.velocities[k, i]
-        speed_j += bodies.velocities[k, j] * bodies.velocities[k, j]
         if rewind and space.periodic[k]:
             wrap(bodies, i, k, space.lengths[k])
             wrap(bodies, j, k, space.lengths[k])
@@ -254,11 +251,13 @@ def resolve(bodies, space, i, j, dt, turn, rewind, parting, cells, watch, counte
 
 
 @kernel
-def resolve_all(bodies, space, pairs, order, dt, turn, rewind, parting, cells, watch, counters):
+def resolve_all(
+    bodies, space, pairs, order, dt, turn, rewind, parting, rules, law, cells, watch, counters
+):  # fmt: skip
     """Resolve what one search has found, in order."""
     for n in order:
         i, j = pairs[n, 0], pairs[n, 1]
-        resolve(bodies, space, i, j, dt, turn, rewind, parting, cells, watch, counters)
+        resolve(bodies, space, i, j, dt, turn, rewind, parting, rules, law, cells, watch, counters)
 
 
 @kernel

@@ -10,21 +10,22 @@ from gaspart.engines.step_boxes import search_all, search_boxes, sort_in
 from gaspart.engines.step_contacts import count_left, in_order, resolve_all
 from gaspart.engines.step_layout import FASTEST, PAIR_TESTS, SPENT, Turn
 from gaspart.engines.step_list import is_stale
-from gaspart.engines.step_motion import move
+from gaspart.engines.step_motion import move, move_by_rules
 from gaspart.engines.step_threads import gathered, make_list, move_shared, numbers_of, room_for, search_list
 from gaspart.kernel import allocating_kernel
 
 
 @allocating_kernel
 def run_steps(
-    bodies, space, partition, cells, pairs, gravity, inset, dt, steps, rewind, passes, watch, counters,
-    threads,
+    bodies, space, partition, cells, pairs, gravity, inset, rules, law, dt, steps, rewind, passes, watch,
+    counters, threads,
 ):  # fmt: skip
     """Make `steps` steps of length `dt`.
 
     partition: the boxes to search, or cells: those of a list; the other is None. pairs (threads, room, 2):
-    the list as it stands. gravity: (d,) or None; inset: the largest radius that a wall stops; threads: their
-    number, or None for one. Returns the list as it stands then.
+    the list as it stands. gravity: (d,) or None; inset: the largest radius that a wall stops; rules, law: of
+    faces and contacts that know more than momenta (see `step_rules`), or None; threads: their number, or None
+    for one. Returns the list as it stands then.
     """
     count = bodies.positions.shape[1]
     parts = 1 if threads is None else threads
@@ -38,7 +39,9 @@ def run_steps(
     for step in range(steps):
         watch.reach[FASTEST] += pull * dt
         watch.reach[SPENT] += watch.reach[FASTEST] * dt
-        if threads is None:
+        if rules is not None:
+            move_by_rules(bodies, space, gravity, dt, rules, law, cells, watch, counters)
+        elif threads is None:
             move(bodies, space, gravity, inset, dt, 0, count, counters, 0)
         else:
             apart = space.lengths, space.periodic, numbers_of(space)
@@ -70,7 +73,9 @@ def run_steps(
                 break
             contacts, times = gathered(found)
             order = in_order(bodies.index, contacts, times)
-            resolve_all(bodies, space, contacts, order, dt, turn, rewind, parting, cells, watch, counters)
+            resolve_all(
+                bodies, space, contacts, order, dt, turn, rewind, parting, rules, law, cells, watch, counters
+            )
             before = turn.now
         if number > 0:
             count_left(bodies, space, contacts, counters)

@@ -7,8 +7,9 @@ line only if that one counts.
 
 import numpy as np
 
-from gaspart.engines.step_contacts import distance_squared, examine, strayed
+from gaspart.engines.step_contacts import distance_squared, examine
 from gaspart.engines.step_layout import SPENT, share
+from gaspart.engines.step_motion import strayed
 from gaspart.kernel import allocating_kernel, kernel
 
 _AHEAD = 4  # candidates written down at once, whether a stretch has them or not

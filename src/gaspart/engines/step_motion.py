@@ -6,7 +6,9 @@ container in it.
 
 import numpy as np
 
-from gaspart.engines.step_layout import FASTEST
+from gaspart.coordinates import nearest
+from gaspart.engines.step_layout import FASTEST, SPENT
+from gaspart.engines.step_rules import is_free, meet_faces
 from gaspart.kernel import helper, kernel
 
 _BLOCK = 128
@@ -88,6 +90,39 @@ def reflect_falling(bodies, slot, axis, lower, upper, pull, dt, counters, thread
     bodies.velocities[axis, slot] = v
 
 
+@helper
+def strayed(bodies, space, cells, slot):
+    """How far a body is from where it was when the list was made."""
+    square = space.margin - space.margin
+    for k in range(len(space.lengths)):
+        gap = bodies.positions[k, slot] - cells.origin[k, slot]
+        gap = nearest(gap, space.lengths[k], space.periodic[k])
+        square += gap * gap
+    return np.sqrt(square)
+
+
+@helper
+def note_change(bodies, space, slot, speed_squared, cells, watch):
+    """Remember how fast a body is now, and how far from where it was when the list was made."""
+    watch.reach[FASTEST] = max(watch.reach[FASTEST], np.sqrt(speed_squared))
+    if cells is not None:
+        if slot < bodies.ordinary:
+            watch.reach[SPENT] = max(watch.reach[SPENT], strayed(bodies, space, cells, slot))
+
+
+@kernel
+def mend_by_rules(bodies, space, slot, dt, rules, law, cells, watch, counters):
+    """Bring one body back into the container whose walls have rules of their own."""
+    met = meet_faces(bodies, space, rules, law, slot, dt, counters)
+    square = dt - dt
+    for k in range(len(space.lengths)):
+        if space.periodic[k]:
+            wrap(bodies, slot, k, space.lengths[k])
+        square += bodies.velocities[k, slot] * bodies.velocities[k, slot]
+    if met:
+        note_change(bodies, space, slot, square, cells, watch)
+
+
 @kernel
 def mend(bodies, space, gravity, slot, dt, counters, thread):
     """Bring one body back into the container."""
@@ -137,6 +172,20 @@ def fall(x, v, pull, lower, upper, dt):
         v[n] += gain
         outside += (moved < lower) | (moved >= upper)
     return outside
+
+
+@kernel
+def move_by_rules(bodies, space, gravity, dt, rules, law, cells, watch, counters):
+    """Make the motion of one step where walls have rules of their own."""
+    for k in range(len(space.lengths)):
+        x, v = bodies.positions[k], bodies.velocities[k]
+        if gravity is None:
+            fly(x, v, space.lengths[k], space.lengths[k], dt)
+        else:
+            fall(x, v, gravity[k], space.lengths[k], space.lengths[k], dt)
+    for slot in range(bodies.positions.shape[1]):
+        if slot >= bodies.ordinary or not is_free(bodies, rules, slot):
+            mend_by_rules(bodies, space, slot, dt, rules, law, cells, watch, counters)
 
 
 @kernel

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.boxes import make_boxes
+from gaspart.engines.common import face_energy
 from gaspart.engines.step_boxes import Partition
 from gaspart.engines.step_cells import Cells
 from gaspart.scene import Scene
@@ -74,7 +75,8 @@ def _skin(engine: TimeStepped, scene: Scene, state: State, contact: float) -> fl
     squares = (state.velocities**2).sum(axis=1)
     fastest = np.sqrt(squares.max(initial=0.0))
     if state.count > 1:  # at last, whatever the speeds are now
-        fastest = max(fastest, np.sqrt(squares.mean() / dimension * (2.0 * np.log(state.count) + 2.0)))
+        square = max(squares.mean(), face_energy(scene) / float(state.masses.min())) / dimension
+        fastest = max(fastest, np.sqrt(square * (2.0 * np.log(state.count) + 2.0)))
     gravity = 0.0 if scene.gravity is None else float(np.abs(scene.gravity).max())
     way = 2.0 * (fastest * engine.time_step + gravity * engine.time_step**2)
     skins = contact * np.geomspace(0.02, 30.0, 60)

@@ -8,11 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.errors import SceneError
+from gaspart.engines.common import face_energy, law_for_kernel, surfaces_for_kernel
+from gaspart.errors import SceneError, SimulationError
 from gaspart.scene import Scene
 from gaspart.state import State
 
 if TYPE_CHECKING:
+    from gaspart.engines.layout import Law
+    from gaspart.engines.step_rules import Rules
     from gaspart.engines.time_stepped import TimeStepped
 
 _GIANTS = 16  # at most so many bodies are tested against all others
@@ -24,6 +27,10 @@ MISSED, MISSED_MOST = 0.01, 0.1
 CROWDED, CROWDED_MOST = {True: 2.5, False: 0.5}, {True: 5.0, False: 1.0}
 """Contacts of a body in a step, with several passes or with one, before the engine warns, and refuses. Up to
 the first the pressure is right to about 1 % (measured: docs/time-stepped.md)."""
+
+LATE_MOST, PASSED_MOST, FEW = 0.25, 0.01, 2
+"""The part of all contacts that may be found a step too late; and with bodies half-way through each other by
+then; so few are not judged. In gases, up to a step of which the engine warns, they are 0.05 and 0.004."""
 
 
 def giants_of(state: State) -> np.ndarray:
@@ -42,11 +49,8 @@ def check_scene(scene: Scene, state: State, giants: np.ndarray) -> None:
     law, fixed = scene.restitution, np.isinf(state.masses).any()
     falls, none = scene.gravity is not None, "this one knows none"
     for key, value, what in (
-        ("restitution", law if law and law.rough else None, "this one knows no rough bodies"),
         ("restitution", law if law and law.normal < 1.0 and falls else None, "with gravity, " + none),
         ("walls", scene.walls or None, none),
-        ("faces", scene.faces or None, none),
-        ("vibration", scene.vibrates or None, none),
         ("fixed", True if fixed and falls else None, "this one knows no fixed bodies under gravity"),
     ):
         if value is not None:
@@ -58,6 +62,52 @@ def check_scene(scene: Scene, state: State, giants: np.ndarray) -> None:
         if periodic and length < reach:
             rule = "the time-stepped engine needs periodic sides of two largest diameters"
             raise SceneError("lengths", scene.container.lengths, rule)
+
+
+def rules_for(
+    engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float
+) -> tuple[Rules | None, Law | None]:
+    """The kernels' `Rules` and `Law` of a scene whose faces or bodies know more than momenta, in units of
+    `unit_mass`; None, None of any other."""
+    if not needs_rules(scene):
+        return None, None
+    from gaspart.engines import layout, step_rules
+
+    surfaces = surfaces_for_kernel(scene, state, seed, unit_mass)
+    radius = 0.0 if scene.centres_to_walls else state.radii.max(initial=0.0)
+    inset = np.where(np.repeat(scene.container.periodic, 2), 0.0, radius + surfaces.width).reshape(-1, 2)
+    free = np.stack([inset[:, 0], np.array(scene.container.lengths) - inset[:, 1]], axis=1)
+    gravity = None
+    if scene.gravity is not None:
+        gravity = layout.Gravity(scene.gravity, np.isinf(state.masses), 0.0)
+    faces = 2 * scene.dimension
+    gains = np.zeros(faces, dtype=np.int64), np.zeros(faces), np.zeros(faces)
+    rules = step_rules.Rules(
+        np.zeros((state.count, 8)), surfaces, gravity,
+        layout.Counters(np.zeros(5, dtype=np.int64), np.zeros(3), *gains),
+        free.astype(engine.precision),
+        holds=any(face.kind != "thermal" for face in scene.faces.values()),
+        heat=np.zeros((faces, 2), dtype=np.int64),
+    )  # fmt: skip
+    return rules, law_for_kernel(scene, state)
+
+
+def changing(rules: Rules | None, law: Law | None) -> dict[str, np.ndarray]:
+    """The arrays of rules and law that a run changes, by name."""
+    arrays = {}
+    if rules:
+        arrays = {key: getattr(rules.surfaces, key) for key in ("place", "held", "draws")}
+        arrays["heat"] = rules.heat
+    if law:
+        arrays["spins"] = law.spins
+        if law.vibrations is not None:
+            arrays["vibrations"] = law.vibrations
+    return arrays
+
+
+def needs_rules(scene: Scene) -> bool:
+    """Whether faces or bodies of a scene know more than momenta."""
+    return bool(scene.faces) or scene.rough or scene.vibrates
 
 
 def check_precision(engine: TimeStepped, scene: Scene, state: State) -> None:
@@ -127,6 +177,17 @@ def check_step(engine: TimeStepped, state: State) -> None:
     warnings.warn(f"gaspart: time_step = {engine.time_step:g} {rule}", stacklevel=4)
 
 
+def check_late(engine: TimeStepped, time: float, met: int, late: int, passed: int) -> None:
+    """Raise SimulationError if contacts are found a step too late, or bodies pass through each other: speeds
+    have come up, or gaps are so narrow, that the step is too long."""
+    most = [max(FEW, part * met) for part in (LATE_MOST, PASSED_MOST)]
+    if engine.passes > 1 and (late > most[0] or passed > most[1]):
+        raise SimulationError(
+            f"at time {time:g} {late} of {met} contacts were found a step too late, {passed} of them"
+            f" with bodies half-way through each other: a step of {engine.time_step:g} is too long"
+        )
+
+
 def contacts_per_step(time_step: float, state: State) -> float:
     """How often a body meets another in a step: Enskog's rate for equal bodies of the same packing fraction,
     with the contact value of Carnahan & Starling (1969), of Henderson (1975) for discs."""
@@ -144,14 +205,15 @@ def contacts_per_step(time_step: float, state: State) -> float:
 def quantum_for(scene: Scene, state: State, masses: np.ndarray) -> float:
     """The unit in which momenta given to walls are summed: a power of two, 2^-28 of the largest momentum."""
     speeds = np.sqrt((state.velocities**2).sum(axis=1))
+    speeds = speeds + np.sqrt(face_energy(scene) / state.masses)
     if scene.gravity is not None:
         speeds = speeds + math.sqrt(2.0 * float(np.abs(scene.gravity) @ np.array(scene.container.lengths)))
     most = float((np.where(np.isinf(masses), 0.0, masses) * speeds).max(initial=0.0))
     return 2.0 ** (math.frexp(most or 1.0)[1] - 28)
 
 
-def grain_for(state: State, unit_mass: float) -> float:
+def grain_for(scene: Scene, state: State, unit_mass: float) -> float:
     """The unit in which energies that walls take are summed: a power of two, 2^-40 of the largest energy of a
     body, so that even all that 8e6 bodies have can be counted."""
-    most = float(np.max(state.kinetic_energies, initial=0.0)) / unit_mass
+    most = (float(np.max(state.kinetic_energies, initial=0.0)) + face_energy(scene)) / unit_mass
     return 2.0 ** (math.frexp(most or 1.0)[1] - 40)

@@ -45,10 +45,16 @@ def find_edge(rows, body, axis, space, surfaces):
 
 @kernel
 def meet_edge(rows, plans, body, face, time, space, masses, counters, gravity, law, surfaces):
-    """Let a body into a well, or out of it if it is fast enough. The wall takes the momentum of the step.
-    Returns the number of the face."""
+    """Advance a body to the edge of a well, and let it in or out. Returns the number of the face."""
     advance_row(rows, body, time, space, gravity)
     plans[body].changes += 1
+    cross_edge(rows, body, face, space, masses, counters, law, surfaces)
+    return face
+
+
+@helper
+def cross_edge(rows, body, face, space, masses, counters, law, surfaces):
+    """Let a body into a well, or out of it if it is fast enough. The wall takes the momentum of the step."""
     axis = face // 2
     column = len(space.lengths) + axis
     rows[body, axis] = edge_plane(rows, body, face, space, surfaces)
@@ -66,7 +72,6 @@ def meet_edge(rows, plans, body, face, time, space, masses, counters, gravity, l
         after = -before
     rows[body, column] = side * after
     counters.wall_impulse[face] += mass * (before - after)
-    return face
 
 
 @kernel

@@ -8,24 +8,25 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import DTypeLike
 
-from gaspart.engines.common import EventLog, masses_for_kernel
+from gaspart.engines.common import EventLog, masses_for_kernel, tell_inner
 from gaspart.engines.step_settings import (
+    changing,
+    check_late,
     check_precision,
     check_scene,
     check_step,
     giants_of,
     grain_for,
+    needs_rules,
     quantum_for,
+    rules_for,
 )
-from gaspart.errors import SceneError, SimulationError
+from gaspart.errors import SceneError
 from gaspart.scene import Scene, count_of, number
 from gaspart.state import State
 from gaspart.tally import Tally
 
 PRECISIONS = ("float64", "float32")
-LATE_MOST, PASSED_MOST, FEW = 0.25, 0.01, 2
-"""The part of all contacts that may be found a step too late; and with bodies half-way through each other by
-then; so few are not judged. In gases, up to a step of which the engine warns, they are 0.05 and 0.004."""
 
 
 @dataclass(frozen=True)
@@ -74,14 +75,14 @@ class TimeStepped:
             raise SceneError("near_boxes", True, "needs boxes_per_side")
 
     def start(self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0) -> StepDynamics:
-        """Set the engine up for a scene in a given state; nothing of it depends on `seed`."""
-        return StepDynamics(self, scene, state)
+        """Set the engine up for a scene in a given state; `seed` is that of thermal walls."""
+        return StepDynamics(self, scene, state, seed)
 
 
 class StepDynamics:
     """A scene under way; its time is a whole number of steps."""
 
-    def __init__(self, engine: TimeStepped, scene: Scene, state: State) -> None:
+    def __init__(self, engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...]) -> None:
         from gaspart.engines import step_kernels as kernels
         from gaspart.engines import step_layout as layout
         from gaspart.engines import step_search as search
@@ -101,6 +102,8 @@ class StepDynamics:
             *(real(number) for number in (normal, 0.5 * (1.0 + normal))),
         )
         self._unit_mass, masses = masses_for_kernel(state.masses)
+        if needs_rules(scene):
+            self._unit_mass, masses = 1.0, state.masses
         masses = np.ones(state.count) if masses is None else masses
         shape = (scene.dimension, state.count)
         self._bodies = layout.Bodies(
@@ -118,12 +121,14 @@ class StepDynamics:
         self._inset = real(self._space.margin * real(ordinary.max(initial=0.0)))
         self._partition = search.partition_for(engine, scene, state, ordinary)
         self._cells = search.cells_for(engine, scene, state, ordinary)
+        self._rules, self._law = rules_for(engine, scene, state, seed, self._unit_mass)
         self._gravity = None if scene.gravity is None else tuple(real(g) for g in scene.gravity)
         self._watch = layout.Watch(np.empty(state.count, np.int64), np.zeros(2))
         self._watch.reach[layout.SPENT] = np.inf  # no list is made yet
         self._pairs = np.empty((engine.threads, 0, 2), np.uint32)
         self._threads = engine.threads if engine.threads > 1 else None
-        self._quantum, self._grain = quantum_for(scene, state, masses), grain_for(state, self._unit_mass)
+        self._quantum = quantum_for(scene, state, masses)
+        self._grain = grain_for(scene, state, self._unit_mass)
         self._lost = 0.0
         self._step = real(engine.time_step)
         self._start, self._steps = state.time, 0
@@ -154,6 +159,8 @@ class StepDynamics:
     def _count(self) -> None:
         """Counters that stand at nothing."""
         faces = (self._engine.threads, 2 * self._scene.dimension)
+        if self._rules:
+            self._rules.heat[:] = 0
         self._counters = self._layout.Counters(
             counts=np.zeros(8, dtype=np.int64),
             sums=np.zeros(4),
@@ -167,12 +174,19 @@ class StepDynamics:
 
     @property
     def dissipated(self) -> float:
-        """The energy that contacts have taken since time 0."""
-        return self._lost + self._loss
+        """The energy that contacts and thermal walls have taken since time 0."""
+        return self._lost + self._loss + float(self._heat.sum())
+
+    @property
+    def _heat(self) -> np.ndarray:
+        """(2d,) what each face was given by bodies that left it at its temperature, since the tally began."""
+        if self._rules is None:
+            return np.zeros(2 * self._scene.dimension)
+        return self._rules.heat_given(self._grain) * self._unit_mass
 
     @property
     def _loss(self) -> float:
-        """The same since the tally began."""
+        """The energy that contacts have taken since the tally began."""
         counters = self._counters
         walls = float(counters.wall_loss.sum()) * counters.grain
         return (float(counters.sums[self._layout.LOSS]) + walls) * self._unit_mass
@@ -200,34 +214,27 @@ class StepDynamics:
                 set_num_threads(min(self._threads, config.NUMBA_NUM_THREADS))
             self._pairs = self._kernels.run_steps(
                 self._bodies, self._space, self._partition, self._cells, self._pairs, self._gravity,
-                self._inset, self._step, target - self._steps, self._engine.rewind, self._engine.passes,
-                self._watch, self._counters, self._threads,
+                self._inset, self._rules, self._law, self._step, target - self._steps, self._engine.rewind,
+                self._engine.passes, self._watch, self._counters, self._threads,
             )  # fmt: skip
             self._steps = target
-            self._check_late()
-
-    def _check_late(self) -> None:
-        """Raise SimulationError if contacts are found a step too late, or bodies pass through each other:
-        speeds have come up, or gaps are so narrow, that the step is too long."""
-        layout, counts = self._layout, self._counters.counts
-        met, late, passed = (int(counts[n]) for n in (layout.COLLISIONS, layout.LATE, layout.PASSED))
-        most = [max(FEW, part * met) for part in (LATE_MOST, PASSED_MOST)]
-        if self._engine.passes > 1 and (late > most[0] or passed > most[1]):
-            raise SimulationError(
-                f"at time {self.time:g} {late} of {met} contacts were found a step too late, {passed} of them"
-                f" with bodies half-way through each other: a step of {self._engine.time_step:g} is too long"
-            )
+            layout, counts = self._layout, self._counters.counts
+            found = (int(counts[n]) for n in (layout.COLLISIONS, layout.LATE, layout.PASSED))
+            check_late(self._engine, self.time, *found)
 
     @property
     def state(self) -> State:
         """All bodies at the present time, in float64 whatever the precision."""
-        return replace(
+        state = replace(
             self._reference,
             time=self.time,
             positions=self._by_body(self._bodies.positions, float),
             velocities=self._by_body(self._bodies.velocities, float),
             images=self._bodies.images.T.astype(self._reference.images.dtype),
         )
+        if self._rules:
+            tell_inner(state, self._scene, self._law, self._rules.surfaces, self._unit_mass)
+        return state
 
     @property
     def tally(self) -> Tally:
@@ -238,7 +245,7 @@ class StepDynamics:
             collisions=int(counts[layout.COLLISIONS]),
             wall_hits=self._counters.wall_hits.sum(axis=0),
             wall_impulse=self._counters.wall_impulse.sum(axis=0) * (self._quantum * self._unit_mass),
-            wall_energy=np.zeros(2 * self._scene.dimension),
+            wall_energy=self._heat,
             virial_sum=float(sums[layout.VIRIAL]) * self._unit_mass,
             pair_tests=int(counts[layout.PAIR_TESTS]),
             box_visits=int(counts[layout.BOX_VISITS]),
@@ -263,6 +270,7 @@ class StepDynamics:
             "images": bodies.images.T.copy(),
             "slots": bodies.index.copy(),
             **self._list_parts(),
+            **{key: array.copy() for key, array in changing(self._rules, self._law).items()},
             "reach": self._watch.reach.copy(),
             **{key: np.array(value) for key, value in self._counters._asdict().items()},
         }
@@ -285,5 +293,7 @@ class StepDynamics:
         self._watch.reach[...] = parts["reach"]
         for key in ("counts", "sums", "wall_hits", "wall_impulse", "wall_loss"):
             getattr(self._counters, key)[...] = parts[key]
+        for key, array in changing(self._rules, self._law).items():
+            array[...] = parts[key]
         self._steps, self._since = int(parts["steps"]), int(parts["since"])
         self._lost = float(parts["lost"])

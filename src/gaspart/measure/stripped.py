@@ -16,7 +16,7 @@ from pathlib import Path
 
 from gaspart.kernel import KERNEL_MODULES
 
-FEATURES = {"gravity", "law", "masses", "record", "walls", "surfaces", "big", "watch", "vibrations"}
+FEATURES = {"gravity", "law", "masses", "record", "walls", "surfaces", "big", "watch", "vibrations", "rules"}
 """Names by which kernels know what a plain gas is without."""
 ENGINES = ("event", "step")
 _PACKAGE = Path(__file__).parents[1]
