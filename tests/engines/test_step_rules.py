@@ -47,7 +47,10 @@ def rough_gas(boundary="wall", faces=None, count=120):
     [
         {"faces": FACES},
         {"faces": {"y_high": gp.Thermal(3.0, "normal")}, "restitution": gp.Restitution(0.9, 0.2)},
-        {"faces": {"x_low": gp.Thermal(1.0), "y_low": gp.Thermal(2.0)}, "gravity": (0.0, -0.5)},
+        pytest.param(
+            {"faces": {"x_low": gp.Thermal(1.0), "y_low": gp.Thermal(2.0)}, "gravity": (0.0, -0.5)},
+            marks=pytest.mark.thorough,  # kernels of its own
+        ),
     ],
 )
 def test_few_bodies_follow_the_event_driven_engine(parts):

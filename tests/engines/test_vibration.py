@@ -129,5 +129,3 @@ def test_what_is_refused():
         assert caught.value.key == key
     with pytest.raises(gp.SceneError, match=r"restitution\.normal"):
         replace(metal(vibration=1.0), restitution=gp.Restitution(0.9))
-    with pytest.raises(gp.SceneError, match="vibration"):
-        gp.Simulation(metal(vibration=1.0), gp.TimeStepped(0.1))
