@@ -99,8 +99,8 @@ def ends():
             searches["/boxes"] = {"boxes_per_side": 3, "near_boxes": True}
         if PYTHON and name == "steps":
             searches |= {"/one box": {"boxes_per_side": 1}, "/threads": {"threads": 2}}
-        for how, search in searches.items():
-            found[name + how] = end_of(scene, gp.TimeStepped(step, **search), duration=0.8)
+        for how, settings in searches.items():
+            found[name + how] = end_of(scene, gp.TimeStepped(step, **settings), duration=0.8)
     packing = gp.compress(gas(2, 12, 0.6), seed=1)
     found["growth"] = np.append(packing.positions.ravel(), packing.pressure)
     state = gp.Simulation(gas(3, 6, 0.2, "wall"), gp.EventDriven(), seed=2).state

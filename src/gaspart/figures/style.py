@@ -146,7 +146,7 @@ def letter(axis: Axes, text: str, x: float = 0.02, y: float = 0.97) -> Text:
     from matplotlib.patheffects import withStroke
 
     halo = [withStroke(linewidth=2.0, foreground="white")]  # over points it is read as well
-    where = {"transform": axis.transAxes, "ha": "left", "va": "top", "zorder": 10}
+    where: dict[str, Any] = {"transform": axis.transAxes, "ha": "left", "va": "top", "zorder": 10}
     return axis.text(x, y, text, fontweight="bold", path_effects=halo, **where)
 
 
