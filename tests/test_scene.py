@@ -7,6 +7,7 @@ from hypothesis import given
 from scenes import mixtures
 
 import gaspart as gp
+from gaspart.surfaces import thermal_face
 
 GOOD = {
     "container": {"lengths": [10.0, 10.0], "boundary": "wall"},
@@ -104,3 +105,43 @@ def test_derived_numbers():
     assert scene.count == 5
     assert scene.number_density == 0.05
     assert scene.packing_fraction == pytest.approx(5 * math.pi * 0.25 / 100)
+
+
+ROOM = gp.Container((5.0, 5.0, 5.0), "wall")
+FLAT = gp.Container((5.0, 5.0), "wall")
+BALL = [gp.Species(1, 0.5, speed=1.0)]
+HOLED = {"x_low": gp.Well(1.0, 2.0), "x_high": gp.Well(1.0, 2.0)}
+
+
+@pytest.mark.parametrize(
+    ("make", "complaint"),
+    [
+        (lambda: gp.Scene(ROOM, walls=[gp.Wall((1.0, 1.0), (2.0, 2.0))]), "a Wall needs a container of two"),
+        (lambda: gp.Scene(FLAT, BALL, faces=HOLED), "faces.x_low.width = 2.0: leaves no room outside"),
+        (lambda: gp.Scene(FLAT, faces={"y_low": HOLED["x_low"]}, gravity=(0.0, -1.0)), "without gravity"),
+        (lambda: gp.Scene(FLAT, faces={"x_low": 3}), "must be Thermal, Well or Sticky"),
+        (lambda: gp.Scene(FLAT, faces=["x_low"]), "must be a mapping of faces"),
+        (lambda: gp.Scene(FLAT, restitution=0.9), "restitution = 0.9: must be a Restitution"),
+        (lambda: gp.Scene(FLAT, gravity=(0.0, -1.0, 0.0)), "must be a list of 2 finite numbers"),
+        (lambda: gp.Restitution(1.5), "normal = 1.5: must be from 0 to 1"),
+        (lambda: gp.Restitution(1.0, -1.5), "tangential = -1.5: must be from -1 to 1"),
+        (lambda: gp.Wall((1.0, 1.0), (1.0, 1.0)), "a wall must have a length"),
+        (lambda: gp.Plate((1.0, 1.0, 1.0), ((1.0, 0.0, 0.0),)), "edges = .*: must be two lists of 3"),
+        (lambda: gp.Plate((1.0, 1.0, 1.0), ((1, 0, 0), (0, 0, 0))), "must have a length and a width"),
+        (lambda: gp.Plate((1.0, 1.0, 1.0), ((1, 0, 0), (1, 1, 0))), "must be at right angles"),
+        (lambda: gp.Body((1.0, 1.0), (1.0, 0.0), 0.5, fixed=True), "a fixed body has none"),
+        (lambda: gp.Body((1.0, 1.0), (0.0, 0.0), 0.5, vibration=1.0), "only a fixed body vibrates"),
+        (lambda: gp.Species(1, 1e70), "choose other units"),
+        (lambda: gp.TimeStepped(0.1, skin=0.1, boxes_per_side=3), "skin = 0.1: excludes boxes_per_side"),
+        (lambda: gp.TimeStepped(0.1, near_boxes=True), "needs boxes_per_side"),
+        (lambda: gp.TimeStepped(0.1, rewind=1), "rewind = 1: must be true or false"),
+        (lambda: gp.EventDriven("magic"), "search = 'magic': must be one of"),
+        (lambda: gp.EventDriven("pairs", boxes_per_side=3), 'needs search "boxes"'),
+        (lambda: thermal_face(gp.Scene(FLAT, faces={"x_low": gp.Sticky(1.0)}), "x_low"), "must be thermal"),
+        (lambda: thermal_face(gp.Scene(FLAT), "y_low"), "faces.y_low = None: must be thermal"),
+    ],
+)
+def test_what_is_made_in_python_is_refused_in_one_line_too(make, complaint):
+    with pytest.raises(gp.SceneError, match=complaint) as caught:
+        make()
+    assert "\n" not in str(caught.value)
