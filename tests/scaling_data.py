@@ -11,7 +11,7 @@ from gaspart.files import read_yaml
 from gaspart.theory import partition
 
 ROOT = Path(__file__).parents[1]
-BODY, TEST, BOX = 30e-9, 12e-9, 0.3e-9  # s per body and step, pair test, box
+BODY, TEST, BOX, LIST = 30e-9, 12e-9, 0.3e-9, 2e-9  # s per body and step (with a list), pair test, box
 CONFIG = read_yaml(ROOT / "config/config.yaml")
 SCALING = ("naive_scaling", "box_count", "ideal_boxes", "linear_scaling", "event_scaling")
 
@@ -38,8 +38,11 @@ def job(point):
     sides = np.array([_side(engine) for engine in chosen])
     gas = {"dimension": dimension, "side": side, "radius": radius}
     if point.settings["engine"] == "step":
-        counted = _steps(count, tuple(sides.tolist()), **gas)
-        seconds = 10 * (BODY * count + BOX * sides**dimension) + TEST * counted["pair_tests"]
+        counted = _steps(count, tuple(np.maximum(sides, 1).tolist()), **gas)
+        body = BODY
+        if not sides.any():  # a list of one pair a body
+            body, counted = LIST, {**counted, "pair_tests": np.array([10 * count])}
+        seconds = 10 * (body * count + BOX * sides**dimension) + TEST * counted["pair_tests"]
     else:
         counted = _events(count, sides, getattr(chosen[0], "search", ""), gas)
         seconds = TEST * counted["pair_tests"] + 4e-7 * counted["collisions"]
@@ -66,7 +69,7 @@ def job(point):
 
 
 def _side(engine):
-    given = engine.boxes_per_side or 1
+    given = engine.boxes_per_side or (0 if engine.name == "step" else 1)
     return given[0] if isinstance(given, tuple) else given
 
 

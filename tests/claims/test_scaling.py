@@ -35,7 +35,7 @@ FALSIFIED = {
     "naive_scaling": ({"tests_excess": 0.5}, "N(N-1)/2"),
     "box_count": ({"crossing_searches": 1.0, "crossing_searches_error": 0.01}, "searched at a crossing"),
     "ideal_boxes": ({"penalty": 2.0, "penalty_error": 0.01}, "worst of all gases"),
-    "linear_scaling": ({"work_exponent": 2.0, "work_exponent_error": 0.01}, "pair tests and box visits"),
+    "linear_scaling": ({"list_share": 1.0, "list_share_error": 0.01}, "neighbour list"),
     "event_scaling": ({"pairs_excess": 0.1}, "N(N-1)/2"),
 }
 

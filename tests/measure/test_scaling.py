@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from scaling_data import BOX, TEST, points, settings
+from scaling_data import BOX, LIST, TEST, points, settings
 
 from gaspart.measure import scaling
 
@@ -43,6 +43,9 @@ def test_linear_scaling(tmp_path):
     ds = scaling.linear_scaling(points("linear_scaling", tmp_path), settings("linear_scaling"))
     assert float(ds.work_exponent) == pytest.approx(1.0, abs=0.02)
     assert ds.exponent.values == pytest.approx(1.0, abs=0.06)
+    assert ds.list_pair_tests.values == pytest.approx(1.0)
+    assert ds.list_seconds.values == pytest.approx(LIST + TEST, rel=0.03)
+    assert (ds.list_share.values < 0.5).all()  # boxes cost BODY at least, and some tests
     count = float(ds.extrapolated_count)
     assert float(ds.extrapolated_seconds) == pytest.approx(TEST * count * (count - 1) / 2, rel=0.03)
 

@@ -239,6 +239,19 @@ def linear_scaling(ds: xr.Dataset) -> list[Claim]:
             claims.append(
                 _exponent("reproduction", what, part, "exponent", 1.0, 0.1, f"{source}: linear", slow)
             )
+    slowest = ds.isel(listed=int(np.nanargmax(ds.list_share.values)))
+    claims.append(
+        Claim.at_most(
+            "time with a neighbour list over the cheapest partition's, the worst of all gases",
+            "test",
+            float(slowest.list_share),
+            float(slowest.list_share_error),
+            0.1,
+            0.5,
+            "most steps test the pairs of the list alone; boxes are filled and looked into in every step",
+            "a list costs more than it saves",
+        )
+    )
     ratio, error = 27.0 * float(ds.extrapolated_ratio), 27.0 * float(ds.extrapolated_ratio_error)
     claims.append(
         Claim(

@@ -176,7 +176,7 @@ def _ideal(axis: Axes, of: xr.Dataset, kind: int, label: str) -> None:
 
 
 def linear_scaling(ds: xr.Dataset) -> Figure:
-    """Time of a step with one box and with the cheapest partition; time and work per body."""
+    """Time of a step with one box, the cheapest partition and a neighbour list; time and work per body."""
     figure, (top, middle, bottom) = style.new(rows=3, height=6.4, height_ratios=(2, 1.2, 1))
     count = ds["count"].values.astype(float)
     far = float(ds.extrapolated_count)
@@ -201,12 +201,16 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
         style.points(middle, n, of.seconds * _NS, of.seconds_error * _NS, kind=2 * kind, linestyle="-")
         style.points(bottom, n, of.box_visits, kind=2 * kind, linestyle="-")
         style.points(bottom, n, of.pair_tests, kind=2 * kind, linestyle="--", hollow=True)
+    for radius in sorted(set(ds.list_radius.values.tolist()), reverse=True):
+        of = ds.isel(listed=np.flatnonzero(ds.list_radius.values == radius))
+        n, seconds, error = of.list_count, of.list_seconds, of.list_seconds_error
+        label = None if radius < ds.list_radius.max() else "neighbour list (ours)"
+        style.points(top, n, seconds * n, error * n, kind=3, label=label)
+        style.points(middle, n, seconds * _NS, error * _NS, kind=3, linestyle="-")
+        style.points(bottom, n, of.list_pair_tests, kind=3, linestyle="--", hollow=True)
     guide = np.array([count.min(), count.max()])
-    top.plot(guide, guide * float(ds.seconds.min()), color=style.GREY, lw=0.8, zorder=1)
-    top.annotate(
-        "linear", (guide[1], 0.4 * guide[1] * float(ds.seconds.min())), ha="right", va="top", fontsize=7
-    )
-    for factor, offset in ((_SCAN, 3), (1.0, -38)):
+    top.plot(guide, guide * float(ds.seconds.min()), color=style.GREY, lw=0.8, zorder=1, label="linear")
+    for factor, offset in ((_SCAN, 3), (1.0, -24)):
         seconds = factor * float(ds.extrapolated_seconds)
         top.annotate(
             _duration(seconds),
@@ -216,10 +220,9 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
             ha="right",
             fontsize=7,
         )
-    top.set(xscale="log", yscale="log", ylabel="time per step (s)", ylim=(None, 3e8))
+    top.set(xscale="log", yscale="log", ylabel="time per step (s)", ylim=(None, 3e10))
     top.legend(loc="upper left")
-    middle.set(ylabel="time per body (ns)")
-    middle.set_ylim(bottom=0.0)
+    middle.set(yscale="log", ylabel="time per body (ns)", ylim=(1.0, None))
     bottom.set(yscale="log", ylabel="per body", xlabel="number of bodies $N$", ylim=(0.02, 100.0))
     bottom.text(0.02, 0.85, "boxes looked into", transform=bottom.transAxes, fontsize=7)
     bottom.text(0.02, 0.06, "pair tests (hollow)", transform=bottom.transAxes, fontsize=7)

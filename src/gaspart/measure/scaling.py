@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart import grid, statistics
-from gaspart.measure.timings import carry_on, ideal, one_box, penalty, per_body, per_event, weights
+from gaspart.measure.timings import carry_on, ideal, listed, one_box, penalty, per_body, per_event, weights
 from gaspart.theory import partition as theory
 
 
@@ -142,13 +142,15 @@ def linear_scaling(points: list[grid.Point], settings: dict) -> xr.Dataset:
     Over ``gas`` (points with several partitions): ``count``, ``radius``, costs of the cheapest partition as
     in `per_body`, and ``work``, pair tests and box visits together. Over ``naive`` (points with one box):
     ``naive_count``, ``naive_seconds`` per step, with error. Over ``part`` (A's figures): ``part_low``,
-    ``part_high``, ``part_radius``, and ``exponent`` of the time per step in N, with error.
+    ``part_high``, ``part_radius``, and ``exponent`` of the time per step in N, with error. Over ``listed``
+    (points without partition): see `listed`.
     Scalars: ``work_exponent`` of the work per step over all gases, with error; ``extrapolated_count``,
     ``extrapolated_seconds`` of one naive step there (with error), ``extrapolated_ratio``, its time over the
     partitioned step's (relative error in ``extrapolated_ratio_error``); ``source_years``.
     """
     runs = sorted((_run(point) for point in points), key=lambda run: (run.attrs["count"], run.radius))
-    naive = one_box([run for run in runs if run.sizes["partition"] == 1])
+    naive = one_box([run for run in runs if run.boxes.values.tolist() == [1]])
+    lists = [run for run in runs if not run.boxes.values.any()]
     runs = [run for run in runs if run.sizes["partition"] > 1]
     costs = [per_body(run) for run in runs]
     gases = xr.concat([cost.isel(partition=int(np.argmin(cost.seconds.values))) for cost in costs], "gas")
@@ -166,9 +168,9 @@ def linear_scaling(points: list[grid.Point], settings: dict) -> xr.Dataset:
     step, step_error = seconds[-1], count[-1] * gases.seconds_error.values[-1]
     scale = settings["naive_count"] / count[-1]
     ratio = carried[0] / (scale * step)
-    return xr.merge([gases, naive.rename(count="naive_count", **_names("naive", naive))]).assign(
-        count=("gas", count.astype(int)),
-        radius=("gas", radius),
+    gases = gases.assign(count=("gas", count.astype(int)), radius=("gas", radius))
+    naive = naive.rename(count="naive_count", **_names("naive", naive))
+    return xr.merge([gases, naive, listed(lists, gases)]).assign(
         work=("gas", work),
         part_low=("part", [part["counts"][0] for part in settings["source_figures"]]),
         part_high=("part", [part["counts"][1] for part in settings["source_figures"]]),

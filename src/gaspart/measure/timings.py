@@ -165,6 +165,32 @@ def one_box(runs: list[xr.Dataset]) -> xr.Dataset:
     )
 
 
+def listed(runs: list[xr.Dataset], gases: xr.Dataset) -> xr.Dataset:
+    """Over ``listed``: costs per body of neighbour lists, ``list_seconds`` ... as in `per_body`;
+    ``list_count``, ``list_radius``; and ``list_share``, the time over that of the gas of the same count and
+    radius among `gases` (NaN if there is none), with error."""
+    costs = xr.concat([per_body(run).isel(partition=0) for run in runs], "listed")
+    share = np.full((len(runs), 2), math.nan)
+    for n, run in enumerate(runs):
+        same = (gases["count"] == run.attrs["count"]).values & (gases.radius == run.radius).values
+        for gas in np.flatnonzero(same):
+            mine, other = costs.isel(listed=n), gases.isel(gas=gas)
+            share[n, 0] = mine.seconds / other.seconds
+            share[n, 1] = share[n, 0] * math.hypot(
+                mine.seconds_error / mine.seconds, other.seconds_error / other.seconds
+            )
+    return (
+        costs[["seconds", "seconds_error", "pair_tests"]]
+        .rename(seconds="list_seconds", seconds_error="list_seconds_error", pair_tests="list_pair_tests")
+        .assign(
+            list_count=("listed", [run.attrs["count"] for run in runs]),
+            list_radius=("listed", [run.radius for run in runs]),
+            list_share=("listed", share[:, 0]),
+            list_share_error=("listed", share[:, 1]),
+        )
+    )
+
+
 def carry_on(naive: xr.Dataset, count: float) -> tuple[float, float]:
     """Time of one naive step with `count` bodies, and its error, from time = a N + b tests."""
     bodies = naive["count"].values.astype(float)
