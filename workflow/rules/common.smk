@@ -1,6 +1,7 @@
 # What the rules share: the checked config, the points of its grids, and which modules each stage is made of.
 
 import hashlib
+import os
 import shlex
 import sys
 from functools import cache
