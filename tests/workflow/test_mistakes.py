@@ -1,7 +1,8 @@
 """A user's mistake, as Snakemake tells it: one line, exit code 2, nothing written."""
 
 import pytest
-from workspace import SMOKE
+from machine import WITHOUT_RIGHTS, why_not
+from workspace import SMOKE, copy_of_project
 
 pytestmark = pytest.mark.workflow
 
@@ -42,3 +43,21 @@ def test_what_only_a_job_can_find_out_is_one_line_in_its_log(fresh, tmp_path):
     assert "does not fit by random insertion" in log
     assert "Traceback" not in log
     assert not (fresh.path / target).exists()
+
+
+@pytest.mark.skipif(why_not(WITHOUT_RIGHTS) is not None, reason=str(why_not(WITHOUT_RIGHTS)))
+@pytest.mark.parametrize("folder", [".", "results"])
+def test_a_folder_that_may_not_be_written_to_is_one_line(tmp_path, folder):
+    workspace = copy_of_project(tmp_path)
+    folder = tmp_path / folder
+    folder.mkdir(exist_ok=True)
+    folder.chmod(0o555)
+    try:
+        result = workspace.snakemake("--cores", "1", *SMOKE, within=WITHOUT_RIGHTS)
+    finally:
+        folder.chmod(0o755)
+    assert result.returncode == 2
+    assert result.stdout.splitlines()[-1] == (
+        f"gaspart: folder = {str(folder)!r}: this user may not write to it, where the workflow keeps results"
+    )
+    assert "Traceback" not in result.stdout

@@ -22,12 +22,12 @@ class Workspace:
 
     path: Path
 
-    def snakemake(self, *arguments):
-        """Run Snakemake here; the result with its output, whatever it exits with."""
+    def snakemake(self, *arguments, within=()):
+        """Run Snakemake here, by another command that isolates it; the result, whatever it exits with."""
         # The copy's own modules are to be used, wherever the installed ones are.
         environment = {**os.environ, "PYTHONPATH": str(self.path / "src")}
         return subprocess.run(
-            [sys.executable, "-m", "snakemake", *arguments],
+            [*within, sys.executable, "-m", "snakemake", *arguments],
             cwd=self.path,
             env=environment,
             stdin=subprocess.DEVNULL,

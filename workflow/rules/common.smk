@@ -24,6 +24,11 @@ if workflow.is_main_process:
     try:
         files = ["config/config.yaml", *workflow.overwrite_configfiles]
         check(config, str(ROOT / "workflow/schemas/config.schema.yaml"), [str(name) for name in files])
+        for kept in ("results", ".snakemake"):
+            folder = kept if os.path.exists(kept) else "."
+            if not os.access(folder, os.W_OK):
+                told = f"this user may not write to it, where the workflow keeps {kept}"
+                raise SceneError("folder", os.path.abspath(folder), told)
     except SceneError as error:
         # A user's mistake: one line and exit code 2, instead of a WorkflowError with its place in this file.
         print(f"gaspart: {error}", file=sys.stderr)
