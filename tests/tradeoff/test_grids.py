@@ -10,10 +10,10 @@ GASES = """
 seed: 1
 experiments:
   gas:
-    point: &gas {dimension: 3, count: 1000000, radius: 0.5, boundary: periodic, temperature: 1.0, duration: 100}
+    point: &gas {dimension: 3, count: 1000000, radius: 0.5, boundary: periodic, speed: 1.0, duration: 100}
     grid: {packing_fraction: [0.1, 0.2]}
   dense:
-    point: {dimension: 2, count: 1000000, radius: 0.5, boundary: periodic, temperature: 1.0, duration: 100}
+    point: {dimension: 2, count: 1000000, radius: 0.5, boundary: periodic, speed: 1.0, duration: 100}
     grid: {packing_fraction: [0.71]}
   timed:
     job: measure_cost
