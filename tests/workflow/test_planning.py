@@ -58,13 +58,15 @@ def test_the_points_are_shared_among_few_cluster_jobs(fresh, monkeypatch):
 
 START = """
 import sys
+before = set(sys.modules)
 sys.path.insert(0, {scripts!r})
 import _job
 _job.load_numba()
 import gaspart as gp
-gas = gp.Scene(gp.Container((9.0, 9.0), "periodic"), [gp.Species(16, 0.5, temperature=1.0)])
+discs = gp.Species(16, 0.5, temperature=1.0, arrangement="lattice")
+gas = gp.Scene(gp.Container((9.0, 9.0), "periodic"), [discs])
 gp.run(gas, gp.EventDriven(), 1, 0.1, 0.1, {path!r})
-print(*{{"scipy.linalg", "coverage", "xarray", "pandas", "matplotlib"}} & set(sys.modules))
+print(*{{"scipy.linalg", "coverage", "xarray", "pandas", "matplotlib"}} & set(sys.modules) - before)
 """
 
 
