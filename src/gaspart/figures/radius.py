@@ -81,7 +81,7 @@ def _labels(axis: Axes, event: xr.Dataset, step: xr.Dataset) -> None:
     texts = (
         (1.2 * float(event["pair_tests"].max()), "event-driven: pair tests per collision"),
         (1.25 * float(step["pair_tests"].max()), "time-stepped: pair tests per body and step"),
-        (0.23, "event-driven: box boundaries crossed per collision"),
+        (0.23, "event-driven: boundaries crossed per collision"),
     )
     for height, text in texts:
         axis.text(0.97, height, text, transform=axis.get_yaxis_transform(), ha="right", va="bottom")

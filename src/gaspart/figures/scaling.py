@@ -134,8 +134,9 @@ def ideal_boxes(ds: xr.Dataset) -> Figure:
         limit = float((of.most * of["count"])[0])
         top.axhline(limit, color=style.COLOURS[kind], linestyle=":", lw=0.8)
         top.annotate(
-            f"boxes of a diameter, $r = {radius:g}$", (line[0 if kind else -1], limit), xytext=(0, 2),
-            textcoords="offset points", ha="left" if kind else "right", fontsize=7, color=style.COLOURS[kind],
+            f"boxes of a diameter, $r = {radius:g}$", (line[0 if kind else -1], limit),
+            xytext=(0, 2 if kind else -9), textcoords="offset points", ha="left" if kind else "right",
+            fontsize=7, color=style.COLOURS[kind],
         )  # fmt: skip
     top.set(xscale="log", yscale="log", xlabel="number of bodies $N$", ylabel="ideal number of boxes")
     top.set_ylim(2e3, 1e8)
