@@ -177,15 +177,21 @@ def fall(x, v, pull, lower, upper, dt):
 @kernel
 def move_by_rules(bodies, space, gravity, dt, rules, law, cells, watch, counters):
     """Make the motion of one step where walls have rules of their own."""
-    for k in range(len(space.lengths)):
-        x, v = bodies.positions[k], bodies.velocities[k]
-        if gravity is None:
-            fly(x, v, space.lengths[k], space.lengths[k], dt)
-        else:
-            fall(x, v, gravity[k], space.lengths[k], space.lengths[k], dt)
-    for slot in range(bodies.positions.shape[1]):
-        if slot >= bodies.ordinary or not is_free(bodies, rules, slot):
-            mend_by_rules(bodies, space, slot, dt, rules, law, cells, watch, counters)
+    count = bodies.positions.shape[1]
+    for start in range(0, count, _BLOCK):
+        stop = min(start + _BLOCK, count)
+        outside = 0
+        for k in range(len(space.lengths)):
+            x = bodies.positions[k, start:stop]
+            v = bodies.velocities[k, start:stop]
+            if gravity is None:
+                outside += fly(x, v, rules.free[k, 0], rules.free[k, 1], dt)
+            else:
+                outside += fall(x, v, gravity[k], rules.free[k, 0], rules.free[k, 1], dt)
+        if outside > 0 or rules.holds or stop > bodies.ordinary:
+            for slot in range(start, stop):
+                if slot >= bodies.ordinary or not is_free(bodies, rules, slot):
+                    mend_by_rules(bodies, space, slot, dt, rules, law, cells, watch, counters)
 
 
 @kernel
