@@ -16,6 +16,8 @@ from numba.core import cgutils
 from numba.core.errors import TypingError
 from numba.extending import intrinsic
 
+from gaspart.engines.layout import PLACES
+
 WIDTH = 8
 LAP_BITS, LAP_FIRST = 2, 32  # of a candidate, above the number of the body: per axis 1 + the lap of its image
 _DOUBLE, _INT, _WORD = ir.DoubleType(), ir.IntType(32), ir.IntType(64)
@@ -213,6 +215,27 @@ def which_meet(typingctx, rows, near, first, body, space, gravity):
         return builder.zext(builder.bitcast(meets.value, ir.IntType(WIDTH)), _WORD)
 
     return types.uint64(rows, near, first, body, space, gravity), generate
+
+
+@intrinsic
+def write_down(typingctx, near, met, places, box, lap):
+    """Write all places of a box, filled or not, as candidates of a lap into `near` from number `met` on."""
+
+    def generate(context, builder, signature, arguments):
+        near, met, places, box, lap = arguments
+        near = context.make_array(signature.args[0])(context, builder, near).data
+        places = context.make_array(signature.args[2])(context, builder, places).data
+        four, words = ir.VectorType(_INT, PLACES), ir.VectorType(_WORD, PLACES)
+        place = builder.gep(places, [builder.mul(box, _WORD(PLACES))])
+        bodies = builder.load(builder.bitcast(place, four.as_pointer()), align=4)
+        laps = Lanes(builder, lap).all(lap).value
+        laps = builder.shuffle_vector(laps, laps, ir.Constant(four, [0] * PLACES))
+        candidates = builder.or_(builder.zext(bodies, words), laps)
+        place = builder.bitcast(builder.gep(near, [met]), words.as_pointer())
+        builder.store(candidates, place, align=8)
+        return context.get_dummy_value()
+
+    return types.none(near, types.uint64, places, types.uint64, types.uint64), generate
 
 
 @intrinsic

@@ -10,13 +10,13 @@ from math import inf
 
 from numpy import int64, uint64
 
-from gaspart.engines.eight import LAP_BITS, LAP_FIRST, WIDTH, lowest, which_meet
+from gaspart.engines.eight import LAP_BITS, LAP_FIRST, WIDTH, lowest, which_meet, write_down
 from gaspart.engines.flight import pair_time
 from gaspart.engines.layout import BOX_VISITS, PAIR_TESTS, PLACES
 from gaspart.kernel import helper, kernel
 
 MOST = 64  # candidates gathered before they are looked at: a bit of a word for each
-_WIDTH, _PLACES, _FULL = uint64(WIDTH), uint64(PLACES), uint64(MOST - PLACES - 1)
+_WIDTH, _PLACES, _FULL = uint64(WIDTH), uint64(PLACES), uint64(MOST - 3 * PLACES - 1)
 _BODY = uint64((1 << LAP_FIRST) - 1)
 _X, _Y, _Z = (uint64(LAP_FIRST + LAP_BITS * k) for k in range(3))
 _LAP = uint64((1 << LAP_BITS) - 1)
@@ -35,9 +35,10 @@ def offset_of(candidate, space):
 
 
 @helper
-def consider(rows, plans, body, met, space, partition, gravity):
+def consider(rows, plans, body, met, space, partition, counters, gravity):
     """Note the body's contact with one of `met` candidates, if one is earlier than it has planned."""
     near = partition.near
+    counters.counts[PAIR_TESTS] += int64(met)
     for n in range(_WIDTH):
         near[met + n] = body  # no body meets itself
     left = uint64(0)
@@ -62,10 +63,46 @@ def consider(rows, plans, body, met, space, partition, gravity):
 
 
 @kernel
-def make_room(rows, plans, body, met, space, partition, gravity):
-    """Look at the candidates if there may be no room for another box's. Returns how many are left."""
-    consider(rows, plans, body, met, space, partition, gravity)
-    return uint64(0)
+def settle(rows, plans, body, met, row, lap, low, end, space, partition, counters, gravity):
+    """Write down whom the boxes at steps low..end - 1 of a row could not give a place, and look at the candidates
+    whenever there may be no room for another row's. Returns how many are left."""
+    near, neighbour = partition.near, partition.neighbour
+    x = uint64(plans[body].at[0])
+    for step in range(low, end):
+        beside = neighbour[0, x, step]
+        if beside < 0:
+            continue
+        box = uint64(row + beside)
+        lap_x = lap | uint64(partition.shift[0, x, step] + 1) << _X
+        other = uint64(partition.head[box])
+        for _ in range(_PLACES, uint64(partition.filled[box])):
+            near[met] = other | lap_x
+            met += uint64(1)
+            if met > _FULL:
+                consider(rows, plans, body, met, space, partition, counters, gravity)
+                met = uint64(0)
+            other = uint64(partition.following[other])
+    if met > _FULL:
+        consider(rows, plans, body, met, space, partition, counters, gravity)
+        met = uint64(0)
+    return met
+
+
+@helper
+def span(partition, axis, at, crossed):
+    """Which boxes to look into along an axis, about that at a coordinate: first step and end (0..3), how many there
+    are, and how many of them are that box itself."""
+    low, end = uint64(0), uint64(3)
+    if crossed:
+        low = uint64(1 + crossed)
+        end = low + uint64(1)
+    visits = itself = 0
+    own = partition.neighbour[axis, at, 1]
+    for step in range(low, end):
+        beside = partition.neighbour[axis, at, step]
+        visits += int64(beside >= 0)
+        itself += int64(beside == own)
+    return low, end, visits, itself
 
 
 @helper
@@ -78,15 +115,14 @@ def find_contact(rows, plans, searcher, space, partition, counters, crossed, gra
     body = uint64(searcher)
     at = plans[body].at
     ax, ay, az = uint64(at[0]), uint64(at[1]), uint64(at[2])
-    own = uint64(plans[body].box)
-    near, following = partition.near, partition.following
     neighbour, shift = partition.neighbour, partition.shift
-    x, y, z = crossed
-    low_x, low_y, low_z = uint64(1 + x if x else 0), uint64(1 + y if y else 0), uint64(1 + z if z else 0)
-    end_x, end_y, end_z = uint64(2 + x if x else 3), uint64(2 + y if y else 3), uint64(2 + z if z else 3)
+    low_x, end_x, visits_x, itself_x = span(partition, 0, ax, crossed[0])
+    low_y, end_y, visits_y, itself_y = span(partition, 1, ay, crossed[1])
+    low_z, end_z, visits_z, itself_z = span(partition, 2, az, crossed[2])
+    counters.counts[BOX_VISITS] += visits_x * visits_y * visits_z
+    counters.counts[PAIR_TESTS] -= itself_x * itself_y * itself_z
+    near = partition.near
     met = uint64(0)
-    visits = 0
-    tests = uint64(0)
     for dz in range(low_z, end_z):
         beside_z = neighbour[2, az, dz]
         if beside_z < 0:
@@ -96,33 +132,20 @@ def find_contact(rows, plans, searcher, space, partition, counters, crossed, gra
             beside_y = neighbour[1, ay, dy]
             if beside_y < 0:
                 continue
-            lap_y = lap_z | uint64(shift[1, ay, dy] + 1) << _Y
+            row = beside_y + beside_z
+            lap = lap_z | uint64(shift[1, ay, dy] + 1) << _Y
+            crowd = uint64(0)
             for dx in range(low_x, end_x):
                 beside_x = neighbour[0, ax, dx]
                 if beside_x < 0:
                     continue
-                lap = lap_y | uint64(shift[0, ax, dx] + 1) << _X
-                visits += 1
-                box = uint64(beside_x + beside_y + beside_z)
+                box = uint64(row + beside_x)
+                write_down(near, met, partition.places, box, lap | uint64(shift[0, ax, dx] + 1) << _X)
                 filled = uint64(partition.filled[box])
-                tests += filled - uint64(box == own)
-                first, second = partition.places[box, 0], partition.places[box, 1]
-                third, fourth = partition.places[box, 2], partition.places[box, 3]
-                near[met] = uint64(first) | lap
-                near[met + uint64(1)] = uint64(second) | lap
-                near[met + uint64(2)] = uint64(third) | lap
-                near[met + uint64(3)] = uint64(fourth) | lap
                 met += min(filled, _PLACES)
-                if filled > _PLACES:
-                    other = uint64(partition.head[box])
-                    for _ in range(_PLACES, filled):
-                        near[met] = other | lap
-                        met += uint64(1)
-                        if met > _FULL:
-                            met = make_room(rows, plans, body, met, space, partition, gravity)
-                        other = uint64(following[other])
-                if met > _FULL:
-                    met = make_room(rows, plans, body, met, space, partition, gravity)
-    consider(rows, plans, body, met, space, partition, gravity)
-    counters.counts[PAIR_TESTS] += int64(tests)
-    counters.counts[BOX_VISITS] += visits
+                crowd = max(crowd, filled)
+            if crowd > _PLACES or met > _FULL:
+                met = settle(
+                    rows, plans, body, met, row, lap, low_x, end_x, space, partition, counters, gravity
+                )
+    consider(rows, plans, body, met, space, partition, counters, gravity)
