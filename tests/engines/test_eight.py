@@ -1,18 +1,18 @@
-"""Eight pairs at once: whether they may touch is what the time of their contact says."""
+"""Eight pairs at once: the times of their contacts are those of one pair at a time."""
 
 import numpy as np
 import pytest
 from numpy import uint64
 
-from gaspart.engines.eight import LAP_BITS, LAP_FIRST, lowest, which_meet
+from gaspart.engines.eight import LAP_BITS, LAP_FIRST, earliest, lowest
 from gaspart.engines.flight import pair_time
 from gaspart.engines.layout import Gravity, Space
 from gaspart.kernel import kernel
 
 
 @kernel
-def meets(rows, near, first, body, space, gravity):
-    return which_meet(rows, near, uint64(first), uint64(body), space, gravity)
+def first_of(rows, near, met, body, soon, partner, space, gravity):
+    return earliest(rows, near, uint64(met), uint64(body), soon, partner, space, gravity)
 
 
 @kernel
@@ -45,24 +45,44 @@ def scene_of(d, seed):
     return rows, lengths, others, laps, near
 
 
+def offset_of(lap, lengths):
+    return tuple(float(a * b) for a, b in zip(lap, lengths, strict=True))
+
+
 @pytest.mark.parametrize("d", [2, 3])
-def test_which_meet_is_which_have_a_time(d):
+def test_eight_times_are_those_of_the_pairs_to_the_bit(d):
     rows, lengths, others, laps, near = scene_of(d, seed=d)
     space = Space(lengths, (True,) * d, 1.0)
-    found, expected = [], []
-    for first in range(0, len(near), 8):
-        bits = meets(rows, near, first, 7, space, None)
-        assert bits < 256
-        found += [bits >> n & 1 for n in range(8)]
-    for other, lap in zip(others, laps, strict=True):
-        offset = tuple(float(a * b) for a, b in zip(lap, lengths, strict=True))
-        expected.append(time(rows, 7, other, offset, space, None) < np.inf)
-    assert found == expected
-    assert 20 < sum(found) < 400
-    assert not any(bit for bit, other in zip(found, others, strict=True) if other == 7)
+    finite = 0
+    for n, (other, lap) in enumerate(zip(others, laps, strict=True)):
+        alone = np.concatenate([near[n : n + 1], np.full(7, 7, dtype=np.uint64)])
+        expected = time(rows, 7, other, offset_of(lap, lengths), space, None)
+        found = first_of(rows, alone, 1, 7, np.inf, -1, space, None)
+        assert found == ((expected, other, 0) if expected < np.inf else (np.inf, -1, 0))
+        finite += expected < np.inf
+    assert 20 < finite < 400
 
 
-def test_falling_bodies_that_rest_or_are_fixed_may_meet():
+def test_the_earliest_of_many_and_of_simultaneous_ones_the_lowest():
+    rows, lengths, others, laps, near = scene_of(3, seed=3)
+    rows[40:48] = rows[32:40]
+    space = Space(lengths, (True,) * 3, 1.0)
+    for first in range(0, 736, 3):
+        for met in (1, 8, 21, 64):
+            chosen = near[first : first + 72].copy()
+            chosen[met : met + 8] = 7
+            times = [
+                (time(rows, 7, others[n], offset_of(laps[n], lengths), space, None), others[n])
+                for n in range(first, first + met)
+            ]
+            best = min(times)
+            best = best if best[0] < np.inf else (np.inf, -1)
+            assert first_of(rows, chosen, met, 7, np.inf, -1, space, None) == (*best, 0)
+            before = (best[0], 0) if best[0] < np.inf else (5.0, 3)
+            assert first_of(rows, chosen, met, 7, *before, space, None) == (*before, 0)
+
+
+def test_pairs_that_do_not_fall_alike_are_left_to_be_looked_at():
     rows, lengths, others, laps, near = scene_of(3, seed=5)
     rows[::3, 5], rows[::3, 2] = 0.0, rows[::3, 7]
     fixed = np.zeros(len(rows), dtype=np.bool_)
@@ -73,20 +93,19 @@ def test_falling_bodies_that_rest_or_are_fixed_may_meet():
     laps[:, 2] = 0
     near &= ~(np.uint64(3) << np.uint64(LAP_FIRST + 2 * LAP_BITS))
     near |= np.uint64(1) << np.uint64(LAP_FIRST + 2 * LAP_BITS)
+    finite = 0
     for body in (0, 3, 5, 7):  # fixed, lying, fixed, falling
         falls = not (fixed[body] or body % 3 == 0)
-        found, expected, alike = [], [], []
-        for first in range(0, len(near), 8):
-            bits = meets(rows, near, first, body, space, gravity)
-            found += [bits >> n & 1 for n in range(8)]
-        for other, lap in zip(others, laps, strict=True):
-            offset = tuple(float(a * b) for a, b in zip(lap, lengths, strict=True))
-            expected.append(time(rows, body, other, offset, space, gravity) < np.inf)
-            alike.append((not (fixed[other] or other % 3 == 0)) == falls)
-        found, expected, alike = map(np.array, (found, expected, alike))
-        assert (found[alike] == expected[alike]).all()
-        assert found[~alike].all()
-        assert not falls or expected[alike].sum() > 10
+        for n, (other, lap) in enumerate(zip(others, laps, strict=True)):
+            alone = np.concatenate([near[n : n + 1], np.full(7, body, dtype=np.uint64)])
+            found = first_of(rows, alone, 1, body, np.inf, -1, space, gravity)
+            if (not (fixed[other] or other % 3 == 0)) != falls:
+                assert found == (np.inf, -1, 1)
+                continue
+            expected = time(rows, body, other, offset_of(lap, lengths), space, gravity)
+            assert found == ((expected, other, 0) if expected < np.inf else (np.inf, -1, 0))
+            finite += expected < np.inf
+    assert finite > 10
 
 
 def test_lowest_bit():

@@ -1,19 +1,19 @@
-"""Eight pairs at once: the test that drops those that part or miss, in vector instructions.
+"""Eight pairs at once: the times of their contacts, in vector instructions.
 
 What a compiler does not find by itself: eight rows, each a vector of eight numbers, are transposed into
-vectors of one number of eight bodies, and the test is worked out in these, in the same arithmetic and order
-as in `flight`, so that no contact is lost to rounding. LLVM makes of the vectors what the processor has, of
+vectors of one number of eight bodies, and the times are worked out in these, in the same arithmetic and
+order as in `flight.pair_time`, to the same bits. LLVM makes of the vectors what the processor has, of
 whatever width.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import inf
 
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.core.errors import TypingError
 from numba.extending import intrinsic
 
 from gaspart.engines.layout import PLACES
@@ -61,6 +61,9 @@ class Lanes:
     def __mul__(self, other):
         return self._with("fmul", other)
 
+    def __truediv__(self, other):
+        return self._with("fdiv", other)
+
     def __and__(self, other):
         return self._with("and_", other)
 
@@ -82,6 +85,17 @@ class Lanes:
     def equals(self, other):
         """Lane by lane."""
         return self._than("==", other)
+
+    def turned(self, step: int) -> Lanes:
+        """The lanes some steps on."""
+        places = ir.Constant(ir.VectorType(_INT, WIDTH), [(n + step) % WIDTH for n in range(WIDTH)])
+        return Lanes(self.builder, self.builder.shuffle_vector(self.value, self.value, places))
+
+    def sqrt(self):
+        """Lane by lane, rounded as IEEE wants."""
+        kind = ir.FunctionType(self.value.type, [self.value.type])
+        root = cgutils.get_or_insert_function(self.builder.module, kind, f"llvm.sqrt.v{WIDTH}f64")
+        return Lanes(self.builder, self.builder.call(root, [self.value]))
 
     def where(self, condition: Lanes, other: Lanes | float) -> Lanes:
         """These where the condition holds, the others elsewhere."""
@@ -114,20 +128,23 @@ def load_row(builder: ir.IRBuilder, data: ir.Value, index: ir.Value) -> list[Lan
     return [Lanes(builder, value).all(value) for value in values]
 
 
-def touching(one, other, offset, pulls_one=None, pulls_other=None) -> Lanes:
-    """Whether `flight.pair_time` may be finite, for one body and eight others displaced by `offset` (d,): as
-    `flight.encounter`, in columns of rows. pulls_one, pulls_other: (d,), or None if there is no gravity."""
+def contact_times(one, other, offset, pulls=None) -> tuple[Lanes, Lanes | None]:
+    """`flight.pair_time` in columns of rows, of one body and eight others displaced by `offset` (d,).
+
+    pulls: those of the one (d,) and of the others (d,), or None if there is no gravity. If there is, also tells
+    which pairs do not fall alike: their times are not worked out.
+    """
     d = len(offset)
     start = other[2 * d].where(other[2 * d] > one[2 * d], one[2 * d])
     late, late_other = start - one[2 * d], start - other[2 * d]
     rr = rv = vv = aa = start.all(0.0)
     for k in range(d):
         v, v_other = one[d + k], other[d + k]
-        if pulls_one is None:
+        if pulls is None:
             r = (other[k] + v_other * late_other) - (one[k] + v * late) + offset[k]
             v = v_other - v
         else:
-            pull, pull_other = pulls_one[k], pulls_other[k]
+            pull, pull_other = pulls[0][k], pulls[1][k]
             x = one[k] + (v + pull * 0.5 * late) * late
             r = (other[k] + (v_other + pull_other * 0.5 * late_other) * late_other) - x + offset[k]
             v = (v_other + pull_other * late_other) - (v + pull * late)
@@ -137,8 +154,29 @@ def touching(one, other, offset, pulls_one=None, pulls_other=None) -> Lanes:
         rv = rv + r * v
         vv = vv + v * v
     sigma = one[2 * d + 1] + other[2 * d + 1]
-    meets = (rv < 0.0) & (rv * rv >= vv * (rr - sigma * sigma))
-    return meets if pulls_one is None else meets | (aa > 0.0)
+    c = rr - sigma * sigma
+    meets = (rv < 0.0) & (rv * rv >= vv * c)
+    root = c / ((rv * rv - vv * c).sqrt() - rv)
+    time = (start + start.all(0.0).where(c <= 0.0, root)).where(meets, inf)
+    if pulls is None:
+        return time, None
+    return start.all(inf).where(aa > 0.0, time), aa > 0.0
+
+
+def bits(candidates: Lanes, start: int, count: int) -> Lanes:
+    """So many bits of each candidate."""
+    builder = candidates.builder
+    shifted = builder.lshr(candidates.value, candidates.all(_WORD(start)).value)
+    return Lanes(builder, builder.and_(shifted, candidates.all(_WORD((1 << count) - 1)).value))
+
+
+def lap_of(candidates: Lanes, axis: int) -> Lanes:
+    """In which image of the container each candidate stands along an axis: -1, 0 or 1."""
+    builder = candidates.builder
+    lap = bits(candidates, LAP_FIRST + LAP_BITS * axis, LAP_BITS).value
+    lap = builder.trunc(lap, ir.VectorType(_INT, WIDTH))
+    lap = builder.sub(lap, candidates.all(_INT(1)).value)
+    return Lanes(builder, builder.sitofp(lap, ir.VectorType(_DOUBLE, WIDTH)))
 
 
 def pulls(body: list[Lanes], fixed: Lanes, space: dict, pull: list[ir.Value]) -> list[Lanes]:
@@ -164,57 +202,71 @@ def fields(builder: ir.IRBuilder, kind: types.BaseNamedTuple, value: ir.Value) -
     return members
 
 
+def sooner(time: Lanes, who: Lanes, other_time: Lanes, other_who: Lanes) -> tuple[Lanes, Lanes]:
+    """Of two contacts the sooner, of simultaneous ones that with the lower number."""
+    build = time.builder
+    lower = Lanes(build, build.icmp_signed("<", other_who.value, who.value))
+    other_is = (other_time < time) | (other_time.equals(time) & lower)
+    return other_time.where(other_is, time), other_who.where(other_is, who)
+
+
 @intrinsic
-def which_meet(typingctx, rows, near, first, body, space, gravity):
-    """A bit for each of the eight candidates from `first` on, whether the body may touch it."""
-    if not (isinstance(rows, types.Array) and isinstance(near, types.Array)):
-        raise TypingError("which_meet takes arrays")
+def earliest(typingctx, rows, near, met, body, soon, partner, space, gravity):
+    """The earliest contact of a body with `met` candidates, if it is sooner than that with a partner: (time,
+    partner, a bit for each candidate that does not fall alike, of which nothing is known)."""
 
     def generate(context, builder, signature, arguments):
-        rows, near, first, body, space, gravity = arguments
-        space = fields(builder, signature.args[4], space)
+        rows, near, met, body, soon, partner, space, gravity = arguments
+        space = fields(builder, signature.args[6], space)
         rows = context.make_array(signature.args[0])(context, builder, rows).data
         near = context.make_array(signature.args[1])(context, builder, near).data
+        fixed = None
+        if not isinstance(signature.args[7], types.NoneType):
+            gravity = fields(builder, signature.args[7], gravity)
+            fixed = context.make_array(signature.args[7].types[1])(context, builder, gravity["fixed"]).data
+
+        def is_fixed(index):
+            return builder.icmp_unsigned("!=", builder.load(builder.gep(fixed, [index])), ir.IntType(8)(0))
+
+        one = load_row(builder, rows, body)
+        best = cgutils.alloca_once_value(builder, one[0].all(soon).value)
+        who = cgutils.alloca_once_value(builder, one[0].all(partner).value)
+        unknown = cgutils.alloca_once_value(builder, _WORD(0))
         words = ir.VectorType(_WORD, WIDTH)
-        candidates = Lanes(
-            builder, builder.load(builder.bitcast(builder.gep(near, [first]), words.as_pointer()), align=8)
-        )
-
-        def bits(start, count):
-            """So many bits of each candidate."""
-            shifted = builder.lshr(candidates.value, candidates.all(_WORD(start)).value)
-            return builder.and_(shifted, candidates.all(_WORD((1 << count) - 1)).value)
-
-        numbers = bits(0, LAP_FIRST)
-        indices = [builder.extract_element(numbers, _INT(n)) for n in range(WIDTH)]
-        one, others = load_row(builder, rows, body), load_rows(builder, rows, indices)
-        offset = []
-        for k, length in enumerate(space["lengths"]):
-            lap = builder.trunc(bits(LAP_FIRST + LAP_BITS * k, LAP_BITS), ir.VectorType(_INT, WIDTH))
-            lap = builder.sub(lap, candidates.all(_INT(1)).value)
-            lap = builder.sitofp(lap, ir.VectorType(_DOUBLE, WIDTH))
-            offset.append(Lanes(builder, lap) * length)
-        pulled = ()
-        if not isinstance(signature.args[5], types.NoneType):
-            gravity = fields(builder, signature.args[5], gravity)
-            fixed = context.make_array(signature.args[5].types[1])(context, builder, gravity["fixed"]).data
-
-            def is_fixed(index):
-                return builder.icmp_unsigned(
-                    "!=", builder.load(builder.gep(fixed, [index])), ir.IntType(8)(0)
+        with cgutils.for_range_slice(builder, _WORD(0), met, _WORD(WIDTH), _WORD) as (first, _):
+            place = builder.bitcast(builder.gep(near, [first]), words.as_pointer())
+            candidates = Lanes(builder, builder.load(place, align=8))
+            numbers = bits(candidates, 0, LAP_FIRST)
+            indices = [builder.extract_element(numbers.value, _INT(n)) for n in range(WIDTH)]
+            others = load_rows(builder, rows, indices)
+            offset = [lap_of(candidates, k) * length for k, length in enumerate(space["lengths"])]
+            pulled = None
+            if fixed is not None:
+                mask = ir.Constant(ir.VectorType(ir.IntType(1), WIDTH), ir.Undefined)
+                for n, index in enumerate(indices):
+                    mask = builder.insert_element(mask, is_fixed(index), _INT(n))
+                pulled = (
+                    pulls(one, one[0].all(is_fixed(body)), space, gravity["pull"]),
+                    pulls(others, Lanes(builder, mask), space, gravity["pull"]),
                 )
+            time, unlike = contact_times(one, others, offset, pulled)
+            if unlike is not None:
+                mask = builder.zext(builder.bitcast(unlike.value, ir.IntType(WIDTH)), _WORD)
+                mask = builder.shl(mask, first)
+                builder.store(builder.or_(builder.load(unknown), mask), unknown)
+            so_far = Lanes(builder, builder.load(best)), Lanes(builder, builder.load(who))
+            time, numbers = sooner(*so_far, time, numbers)
+            builder.store(time.value, best)
+            builder.store(numbers.value, who)
+        time, numbers = Lanes(builder, builder.load(best)), Lanes(builder, builder.load(who))
+        for step in (4, 2, 1):
+            time, numbers = sooner(time, numbers, time.turned(step), numbers.turned(step))
+        found = [builder.extract_element(part.value, _INT(0)) for part in (time, numbers)]
+        return context.make_tuple(builder, signature.return_type, [*found, builder.load(unknown)])
 
-            mask = ir.Constant(ir.VectorType(ir.IntType(1), WIDTH), ir.Undefined)
-            for n, index in enumerate(indices):
-                mask = builder.insert_element(mask, is_fixed(index), _INT(n))
-            pulled = (
-                pulls(one, one[0].all(is_fixed(body)), space, gravity["pull"]),
-                pulls(others, Lanes(builder, mask), space, gravity["pull"]),
-            )
-        meets = touching(one, others, offset, *pulled)
-        return builder.zext(builder.bitcast(meets.value, ir.IntType(WIDTH)), _WORD)
-
-    return types.uint64(rows, near, first, body, space, gravity), generate
+    found = types.Tuple((types.float64, types.int64, types.uint64))
+    word = types.uint64
+    return found(rows, near, word, word, types.float64, types.int64, space, gravity), generate
 
 
 @intrinsic

@@ -1,16 +1,15 @@
 """Whom does a body touch next: the search of the boxes about it.
 
-In three passes, so that the processor has little to guess: gather everybody there, drop those that part or
-miss, eight at a time (`eight`), and work out the times of the few that are left (`flight.pair_time`, which
-alone decides). Indices are unsigned, since for signed ones numba looks at every access whether it counts from
-the end.
+First everybody there is written down, then the times of all of them are worked out, eight at once (`eight`):
+with hardly a branch, so that the processor has little to guess. Indices are unsigned, since for signed ones
+numba looks at every access whether it counts from the end.
 """
 
 from math import inf
 
 from numpy import int64, uint64
 
-from gaspart.engines.eight import LAP_BITS, LAP_FIRST, WIDTH, lowest, which_meet, write_down
+from gaspart.engines.eight import LAP_BITS, LAP_FIRST, WIDTH, earliest, lowest, write_down
 from gaspart.engines.flight import pair_time
 from gaspart.engines.layout import BOX_VISITS, PAIR_TESTS, PLACES
 from gaspart.kernel import helper, kernel
@@ -41,25 +40,21 @@ def consider(rows, plans, body, met, space, partition, counters, gravity):
     counters.counts[PAIR_TESTS] += int64(met)
     for n in range(_WIDTH):
         near[met + n] = body  # no body meets itself
-    left = uint64(0)
-    for n in range(uint64(0), met, _WIDTH):
-        left |= which_meet(rows, near, n, body, space, gravity) << n
-    best = plans[body].contact
-    partner = int64(plans[body].partner)
-    found = False
-    while left:
-        candidate = near[lowest(left)]
-        left &= left - uint64(1)
-        other = candidate & _BODY
-        time = pair_time(rows, body, other, offset_of(candidate, space), space, gravity)
-        if time < best or (time == best and time < inf and int64(other) < partner):
-            best = time
-            partner = int64(other)
-            found = True
-    if found:
+    soon, partner = plans[body].contact, int64(plans[body].partner)
+    best, who, left = earliest(rows, near, met, body, soon, partner, space, gravity)
+    if gravity is not None:
+        while left:
+            candidate = near[lowest(left)]
+            left &= left - uint64(1)
+            other = candidate & _BODY
+            time = pair_time(rows, body, other, offset_of(candidate, space), space, gravity)
+            if time < best or (time == best and time < inf and int64(other) < who):
+                best = time
+                who = int64(other)
+    if best < soon or who != partner:
         plans[body].contact = best
-        plans[body].partner = partner
-        plans[body].partner_changes = plans[uint64(partner)].changes
+        plans[body].partner = who
+        plans[body].partner_changes = plans[uint64(who)].changes
 
 
 @kernel
