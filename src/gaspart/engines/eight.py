@@ -131,8 +131,8 @@ def load_row(builder: ir.IRBuilder, data: ir.Value, index: ir.Value) -> list[Lan
 def contact_times(one, other, offset, pulls=None) -> tuple[Lanes, Lanes | None]:
     """`flight.pair_time` in columns of rows, of one body and eight others displaced by `offset` (d,).
 
-    pulls: those of the one (d,) and of the others (d,), or None if there is no gravity. If there is, also tells
-    which pairs do not fall alike: their times are not worked out.
+    pulls: those of the one (d,) and of the others (d,), or None if there is no gravity. If there is, also
+    tells which pairs do not fall alike: their times are not worked out.
     """
     d = len(offset)
     start = other[2 * d].where(other[2 * d] > one[2 * d], one[2 * d])

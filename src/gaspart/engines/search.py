@@ -59,8 +59,8 @@ def consider(rows, plans, body, met, space, partition, counters, gravity):
 
 @kernel
 def settle(rows, plans, body, met, row, lap, low, end, space, partition, counters, gravity):
-    """Write down whom the boxes at steps low..end - 1 of a row could not give a place, and look at the candidates
-    whenever there may be no room for another row's. Returns how many are left."""
+    """Write down whom the boxes at steps low..end - 1 of a row could not give a place, and look at the
+    candidates whenever there may be no room for another row's. Returns how many are left."""
     near, neighbour = partition.near, partition.neighbour
     x = uint64(plans[body].at[0])
     for step in range(low, end):
@@ -85,8 +85,8 @@ def settle(rows, plans, body, met, row, lap, low, end, space, partition, counter
 
 @helper
 def span(partition, axis, at, crossed):
-    """Which boxes to look into along an axis, about that at a coordinate: first step and end (0..3), how many there
-    are, and how many of them are that box itself."""
+    """Which boxes to look into along an axis, about that at a coordinate: first step and end (0..3), how many
+    there are, and how many of them are that box itself."""
     low, end = uint64(0), uint64(3)
     if crossed:
         low = uint64(1 + crossed)
