@@ -111,6 +111,17 @@ def helper(function: F) -> F:
     return _compile(function, _nrt=False, forceinline=True)
 
 
+def inner_kernel(function):
+    """A kernel that only kernels call: without the way in from Python, which for a function that takes an
+    engine's arrays takes longer to compile than what it does."""
+    return _compile(function, _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+
+
+def inner_helper(function):
+    """The same for a function that is inlined."""
+    return _compile(function, _nrt=False, forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+
+
 def allocating_kernel(function: F) -> F:
     """The same for a function that makes arrays."""
     return _compile(function)

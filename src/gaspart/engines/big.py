@@ -11,38 +11,38 @@ from math import inf, sqrt
 from gaspart.engines.flight import pair_time
 from gaspart.engines.layout import BOX_VISITS, NOTHING, PAIR_TESTS
 from gaspart.engines.lists import member
-from gaspart.kernel import helper, kernel
+from gaspart.kernel import inner_helper, inner_kernel
 
 _SLACK = 1e-9  # by which neighbourhoods are drawn wider, lest rounding hide a contact
 
 
-@helper
+@inner_helper
 def reach_square(rows, body, space, big):
     """Square of the greatest distance between the centre of a big body and of a small one that touches it."""
     reach = (rows[body, 2 * len(space.lengths) + 1] + big.above) * (1.0 + _SLACK)
     return reach * reach
 
 
-@helper
+@inner_helper
 def gap_square(steps, width):
     """Square of the gap along an axis between boxes that are so many steps apart."""
     gap = max(abs(steps) - 1, 0) * width
     return gap * gap
 
 
-@helper
+@inner_helper
 def near(x, y, z, widths, square):
     """Whether boxes these steps apart hold points nearer than the root of `square`."""
     return gap_square(x, widths[0]) + gap_square(y, widths[1]) + gap_square(z, widths[2]) < square
 
 
-@kernel
+@inner_kernel
 def laps(axis, space):
     """How many images of the container to look at on either side along an axis."""
     return 1 if axis < len(space.lengths) and space.periodic[axis] else 0
 
 
-@kernel
+@inner_kernel
 def consider(rows, plans, body, other, x, y, z, space, counters, gravity):
     """Note a body's contact with another, displaced by so many containers, if it is the earliest so far."""
     d = len(space.lengths)
@@ -56,7 +56,7 @@ def consider(rows, plans, body, other, x, y, z, space, counters, gravity):
         plans[body].partner_changes = plans[other].changes
 
 
-@kernel
+@inner_kernel
 def find_big(rows, plans, body, space, partition, counters, gravity, big, crossed):
     """Look for an earlier contact of a small body with the big ones near its box; if it has crossed into that
     box by `crossed` (3,), with those only that were not near before."""
@@ -79,7 +79,7 @@ def find_big(rows, plans, body, space, partition, counters, gravity, big, crosse
                         consider(rows, plans, body, other, i, j, k, space, counters, gravity)
 
 
-@helper
+@inner_helper
 def span(here, n, width, square, periodic):
     """The first and last coordinate of boxes along an axis that may be near; on a periodic axis they go on
     beyond the container."""
@@ -89,13 +89,13 @@ def span(here, n, width, square, periodic):
     return max(here - steps, 0), min(here + steps, n - 1)
 
 
-@helper
+@inner_helper
 def lap_of(coordinate, n):
     """In which image of the container a box coordinate lies."""
     return 1 if coordinate >= n else (-1 if coordinate < 0 else 0)
 
 
-@kernel
+@inner_kernel
 def find_around(rows, plans, body, space, partition, counters, gravity, big, crossed):
     """Look for an earlier contact of a big body with all the bodies in boxes near its own; if it has crossed
     into that box by `crossed` (3,), in those only that were not near before."""
@@ -126,7 +126,7 @@ def find_around(rows, plans, body, space, partition, counters, gravity, big, cro
                         consider(rows, plans, body, other, lap_x, lap_y, lap_z, space, counters, gravity)
 
 
-@kernel
+@inner_kernel
 def find_other_big(rows, plans, body, space, counters, gravity, big):
     """Look for an earlier contact of a big body with the other big ones."""
     lap_x, lap_y, lap_z = laps(0, space), laps(1, space), laps(2, space)
@@ -139,7 +139,7 @@ def find_other_big(rows, plans, body, space, counters, gravity, big):
                     consider(rows, plans, body, big.bodies[b], i, j, k, space, counters, gravity)
 
 
-@kernel
+@inner_kernel
 def find_beside(rows, plans, body, space, partition, counters, gravity, big, crossed):
     """What `find_contact` leaves to be looked at where there are big bodies; `crossed` (3,): the step into
     the next box that the body has just made, or none."""

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gaspart.kernel import helper, kernel
+from gaspart.kernel import inner_helper, inner_kernel
 
 BUCKET, FILLED = 0, 1
 
@@ -48,13 +48,13 @@ def empty_calendar(count: int) -> Calendar:
     return Calendar(np.full(buckets + 1, -1, dtype=np.int32), np.ones(1), np.zeros(2, dtype=np.int64))
 
 
-@helper
+@inner_helper
 def time_of(plans, body):
     """The time of a body's next event."""
     return min(plans[body].contact, plans[body].face_time)
 
 
-@helper
+@inner_helper
 def tie(plans, body):
     """What orders simultaneous events: faces first, by body, then pairs by lower and higher index.
 
@@ -67,7 +67,7 @@ def tie(plans, body):
     return 2 * (min(body, partner) * len(plans) + max(body, partner)) + (1 if body > partner else 0)
 
 
-@helper
+@inner_helper
 def _link(calendar, plans, body):
     """Put a body into the bucket of its time."""
     buckets = len(calendar.head) - 1
@@ -86,7 +86,7 @@ def _link(calendar, plans, body):
     plans[body].slot = slot
 
 
-@helper
+@inner_helper
 def _unlink(calendar, plans, body):
     """Take a body out of its bucket."""
     slot = plans[body].slot
@@ -102,14 +102,14 @@ def _unlink(calendar, plans, body):
         calendar.cursor[FILLED] -= 1
 
 
-@helper
+@inner_helper
 def reschedule(calendar, plans, body):
     """Put a body whose plans have changed where it now belongs."""
     _unlink(calendar, plans, body)
     _link(calendar, plans, body)
 
 
-@kernel
+@inner_kernel
 def fill(calendar, plans, now):
     """Sort all bodies in anew, with buckets of the mean time between their events."""
     calendar.head[:] = -1
@@ -128,7 +128,7 @@ def fill(calendar, plans, now):
         _link(calendar, plans, body)
 
 
-@kernel
+@inner_kernel
 def _recall_overflow(calendar, plans):
     """Move the bodies of the overflow whose time has come within the horizon into their buckets."""
     buckets = len(calendar.head) - 1
@@ -140,7 +140,7 @@ def _recall_overflow(calendar, plans):
         body = after
 
 
-@kernel
+@inner_kernel
 def _leap(calendar, plans):
     """With all buckets empty, go straight to the first event of the overflow. False if there is none."""
     first = np.inf
@@ -155,7 +155,7 @@ def _leap(calendar, plans):
     return True
 
 
-@helper
+@inner_helper
 def soonest(calendar, plans):
     """The body whose event comes first, or -1 if nothing will ever happen again."""
     buckets = len(calendar.head) - 1

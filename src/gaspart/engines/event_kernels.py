@@ -36,10 +36,10 @@ from gaspart.engines.lists import move, sort_in
 from gaspart.engines.search import find_contact
 from gaspart.engines.surfaces import meet_edge
 from gaspart.engines.walls import find_wall, meet_wall
-from gaspart.kernel import helper, kernel
+from gaspart.kernel import inner_helper, kernel
 
 
-@helper
+@inner_helper
 def plan_face(rows, plans, body, space, partition, now, gravity, walls, surfaces, big):
     """Note the next face or wall that the body comes to."""
     time, face = find_face(rows, plans, body, space, partition, now, gravity, surfaces, big)
@@ -49,7 +49,7 @@ def plan_face(rows, plans, body, space, partition, now, gravity, walls, surfaces
     plans[body].face = face
 
 
-@helper
+@inner_helper
 def foresee(rows, plans, body, space, partition, counters, now, crossed, gravity, walls, surfaces, big):
     """Make a body's plans afresh; or, if it has just `crossed` (3,) into the next box, look about in the
     boxes that have become neighbours."""
@@ -78,7 +78,7 @@ def refill(plans, calendar, partition, now):
     fill(calendar, plans, now)
 
 
-@helper
+@inner_helper
 def note(record, time, rows, i, j, lengths, law):
     """Write an event down; j is the partner, or -1 - face for a wall."""
     d = len(lengths)

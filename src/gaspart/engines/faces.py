@@ -8,10 +8,10 @@ from gaspart.engines.impact import strike_wall
 from gaspart.engines.layout import INNER, NOTHING
 from gaspart.engines.surfaces import find_edge, touch_surface
 from gaspart.falling import time_against, time_along
-from gaspart.kernel import helper, kernel
+from gaspart.kernel import inner_helper, inner_kernel
 
 
-@helper
+@inner_helper
 def plane_of(rows, plans, body, axis, upper, space, partition, big):
     """The lower or upper face of the body's box along an axis: (coordinate for its centre, face code). A wall
     stops a big body some boxes before the last."""
@@ -27,7 +27,7 @@ def plane_of(rows, plans, body, axis, upper, space, partition, big):
     return plane, code + INNER
 
 
-@helper
+@inner_helper
 def find_face(rows, plans, body, space, partition, now, gravity, surfaces, big):
     """The next face that the body comes to, of its box or of the container, or the edge of a well: (time,
     face code).
@@ -63,7 +63,7 @@ def find_face(rows, plans, body, space, partition, now, gravity, surfaces, big):
     return soon, face
 
 
-@kernel
+@inner_kernel
 def find_face_pulled(rows, plans, body, axis, pull, space, partition, now, big):
     """The same along one axis with a pull: (time, face code).
 
@@ -95,7 +95,7 @@ def find_face_pulled(rows, plans, body, axis, pull, space, partition, now, big):
     return time, code
 
 
-@kernel
+@inner_kernel
 def meet_face(rows, images, plans, body, face, time, space, masses, counters, gravity, law, surfaces):
     """Reflect a body at a wall, or take it from a periodic face to the opposite one. True if a wall."""
     d = len(space.lengths)

@@ -6,17 +6,17 @@ clock. Where `gravity` is None, the machine code knows none.
 
 from gaspart.contact import time_to_contact
 from gaspart.falling import flown, time_to_contact_pulled
-from gaspart.kernel import helper, kernel
+from gaspart.kernel import inner_helper, kernel
 
 
-@helper
+@inner_helper
 def face_plane(rows, body, axis, upper, space):
     """Where a face of the container stops, or on a periodic axis passes on, this body's centre."""
     inset = 0.0 if space.periodic[axis] else space.margin * rows[body, 2 * len(space.lengths) + 1]
     return space.lengths[axis] - inset if upper else inset
 
 
-@helper
+@inner_helper
 def acceleration(rows, body, axis, space, gravity):
     """What pulls a body along an axis: nothing if it is fixed, or lies still on the face below."""
     pull = gravity.pull[axis]
@@ -31,7 +31,7 @@ def acceleration(rows, body, axis, space, gravity):
     return pull
 
 
-@helper
+@inner_helper
 def advance_row(rows, body, time, space, gravity):
     """Move a body along its flight to `time`."""
     d = len(space.lengths)
@@ -61,7 +61,7 @@ def synchronise(rows, time, space, gravity):
         rows[body, 2 * len(space.lengths)] = 0.0
 
 
-@helper
+@inner_helper
 def encounter(rows, i, j, offset, space, gravity):
     """Bodies i and j, the latter displaced by `offset` (d,), at the later of their clocks: that time, and of
     their separation r, relative velocity v and acceleration a the products rr, rv, vv, ra, va, aa."""
@@ -93,7 +93,7 @@ def encounter(rows, i, j, offset, space, gravity):
     return start, rr, rv, vv, ra, va, aa
 
 
-@helper
+@inner_helper
 def contact_square(rows, i, j, space):
     """The square of the distance at which two bodies touch."""
     radius = 2 * len(space.lengths) + 1
@@ -101,7 +101,7 @@ def contact_square(rows, i, j, space):
     return sigma * sigma
 
 
-@helper
+@inner_helper
 def pair_time(rows, i, j, offset, space, gravity):
     """When bodies i and j touch, j displaced by `offset` (d,); inf if they do not."""
     start, rr, rv, vv, ra, va, aa = encounter(rows, i, j, offset, space, gravity)

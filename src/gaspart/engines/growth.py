@@ -13,12 +13,12 @@ from gaspart.engines.calendar import fill, reschedule, soonest, time_of
 from gaspart.engines.flight import advance_row, synchronise
 from gaspart.engines.layout import COLLISIONS, NOTHING, VIRIAL
 from gaspart.engines.lists import member, move, sort_in
-from gaspart.kernel import helper, kernel
+from gaspart.kernel import inner_helper, inner_kernel, kernel
 
 _PART = 2.0**-30  # of the rate of growth: bodies part at least so fast
 
 
-@helper
+@inner_helper
 def pair_time(rows, i, j, offset, space, rate):
     """When two growing bodies touch, the second displaced by `offset` (d,); inf if they do not."""
     d = len(space.lengths)
@@ -36,7 +36,7 @@ def pair_time(rows, i, j, offset, space, rate):
     return start + time_to_growing_contact(rr, rv, vv, sigma * (1.0 + rate * start), sigma * rate)
 
 
-@kernel
+@inner_kernel
 def find_face(rows, plans, body, space, partition, rate):
     """The next face of its box or of the container that a body comes to: (time, 2 axis + side)."""
     d = len(space.lengths)
@@ -67,7 +67,7 @@ def find_face(rows, plans, body, space, partition, rate):
     return soon, face
 
 
-@kernel
+@inner_kernel
 def foresee(rows, plans, body, space, partition, rate):
     """Make a body's plans afresh."""
     d = len(space.lengths)
@@ -124,7 +124,7 @@ def start(rows, plans, calendar, space, partition, rate):
     fill(calendar, plans, 0.0)
 
 
-@kernel
+@inner_kernel
 def meet_face(rows, plans, body, face, time, space, partition, rate):
     """Let a body pass into the next box, or reflect it at a wall that its growing surface touches."""
     d = len(space.lengths)
@@ -147,7 +147,7 @@ def meet_face(rows, plans, body, face, time, space, partition, rate):
     move(plans, partition, body, axis, to)
 
 
-@kernel
+@inner_kernel
 def collide(rows, plans, i, j, time, space, rate, counters):
     """Advance two bodies to their contact and let their growing surfaces push them apart."""
     d = len(space.lengths)

@@ -10,12 +10,12 @@ from gaspart.contact import exchange, exchange_equal, normal_change, tangential_
 from gaspart.coordinates import nearest
 from gaspart.engines.flight import advance_row
 from gaspart.engines.layout import COLLISIONS, LOSS, VIRIAL, WORST
-from gaspart.kernel import helper, kernel
+from gaspart.kernel import inner_helper, inner_kernel
 
 LEAST = 2.0**-48  # of the bodies' speed: they part at least so fast, or rounding would let them meet for ever
 
 
-@helper
+@inner_helper
 def pass_momentum(rows, i, j, rr, rv, space, masses):
     """An elastic contact of smooth bodies. Returns |r . dp|."""
     d = len(space.lengths)
@@ -32,7 +32,7 @@ def pass_momentum(rows, i, j, rr, rv, space, masses):
     return virial
 
 
-@kernel
+@inner_kernel
 def gap_along(rows, i, j, axis, space):
     """The separation of two bodies along an axis, 0 along a third one that is not there."""
     if axis >= len(space.lengths):
@@ -40,13 +40,13 @@ def gap_along(rows, i, j, axis, space):
     return nearest(rows[j, axis] - rows[i, axis], space.lengths[axis], space.periodic[axis])
 
 
-@kernel
+@inner_kernel
 def speed_along(rows, body, axis, space):
     """The velocity of a body along an axis, 0 along a third one that is not there."""
     return rows[body, len(space.lengths) + axis] if axis < len(space.lengths) else 0.0
 
 
-@helper
+@inner_helper
 def push(rows, body, x, y, z, space):
     """Add to the velocity of a body."""
     d = len(space.lengths)
@@ -56,7 +56,7 @@ def push(rows, body, x, y, z, space):
         rows[body, d + 2] += z
 
 
-@helper
+@inner_helper
 def sliding(rows, i, j, x, y, z, space, law):
     """The tangential relative velocity of the surfaces of two bodies (j < 0: of a body and a wall), with
     (x, y, z) the unit vector from the first to the second; Spencer 2022, Eq. 30."""
@@ -83,7 +83,7 @@ def sliding(rows, i, j, x, y, z, space, law):
     return gx - normal * x, gy - normal * y, gz - normal * z
 
 
-@helper
+@inner_helper
 def turn(rows, body, x, y, z, qx, qy, qz, space, law):
     """The spin that an impulse q gives at the surface point in direction (x, y, z); Spencer 2022, Eq. 26."""
     factor = rows[body, 2 * len(space.lengths) + 1] * law.inverse_inertia[body]
@@ -92,7 +92,7 @@ def turn(rows, body, x, y, z, qx, qy, qz, space, law):
     law.spins[body, 2] += factor * (x * qy - y * qx)
 
 
-@kernel
+@inner_kernel
 def swap_with_vibration(i, j, approach, mobility, vibrations):
     """Let the normal energy of two bodies and that of the mode that one of them has change places.
 
@@ -109,7 +109,7 @@ def swap_with_vibration(i, j, approach, mobility, vibrations):
     return -1.0
 
 
-@kernel
+@inner_kernel
 def strike(rows, i, j, rr, rv, space, counters, law):
     """A contact under a law (Spencer 2022, Eq. 39). Returns |r . dp|."""
     d = len(space.lengths)
@@ -147,7 +147,7 @@ def strike(rows, i, j, rr, rv, space, counters, law):
     return impulse * length
 
 
-@kernel
+@inner_kernel
 def strike_wall(rows, body, x, y, z, least, space, counters, law):
     """A contact with a wall in the direction of the unit vector (x, y, z) (Spencer 2022, Eq. 40); the body
     parts from it at `least` so fast. Returns the momentum given to the wall along that direction."""
@@ -174,7 +174,7 @@ def strike_wall(rows, body, x, y, z, least, space, counters, law):
     return change / mobility
 
 
-@kernel
+@inner_kernel
 def crowded(watch, body, time):
     """Note a contact of a body with another. True if it has had too many of them in no time."""
     if time - watch.since[body] > watch.blink:
@@ -184,7 +184,7 @@ def crowded(watch, body, time):
     return watch.contacts[body] > watch.most
 
 
-@helper
+@inner_helper
 def collide(rows, plans, i, j, time, space, masses, counters, gravity, law):
     """Advance two bodies to their contact and pass the momentum."""
     d = len(space.lengths)

@@ -12,7 +12,7 @@ from gaspart.engines.common import aligned
 from gaspart.engines.eight import WIDTH
 from gaspart.engines.layout import PLACES, Partition
 from gaspart.engines.search import MOST
-from gaspart.kernel import helper, kernel
+from gaspart.kernel import inner_helper, inner_kernel
 
 _NOBODY = np.uint32(0xFFFFFFFF)
 
@@ -29,14 +29,14 @@ def empty_partition(boxes: Boxes, count: int) -> Partition:
     )  # fmt: skip
 
 
-@helper
+@inner_helper
 def box_of(plans, partition, body):
     """The linear index of the body's box."""
     at = plans[body].at
     return at[0] * partition.strides[0] + at[1] * partition.strides[1] + at[2] * partition.strides[2]
 
 
-@helper
+@inner_helper
 def member(partition, box, n, other):
     """The n-th body of a box that holds more; `other` is the one before it."""
     if n < PLACES:
@@ -44,7 +44,7 @@ def member(partition, box, n, other):
     return partition.head[box] if n == PLACES else partition.following[other]
 
 
-@helper
+@inner_helper
 def put(plans, partition, body):
     """Put a body into its box."""
     box = np.uint64(box_of(plans, partition, body))
@@ -58,7 +58,7 @@ def put(plans, partition, body):
     partition.filled[box] = filled + np.uint32(1)
 
 
-@helper
+@inner_helper
 def take(plans, partition, body):
     """Take a body out of its box; another of the same box fills its place."""
     box = np.uint64(plans[body].box)
@@ -84,7 +84,7 @@ def take(plans, partition, body):
         following[other] = following[np.uint64(body)]
 
 
-@helper
+@inner_helper
 def move(plans, partition, body, axis, to):
     """Take a body to another box along an axis."""
     take(plans, partition, body)
@@ -92,7 +92,7 @@ def move(plans, partition, body, axis, to):
     put(plans, partition, body)
 
 
-@kernel
+@inner_kernel
 def sort_in(plans, partition):
     """Put all bodies into their boxes."""
     partition.filled[:] = 0

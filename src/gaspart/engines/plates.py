@@ -8,16 +8,16 @@ from math import inf
 from gaspart.contact import time_to_contact
 from gaspart.engines.flight import acceleration
 from gaspart.falling import flown, time_of_summit, time_to_contact_pulled, time_to_far_side, time_to_side
-from gaspart.kernel import helper, kernel
+from gaspart.kernel import inner_helper, inner_kernel
 
 
-@helper
+@inner_helper
 def _along(plates, m, first, x, y, z):
     """The component of a vector along an edge, whose unit vector begins at column `first`."""
     return x * plates[m, first] + y * plates[m, first + 1] + z * plates[m, first + 2]
 
 
-@kernel
+@inner_kernel
 def time_to_point(x, y, z, vx, vy, vz, gx, gy, gz, radius):
     """Time until a body at (x, y, z) of a point touches it; of a line, with the components along it 0."""
     rr, rv, vv = x * x + y * y + z * z, x * vx + y * vy + z * vz, vx * vx + vy * vy + vz * vz
@@ -28,7 +28,7 @@ def time_to_point(x, y, z, vx, vy, vz, gx, gy, gz, radius):
     return time_to_contact(rr, rv, vv, radius * radius)
 
 
-@kernel
+@inner_kernel
 def time_to_edge(x, z, vx, vz, gx, gz, y, vy, gy, length, radius):
     """Time until a body touches an edge: (x, z) across the line, y along it from its start.
 
@@ -54,7 +54,7 @@ def time_to_edge(x, z, vx, vz, gx, gz, y, vy, gy, length, radius):
     return inf
 
 
-@kernel
+@inner_kernel
 def time_to_plate(rows, body, plates, m, space, gravity):
     """When a body touches a plate; inf if it does not."""
     radius = rows[body, 7]

@@ -12,7 +12,7 @@ from numpy import int64, uint64
 from gaspart.engines.eight import LAP_BITS, LAP_FIRST, WIDTH, earliest, lowest, write_down
 from gaspart.engines.flight import pair_time
 from gaspart.engines.layout import BOX_VISITS, PAIR_TESTS, PLACES
-from gaspart.kernel import helper, kernel
+from gaspart.kernel import inner_helper, inner_kernel
 
 MOST = 64  # candidates gathered before they are looked at: a bit of a word for each
 _WIDTH, _PLACES, _FULL = uint64(WIDTH), uint64(PLACES), uint64(MOST - 3 * PLACES - 1)
@@ -21,7 +21,7 @@ _X, _Y, _Z = (uint64(LAP_FIRST + LAP_BITS * k) for k in range(3))
 _LAP = uint64((1 << LAP_BITS) - 1)
 
 
-@helper
+@inner_helper
 def offset_of(candidate, space):
     """Where the image of a candidate stands (3,)."""
     x, y, z = (candidate >> _X) & _LAP, (candidate >> _Y) & _LAP, (candidate >> _Z) & _LAP
@@ -33,7 +33,7 @@ def offset_of(candidate, space):
     )
 
 
-@helper
+@inner_helper
 def consider(rows, plans, body, met, space, partition, counters, gravity):
     """Note the body's contact with one of `met` candidates, if one is earlier than it has planned."""
     near = partition.near
@@ -57,7 +57,7 @@ def consider(rows, plans, body, met, space, partition, counters, gravity):
         plans[body].partner_changes = plans[uint64(who)].changes
 
 
-@kernel
+@inner_kernel
 def settle(rows, plans, body, met, row, lap, low, end, space, partition, counters, gravity):
     """Write down whom the boxes at steps low..end - 1 of a row could not give a place, and look at the
     candidates whenever there may be no room for another row's. Returns how many are left."""
@@ -83,7 +83,7 @@ def settle(rows, plans, body, met, row, lap, low, end, space, partition, counter
     return met
 
 
-@helper
+@inner_helper
 def span(partition, axis, at, crossed):
     """Which boxes to look into along an axis, about that at a coordinate: first step and end (0..3), how many
     there are, and how many of them are that box itself."""
@@ -100,7 +100,7 @@ def span(partition, axis, at, crossed):
     return low, end, visits, itself
 
 
-@helper
+@inner_helper
 def find_contact(rows, plans, searcher, space, partition, counters, crossed, gravity):
     """Look for an earlier contact of the body in the boxes about its own; if it has just `crossed` (3,) into
     this one, in those only that were not neighbours before.

@@ -5,10 +5,10 @@ from math import inf, sqrt
 from gaspart.draws import flux_speed, normal_pair
 from gaspart.engines.flight import advance_row, face_plane
 from gaspart.engines.layout import EDGES, NOTHING, STICKY, THERMAL, THERMAL_NORMAL
-from gaspart.kernel import helper, kernel
+from gaspart.kernel import inner_helper, inner_kernel
 
 
-@kernel
+@inner_kernel
 def mass_of(body, masses, law):
     """The mass of a body that can move, in the kernel's unit."""
     if law is not None:
@@ -18,7 +18,7 @@ def mass_of(body, masses, law):
     return 1.0
 
 
-@helper
+@inner_helper
 def edge_plane(rows, body, face, space, surfaces):
     """Where the centre of a body crosses the edge of a face's well."""
     upper = face % 2 == 1
@@ -26,7 +26,7 @@ def edge_plane(rows, body, face, space, surfaces):
     return face_plane(rows, body, face // 2, upper, space) + (-width if upper else width)
 
 
-@kernel
+@inner_kernel
 def find_edge(rows, body, axis, space, surfaces):
     """When a body that moves along an axis comes to the edge of a well there, or, stuck to a face, is to be
     judged anew because a contact has moved it: (time, face code)."""
@@ -43,7 +43,7 @@ def find_edge(rows, body, axis, space, surfaces):
     return inf, NOTHING
 
 
-@kernel
+@inner_kernel
 def meet_edge(rows, plans, body, face, time, space, masses, counters, gravity, law, surfaces):
     """Advance a body to the edge of a well, and let it in or out. Returns the number of the face."""
     advance_row(rows, body, time, space, gravity)
@@ -74,7 +74,7 @@ def cross_edge(rows, body, face, space, masses, counters, law, surfaces):
     counters.wall_impulse[face] += mass * (before - after)
 
 
-@kernel
+@inner_kernel
 def leave_at_temperature(rows, body, face, space, masses, counters, law, surfaces):
     """Give a body the velocity of one that leaves a thermal wall."""
     d = len(space.lengths)
@@ -102,7 +102,7 @@ def leave_at_temperature(rows, body, face, space, masses, counters, law, surface
     counters.wall_energy[face] += 0.5 * mass * square
 
 
-@kernel
+@inner_kernel
 def turn_at_temperature(body, face, number, block, counters, law, surfaces, d):
     """The same for the spin of a rough body, which has one component in 2D."""
     if law is None:
@@ -118,7 +118,7 @@ def turn_at_temperature(body, face, number, block, counters, law, surfaces, d):
             law.spins[body, k] = spin
 
 
-@kernel
+@inner_kernel
 def stick_or_leave(rows, body, face, space, masses, counters, law, surfaces):
     """Judge a body at a sticky face by all the normal energy that it has, in flight and in its vibration."""
     axis = face // 2
@@ -140,7 +140,7 @@ def stick_or_leave(rows, body, face, space, masses, counters, law, surfaces):
     counters.wall_impulse[face] += mass * (before - after)
 
 
-@kernel
+@inner_kernel
 def touch_surface(rows, body, face, space, masses, counters, law, surfaces):
     """Let a face with a kind act on a body that has come to it. False if it is hard."""
     kind = surfaces.kind[face]

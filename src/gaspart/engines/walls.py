@@ -9,11 +9,11 @@ from gaspart.engines.layout import WALLS, WORST
 from gaspart.engines.lists import box_of
 from gaspart.engines.plates import time_to_plate
 from gaspart.falling import time_to_contact_pulled, time_to_far_side, time_to_side
-from gaspart.kernel import kernel
+from gaspart.kernel import inner_kernel
 from gaspart.plates import gap_to_plate
 
 
-@kernel
+@inner_kernel
 def time_to_wall(rows, body, segments, m, space, gravity):
     """When a body touches a segment, on a side (Spencer 2022, Eqs. 3-12) or at an end; inf if it does not."""
     radius = rows[body, 5]
@@ -55,7 +55,7 @@ def time_to_wall(rows, body, segments, m, space, gravity):
     return rows[body, 4] + best
 
 
-@kernel
+@inner_kernel
 def find_wall(rows, plans, body, space, partition, gravity, walls, soon, face):
     """The next wall that the body comes to of those near its box, if before `soon`: (time, code)."""
     box = box_of(plans, partition, body)
@@ -73,7 +73,7 @@ def find_wall(rows, plans, body, space, partition, gravity, walls, soon, face):
     return soon, face
 
 
-@kernel
+@inner_kernel
 def gap_to_wall(rows, body, m, space, walls):
     """The vector from the centre of a body to the nearest point of a wall."""
     if len(space.lengths) == 3:
@@ -85,7 +85,7 @@ def gap_to_wall(rows, body, m, space, walls):
     return s * ux - dx, s * uy - dy, 0.0
 
 
-@kernel
+@inner_kernel
 def meet_wall(rows, plans, body, m, time, space, masses, counters, gravity, law, walls):
     """Reflect a body at a wall, from its side or its rim. Returns the number of the wall."""
     d = len(space.lengths)
