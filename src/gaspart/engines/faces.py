@@ -116,7 +116,7 @@ def meet_face(rows, images, plans, body, face, time, space, masses, counters, gr
     return True
 
 
-@helper
+@inner_helper
 def bounce(rows, body, face, space, masses, counters, law, surfaces):
     """Let a wall act on a body that has come to it. Returns whether it is a hard one."""
     d = len(space.lengths)

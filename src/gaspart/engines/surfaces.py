@@ -52,7 +52,7 @@ def meet_edge(rows, plans, body, face, time, space, masses, counters, gravity, l
     return face
 
 
-@helper
+@inner_helper
 def cross_edge(rows, body, face, space, masses, counters, law, surfaces):
     """Let a body into a well, or out of it if it is fast enough. The wall takes the momentum of the step."""
     axis = face // 2
