@@ -14,7 +14,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart import compression
-from gaspart.engines import common, event_driven, search
+from gaspart.engines import common, event_driven, search, step_contacts
 
 PYTHON = bool(numba.config.DISABLE_JIT)
 ROUGH, METAL = gp.Restitution(0.95, 0.4), gp.Restitution(1.0, 0.5)
@@ -101,11 +101,31 @@ def ends():
             searches |= {"/one box": {"boxes_per_side": 1}, "/threads": {"threads": 2}}
         for how, settings in searches.items():
             found[name + how] = end_of(scene, gp.TimeStepped(step, **settings), duration=0.8)
+    if PYTHON:  # among themselves alone, which compiles nothing
+        for name in ("rough", "holding", "metal"):
+            for how, settings in {"": {}, "/boxes": {"boxes_per_side": 2}}.items():
+                engine = gp.TimeStepped(0.01, **settings)
+                found[f"{name} in steps{how}"] = end_of(event_scenes()[name], engine, duration=1.0)
+    found["order"] = order_of_contacts()
     packing = gp.compress(gas(2, 12, 0.6), seed=1)
     found["growth"] = np.append(packing.positions.ravel(), packing.pressure)
     state = gp.Simulation(gas(3, 6, 0.2, "wall"), gp.EventDriven(), seed=2).state
     found["picture"] = gp.render(state, size=(32, 24)).astype(float).ravel()
+    flat = gp.Simulation(gas(2, 6, 0.2, "wall"), gp.EventDriven(), seed=2).state
+    found["flat picture"] = gp.render(flat, size=(32, 24)).astype(float).ravel()
     return found
+
+
+def order_of_contacts():
+    """300 contacts of a step in their order: by numpy, and in Python by the kernel, which knows ties too."""
+    rng = np.random.default_rng(1)
+    pairs = np.sort(rng.integers(0, 50, (300, 2)), axis=1).astype(np.uint32)
+    times = rng.integers(0, 40, 300) / 40.0
+    if PYTHON:
+        order = step_contacts.in_order(np.arange(50, dtype=np.int32), pairs, times)
+    else:
+        order = np.lexsort((pairs[:, 1], pairs[:, 0], times))
+    return np.column_stack([times, pairs])[order].ravel()
 
 
 def read_fields():
