@@ -14,7 +14,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart import compression
-from gaspart.engines import common, event_driven, search, step_contacts
+from gaspart.engines import common, event_driven, flight, search, step_contacts
 
 PYTHON = bool(numba.config.DISABLE_JIT)
 ROUGH, METAL = gp.Restitution(0.95, 0.4), gp.Restitution(1.0, 0.5)
@@ -134,10 +134,24 @@ def read_fields():
         module.aligned = lambda shape, dtype: common.aligned(shape, dtype).view(np.recarray)
 
 
+def earliest(rows, near, met, body, soon, partner, space, gravity):
+    """`eight.earliest`, one candidate after the other; of all of them something is known."""
+    for candidate in near[: int(met)]:
+        other, offset = int(candidate & np.uint64(0xFFFFFFFF)), search.offset_of(candidate, space)
+        time = flight.pair_time(rows, body, other, offset, space, gravity)
+        if time < soon or (time == soon and time < np.inf and other < partner):
+            soon, partner = time, other
+    return soon, partner, np.uint64(0)
+
+
+def write_down(near, met, places, box, lap):
+    """`eight.write_down`."""
+    near[int(met) : int(met) + places.shape[1]] = places[box].astype(np.uint64) | lap
+
+
 def do_without_vectors():
-    """No candidate is dropped before its time is worked out, which must give the same bits."""
-    search.which_meet = lambda *_: np.uint64(0xFF)
-    search.lowest = lambda bits: np.uint64((int(bits) & -int(bits)).bit_length() - 1)
+    """Let plain loops stand for what is written in vector instructions."""
+    search.earliest, search.write_down = earliest, write_down
 
 
 if __name__ == "__main__":

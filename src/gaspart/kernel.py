@@ -111,13 +111,13 @@ def helper(function: F) -> F:
     return _compile(function, _nrt=False, forceinline=True)
 
 
-def inner_kernel(function):
+def inner_kernel(function: F) -> F:
     """A kernel that only kernels call: without the way in from Python, which for a function that takes an
     engine's arrays takes longer to compile than what it does."""
     return _compile(function, _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 
 
-def inner_helper(function):
+def inner_helper(function: F) -> F:
     """The same for a function that is inlined."""
     return _compile(function, _nrt=False, forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 
