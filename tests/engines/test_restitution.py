@@ -377,8 +377,9 @@ def test_files_and_the_other_engine():
         restitution=gp.Restitution(0.5, 0.5),
     )
     assert gp.Scene.from_dict(scene.to_dict()) == scene
+    falling = replace(scene, gravity=(0.0, -1.0))
     with pytest.raises(gp.SceneError, match="restitution"):
-        gp.Simulation(scene, gp.TimeStepped(0.1))
+        gp.Simulation(falling, gp.TimeStepped(0.1))
     assert "fixed" not in str(gas(2, 3, 0.01).to_dict())
     sim = gp.Simulation(gas(2, 3, 0.01), gp.EventDriven())
     sim.add((0.6, 0.6), (0.0, 0.0), 0.1, spin=3.0)
