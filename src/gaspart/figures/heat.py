@@ -88,10 +88,10 @@ def _shares(axis: Axes, ds: xr.Dataset) -> None:
     axis.set_xlim(0.02, 40.0)
     axis.set_xticks([0.1, 1.0, end], ["0.1", "1", r"$\infty$"])
     axis.set_yticks([0.0, 0.5, 2.0 / 3.0, 1.0], ["0", "1/2", "2/3", "1"])
-    axis.set_ylim(0.0, 1.15)
+    axis.set_ylim(0.0, 1.6)
     axis.set_xlabel(r"Knudsen number $l/L$")
     axis.set_ylabel(r"flux over free flight's")
-    axis.legend(loc="lower right")
+    axis.legend(loc="upper right", ncol=2, columnspacing=0.8)
 
 
 def _profiles(warm: Axes, off: Axes, dense: Axes, row: xr.Dataset, kind: int) -> None:
