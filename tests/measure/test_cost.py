@@ -46,6 +46,14 @@ def test_every_partition_starts_from_the_same_state_and_is_timed_as_often():
     assert run.attrs["count"] == 400
 
 
+def test_short_steps_do_not_start_from_what_long_ones_left():
+    dense = Scene(Container((10.0,) * 3, "periodic"), species=(Species(570, 0.5, temperature=1.0),))
+    steps = (0.2, 0.01)
+    run = measured([TimeStepped(step) for step in steps], dense, equilibration=1.6, stretch=0.4, repeats=1)
+    alone = measured([TimeStepped(0.01)], dense, equilibration=1.6, stretch=0.4, repeats=1)
+    assert run.collisions.values[1] == alone.collisions.values[0]
+
+
 def test_all_pairs_at_every_event():
     run = measured([EventDriven(search="pairs")], DISCS, stretch=10.0)
     events = int((run.collisions + run.wall_hits)[0])
