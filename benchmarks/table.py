@@ -75,7 +75,7 @@ def _events(axis, frame: pd.DataFrame, title: str) -> None:
         eta, colour = part["packing_fraction"], style.COLOURS[kind]
         axis.plot(eta, 1e-6 * part["peer_value"], "--", color=colour)
         values, spread = 1e-6 * part["value"], 1e-6 * part["spread"]
-        style.points(axis, eta, values, spread, kind=kind, label=f"N = {count:,}", linestyle="-")
+        style.points(axis, eta, values, spread, kind=kind, label=f"N = {int(count):,}", linestyle="-")
     _finish(axis, frame, title)
     axis.set_xlabel("packing fraction $\\eta$")
     axis.set_ylabel("$10^6$ collisions / s")
@@ -102,7 +102,12 @@ def _finish(axis, frame: pd.DataFrame, title: str) -> None:
     axis.set_title(title)
     if len(frame):
         axis.set_yscale("log")
-        axis.legend(fontsize=6.5)
+        labels = axis.get_legend_handles_labels()[1]
+        columns = 2 if max(map(len, labels)) < 20 else 1
+        low, high = axis.get_ylim()
+        rows = -(-len(labels) // columns)
+        axis.set_ylim(low, high * (high / low) ** (0.12 * rows))  # room above the points
+        axis.legend(fontsize=6.5, loc="upper right", ncol=columns)
 
 
 def main(source: str, csv: str, png: str) -> None:
