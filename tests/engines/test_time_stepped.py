@@ -35,7 +35,11 @@ def test_any_search_gives_the_same_bits(scene, precision, rewind, passes, seed):
         except gp.SceneError as error:
             assert error.key in ("boxes_per_side", "lengths", "time_step")
             continue
-        sim.advance(duration=3.0)
+        try:
+            sim.advance(duration=3.0)
+        except gp.SimulationError as error:  # too crowded for the step: all searches must say the same
+            ends.append((str(error),))
+            continue
         tally = sim.tally
         ends.append((sim.state.unwrapped, tally.wall_impulse, tally.virial_sum, tally.overlaps_left))
     for end in ends[1:]:
