@@ -1,5 +1,6 @@
 """What a user waits for beside the engines: a job's start, random insertion, a trajectory's writing."""
 
+import os
 import subprocess
 import sys
 import time
@@ -10,6 +11,8 @@ import gaspart as gp
 from gaspart.initial import initial_state
 
 START = """
+from gaspart.loading import load_numba
+load_numba(ours=True)
 import gaspart as gp
 scene = gp.Scene(gp.Container((20.0, 20.0)), [gp.Species(10, 0.5, speed=1.0)])
 gp.Simulation(scene, gp.EventDriven(), seed=1).advance(max_events=10)
@@ -21,10 +24,14 @@ def told(benchmark, name, unit, **rest):
 
 
 def test_a_job_starts(benchmark, small):
-    """A new process: interpreter, import, kernels from their cache, a first event."""
-    subprocess.run([sys.executable, "-c", START], check=True)  # fills the cache
-    rounds = 1 if small else 7
-    benchmark.pedantic(lambda: subprocess.run([sys.executable, "-c", START], check=True), rounds=rounds)
+    """A new process: interpreter, imports from bytecode, kernels from their cache, a first event."""
+    environment = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
+
+    def start():
+        subprocess.run([sys.executable, "-c", START], env=environment, check=True)
+
+    start()  # fills the caches
+    benchmark.pedantic(start, rounds=1 if small else 7)
     told(benchmark, "start of a job", "s")
 
 

@@ -14,8 +14,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
-import numba
+from gaspart.loading import load_numba
 
+numba = load_numba()
 F = TypeVar("F", bound=Callable)
 _HERE = Path(__file__).parent
 KERNEL_MODULES = (

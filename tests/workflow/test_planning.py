@@ -61,7 +61,8 @@ import sys
 before = set(sys.modules)
 sys.path.insert(0, {scripts!r})
 import _job
-_job.load_numba()
+from gaspart.loading import load_numba
+load_numba(ours=True)
 import gaspart as gp
 discs = gp.Species(16, 0.5, temperature=1.0, arrangement="lattice")
 gas = gp.Scene(gp.Container((9.0, 9.0), "periodic"), [discs])

@@ -1,7 +1,4 @@
-"""What every script of the workflow does around its work: this checkout, one log, one clear line.
-
-A job that lasts a second must not take another to start, so what it does not need is kept from being loaded.
-"""
+"""What every script of the workflow does around its work: this checkout, one log, one clear line."""
 
 import gc
 import os
@@ -46,12 +43,3 @@ def job(snakemake):
 def function(module, name):
     """The function ``name`` of a module that is known by its name only."""
     return getattr(import_module(module), name)
-
-
-def load_numba():
-    """Load numba without what it looks for and no kernel uses, a quarter of a second of it."""
-    kept_out = dict.fromkeys({"coverage", "scipy.linalg.cython_blas"} - set(sys.modules))
-    sys.modules.update(kept_out)
-    import_module("numba.np.arraymath")
-    for name in kept_out:
-        del sys.modules[name]

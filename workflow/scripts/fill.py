@@ -1,9 +1,11 @@
 """Random insertion at one point: failed attempts against bodies placed."""
 
-from _job import job, load_numba
+from _job import job
 
 with job(snakemake):
-    load_numba()
+    from gaspart.loading import load_numba
+
+    load_numba(ours=True)
     from gaspart.files import whole_file
     from gaspart.measure.fill import fill
     from gaspart.scene import Scene

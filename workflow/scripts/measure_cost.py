@@ -1,9 +1,11 @@
 """What one point costs: counted work and repeated timings, with nothing running beside it."""
 
-from _job import job, load_numba
+from _job import job
 
 with job(snakemake):
-    load_numba()
+    from gaspart.loading import load_numba
+
+    load_numba(ours=True)
     from gaspart.engines import engine_from_dict
     from gaspart.files import whole_file
     from gaspart.measure.cost import measure_cost

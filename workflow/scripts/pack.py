@@ -1,9 +1,11 @@
 """As many bodies as find room, or as large as they grow, at one point."""
 
-from _job import job, load_numba
+from _job import job
 
 with job(snakemake):
-    load_numba()
+    from gaspart.loading import load_numba
+
+    load_numba(ours=True)
     from gaspart.files import whole_file
     from gaspart.measure.pack import pack
     from gaspart.scene import Scene

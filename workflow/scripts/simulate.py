@@ -2,10 +2,12 @@
 
 from pathlib import Path
 
-from _job import job, load_numba
+from _job import job
 
 with job(snakemake):
-    load_numba()
+    from gaspart.loading import load_numba
+
+    load_numba(ours=True)
     from gaspart.engines import engine_from_dict
     from gaspart.scene import Scene
     from gaspart.trajectory import run

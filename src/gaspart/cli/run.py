@@ -71,15 +71,19 @@ def _add_progress(parser: argparse.ArgumentParser) -> None:
 
 def _run(given: argparse.Namespace) -> None:
     from gaspart.engines import engine_from_dict
+    from gaspart.loading import load_numba
     from gaspart.scene import Scene
     from gaspart.trajectory import run
 
     settings = {key: getattr(given, key) for key in _ENGINE_SETTINGS if getattr(given, key) is not None}
     if "boxes_per_side" in settings:
         settings["boxes_per_side"] = _alone(settings["boxes_per_side"])
+    scene = Scene.from_file(given.scene)
+    engine = engine_from_dict({"name": given.engine, **settings})
+    load_numba(ours=True)
     path = run(
-        Scene.from_file(given.scene),
-        engine_from_dict({"name": given.engine, **settings}),
+        scene,
+        engine,
         seed=_alone(given.seed),
         duration=given.duration,
         sample_interval=given.sample_interval,
@@ -98,8 +102,10 @@ def _alone(numbers: tuple[int, ...]) -> int | tuple[int, ...]:
 
 
 def _resume(given: argparse.Namespace) -> None:
+    from gaspart.loading import load_numba
     from gaspart.trajectory import resume
 
+    load_numba(ours=True)
     _tell(resume(given.trajectory, given.checkpoint_seconds, progress(given.quiet)))
 
 
