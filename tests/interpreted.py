@@ -14,7 +14,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart import compression
-from gaspart.engines import common, event_driven, flight, search, step_contacts
+from gaspart.engines import ahead, common, event_driven, event_kernels, flight, search, step_contacts
 
 PYTHON = bool(numba.config.DISABLE_JIT)
 ROUGH, METAL = gp.Restitution(0.95, 0.4), gp.Restitution(1.0, 0.5)
@@ -149,9 +149,14 @@ def write_down(near, met, places, box, lap):
     near[int(met) : int(met) + places.shape[1]] = places[box].astype(np.uint64) | lap
 
 
+def fetch(array, index):
+    """`eight.fetch`: nothing that shows."""
+
+
 def do_without_vectors():
     """Let plain loops stand for what is written in vector instructions."""
     search.earliest, search.write_down = earliest, write_down
+    event_kernels.fetch = ahead.fetch = fetch
 
 
 if __name__ == "__main__":

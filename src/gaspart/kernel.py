@@ -33,6 +33,7 @@ KERNEL_MODULES = (
     "engines/flight.py",
     "engines/eight.py",
     "engines/search.py",
+    "engines/ahead.py",
     "engines/lists.py",
     "engines/big.py",
     "engines/impact.py",

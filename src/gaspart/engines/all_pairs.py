@@ -78,23 +78,23 @@ def run_pairs(
         if not soon <= stop or first == NOTHING:
             return STOP, done, last
         if second != NOTHING:
-            collide(rows, plans, first, second, soon, space, masses, counters, gravity, law)
+            collide(rows, first, second, soon, space, masses, counters, gravity, law)
         else:
             second = -1 - face
             if face >= WALLS:
                 if walls is not None:
                     m = face - WALLS
                     second = -1 - meet_wall(
-                        rows, plans, first, m, soon, space, masses, counters, gravity, law, walls
+                        rows, first, m, soon, space, masses, counters, gravity, law, walls
                     )
             elif face >= EDGES:
                 if surfaces is not None:
                     m = face - EDGES
                     second = -1 - meet_edge(
-                        rows, plans, first, m, soon, space, masses, counters, gravity, law, surfaces
+                        rows, first, m, soon, space, masses, counters, gravity, law, surfaces
                     )
             elif not meet_face(
-                rows, images, plans, first, face, soon, space, masses, counters, gravity, law, surfaces
+                rows, images, first, face, soon, space, masses, counters, gravity, law, surfaces
             ):
                 continue
         last = soon

@@ -53,7 +53,6 @@ def consider(rows, plans, body, other, x, y, z, space, counters, gravity):
     if time < soon or (time == soon and time < inf and other < plans[body].partner):
         plans[body].contact = time
         plans[body].partner = other
-        plans[body].partner_changes = plans[other].changes
 
 
 @inner_kernel

@@ -11,19 +11,18 @@ import numpy as np
 
 from gaspart.kernel import inner_helper, inner_kernel
 
-BUCKET, FILLED = 0, 1
+BUCKET, FILLED, TURN = range(3)
 
 
 PLAN = np.dtype(
     [
         ("contact", "f8"),  # time of the next contact foreseen, with
         ("face_time", "f8"),  # time of the next face of a box or of the container, and
+        ("foreseen", "i8"),  # at which turn (event) the contact was foreseen,
+        ("changed", "i8"),  # and at which this body's flight last changed
         ("partner", "i4"),  # whom,
-        ("partner_changes", "i4"),  # and how many changes that partner had seen when this was foreseen
         ("face", "i4"),  # which
-        ("changes", "i4"),  # changes of flight that this body has seen
         ("at", "i4", 3),  # coordinates of its box
-        ("box", "i4"),  # and its linear index
         ("before", "i4"),  # its neighbours in its bucket of the calendar,
         ("after", "i4"),
         ("slot", "i4"),  # which is this one, or -1
@@ -35,7 +34,8 @@ PLAN = np.dtype(
 
 class Calendar(NamedTuple):
     """head: first body of each bucket, the last of which is the overflow; rate (1,): buckets per unit of
-    time; cursor (2,): the current bucket, and how many bodies are in buckets that are not the overflow."""
+    time; cursor (3,): the current bucket, how many bodies are in buckets that are not the overflow, and the
+    turn, which counts events."""
 
     head: np.ndarray
     rate: np.ndarray
@@ -45,13 +45,26 @@ class Calendar(NamedTuple):
 def empty_calendar(count: int) -> Calendar:
     """A calendar for `count` bodies with nothing in it."""
     buckets = 1 << max(4, (4 * count - 1).bit_length())
-    return Calendar(np.full(buckets + 1, -1, dtype=np.int32), np.ones(1), np.zeros(2, dtype=np.int64))
+    return Calendar(np.full(buckets + 1, -1, dtype=np.int32), np.ones(1), np.zeros(3, dtype=np.int64))
 
 
 @inner_helper
 def time_of(plans, body):
     """The time of a body's next event."""
     return min(plans[body].contact, plans[body].face_time)
+
+
+@inner_helper
+def next_turn(calendar):
+    """Count an event."""
+    calendar.cursor[TURN] += 1
+    return calendar.cursor[TURN]
+
+
+@inner_helper
+def is_stale(plans, body):
+    """Whether the partner's flight has changed since the body's contact with it was foreseen."""
+    return plans[plans[body].partner].changed > plans[body].foreseen
 
 
 @inner_helper
@@ -68,14 +81,22 @@ def tie(plans, body):
 
 
 @inner_helper
-def _link(calendar, plans, body):
-    """Put a body into the bucket of its time."""
+def slot_of(calendar, plans, body):
+    """The bucket of a body's time: the current one at the earliest, the overflow beyond the horizon."""
     buckets = len(calendar.head) - 1
     current = calendar.cursor[BUCKET]
     x = time_of(plans, body) * calendar.rate[0]
     slot = buckets
     if x < current + buckets:
         slot = max(int(x), current) & (buckets - 1)
+    return slot
+
+
+@inner_helper
+def _link(calendar, plans, body):
+    """Put a body into the bucket of its time."""
+    slot = slot_of(calendar, plans, body)
+    if slot < len(calendar.head) - 1:
         calendar.cursor[FILLED] += 1
     first = calendar.head[slot]
     plans[body].after = first

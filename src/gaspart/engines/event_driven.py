@@ -72,7 +72,7 @@ class EventDynamics:
     def __init__(self, engine: EventDriven, scene: Scene, state: State, seed: int | tuple[int, ...]) -> None:
         from gaspart.beside import boxes_and_largest
         from gaspart.engines import all_pairs, event_kernels, flight, layout, lists
-        from gaspart.engines.calendar import PLAN, empty_calendar
+        from gaspart.engines.calendar import PLAN, TURN, empty_calendar
 
         self._kernels, self._all_pairs = event_kernels, all_pairs
         self._flight, self._layout = flight, layout
@@ -105,6 +105,7 @@ class EventDynamics:
             find = segments.segments_near if d == 2 else plates.plates_near
             self._walls = layout.Walls(pieces, wall, *find(pieces, boxes, largest), largest)
         self._calendar = empty_calendar(n)
+        self._turn = self._calendar.cursor[TURN:]
         self._law = law_for_kernel(scene, state)
         self._unit_mass, self._masses = (1.0, None) if self._law else masses_for_kernel(state.masses)
         self._surfaces = surfaces_for_kernel(scene, state, seed, self._unit_mass) if scene.faces else None
@@ -267,7 +268,7 @@ class EventDynamics:
 
     def _arrays(self) -> dict[str, np.ndarray]:
         """Everything that the kernels change and that cannot be made again, by name."""
-        arrays = {"rows": self._rows, "images": self._images, "plans": self._plans}
+        arrays = {"rows": self._rows, "images": self._images, "plans": self._plans, "turn": self._turn}
         arrays.update(self._counters._asdict())
         if self._law:
             arrays["spins"] = self._law.spins

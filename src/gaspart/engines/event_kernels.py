@@ -16,8 +16,10 @@ from math import inf
 
 import numpy as np
 
+from gaspart.engines.ahead import CACHED, look_ahead
 from gaspart.engines.big import find_beside
-from gaspart.engines.calendar import fill, reschedule, soonest, time_of
+from gaspart.engines.calendar import TURN, fill, is_stale, next_turn, reschedule, slot_of, soonest, time_of
+from gaspart.engines.eight import fetch
 from gaspart.engines.faces import find_face, meet_face
 from gaspart.engines.impact import collide, crowded
 from gaspart.engines.layout import (
@@ -50,15 +52,18 @@ def plan_face(rows, plans, body, space, partition, now, gravity, walls, surfaces
 
 
 @inner_helper
-def foresee(rows, plans, body, space, partition, counters, now, crossed, gravity, walls, surfaces, big):
+def foresee(rows, plans, body, space, partition, counters, now, turn, crossed, gravity, walls, surfaces, big):
     """Make a body's plans afresh; or, if it has just `crossed` (3,) into the next box, look about in the
     boxes that have become neighbours."""
     if crossed[0] == 0 and crossed[1] == 0 and crossed[2] == 0:
         plans[body].contact = inf
         plans[body].partner = NOTHING
+    contact, partner = plans[body].contact, plans[body].partner
     find_contact(rows, plans, body, space, partition, counters, crossed, gravity)
     if big is not None:
         find_beside(rows, plans, body, space, partition, counters, gravity, big, crossed)
+    if plans[body].contact != contact or plans[body].partner != partner:
+        plans[body].foreseen = turn
     plan_face(rows, plans, body, space, partition, now, gravity, walls, surfaces, big)
 
 
@@ -66,8 +71,10 @@ def foresee(rows, plans, body, space, partition, counters, now, crossed, gravity
 def foresee_all(rows, plans, calendar, space, partition, counters, now, gravity, walls, surfaces, big):
     """Sort all bodies into their boxes, make all plans and fill the calendar."""
     sort_in(plans, partition)
+    turn = calendar.cursor[TURN]
+    anew = (0, 0, 0)
     for body in range(len(rows)):
-        foresee(rows, plans, body, space, partition, counters, now, (0, 0, 0), gravity, walls, surfaces, big)
+        foresee(rows, plans, body, space, partition, counters, now, turn, anew, gravity, walls, surfaces, big)
     fill(calendar, plans, now)
 
 
@@ -125,6 +132,7 @@ def run_boxes(
     """
     done = 0
     last = -inf
+    seen = -1
     while True:
         if done >= most:
             return EVENTS, done, last
@@ -134,17 +142,20 @@ def run_boxes(
         body = soonest(calendar, plans)
         if body < 0:
             return STOP, done, last
+        if len(rows) > CACHED:
+            seen = look_ahead(rows, plans, calendar, partition, seen)
         time = time_of(plans, body)
         if not time <= stop:
             return STOP, done, last
         face = plans[body].face
         partner = plans[body].partner
         meets_face = plans[body].face_time <= plans[body].contact
-        happens = True
+        turn = next_turn(calendar)
+        happens = changes = True
         first, second = body, NOTHING  # whose plans are to be made anew
         x = y = z = 0
         if meets_face and INNER <= face < EDGES:
-            happens = False
+            happens = changes = False
             axis = (face - INNER) // 2
             step = 1 if face % 2 else -1
             x, y, z = step if axis == 0 else 0, step if axis == 1 else 0, step if axis == 2 else 0
@@ -156,33 +167,40 @@ def run_boxes(
                 if walls is not None:
                     m = face - WALLS
                     partner = -1 - meet_wall(
-                        rows, plans, body, m, time, space, masses, counters, gravity, law, walls
+                        rows, body, m, time, space, masses, counters, gravity, law, walls
                     )
             elif face >= EDGES:
                 if surfaces is not None:
                     m = face - EDGES
                     partner = -1 - meet_edge(
-                        rows, plans, body, m, time, space, masses, counters, gravity, law, surfaces
+                        rows, body, m, time, space, masses, counters, gravity, law, surfaces
                     )
             elif not meet_face(
-                rows, images, plans, body, face, time, space, masses, counters, gravity, law, surfaces
+                rows, images, body, face, time, space, masses, counters, gravity, law, surfaces
             ):
                 happens = False
                 axis = face // 2
                 move(plans, partition, body, axis, 0 if face % 2 else partition.per_side[axis] - 1)
-        elif plans[partner].changes != plans[body].partner_changes:
-            happens = False
+        elif is_stale(plans, body):
+            happens = changes = False
             counters.counts[STALE] += 1
         else:
             body, partner = min(body, partner), max(body, partner)
             first, second = body, partner
-            collide(rows, plans, body, partner, time, space, masses, counters, gravity, law)
-        while first >= 0:
+            collide(rows, body, partner, time, space, masses, counters, gravity, law)
+        searcher = first
+        while searcher >= 0:
+            if changes:
+                plans[searcher].changed = turn
             foresee(
-                rows, plans, first, space, partition, counters, time, (x, y, z), gravity, walls, surfaces, big
-            )
-            reschedule(calendar, plans, first)
-            first, second = second, NOTHING
+                rows, plans, searcher, space, partition, counters, time, turn, (x, y, z), gravity, walls,
+                surfaces, big,
+            )  # fmt: skip
+            fetch(calendar.head, slot_of(calendar, plans, searcher))
+            searcher = second if searcher == first else NOTHING
+        reschedule(calendar, plans, first)
+        if second >= 0:
+            reschedule(calendar, plans, second)
         if not happens:
             continue
         last = time

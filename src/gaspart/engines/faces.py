@@ -96,13 +96,12 @@ def find_face_pulled(rows, plans, body, axis, pull, space, partition, now, big):
 
 
 @inner_kernel
-def meet_face(rows, images, plans, body, face, time, space, masses, counters, gravity, law, surfaces):
+def meet_face(rows, images, body, face, time, space, masses, counters, gravity, law, surfaces):
     """Reflect a body at a wall, or take it from a periodic face to the opposite one. True if a wall."""
     d = len(space.lengths)
     axis = face // 2
     upper = face % 2 == 1
     advance_row(rows, body, time, space, gravity)
-    plans[body].changes += 1
     if space.periodic[axis]:
         rows[body, axis] = 0.0 if upper else space.lengths[axis]
         images[body, axis] += 1 if upper else -1

@@ -9,7 +9,7 @@ from math import inf, sqrt
 
 from gaspart.contact import time_to_growing_contact, time_to_plane
 from gaspart.coordinates import nearest
-from gaspart.engines.calendar import fill, reschedule, soonest, time_of
+from gaspart.engines.calendar import TURN, fill, is_stale, next_turn, reschedule, soonest, time_of
 from gaspart.engines.flight import advance_row, synchronise
 from gaspart.engines.layout import COLLISIONS, NOTHING, VIRIAL
 from gaspart.engines.lists import member, move, sort_in
@@ -68,7 +68,7 @@ def find_face(rows, plans, body, space, partition, rate):
 
 
 @inner_kernel
-def foresee(rows, plans, body, space, partition, rate):
+def foresee(rows, plans, body, space, partition, rate, turn):
     """Make a body's plans afresh."""
     d = len(space.lengths)
     at = plans[body].at
@@ -98,7 +98,7 @@ def foresee(rows, plans, body, space, partition, rate):
                             partner = other
     plans[body].contact = best
     plans[body].partner = partner
-    plans[body].partner_changes = plans[partner].changes if partner >= 0 else 0
+    plans[body].foreseen = turn
     plans[body].face_time, plans[body].face = find_face(rows, plans, body, space, partition, rate)
 
 
@@ -120,13 +120,14 @@ def start(rows, plans, calendar, space, partition, rate):
         for k in range(d):
             rows[body, d + k] *= factor
     for body in range(len(rows)):
-        foresee(rows, plans, body, space, partition, rate)
+        foresee(rows, plans, body, space, partition, rate, calendar.cursor[TURN])
     fill(calendar, plans, 0.0)
 
 
 @inner_kernel
 def meet_face(rows, plans, body, face, time, space, partition, rate):
-    """Let a body pass into the next box, or reflect it at a wall that its growing surface touches."""
+    """Let a body pass into the next box, or reflect it at a wall that its growing surface touches. Returns
+    whether its flight has changed."""
     d = len(space.lengths)
     axis, upper = face // 2, face % 2
     outermost = plans[body].at[axis] == (partition.per_side[axis] - 1 if upper else 0)
@@ -137,18 +138,17 @@ def meet_face(rows, plans, body, face, time, space, partition, rate):
         speed = (rows[body, d + axis] if upper else -rows[body, d + axis]) + growth
         speed = max(speed, _PART * growth) + growth
         rows[body, d + axis] = -speed if upper else speed
-        plans[body].changes += 1
-        return
+        return True
     to = plans[body].at[axis] + 2 * upper - 1
     if outermost:
         rows[body, axis] = 0.0 if upper else space.lengths[axis]
         to = 0 if upper else partition.per_side[axis] - 1
-        plans[body].changes += 1
     move(plans, partition, body, axis, to)
+    return outermost
 
 
 @inner_kernel
-def collide(rows, plans, i, j, time, space, rate, counters):
+def collide(rows, i, j, time, space, rate, counters):
     """Advance two bodies to their contact and let their growing surfaces push them apart."""
     d = len(space.lengths)
     advance_row(rows, i, time, space, None)
@@ -165,8 +165,6 @@ def collide(rows, plans, i, j, time, space, rate, counters):
         push = approach * nearest(rows[j, k] - rows[i, k], space.lengths[k], space.periodic[k]) / length
         rows[i, d + k] -= push
         rows[j, d + k] += push
-    plans[i].changes += 1
-    plans[j].changes += 1
     counters.counts[COLLISIONS] += 1
     counters.sums[VIRIAL] += approach * length
 
@@ -181,16 +179,17 @@ def run_growing(rows, plans, calendar, space, partition, rate, counters, stop, m
             return stop
         time = time_of(plans, body)
         last = max(last, time)
+        turn = next_turn(calendar)
         if plans[body].face_time <= plans[body].contact:
-            meet_face(rows, plans, body, plans[body].face, time, space, partition, rate)
-        else:
+            if meet_face(rows, plans, body, plans[body].face, time, space, partition, rate):
+                plans[body].changed = turn
+        elif not is_stale(plans, body):
             partner = plans[body].partner
-            if plans[partner].changes == plans[body].partner_changes:
-                first, second = min(body, partner), max(body, partner)
-                collide(rows, plans, first, second, time, space, rate, counters)
-                foresee(rows, plans, partner, space, partition, rate)
-                reschedule(calendar, plans, partner)
-        foresee(rows, plans, body, space, partition, rate)
+            collide(rows, min(body, partner), max(body, partner), time, space, rate, counters)
+            plans[body].changed = plans[partner].changed = turn
+            foresee(rows, plans, partner, space, partition, rate, turn)
+            reschedule(calendar, plans, partner)
+        foresee(rows, plans, body, space, partition, rate, turn)
         reschedule(calendar, plans, body)
     return last
 

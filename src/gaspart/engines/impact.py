@@ -185,7 +185,7 @@ def crowded(watch, body, time):
 
 
 @inner_helper
-def collide(rows, plans, i, j, time, space, masses, counters, gravity, law):
+def collide(rows, i, j, time, space, masses, counters, gravity, law):
     """Advance two bodies to their contact and pass the momentum."""
     d = len(space.lengths)
     advance_row(rows, i, time, space, gravity)
@@ -200,8 +200,6 @@ def collide(rows, plans, i, j, time, space, masses, counters, gravity, law):
         counters.sums[VIRIAL] += strike(rows, i, j, rr, rv, space, counters, law)
     else:
         counters.sums[VIRIAL] += pass_momentum(rows, i, j, rr, rv, space, masses)
-    plans[i].changes += 1
-    plans[j].changes += 1
     sigma = rows[i, 2 * d + 1] + rows[j, 2 * d + 1]
     counters.sums[WORST] = max(counters.sums[WORST], abs(rr / (sigma * sigma) - 1.0))
     counters.counts[COLLISIONS] += 1

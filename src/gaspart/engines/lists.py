@@ -48,7 +48,6 @@ def member(partition, box, n, other):
 def put(plans, partition, body):
     """Put a body into its box."""
     box = np.uint64(box_of(plans, partition, body))
-    plans[body].box = box
     filled = partition.filled[box]
     if filled < PLACES:
         partition.places[box, filled] = body
@@ -61,7 +60,7 @@ def put(plans, partition, body):
 @inner_helper
 def take(plans, partition, body):
     """Take a body out of its box; another of the same box fills its place."""
-    box = np.uint64(plans[body].box)
+    box = np.uint64(box_of(plans, partition, body))
     places, head, following = partition.places, partition.head, partition.following
     last = np.uint64(partition.filled[box]) - np.uint64(1)
     partition.filled[box] = last

@@ -54,7 +54,6 @@ def consider(rows, plans, body, met, space, partition, counters, gravity):
     if best < soon or who != partner:
         plans[body].contact = best
         plans[body].partner = who
-        plans[body].partner_changes = plans[uint64(who)].changes
 
 
 @inner_kernel

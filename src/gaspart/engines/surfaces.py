@@ -44,10 +44,9 @@ def find_edge(rows, body, axis, space, surfaces):
 
 
 @inner_kernel
-def meet_edge(rows, plans, body, face, time, space, masses, counters, gravity, law, surfaces):
+def meet_edge(rows, body, face, time, space, masses, counters, gravity, law, surfaces):
     """Advance a body to the edge of a well, and let it in or out. Returns the number of the face."""
     advance_row(rows, body, time, space, gravity)
-    plans[body].changes += 1
     cross_edge(rows, body, face, space, masses, counters, law, surfaces)
     return face
 

@@ -86,11 +86,10 @@ def gap_to_wall(rows, body, m, space, walls):
 
 
 @inner_kernel
-def meet_wall(rows, plans, body, m, time, space, masses, counters, gravity, law, walls):
+def meet_wall(rows, body, m, time, space, masses, counters, gravity, law, walls):
     """Reflect a body at a wall, from its side or its rim. Returns the number of the wall."""
     d = len(space.lengths)
     advance_row(rows, body, time, space, gravity)
-    plans[body].changes += 1
     x, y, z = gap_to_wall(rows, body, m, space, walls)
     distance = sqrt(x * x + y * y + z * z)
     x /= distance
