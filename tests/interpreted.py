@@ -13,8 +13,8 @@ import numpy as np
 from scenes import gas
 
 import gaspart as gp
-from gaspart import compression
-from gaspart.engines import ahead, common, event_driven, event_kernels, flight, search, step_contacts
+from gaspart import compression, insertion, memory
+from gaspart.engines import ahead, event_driven, event_kernels, flight, search, step_contacts
 
 PYTHON = bool(numba.config.DISABLE_JIT)
 ROUGH, METAL = gp.Restitution(0.95, 0.4), gp.Restitution(1.0, 0.5)
@@ -131,7 +131,7 @@ def order_of_contacts():
 def read_fields():
     """Let Python read the fields of plans as the compiled kernels do: plans[body].partner."""
     for module in (event_driven, compression):
-        module.aligned = lambda shape, dtype: common.aligned(shape, dtype).view(np.recarray)
+        module.aligned = lambda shape, dtype: memory.aligned(shape, dtype).view(np.recarray)
 
 
 def earliest(rows, near, met, body, soon, partner, space, gravity):
@@ -150,13 +150,13 @@ def write_down(near, met, places, box, lap):
 
 
 def fetch(array, index):
-    """`eight.fetch`: nothing that shows."""
+    """`fetch.fetch`: nothing that shows."""
 
 
 def do_without_vectors():
     """Let plain loops stand for what is written in vector instructions."""
     search.earliest, search.write_down = earliest, write_down
-    event_kernels.fetch = ahead.fetch = fetch
+    event_kernels.fetch = ahead.fetch = insertion.fetch = fetch
 
 
 if __name__ == "__main__":

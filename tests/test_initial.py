@@ -48,6 +48,34 @@ def test_a_lattice_that_would_overlap_is_refused():
         initial_state(gas(3, 100, 0.7, arrangement="lattice"), seed=0)
 
 
+@pytest.mark.parametrize(("dimension", "eta", "boundary"), [(2, 0.4, "wall"), (3, 0.28, "periodic")])
+def test_insertion_is_that_of_one_attempt_after_another(dimension, eta, boundary):
+    scene = gas(dimension, 300, eta, boundary)
+    big, small = gp.Species(2, 1.2), gp.Species(40, 0.05)  # beside the boxes; more than a box has places for
+    scene = gp.Scene(scene.container, [*scene.species, small, big])
+    positions, failures = random_insertion(scene, stream(5))
+    lengths, rng, standing = np.array(scene.container.lengths), stream(5), []
+    radii = {0: scene.species[0].radius, 1: 0.05, 2: 1.2}
+    first = {0: 0, 1: 300, 2: 340}
+    for kind in (2, 0, 1):  # the larger ones first
+        count, low, high = scene.species[kind].count, *map(np.array, scene.reach(radii[kind]))
+        placed = failed = 0
+        while placed < count:
+            draws = rng.random((max(256, 2 * (count - placed)), dimension))
+            for place in low + draws * (high - low):
+                gaps = np.abs(place - np.array([p for p, _ in standing]).reshape(-1, dimension))
+                gaps = np.where(scene.container.periodic, np.minimum(gaps, lengths - gaps), gaps)
+                if (np.sqrt((gaps**2).sum(axis=1)) < radii[kind] + np.array([r for _, r in standing])).any():
+                    failed += 1
+                    continue
+                assert (positions[first[kind] + placed] == place).all()
+                assert failures[first[kind] + placed] == failed
+                standing.append((place, radii[kind]))
+                placed, failed = placed + 1, 0
+                if placed == count or kind == 2:  # big ones are tried alone
+                    break
+
+
 def test_insertion_gives_up_at_saturation():
     scene = gas(3, 200, 0.5)
     with pytest.raises(gp.SceneError, match=r"species\[0\].count = 200: does not fit") as caught:

@@ -16,8 +16,8 @@ from typing import Literal
 import numpy as np
 
 from gaspart.engines.calendar import PLAN, empty_calendar
-from gaspart.engines.common import aligned
 from gaspart.errors import SceneError, SimulationError
+from gaspart.memory import aligned
 from gaspart.random import normals, stream
 from gaspart.scene import Scene, Species
 

@@ -107,10 +107,9 @@ def random_insertion(
     """
     from gaspart.beside import largest_in_boxes
     from gaspart.boxes import make_boxes, sides_for
-    from gaspart.insertion import place
+    from gaspart.insertion import nobody, place, put
 
-    lengths, dimension = scene.container.lengths, scene.dimension
-    explicit = len(scene.bodies)
+    dimension, explicit = scene.dimension, len(scene.bodies)
     species = sorted(range(len(scene.species)), key=lambda n: -scene.species[n].radius)
     order = [np.arange(explicit)]  # bodies in the order in which they are placed
     first = explicit + np.cumsum([0, *(kind.count for kind in scene.species)])
@@ -127,30 +126,29 @@ def random_insertion(
         from gaspart.segments import segments_of
 
         walls, _ = segments_of(scene) if dimension == 2 else plates_of(scene)
-    head = np.full(boxes.count, -1, dtype=np.int64)
-    following = np.full(scene.count, -1, dtype=np.int64)
-    positions = np.empty((scene.count, dimension))
+    standing, space, block = nobody(scene, boxes, radii)
+    positions = standing.positions
     failed = np.zeros(scene.count, dtype=np.int64)
 
     for n, body in enumerate(scene.bodies):  # their places are given, and the scene has checked them
         positions[n] = body.position
-        box = boxes.index_of(np.array(body.position))
-        following[n], head[box] = head[box], n
+        put(standing, boxes.index_of(np.array(body.position)), n)
     placed = explicit
     for n in species:
         kind = scene.species[n]
         stop = placed + kind.count
         lower, upper = scene.reach(kind.radius)
         failures = 0
+        numbers = np.empty((max(256, min(1_000_000, 2 * kind.count)), dimension))
+        big = kind.radius > largest
+        beside = np.flatnonzero(radii[:placed] > largest)
         while placed < stop:
-            draws = rng.random((max(256, min(1_000_000, 2 * (stop - placed))), dimension))
-            # a body too big for the boxes is tried against all that stand already, and alone
-            big = kind.radius > largest
-            beside = np.arange(placed) if big else np.flatnonzero(radii[:placed] > largest)
+            draws = rng.random(out=numbers[: max(256, min(1_000_000, 2 * (stop - placed)))])
+            if big:  # too big for the boxes: it is tried against all that stand already, and alone
+                beside = np.arange(placed)
             placed, failures, _ = place(
-                draws, positions, radii, placed, placed + 1 if big else stop, lower, upper, lengths,
-                scene.container.periodic, boxes.per_side, boxes.widths, boxes.neighbour, head,
-                following, boxes.strides, failures, patience, failed, walls, beside,
+                draws, standing, space, block, placed, placed + 1 if big else stop, lower, upper, failures,
+                patience, failed, walls, beside,
             )  # fmt: skip
             if failures >= patience:
                 eta = scene.packing_fraction * placed / scene.count

@@ -25,6 +25,7 @@ KERNEL_MODULES = (
     "draws.py",
     "falling.py",
     "coordinates.py",
+    "fetch.py",
     "plates.py",
     "segments.py",
     "insertion.py",

@@ -12,8 +12,8 @@ from __future__ import annotations
 from numpy import uint32, uint64
 
 from gaspart.engines.calendar import BUCKET
-from gaspart.engines.eight import fetch
 from gaspart.engines.layout import EDGES, INNER
+from gaspart.fetch import fetch
 from gaspart.kernel import inner_helper
 
 CACHED = 1 << 15  # bodies whose rows and plans fit into a core's own cache

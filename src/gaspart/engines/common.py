@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import DTypeLike
 
 from gaspart.initial import per_body
 from gaspart.matter import Restitution
@@ -103,14 +102,6 @@ def tell_inner(
             state.vibrations += surfaces.held.sum(axis=1) * unit_mass
         if law and law.vibrations is not None:
             state.vibrations += np.maximum(law.vibrations, 0.0)
-
-
-def aligned(shape: tuple[int, ...], dtype: DTypeLike) -> np.ndarray:
-    """An array of zeros that starts on a cache line."""
-    size = int(np.prod(shape)) * np.dtype(dtype).itemsize
-    buffer = np.zeros(size + 64, dtype=np.uint8)
-    start = -buffer.ctypes.data % 64
-    return buffer[start : start + size].view(dtype).reshape(shape)
 
 
 class EventLog:

@@ -291,23 +291,6 @@ def write_down(typingctx, near, met, places, box, lap):
 
 
 @intrinsic
-def fetch(typingctx, array, index):
-    """Let the cache line in which array[index] begins be brought near."""
-
-    def generate(context, builder, signature, arguments):
-        array = context.make_array(signature.args[0])(context, builder, arguments[0])
-        stride = cgutils.unpack_tuple(builder, array.strides)[0]
-        byte = ir.IntType(8).as_pointer()
-        place = builder.gep(builder.bitcast(array.data, byte), [builder.mul(arguments[1], stride)])
-        kind = ir.FunctionType(ir.VoidType(), [byte, _INT, _INT, _INT])
-        prefetch = cgutils.get_or_insert_function(builder.module, kind, "llvm.prefetch.p0i8")
-        builder.call(prefetch, [place, _INT(0), _INT(3), _INT(1)])
-        return context.get_dummy_value()
-
-    return types.none(array, types.int64), generate
-
-
-@intrinsic
 def lowest(typingctx, bits):
     """The number of the lowest bit that is set, of a word that is not 0."""
 

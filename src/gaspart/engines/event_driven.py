@@ -9,7 +9,6 @@ import numpy as np
 
 from gaspart.engines.common import (
     EventLog,
-    aligned,
     face_energy,
     law_for_kernel,
     masses_for_kernel,
@@ -18,6 +17,7 @@ from gaspart.engines.common import (
 )
 from gaspart.engines.progress import MANY, check_progress
 from gaspart.errors import SceneError, SimulationError
+from gaspart.memory import aligned
 from gaspart.scene import Scene
 from gaspart.state import State
 from gaspart.tally import Tally

@@ -19,7 +19,6 @@ import numpy as np
 from gaspart.engines.ahead import CACHED, look_ahead
 from gaspart.engines.big import find_beside
 from gaspart.engines.calendar import TURN, fill, is_stale, next_turn, reschedule, slot_of, soonest, time_of
-from gaspart.engines.eight import fetch
 from gaspart.engines.faces import find_face, meet_face
 from gaspart.engines.impact import collide, crowded
 from gaspart.engines.layout import (
@@ -38,6 +37,7 @@ from gaspart.engines.lists import move, sort_in
 from gaspart.engines.search import find_contact
 from gaspart.engines.surfaces import meet_edge
 from gaspart.engines.walls import find_wall, meet_wall
+from gaspart.fetch import fetch
 from gaspart.kernel import inner_helper, kernel
 
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 import numpy as np
 
 from gaspart.boxes import Boxes
-from gaspart.engines.common import aligned
 from gaspart.engines.eight import WIDTH
 from gaspart.engines.layout import PLACES, Partition
 from gaspart.engines.search import MOST
 from gaspart.kernel import inner_helper, inner_kernel
+from gaspart.memory import aligned
 
 _NOBODY = np.uint32(0xFFFFFFFF)
 

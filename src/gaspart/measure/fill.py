@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.boxes import make_boxes, sides_for
-from gaspart.insertion import place
+from gaspart.insertion import nobody, place
 from gaspart.random import stream
 from gaspart.scene import Scene
 
@@ -49,19 +49,14 @@ def insert(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarr
     of the bodies (M, d) that found one."""
     boxes = make_boxes(scene, sides_for(scene, per_body=1.0), images=False)
     lower, upper = scene.reach(scene.largest_radius)
-    head = np.full(boxes.count, -1, dtype=np.int64)
-    following = np.full(scene.count, -1, dtype=np.int64)
-    positions = np.empty((scene.count, scene.dimension))
-    radii = np.full(scene.count, scene.largest_radius)
+    standing, space, block = nobody(scene, boxes, np.full(scene.count, scene.largest_radius))
     before = np.full(scene.count, -1, dtype=np.int64)
     rng, placed, failures, used = stream(seed), 0, 0, 0
     while placed < scene.count and used < attempts:
         draws = rng.random((min(CHUNK, attempts - used), scene.dimension))
         placed, failures, tried = place(
-            draws, positions, radii, placed, scene.count, lower, upper, scene.container.lengths,
-            scene.container.periodic, boxes.per_side, boxes.widths, boxes.neighbour, head, following,
-            boxes.strides, failures, attempts + 1, before, None,
-            np.empty(0, dtype=np.int64),
+            draws, standing, space, block, placed, scene.count, lower, upper, failures, attempts + 1, before,
+            None, np.empty(0, dtype=np.int64),
         )  # fmt: skip
         used += tried
-    return before, used, positions[:placed]
+    return before, used, standing.positions[:placed]
