@@ -134,7 +134,7 @@ def read_fields():
         module.aligned = lambda shape, dtype: memory.aligned(shape, dtype).view(np.recarray)
 
 
-def earliest(rows, near, met, body, soon, partner, space, gravity):
+def earliest(rows, near, met, body, soon, partner, space, gravity, still):
     """`eight.earliest`, one candidate after the other; of all of them something is known."""
     for candidate in near[: int(met)]:
         other, offset = int(candidate & np.uint64(0xFFFFFFFF)), search.offset_of(candidate, space)

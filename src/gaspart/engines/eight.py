@@ -128,28 +128,23 @@ def load_row(builder: ir.IRBuilder, data: ir.Value, index: ir.Value) -> list[Lan
     return [Lanes(builder, value).all(value) for value in values]
 
 
-def contact_times(one, other, offset, pulls=None) -> tuple[Lanes, Lanes | None]:
-    """`flight.pair_time` in columns of rows, of one body and eight others displaced by `offset` (d,).
-
-    pulls: those of the one (d,) and of the others (d,), or None if there is no gravity. If there is, also
-    tells which pairs do not fall alike: their times are not worked out.
-    """
+def contact_times(one: list[Lanes], other: list[Lanes], offset: list[Lanes], pull: list[ir.Value]) -> Lanes:
+    """`flight.pair_time` in columns of rows, of one body and eight others displaced by `offset` (d,), which
+    all fall alike under a `pull` (d,), or, without any, not at all."""
     d = len(offset)
     start = other[2 * d].where(other[2 * d] > one[2 * d], one[2 * d])
     late, late_other = start - one[2 * d], start - other[2 * d]
-    rr = rv = vv = aa = start.all(0.0)
+    rr = rv = vv = start.all(0.0)
     for k in range(d):
         v, v_other = one[d + k], other[d + k]
-        if pulls is None:
+        if not pull:
             r = (other[k] + v_other * late_other) - (one[k] + v * late) + offset[k]
             v = v_other - v
         else:
-            pull, pull_other = pulls[0][k], pulls[1][k]
-            x = one[k] + (v + pull * 0.5 * late) * late
-            r = (other[k] + (v_other + pull_other * 0.5 * late_other) * late_other) - x + offset[k]
-            v = (v_other + pull_other * late_other) - (v + pull * late)
-            a = pull_other - pull
-            aa = aa + a * a
+            fall = start.all(pull[k])
+            x = one[k] + (v + fall * 0.5 * late) * late
+            r = (other[k] + (v_other + fall * 0.5 * late_other) * late_other) - x + offset[k]
+            v = (v_other + fall * late_other) - (v + fall * late)
         rr = rr + r * r
         rv = rv + r * v
         vv = vv + v * v
@@ -157,10 +152,7 @@ def contact_times(one, other, offset, pulls=None) -> tuple[Lanes, Lanes | None]:
     c = rr - sigma * sigma
     meets = (rv < 0.0) & (rv * rv >= vv * c)
     root = c / ((rv * rv - vv * c).sqrt() - rv)
-    time = (start + start.all(0.0).where(c <= 0.0, root)).where(meets, inf)
-    if pulls is None:
-        return time, None
-    return start.all(inf).where(aa > 0.0, time), aa > 0.0
+    return (start + start.all(0.0).where(c <= 0.0, root)).where(meets, inf)
 
 
 def bits(candidates: Lanes, start: int, count: int) -> Lanes:
@@ -179,17 +171,12 @@ def lap_of(candidates: Lanes, axis: int) -> Lanes:
     return Lanes(builder, builder.sitofp(lap, ir.VectorType(_DOUBLE, WIDTH)))
 
 
-def pulls(body: list[Lanes], fixed: Lanes, space: dict, pull: list[ir.Value]) -> list[Lanes]:
-    """`flight.acceleration` of columns of rows, of bodies that may be fixed."""
-    found = []
-    d = len(pull)
-    for k in range(d):
-        all_of = body[k].all
-        inset = all_of(space["margin"]) * body[2 * d + 1]
-        inset = all_of(0.0).where(all_of(space["periodic"][k]), inset)
-        length, down = all_of(space["lengths"][k]), all_of(pull[k])
-        lies = ((down < 0.0) & (body[k] <= inset)) | ((down > 0.0) & (body[k] >= length - inset))
-        found.append(all_of(0.0).where(fixed | (lies & body[d + k].equals(0.0)), down))
+def marks(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) -> ir.Value:
+    """A bit for each body, from an array with a byte of 0 or 1 for each."""
+    found = ir.IntType(WIDTH)(0)
+    for n, index in enumerate(indices):
+        mark = builder.load(builder.gep(data, [index]))
+        found = builder.or_(found, builder.shl(mark, ir.IntType(WIDTH)(n)))
     return found
 
 
@@ -211,22 +198,19 @@ def sooner(time: Lanes, who: Lanes, other_time: Lanes, other_who: Lanes) -> tupl
 
 
 @intrinsic
-def earliest(typingctx, rows, near, met, body, soon, partner, space, gravity):
+def earliest(typingctx, rows, near, met, body, soon, partner, space, gravity, still):
     """The earliest contact of a body with `met` candidates, if it is sooner than that with a partner: (time,
-    partner, a bit for each candidate that does not fall alike, of which nothing is known)."""
+    partner, a bit for each candidate of which nothing is known, since it or the body may not fall, see
+    `flight.note_still`)."""
 
     def generate(context, builder, signature, arguments):
-        rows, near, met, body, soon, partner, space, gravity = arguments
+        rows, near, met, body, soon, partner, space, gravity, still = arguments
         space = fields(builder, signature.args[6], space)
         rows = context.make_array(signature.args[0])(context, builder, rows).data
         near = context.make_array(signature.args[1])(context, builder, near).data
-        fixed = None
-        if not isinstance(signature.args[7], types.NoneType):
-            gravity = fields(builder, signature.args[7], gravity)
-            fixed = context.make_array(signature.args[7].types[1])(context, builder, gravity["fixed"]).data
-
-        def is_fixed(index):
-            return builder.icmp_unsigned("!=", builder.load(builder.gep(fixed, [index])), ir.IntType(8)(0))
+        still = context.make_array(signature.args[8])(context, builder, still).data
+        falls = not isinstance(signature.args[7], types.NoneType)
+        pull = fields(builder, signature.args[7], gravity)["pull"] if falls else []
 
         one = load_row(builder, rows, body)
         best = cgutils.alloca_once_value(builder, one[0].all(soon).value)
@@ -240,19 +224,12 @@ def earliest(typingctx, rows, near, met, body, soon, partner, space, gravity):
             indices = [builder.extract_element(numbers.value, _INT(n)) for n in range(WIDTH)]
             others = load_rows(builder, rows, indices)
             offset = [lap_of(candidates, k) * length for k, length in enumerate(space["lengths"])]
-            pulled = None
-            if fixed is not None:
-                mask = ir.Constant(ir.VectorType(ir.IntType(1), WIDTH), ir.Undefined)
-                for n, index in enumerate(indices):
-                    mask = builder.insert_element(mask, is_fixed(index), _INT(n))
-                pulled = (
-                    pulls(one, one[0].all(is_fixed(body)), space, gravity["pull"]),
-                    pulls(others, Lanes(builder, mask), space, gravity["pull"]),
-                )
-            time, unlike = contact_times(one, others, offset, pulled)
-            if unlike is not None:
-                mask = builder.zext(builder.bitcast(unlike.value, ir.IntType(WIDTH)), _WORD)
-                mask = builder.shl(mask, first)
+            time = contact_times(one, others, offset, pull)
+            if falls:
+                mask = builder.or_(marks(builder, still, indices), marks(builder, still, [body] * WIDTH))
+                lanes = builder.bitcast(mask, ir.VectorType(ir.IntType(1), WIDTH))
+                time = time.all(inf).where(Lanes(builder, lanes), time)
+                mask = builder.shl(builder.zext(mask, _WORD), first)
                 builder.store(builder.or_(builder.load(unknown), mask), unknown)
             so_far = Lanes(builder, builder.load(best)), Lanes(builder, builder.load(who))
             time, numbers = sooner(*so_far, time, numbers)
@@ -266,7 +243,7 @@ def earliest(typingctx, rows, near, met, body, soon, partner, space, gravity):
 
     found = types.Tuple((types.float64, types.int64, types.uint64))
     word = types.uint64
-    return found(rows, near, word, word, types.float64, types.int64, space, gravity), generate
+    return found(rows, near, word, word, types.float64, types.int64, space, gravity, still), generate
 
 
 @intrinsic

@@ -292,7 +292,15 @@ class EventDynamics:
         times = (float(parts[key]) for key in ("laps", "clock", "since", "lost"))
         self._laps, self._clock, self._since, self._lost = times
         if not self._by_pairs:
-            self._kernels.refill(self._plans, self._calendar, self._partition, self._clock)
+            self._kernels.refill(
+                self._rows,
+                self._plans,
+                self._calendar,
+                self._space,
+                self._partition,
+                self._clock,
+                self._gravity,
+            )
 
 
 def _lap_length(scene: Scene, state: State) -> float:

@@ -20,6 +20,7 @@ from gaspart.engines.ahead import CACHED, look_ahead
 from gaspart.engines.big import find_beside
 from gaspart.engines.calendar import TURN, fill, is_stale, next_turn, reschedule, slot_of, soonest, time_of
 from gaspart.engines.faces import find_face, meet_face
+from gaspart.engines.flight import note_still
 from gaspart.engines.impact import collide, crowded
 from gaspart.engines.layout import (
     COLLAPSE,
@@ -67,10 +68,19 @@ def foresee(rows, plans, body, space, partition, counters, now, turn, crossed, g
     plan_face(rows, plans, body, space, partition, now, gravity, walls, surfaces, big)
 
 
+@inner_helper
+def note_all_still(rows, space, gravity, partition):
+    """Note which bodies may not fall."""
+    if gravity is not None:
+        for body in range(len(rows)):
+            note_still(rows, body, space, gravity, partition.still)
+
+
 @kernel
 def foresee_all(rows, plans, calendar, space, partition, counters, now, gravity, walls, surfaces, big):
     """Sort all bodies into their boxes, make all plans and fill the calendar."""
     sort_in(plans, partition)
+    note_all_still(rows, space, gravity, partition)
     turn = calendar.cursor[TURN]
     anew = (0, 0, 0)
     for body in range(len(rows)):
@@ -79,9 +89,10 @@ def foresee_all(rows, plans, calendar, space, partition, counters, now, gravity,
 
 
 @kernel
-def refill(plans, calendar, partition, now):
+def refill(rows, plans, calendar, space, partition, now, gravity):
     """Rebuild lists and calendar from plans that are already made, as after a checkpoint."""
     sort_in(plans, partition)
+    note_all_still(rows, space, gravity, partition)
     fill(calendar, plans, now)
 
 
@@ -188,6 +199,10 @@ def run_boxes(
             body, partner = min(body, partner), max(body, partner)
             first, second = body, partner
             collide(rows, body, partner, time, space, masses, counters, gravity, law)
+        if gravity is not None:
+            note_still(rows, first, space, gravity, partition.still)
+            if second >= 0:
+                note_still(rows, second, space, gravity, partition.still)
         searcher = first
         while searcher >= 0:
             if changes:

@@ -32,6 +32,17 @@ def acceleration(rows, body, axis, space, gravity):
 
 
 @inner_helper
+def note_still(rows, body, space, gravity, still):
+    """Note whether a body may be one that is not pulled (see `acceleration`): it is fixed, or does not move
+    along an axis with a pull."""
+    d = len(space.lengths)
+    found = gravity.fixed[body]
+    for k in range(d):
+        found |= (gravity.pull[k] != 0.0) & (rows[body, d + k] == 0.0)
+    still[body] = found
+
+
+@inner_helper
 def advance_row(rows, body, time, space, gravity):
     """Move a body along its flight to `time`."""
     d = len(space.lengths)

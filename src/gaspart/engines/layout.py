@@ -91,8 +91,8 @@ class Watch(NamedTuple):
 class Partition(NamedTuple):
     """The grid of boxes (see `boxes.Boxes`); how many bodies each holds, filled (boxes,), the first of them,
     places (boxes, PLACES), and of the others the first, head (boxes,), and the next after each body,
-    following (N,), see `lists`; near (M,), room for the
-    candidates of a search."""
+    following (N,), see `lists`; near (M,), room for the candidates of a search; still (N,), which bodies
+    gravity may not pull, see `flight.note_still`."""
 
     per_side: np.ndarray
     widths: np.ndarray
@@ -104,6 +104,7 @@ class Partition(NamedTuple):
     head: np.ndarray
     following: np.ndarray
     near: np.ndarray
+    still: np.ndarray
 
 
 class Counters(NamedTuple):

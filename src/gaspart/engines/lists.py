@@ -26,6 +26,7 @@ def empty_partition(boxes: Boxes, count: int) -> Partition:
         head=np.zeros(boxes.count, dtype=np.uint32),
         following=np.zeros(count, dtype=np.uint32),
         near=np.zeros(MOST + WIDTH, dtype=np.uint64),
+        still=np.zeros(count, dtype=np.uint8),
     )  # fmt: skip
 
 

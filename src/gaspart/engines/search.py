@@ -41,7 +41,7 @@ def consider(rows, plans, body, met, space, partition, counters, gravity):
     for n in range(_WIDTH):
         near[met + n] = body  # no body meets itself
     soon, partner = plans[body].contact, int64(plans[body].partner)
-    best, who, left = earliest(rows, near, met, body, soon, partner, space, gravity)
+    best, who, left = earliest(rows, near, met, body, soon, partner, space, gravity, partition.still)
     if gravity is not None:
         while left:
             candidate = near[lowest(left)]
