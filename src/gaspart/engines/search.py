@@ -18,6 +18,7 @@ MOST = 64  # candidates gathered before they are looked at: a bit of a word for 
 _WIDTH, _PLACES, _FULL = uint64(WIDTH), uint64(PLACES), uint64(MOST - 3 * PLACES - 1)
 _BODY = uint64((1 << LAP_FIRST) - 1)
 _X, _Y, _Z = (uint64(LAP_FIRST + LAP_BITS * k) for k in range(3))
+_HERE = uint64(1)  # the lap of who stands in the container itself
 _LAP = uint64((1 << LAP_BITS) - 1)
 
 
@@ -100,6 +101,15 @@ def span(partition, axis, at, crossed):
 
 
 @inner_helper
+def note_box(near, met, partition, box, lap, crowd):
+    """Write down whom a box has places for, after `met` others: how many there now are, and how many bodies
+    the fullest box so far holds, `crowd`."""
+    write_down(near, met, partition.places, box, lap)
+    filled = uint64(partition.filled[box])
+    return met + min(filled, _PLACES), max(crowd, filled)
+
+
+@inner_helper
 def find_contact(rows, plans, searcher, space, partition, counters, crossed, gravity):
     """Look for an earlier contact of the body in the boxes about its own; if it has just `crossed` (3,) into
     this one, in those only that were not neighbours before.
@@ -116,6 +126,9 @@ def find_contact(rows, plans, searcher, space, partition, counters, crossed, gra
     counters.counts[BOX_VISITS] += visits_x * visits_y * visits_z
     counters.counts[PAIR_TESTS] -= itself_x * itself_y * itself_z
     near = partition.near
+    within = (
+        crossed[0] == 0 and 0 < at[0] < partition.per_side[0] - 1
+    )  # three boxes of a row lie side by side
     met = uint64(0)
     for dz in range(low_z, end_z):
         beside_z = neighbour[2, az, dz]
@@ -129,15 +142,16 @@ def find_contact(rows, plans, searcher, space, partition, counters, crossed, gra
             row = beside_y + beside_z
             lap = lap_z | uint64(shift[1, ay, dy] + 1) << _Y
             crowd = uint64(0)
-            for dx in range(low_x, end_x):
-                beside_x = neighbour[0, ax, dx]
-                if beside_x < 0:
-                    continue
-                box = uint64(row + beside_x)
-                write_down(near, met, partition.places, box, lap | uint64(shift[0, ax, dx] + 1) << _X)
-                filled = uint64(partition.filled[box])
-                met += min(filled, _PLACES)
-                crowd = max(crowd, filled)
+            if within:
+                first = uint64(row + at[0] - 1)
+                for box in range(first, first + uint64(3)):
+                    met, crowd = note_box(near, met, partition, box, lap | _HERE << _X, crowd)
+            else:
+                for dx in range(low_x, end_x):
+                    beside_x = neighbour[0, ax, dx]
+                    if beside_x >= 0:
+                        box, lap_x = uint64(row + beside_x), lap | uint64(shift[0, ax, dx] + 1) << _X
+                        met, crowd = note_box(near, met, partition, box, lap_x, crowd)
             if crowd > _PLACES or met > _FULL:
                 met = settle(
                     rows, plans, body, met, row, lap, low_x, end_x, space, partition, counters, gravity
