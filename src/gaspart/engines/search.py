@@ -128,7 +128,7 @@ def find_contact(rows, plans, searcher, space, partition, counters, crossed, gra
     near = partition.near
     within = (
         crossed[0] == 0 and 0 < at[0] < partition.per_side[0] - 1
-    )  # three boxes of a row lie side by side
+    )  # a row's three lie side by side
     met = uint64(0)
     for dz in range(low_z, end_z):
         beside_z = neighbour[2, az, dz]
