@@ -126,9 +126,7 @@ def find_contact(rows, plans, searcher, space, partition, counters, crossed, gra
     counters.counts[BOX_VISITS] += visits_x * visits_y * visits_z
     counters.counts[PAIR_TESTS] -= itself_x * itself_y * itself_z
     near = partition.near
-    within = (
-        crossed[0] == 0 and 0 < at[0] < partition.per_side[0] - 1
-    )  # a row's three lie side by side
+    within = crossed[0] == 0 and 0 < at[0] < partition.per_side[0] - 1  # a row's three lie side by side
     met = uint64(0)
     for dz in range(low_z, end_z):
         beside_z = neighbour[2, az, dz]
