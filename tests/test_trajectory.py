@@ -318,7 +318,7 @@ def _environment():
 def test_a_broken_invariant_stops_the_run_and_keeps_its_state(tmp_path, monkeypatch):
     path, checked = tmp_path / "run.nc", []
 
-    def check(simulation):
+    def check(simulation, state):
         checked.append(simulation.time)
         if simulation.time == 2.0:
             raise gp.SimulationError("at time 2 the energy has drifted")

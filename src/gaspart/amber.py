@@ -87,16 +87,13 @@ class Layout:
         return tuple(self.sizes[dimension] for dimension in self.variables[name][1])
 
     @property
-    def frame_bytes(self) -> int:
-        """The size of one frame in the file; every variable fills whole words, so there is no padding."""
-        return sum(
-            np.dtype(kind).itemsize * int(np.prod(self.shape(name)))
-            for name, (kind, _, _) in self.variables.items()
-        )
+    def frame(self) -> np.dtype:
+        """One frame as it is in the file; every variable fills whole words, so there is no padding."""
+        return np.dtype([(name, kind, self.shape(name)) for name, (kind, _, _) in self.variables.items()])
 
     def header(self, attributes: dict, radii: np.ndarray, types: np.ndarray) -> bytes:
         """A file of no frames. Its attributes also tell the bytes of the header and of a frame."""
-        sizes = {"header_bytes": np.int32(0), "frame_bytes": np.float64(self.frame_bytes)}
+        sizes = {"header_bytes": np.int32(0), "frame_bytes": np.float64(self.frame.itemsize)}
         length = len(self._header({**attributes, **sizes}, radii, types))
         return self._header({**attributes, **sizes, "header_bytes": np.int32(length)}, radii, types)
 
@@ -152,13 +149,13 @@ class Frames:
     """
 
     def __init__(self, file: BinaryIO, layout: Layout, header: bytes, kept: int = 0) -> None:
-        self._file, self._layout = file, layout
+        self._file, self._frame = file, np.zeros((), layout.frame)
         self.count = kept
         if kept == 0:
             self._begin(header)
         else:
             self._count_frames()
-        file.truncate(len(header) + kept * layout.frame_bytes)
+        file.truncate(len(header) + kept * layout.frame.itemsize)
         file.seek(0, os.SEEK_END)
 
     def _begin(self, header: bytes) -> None:
@@ -174,11 +171,12 @@ class Frames:
 
     def append(self, values: dict[str, np.ndarray | float]) -> None:
         """Write one frame: a value for every variable of the layout, vectors of 2 or 3 components."""
-        for name, (kind, _, _) in self._layout.variables.items():
-            data = np.zeros(self._layout.shape(name) or 1, dtype=kind)
+        for name in self._frame.dtype.fields:
             given = np.asarray(values[name])
-            data[..., : given.shape[-1] if given.ndim else 1] = given  # 2D leaves z = 0
-            self._write(data.view(np.uint8).ravel().data)
+            there = self._frame[name]
+            components = there[..., : given.shape[-1]] if given.ndim else there  # 2D leaves z = 0
+            components[...] = given
+        self._write(self._frame.reshape(1).view(np.uint8).data)
         self.count += 1
         self._count_frames()
 

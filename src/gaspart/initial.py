@@ -41,7 +41,8 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
     ordered = arrangements & set(LATTICES)
     if ordered:
         positions = lattice(scene, rng, slab="slab" in ordered)
-        if any(scene.wall_at(place, radius) for place, radius in zip(positions, radii, strict=True)):
+        hit = (scene.wall_at(place, radius) for place, radius in zip(positions, radii, strict=True))
+        if scene.walls and any(hit):
             raise SceneError("arrangement", min(ordered), "a body would overlap an interior wall; use random")
     elif "compressed" in arrangements:
         from gaspart.compression import compressed

@@ -15,6 +15,7 @@ from gaspart.engines import TimeStepped
 from gaspart.errors import SimulationError
 from gaspart.recipe import Recipe, multiple
 from gaspart.simulation import Simulation
+from gaspart.state import State
 
 Progress = Callable[[float, float, int], None]
 """Called with the time reached, the duration, and the collisions so far."""
@@ -55,8 +56,9 @@ class Recording:
             while self._frames.count < self._recipe.frames:
                 for _ in self._approach(self._frames.count):
                     self._look_at_the_clock()
-                self._simulation.check_invariants()
-                self._frames.append(self._frame())
+                state = self._simulation.state
+                self._simulation.check_invariants(state)
+                self._frames.append(self._frame(state))
                 self._look_at_the_clock()
         except SimulationError as error:
             write_checkpoint(failed, self._header, self._frames.count, self._simulation.checkpoint())
@@ -103,12 +105,17 @@ class Recording:
         elif took < _STRETCH / 2 and self._simulation.time < goal:
             self._stretch *= 2
 
-    def _frame(self) -> dict[str, np.ndarray | float]:
+    def _frame(self, state: State) -> dict[str, np.ndarray | float]:
         """The present state and counters, as the variables of a frame."""
-        state, tally = self._simulation.state, self._simulation.tally
-        followed = slice(self._recipe.bodies)
-        flat = state.dimension == 2
-        spins = np.pad(state.spins[:, None], ((0, 0), (2, 0))) if flat else state.spins
+        tally, followed = self._simulation.tally, slice(self._recipe.bodies)
+        inner: dict[str, np.ndarray] = {}
+        if self._recipe.scene.rough:
+            flat = state.dimension == 2
+            inner["spins"] = np.pad(state.spins[:, None], ((0, 0), (2, 0))) if flat else state.spins
+        if state.vibrations is not None:
+            inner["vibrations"] = state.vibrations
+        if self._recipe.displacements:
+            inner["displacements"] = state.unwrapped - self._origin
         # in 2D the cell is one diameter thick
         lengths = np.full(3, 2.0 * self._recipe.scene.largest_radius)
         lengths[: state.dimension] = state.lengths
@@ -120,7 +127,5 @@ class Recording:
             **{name: getattr(tally, name) for name in amber.COUNTERS},
             "coordinates": state.positions[followed],
             "velocities": state.velocities[followed],
-            "spins": spins[followed],
-            "vibrations": None if state.vibrations is None else state.vibrations[followed],
-            "displacements": (state.unwrapped - self._origin)[followed],
+            **{name: values[followed] for name, values in inner.items()},
         }

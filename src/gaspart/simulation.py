@@ -59,6 +59,7 @@ class Simulation:
     def _set_up(self) -> None:
         self._initial = initial_state(self.scene, self.seed)
         self._energy = self._initial.energy
+        self._moving = self._initial.kinetic_energy + self._initial.vibrational_energy
         self._dynamics = self.engine.start(self.scene, self._initial, self.seed)
 
     def add(
@@ -226,14 +227,15 @@ class Simulation:
         arrays = {name: np.array([found[time][n] for time in times]) for n, name in enumerate(names)}
         return {"time": np.array(times), **arrays}
 
-    def check_invariants(self) -> None:
+    def check_invariants(self, state: State | None = None) -> None:
         """Raise SimulationError if energy has drifted from what it was less what contacts and walls took, or
-        a body is not where it can be."""
-        state = self.state
+        a body is not where it can be. state: the present one, if it is at hand."""
+        state = self.state if state is None else state
         if not (np.isfinite(state.positions).all() and np.isfinite(state.velocities).all()):
             raise SimulationError(f"at time {self.time:g} a position or velocity is not finite")
-        drift = abs(state.energy + self._dynamics.dissipated - self._energy)
-        scale = max(moving.kinetic_energy + moving.vibrational_energy for moving in (self._initial, state))
+        moving = state.kinetic_energy + state.vibrational_energy
+        drift = abs(moving + state.potential_energy + self._dynamics.dissipated - self._energy)
+        scale = max(moving, self._moving)
         if state.gravity is not None:  # what a fall through the container can change
             masses = state.masses[np.isfinite(state.masses)]
             scale += float(masses.sum() * (abs(state.gravity) @ state.lengths))

@@ -250,18 +250,21 @@ class EventDynamics:
         d = self._scene.dimension
         rows, lengths = self._rows.copy(), np.array(self._space.lengths)
         self._flight.advance_rows(rows, self._clock, self._space, self._gravity)
-        positions = rows[:, :d]
-        periodic = np.array(self._space.periodic)
+        positions, images = rows[:, :d].copy(), self._images.copy()
         # a body that reaches a periodic face just now may stand beyond it by rounding
-        beyond = np.where(periodic, (positions >= lengths).astype(np.int64) - (positions < 0), 0)
-        positions = positions - beyond * lengths
-        positions = np.where(periodic & (positions >= lengths), 0.0, positions)
+        outside = (positions < 0.0) | (positions >= lengths)
+        beyond = np.nonzero(outside & self._space.periodic)
+        there, length = positions[beyond], lengths[beyond[1]]
+        laps = np.where(there < 0.0, -1, 1)
+        there = there - laps * length
+        positions[beyond] = np.where(there >= length, 0.0, there)
+        images[beyond] += laps
         state = replace(
             self._reference,
             time=self.time,
             positions=positions,
             velocities=rows[:, d : 2 * d].copy(),
-            images=self._images + beyond,
+            images=images,
         )
         tell_inner(state, self._scene, self._law, self._surfaces, self._unit_mass)
         return state
