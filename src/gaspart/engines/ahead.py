@@ -16,9 +16,9 @@ from gaspart.engines.layout import EDGES, INNER
 from gaspart.fetch import fetch
 from gaspart.kernel import inner_helper
 
-CACHED = 1 << 15  # bodies whose rows and plans fit into a core's own cache
-_STRIDE = 2  # buckets from one stage to the next: about as many events
-_MISSED = 10  # buckets that are caught up with if the calendar has leapt over them
+CACHED = 1 << 15  # bodies up to which the nearer caches do well enough without
+_STRIDE = 3  # buckets from one stage to the next: about as many events
+_MISSED = 15  # buckets that are caught up with if the calendar has leapt over them
 _FETCHED = 2  # places of a box whose bodies are fetched: few boxes hold more
 
 
@@ -33,7 +33,7 @@ def fetch_about(rows, partition, at, side, whom):
     """Fetch who is in the boxes about that at coordinates (3,), of an axis with a side (-1 or 1) in those on
     that side only; or, once that is near, fetch `whom`."""
     neighbour = partition.neighbour
-    last = uint32(len(rows) - 1)
+    nobody = uint32(len(rows) - 1)
     ax, ay, az = uint64(at[0]), uint64(at[1]), uint64(at[2])
     low_x, end_x = steps(side[0])
     low_y, end_y = steps(side[1])
@@ -49,11 +49,13 @@ def fetch_about(rows, partition, at, side, whom):
                 for dx in range(low_x, end_x):
                     box = uint64(max(y + z + neighbour[0, ax, dx], 0))
                     for n in range(uint64(_FETCHED)):
-                        fetch(rows, min(partition.places[box, n], last))
+                        fetch(rows, min(partition.places[box, n], nobody))
             else:
                 fetch(partition.places, first)
                 fetch(partition.filled, first)
-                fetch(partition.places, uint64(max(y + z + neighbour[0, ax, end_x - uint64(1)], 0)))
+                last = uint64(max(y + z + neighbour[0, ax, end_x - uint64(1)], 0))
+                fetch(partition.places, last)
+                fetch(partition.filled, last)
 
 
 @inner_helper
