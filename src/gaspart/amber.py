@@ -26,6 +26,7 @@ COUNTERS = tuple(field.name for field in fields(Tally) if field.name != "time")
 _PER_FACE = tuple(field.name for field in fields(Tally) if field.type == "np.ndarray")
 _MAGIC = b"CDF\x02"  # a netCDF-3 file of 64-bit offsets
 _FRAME_COUNT_AT = 4  # where a netCDF-3 header keeps the number of frames, as a big-endian uint32
+_INT = 4  # the netCDF library's number for this type
 MOST_FRAMES = 2**31 - 1
 
 
@@ -94,8 +95,10 @@ class Layout:
     def header(self, attributes: dict, radii: np.ndarray, types: np.ndarray) -> bytes:
         """A file of no frames. Its attributes also tell the bytes of the header and of a frame."""
         sizes = {"header_bytes": np.int32(0), "frame_bytes": np.float64(self.frame.itemsize)}
-        length = len(self._header({**attributes, **sizes}, radii, types))
-        return self._header({**attributes, **sizes, "header_bytes": np.int32(length)}, radii, types)
+        header = self._header({**attributes, **sizes}, radii, types)
+        told = b"header_bytes" + struct.pack(">II", _INT, 1)  # name, type, and how many of these follow
+        before, _, after = header.partition(told)
+        return before + told + struct.pack(">I", len(header)) + after[4:]
 
     def _header(self, attributes: dict, radii: np.ndarray, types: np.ndarray) -> bytes:
         import netCDF4
