@@ -57,7 +57,8 @@ class Block(NamedTuple):
     """Room for places that are tried together.
 
     places (BLOCK, 3); at (BLOCK, 3), the coordinates of their boxes; own and beside (BLOCK, 3), what the box,
-    and its neighbour on the nearer side, adds to the index along each axis; left (BLOCK,), which may be free.
+    and its neighbour on the nearer side, adds to the index along each axis; left (BLOCK,), which may be free;
+    box (BLOCK,), where each of these is compared next.
     """
 
     places: np.ndarray
@@ -65,6 +66,7 @@ class Block(NamedTuple):
     own: np.ndarray
     beside: np.ndarray
     left: np.ndarray
+    box: np.ndarray
 
 
 def nobody(scene: Scene, boxes: Boxes, radii: np.ndarray) -> tuple[Standing, Space, Block]:
@@ -78,7 +80,8 @@ def nobody(scene: Scene, boxes: Boxes, radii: np.ndarray) -> tuple[Standing, Spa
     periods = tuple(length if periodic else 4.0 * length for length, periodic in sides)
     space = Space(periods, boxes.per_side, boxes.widths, boxes.strides, boxes.neighbour)
     at, own, beside = np.zeros((3, BLOCK, 3), dtype=np.int64)
-    return standing, space, Block(np.zeros((BLOCK, 3)), at, own, beside, np.zeros(BLOCK, dtype=np.int64))
+    left, box = np.zeros((2, BLOCK), dtype=np.int64)
+    return standing, space, Block(np.zeros((BLOCK, 3)), at, own, beside, left, box)
 
 
 def put(standing, box, body):
@@ -118,15 +121,15 @@ def overlaps(place, radius, other, standing, periods):
 @inner_helper
 def overlaps_near(place, radius, box, standing, periods):
     """The same for any of the first bodies of a box."""
-    found = False
-    for n in range(PLACES):
+    found = 0
+    for n in range(standing.near.shape[2]):  # PLACES, but were that told, no vectors would be made of it
         square = 0.0
         for k in range(len(periods)):
             gap = gap_between(place[k], standing.near[box, k, n], periods[k])
             square += gap * gap
         reach = radius + standing.near[box, 3, n]
         found |= square < reach * reach
-    return found
+    return found != 0
 
 
 @inner_helper
@@ -178,13 +181,14 @@ def throw_out(count, radius, standing, space, block):
     left = count
     for which in _NEAREST:
         if which < 1 << len(space.periods):
-            for n in block.left[:left]:
-                fetch_box(standing, nearest_box(block, n, which))
+            for m in range(left):
+                block.box[m] = nearest_box(block, block.left[m], which)
+                fetch_box(standing, block.box[m])
             still = 0
-            for n in block.left[:left]:
-                box = nearest_box(block, n, which)
+            for m in range(left):
+                n = block.left[m]
                 block.left[still] = n
-                still += not overlaps_near(block.places[n], radius, box, standing, space.periods)
+                still += not overlaps_near(block.places[n], radius, block.box[m], standing, space.periods)
             if still > 0.9 * left:  # so thin a gas that a look at each place in full costs less
                 return still
             left = still
