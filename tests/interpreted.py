@@ -7,6 +7,7 @@ writes how they end. Python looks at every index, and tells a coverage tool whic
 
 import sys
 import warnings
+from types import SimpleNamespace
 
 import numba
 import numpy as np
@@ -14,7 +15,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart import compression, insertion, memory
-from gaspart.engines import ahead, event_driven, event_kernels, flight, search, step_contacts
+from gaspart.engines import ahead, event_driven, event_kernels, flight, search, step_contacts, step_list
 
 PYTHON = bool(numba.config.DISABLE_JIT)
 ROUGH, METAL = gp.Restitution(0.95, 0.4), gp.Restitution(1.0, 0.5)
@@ -153,10 +154,36 @@ def fetch(array, index):
     """`fetch.fetch`: nothing that shows."""
 
 
+def nearer(positions, radii, space, slot, skin, first):
+    """`step_eight.nearer`, one slot after the other."""
+    bodies, marks = SimpleNamespace(positions=positions), 0
+    for other in range(int(first), min(int(first) + 8, len(radii))):
+        reach = radii[slot] + radii[other] + skin
+        near = step_contacts.distance_squared(bodies, space, slot, other) < reach * reach
+        marks |= int(near) << (other - int(first))
+    return np.uint64(marks)
+
+
+def equals(values, first, value):
+    """`step_eight.equals`."""
+    return np.uint64(sum(int(there == value) << n for n, there in enumerate(values[int(first) :][:8])))
+
+
+def keep_eight(words, first, least, kept, number):
+    """`step_eight.keep_eight`."""
+    chosen = [word for word in words[int(first) :][:8] if word >= least]
+    kept[int(number) : int(number) + len(chosen)] = chosen
+    return np.uint64(len(chosen))
+
+
 def do_without_vectors():
     """Let plain loops stand for what is written in vector instructions."""
     search.earliest, search.write_down = earliest, write_down
     event_kernels.fetch = ahead.fetch = insertion.fetch = fetch
+    step_contacts.fetch = step_list.fetch = fetch
+    step_list.nearer, step_list.equals, step_list.keep_eight = nearer, equals, keep_eight
+    step_list.bits = lambda word: np.uint64(int(word).bit_count())
+    step_list.lowest = lambda word: np.uint64((int(word) & -int(word)).bit_length() - 1)
 
 
 if __name__ == "__main__":

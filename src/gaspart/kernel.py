@@ -50,6 +50,7 @@ KERNEL_MODULES = (
     "engines/step_motion.py",
     "engines/step_contacts.py",
     "engines/step_boxes.py",
+    "engines/step_eight.py",
     "engines/step_cells.py",
     "engines/step_list.py",
     "engines/step_threads.py",

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from scenes import gas, mixtures
 
 import gaspart as gp
 from gaspart import theory
+from gaspart.engines.step_settings import check_scene
 
 SEARCHES = (
     {"boxes_per_side": 1},
@@ -242,6 +244,11 @@ def test_what_it_cannot_do_it_refuses():
         sim.advance(max_events=3)
     with pytest.raises(gp.SceneError, match="record_events"):
         sim.record_events = True
+
+
+def test_more_bodies_than_a_list_can_tell_are_refused():
+    with pytest.raises(gp.SceneError, match="at most"):
+        check_scene(gas(3, 8, 0.1), SimpleNamespace(count=2**28), None)
 
 
 def test_a_bouncing_ball_follows_its_parabolas():

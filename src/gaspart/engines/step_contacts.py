@@ -21,10 +21,12 @@ from gaspart.engines.step_layout import (
 )
 from gaspart.engines.step_motion import note_change, wrap
 from gaspart.engines.step_rules import strike_in_rows
+from gaspart.fetch import fetch
 from gaspart.kernel import allocating_kernel, helper, kernel
 
 _ONE = np.uint32(1)
 _RUN = 16
+_AHEAD = 4  # contacts
 _LATE = 1.125  # steps ago: contacts before these belong to an earlier step, however float32 rounds
 
 
@@ -250,13 +252,30 @@ def resolve(bodies, space, i, j, dt, turn, rewind, parting, rules, law, cells, w
     note(bodies, space, j, speed_j, turn, cells, watch, counters)
 
 
+@helper
+def fetch_body(bodies, slot, cells, watch):
+    """Begin to load what a contact of a body reads."""
+    for k in range(len(bodies.positions)):
+        fetch(bodies.positions[k], slot)
+        fetch(bodies.velocities[k], slot)
+        if cells is not None:
+            fetch(cells.origin[k], slot)
+    fetch(bodies.radii, slot)
+    fetch(bodies.index, slot)
+    fetch(watch.met, slot)
+
+
 @kernel
 def resolve_all(
     bodies, space, pairs, order, dt, turn, rewind, parting, rules, law, cells, watch, counters
 ):  # fmt: skip
     """Resolve what one search has found, in order."""
-    for n in order:
-        i, j = pairs[n, 0], pairs[n, 1]
+    last = len(order) - 1
+    for n in range(len(order)):
+        for side in range(2):  # what the next contacts read is on its way while this one is resolved
+            fetch_body(bodies, pairs[order[min(n + 2 * _AHEAD, last)], side], cells, watch)
+            fetch(bodies.masses, bodies.index[pairs[order[min(n + _AHEAD, last)], side]])
+        i, j = pairs[order[n], 0], pairs[order[n], 1]
         resolve(bodies, space, i, j, dt, turn, rewind, parting, rules, law, cells, watch, counters)
 
 

@@ -22,7 +22,7 @@ def run_steps(
 ):  # fmt: skip
     """Make `steps` steps of length `dt`.
 
-    partition: the boxes to search, or cells: those of a list; the other is None. pairs (threads, room, 2):
+    partition: the boxes to search, or cells: those of a list; the other is None. pairs (threads, room):
     the list as it stands. gravity: (d,) or None; inset: the largest radius that a wall stops; rules, law: of
     faces and contacts that know more than momenta (see `step_rules`), or None; threads: their number, or None
     for one. Returns the list as it stands then.
@@ -31,7 +31,7 @@ def run_steps(
     parts = 1 if threads is None else threads
     found = room_for(parts, count // parts + 16, bodies.positions)
     parting = passes > 1
-    watch.met[:] = -1
+    watch.met[:] = 0
     pull = 0.0
     if gravity is not None:
         for component in gravity:
@@ -46,13 +46,13 @@ def run_steps(
         else:
             apart = space.lengths, space.periodic, numbers_of(space)
             move_shared(bodies, *apart, gravity, inset, dt, counters, threads)
-        number, before = 0, -1
+        number, before = 0, 0
         for again in range(passes):
-            turn = Turn(step * passes + again, step * passes)
+            turn = Turn(step * passes + again + 1, step * passes + 1)
             if cells is not None:
                 if is_stale(bodies, space, cells, watch):
                     pairs = make_list(bodies, space, cells, pairs, watch, counters, threads)
-                    before = -1
+                    before = 0
             if partition is not None:
                 sort_in(bodies, partition)
             while True:

@@ -9,7 +9,7 @@ import numpy as np
 from gaspart.coordinates import nearest
 from gaspart.engines.step_layout import FASTEST, SPENT
 from gaspart.engines.step_rules import is_free, meet_faces
-from gaspart.kernel import helper, kernel
+from gaspart.kernel import allocating_kernel, helper, kernel
 
 _BLOCK = 128
 
@@ -219,13 +219,61 @@ def move(bodies, space, gravity, inset, dt, low, high, counters, thread):
 
 
 @kernel
+def add_squares(values, squares):
+    """Add the squares of some values (n,) to others (n,)."""
+    for n in range(len(values)):
+        squares[n] += values[n] * values[n]
+
+
+@kernel
+def add_gaps(x, origin, length, squares):
+    """Add the squares of how far coordinates x (n,) are from others, on an axis of that period."""
+    for n in range(len(x)):
+        gap = abs(x[n] - origin[n])
+        gap = min(gap, abs(length - gap))
+        squares[n] += gap * gap
+
+
+@kernel
+def highest(squares, most):
+    """The highest of some values (n,), or `most`: looked at one by one only if it is among them, since a
+    maximum must wait for the one before."""
+    above = 0
+    for square in squares:
+        above += square > most
+    if above > 0:
+        for square in squares:
+            most = max(most, square)
+    return most
+
+
+@allocating_kernel
 def note_fastest(bodies, watch):
     """Measure the highest speed of any body."""
+    count = bodies.velocities.shape[1]
+    room = np.empty(_BLOCK, bodies.velocities.dtype)
     most = bodies.velocities[0, 0] - bodies.velocities[0, 0]
-    for slot in range(bodies.velocities.shape[1]):
-        square = most - most
-        for k in range(bodies.velocities.shape[0]):
-            square += bodies.velocities[k, slot] * bodies.velocities[k, slot]
-        if square > most:  # seldom: cheaper than a maximum, which must wait for the last one
-            most = square
+    for low in range(0, count, _BLOCK):
+        high = min(low + _BLOCK, count)
+        squares = room[: high - low]
+        squares[:] = 0
+        for k in range(len(bodies.velocities)):
+            add_squares(bodies.velocities[k, low:high], squares)
+        most = highest(squares, most)
     watch.reach[FASTEST] = np.sqrt(most)
+
+
+@allocating_kernel
+def note_spent(bodies, space, cells, watch):
+    """Measure how far any ordinary body is from where it was when the list was made."""
+    room = np.empty(_BLOCK, bodies.positions.dtype)
+    most = space.margin - space.margin
+    for low in range(0, bodies.ordinary, _BLOCK):
+        high = min(low + _BLOCK, bodies.ordinary)
+        squares = room[: high - low]
+        squares[:] = 0
+        for k in range(len(space.lengths)):
+            length = space.lengths[k] if space.periodic[k] else np.inf
+            add_gaps(bodies.positions[k, low:high], cells.origin[k, low:high], length, squares)
+        most = highest(squares, most)
+    watch.reach[SPENT] = np.sqrt(most)

@@ -46,22 +46,29 @@ def cells_for(engine: TimeStepped, scene: Scene, state: State, radii: np.ndarray
     lengths, periodic = scene.container.lengths, scene.container.periodic
     contact = 2.0 * radii.max(initial=0.0)
     skin = engine.skin or _skin(engine, scene, state, contact)
-    # at least two cells on a periodic axis, so that no pair is in the list twice
-    room = min(
-        (0.5 * length - contact for length, p in zip(lengths, periodic, strict=True) if p), default=np.inf
-    )
-    skin = min(skin, max(0.0, room))
     width = max((contact + skin) * (1.0 + 1e-4), _width(scene, state.count))
-    sides = [max(2 if p else 1, int(length / width)) for length, p in zip(lengths, periodic, strict=True)]
-    dimension = scene.dimension
-    per_side = np.array(sides + [1] * (3 - dimension), dtype=np.int64)
-    inverse = per_side / np.array([*lengths, *[1.0] * (3 - dimension)])
-    layers = per_side + 2
-    strides = np.array([1, layers[0], layers[0] * layers[1]], dtype=np.int64)
-    ends = np.empty((engine.threads, int(layers[:dimension].prod())), np.uint32)
-    origin = np.empty((dimension, state.count), real)
+    sides = [max(1, int(length / width)) for length in lengths]
+    # of two cells each would be the other's neighbour twice: nearest images are told apart within one as well
+    sides = [1 if p and side < 3 else side for side, p in zip(sides, periodic, strict=True)]
+    rest = [1] * (3 - scene.dimension)
+    per_side = np.array(sides + rest, dtype=np.int64)
+    inverse = per_side / np.array([*lengths, *rest])
+    rows = int(per_side[0]) + 3
+    strides = np.array([1, rows, rows * (per_side[1] + 2)], dtype=np.int64)
+    layers = int(strides[2]) * (int(per_side[2]) + 2 if scene.dimension == 3 else 1)
     return Cells(
-        per_side, inverse.astype(real), strides, ends, real(skin), origin, np.zeros(engine.threads, int)
+        per_side,
+        inverse.astype(real),
+        strides,
+        wraps=np.array(
+            [p and side > 1 for side, p in zip(sides, periodic, strict=True)] + [False] * len(rest)
+        ),
+        ends=np.empty((engine.threads, layers), np.uint32),
+        cell=np.empty(state.count, np.uint32),
+        order=np.empty(len(radii), np.uint32),
+        skin=real(skin),
+        origin=np.empty((scene.dimension, state.count), real),
+        listed=np.zeros(engine.threads, int),
     )
 
 

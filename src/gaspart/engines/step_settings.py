@@ -22,6 +22,9 @@ _GIANTS = 16  # at most so many bodies are tested against all others
 _GIANT = 2.0  # radii of the next smaller body that make one of them
 _SINGLE = 1e9  # the largest length or speed in float32, whose squares are multiplied with each other
 _RESOLVED = 1e5  # diameters in the longest side, at most: float32 then tells contacts to a hundredth
+MOST_BODIES = 2**28
+"""An entry of the neighbour list tells two slots and eight marks in 64 bits (`step_list`)."""
+
 MISSED, MISSED_MOST = 0.01, 0.1
 """The part of all contacts that a step may overlook before the engine warns, and refuses."""
 CROWDED, CROWDED_MOST = {True: 2.5, False: 0.5}, {True: 5.0, False: 1.0}
@@ -46,6 +49,10 @@ def giants_of(state: State) -> np.ndarray:
 
 def check_scene(scene: Scene, state: State, giants: np.ndarray) -> None:
     """Raise SceneError for what this engine does not model."""
+    if state.count >= MOST_BODIES:
+        raise SceneError(
+            "count", state.count, f"the time-stepped engine knows {MOST_BODIES - 1} bodies at most"
+        )
     law, fixed = scene.restitution, np.isinf(state.masses).any()
     falls, none = scene.gravity is not None, "this one knows none"
     for key, value, what in (

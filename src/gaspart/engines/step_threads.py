@@ -7,14 +7,14 @@ rows of its own, and which contacts are found does not depend on who finds them.
 import numpy as np
 from numba import prange
 
-from gaspart.engines.step_cells import Places, begin_cells, count_part, place_part, tidy
+from gaspart.engines.step_cells import begin_cells, copy, count_part, find_part, mirror, order_part, take
+from gaspart.engines.step_eight import WIDTH
 from gaspart.engines.step_layout import PAIR_TESTS, REBUILDS, SPENT, Found, Space, share
-from gaspart.engines.step_list import list_part, search_pairs, search_stirred
+from gaspart.engines.step_list import list_part, search_pairs
 from gaspart.engines.step_motion import move, note_fastest
-from gaspart.kernel import allocating_kernel, helper, parallel_kernel
+from gaspart.kernel import allocating_kernel, helper, kernel, parallel_kernel
 
-_BLOCK = 256  # pairs that are tested before those that touch are looked at
-_TIDY = 8  # every so many lists the bodies are sorted in memory
+_BLOCK = 1024  # pairs that are tested before those that touch are looked at
 
 
 @allocating_kernel
@@ -25,7 +25,7 @@ def room_for(threads, room, like):
         np.empty((threads, room), like.dtype),
         np.zeros(threads, np.int64),
         np.zeros(threads, np.int64),
-        np.empty((threads, _BLOCK), np.uint32),
+        np.empty((threads, _BLOCK), np.uint64),
     )
 
 
@@ -52,34 +52,53 @@ def move_shared(bodies, lengths, periodic, numbers, gravity, inset, dt, counters
 
 
 @parallel_kernel
-def count_shared(bodies, lengths, periodic, numbers, cells, cell, edge):
-    """`count_part` for all parts."""
+def find_shared(bodies, cells):
+    """`find_part` for all parts."""
     for part in prange(len(cells.ends)):
-        count_part(bodies, space_of(lengths, periodic, numbers), cells, cell, edge, part)
+        find_part(bodies, cells, part)
 
 
 @parallel_kernel
-def place_shared(bodies, lengths, periodic, numbers, cells, places):
-    """`place_part` for all parts."""
+def count_shared(bodies, cells):
+    """`find_part` and `count_part` for all parts."""
     for part in prange(len(cells.ends)):
-        place_part(bodies, space_of(lengths, periodic, numbers), cells, places, part)
+        find_part(bodies, cells, part)
+        count_part(bodies, cells, part)
 
 
 @parallel_kernel
-def list_shared(bodies, cells, places, pairs, tests):
+def order_shared(bodies, cells):
+    """`order_part` for all parts."""
+    for part in prange(len(cells.ends)):
+        order_part(bodies, cells, part)
+
+
+@parallel_kernel
+def take_shared(values, order, taken, threads):
+    """`take` for all slots."""
+    for part in prange(threads):
+        take(values, order, share(part, threads, len(order)), share(part + 1, threads, len(order)), taken)
+
+
+@parallel_kernel
+def copy_shared(taken, values, threads):
+    """`copy` for all slots."""
+    for part in prange(threads):
+        copy(taken, share(part, threads, len(taken)), share(part + 1, threads, len(taken)), values)
+
+
+@parallel_kernel
+def list_shared(bodies, lengths, periodic, numbers, cells, pairs, tests):
     """`list_part` for all parts."""
     for part in prange(len(pairs)):
-        list_part(bodies, cells, places, part, pairs, tests)
+        list_part(bodies, space_of(lengths, periodic, numbers), cells, part, pairs, tests)
 
 
 @helper
 def search_part(bodies, space, cells, pairs, watch, before, dt, parting, found, part):
-    """Search one thread's list: all of it, or, with a turn `before`, what was stirred then."""
+    """Search one thread's list: all of it or, with a turn `before`, what was stirred then."""
     listed = pairs[part, : cells.listed[part]]
-    if before < 0:
-        search_pairs(bodies, space, listed, dt, parting, found, part)
-    else:
-        search_stirred(bodies, space, listed, watch, before, dt, parting, found, part)
+    search_pairs(bodies, space, listed, watch.met, before, dt, parting, found, part)
 
 
 @parallel_kernel
@@ -100,44 +119,58 @@ def search_list(bodies, space, cells, pairs, watch, before, dt, parting, found, 
         search_shared(bodies, *apart, cells, pairs, watch, before, dt, parting, found)
 
 
-@allocating_kernel
-def settle(bodies, space, cells, threads):
-    """Give all ordinary bodies and their ghosts their places."""
-    count = bodies.ordinary
-    cell, place = np.empty(count, np.uint32), np.empty(count, np.uint32)
-    edge = np.empty(count, np.uint8)
+@kernel
+def arrange(values, order, room, threads):
+    """values[n] becomes values[order[n]], by way of `room`; what lies beyond the order stays."""
+    taken = room[: len(order)]
     if threads is None:
-        count_part(bodies, space, cells, cell, edge, 0)
+        take(values, order, 0, len(order), taken)
+        copy(taken, 0, len(order), values)
     else:
-        count_shared(bodies, space.lengths, space.periodic, numbers_of(space), cells, cell, edge)
-    total = begin_cells(cells.ends)
-    spots, own = np.empty((total, 4), cells.origin.dtype), np.empty((count, 4), cells.origin.dtype)
-    places = Places(spots, np.empty(total, np.uint32), own, cell, place, edge)
+        take_shared(values, order, taken, threads)
+        copy_shared(taken, values, threads)
+
+
+@kernel
+def settle(bodies, cells, watch, threads):
+    """Bring the ordinary bodies into the order of their cells."""
     if threads is None:
-        place_part(bodies, space, cells, places, 0)
+        find_part(bodies, cells, 0)
+        count_part(bodies, cells, 0)
     else:
-        place_shared(bodies, space.lengths, space.periodic, numbers_of(space), cells, places)
-    return places
+        count_shared(bodies, cells)
+    begin_cells(cells.ends)
+    if threads is None:
+        order_part(bodies, cells, 0)
+    else:
+        order_shared(bodies, cells)
+    mirror(cells)
+    arrange(bodies.radii, cells.order, cells.origin[0], threads)
+    for k in range(len(bodies.positions)):
+        arrange(bodies.velocities[k], cells.order, cells.origin[k], threads)
+        arrange(bodies.positions[k], cells.order, cells.origin[k], threads)
+    arrange(bodies.index, cells.order, cells.cell, threads)
+    arrange(watch.met, cells.order, cells.cell, threads)
+    if threads is None:
+        find_part(bodies, cells, 0)
+    else:
+        find_shared(bodies, cells)
 
 
 @allocating_kernel
 def make_list(bodies, space, cells, pairs, watch, counters, threads):
-    """Make the list anew: its pairs (threads, room, 2), in the old room or in more."""
-    places = settle(bodies, space, cells, threads)
-    if counters.counts[REBUILDS] % _TIDY == 0:
-        tidy(bodies, places, watch)
-        places = settle(bodies, space, cells, threads)
+    """Make the list anew: its pairs (threads, room), in the old room or in more."""
+    settle(bodies, cells, watch, threads)
     tests = np.zeros(len(pairs), np.int64)
     while True:
         if threads is None:
-            list_part(bodies, cells, places, 0, pairs, tests)
+            list_part(bodies, space, cells, 0, pairs, tests)
         else:
-            list_shared(bodies, cells, places, pairs, tests)
-        if cells.listed.min() >= 0:
+            apart = space.lengths, space.periodic, numbers_of(space)
+            list_shared(bodies, *apart, cells, pairs, tests)
+        if cells.listed.max() + WIDTH <= pairs.shape[1]:
             break
-        room = max(pairs.shape[1] * 3 // 2, bodies.ordinary // len(pairs)) + 8192
-        pairs = np.empty((len(pairs), room, 2), np.uint32)
-    cells.origin[:] = bodies.positions
+        pairs = np.empty((len(pairs), cells.listed.max() * 5 // 4 + WIDTH), np.uint64)
     note_fastest(bodies, watch)
     watch.reach[SPENT] = 0.0
     counters.counts[REBUILDS] += 1

@@ -83,6 +83,7 @@ class StepDynamics:
     """A scene under way; its time is a whole number of steps."""
 
     def __init__(self, engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...]) -> None:
+        from gaspart.engines import step_eight
         from gaspart.engines import step_kernels as kernels
         from gaspart.engines import step_layout as layout
         from gaspart.engines import step_search as search
@@ -107,11 +108,11 @@ class StepDynamics:
         masses = np.ones(state.count) if masses is None else masses
         shape = (scene.dimension, state.count)
         self._bodies = layout.Bodies(
-            np.empty(shape, real),
+            step_eight.roomy(shape, real),
             np.empty(shape, real),
             np.empty(shape, np.int32),
-            radii=np.empty(state.count, real),
-            index=np.empty(state.count, np.int32),
+            radii=step_eight.roomy((state.count,), real),
+            index=np.empty(state.count, np.uint32),
             masses=masses.astype(real),
             ordinary=int(state.count - giants.sum()),
         )
@@ -123,9 +124,9 @@ class StepDynamics:
         self._cells = search.cells_for(engine, scene, state, ordinary)
         self._rules, self._law = rules_for(engine, scene, state, seed, self._unit_mass)
         self._gravity = None if scene.gravity is None else tuple(real(g) for g in scene.gravity)
-        self._watch = layout.Watch(np.empty(state.count, np.int64), np.zeros(2))
+        self._watch = layout.Watch(step_eight.roomy((state.count,), np.uint32), np.zeros(2))
         self._watch.reach[layout.SPENT] = np.inf  # no list is made yet
-        self._pairs = np.empty((engine.threads, 0, 2), np.uint32)
+        self._pairs = np.empty((engine.threads, state.count // engine.threads + 16), np.uint64)
         self._threads = engine.threads if engine.threads > 1 else None
         self._quantum = quantum_for(scene, state, masses)
         self._grain = grain_for(scene, state, self._unit_mass)
@@ -269,27 +270,17 @@ class StepDynamics:
             "velocities": self._by_body(bodies.velocities, self._real),
             "images": bodies.images.T.copy(),
             "slots": bodies.index.copy(),
-            **self._list_parts(),
+            **({} if self._cells is None else {"origin": self._cells.origin.copy()}),
             **{key: array.copy() for key, array in changing(self._rules, self._law).items()},
             "reach": self._watch.reach.copy(),
             **{key: np.array(value) for key, value in self._counters._asdict().items()},
         }
 
-    def _list_parts(self) -> dict[str, np.ndarray]:
-        """What a checkpoint keeps of the neighbour list, if there is one."""
-        if self._cells is None:
-            return {}
-        listed = self._cells.listed.copy()
-        pairs = self._pairs[:, : listed.max()].copy()
-        return {"pairs": pairs, "listed": listed, "origin": self._cells.origin.copy()}
-
     def restore(self, parts: dict[str, np.ndarray]) -> None:
         """Go on from a checkpoint of the same scene and engine."""
         self._place(*(parts[key] for key in ("slots", "positions", "velocities", "images")))
-        if self._cells is not None:
-            self._pairs = parts["pairs"].copy()
-            self._cells.listed[...] = parts["listed"]
-            self._cells.origin[...] = parts["origin"]
+        if self._cells is not None and parts["reach"][self._layout.SPENT] < np.inf:
+            self._list_from(parts["origin"])
         self._watch.reach[...] = parts["reach"]
         for key in ("counts", "sums", "wall_hits", "wall_impulse", "wall_loss"):
             getattr(self._counters, key)[...] = parts[key]
@@ -297,3 +288,12 @@ class StepDynamics:
             array[...] = parts[key]
         self._steps, self._since = int(parts["steps"]), int(parts["since"])
         self._lost = float(parts["lost"])
+
+    def _list_from(self, origin: np.ndarray) -> None:
+        """Make the list again that was made when bodies were at `origin` (d, N), by slot."""
+        now = self._bodies.positions.copy()
+        self._bodies.positions[...] = origin
+        self._pairs = self._kernels.make_list(
+            self._bodies, self._space, self._cells, self._pairs, self._watch, self._counters, self._threads
+        )
+        self._bodies.positions[...] = now
