@@ -9,12 +9,12 @@ import numpy as np
 
 from gaspart.engines.common import (
     EventLog,
-    face_energy,
     law_for_kernel,
     masses_for_kernel,
     surfaces_for_kernel,
     tell_inner,
 )
+from gaspart.engines.laps import lap_length
 from gaspart.engines.progress import MANY, check_progress
 from gaspart.errors import SceneError, SimulationError
 from gaspart.memory import aligned
@@ -26,9 +26,7 @@ if TYPE_CHECKING:
     from gaspart.engines.layout import Record
 
 SEARCHES = ("boxes", "direct", "pairs")
-_LAP = 10  # a lap of the clocks is some 2^10 times of flight over a diameter
 _QUIET = 1000  # laps without an event after which a run without an end is given up
-_STILL = 2.0**960  # the lap of a scene in which nothing moves
 _BLINK = 2.0**-44  # of a lap: the longest bounce on a floor that is taken for rest
 # More contacts of one body than these, within so much of a lap, are taken for a collapse. Intervals between
 # inelastic contacts shrink geometrically until rounding lets the bodies part, so few of them are left to see.
@@ -109,7 +107,7 @@ class EventDynamics:
         self._law = law_for_kernel(scene, state)
         self._unit_mass, self._masses = (1.0, None) if self._law else masses_for_kernel(state.masses)
         self._surfaces = surfaces_for_kernel(scene, state, seed, self._unit_mass) if scene.faces else None
-        self._lap = _lap_length(scene, state)
+        self._lap = lap_length(scene, state)
         self._gravity = None
         if scene.gravity is not None and any(scene.gravity):
             self._gravity = layout.Gravity(scene.gravity, np.isinf(state.masses), _BLINK * self._lap)
@@ -304,17 +302,3 @@ class EventDynamics:
                 self._clock,
                 self._gravity,
             )
-
-
-def _lap_length(scene: Scene, state: State) -> float:
-    """The time after which clocks start again from zero: a power of two, so that it scales with the units."""
-    square = float((state.velocities**2).sum(axis=1).mean()) if state.count else 0.0
-    if scene.gravity is not None:  # the square of the speed that a fall can add
-        square += 2.0 * sum(abs(g) * length for g, length in zip(scene.gravity, state.lengths, strict=True))
-    if scene.faces and state.count:  # and of those that a wall can give
-        square += face_energy(scene) / float(state.masses.min())
-    speed = float(np.sqrt(square))
-    if not speed > 0.0:
-        return _STILL
-    _, exponent = np.frexp(2 * scene.smallest_radius / speed)
-    return float(np.ldexp(1.0, int(exponent) + _LAP))
