@@ -211,7 +211,7 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
         style.points(bottom, n, of.list_pair_tests, kind=3, linestyle="--", hollow=True)
     guide = np.array([count.min(), count.max()])
     top.plot(guide, guide * float(ds.seconds.min()), color=style.GREY, lw=0.8, zorder=1, label="linear")
-    for factor, offset in ((_SCAN, 3), (1.0, -24)):
+    for factor, offset, colour in ((_SCAN, 3, _SOURCE), (1.0, -31, style.COLOURS[1])):
         seconds = factor * float(ds.extrapolated_seconds)
         top.annotate(
             _duration(seconds),
@@ -220,6 +220,7 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
             textcoords="offset points",
             ha="right",
             fontsize=7,
+            color=colour,
         )
     top.set(xscale="log", yscale="log", ylabel="time per step (s)", ylim=(None, 3e10))
     top.legend(loc="upper left")
