@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from gaspart.figures import style
+from gaspart.rendering import style
 
 DENSE = 0.05
 """The packing fraction from which spheres count as dense in the picture."""

@@ -8,7 +8,7 @@ import time
 import cases
 
 import gaspart as gp
-from gaspart.initial import initial_state
+from gaspart.state.initial import initial_state
 
 START = """
 from gaspart.loading import load_numba

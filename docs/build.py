@@ -16,7 +16,7 @@ from docutils.core import publish_parts
 
 import gaspart
 from gaspart import theory
-from gaspart.families import FAMILIES, TITLES
+from gaspart.planning.families import FAMILIES, TITLES
 
 ROOT = Path(__file__).parents[1]
 STYLE = """body { margin: auto; padding: 1rem; max-width: 50rem; font: 1rem/1.55 system-ui, sans-serif; }

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from gaspart.measure.columns import Stretch
+from gaspart.experiments.shared.columns import Stretch
 from gaspart.theory import gravity
 from gaspart.theory.buoyancy import displaced_area
 

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import xarray as xr
 
-from gaspart import grid, theory
+from gaspart import theory
+from gaspart.planning import grid
 
 
 def point(dimension=3, count=100, packing_fraction=0.02, experiment="msd", name="single", **more):

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.measure.freezing import STARTS, _disagreement
+from gaspart.experiments.freezing.measure import STARTS, _disagreement
 
 DISCS = np.array([theory.DENSE_LIQUID_DISCS[0], 0.69, 0.70, 0.71, 0.72, 0.73])
 SPHERES = np.array([0.4, 0.45, 0.5, 0.56, 0.6])

@@ -3,8 +3,8 @@
 import numpy as np
 import xarray as xr
 
-from gaspart import grid
-from gaspart.measure.columns import Field, Stretch
+from gaspart.experiments.shared.columns import Field, Stretch
+from gaspart.planning import grid
 from gaspart.theory import gravity
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from gaspart.measure.insertion import Fill
+from gaspart.experiments.insertion.measure import Fill
 
 
 def fill_to(saturation, amplitude, dimension, body=1e-4, last_time=5e3, replicas=6, seed=3):

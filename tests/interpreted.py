@@ -14,8 +14,14 @@ import numpy as np
 from scenes import gas
 
 import gaspart as gp
-from gaspart import compression, insertion, memory
-from gaspart.engines import ahead, event_driven, event_kernels, flight, search, step_contacts, step_list
+from gaspart.engines import event_driven
+from gaspart.kernels import flight, insertion, memory
+from gaspart.kernels.event import box_search as search
+from gaspart.kernels.event import loop as event_kernels
+from gaspart.kernels.event import prefetch as ahead
+from gaspart.kernels.step import neighbour_list as step_list
+from gaspart.kernels.step import resolve as step_contacts
+from gaspart.state import compression
 
 PYTHON = bool(numba.config.DISABLE_JIT)
 ROUGH, METAL = gp.Restitution(0.95, 0.4), gp.Restitution(1.0, 0.5)

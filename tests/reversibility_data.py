@@ -3,8 +3,8 @@
 import numpy as np
 import xarray as xr
 
-from gaspart import grid
-from gaspart.measure import reversibility
+from gaspart.experiments.reversibility import measure as reversibility
+from gaspart.planning import grid
 
 SIDE = 8.7
 

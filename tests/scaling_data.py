@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from gaspart import grid
 from gaspart.files import read_yaml
+from gaspart.planning import grid
 from gaspart.theory import partition
 
 ROOT = Path(__file__).parents[1]

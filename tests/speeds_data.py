@@ -3,7 +3,8 @@
 import numpy as np
 import xarray as xr
 
-from gaspart import grid, theory
+from gaspart import theory
+from gaspart.planning import grid
 
 
 def point(dimension=3, count=200, experiment="speeds", **more):

@@ -7,7 +7,7 @@ import pytest
 from scenes import gas
 
 import gaspart as gp
-from gaspart.boxes import NOWHERE, make_boxes, sides_for
+from gaspart.state.boxes import NOWHERE, make_boxes, sides_for
 
 
 def neighbours(boxes, at):

@@ -12,9 +12,10 @@ from scenes import gas
 from test_initial import closest
 
 import gaspart as gp
-from gaspart import compress, compression
-from gaspart.contact import time_to_growing_contact
-from gaspart.initial import initial_state
+from gaspart import compress
+from gaspart.kernels.contact import time_to_growing_contact
+from gaspart.state import compression
+from gaspart.state.initial import initial_state
 
 number = st.floats(-3.0, 3.0).map(lambda x: round(x, 6))
 
@@ -77,7 +78,7 @@ def growing(scene, per_side=None):
     """A compression under way; its partition of so many boxes per side."""
     under_way = compression._Growing(scene, 3, 0.5, 1.0)
     if per_side:
-        from gaspart.boxes import make_boxes
+        from gaspart.state.boxes import make_boxes
 
         boxes = make_boxes(scene, per_side, images=True)
         under_way._partition = under_way._partition._replace(

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from gaspart.config import check
 from gaspart.errors import SceneError
 from gaspart.files import dump_yaml, read_yaml
+from gaspart.planning.config import check
 
 ROOT = Path(__file__).parents[1]
 SCHEMA = ROOT / "workflow/schemas/config.schema.yaml"

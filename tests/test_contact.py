@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from gaspart.contact import contact_root, exchange, exchange_equal, time_to_contact
+from gaspart.kernels.contact import contact_root, exchange, exchange_equal, time_to_contact
 
 # Of what is not 0 the squares must not underflow: scenes whose lengths or speeds are smaller are refused.
 numbers = st.floats(-10, 10).map(lambda x: x if abs(x) > 1e-60 else 0.0)

@@ -9,7 +9,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.cli import main
-from gaspart.families import FAMILIES
+from gaspart.planning.families import FAMILIES
 
 DOCS = Path(__file__).parents[1] / "docs"
 

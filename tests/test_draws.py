@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gaspart.draws import flux_speed, log_of, normal_pair, random_words, uniform
-from gaspart.random import key_of, natural_log
+from gaspart.kernels.rng import flux_speed, log_of, normal_pair, random_words, uniform
+from gaspart.state.random import key_of, natural_log
 
 WORDS = st.integers(0, 2**63 - 1)
 

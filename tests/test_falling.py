@@ -7,8 +7,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from gaspart.contact import time_to_contact
-from gaspart.falling import time_against, time_along, time_to_contact_pulled
+from gaspart.kernels.ballistic import time_against, time_along, time_to_contact_pulled
+from gaspart.kernels.contact import time_to_contact
 
 vectors = st.lists(st.floats(-5, 5), min_size=2, max_size=2).map(np.array)
 

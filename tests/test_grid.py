@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from gaspart import grid, theory
+from gaspart import theory
 from gaspart.errors import SceneError
-from gaspart.scene import Scene
+from gaspart.planning import grid
+from gaspart.scene.scene import Scene
 
 POINT = {
     "dimension": 2,

@@ -8,8 +8,8 @@ from hypothesis import given
 from scenes import gas, mixtures
 
 import gaspart as gp
-from gaspart.initial import initial_state, random_insertion
-from gaspart.random import stream
+from gaspart.state.initial import initial_state, random_insertion
+from gaspart.state.random import stream
 
 
 def closest(scene, state):

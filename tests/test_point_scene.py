@@ -3,10 +3,10 @@
 import pytest
 
 import gaspart as gp
-from gaspart import grid
-from gaspart.config import check
 from gaspart.errors import SceneError
 from gaspart.files import dump_yaml, read_yaml
+from gaspart.planning import grid
+from gaspart.planning.config import check
 
 SCENE = gp.Scene(
     gp.Container((20.0, 40.0)),

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 import gaspart as gp
-from gaspart.random import directions, natural_log, normals, stream
+from gaspart.state.random import directions, natural_log, normals, stream
 
 
 @given(st.floats(min_value=5e-324, max_value=1.7e308))

@@ -13,8 +13,8 @@ import pytest
 from scenes import gas
 
 import gaspart as gp
-from gaspart import amber, recording
-from gaspart.trajectory import checkpoint_path, partial_path
+from gaspart.trajectory import amber, recording
+from gaspart.trajectory.run import checkpoint_path, partial_path
 
 ENGINES = {
     "event": gp.EventDriven(),

@@ -7,7 +7,7 @@ from hypothesis import given
 from scenes import mixtures
 
 import gaspart as gp
-from gaspart.surfaces import thermal_face
+from gaspart.scene.faces import thermal_face
 
 GOOD = {
     "container": {"lengths": [10.0, 10.0], "boundary": "wall"},

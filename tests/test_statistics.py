@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from gaspart import statistics, theory
+from gaspart import theory
+from gaspart.analysis import statistics
 
 
 def autoregressive(size, memory, seed):

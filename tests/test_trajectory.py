@@ -11,9 +11,9 @@ import pytest
 from scenes import gas
 
 import gaspart as gp
-from gaspart import recording
-from gaspart.recipe import Recipe, multiple, read_recipe
-from gaspart.trajectory import checkpoint_path, partial_path
+from gaspart.trajectory import recording
+from gaspart.trajectory.recipe import Recipe, multiple, read_recipe
+from gaspart.trajectory.run import checkpoint_path, partial_path
 
 ENGINES = {"event": gp.EventDriven(), "step": gp.TimeStepped(time_step=0.0625)}
 

@@ -5,8 +5,8 @@ import json
 import pytest
 
 import gaspart as gp
-from gaspart.point import Point
-from gaspart.variants import features, task, variant, warm
+from gaspart.planning.point import Point
+from gaspart.planning.variants import features, task, variant, warm
 
 SIZE = {"dimension": 2, "count": 1000, "radius": 0.5, "side": 100.0, "temperature": 1.0, "duration": 10.0}
 BOX = gp.Container((40.0, 40.0))

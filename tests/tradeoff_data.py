@@ -3,8 +3,8 @@
 import numpy as np
 import xarray as xr
 
-from gaspart import grid
-from gaspart.measure import tradeoff
+from gaspart.experiments.tradeoff import measure as tradeoff
+from gaspart.planning import grid
 
 STEPS = np.array([0.32, 0.16, 0.08, 0.04])
 SETTINGS = {"order_up_to": 0.2, "accuracies": [0.01, 0.001, 0.0001]}

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.measure.virial import fit_table
+from gaspart.experiments.virial.measure import fit_table
 
 FITS = [
     {"free": 4, "up_to": 0.35, "held": True},

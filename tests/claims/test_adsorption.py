@@ -1,7 +1,8 @@
 import pytest
 from adsorption_data import walls
 
-from gaspart.claims import adsorption, judge
+from gaspart.claims import judge
+from gaspart.experiments.adsorption import claims as adsorption
 
 
 def verdicts(dataset):

@@ -1,7 +1,8 @@
 import pytest
 import xarray as xr
 
-from gaspart.claims import brownian, judge
+from gaspart.claims import judge
+from gaspart.experiments.brownian import claims as brownian
 
 
 def measured(**changes):

@@ -1,7 +1,8 @@
 import pytest
 from buoyancy_data import measurement
 
-from gaspart.claims import buoyancy, judge
+from gaspart.claims import judge
+from gaspart.experiments.buoyancy import claims as buoyancy
 
 
 def verdicts(claims):

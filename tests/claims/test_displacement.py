@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 from displacement_data import discs, spheres
 
-from gaspart.claims import displacement, judge
+from gaspart.claims import judge
+from gaspart.experiments.displacement import claims as displacement
 
 
 def verdicts(claims):

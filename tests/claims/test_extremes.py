@@ -4,7 +4,7 @@ import pytest
 from extremes_data import extremes_data
 
 from gaspart.claims import judge
-from gaspart.claims.extremes import stability_extremes
+from gaspart.experiments.extremes.claims import stability_extremes
 
 
 def test_rows_that_pass_or_are_refused_agree():

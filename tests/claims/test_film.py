@@ -1,7 +1,8 @@
 import pytest
 from film_data import slits
 
-from gaspart.claims import film, judge
+from gaspart.claims import judge
+from gaspart.experiments.film import claims as film
 
 
 def verdicts(dataset):

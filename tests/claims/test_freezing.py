@@ -1,7 +1,8 @@
 import pytest
 from freezing_data import discs, spheres
 
-from gaspart.claims import freezing, judge
+from gaspart.claims import judge
+from gaspart.experiments.freezing import claims as freezing
 
 
 def verdicts(claims):

@@ -2,7 +2,7 @@ import pytest
 from granular_data import inelastic, rough
 
 from gaspart.claims import judge
-from gaspart.claims.granular import cooling, equipartition
+from gaspart.experiments.granular.claims import cooling, equipartition
 
 
 def verdicts(claims, beginning=""):

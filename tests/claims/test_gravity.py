@@ -1,7 +1,8 @@
 import pytest
 from gravity_data import capacities, columns
 
-from gaspart.claims import gravity, judge
+from gaspart.claims import judge
+from gaspart.experiments.gravity import claims as gravity
 
 
 def verdicts(claims):

@@ -1,7 +1,8 @@
 import pytest
 from heat_data import gases, metals
 
-from gaspart.claims import heat, judge
+from gaspart.claims import judge
+from gaspart.experiments.heat import claims as heat
 
 
 def verdicts(claims):

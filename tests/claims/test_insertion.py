@@ -4,7 +4,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.claims import judge
-from gaspart.claims.insertion import fill_failures
+from gaspart.experiments.insertion.claims import fill_failures
 
 
 def dataset(**changes):

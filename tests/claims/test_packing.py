@@ -4,7 +4,7 @@ import pytest
 from packing_data import packings
 
 from gaspart.claims import judge
-from gaspart.claims.packing import densest_fill
+from gaspart.experiments.packing.claims import densest_fill
 
 
 def verdicts(**changes):

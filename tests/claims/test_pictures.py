@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from gaspart.claims import judge, pictures
+from gaspart.claims import judge
+from gaspart.experiments.pictures import claims as pictures
 
 
 def scene(**changes):

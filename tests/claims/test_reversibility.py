@@ -1,6 +1,7 @@
 from reversibility_data import measurement
 
-from gaspart.claims import judge, reversibility
+from gaspart.claims import judge
+from gaspart.experiments.reversibility import claims as reversibility
 
 
 def verdicts(dataset):

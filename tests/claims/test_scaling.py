@@ -4,8 +4,9 @@ import pytest
 from scaling_data import SCALING, points, settings
 
 from gaspart import claims as core
-from gaspart.claims import judge, scaling
-from gaspart.measure import scaling as measured
+from gaspart.claims import judge
+from gaspart.experiments.scaling import claims as scaling
+from gaspart.experiments.scaling import measure as measured
 
 
 def dataset(figure, folder):

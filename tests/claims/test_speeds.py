@@ -4,7 +4,8 @@ import xarray as xr
 from speeds_data import relaxation_measurement
 
 from gaspart import theory
-from gaspart.claims import judge, speeds
+from gaspart.claims import judge
+from gaspart.experiments.speeds import claims as speeds
 
 
 def verdicts(claims):

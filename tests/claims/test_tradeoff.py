@@ -1,6 +1,7 @@
 from tradeoff_data import speed_accuracy_measurement, time_to_accuracy_measurement
 
-from gaspart.claims import judge, tradeoff
+from gaspart.claims import judge
+from gaspart.experiments.tradeoff import claims as tradeoff
 
 
 def verdicts(dataset):

@@ -2,7 +2,7 @@ import pytest
 from velocity_data import correlations
 
 from gaspart.claims import judge
-from gaspart.claims.velocity import spreading_uncertainty, velocity_autocorrelation
+from gaspart.experiments.velocity.claims import spreading_uncertainty, velocity_autocorrelation
 
 
 def verdicts(dataset, beginning=""):

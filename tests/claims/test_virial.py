@@ -4,7 +4,7 @@ from virial_data import equation_of_state
 
 from gaspart import theory
 from gaspart.claims import judge
-from gaspart.claims.virial import virial_discs, virial_spheres
+from gaspart.experiments.virial.claims import virial_discs, virial_spheres
 
 CLAIMS = {2: virial_discs, 3: virial_spheres}
 

@@ -1,7 +1,7 @@
 from wall_pressure_data import pressures
 
 from gaspart.claims import judge
-from gaspart.claims.wall_pressure import wall_pressure
+from gaspart.experiments.wall_pressure.claims import wall_pressure
 
 
 def verdicts(dataset):

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.boxes import make_boxes
-from gaspart.engines.ahead import CACHED, fetch_about, searched
-from gaspart.engines.calendar import PLAN
-from gaspart.engines.layout import EDGES, INNER
-from gaspart.engines.lists import empty_partition
-from gaspart.kernel import kernel
+from gaspart.kernels.compilation import kernel
+from gaspart.kernels.event.box_lists import empty_partition
+from gaspart.kernels.event.model import EDGES, INNER
+from gaspart.kernels.event.prefetch import CACHED, fetch_about, searched
+from gaspart.kernels.event.queue import PLAN
+from gaspart.state.boxes import make_boxes
 
 
 @kernel

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from numpy import uint64
 
-from gaspart.engines.eight import LAP_BITS, LAP_FIRST, earliest, lowest
-from gaspart.engines.flight import note_still, pair_time
-from gaspart.engines.layout import Gravity, Space
-from gaspart.kernel import kernel
+from gaspart.kernels.compilation import kernel
+from gaspart.kernels.event.model import Gravity, Space
+from gaspart.kernels.flight import note_still, pair_time
+from gaspart.kernels.simd import LAP_BITS, LAP_FIRST, earliest, lowest
 
 
 @kernel

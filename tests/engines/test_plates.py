@@ -10,7 +10,7 @@ from referee import events_of, same_bits
 from scenes import partitioned
 
 import gaspart as gp
-from gaspart.falling import time_of_summit
+from gaspart.kernels.ballistic import time_of_summit
 
 PLATE = gp.Plate((6.0, 4.0, 4.0), ((0.0, 4.0, 0.0), (0.0, 0.0, 4.0)))
 SEARCHES = pytest.mark.parametrize("search", ["boxes", "pairs"])

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from numpy import uint32, uint64
 
-from gaspart.engines.step_contacts import distance_squared
-from gaspart.engines.step_eight import bits, equals, keep_eight, nearer, roomy
-from gaspart.engines.step_layout import Bodies, Space
-from gaspart.kernel import kernel
+from gaspart.kernels.compilation import kernel
+from gaspart.kernels.step.model import Bodies, Space
+from gaspart.kernels.step.resolve import distance_squared
+from gaspart.kernels.step.simd import bits, equals, keep_eight, nearer, roomy
 
 
 @kernel

@@ -12,7 +12,7 @@ from scenes import gas, mixtures
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.engines.step_settings import check_scene
+from gaspart.engines.step_limits import check_scene
 
 SEARCHES = (
     {"boxes_per_side": 1},

@@ -9,11 +9,11 @@ from dataclasses import replace
 import pytest
 
 import gaspart as gp
-from gaspart.extremes import exact, scenes
-from gaspart.extremes.guard import guarded
-from gaspart.extremes.rows import ROWS, Row
-from gaspart.extremes.trial import ENGINES, FAILS, PASSES, REFUSED, attempt
-from gaspart.measure.extremes import run_row
+from gaspart.experiments.extremes import exact, scenes
+from gaspart.experiments.extremes.guard import guarded
+from gaspart.experiments.extremes.measure import run_row
+from gaspart.experiments.extremes.rows import ROWS, Row
+from gaspart.experiments.extremes.trial import ENGINES, FAILS, PASSES, REFUSED, attempt
 
 # Kernels of a plain scene in two dimensions do for these; the others compile their own.
 PLAIN = {"speeds", "contacts", "steps", "few"}

@@ -1,7 +1,8 @@
 import numpy as np
 from adsorption_data import walls
 
-from gaspart.figures import adsorption, style
+from gaspart.experiments.adsorption import figure as adsorption
+from gaspart.rendering import style
 
 
 def test_it_draws_all_its_panels(tmp_path):

@@ -3,7 +3,8 @@ import pytest
 import xarray as xr
 
 from gaspart import theory
-from gaspart.figures import brownian, style
+from gaspart.experiments.brownian import figure as brownian
+from gaspart.rendering import style
 
 
 def rows(**values):

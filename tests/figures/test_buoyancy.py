@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 from buoyancy_data import measurement
 
-from gaspart.figures import buoyancy, style
+from gaspart.experiments.buoyancy import figure as buoyancy
+from gaspart.rendering import style
 
 
 def test_the_two_radii_and_theory_are_drawn(tmp_path):

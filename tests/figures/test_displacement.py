@@ -3,7 +3,8 @@ import pytest
 from displacement_data import discs, spheres
 
 from gaspart import theory
-from gaspart.figures import displacement, style
+from gaspart.experiments.displacement import figure as displacement
+from gaspart.rendering import style
 
 
 @pytest.mark.parametrize(

@@ -2,8 +2,8 @@
 
 from extremes_data import extremes_data
 
-from gaspart.figures import style
-from gaspart.figures.extremes import stability_extremes
+from gaspart.experiments.extremes.figure import stability_extremes
+from gaspart.rendering import style
 
 
 def test_each_cell_says_what_became_of_it():

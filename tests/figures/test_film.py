@@ -1,6 +1,7 @@
 from film_data import slits
 
-from gaspart.figures import film, style
+from gaspart.experiments.film import figure as film
+from gaspart.rendering import style
 
 
 def test_it_draws_all_its_panels(tmp_path):

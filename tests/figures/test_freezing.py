@@ -1,7 +1,8 @@
 import numpy as np
 from freezing_data import discs, spheres
 
-from gaspart.figures import freezing, style
+from gaspart.experiments.freezing import figure as freezing
+from gaspart.rendering import style
 
 
 def test_it_draws_discs_with_structure(tmp_path):

@@ -1,7 +1,8 @@
 import pytest
 from granular_data import inelastic, rough
 
-from gaspart.figures import granular, style
+from gaspart.experiments.granular import figure as granular
+from gaspart.rendering import style
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 from gravity_data import capacities, columns
 
-from gaspart.figures import gravity, style
+from gaspart.experiments.gravity import figure as gravity
+from gaspart.rendering import style
 from gaspart.theory.gravity import ideal_heat_capacity
 
 

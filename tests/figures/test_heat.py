@@ -1,7 +1,8 @@
 import numpy as np
 from heat_data import gases, metals
 
-from gaspart.figures import heat, style
+from gaspart.experiments.heat import figure as heat
+from gaspart.rendering import style
 
 
 def test_the_flux_is_drawn_between_its_limits_and_profiles_with_theory(tmp_path):

@@ -1,10 +1,11 @@
 import numpy as np
 import pytest
 
-from gaspart import grid
-from gaspart.figures import insertion, style
-from gaspart.measure.fill import fill
-from gaspart.measure.insertion import fill_failures
+from gaspart.experiments.insertion import figure as insertion
+from gaspart.experiments.insertion.measure import fill_failures
+from gaspart.experiments.jobs.fill import fill
+from gaspart.planning import grid
+from gaspart.rendering import style
 
 
 @pytest.fixture

@@ -2,7 +2,8 @@
 
 from packing_data import packings
 
-from gaspart.figures import packing, style
+from gaspart.experiments.packing import figure as packing
+from gaspart.rendering import style
 
 
 def test_the_two_pictures_tell_their_packing_fractions():

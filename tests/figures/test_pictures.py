@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from gaspart.figures import pictures, style
+from gaspart.experiments.pictures import figure as pictures
+from gaspart.rendering import style
 
 
 @pytest.mark.parametrize("draw", [pictures.gas_render, pictures.brownian_render])

@@ -1,6 +1,7 @@
 from reversibility_data import measurement
 
-from gaspart.figures import reversibility, style
+from gaspart.experiments.reversibility import figure as reversibility
+from gaspart.rendering import style
 
 
 def test_echoes_growth_and_memory(tmp_path):

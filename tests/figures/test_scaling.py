@@ -5,8 +5,9 @@ import math
 import pytest
 from scaling_data import SCALING, points, settings
 
-from gaspart.figures import scaling, style
-from gaspart.measure import scaling as measured
+from gaspart.experiments.scaling import figure as scaling
+from gaspart.experiments.scaling import measure as measured
+from gaspart.rendering import style
 
 
 @pytest.mark.parametrize("figure", SCALING)

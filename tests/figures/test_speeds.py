@@ -4,7 +4,8 @@ import xarray as xr
 from speeds_data import relaxation_measurement
 
 from gaspart import theory
-from gaspart.figures import speeds, style
+from gaspart.experiments.speeds import figure as speeds
+from gaspart.rendering import style
 
 
 def distribution(dimension, points):

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from gaspart.figures import style
+from gaspart.rendering import style
 
 
 @pytest.mark.parametrize("suffix", ["png", "svg"])

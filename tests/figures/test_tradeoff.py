@@ -1,7 +1,8 @@
 import numpy as np
 from tradeoff_data import SECONDS, speed_accuracy_measurement, time_to_accuracy_measurement
 
-from gaspart.figures import style, tradeoff
+from gaspart.experiments.tradeoff import figure as tradeoff
+from gaspart.rendering import style
 
 
 def test_errors_are_drawn_against_the_step_and_costs_against_errors(tmp_path):

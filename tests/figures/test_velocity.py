@@ -1,8 +1,8 @@
 import pytest
 from velocity_data import correlations
 
-from gaspart.figures import style
-from gaspart.figures.velocity import velocity_autocorrelation
+from gaspart.experiments.velocity.figure import velocity_autocorrelation
+from gaspart.rendering import style
 
 
 @pytest.mark.parametrize("points", [[0, 1, 2, 3], [0], [3]])

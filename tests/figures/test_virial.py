@@ -1,7 +1,8 @@
 import pytest
 from virial_data import equation_of_state
 
-from gaspart.figures import style, virial
+from gaspart.experiments.virial import figure as virial
+from gaspart.rendering import style
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -1,7 +1,7 @@
 from wall_pressure_data import pressures
 
-from gaspart.figures import style
-from gaspart.figures.wall_pressure import wall_pressure
+from gaspart.experiments.wall_pressure.figure import wall_pressure
+from gaspart.rendering import style
 
 
 def test_it_draws_all_its_panels(tmp_path):

@@ -3,10 +3,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gaspart import grid
-from gaspart.measure import adsorption
+from gaspart.experiments.adsorption import measure as adsorption
+from gaspart.planning import grid
 from gaspart.theory.adsorption import flux_density, slow_flux_share, well_ratio
-from gaspart.trajectory import run
+from gaspart.trajectory.run import run
 
 SCENES = Path(__file__).parents[2] / "config/scenes"
 SETTINGS = {"blocks": 10, "near": 0.5, "bins": 20}

@@ -5,8 +5,8 @@ import pytest
 import xarray as xr
 
 import gaspart as gp
-from gaspart import grid
-from gaspart.measure import brownian
+from gaspart.experiments.brownian import measure as brownian
+from gaspart.planning import grid
 
 RATE, MASS, COUNT = 0.5, 100.0, 900
 

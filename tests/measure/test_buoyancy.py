@@ -4,7 +4,7 @@ from buoyancy_data import HEIGHT, RADIUS, SMALL, STRENGTH, WIDTH, dilute_fluid, 
 from gravity_data import point
 
 import gaspart as gp
-from gaspart.measure import buoyancy
+from gaspart.experiments.buoyancy import measure as buoyancy
 
 SETTINGS = {"bins": 30, "blocks": 8, "clear": 2, "far": 8.0, "near": 6.0}
 COUNT = 30

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from gaspart.engines import TimeStepped
-from gaspart.measure.compare import compare
-from gaspart.scene import Container, Scene, Species
+from gaspart.experiments.jobs.compare import compare
+from gaspart.scene.scene import Container, Scene, Species
 
 GAS = Scene(
     Container((11.0,) * 3, boundary="periodic"),

@@ -4,9 +4,9 @@ import pytest
 
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SceneError, SimulationError
-from gaspart.measure import cost
-from gaspart.measure.cost import measure_cost
-from gaspart.scene import Container, Scene, Species
+from gaspart.experiments.jobs import cost
+from gaspart.experiments.jobs.cost import measure_cost
+from gaspart.scene.scene import Container, Scene, Species
 from gaspart.theory.partition import expected_box_visits, expected_pair_tests
 
 GAS = Scene(Container((20.0,) * 3), species=(Species(400, 0.1, speed=1.0),))

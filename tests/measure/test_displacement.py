@@ -6,10 +6,11 @@ import pytest
 from displacement_data import enskog_rate, langevin, point
 
 import gaspart as gp
-from gaspart import grid, theory
+from gaspart import theory
+from gaspart.analysis.correlations import Curves, between, centred, correlate, line
 from gaspart.errors import SceneError
-from gaspart.measure import displacement
-from gaspart.measure.correlations import Curves, between, centred, correlate, line
+from gaspart.experiments.displacement import measure as displacement
+from gaspart.planning import grid
 
 
 @pytest.fixture

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from gaspart.engines import EventDriven, TimeStepped
-from gaspart.measure.echo import NUDGE, echo
-from gaspart.scene import Container, Scene, Species
+from gaspart.experiments.jobs.echo import NUDGE, echo
+from gaspart.scene.scene import Container, Scene, Species
 
 GAS = Scene(Container((8.0,) * 3), species=(Species(40, 0.5, temperature=1.0),))
 

@@ -3,7 +3,7 @@
 import pytest
 
 import gaspart as gp
-from gaspart.measure.fill import fill
+from gaspart.experiments.jobs.fill import fill
 
 
 @pytest.mark.parametrize("boundary", ["wall", "periodic"])

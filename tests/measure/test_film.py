@@ -3,9 +3,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gaspart import grid, theory
-from gaspart.measure import film
-from gaspart.trajectory import run
+from gaspart import theory
+from gaspart.experiments.film import measure as film
+from gaspart.planning import grid
+from gaspart.trajectory.run import run
 
 
 def slit(rng, density, width, samples, side=6.0):

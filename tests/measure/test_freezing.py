@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from gaspart import grid
-from gaspart.measure.freezing import freezing_discs, freezing_spheres
-from gaspart.scene import Scene
-from gaspart.trajectory import run
+from gaspart.experiments.freezing.measure import freezing_discs, freezing_spheres
+from gaspart.planning import grid
+from gaspart.scene.scene import Scene
+from gaspart.trajectory.run import run
 
 DISCS = {
     "dimension": 2, "count": 64, "side": [8, 8 * 0.8660254037844386], "boundary": "periodic",

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart import grid, theory
-from gaspart.measure import granular
+from gaspart import theory
+from gaspart.experiments.granular import measure as granular
+from gaspart.planning import grid
 
 
 def made(tmp_path, name, scene, **settings):

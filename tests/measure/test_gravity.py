@@ -7,8 +7,9 @@ import xarray as xr
 from gravity_data import ideal_column, point
 
 import gaspart as gp
-from gaspart import grid
-from gaspart.measure import columns, gravity
+from gaspart.experiments.gravity import measure as gravity
+from gaspart.experiments.shared import columns
+from gaspart.planning import grid
 from gaspart.theory.gravity import ideal_profile
 
 SETTINGS = {"bins": 8, "blocks": 4, "clear": 0.5, "ranges": [[0.001, 0.01]]}

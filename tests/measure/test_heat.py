@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart import grid
-from gaspart.measure import heat
+from gaspart.experiments.heat import measure as heat
+from gaspart.planning import grid
 from gaspart.theory.heat import free_molecular_flux
 
 

@@ -2,9 +2,8 @@ import numpy as np
 import pytest
 from insertion_data import fill_to
 
-from gaspart import grid, theory
-from gaspart.measure.fill import fill
-from gaspart.measure.insertion import (
+from gaspart import theory
+from gaspart.experiments.insertion.measure import (
     Fill,
     approach_exponent,
     dilute_failures,
@@ -12,6 +11,8 @@ from gaspart.measure.insertion import (
     fill_failures,
     saturation,
 )
+from gaspart.experiments.jobs.fill import fill
+from gaspart.planning import grid
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

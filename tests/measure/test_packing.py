@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scenes import gas
 
-from gaspart.measure.pack import pack
-from gaspart.measure.packing import contacts
+from gaspart.experiments.jobs.pack import pack
+from gaspart.experiments.packing.measure import contacts
 
 
 def test_contacts_of_a_crystal_are_twelve_and_a_loose_sphere_has_none():

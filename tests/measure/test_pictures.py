@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from gaspart import grid
-from gaspart.measure import pictures
+from gaspart.experiments.pictures import measure as pictures
+from gaspart.planning import grid
 
 CUBE = np.full(3, 10.0)
 
@@ -30,7 +30,7 @@ def test_overlaps_across_a_face_and_with_a_large_body():
 
 
 def test_a_scene_is_counted_and_kept_for_drawing(tmp_path):
-    from gaspart.trajectory import run
+    from gaspart.trajectory.run import run
 
     settings = {
         "scene": "config/scenes/brownian.yaml",

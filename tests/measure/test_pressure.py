@@ -3,9 +3,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gaspart import grid, theory
-from gaspart.measure.pressure import COUNTED, Run, combine_runs, pressure, read_run
-from gaspart.trajectory import run
+from gaspart import theory
+from gaspart.experiments.shared.pressure import COUNTED, Run, combine_runs, pressure, read_run
+from gaspart.planning import grid
+from gaspart.trajectory.run import run
 
 
 def small_point(tmp_path, **settings):

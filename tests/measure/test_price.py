@@ -5,14 +5,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gaspart import grid
 from gaspart.claims import judge
-from gaspart.claims.price import price_of_features as claims
-from gaspart.figures import style
-from gaspart.figures.price import price_of_features as draw
-from gaspart.measure.cost import measure_cost
-from gaspart.measure.price import price_of_features
-from gaspart.measure.stripped import instructions, stripped
+from gaspart.experiments.jobs.cost import measure_cost
+from gaspart.experiments.price.claims import price_of_features as claims
+from gaspart.experiments.price.figure import price_of_features as draw
+from gaspart.experiments.price.measure import price_of_features
+from gaspart.experiments.price.stripped import instructions, stripped
+from gaspart.planning import grid
+from gaspart.rendering import style
 
 ROOT = Path(__file__).parents[2]
 SETTINGS = {"count_instructions": False}

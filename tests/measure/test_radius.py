@@ -3,18 +3,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gaspart import grid, theory
+from gaspart import theory
 from gaspart.claims import judge
-from gaspart.claims.radius import radius_grid as claims
-from gaspart.figures import style
-from gaspart.figures.radius import radius_grid as draw
-from gaspart.measure.radius import (
+from gaspart.experiments.radius.claims import radius_grid as claims
+from gaspart.experiments.radius.figure import radius_grid as draw
+from gaspart.experiments.radius.measure import (
     crossings_per_collision,
     expected_pair_tests,
     radius_grid,
     structure_factor,
 )
-from gaspart.trajectory import run
+from gaspart.planning import grid
+from gaspart.rendering import style
+from gaspart.trajectory.run import run
 
 
 def test_structure_factor_of_a_dilute_gas():

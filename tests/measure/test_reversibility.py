@@ -3,7 +3,7 @@ import math
 import pytest
 from reversibility_data import SIDE, measurement
 
-from gaspart.claims.reversibility import ROUNDINGS
+from gaspart.experiments.reversibility.claims import ROUNDINGS
 
 
 def test_growth_memory_and_jumps(tmp_path):

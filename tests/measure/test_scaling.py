@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scaling_data import BOX, LIST, TEST, points, settings
 
-from gaspart.measure import scaling
+from gaspart.experiments.scaling import measure as scaling
 
 
 def test_naive_scaling(tmp_path):

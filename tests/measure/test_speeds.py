@@ -6,9 +6,10 @@ import pytest
 from speeds_data import directions, equilibrium, point, trajectory
 
 import gaspart as gp
-from gaspart import grid, theory
+from gaspart import theory
 from gaspart.errors import SceneError
-from gaspart.measure import speeds
+from gaspart.experiments.speeds import measure as speeds
+from gaspart.planning import grid
 
 RELAXATION = {"times": [1.0, 2.0], "bins": 20, "highest": 2.5}
 DISTRIBUTION = {"bins": 20, "highest": 2.5, "classes": 20}

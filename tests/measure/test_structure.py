@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from scenes import gas
 
-from gaspart.initial import initial_state
-from gaspart.measure import structure
+from gaspart.analysis import order as structure
+from gaspart.state.initial import initial_state
 
 HEXAGONAL = np.array([16.0, 8.0 * np.sqrt(3.0)])
 

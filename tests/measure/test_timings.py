@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from gaspart.measure import timings
+from gaspart.experiments.shared import timings
 
 BODY, TEST, BOX = 30e-9, 12e-9, 0.3e-9
 IDEAL = math.sqrt(13.5 * TEST / BOX)

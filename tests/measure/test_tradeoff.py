@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tradeoff_data import CONTACTS, SECONDS, STEPS, comparison, speed_accuracy_measurement, timing, written
 
-from gaspart.measure.tradeoff import time_to_accuracy
+from gaspart.experiments.tradeoff.measure import time_to_accuracy
 
 
 @pytest.fixture(scope="module")

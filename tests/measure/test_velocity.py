@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart import grid
-from gaspart.measure import velocity
-from gaspart.measure.correlations import autocorrelation
+from gaspart.analysis.correlations import autocorrelation
+from gaspart.experiments.velocity import measure as velocity
+from gaspart.planning import grid
 
 
 def test_autocorrelation_is_the_mean_over_all_pairs_of_frames():

@@ -3,7 +3,7 @@ import pytest
 from virial_data import ETA, FITS, equation_of_state
 
 from gaspart import theory
-from gaspart.measure.virial import fit_coefficients, fit_table
+from gaspart.experiments.virial.measure import fit_coefficients, fit_table
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

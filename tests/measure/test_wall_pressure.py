@@ -5,9 +5,9 @@ import pytest
 import xarray as xr
 
 import gaspart as gp
-from gaspart import grid
 from gaspart.errors import SceneError
-from gaspart.measure import wall_pressure as module
+from gaspart.experiments.wall_pressure import measure as module
+from gaspart.planning import grid
 
 
 def point(tmp_path, **settings):

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from gaspart.rendering import tracer
+from gaspart.kernels.ray_tracing import sky
 from gaspart.rendering.camera import camera_for
-from gaspart.rendering.tracer import EDGE, FLOOR, NOTHING, SPHERE, trace
+from gaspart.rendering.tracer import EDGE, FLOOR, NOTHING, SPHERE, cells, trace
 
 LENGTHS = np.array([10.0, 8.0, 6.0])
 SIZE = (120, 90)
@@ -85,17 +85,17 @@ def test_a_shadow_is_darker_than_the_same_place_without_it():
 def test_a_sphere_takes_its_part_of_the_sky():
     """r^2 / d^2 of the light of an even sky if it stands straight above (exact), faded with its distance."""
     spheres = np.array([[5.0, 4.0, 3.0, 1.0]])
-    grid = tracer._cells(spheres, LENGTHS)
+    grid = cells(spheres, LENGTHS)
     side = grid[1]
     up = (0.0, 0.0, 1.0)
     faded = (1.0 - 2.0 / side) ** 2
-    assert tracer._sky((5.0, 4.0, 0.0), up, spheres, grid) == pytest.approx(1.0 - faded / 9.0)
-    assert tracer._sky((5.0, 4.0, 0.0), (0.0, 0.0, -1.0), spheres, grid) == 1.0
+    assert sky((5.0, 4.0, 0.0), up, spheres, grid) == pytest.approx(1.0 - faded / 9.0)
+    assert sky((5.0, 4.0, 0.0), (0.0, 0.0, -1.0), spheres, grid) == 1.0
     many = np.repeat(spheres, 30, axis=0)  # as one, thirty times: no cell counts a sphere twice
     many[1:, 0] = np.linspace(0.3, 9.7, 29)
     many[1:, 3] = 0.01
-    grid = tracer._cells(many, LENGTHS)
-    alone = tracer._sky((5.0, 4.0, 1.8), up, many, (*grid[:3], *one_list(grid, 0), grid[5]))
+    grid = cells(many, LENGTHS)
+    alone = sky((5.0, 4.0, 1.8), up, many, (*grid[:3], *one_list(grid, 0), grid[5]))
     gap = (1.0 - (1.2 - 1.0) / grid[1]) ** 2
     assert alone == pytest.approx(1.0 - gap / 1.44)
 

@@ -6,8 +6,8 @@ import pytest
 
 from gaspart import theory
 from gaspart.errors import SceneError
-from gaspart.matter import Restitution
-from gaspart.scene import Container, Scene, Species
+from gaspart.scene.matter import Restitution
+from gaspart.scene.scene import Container, Scene, Species
 from gaspart.tradeoff import speed, table
 from gaspart.tradeoff.advice import QUANTILE, SETTLING, advise
 

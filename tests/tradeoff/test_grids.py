@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from gaspart.tradeoff import grids
+from gaspart.planning import advised as grids
 
 GASES = """
 seed: 1

@@ -10,8 +10,8 @@ import pytest
 from gaspart import theory
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SceneError
-from gaspart.scene import Container, Scene, Species
-from gaspart.simulation import Simulation
+from gaspart.scene.scene import Container, Scene, Species
+from gaspart.simulation.simulation import Simulation
 from gaspart.tradeoff import table
 from gaspart.tradeoff.advice import QUANTILE, SETTLING, advise
 

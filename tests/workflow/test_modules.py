@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from gaspart.families import FAMILIES
+from gaspart.planning.families import FAMILIES
 
 ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src/gaspart"

@@ -7,9 +7,9 @@ import sys
 import pytest
 from workspace import ROOT, SMOKE
 
-from gaspart import grid
-from gaspart.config import laid_over
 from gaspart.files import dump_yaml, read_yaml
+from gaspart.planning import grid
+from gaspart.planning.config import laid_over
 
 pytestmark = pytest.mark.workflow
 

@@ -8,8 +8,8 @@ import pytest
 from browser import CHROMIUM, found_by
 from digests import digests
 
-from gaspart.families import FAMILIES
 from gaspart.files import read_yaml
+from gaspart.planning.families import FAMILIES
 
 pytestmark = pytest.mark.workflow
 

@@ -8,8 +8,8 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from gaspart.config import laid_over
 from gaspart.files import write_yaml
+from gaspart.planning.config import laid_over
 
 ROOT = Path(__file__).parents[2]
 PARTS = ["Snakefile", "config", "profiles", "src", "workflow"]

@@ -5,7 +5,7 @@ from _job import function, job
 with job(snakemake):
     import xarray as xr
 
-    from gaspart.figures import style
+    from gaspart.rendering import style
 
     dataset = xr.load_dataset(snakemake.input.dataset)
     with style.applied():

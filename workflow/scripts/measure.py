@@ -5,9 +5,9 @@ import json
 from _job import function, job
 
 with job(snakemake):
-    from gaspart import provenance
     from gaspart.files import whole_file
-    from gaspart.grid import Point
+    from gaspart.planning.grid import Point
+    from gaspart.trajectory import provenance
 
     figure = snakemake.wildcards.figure
     points = [Point.from_dict(values) for values in snakemake.params.points]

@@ -3,13 +3,13 @@
 from _job import job
 
 with job(snakemake):
-    from gaspart.loading import load_numba
+    from gaspart.kernels.numba_loading import load_numba
 
     load_numba(ours=True)
     from gaspart.engines import engine_from_dict
+    from gaspart.experiments.jobs.cost import measure_cost
     from gaspart.files import whole_file
-    from gaspart.measure.cost import measure_cost
-    from gaspart.scene import Scene
+    from gaspart.scene.scene import Scene
 
     recipe = snakemake.params.recipe
     dataset = measure_cost(

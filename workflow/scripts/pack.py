@@ -3,12 +3,12 @@
 from _job import job
 
 with job(snakemake):
-    from gaspart.loading import load_numba
+    from gaspart.kernels.numba_loading import load_numba
 
     load_numba(ours=True)
+    from gaspart.experiments.jobs.pack import pack
     from gaspart.files import whole_file
-    from gaspart.measure.pack import pack
-    from gaspart.scene import Scene
+    from gaspart.scene.scene import Scene
 
     recipe = snakemake.params.recipe
     seeds = [tuple(seed) for seed in recipe["seeds"]]

@@ -60,9 +60,10 @@ def attributes(path):
 with job(snakemake):
     import jinja2
 
-    from gaspart import __version__, provenance
-    from gaspart.families import FAMILIES, TITLES
+    from gaspart import __version__
     from gaspart.files import whole_file
+    from gaspart.planning.families import FAMILIES, TITLES
+    from gaspart.trajectory import provenance
 
     claims = rows(snakemake.input.claims)
     sections = {}

@@ -5,12 +5,12 @@ from pathlib import Path
 from _job import job
 
 with job(snakemake):
-    from gaspart.loading import load_numba
+    from gaspart.kernels.numba_loading import load_numba
 
     load_numba(ours=True)
     from gaspart.engines import engine_from_dict
-    from gaspart.scene import Scene
-    from gaspart.trajectory import run
+    from gaspart.scene.scene import Scene
+    from gaspart.trajectory.run import run
 
     recipe = snakemake.params.recipe
     # Beside the declared output, which Snakemake deletes before a rerun: a run cut short goes on from here.

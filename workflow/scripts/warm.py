@@ -5,6 +5,6 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "src"))
 
-from gaspart.variants import warm
+from gaspart.planning.variants import warm
 
 warm(sys.argv[1])

@@ -50,11 +50,11 @@ def _advise(given: argparse.Namespace) -> None:
     if (given.scene is None) == (given.config is None):
         raise UsageError("give a scene or --config, one of them")
     if given.config:
-        from gaspart.tradeoff.grids import predict
+        from gaspart.planning.advised import predict
 
         print("\n".join(predict(given.config)))
         return
-    from gaspart.scene import Scene
+    from gaspart.scene.scene import Scene
     from gaspart.tradeoff.advice import advise
 
     found = advise(Scene.from_file(given.scene), given.observable, given.accuracy, given.budget)

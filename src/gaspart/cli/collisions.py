@@ -30,9 +30,9 @@ def add_collisions(commands: Commands) -> None:
 
 
 def _collisions(given: argparse.Namespace) -> None:
-    from gaspart.collisions import collision_data
+    from gaspart.analysis.collisions import collision_data
     from gaspart.files import writing
-    from gaspart.scene import Scene
+    from gaspart.scene.scene import Scene
 
     scene = Scene.from_file(given.scene)
     data = collision_data(scene, given.count, given.seed, given.equilibration)

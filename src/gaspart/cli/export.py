@@ -25,6 +25,6 @@ def add_export(commands: Commands) -> None:
 
 
 def _export(given: argparse.Namespace) -> None:
-    from gaspart.exports import export
+    from gaspart.trajectory.export import export
 
     print(export(given.trajectory, given.output, given.frame))

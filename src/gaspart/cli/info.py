@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from gaspart.cli.arguments import Commands
 
 if TYPE_CHECKING:
-    from gaspart.recipe import Recipe
+    from gaspart.trajectory.recipe import Recipe
 
 _EXAMPLES = """examples:
   gaspart info run.nc
@@ -28,8 +28,8 @@ def add_info(commands: Commands) -> None:
 
 def _info(given: argparse.Namespace) -> None:
     from gaspart.inspection.certificate import certificate
-    from gaspart.recipe import opened, read_recipe
-    from gaspart.trajectory import partial_path
+    from gaspart.trajectory.recipe import opened, read_recipe
+    from gaspart.trajectory.run import partial_path
 
     path = Path(given.trajectory)
     found = path if path.exists() or not partial_path(path).exists() else partial_path(path)

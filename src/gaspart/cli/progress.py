@@ -7,7 +7,7 @@ import time
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from gaspart.recording import Progress
+    from gaspart.trajectory.recording import Progress
 
 
 def progress(quiet: bool) -> Progress | None:

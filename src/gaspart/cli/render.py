@@ -70,7 +70,7 @@ def _render(given: argparse.Namespace) -> None:
 def _picture(trajectory: Path, output: Path, options: dict) -> None:
     from gaspart.files import writing
     from gaspart.rendering.pictures import render
-    from gaspart.trajectory import open_trajectory
+    from gaspart.trajectory.run import open_trajectory
 
     with open_trajectory(trajectory) as opened:
         image = render(opened, **options)

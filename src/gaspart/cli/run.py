@@ -71,9 +71,9 @@ def _add_progress(parser: argparse.ArgumentParser) -> None:
 
 def _run(given: argparse.Namespace) -> None:
     from gaspart.engines import engine_from_dict
-    from gaspart.loading import load_numba
-    from gaspart.scene import Scene
-    from gaspart.trajectory import run
+    from gaspart.kernels.numba_loading import load_numba
+    from gaspart.scene.scene import Scene
+    from gaspart.trajectory.run import run
 
     settings = {key: getattr(given, key) for key in _ENGINE_SETTINGS if getattr(given, key) is not None}
     if "boxes_per_side" in settings:
@@ -102,8 +102,8 @@ def _alone(numbers: tuple[int, ...]) -> int | tuple[int, ...]:
 
 
 def _resume(given: argparse.Namespace) -> None:
-    from gaspart.loading import load_numba
-    from gaspart.trajectory import resume
+    from gaspart.kernels.numba_loading import load_numba
+    from gaspart.trajectory.run import resume
 
     load_numba(ours=True)
     _tell(resume(given.trajectory, given.checkpoint_seconds, progress(given.quiet)))

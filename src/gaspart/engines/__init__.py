@@ -11,7 +11,7 @@ from dataclasses import asdict
 from gaspart.engines.event_driven import EventDriven
 from gaspart.engines.time_stepped import TimeStepped
 from gaspart.errors import SceneError
-from gaspart.scene import from_mapping
+from gaspart.scene.scene import from_mapping
 
 ENGINES: dict[str, type[EventDriven | TimeStepped]] = {
     engine.name: engine for engine in (EventDriven, TimeStepped)

@@ -7,23 +7,24 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
-from gaspart.engines.common import (
+from gaspart.engines.arrays import (
     EventLog,
     law_for_kernel,
     masses_for_kernel,
     surfaces_for_kernel,
     tell_inner,
 )
-from gaspart.engines.laps import lap_length
-from gaspart.engines.progress import MANY, check_progress
+from gaspart.engines.clock_epochs import lap_length
+from gaspart.engines.stalling import MANY, check_progress
 from gaspart.errors import SceneError, SimulationError
-from gaspart.memory import aligned
-from gaspart.scene import Scene
-from gaspart.state import State
-from gaspart.tally import Tally
+from gaspart.kernels.memory import aligned
+from gaspart.scene.scene import Scene
+from gaspart.state.interior_walls import wall_rows, walls_near
+from gaspart.state.state import State
+from gaspart.state.tally import Tally
 
 if TYPE_CHECKING:
-    from gaspart.engines.layout import Record
+    from gaspart.kernels.event.model import Record
 
 SEARCHES = ("boxes", "direct", "pairs")
 _QUIET = 1000  # laps without an event after which a run without an end is given up
@@ -68,9 +69,13 @@ class EventDynamics:
     """A scene under way. Clocks count from the start of the current lap, lest they lose precision."""
 
     def __init__(self, engine: EventDriven, scene: Scene, state: State, seed: int | tuple[int, ...]) -> None:
-        from gaspart.beside import boxes_and_largest
-        from gaspart.engines import all_pairs, event_kernels, flight, layout, lists
-        from gaspart.engines.calendar import PLAN, TURN, empty_calendar
+        from gaspart.kernels import flight
+        from gaspart.kernels.event import all_pairs
+        from gaspart.kernels.event import box_lists as lists
+        from gaspart.kernels.event import loop as event_kernels
+        from gaspart.kernels.event import model as layout
+        from gaspart.kernels.event.queue import PLAN, TURN, empty_calendar
+        from gaspart.state.oversized import boxes_and_largest
 
         self._kernels, self._all_pairs = event_kernels, all_pairs
         self._flight, self._layout = flight, layout
@@ -97,11 +102,8 @@ class EventDynamics:
         self._partition = lists.empty_partition(boxes, n)
         self._walls = None
         if scene.walls:
-            from gaspart import plates, segments
-
-            pieces, wall = segments.segments_of(scene) if d == 2 else plates.plates_of(scene)
-            find = segments.segments_near if d == 2 else plates.plates_near
-            self._walls = layout.Walls(pieces, wall, *find(pieces, boxes, largest), largest)
+            pieces, wall = wall_rows(scene)
+            self._walls = layout.Walls(pieces, wall, *walls_near(pieces, boxes, largest), largest)
         self._calendar = empty_calendar(n)
         self._turn = self._calendar.cursor[TURN:]
         self._law = law_for_kernel(scene, state)

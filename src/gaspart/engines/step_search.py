@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.boxes import make_boxes
-from gaspart.engines.common import face_energy
-from gaspart.engines.step_boxes import Partition
-from gaspart.engines.step_cells import Cells
-from gaspart.scene import Scene
-from gaspart.state import State
+from gaspart.engines.arrays import face_energy
+from gaspart.kernels.step.box_search import Partition
+from gaspart.kernels.step.cells import Cells
+from gaspart.scene.scene import Scene
+from gaspart.state.boxes import make_boxes
+from gaspart.state.state import State
 
 if TYPE_CHECKING:
     from gaspart.engines.time_stepped import TimeStepped

@@ -8,8 +8,8 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import DTypeLike
 
-from gaspart.engines.common import EventLog, masses_for_kernel, tell_inner
-from gaspart.engines.step_settings import (
+from gaspart.engines.arrays import EventLog, masses_for_kernel, tell_inner
+from gaspart.engines.step_limits import (
     changing,
     check_late,
     check_precision,
@@ -22,9 +22,9 @@ from gaspart.engines.step_settings import (
     rules_for,
 )
 from gaspart.errors import SceneError
-from gaspart.scene import Scene, count_of, number
-from gaspart.state import State
-from gaspart.tally import Tally
+from gaspart.scene.scene import Scene, count_of, number
+from gaspart.state.state import State
+from gaspart.state.tally import Tally
 
 PRECISIONS = ("float64", "float32")
 
@@ -83,10 +83,10 @@ class StepDynamics:
     """A scene under way; its time is a whole number of steps."""
 
     def __init__(self, engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...]) -> None:
-        from gaspart.engines import step_eight
-        from gaspart.engines import step_kernels as kernels
-        from gaspart.engines import step_layout as layout
         from gaspart.engines import step_search as search
+        from gaspart.kernels.step import loop as kernels
+        from gaspart.kernels.step import model as layout
+        from gaspart.kernels.step import simd as step_eight
 
         giants = giants_of(state)
         check_scene(scene, state, giants)

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from gaspart.recipe import opened, read_recipe
-from gaspart.scene import Scene
-from gaspart.statistics import autocorrelation_time
+from gaspart.analysis.statistics import autocorrelation_time
+from gaspart.scene.scene import Scene
+from gaspart.trajectory.recipe import opened, read_recipe
 
 
 def certificate(path: Path) -> list[str]:

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gaspart import theory
+from gaspart.analysis.statistics import block_average, histogram_chi_square
 from gaspart.inspection.contact_value import FIT_ERROR, contact_values
 from gaspart.inspection.diffusion import diffusion, expected_diffusion, why_not
 from gaspart.inspection.frames import Frames
-from gaspart.statistics import block_average, histogram_chi_square
 
 TOUCH = 1e-5
 """Of a diameter: overlaps up to here are put down to rounding; more where the file itself is coarser."""

@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from gaspart import theory
+from gaspart.analysis.statistics import mean_of
 from gaspart.inspection.frames import Frames
-from gaspart.statistics import mean_of
 
 _SETTLED = 12.0  # collisions per body, from which on the displacement's square grows evenly
 _DENSEST = 0.4915  # where spheres freeze, and the range of Erpenbeck and Wood ends

@@ -75,7 +75,7 @@ def _netcdf(path: Path) -> dict:
 
 def _own(path: Path) -> dict:
     """What a trajectory of gaspart says of its scene."""
-    from gaspart.recipe import read_recipe
+    from gaspart.trajectory.recipe import read_recipe
 
     scene = read_recipe(path).scene  # raises SceneError for one that is truncated
     elastic = scene.restitution is None or (scene.restitution.normal == 1.0 and not scene.rough)

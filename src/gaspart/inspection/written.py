@@ -7,18 +7,18 @@ from pathlib import Path
 
 import numpy as np
 
-from gaspart import config, grid
 from gaspart.errors import SceneError
 from gaspart.inspection.checks import Check, judge_places
 from gaspart.inspection.frames import Frames
-from gaspart.scene import Scene
+from gaspart.planning import config, grid
+from gaspart.scene.scene import Scene
 
 SCHEMA = "workflow/schemas/config.schema.yaml"
 
 
 def judge_scene(path: Path, tolerance: float | None = None) -> list[Check]:
     """Can it be, and can its bodies be placed? Raises SceneError where it cannot."""
-    from gaspart.initial import initial_state
+    from gaspart.state.initial import initial_state
 
     scene = Scene.from_file(path)
     facts = f"{scene.count} bodies, packing fraction {scene.packing_fraction:.6g}"

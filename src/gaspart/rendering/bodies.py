@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.figures.style import COLOURS
 from gaspart.files import parse_yaml
-from gaspart.state import State
-from gaspart.validation import count_of
+from gaspart.rendering.style import COLOURS
+from gaspart.scene.validation import count_of
+from gaspart.state.state import State
 
 if TYPE_CHECKING:
     import xarray as xr

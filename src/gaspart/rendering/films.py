@@ -12,8 +12,8 @@ from gaspart.errors import SceneError
 from gaspart.files import writing
 from gaspart.rendering.bodies import FASTEST, bodies_of, colours_of
 from gaspart.rendering.pictures import SIZE, checked_size, picture
-from gaspart.trajectory import open_trajectory
-from gaspart.validation import count_of, number
+from gaspart.scene.validation import count_of, number
+from gaspart.trajectory.run import open_trajectory
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -9,12 +9,12 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.rendering.bodies import Bodies, bodies_of, colours_of
-from gaspart.validation import count_of
+from gaspart.scene.validation import count_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from gaspart.state import State
+    from gaspart.state.state import State
 
 SIZE = (1000, 750)
 LARGEST_SIDE = 20_000

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from gaspart import theory
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SceneError
-from gaspart.scene import Scene
+from gaspart.scene.scene import Scene
 from gaspart.tradeoff import speed, table
 from gaspart.tradeoff.table import LEAST, QUANTILE, SETTLING
 

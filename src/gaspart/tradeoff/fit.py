@@ -89,7 +89,7 @@ def _diffusion(msd: xr.Dataset) -> Iterator[dict]:
 
 def main(folder: str) -> None:
     """Write the table to the standard output."""
-    from gaspart import provenance
+    from gaspart.trajectory import provenance
 
     revision = provenance.git_revision()
     print(

@@ -23,8 +23,8 @@ def factor(dimension: int, engine: str, precision: str, count: int) -> float:
     """
     from gaspart import theory
     from gaspart.engines import EventDriven, TimeStepped
-    from gaspart.scene import Container, Scene, Species
-    from gaspart.simulation import Simulation
+    from gaspart.scene.scene import Container, Scene, Species
+    from gaspart.simulation.simulation import Simulation
 
     growth = max(1.0, count / _MOST) ** _GROWTH
     count = min(max(count, _LEAST), _MOST)

@@ -1,0 +1,1 @@
+"""Observables with uncertainties: correlations, order, coexistence, statistics."""

@@ -1,0 +1,147 @@
+"""What both engines need around their kernels."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaspart.scene.faces import FACES, Sticky, Thermal, Well
+from gaspart.scene.matter import Restitution
+from gaspart.scene.scene import Scene
+from gaspart.state.insertion import per_body
+from gaspart.state.random import key_of
+from gaspart.state.state import State
+from gaspart.state.wells import places_in_wells, well_energies, wells_of
+
+if TYPE_CHECKING:
+    from gaspart.kernels.event.model import Law, Surfaces
+
+_ROOM = 4096  # events that the record holds before it is emptied
+_WALL_DRAWS = 2  # the purpose of the random numbers of thermal walls, after those of the initial state
+
+
+def masses_for_kernel(masses: np.ndarray) -> tuple[float, np.ndarray | None]:
+    """(unit, array): equal masses are left out of the kernel altogether, and their sums scaled by `unit`."""
+    if len(masses) == 0:
+        return 1.0, None
+    return (float(masses[0]), None) if (masses == masses[0]).all() else (1.0, masses)
+
+
+def law_for_kernel(scene: Scene, state: State) -> Law | None:
+    """The law of contacts, or None if all are elastic, smooth and between bodies that can move."""
+    from gaspart.kernels.event.model import Law
+
+    rule = scene.restitution or Restitution()
+    if rule.smooth_and_elastic and not np.isinf(state.masses).any():
+        return None
+    spins = np.zeros((state.count, 3))
+    if scene.dimension == 2:
+        spins[:, 2] = state.spins
+    else:
+        spins[:] = state.spins
+    vibrations = None
+    modes = per_body(scene, "vibrates")
+    if modes.any() and state.vibrations is not None:
+        vibrations = np.where(modes, state.vibrations, -1.0)
+    inverses = 1 / state.masses, 1 / state.moments_of_inertia
+    return Law(rule.normal, rule.tangential, *inverses, spins, vibrations)
+
+
+def surfaces_for_kernel(
+    scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float
+) -> Surfaces:
+    """The kinds of the container's faces as the kernels' `Surfaces`, in units of `unit_mass`."""
+    from gaspart.kernels.event.model import HARD, STICKY, THERMAL, THERMAL_NORMAL, Surfaces
+
+    kinds, levels = [], []
+    for name in FACES[: 2 * scene.dimension]:
+        match scene.faces.get(name):
+            case Thermal(temperature, "normal"):
+                kind, level = THERMAL_NORMAL, temperature
+            case Thermal(temperature) | Well(temperature=float(temperature)):
+                kind, level = THERMAL, temperature
+            case Sticky(momentum):
+                kind, level = STICKY, momentum
+            case _:
+                kind, level = HARD, 0.0
+        kinds.append(kind)
+        levels.append(level)
+    depths, widths = wells_of(scene)
+    return Surfaces(
+        kind=np.array(kinds, dtype=np.int64),
+        level=np.array(levels) / unit_mass,
+        depth=depths / unit_mass,
+        width=widths,
+        place=places_in_wells(scene, state.positions, state.radii),
+        held=np.zeros(state.positions.shape),
+        draws=np.zeros(state.count, dtype=np.int64),
+        key=key_of(seed, _WALL_DRAWS),
+    )
+
+
+def face_energy(scene: Scene) -> float:
+    """The energy that a face with a kind may be expected to give a body, at most."""
+    hottest = max((getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()), default=0.0)
+    deepest = max((getattr(face, "depth", 0.0) for face in scene.faces.values()), default=0.0)
+    return scene.dimension * hottest + 2.0 * deepest
+
+
+def tell_inner(
+    state: State, scene: Scene, law: Law | None, surfaces: Surfaces | None, unit_mass: float
+) -> None:
+    """Write into a state what a law and surfaces (or None) keep beside the flights: spins, and the energies
+    in wells and in the vibrations of fixed bodies and of those stuck to a face."""
+    if law:
+        state.spins = (law.spins[:, 2] if state.dimension == 2 else law.spins).copy()
+    if surfaces:
+        state.well_energies = well_energies(scene, surfaces.place)
+    if state.vibrations is not None:
+        state.vibrations = np.zeros(state.count)
+        if surfaces:
+            state.vibrations += surfaces.held.sum(axis=1) * unit_mass
+        if law and law.vibrations is not None:
+            state.vibrations += np.maximum(law.vibrations, 0.0)
+
+
+class EventLog:
+    """Events as they happened: bodies, and their positions, velocities and, if wanted, spins just after."""
+
+    def __init__(self, dimension: int, spins: bool = False) -> None:
+        from gaspart.kernels.event.model import Record
+
+        self._keys = ("time", "bodies", "positions", "velocities", *(("spins",) if spins else ()))
+        self._dimension = dimension
+        self._parts: list[tuple[np.ndarray, ...]] = []
+        self.room = Record(
+            filled=np.zeros(1, dtype=np.int64),
+            time=np.empty(_ROOM),
+            bodies=np.empty((_ROOM, 2), dtype=np.int64),
+            positions=np.empty((_ROOM, 2, dimension)),
+            velocities=np.empty((_ROOM, 2, dimension)),
+            spins=np.empty((_ROOM, 2, 3)),
+        )
+
+    def _copy(self, count: int) -> tuple[np.ndarray, ...]:
+        """The first events in the kernel's record; of spins in two dimensions what stands on the plane."""
+        found = {key: getattr(self.room, key)[:count] for key in self._keys}
+        if "spins" in found and self._dimension == 2:
+            found["spins"] = found["spins"][..., 2]
+        return tuple(array.copy() for array in found.values())
+
+    def take(self, start: float) -> None:
+        """Empty the kernel's record, whose times count from `start`."""
+        n = int(self.room.filled[0])
+        self.room.filled[0] = 0
+        if n:
+            time, *others = self._copy(n)
+            self._parts.append((start + time, *others))
+
+    @property
+    def events(self) -> dict[str, np.ndarray]:
+        """time (M,), bodies (M, 2), positions and velocities (M, 2, d), and spins (M, 2) or (M, 2, 3).
+
+        The second of `bodies` is -1 - face for a hit at a wall, and what the second has is NaN.
+        """
+        parts = zip(*(self._parts or [self._copy(0)]), strict=True)
+        return dict(zip(self._keys, map(np.concatenate, parts), strict=True))

@@ -1,0 +1,1 @@
+"""Walls that hold bodies: adsorption."""

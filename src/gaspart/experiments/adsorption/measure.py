@@ -1,0 +1,224 @@
+"""Bodies held by a wall: how many, how densely, and how fast they leave it.
+
+The wall is the face x_low, a well or a sticky one; opposite is a wall at the temperature. Runs are cut into
+stretches, `blocks` of each replica, which are taken as independent; errors are the jackknife's over them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from gaspart.analysis.statistics import jackknife
+from gaspart.planning import grid
+from gaspart.scene.faces import Sticky, Well, thermal_face
+from gaspart.theory.adsorption import length_in_langmuirs_formula
+from gaspart.theory.geometry import body_volume
+from gaspart.theory.potential import excess_chemical_potential, packing_fraction_at
+from gaspart.theory.state import compressibility_factor
+from gaspart.trajectory.run import open_trajectory
+
+_REACH = 4.0  # of the histogram of speeds, in units of sqrt(kT/m)
+
+
+@dataclass(frozen=True)
+class Holder:
+    """A wall that holds bodies, and the gas before it; lengths in the scene's units.
+
+    kind: "ideal" (a gas that hardly fills the well), "layer" (a well narrower than a body) or "sticky";
+    depth and width of the well, 0 if there is none; momentum below which bodies stick, or 0; outside: the
+    length along x that centres of the gas can reach.
+    """
+
+    kind: str
+    temperature: float
+    depth: float
+    width: float
+    momentum: float
+    mass: float
+    radius: float
+    area: float
+    outside: float
+
+    @classmethod
+    def of(cls, point: grid.Point) -> Holder:
+        """From a point of one species in three dimensions, between x_low and a thermal x_high."""
+        scene = grid.scene(point)
+        face, species = scene.faces["x_low"], scene.species[0]
+        low, high = (ends[0] for ends in scene.reach(species.radius))
+        kind, depth, width, momentum = "sticky", 0.0, 0.0, 0.0
+        match face:
+            case Well(depth, width):
+                kind = "layer" if width < species.radius else "ideal"
+            case Sticky(momentum):
+                pass
+        return cls(
+            kind=kind,
+            temperature=thermal_face(scene, "x_high").temperature,
+            depth=depth,
+            width=width,
+            momentum=momentum,
+            mass=species.mass,
+            radius=species.radius,
+            area=scene.container.lengths[1] * scene.container.lengths[2],
+            outside=high - low - width,
+        )
+
+    def held(self, height: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+        """Whether bodies are held: in the well, or without a velocity along x, as only stuck bodies are.
+
+        height: of centres above the lowest place, of any shape, and velocity along x of the same.
+        """
+        return height < self.width if self.kind != "sticky" else velocity == 0.0
+
+    def activity(self, density: float | np.ndarray) -> float | np.ndarray:
+        """The pressure of the gas in k_B T, in terms of what it would hold if bodies in the layer did not
+        meet: beta P w e^{depth/kT} pi sigma^2 / 4, a packing fraction (0 without a well)."""
+        eta = density * body_volume(3, 2.0 * self.radius)
+        pressure = density * compressibility_factor(eta, 3)
+        return pressure * self._hold
+
+    @property
+    def _hold(self) -> float:
+        return self.width * np.exp(self.depth / self.temperature) * body_volume(2, 2.0 * self.radius)
+
+    def uncertainty(self, density: float) -> float:
+        """Relative, of the coverage: the layer and the gas before it feel each other, which puts the gas'
+        activity in the place of its pressure, wholly at most."""
+        eta = density * body_volume(3, 2.0 * self.radius)
+        both = np.array([compressibility_factor(eta, 3), np.exp(excess_chemical_potential(eta, 3))])
+        low, high = packing_fraction_at(density * both * self._hold, 2)
+        return float(0.5 * (high / low - 1.0))
+
+
+def adsorption(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Walls that hold bodies, point by point.
+
+    settings: `blocks` of each replica; `near`, the distance from the edge of the well, or from where bodies
+    stick, within which the velocities of leaving bodies are read; `bins` of their speeds.
+
+    Dimensions point, bin. Of every point: kind, temperature, depth, width, momentum, mass and outside, as in
+    `Holder`; with _error: held, the mean number of held bodies; ratio, of it to the others, and log_ratio;
+    length, what stands in the place of the thermal wavelength; coverage, the share of the wall's area that
+    they cover; gas_density far from both walls; flux (bin), the density of the normal speeds of bodies that
+    leave, in units of sqrt(kT/m), and slow_share, that of those below `slow_speed`, the sticky wall's limit
+    (1 for wells; NaN both for layers). Of layers: activity, beta P w e^(depth/kT) pi sigma^2/4, and filling,
+    the coverage over that of hard discs in equilibrium with it, whose uncertainty is layer_uncertainty.
+    """
+    rows = [_measured(point, settings) for point in points]
+    values = {}
+    for name in rows[0]:
+        axes = ("point", "bin") if name.removesuffix("_error") == "flux" else ("point",)
+        values[name] = axes, np.stack([row[name] for row in rows])
+    edges = np.linspace(0.0, _REACH, settings["bins"] + 1)
+    return xr.Dataset(
+        values,
+        coords={
+            "experiment": ("point", [point.experiment for point in points]),
+            "speed": ("bin", 0.5 * (edges[1:] + edges[:-1])),
+        },
+    )
+
+
+def _measured(point: grid.Point, settings: dict) -> dict:
+    """The numbers of one point."""
+    holder = Holder.of(point)
+    slow = holder.momentum / np.sqrt(holder.mass * holder.temperature) or 1.0
+    blocks = [
+        counts_of(holder, *part, settings, slow)
+        for path in point.replica_paths
+        for part in _parts(holder, point, path, settings["blocks"])
+    ]
+    held, free, far, slowly, flux = (np.array(series) for series in zip(*blocks, strict=True))
+    empty = holder.outside - 4.0 * holder.radius  # where `far` bodies are counted
+    step = _REACH / settings["bins"]
+
+    def ratio(inside: np.ndarray, others: np.ndarray) -> np.ndarray:
+        return inside / others
+
+    def coverage(inside: np.ndarray) -> np.ndarray:
+        return inside * body_volume(2, 2.0 * holder.radius) / holder.area
+
+    def density(counted: np.ndarray) -> np.ndarray:
+        return counted / (empty * holder.area)
+
+    layer = holder.kind == "layer"
+    made = {
+        "held": jackknife(lambda inside: inside, held),
+        "ratio": jackknife(ratio, held, free),
+        "log_ratio": jackknife(lambda *counts: np.log(ratio(*counts)), held, free),
+        "length": jackknife(
+            lambda *counts: length_in_langmuirs_formula(
+                ratio(*counts), holder.depth / holder.temperature, holder.outside
+            ),
+            held,
+            free,
+        ),
+        "coverage": jackknife(coverage, held),
+        "gas_density": jackknife(density, far),
+    }
+    # From layers hardly any leave.
+    made |= {
+        "flux": (np.full(settings["bins"], np.nan),) * 2
+        if layer
+        else jackknife(lambda share: share / (share.sum() * step), flux),
+        "slow_share": (np.nan, np.nan)
+        if layer
+        else jackknife(lambda some, share: some / share.sum(), slowly, flux),
+    }
+    made["activity"] = (
+        jackknife(lambda counted: holder.activity(density(counted)), far) if layer else (np.nan, np.nan)
+    )
+    made["filling"] = (
+        jackknife(
+            lambda inside, counted: (
+                coverage(inside) / packing_fraction_at(holder.activity(density(counted)), 2)
+            ),
+            held,
+            far,
+        )
+        if layer
+        else (np.nan, np.nan)
+    )
+    row = {name: value for name, (value, _) in made.items()}
+    row |= {f"{name}_error": error for name, (_, error) in made.items()}
+    for name in ("kind", "temperature", "depth", "width", "momentum", "mass", "outside"):
+        row[name] = getattr(holder, name)
+    row["layer_uncertainty"] = holder.uncertainty(row["gas_density"]) if layer else np.nan
+    return row | {"slow_speed": slow}
+
+
+def counts_of(holder: Holder, height: np.ndarray, velocity: np.ndarray, settings: dict, slow: float) -> tuple:
+    """Means over the frames of one stretch: held bodies, the others, those of the gas that are a diameter and
+    more from both walls (and from the well); and of those that leave near the wall, the flux below the speed
+    `slow`, and (bins,) by speed.
+
+    height (T, N): of centres above the lowest place; velocity (T, N) along x.
+    """
+    held = holder.held(height, velocity)
+    above = height - holder.width
+    far = (above > 2.0 * holder.radius) & (above < holder.outside - 2.0 * holder.radius)
+    leaving = ~held & (above < settings["near"]) & (velocity > 0.0)
+    speed = velocity[leaving] / np.sqrt(holder.temperature / holder.mass)
+    # a body is near for a time that goes as 1 / speed
+    flux = np.histogram(speed, settings["bins"], (0.0, _REACH), weights=speed)[0]
+    frames = len(height)
+    parts = held.sum(), (~held).sum(), far.sum(), speed[speed < slow].sum(), flux
+    return tuple(part / frames for part in parts)
+
+
+def _parts(
+    holder: Holder, point: grid.Point, path: str, blocks: int
+) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """(height, velocity) of each stretch of a run, without its equilibration."""
+    first = grid.schedule(point).equilibration_frames + 1
+    with open_trajectory(path) as trajectory:
+        height = trajectory["coordinates"][first:, :, 0].values.astype(float) - holder.radius
+        velocity = trajectory["velocities"][first:, :, 0].values.astype(float)
+    if len(height) < blocks:
+        raise ValueError(f"blocks: {blocks} (more than the {len(height)} frames of {path})")
+    stretches = (np.array_split(series, blocks) for series in (height, velocity))
+    return zip(*stretches, strict=True)

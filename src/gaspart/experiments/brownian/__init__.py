@@ -1,0 +1,1 @@
+"""A large body in a gas: brownian_paths, brownian_msd."""

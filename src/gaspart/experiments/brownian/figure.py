@@ -1,0 +1,83 @@
+"""A large body in a gas: its paths, its mean-squared displacement, its velocity autocorrelation."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from gaspart import theory
+from gaspart.rendering import style
+
+LONGEST = 3.2
+"""Friction times to which the velocity autocorrelation is shown: then noise takes over."""
+
+
+def brownian_paths(ds: xr.Dataset) -> Figure:
+    """Paths from above, a panel for each point; in the middle, the body in its size."""
+    from matplotlib.patches import Circle
+
+    figure, axes = style.new(rows=ds.sizes["point"], height=3.1 * ds.sizes["point"], share_x=False)
+    for index, axis in enumerate(np.atleast_1d(axes)):
+        row = ds.isel(point=index)
+        axis.add_patch(Circle((0.0, 0.0), float(row["radius"]), color=style.GREY, alpha=0.35, lw=0))
+        for path in range(ds.sizes["path"]):
+            way = row["way"].isel(path=path).values
+            colour = style.COLOURS[path % len(style.COLOURS)]
+            axis.plot(way[:, 0], way[:, 1], color=colour, lw=0.7)
+            ended = way[np.isfinite(way[:, 0])][-1]
+            axis.plot(*ended[:2], color=colour, marker=style.MARKERS[path % len(style.MARKERS)], zorder=4)
+        axis.plot(0.0, 0.0, color=style.DATA, marker="o", ms=2.5, zorder=5)
+        widest = 1.08 * np.nanmax(np.abs(row["way"].values[..., :2]))
+        axis.set_xlim(-widest, widest)
+        axis.set_ylim(-widest, widest)
+        axis.set_aspect("equal")
+        axis.set_xlabel("$x$ (length)")
+        axis.set_ylabel("$y$ (length)")
+        masses = float(row["mass"] / row["gas_mass"])
+        collisions = float(row["duration"] * row["friction"])
+        style.letter(axis, f"{'ab'[index]}  $M={masses:g}\\,m$, {collisions:.0f} friction times")
+    return figure
+
+
+def brownian_msd(ds: xr.Dataset) -> Figure:
+    """Mean-squared displacement and velocity autocorrelation on those of the Langevin equation."""
+    figure, axes = style.new(rows=4, height=6.4, height_ratios=(3, 1.2, 3, 1.2), share_x=False)
+    t = np.geomspace(0.05, 1.05 * float(ds["time"].max()), 300)
+    axes[0].loglog(t, theory.langevin_msd(t, 1.0 / 6.0, 1.0), color=style.DATA, label="Langevin", zorder=2)
+    axes[2].semilogy(t, np.exp(-t), color=style.DATA, label=r"$e^{-\gamma t}$", zorder=2)
+    for residual in (axes[1], axes[3]):
+        style.level(residual, 0.0)
+    for kind in range(ds.sizes["point"]):
+        row = ds.isel(point=kind)
+        source = str(row["experiment"].values) == "brownian_source"
+        label = f"$M={float(row['mass'] / row['gas_mass']):g}\\,m$" + (", equal speeds" if source else "")
+        time, msd, vacf = (row[name].values for name in ("time", "msd", "vacf"))
+        shown = np.unique(np.round(np.geomspace(1, np.isfinite(time).sum() - 1, 16)).astype(int))
+        curve = theory.langevin_msd(time[shown], 1.0 / 6.0, 1.0)
+        error = row["msd_error"].values[shown]
+        hollow = kind > 0
+        style.points(axes[0], time[shown], msd[shown], error, kind=kind, hollow=hollow, label=label)
+        style.points(axes[1], time[shown], msd[shown] / curve - 1.0, error / curve, kind=kind, hollow=hollow)
+        shown = np.flatnonzero(time < LONGEST)[::3]
+        error, curve = row["vacf_error"].values[shown], np.exp(-time[shown])
+        style.points(axes[2], time[shown], vacf[shown], error, kind=kind, hollow=hollow, label=label)
+        style.points(axes[3], time[shown], vacf[shown] - curve, error, kind=kind, hollow=hollow)
+    axes[0].set_ylabel(r"$\langle\Delta r^2\rangle\,M\gamma^2/6k_\mathrm{B}T$")
+    axes[2].set_ylabel(r"$\langle V(0)\!\cdot\!V(t)\rangle\,M/3k_\mathrm{B}T$")
+    axes[1].set_ylabel("ratio $-$ 1")
+    axes[3].set_ylabel("difference")
+    for top, bottom, place in ((axes[0], axes[1], "lower right"), (axes[2], axes[3], "lower left")):
+        top.tick_params(labelbottom=False)
+        bottom.set_ylim(-0.25, 0.25)
+        bottom.set_xlabel(r"time $\gamma t$")
+        top.legend(loc=place)
+    for axis in axes[:2]:
+        axis.set_xscale("log")
+        axis.set_xlim(0.07, t[-1])
+    for axis in axes[2:]:
+        axis.set_xlim(-0.05, LONGEST)
+    axes[2].set_ylim(0.02, 1.4)
+    style.letter(axes[0], "a")
+    style.letter(axes[2], "b", x=0.95)
+    return figure

@@ -1,0 +1,1 @@
+"""Mean-squared displacement: msd_spheres, msd_discs."""

@@ -1,0 +1,1 @@
+"""Speed, accuracy, stability: stability_extremes."""

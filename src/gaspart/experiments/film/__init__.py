@@ -1,0 +1,1 @@
+"""Thin films: thin_film."""

@@ -1,0 +1,84 @@
+"""A dense fluid between two hard walls."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from gaspart.rendering import style
+
+
+def thin_film(dataset: xr.Dataset) -> Figure:
+    """Density above a wall, the contact theorem at every width, and the pressure against the width."""
+    figure, (profile, contact, pressure) = style.new(
+        rows=3, height=6.2, height_ratios=(2.0, 1.0, 2.0), share_x=False
+    )
+    _profile(profile, dataset)
+    _contact(contact, dataset)
+    _solvation(pressure, dataset)
+    contact.sharex(pressure)
+    contact.tick_params(labelbottom=False)
+    for axis, text in zip((profile, contact, pressure), "abc", strict=True):
+        style.letter(axis, text)
+    figure.align_ylabels()
+    return figure
+
+
+def _profile(axis: Axes, dataset: xr.Dataset) -> None:
+    widest = dataset.isel(width=-1)
+    axis.plot(dataset["place"], dataset["functional"], color=style.REFERENCE, label="White Bear", zorder=4)
+    style.points(
+        axis, dataset["place"], dataset["density"], dataset["density_error"], color=style.DATA,
+        markersize=1.8, label=f"measured, $H={float(widest['width']):g}\\,\\sigma$",
+    )  # fmt: skip
+    style.points(
+        axis,
+        [0.0],
+        [widest["pressure"]],
+        [widest["pressure_error"]],
+        kind=1,
+        label="$P/k_\\mathrm{B}T$ on the wall",
+    )
+    style.level(axis, dataset.attrs["bulk_density"])
+    axis.set(xlim=(-0.3, min(4.0, float(dataset["place"].max()))), ylim=(0.0, None))
+    axis.set(xlabel="distance of centres from contact $z/\\sigma$", ylabel="density $\\rho\\sigma^3$")
+    axis.legend(loc="upper right")
+
+
+def _contact(axis: Axes, dataset: xr.Dataset) -> None:
+    style.band(axis, -1.0, 1.0)
+    style.level(axis, 0.0)
+    ratio = dataset["contact"] / dataset["pressure"]
+    error = ratio * np.hypot(
+        np.hypot(dataset["contact_error"], dataset["truncation"]) / dataset["contact"],
+        dataset["pressure_error"] / dataset["pressure"],
+    )
+    style.points(axis, _shown(dataset), 100.0 * (ratio - 1.0), 100.0 * error, color=style.DATA)
+    axis.set_ylabel("$\\rho(0)k_\\mathrm{B}T/P-1$  (%)")
+
+
+def _solvation(axis: Axes, dataset: xr.Dataset) -> None:
+    style.level(axis, 0.0)
+    curve = dataset["curve"] - dataset.attrs["functional_bulk_pressure"]
+    axis.plot(dataset["theory_width"], curve, color=style.REFERENCE, label="White Bear")
+    excess = dataset["at_bulk"] - dataset.attrs["bulk_pressure"]
+    style.points(axis, _shown(dataset), excess, dataset["at_bulk_error"], color=style.DATA, label="measured")
+    widest = dataset["width"].values[-1]
+    axis.annotate(
+        f"{widest:g}",
+        (_shown(dataset)[-1], excess.values[-1]),
+        (0, 6),
+        textcoords="offset points",
+        ha="center",
+    )
+    axis.set(xlabel="width of the slit $H/\\sigma$", ylabel="$(P-P_\\mathrm{bulk})\\sigma^3/k_\\mathrm{B}T$")
+    axis.legend(loc="upper right")
+
+
+def _shown(dataset: xr.Dataset) -> np.ndarray:
+    """The widest slit is far off: it is drawn at the end of the axis, and labelled with its width."""
+    width = dataset["width"].values.copy()
+    width[-1] = min(width[-1], float(dataset["theory_width"].max()) + 0.3)
+    return width

@@ -1,0 +1,1 @@
+"""Freezing and melting: freezing_discs, freezing_spheres."""

@@ -1,0 +1,1 @@
+"""Rough and inelastic bodies: equipartition, cooling."""

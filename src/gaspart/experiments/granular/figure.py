@@ -1,0 +1,203 @@
+"""Rough and inelastic bodies: the way to equal temperatures, steady ratios, Haff's law and clusters."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from gaspart import theory
+from gaspart.rendering import style
+
+NAMES = {2: "discs", 3: "spheres"}
+
+
+def equipartition(ds: xr.Dataset) -> Figure:
+    """Three panels: both temperatures against collisions, their difference less theory's, steady ratios."""
+    figure, (upper, middle, lower) = style.new(
+        rows=3, height=6.6, height_ratios=(2.0, 1.0, 1.8), share_x=False
+    )
+    _temperatures(upper, ds)
+    _differences(middle, ds)
+    middle.sharex(upper)
+    upper.tick_params(labelbottom=False)
+    _ratios(lower, ds)
+    for axis, text in zip((upper, middle, lower), "abc", strict=True):
+        style.letter(axis, text)
+    figure.align_ylabels()
+    return figure
+
+
+def _temperatures(axis: Axes, ds: xr.Dataset) -> None:
+    s = np.linspace(0.0, 1.02 * float(ds["collisions"].max()), 200)
+    for kind in range(ds.sizes["start"]):
+        row = ds.isel(start=kind)
+        q = float(row["inertia"])
+        for curve in theory.rough_temperatures(s, q, 1.0):
+            axis.plot(s, curve, color=style.COLOURS[kind], zorder=1)
+        both = dict(zip(("translation", "rotation"), (False, True), strict=True))
+        for name, hollow in both.items():
+            label = None if hollow else f"$q={q:g}$"
+            style.points(
+                axis, row["collisions"], row[name], row[f"{name}_error"], kind, hollow=hollow, label=label
+            )
+    axis.set_xlim(0.0, s[-1])
+    axis.set_ylim(0.0, 1.05)
+    axis.set_ylabel(r"$T_\mathrm{tr}$ (filled), $T_\mathrm{rot}$ (hollow)")
+    axis.legend(loc="lower right")
+
+
+def _differences(axis: Axes, ds: xr.Dataset) -> None:
+    """100 (T_tr - T_rot - exp(-3 q s / (1 + q)^2)): in per cent of the initial temperature."""
+    style.level(axis, 0.0)
+    for kind in range(ds.sizes["start"]):
+        row = ds.isel(start=kind)
+        q = float(row["inertia"])
+        expected = np.exp(-3.0 * q / (1.0 + q) ** 2 * row["collisions"])
+        # The energy is conserved, 2 T_tr + T_rot: both errors are of one fluctuation.
+        error = 1.5 * row["rotation_error"]
+        style.points(
+            axis,
+            row["collisions"],
+            100.0 * (row["translation"] - row["rotation"] - expected),
+            100.0 * error,
+            kind=kind,
+        )
+    axis.set_xlabel(r"collisions of a body $s$")
+    axis.set_ylabel("less theory (%)")
+
+
+def _ratios(axis: Axes, ds: xr.Dataset) -> None:
+    """T_rot / T_tr against the tangential restitution: theory, cooling discs, elastic rough ones."""
+    curve = np.linspace(-0.99, 1.0, 200)
+    for kind, q in enumerate(sorted(set(ds["equilibrium_inertia"].values))):
+        theoretical = [theory.rough_ratio(q, tangential) for tangential in curve]
+        axis.plot(curve, theoretical, color=style.COLOURS[kind], label=f"$q={q:g}$", zorder=1)
+        cooled = ds.isel(cooling=np.isclose(ds["cooling_inertia"].values, q))
+        style.points(axis, cooled["tangential"], cooled["steady_ratio"], cooled["steady_ratio_error"], kind)
+        still = ds.isel(equilibrium=np.isclose(ds["equilibrium_inertia"].values, q))
+        style.points(
+            axis,
+            np.ones(still.sizes["equilibrium"]),
+            still["equilibrium_ratio"],
+            still["equilibrium_ratio_error"],
+            kind,
+            hollow=True,
+            clip_on=False,
+        )
+    axis.set_xlim(-1.0, 1.0)
+    axis.set_ylim(0.0, 1.08)
+    axis.set_xlabel(r"tangential restitution $\epsilon_\mathrm{t}$")
+    axis.set_ylabel(r"steady $T_\mathrm{rot}/T_\mathrm{tr}$")
+    axis.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
+
+
+def cooling(ds: xr.Dataset) -> Figure:
+    """Four panels: Haff's law, its rate, how a large gas leaves it, and what that looks like."""
+    figure, axes = style.new(rows=2, columns=2, height=5.6, share_x=False)
+    _haff(axes[0, 0], ds)
+    _rates(axes[0, 1], ds)
+    _leaving(axes[1, 0], ds)
+    _picture(axes[1, 1], ds)
+    for axis, text in zip(axes.flat, "abcd", strict=True):
+        style.letter(axis, text)
+    return figure
+
+
+def _haff(axis: Axes, ds: xr.Dataset) -> None:
+    """T against 1 + t / t_H; discs and spheres are a factor 3 apart so that they do not hide each other."""
+    line = np.array([1.0, 1.1 * (1.0 + float(ds["time"].max()))])
+    for dimension, factor in ((2, 1.0), (3, 1.0 / 3.0)):
+        gases = ds.isel(gas=(ds["dimension"] == dimension).values).sortby("restitution", ascending=False)
+        axis.plot(line, factor * line**-2.0, color=style.GREY, zorder=1)
+        for kind in range(gases.sizes["gas"]):
+            row = gases.isel(gas=kind)
+            name = NAMES[dimension] + (r" $\div\,3$" if dimension == 3 else "")
+            style.points(
+                axis,
+                1.0 + row["time"],
+                factor * row["temperature"],
+                factor * row["temperature_error"],
+                kind,
+                hollow=dimension == 3,
+                label=rf"{name}, $\epsilon={float(row['restitution']):g}$",
+            )
+    axis.set_xscale("log")
+    axis.set_yscale("log")
+    ticks = (1, 2, 3, 5, 7)
+    axis.set_xticks(ticks, [str(tick) for tick in ticks])
+    axis.minorticks_off()
+    axis.set_xlim(0.85)
+    axis.set_xlabel(r"$1+t/t_\mathrm{H}$")
+    axis.set_ylabel(r"$T/T_0$")
+    axis.legend(loc="lower left", fontsize=6.5)
+
+
+def _rates(axis: Axes, ds: xr.Dataset) -> None:
+    """-d ln T / ds over (1 - e^2)/d: 1 for Maxwell's distribution, 1 + a2/4 for the gas's own."""
+    style.level(axis, 1.0)
+    curve = np.linspace(0.55, 1.0, 100)
+    for kind, dimension in enumerate(sorted(set(ds["dimension"].values))):
+        gases = ds.isel(gas=(ds["dimension"] == dimension).values)
+        e = gases["restitution"]
+        unit = (1.0 - e**2) / dimension
+        correction = 1.0 + 0.25 * theory.fourth_cumulant(curve, int(dimension))
+        axis.plot(curve, correction, color=style.COLOURS[kind], zorder=1)
+        style.points(
+            axis, e, gases["rate"] / unit, gases["rate_error"] / unit, kind, label=NAMES[int(dimension)]
+        )
+    axis.set_xlabel(r"restitution $\epsilon$")
+    axis.set_ylabel(r"$-(\mathrm{d}\ln T/\mathrm{d}s)\; d/(1-\epsilon^2)$")
+    axis.legend(loc="upper right")
+
+
+def _leaving(axis: Axes, ds: xr.Dataset) -> None:
+    """T over Haff's and the variance of the number in a cell over the elastic gas's, against (1 - e^2) s."""
+    style.level(axis, 1.0)
+    restitution = ds["cluster_restitution"].values
+    usual = float(ds.isel(clusters=restitution == 1.0)["variance"].isel(step=slice(1, None)).mean())
+    inelastic = [k for k in np.argsort(-restitution) if restitution[k] < 1.0]
+    for kind, k in enumerate(inelastic):
+        row, e = ds.isel(clusters=k), restitution[k]
+        lost = (1.0 - e**2) * row["cluster_collisions"]
+        axis.plot(
+            lost,
+            row["cluster_excess"],
+            color=style.COLOURS[kind],
+            label=rf"$T/T_\mathrm{{Haff}}$, $\epsilon={e:g}$",
+        )
+        style.points(
+            axis,
+            lost[::4],
+            (row["variance"] / usual)[::4],
+            (row["variance_error"] / usual)[::4],
+            kind,
+            label=rf"crowding, $\epsilon={e:g}$",
+        )
+    axis.axvline(10.0, color=style.GREY, linestyle=":", linewidth=0.8, zorder=1)
+    axis.set_yscale("log")
+    axis.set_ylim(0.6, 300.0)
+    axis.set_xlim(0.0)
+    axis.set_xlabel(r"$(1-\epsilon^2)\, s$")
+    axis.set_ylabel("over the homogeneous gas")
+    axis.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
+
+
+def _picture(axis: Axes, ds: xr.Dataset) -> None:
+    """The discs of one run in the end, to scale."""
+    from matplotlib.collections import EllipseCollection
+
+    side, diameter = float(ds.attrs["side"]), 2.0 * float(ds.attrs["radius"])
+    centres = np.stack([ds["x"].values, ds["y"].values], axis=1)
+    size = np.full(len(centres), diameter)
+    discs = EllipseCollection(
+        size, size, np.zeros(len(centres)), units="x", offsets=centres, transOffset=axis.transData,
+        facecolor=style.REFERENCE, linewidth=0,
+    )  # fmt: skip
+    axis.add_collection(discs)
+    axis.set_xlim(0.0, side)
+    axis.set_ylim(0.0, side)
+    axis.set_aspect("equal")
+    axis.set_xlabel(r"$x/\sigma$")
+    axis.set_ylabel(r"$y/\sigma$")

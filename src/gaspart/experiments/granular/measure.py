@@ -1,0 +1,263 @@
+"""Rough and inelastic gases: how rotation and translation share energy, Haff's cooling, clusters.
+
+Collisions per body, s = 2 N_coll / N, are the clock. Temperatures are per degree of freedom, T_tr = m <v^2> /
+d about the centre of mass (N - 1 bodies count), T_rot = I <w^2>, in units of T_tr at the start of the run.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from gaspart import theory
+from gaspart.analysis.statistics import block_average, bootstrap, fit_polynomial, mean_of
+from gaspart.planning import grid
+from gaspart.scene.matter import Restitution
+from gaspart.scene.scene import Scene
+from gaspart.trajectory.run import open_trajectory
+
+SETTLED = 3.0
+"""Collisions per body after which an inelastic gas has left Maxwell's distribution for its own."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """One replica over T frames: time, collisions per body, T_tr and T_rot, (T,) each; first T_tr."""
+
+    time: np.ndarray
+    collisions: np.ndarray
+    translation: np.ndarray
+    rotation: np.ndarray
+    start: float
+
+
+def read_run(point: grid.Point, path: str) -> Run:
+    """One trajectory, in which all bodies are alike, without its equilibration."""
+    first = grid.schedule(point).equilibration_frames
+    with open_trajectory(path) as trajectory:
+        velocities = trajectory["velocities"].values.astype(float)
+        energy = trajectory["kinetic_energy"].values
+        counted = trajectory["collisions"].values
+        time = trajectory["time"].values.astype(float)
+    count, dimension = velocities.shape[1:]
+    mass = grid.scene(point).species[0].mass
+    total = mass * (velocities**2).sum(axis=(1, 2))
+    drift = velocities.mean(axis=1)
+    translation = (total - mass * count * (drift**2).sum(axis=1)) / (dimension * (count - 1))
+    spins = {2: 1, 3: 3}[dimension]
+    rotation = (2.0 * energy - total) / (spins * count)
+    return Run(
+        time=time[first:],
+        collisions=2.0 * counted[first:] / count,
+        translation=translation[first:] / translation[0],
+        rotation=rotation[first:] / translation[0],
+        start=float(translation[0]),
+    )
+
+
+def read_runs(point: grid.Point) -> list[Run]:
+    """All replicas of a point."""
+    return [read_run(point, path) for path in point.replica_paths]
+
+
+def law(point: grid.Point) -> Restitution:
+    """That of the contacts of a point's scene."""
+    return grid.scene(point).restitution or Restitution()
+
+
+def equipartition(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """How the energies of rough discs become equal, that they do, and what they do when contacts dissipate.
+
+    Points whose tangential restitution is below 1 are cooling; the others are in equilibrium if they have an
+    equilibration, and start without spins if not. settings: `steady_from`, see `_cooling`.
+
+    Returns, over `start` and `frame`: collisions, translation, rotation, with errors; over `start`: inertia q
+    = I / (m R^2), rate and its error, of T_tr - T_rot's decay per collision of a body at the start. Over
+    `equilibrium`: equilibrium_inertia, equilibrium_ratio T_rot / T_tr and its error. Over `cooling` and
+    `step`: cooling_collisions, cooling_ratio; over `cooling`: tangential, cooling_inertia, steady_ratio and
+    its error.
+    """
+    rough = [point for point in points if law(point).tangential == 1.0]
+    still = [point for point in rough if grid.schedule(point).equilibration_frames]
+    cooled = [_cooling(point, settings["steady_from"]) for point in points if point not in rough]
+    return xr.merge([
+        _table("start", [_start(point) for point in rough if point not in still], "frame"),
+        _table("equilibrium", [_equilibrium(point) for point in still]),
+        _table("cooling", cooled, "step"),
+    ])  # fmt: skip
+
+
+def _table(name: str, rows: list[dict], inner: str = "") -> xr.Dataset:
+    """One variable of every key over `name`, and over `inner` too if its values are arrays."""
+    columns = {key: np.array([row[key] for row in rows]) for key in rows[0]}
+    return xr.Dataset({
+        key: ((name, inner)[: values.ndim], values, {"units": "1"}) for key, values in columns.items()
+    })  # fmt: skip
+
+
+def inertia(point: grid.Point) -> float:
+    """q = I / (m R^2) of a point's only species; by default that of a uniform disc or sphere."""
+    kind = grid.scene(point).species[0]
+    if kind.moment_of_inertia is None:
+        return {2: 0.5, 3: 0.4}[grid.scene(point).dimension]
+    return kind.moment_of_inertia / (kind.mass * kind.radius**2)
+
+
+def _spread(values: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Mean over replicas and its standard error, elementwise."""
+    stacked = np.stack(values)
+    return stacked.mean(axis=0), stacked.std(axis=0, ddof=1) / np.sqrt(len(stacked))
+
+
+def _start(point: grid.Point) -> dict:
+    runs = read_runs(point)
+    samples = np.stack([[run.collisions, run.translation, run.rotation] for run in runs])
+    rate = bootstrap(lambda chosen: _initial_decay(*chosen.mean(axis=0)), samples, repeats=200)
+    translation, translation_error = _spread([run.translation for run in runs])
+    rotation, rotation_error = _spread([run.rotation for run in runs])
+    return {
+        "collisions": samples[:, 0].mean(axis=0),
+        "translation": translation,
+        "translation_error": translation_error,
+        "rotation": rotation,
+        "rotation_error": rotation_error,
+        "inertia": inertia(point),
+        "rate": rate.value,
+        "rate_error": rate.error,
+    }
+
+
+def _initial_decay(collisions: np.ndarray, translation: np.ndarray, rotation: np.ndarray) -> float:
+    """- d ln (T_tr - T_rot) / ds at s = 0, of a parabola in s from there down to a fifth of the difference,
+    whose noise is much the same at all s."""
+    difference = translation - rotation
+    used = (difference > 0.2) & (collisions > 0.0)
+    logarithm = -np.log(difference[used])
+    return float(fit_polynomial(collisions[used], logarithm, 1.0 / difference[used], powers=(1, 2)).values[0])
+
+
+def _equilibrium(point: grid.Point) -> dict:
+    """T_rot / T_tr of the mean energies, of a run of conserved energy. Blocks: frames may be correlated."""
+    runs = read_runs(point)
+    rotation = [block_average(run.rotation) for run in runs]
+    translation = float(np.mean([run.translation.mean() for run in runs]))
+    mean = float(np.mean([one.mean for one in rotation]))
+    error = float(np.sqrt(sum(one.error**2 for one in rotation)) / len(rotation))
+    ratio = mean / translation
+    # The energy is conserved, 2 (N-1) T_tr + N T_rot: what one has more the other has less.
+    return {
+        "equilibrium_inertia": inertia(point),
+        "equilibrium_ratio": ratio,
+        "equilibrium_ratio_error": error / mean * ratio * (1.0 + 0.5 * ratio),
+    }
+
+
+def _cooling(point: grid.Point, steady_from: float) -> dict:
+    """The ratio of the mean temperatures of all replicas, frame by frame, and its mean over the frames later
+    than `steady_from` collisions per body."""
+    runs = read_runs(point)
+    collisions = np.mean([run.collisions for run in runs], axis=0)
+    late = collisions > steady_from
+    # Later frames are colder: each counts by its own temperature.
+    weights = 1.0 / np.mean([run.translation for run in runs], axis=0)[late]
+    samples = np.stack([[run.rotation[late] * weights, run.translation[late] * weights] for run in runs])
+    steady = bootstrap(lambda chosen: np.divide(*chosen.mean(axis=(0, 2))), samples, repeats=200)
+    rotation = np.mean([run.rotation for run in runs], axis=0)
+    return {
+        "tangential": law(point).tangential,
+        "cooling_inertia": inertia(point),
+        "cooling_collisions": collisions,
+        "cooling_ratio": rotation / np.mean([run.translation for run in runs], axis=0),
+        "steady_ratio": steady.value,
+        "steady_ratio_error": steady.error,
+    }
+
+
+def cooling(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Haff's law in dilute inelastic gases, and how a dense and large one leaves it.
+
+    settings: `clustering`, the experiments of the latter; `cells_per_side`, into which its container is cut.
+
+    Returns, over `gas` and `frame`: collisions, time (over Haff's t_H), temperature and its error; over
+    `gas`: dimension, restitution, rate and its error (-d ln T / ds, per replica between `SETTLED` and the
+    end), exponent and its error (of T against 1 + t / t_H). Over `clusters` and `step`: cluster_collisions;
+    cluster_excess, T over exp(-rate s) of theory, and its error; variance, of the number of bodies in a cell
+    over its mean, and its error; over `clusters`: cluster_restitution. Over `body`: x, y, at the end of one
+    run of the least restitution; attrs side, radius.
+    """
+    apart = [point for point in points if point.experiment in settings["clustering"]]
+    gases = _table("gas", [_gas(point) for point in points if point not in apart], "frame")
+    cells = settings["cells_per_side"]
+    clusters = _table("clusters", [_clusters(point, cells) for point in apart], "step")
+    shown = min(apart, key=lambda point: law(point).normal)
+    return xr.merge([gases, clusters, _picture(shown)], combine_attrs="drop_conflicts")
+
+
+def _gas(point: grid.Point) -> dict:
+    scene, runs = grid.scene(point), read_runs(point)
+    restitution, dimension, kind = law(point).normal, scene.dimension, scene.species[0]
+    rates, exponents, times = [], [], []
+    for run in runs:
+        frequency = theory.collision_rate(
+            scene.packing_fraction, dimension, 2.0 * kind.radius, run.start, kind.mass
+        )
+        times.append(run.time / theory.haff_time(restitution, dimension, float(frequency)))
+        late = np.flatnonzero(run.collisions >= SETTLED)
+        first, logarithm = late[0], np.log(run.translation)
+        rates.append((logarithm[first] - logarithm[-1]) / (run.collisions[-1] - run.collisions[first]))
+        exponents.append(np.polyfit(np.log1p(times[-1][late]), logarithm[late], 1)[0])
+    rate, exponent = mean_of(rates), mean_of(exponents)
+    temperature, error = _spread([run.translation for run in runs])
+    return {
+        "dimension": dimension,
+        "restitution": restitution,
+        "collisions": np.mean([run.collisions for run in runs], axis=0),
+        "time": np.mean(times, axis=0),
+        "temperature": temperature,
+        "temperature_error": error,
+        "rate": rate.value,
+        "rate_error": rate.error,
+        "exponent": exponent.value,
+        "exponent_error": exponent.error,
+    }
+
+
+def _clusters(point: grid.Point, cells: int) -> dict:
+    scene, runs = grid.scene(point), read_runs(point)
+    collisions = np.mean([run.collisions for run in runs], axis=0)
+    restitution = law(point).normal
+    rate = theory.cooling_rate(restitution, scene.dimension)
+    # Of logarithms: after so many collisions replicas differ by factors.
+    excess, relative = _spread([np.log(run.translation) + rate * run.collisions for run in runs])
+    variance, error = _spread([_crowding(path, scene, cells) for path in point.replica_paths])
+    return {
+        "cluster_restitution": restitution,
+        "cluster_collisions": collisions,
+        "cluster_excess": np.exp(excess),
+        "cluster_excess_error": np.exp(excess) * relative,
+        "variance": variance,
+        "variance_error": error,
+    }
+
+
+def _crowding(path: str, scene: Scene, cells: int) -> np.ndarray:
+    """(T,) variance of the number of bodies in a cell, over its mean: 1 for independent bodies."""
+    with open_trajectory(path) as trajectory:
+        positions = trajectory["coordinates"].values.astype(float)
+    # Single precision may put a body that is about to leave on the boundary itself.
+    place = np.minimum((positions / scene.container.lengths * cells).astype(int), cells - 1)
+    cell = place @ cells ** np.arange(place.shape[2])
+    counts = np.stack([np.bincount(frame, minlength=cells ** place.shape[2]) for frame in cell])
+    return counts.var(axis=1) / counts.mean(axis=1)
+
+
+def _picture(point: grid.Point) -> xr.Dataset:
+    with open_trajectory(point.replica_path(0)) as trajectory:
+        positions = trajectory["coordinates"][-1].values
+    units = {"units": "scene length"}
+    return xr.Dataset(
+        {"x": ("body", positions[:, 0], units), "y": ("body", positions[:, 1], units)},
+        attrs={"side": grid.scene(point).container.lengths[0], "radius": grid.scene(point).largest_radius},
+    )

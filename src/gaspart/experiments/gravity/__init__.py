@@ -1,0 +1,1 @@
+"""Under gravity: barometric, separation, heat_capacity."""

@@ -1,0 +1,290 @@
+"""Gases under gravity: profiles of one and of two kinds of discs, and the heat capacity.
+
+Every run is cut into stretches of time, `blocks` of a replica; the stretches of all replicas are taken as
+independent, and errors are the jackknife's over them. The temperature is always that of the kinetic energy.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from gaspart.analysis.statistics import jackknife
+from gaspart.experiments.shared.columns import Field, field, profile, stretches, temperature
+from gaspart.planning import grid
+from gaspart.state.initial import initial_state
+from gaspart.theory.geometry import body_volume
+from gaspart.theory.gravity import (
+    hydrostatic_profiles,
+    ideal_energy_moments,
+    ideal_mean_height,
+    lebowitz_percus_verlet,
+)
+from gaspart.theory.potential import excess_chemical_potential
+from gaspart.theory.state import compressibility_factor
+from gaspart.trajectory.run import open_trajectory
+
+
+def barometric(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Density, temperature and pressure against height of one kind of discs; see `profiles`."""
+    return profiles(points, settings)
+
+
+def separation(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """The same of heavy and light discs of one size, and the slope of their ratio; see `profiles`."""
+    return profiles(points, settings)
+
+
+def profiles(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Columns of discs of one size under gravity, point by point.
+
+    settings: `bins` of height; `blocks`, the stretches of each replica; `clear`, the diameters next to floor
+    and ceiling that are left out of every comparison (layers there are real, and not hydrostatics); `ranges`,
+    pairs of packing fractions between which the equation of state is averaged.
+
+    Dimensions point, species, bin, range. `pressure_ratio` is the pressure that carries the weight of what is
+    above over rho T Z(eta) of the reference; `slope_ratio` that of ln eta_i + mu_excess against height over
+    -m_i g / T; `exchange_ratio` that of ln (eta_1 / eta_0) over -(m_1 - m_0) g / T, which for bodies of one
+    size is exact at any density: given their places, which of them is heavy has no other energy.
+    """
+    rows = [_column(point, settings) for point in points]
+    axes = {
+        "density": ("species", "bin"),
+        "hydrostatic": ("species", "bin"),
+        "temperature_ratio": ("bin",),
+        "packing_fraction": ("bin",),
+        "compressibility": ("bin",),
+        "pressure_ratio": ("bin",),
+        "range_ratio": ("range",),
+        "height": ("bin",),
+        "used": ("bin",),
+        "mass": ("species",),
+        "slope_ratio": ("species",),
+        "mean_height_ratio": ("species",),
+        "species_temperature_ratio": ("species",),
+        "log_ratio": ("bin",),
+        "log_ratio_expected": ("bin",),
+    }
+    values = {}
+    for name in rows[0]:
+        own = axes.get(name.removesuffix("_error"), ())
+        values[name] = (("point", *own), np.stack([row[name] for row in rows]))
+    low, high = np.array(settings["ranges"], dtype=float).T
+    return xr.Dataset(
+        values,
+        coords={
+            "experiment": ("point", [point.experiment for point in points]),
+            "range_low": ("range", low),
+            "range_high": ("range", high),
+        },
+        attrs={"clear": settings["clear"]},
+    )
+
+
+@dataclass(frozen=True)
+class Bins:
+    """The bins of height of one column, and what follows from averages in them.
+
+    place: the column; masses (S,) of its species; height (B,) of the middles, width of each; used (B,), which
+    are clear of floor and ceiling. Arguments of the methods are averages over time: density (S, B); energy
+    (B,), density times temperature; pressure (B,); temperature, of the whole column.
+    """
+
+    place: Field
+    masses: np.ndarray
+    height: np.ndarray
+    width: float
+    used: np.ndarray
+
+    @classmethod
+    def of(cls, place: Field, number: int, clear: float) -> Bins:
+        """`number` bins, of which those within `clear` diameters of floor and ceiling are not used."""
+        width = place.height / number
+        height = (np.arange(number) + 0.5) * width
+        margin = clear * place.diameter + 0.5 * width
+        masses = [place.masses[place.species == n][0] for n in range(int(place.species.max()) + 1)]
+        used = (height > margin) & (height < place.height - margin)
+        return cls(place, np.array(masses), height, width, used)
+
+    def packing_fraction(self, density: np.ndarray) -> np.ndarray:
+        """(B,) of all species."""
+        return density.sum(axis=0) * body_volume(2, self.place.diameter)
+
+    def pressure_ratio(self, density: np.ndarray, pressure: np.ndarray, energy: np.ndarray) -> np.ndarray:
+        """(B,) pressure over that of the reference at this density and temperature."""
+        return pressure / (energy * compressibility_factor(self.packing_fraction(density), 2))
+
+    def slope_ratio(self, density: np.ndarray, temperature: float) -> np.ndarray:
+        """(S,) slopes of ln eta_i + mu_excess(eta) over -m_i g / T."""
+        volume = body_volume(2, self.place.diameter)
+        excess = excess_chemical_potential(self.packing_fraction(density), 2)
+        with np.errstate(divide="ignore"):
+            slopes = [self._slope(np.log(row * volume) + excess, row) for row in density]
+        return -np.array(slopes) * temperature / (self.masses * self.place.strength)
+
+    def log_ratio(self, density: np.ndarray) -> np.ndarray:
+        """(B,) ln of the last over the first species' density."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.log(density[-1] / density[0])
+
+    def exchange_ratio(self, density: np.ndarray, temperature: float) -> float:
+        """Slope of `log_ratio` over -(M - m) g / T; NaN for one species."""
+        if self.masses.size < 2:
+            return np.nan
+        slope = self._slope(self.log_ratio(density), density[0] * density[-1] / density.sum(axis=0))
+        return -slope * temperature / ((self.masses[-1] - self.masses[0]) * self.place.strength)
+
+    def temperature_gradient(self, energy: np.ndarray, density: np.ndarray) -> float:
+        """dT/dz over the mean weight of a body: d ln T / dz in scale heights."""
+        total = density.sum(axis=0)
+        return self._slope(energy / total, total) / (self.place.weight / len(self.place.masses))
+
+    def mean_height_ratio(self, height: np.ndarray, temperature: float) -> np.ndarray:
+        """(S,) mean heights over those of ideal gases."""
+        return height / ideal_mean_height(self.place.height, self.masses * self.place.strength / temperature)
+
+    def exchange_line(self, value: np.ndarray, error: np.ndarray, temperature: float) -> np.ndarray:
+        """(B,) what `log_ratio` is if its slope is exact, through its weighted mean over the used bins."""
+        line = -(self.masses[-1] - self.masses[0]) * self.place.strength / temperature * self.height
+        known = self.used & np.isfinite(error) & (error > 0.0)
+        if self.masses.size < 2 or not known.any():
+            return line
+        return line + np.average((value - line)[known], weights=1.0 / error[known] ** 2)
+
+    def hydrostatics(self, density: np.ndarray, temperature: float) -> np.ndarray:
+        """(S, B) hydrostatic densities with as many bodies of each kind as there are in the used bins."""
+        first, last = np.flatnonzero(self.used)[[0, -1]]
+        z = np.linspace(first, last + 1, 8 * (last - first + 1) + 1) * self.width
+        numbers = density[:, self.used].sum(axis=1) * self.width
+        weights = self.masses * self.place.strength / temperature
+        curves = hydrostatic_profiles(z, numbers, weights, 2, self.place.diameter)
+        shown = np.full(density.shape, np.nan)
+        shown[:, self.used] = [np.interp(self.height[self.used], z, curve) for curve in curves]
+        return shown
+
+    def _slope(self, y: np.ndarray, weight: np.ndarray) -> float:
+        """Of the line through the used bins where something was; variances are as 1 / weight."""
+        seen = self.used & (weight > 0.0)
+        return float(np.polyfit(self.height[seen], y[seen], 1, w=np.sqrt(weight[seen]))[0])
+
+
+def _column(point: grid.Point, settings: dict) -> dict:
+    """The numbers of one point."""
+    place, found = field(point), stretches(point, settings["blocks"])
+    bins = Bins.of(place, settings["bins"], settings["clear"])
+    parts = [profile(place, stretch, settings["bins"]) for stretch in found]
+    density = np.array([part.density for part in parts])
+    pressure = np.array([part.pressure for part in parts])
+    # Where a stretch found nothing its temperature is not known, and weighs nothing.
+    energy = np.array([np.nan_to_num(part.temperature) * part.density.sum(axis=0) for part in parts])
+    warm = np.array([temperature(place, stretch) for stretch in found])
+    own = [place.species == n for n in range(bins.masses.size)]
+    heights = np.array([[stretch.heights[:, kind].mean() for kind in own] for stretch in found])
+    kinetic = np.array([[stretch.energies[:, kind].mean() for kind in own] for stretch in found])
+    eta = bins.packing_fraction(density.mean(axis=0))
+    ranges = [bins.used & (eta >= low) & (eta < high) for low, high in settings["ranges"]]
+
+    def range_ratio(*means: np.ndarray) -> np.ndarray:
+        ratio = bins.pressure_ratio(*means)
+        return np.array([ratio[mask].mean() if mask.any() else np.nan for mask in ranges])
+
+    with np.errstate(invalid="ignore", divide="ignore"):  # bins where nothing was
+        made = {
+            "density": jackknife(lambda rho: rho, density),
+            "packing_fraction": jackknife(bins.packing_fraction, density),
+            "temperature": jackknife(lambda t: t, warm),
+            "temperature_ratio": jackknife(lambda e, rho, t: e / rho.sum(axis=0) / t, energy, density, warm),
+            "temperature_gradient": jackknife(bins.temperature_gradient, energy, density),
+            "compressibility": jackknife(lambda e, p: p / e, energy, pressure),
+            "pressure_ratio": jackknife(bins.pressure_ratio, density, pressure, energy),
+            "range_ratio": jackknife(range_ratio, density, pressure, energy),
+            "slope_ratio": jackknife(bins.slope_ratio, density, warm),
+            "exchange_ratio": jackknife(bins.exchange_ratio, density, warm),
+            "log_ratio": jackknife(bins.log_ratio, density),
+            "mean_height_ratio": jackknife(bins.mean_height_ratio, heights, warm),
+            "species_temperature_ratio": jackknife(lambda k: k / k[0], kinetic),
+        }
+    row = {name: value for name, (value, _) in made.items()}
+    row |= {f"{name}_error": error for name, (_, error) in made.items()}
+    return row | {
+        "height": bins.height,
+        "used": bins.used,
+        "mass": bins.masses,
+        "strength": place.strength,
+        "top": place.height,
+        "count": len(place.masses),
+        "mean_density": len(place.masses) / (place.width * place.height),
+        "hydrostatic": bins.hydrostatics(row["density"], row["temperature"]),
+        "log_ratio_expected": bins.exchange_line(*made["log_ratio"], row["temperature"]),
+        "imbalance": max(abs(s.floor - s.ceiling - place.weight - s.gain) / place.weight for s in found),
+    }
+
+
+def heat_capacity(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Heat capacity of a dilute gas in a box of finite height, in two ways, against x = m g H / (k_B T).
+
+    Points come in pairs of one scene at two energies. From them, C = dE/dT; and from the fluctuations of the
+    kinetic energy in each run, at constant energy, `lebowitz_percus_verlet`. What an ideal gas of as many
+    bodies and the same energy gives for both is exact: `..._expected`. settings: `blocks` of each replica.
+
+    Dimensions pair, run (of a pair). Raises ValueError for points that are not such pairs.
+    """
+    if len(points) % 2:
+        raise ValueError(f"points: {len(points)} (must be pairs)")
+    runs = [_energies(point, settings["blocks"]) for point in points]
+    names = list(runs[0])
+    table = {name: np.array([run[name] for run in runs]).reshape(-1, 2) for name in names}
+    if np.ptp(table["strength"], axis=1).any() or np.ptp(table["count"]).any():
+        raise ValueError("points: the two of a pair must differ in their energy only")
+    count = int(table["count"][0, 0])
+    rise = np.diff(table["energy"], axis=1)[:, 0] / count
+    step = np.diff(table["temperature"], axis=1)[:, 0]
+    pairs = {
+        "slope": rise / step,
+        "slope_error": np.abs(rise) / step**2 * np.hypot(*table["temperature_error"].T),
+        "slope_expected": rise / np.diff(table["temperature_expected"], axis=1)[:, 0],
+        "x": table["run_x"].mean(axis=1),
+    }
+    values = {name: (("pair", "run"), table[name]) for name in names if name != "count"}
+    return xr.Dataset(
+        values | {name: ("pair", value) for name, value in pairs.items()}, attrs={"count": count}
+    )
+
+
+def _energies(point: grid.Point, blocks: int) -> dict:
+    """Temperature, fluctuations and what they should be, of one point of a single replica."""
+    place, scene = field(point), grid.scene(point)
+    if point.replicas != 1 or place.across:
+        raise ValueError(f"{point.path}: must be one run between walls, whose energy is known")
+    start = initial_state(scene, point.seed(0))
+    potential = place.masses @ (start.positions[:, 1] - 0.5 * place.diameter) * place.strength
+    energy, count = start.kinetic_energy + potential, len(place.masses)
+    force = place.weight / count
+    with open_trajectory(point.replica_path(0)) as trajectory:
+        kinetic = trajectory["kinetic_energy"].values[grid.schedule(point).equilibration_frames + 1 :]
+    parts = kinetic[: len(kinetic) // blocks * blocks].reshape(blocks, -1) / count
+
+    shift = parts.mean()  # the square of what is left loses no digits where the energy hardly changes
+    fluctuation, spread = jackknife(
+        lambda mean, square: lebowitz_percus_verlet(
+            count * (mean + shift), count**2 * (square - mean**2), count, 2
+        ),
+        (parts - shift).mean(axis=1),
+        ((parts - shift) ** 2).mean(axis=1),
+    )
+    temperature, error = jackknife(lambda mean: mean, parts.mean(axis=1))
+    mean, variance = ideal_energy_moments(float(energy), count, place.height, force, 2)
+    return {
+        "count": count,
+        "strength": place.strength,
+        "energy": energy,
+        "temperature": float(temperature),
+        "temperature_error": float(error),
+        "temperature_expected": mean / count,
+        "run_x": force * place.height / float(temperature),
+        "fluctuation": float(fluctuation),
+        "fluctuation_error": float(spread),
+        "fluctuation_expected": lebowitz_percus_verlet(mean, variance, count, 2),
+    }

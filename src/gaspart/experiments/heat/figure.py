@@ -1,0 +1,151 @@
+"""Pictures of heat between a hot and a cold wall."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from gaspart.rendering import style
+from gaspart.theory.heat import conducting_slab
+
+ENDLESS = 100.0
+"""Knudsen number above which points are drawn at a place of their own, for infinity."""
+
+
+def heat_conduction_gas(ds: xr.Dataset) -> Figure:
+    """Flux against density, and over that of free flight; profiles of temperature and of density."""
+    figure, axes = style.new(rows=5, height=8.4, height_ratios=(2.6, 2.4, 2.4, 1.1, 2.0), share_x=False)
+    flux, share, warm, off, dense = axes
+    _fluxes(flux, ds.isel(point=np.flatnonzero(ds["knudsen"] < ENDLESS)))
+    _shares(share, ds)
+    spheres = ds.isel(point=np.flatnonzero((ds["knudsen"] < ENDLESS) & ~ds["normal"].astype(bool)))
+    order = np.argsort(spheres["knudsen"].values)
+    for kind, n in enumerate(dict.fromkeys((order[0], order[len(order) // 2], order[-1]))):
+        _profiles(warm, off, dense, spheres.isel(point=n), kind)
+    style.level(off, 0.0)
+    for wall in ("hot", "cold"):
+        warm.axhline(float(ds[wall][0]), color=style.GREY, lw=0.6, ls=":")
+    warm.set_ylabel("temperature $T$")
+    warm.legend(loc="upper right")
+    off.set_ylabel(r"$T/T_\mathrm{th}-1$ (%)")
+    off.set_ylim(-2.5, 2.5)
+    dense.set_ylabel(r"density $n/\bar n$")
+    dense.set_xlabel("position between the walls $x/L$")
+    for panel in (warm, off):
+        panel.sharex(dense)
+        panel.tick_params(labelbottom=False)
+    for axis, letter in zip((flux, share, warm, dense), "abcd", strict=True):
+        style.letter(axis, letter)
+    return figure
+
+
+def _fluxes(axis: Axes, ds: xr.Dataset) -> None:
+    """Flux against density, with both limits."""
+    row = ds.isel(point=0)
+    number = np.geomspace(5e-4, 0.08, 100)
+    hot, cold, length, fourier = (float(row[key]) for key in ("hot", "cold", "length", "fourier"))
+    free = number / float(row["number"]) * float(row["full"])
+    axis.plot(number, 1e3 * free, color=style.GREY, label="free flight")
+    axis.axhline(1e3 * fourier, color=style.GREY, ls="--", lw=1.0, label=r"Fourier, $\lambda_0$")
+    axis.plot(number, 1e3 / (1.0 / free + 1.0 / fourier), color=style.GREY, ls=":", label="guide")
+    fluid = ds["number"].values[np.isfinite(ds["slab_flux"].values)]
+    if fluid.size:
+        line = np.geomspace(fluid.min(), fluid.max(), 8)
+        theory = [1e3 * conducting_slab(length, n, hot, cold).flux for n in line]
+        axis.plot(line, theory, color=style.DATA, label="with jumps", zorder=4)
+    for kind, name in enumerate(("all components", "normal only")):
+        own = ds.isel(point=np.flatnonzero(ds["normal"] == kind))
+        values = (own["number"], 1e3 * own["flux"], 1e3 * own["flux_error"])
+        style.points(axis, *values, kind=kind, hollow=bool(kind), label=name)
+    axis.set_xscale("log")
+    axis.set_yscale("log")
+    axis.set_ylim(0.2, 12.0)
+    axis.tick_params(axis="x", which="minor", labelbottom=False)
+    axis.set_xlabel(r"number density $n\sigma^3$")
+    axis.set_ylabel(r"heat flux $10^3\,q$")
+    axis.legend(loc="lower right", ncol=2, columnspacing=0.8)
+
+
+def _shares(axis: Axes, ds: xr.Dataset) -> None:
+    """Flux over that of free flight against the Knudsen number; the thinnest gases at infinity."""
+    end = 20.0
+    for level in (1.0, 2.0 / 3.0, 0.5):
+        style.level(axis, level)
+    for kind, (normal, dimension, name) in enumerate(
+        ((0, 3, "all, spheres"), (1, 3, "normal, spheres"), (0, 2, "all, discs"), (1, 2, "normal, discs"))
+    ):
+        own = ds.isel(point=np.flatnonzero((ds["normal"] == normal) & (ds["dimension"] == dimension)))
+        if not own.sizes["point"]:
+            continue
+        knudsen = np.where(own["knudsen"] < ENDLESS, own["knudsen"], end * 1.15 ** (dimension - 2.5))
+        values = (own["flux"] / own["full"], own["flux_error"] / own["full"])
+        style.points(axis, knudsen, *values, kind=kind, hollow=bool(normal), label=name)
+    axis.set_xscale("log")
+    axis.set_xlim(0.02, 40.0)
+    axis.set_xticks([0.1, 1.0, end], ["0.1", "1", r"$\infty$"])
+    axis.set_yticks([0.0, 0.5, 2.0 / 3.0, 1.0], ["0", "1/2", "2/3", "1"])
+    axis.set_ylim(0.0, 1.6)
+    axis.set_xlabel(r"Knudsen number $l/L$")
+    axis.set_ylabel(r"flux over free flight's")
+    axis.legend(loc="upper right", ncol=2, columnspacing=0.8)
+
+
+def _profiles(warm: Axes, off: Axes, dense: Axes, row: xr.Dataset, kind: int) -> None:
+    """One gas's temperature, its distance from theory, and its density."""
+    position = row["position"].values / float(row["length"])
+    number = float(row["number"])
+    temperature, error = row["temperature"].values, row["temperature_error"].values
+    label = rf"$l/L = {float(row['knudsen']):.2g}$"
+    small: dict[str, Any] = {"kind": kind, "hollow": True, "markersize": 2.5}
+    style.points(warm, position, temperature, error, label=label, **small)
+    values = (row["density"].values / number, row["density_error"].values / number)
+    style.points(dense, position, *values, **small)
+    if not np.isfinite(row["slab_flux"]):
+        return
+    theory = row["slab_temperature"].values
+    warm.plot(position, theory, color=style.DATA, zorder=4, label="Fourier with jumps")
+    dense.plot(position, row["slab_density"].values / number, color=style.DATA, zorder=4)
+    used = row["used"].values
+    ratio = 100.0 * (temperature / theory - 1.0)
+    style.points(off, position[used], ratio[used], 100.0 * (error / theory)[used], **small)
+
+
+def heat_conduction_metal(ds: xr.Dataset) -> Figure:
+    """Temperatures of electrons and modes between two walls; energy against temperature."""
+    figure, (top, bottom, off) = style.new(rows=3, height=5.6, height_ratios=(2.6, 2.4, 1.1), share_x=False)
+    for n in np.flatnonzero(ds["hot"] != ds["cold"]):
+        row = ds.isel(point=n)
+        for kind, (name, label) in enumerate((("electrons", "electrons"), ("modes", "modes"))):
+            values = (row["position"], row[name], row[f"{name}_error"])
+            style.points(top, *values, kind=kind, hollow=bool(kind), label=label)
+        for wall in ("hot", "cold"):
+            top.axhline(float(row[wall]), color=style.GREY, lw=0.6, ls=":")
+    top.set_xlabel("position between the walls $x/L$")
+    top.set_ylabel(r"$T$ of electrons, $\langle E\rangle$ of modes")
+    top.legend(loc="upper right", bbox_to_anchor=(1.0, 0.93))
+    still = ds.isel(point=np.flatnonzero(ds["hot"] == ds["cold"]))
+    warm, capacity = still["hot"].values, float(ds["expected"][0])
+    line = np.array([0.0, 1.1 * warm.max()])
+    bottom.plot(line, line, color=style.REFERENCE, label=r"$(N_e d/2 + N_s)\,kT$")
+    level, error = still["energy_ratio"].values, still["energy_ratio_error"].values
+    style.points(bottom, warm, level * warm, error * warm, kind=1, label="electrons and modes")
+    electrons = float(ds["electrons_part"][0])
+    bottom.plot(line, electrons * line, color=style.GREY, ls="--", label="frozen modes")
+    bottom.set_ylabel(rf"energy / {capacity:g}")
+    bottom.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
+    style.level(off, 0.0)
+    style.points(off, warm, 100.0 * (level - 1.0), 100.0 * error, kind=1)
+    modes = (100.0 * (still["mode_ratio"] - 1.0), 100.0 * still["mode_ratio_error"])
+    style.points(off, 1.02 * warm, *modes, kind=0, hollow=True)
+    off.set_ylim(-3.5, 3.5)
+    off.set_ylabel("off (%)")
+    off.set_xlabel("temperature of both walls $kT$")
+    off.sharex(bottom)
+    bottom.tick_params(labelbottom=False)
+    for axis, letter in zip((top, bottom), "ab", strict=True):
+        style.letter(axis, letter)
+    return figure

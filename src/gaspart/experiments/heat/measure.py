@@ -1,0 +1,270 @@
+"""Heat between two walls, through gases and metals: fluxes, profiles, and what a degree of temperature costs.
+
+The walls are the two faces of the first axis, whose positions count from the hot one on, where centres can
+be. Runs are cut into stretches of time, whose averages are taken as independent; errors are the jackknife's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from gaspart.analysis.statistics import fit_polynomial, jackknife
+from gaspart.planning import grid
+from gaspart.scene.faces import thermal_face
+from gaspart.scene.scene import Scene
+from gaspart.theory.enskog import mean_free_path
+from gaspart.theory.geometry import packing_fraction
+from gaspart.theory.heat import conducting_slab, dilute_fourier_flux, free_molecular_flux
+from gaspart.trajectory.run import open_trajectory
+
+FLUID = 0.1
+"""Knudsen number up to which a gas is compared with Fourier's law."""
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Between the walls: length, where centres can be; area of a wall; temperatures of the walls, the hot one
+    is x_low; dimension."""
+
+    length: float
+    area: float
+    hot: float
+    cold: float
+    dimension: int
+
+    @classmethod
+    def of(cls, scene: Scene) -> Gap:
+        """That of a scene whose walls are thermal."""
+        lower, upper = scene.reach(scene.smallest_radius)
+        walls = thermal_face(scene, "x_low").temperature, thermal_face(scene, "x_high").temperature
+        area = float(np.prod(scene.container.lengths[1:]))
+        return cls(upper[0] - lower[0], area, *walls, scene.dimension)
+
+
+@dataclass(frozen=True)
+class Averages:
+    """Averages over K stretches of time: given (K,) and taken (K,), the fluxes out of the hot and into the
+    cold wall; density (K, B) of bodies in bins, energy (K, B) theirs per volume, as a temperature; imbalance,
+    the largest difference between what the walls gave and what the bodies got, over what went through."""
+
+    given: np.ndarray
+    taken: np.ndarray
+    density: np.ndarray
+    energy: np.ndarray
+    imbalance: float
+
+    @property
+    def flux(self) -> np.ndarray:
+        """(K,) the mean of both walls."""
+        return 0.5 * (self.given + self.taken)
+
+
+def averages(point: grid.Point, gap: Gap, blocks: int, bins: int) -> Averages:
+    """Of the measured part of all replicas of bodies of mass 1, each cut into `blocks` stretches.
+
+    Raises ValueError for too few frames.
+    """
+    first = grid.schedule(point).equilibration_frames
+    radius = grid.scene(point).smallest_radius
+    heats, densities, energies, missing = [], [], [], []
+    for path in point.replica_paths:
+        with open_trajectory(path) as trajectory:
+            part = trajectory.isel(frame=slice(first, None))
+            time, heat, kinetic = (part[name].values for name in ("time", "wall_energy", "kinetic_energy"))
+            places = part["coordinates"].values[1:, :, 0]
+            squares = (part["velocities"].values[1:].astype(float) ** 2).sum(axis=2)
+        length = (len(time) - 1) // blocks
+        if length < 1:
+            raise ValueError(f"blocks: {blocks} (more than the {len(time) - 1} intervals of {path})")
+        used = length * blocks
+        ends = heat[: used + 1 : length, :2]
+        heats.append(np.diff(ends, axis=0) / np.diff(time[: used + 1 : length])[:, None] / gap.area)
+        through = heat - heat[0]
+        missing.append(abs(through.sum(axis=1) + kinetic - kinetic[0]).max() / abs(through[-1]).max())
+        bin_of = np.clip(((places - radius) * (bins / gap.length)).astype(int), 0, bins - 1)
+        block_of = np.repeat(np.arange(blocks), length)[:, None] * bins
+        slot = (bin_of[:used] + block_of).ravel()
+        volume = length * gap.area * gap.length / bins
+        densities.append(np.bincount(slot, minlength=blocks * bins).reshape(blocks, bins) / volume)
+        weights = squares[:used].ravel() / gap.dimension
+        energies.append(np.bincount(slot, weights, minlength=blocks * bins).reshape(blocks, bins) / volume)
+    given, taken = np.concatenate(heats).T
+    return Averages(-given, taken, np.concatenate(densities), np.concatenate(energies), float(max(missing)))
+
+
+def heat_conduction_gas(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Flux through gases of one kind of bodies, and their profiles.
+
+    settings: `bins` across the gap; `blocks` of each replica; `clear`, the mean free paths next to the walls
+    that are left out where profiles are compared with Fourier's law.
+
+    Dimensions point, bin. `flux` is the mean of both walls, `wall_ratio` cold over hot, `half_ratio` the
+    second over the first half of the run; `free` and `fourier` what theory has for bodies that meet nothing
+    but walls, and for a gas so dilute that only its conductivity counts. Where the Knudsen number is below
+    FLUID, three dimensions, walls of full accommodation: `slab_flux` of Fourier's law with jumps, its
+    profiles, `profile_ratio` the mean of T over it, and `jump`, the temperature jumps in units of the mean
+    free path times the slope: T^(3/2), a straight line away from the walls, continued to both of them.
+    """
+    rows = [_gas(point, settings) for point in points]
+    long = {name for name, value in rows[0].items() if np.ndim(value)}
+    return xr.Dataset(
+        {
+            name: (("point", "bin") if name in long else "point", np.stack([row[name] for row in rows]))
+            for name in rows[0]
+        }
+    )
+
+
+def _gas(point: grid.Point, settings: dict) -> dict:
+    """The numbers of one point."""
+    scene = grid.scene(point)
+    gap, diameter = Gap.of(scene), 2.0 * scene.smallest_radius
+    found = averages(point, gap, settings["blocks"], settings["bins"])
+    position = (np.arange(settings["bins"]) + 0.5) * gap.length / settings["bins"]
+    number = scene.species[0].count / (gap.area * gap.length)
+    path = float(mean_free_path(packing_fraction(number, gap.dimension, diameter), gap.dimension, diameter))
+    components = thermal_face(scene, "x_low").components
+    half = len(found.flux) // 2
+    early, late = found.flux[:half], found.flux[-half:]
+    made = {
+        "flux": jackknife(lambda q: q, found.flux),
+        "wall_ratio": jackknife(lambda given, taken: taken / given, found.given, found.taken),
+        "half_ratio": jackknife(lambda a, b: b / a, early, late),
+        "density": jackknife(lambda n: n, found.density),
+        "temperature": jackknife(lambda e, n: e / n, found.energy, found.density),
+    }
+    row = {
+        "dimension": gap.dimension,
+        "normal": components == "normal",
+        "number": number,
+        "knudsen": path / gap.length,
+        "length": gap.length,
+        "hot": gap.hot,
+        "cold": gap.cold,
+        "imbalance": found.imbalance,
+        "free": free_molecular_flux(number, gap.hot, gap.cold, gap.dimension, components=components),
+        "full": free_molecular_flux(number, gap.hot, gap.cold, gap.dimension),
+        "fourier": np.nan,
+        "slab_flux": np.nan,
+        "position": position,
+        "slab_temperature": np.full(position.shape, np.nan),
+        "slab_density": np.full(position.shape, np.nan),
+        "used": (position > settings["clear"] * path) & (position < gap.length - settings["clear"] * path),
+    }
+    made |= dict.fromkeys(("profile_ratio", "jump"), (np.nan, np.nan))
+    if gap.dimension == 3:
+        row["fourier"] = dilute_fourier_flux(gap.length, gap.hot, gap.cold, diameter)
+    if row["knudsen"] < FLUID and gap.dimension == 3 and components == "all":
+        slab = conducting_slab(gap.length, number, gap.hot, gap.cold, diameter)
+        row["slab_flux"] = slab.flux
+        for name in ("temperature", "density"):
+            row[f"slab_{name}"] = np.interp(position, slab.position, getattr(slab, name))
+        used = row["used"]
+        made["profile_ratio"] = jackknife(
+            lambda e, n: (e / n / row["slab_temperature"])[used].mean(), found.energy, found.density
+        )
+        made["jump"] = jackknife(
+            lambda e, n: _jump(gap, position[used], e[used], n[used], diameter), found.energy, found.density
+        )
+    row |= {name: value for name, (value, _) in made.items()}
+    return row | {f"{name}_error": error for name, (_, error) in made.items()}
+
+
+def _jump(gap: Gap, position: np.ndarray, energy: np.ndarray, density: np.ndarray, diameter: float) -> float:
+    """Mean over the walls of |T_gas - T_wall| / (l dT/dx), from bins (B,) away from them."""
+    slope, start = np.polyfit(position, (energy / density) ** 1.5, 1)
+    power = start + slope * np.array([0.0, gap.length])
+    gas = power ** (2.0 / 3.0)
+    gradient = -slope / (1.5 * np.sqrt(gas))
+    path = mean_free_path(packing_fraction(energy.mean() / gas, 3, diameter), 3, diameter)
+    return float(np.mean(np.array([gap.hot - gas[0], gas[1] - gap.cold]) / (path * gradient)))
+
+
+def heat_conduction_metal(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Electrons, the first species, among fixed vibrating scatterers, the second: profiles between walls of
+    two temperatures, and the specific heat between walls of one.
+
+    settings: `bins` across the gap; `blocks` of each replica. `expected` is the heat capacity N_e d/2 + N_s,
+    `electrons_part` what the electrons have of it.
+
+    Dimensions point, bin: electrons, the temperature of the electrons; modes, the mean energy of a mode; and
+    `share`, the mean over the bins of modes over electrons; hot, cold, flux, position. Over point
+    too: energy_ratio, E / T over the expected heat capacity, fluctuation, var E / T^2 over it (both with T of
+    the walls, and NaN between different ones), mode_ratio, the mean energy of all modes over T. `slope` is
+    dE/dT over the expected, from a line through the points in equilibrium, of which there must be two.
+    """
+    rows = [_metal(point, settings) for point in points]
+    long = {name for name, value in rows[0].items() if np.ndim(value)}
+    ds = xr.Dataset(
+        {
+            name: (("point", "bin") if name in long else "point", np.stack([row[name] for row in rows]))
+            for name in rows[0]
+        }
+    )
+    still = ds.isel(point=np.flatnonzero(ds["hot"] == ds["cold"]))
+    warm, energy = still["hot"].values, (still["energy_ratio"] * still["hot"]).values
+    fit = fit_polynomial(warm, energy, still["energy_ratio_error"].values * warm, powers=(0, 1))
+    return ds.assign(slope=fit.values[1], slope_error=fit.errors[1])
+
+
+def _metal(point: grid.Point, settings: dict) -> dict:
+    """The numbers of one point."""
+    scene = grid.scene(point)
+    gap, (moving, fixed) = Gap.of(scene), scene.species
+    bins, blocks = settings["bins"], settings["blocks"]
+    capacity = 0.5 * gap.dimension * moving.count + fixed.count
+    first = grid.schedule(point).equilibration_frames
+    sums, totals, squares, heats, modes = [], [], [], [], []
+    for path in point.replica_paths:
+        with open_trajectory(path) as trajectory:
+            part = trajectory.isel(frame=slice(first, None))
+            time, heat = part["time"].values, part["wall_energy"].values[:, :2]
+            places = part["coordinates"].values[1:, :, 0]
+            speeds = (part["velocities"].values[1:, : moving.count].astype(float) ** 2).sum(axis=2)
+            vibrations = part["vibrations"].values[1:, moving.count :].astype(float)
+        length = (len(time) - 1) // blocks
+        if length < 1:
+            raise ValueError(f"blocks: {blocks} (more than the {len(time) - 1} intervals of {path})")
+        used = length * blocks
+        bin_of = np.clip((places[:used] - moving.radius) * (bins / gap.length), 0, bins - 1).astype(int)
+        slot = bin_of + np.repeat(np.arange(blocks), length)[:, None] * bins
+        here, there = slot[:, : moving.count].ravel(), slot[:, moving.count :].ravel()
+        table = [
+            np.bincount(where, weights, minlength=blocks * bins).reshape(blocks, bins)
+            for where, weights in (
+                (here, None),
+                (here, speeds[:used].ravel() / gap.dimension),
+                (there, None),
+                (there, vibrations[:used].ravel()),
+            )
+        ]
+        sums.append(np.stack(table, axis=1))
+        energy = (0.5 * speeds.sum(axis=1) + vibrations.sum(axis=1))[:used].reshape(blocks, length)
+        totals.append(energy.mean(axis=1))
+        squares.append(((energy - capacity * gap.hot) ** 2).mean(axis=1))
+        modes.append(vibrations[:used].mean(axis=1).reshape(blocks, length).mean(axis=1))
+        ends = slice(None, used + 1, length)
+        heats.append(np.diff(heat[ends], axis=0) / np.diff(time[ends])[:, None] / gap.area)
+    bodies, kinetic, scatterers, vibrating = np.moveaxis(np.concatenate(sums), 1, 0)
+    given, taken = np.concatenate(heats).T
+    total, square, mode = (np.concatenate(values) for values in (totals, squares, modes))
+    made = {
+        "electrons": jackknife(lambda k, n: k / n, kinetic, bodies),
+        "modes": jackknife(lambda v, s: v / s, vibrating, scatterers),
+        "share": jackknife(lambda k, n, v, s: (v / s * n / k).mean(), kinetic, bodies, vibrating, scatterers),
+        "flux": jackknife(lambda out, into: 0.5 * (into - out), given, taken),
+    }
+    warm = gap.hot if gap.hot == gap.cold else np.nan
+    made["energy_ratio"] = jackknife(lambda e: e / (capacity * warm), total)
+    made["mode_ratio"] = jackknife(lambda e: e / warm, mode)
+    made["fluctuation"] = jackknife(
+        lambda q, e: (q - (e - capacity * gap.hot) ** 2) / (capacity * warm**2), square, total
+    )
+    row = {name: value for name, (value, _) in made.items()}
+    row |= {f"{name}_error": error for name, (_, error) in made.items()}
+    position = (np.arange(bins) + 0.5) * gap.length / bins
+    row |= {"electrons_part": 1.0 - fixed.count / capacity, "expected": capacity}
+    return row | {"hot": gap.hot, "cold": gap.cold, "position": position / gap.length}

@@ -1,0 +1,1 @@
+"""Random insertion: fill_failures."""

@@ -1,0 +1,87 @@
+"""Loschmidt's echo: run a gas, turn all velocities round, run it back, and see how far it is from its start.
+
+Exact mechanics comes back. Rounding errors grow by exp(lambda) with every collision of a body, on the way
+back as on the way there, so the echo's distance tells how long the memory of the start lasts, and its growth
+is the largest Lyapunov exponent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from gaspart.engines import EventDriven, TimeStepped
+from gaspart.scene.scene import Scene
+from gaspart.simulation.simulation import Simulation
+from gaspart.state.state import State
+
+NUDGE = 1e-10
+"""Root-mean-square displacement, in diameters, from which the exact flow's divergence is measured."""
+_SLACK = 1e-6  # of a time step: so that rounding of a stretch loses no step
+
+
+def echo(
+    scene: Scene,
+    engine: EventDriven | TimeStepped,
+    seeds: Sequence[tuple[int, ...]],
+    equilibration: float,
+    interval: float,
+    samples: int,
+) -> xr.Dataset:
+    """Echoes from equilibrium states of a scene, one for each seed.
+
+    Returns over ``seed`` and ``sample``, of runs of 1 ... `samples` intervals: ``collisions`` per body on the
+    way there, twice the number of contacts over that of bodies; ``echo``, the root-mean-square distance from
+    the start after the way back, in diameters; ``divergence``, that of two event-driven runs which start
+    `NUDGE` apart, after the way there. Attributes: the gas (`side` in diameters) and engine.
+    """
+    shape = (len(seeds), samples)
+    found = {name: np.empty(shape) for name in ("collisions", "echo", "divergence")}
+    slack = _SLACK * getattr(engine, "time_step", 0.0)
+    for n, seed in enumerate(seeds):
+        settled = Simulation(scene, EventDriven(), seed=seed)
+        settled.advance(duration=equilibration)
+        state = settled.state
+        there = engine.start(scene, state)
+        start = there.state  # rounded to the engine's precision
+        pair = [EventDriven().start(scene, one) for one in (state, _nudged(state, seed))]
+        for k in range(samples):
+            time = (k + 1) * interval
+            there.advance(state.time + time + slack)
+            turned = replace(there.state, time=0.0, velocities=-there.state.velocities)
+            back = engine.start(scene, turned)
+            back.advance(time + slack)
+            for one in pair:
+                one.advance(state.time + time)
+            found["collisions"][n, k] = 2.0 * there.tally.collisions / state.count
+            found["echo"][n, k] = _distance(start, back.state)
+            found["divergence"][n, k] = _distance(pair[0].state, pair[1].state)
+    return xr.Dataset(
+        {name: (("seed", "sample"), values) for name, values in found.items()},
+        attrs={
+            "count": scene.count,
+            "dimension": scene.dimension,
+            "side": max(scene.container.lengths) / (2.0 * scene.largest_radius),
+            "packing_fraction": scene.packing_fraction,
+            "engine": engine.name,
+            "precision": getattr(engine, "precision", "float64"),
+            "time_step": getattr(engine, "time_step", 0.0),
+        },
+    )
+
+
+def _nudged(state: State, seed: tuple[int, ...]) -> State:
+    """All bodies displaced at random, by so little that none overlap unless they touch."""
+    away = np.random.default_rng(seed).standard_normal(state.positions.shape)
+    away *= NUDGE * 2.0 * state.radii.max() / np.sqrt((away**2).sum(axis=1).mean())
+    inside = np.clip(state.positions + away, state.radii[:, None], state.lengths - state.radii[:, None])
+    return replace(state, positions=inside)
+
+
+def _distance(one: State, other: State) -> float:
+    """Root-mean-square distance of all bodies between walls, in diameters."""
+    apart = ((one.positions - other.positions) ** 2).sum(axis=1)
+    return float(np.sqrt(apart.mean()) / (2.0 * one.radii.max()))

@@ -1,0 +1,63 @@
+"""Random sequential insertion into a container until it is as good as full, every failure counted."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from gaspart.kernels.insertion import place
+from gaspart.scene.scene import Scene
+from gaspart.state.boxes import make_boxes, sides_for
+from gaspart.state.insertion import empty_arrays
+from gaspart.state.random import stream
+
+CHUNK = 1 << 16
+
+
+def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> xr.Dataset:
+    """Offer the container ``attempts`` random places for each body of the scene's one species; once per seed.
+
+    The scene's count is the number of bodies at hand, which may be more than ever find room: insertion
+    stops when all are placed or the attempts (``attempts`` times the count) are used up.
+
+    Returns a dataset: ``failures`` (replica, body), failed attempts before each body found its place, -1
+    for a body without one; ``placed`` and ``attempts`` (replica,).
+    Attributes: packing_fraction_per_body, side, radius.
+    """
+    runs = [_fill_once(scene, attempts * scene.count, seed) for seed in seeds]
+    return xr.Dataset(
+        {
+            "failures": (("replica", "body"), np.array([failures for failures, _ in runs]), {"units": "1"}),
+            "placed": ("replica", np.array([(failures >= 0).sum() for failures, _ in runs]), {"units": "1"}),
+            "attempts": ("replica", np.array([used for _, used in runs]), {"units": "1"}),
+        },
+        attrs={
+            "packing_fraction_per_body": scene.packing_fraction / scene.count,
+            "side": list(scene.container.lengths),
+            "radius": scene.largest_radius,
+        },
+    )
+
+
+def _fill_once(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarray, int]:
+    """Failures before each body (N,), -1 where there was no room; and the attempts that were made."""
+    before, used, _ = insert(scene, attempts, seed)
+    return before, used
+
+
+def insert(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarray, int, np.ndarray]:
+    """Failures before each body (N,), -1 where there was no room; the attempts that were made; and the places
+    of the bodies (M, d) that found one."""
+    boxes = make_boxes(scene, sides_for(scene, per_body=1.0), images=False)
+    lower, upper = scene.reach(scene.largest_radius)
+    standing, space, block = empty_arrays(scene, boxes, np.full(scene.count, scene.largest_radius))
+    before = np.full(scene.count, -1, dtype=np.int64)
+    rng, placed, failures, used = stream(seed), 0, 0, 0
+    while placed < scene.count and used < attempts:
+        draws = rng.random((min(CHUNK, attempts - used), scene.dimension))
+        placed, failures, tried = place(
+            draws, standing, space, block, placed, scene.count, lower, upper, failures, attempts + 1, before,
+            None, np.empty(0, dtype=np.int64),
+        )  # fmt: skip
+        used += tried
+    return before, used, standing.positions[:placed]

@@ -1,0 +1,1 @@
+"""Random insertion: densest_fill."""

@@ -1,0 +1,1 @@
+"""Pictures: gas_render, brownian_render."""

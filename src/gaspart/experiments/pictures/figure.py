@@ -1,0 +1,54 @@
+"""Rendered pictures of scenes."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from gaspart.rendering import style
+from gaspart.rendering.bodies import FASTEST, Bodies, colours_of
+from gaspart.rendering.pictures import picture
+
+DOTS = 300
+"""Pixels per inch of the pictures, as those of a saved figure."""
+HEIGHT = 0.75
+"""Of a picture, over its width."""
+
+
+def gas_render(ds: xr.Dataset) -> Figure:
+    """The gas, coloured by speed."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    figure, axis = _shown(ds, "speed", height=3.1)
+    fastest = FASTEST * float(np.sqrt((ds["speed"] ** 2).mean()))
+    scale = ScalarMappable(Normalize(0.0, fastest), cmap="viridis")
+    bar = figure.colorbar(
+        scale, ax=axis, orientation="horizontal", fraction=0.05, pad=0.02, aspect=40, extend="max"
+    )
+    bar.set_label("speed (initial speed)")
+    return figure
+
+
+def brownian_render(ds: xr.Dataset) -> Figure:
+    """The large body and its gas, coloured by species."""
+    return _shown(ds, "species", height=style.COLUMN * HEIGHT)[0]
+
+
+def _shown(ds: xr.Dataset, colour: str, height: float) -> tuple[Figure, Axes]:
+    """A figure that is filled by the picture of the bodies of a dataset."""
+    bodies = Bodies(
+        positions=ds["position"].values,
+        radii=ds["radius"].values,
+        species=ds["species"].values,
+        speeds=ds["speed"].values,
+        lengths=ds["length"].values,
+        walls=np.zeros((0, 2, 2)),
+    )
+    size = (round(DOTS * style.COLUMN), round(DOTS * style.COLUMN * HEIGHT))
+    figure, axis = style.new(height=height)
+    axis.imshow(picture(bodies, size, colours_of(bodies, colour)))
+    axis.set_axis_off()
+    return figure, axis

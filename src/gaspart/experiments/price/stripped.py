@@ -1,0 +1,88 @@
+"""What an absent feature leaves in the machine code: kernels against kernels whose source never had it.
+
+Optional physics reaches a kernel as None, and branches on that are to vanish when it is compiled. Here they
+are taken out of the source instead, in a copy of the package, and the instructions of both are counted.
+"""
+
+from __future__ import annotations
+
+import ast
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from gaspart.kernels.compilation import KERNEL_MODULES
+
+FEATURES = {"gravity", "law", "masses", "record", "walls", "surfaces", "big", "watch", "vibrations", "rules"}
+"""Names by which kernels know what a plain gas is without."""
+ENGINES = ("event", "step")
+_PACKAGE = Path(__file__).parents[1]
+_COUNT = """
+import gaspart as gp
+from gaspart.engines import event_kernels, step_kernels
+scene = gp.Scene(gp.Container((9.0,) * 3, "periodic"), [gp.Species(50, 0.5, temperature=1.0)])
+kernels = {gp.EventDriven(): event_kernels.run_boxes, gp.TimeStepped(0.01): step_kernels.run_steps}
+for engine, kernel in kernels.items():
+    gp.Simulation(scene, engine).advance(duration=0.1)
+    (code,) = kernel.inspect_asm().values()
+    lines = [line.strip() for line in code.splitlines() if line.startswith("\\t")]
+    print(sum(not line.startswith((".", "#")) for line in lines))
+"""
+
+
+class Strip(ast.NodeTransformer):
+    """Folds every test of whether a feature is None, as if it were."""
+
+    def _known(self, test: ast.expr) -> bool | None:
+        match test:
+            case ast.Compare(ast.Name(name), [ast.Is() | ast.IsNot() as is_or_not], [ast.Constant(None)]):
+                return isinstance(is_or_not, ast.Is) if name in FEATURES else None
+        return None
+
+    def visit_If(self, node: ast.If) -> ast.stmt | list[ast.stmt]:
+        """Keep the branch that is taken."""
+        self.generic_visit(node)
+        known = self._known(node.test)
+        if known is None:
+            return node
+        return (node.body if known else node.orelse) or ast.Pass()
+
+    def visit_IfExp(self, node: ast.IfExp) -> ast.AST:
+        """Keep the value that is taken."""
+        self.generic_visit(node)
+        known = self._known(node.test)
+        return node if known is None else node.body if known else node.orelse
+
+
+def stripped(source: str) -> str:
+    """A module's source without the branches of absent features."""
+    return ast.unparse(ast.fix_missing_locations(Strip().visit(ast.parse(source))))
+
+
+def instructions() -> dict[str, tuple[int, int]]:
+    """Instructions of each engine's main kernel for a plain gas of spheres: {engine: (own, stripped)}.
+
+    Compiles everything twice, in processes and caches of its own.
+    """
+    found = []
+    with tempfile.TemporaryDirectory() as folder:
+        for strip in (False, True):
+            package = Path(folder) / str(strip) / "gaspart"
+            shutil.copytree(_PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
+            if strip:
+                for name in KERNEL_MODULES:
+                    module = package / name
+                    module.write_text(stripped(module.read_text(encoding="utf-8")), encoding="utf-8")
+            environment = {"PYTHONPATH": str(package.parent), "GASPART_CACHE": str(package.parent / "cache")}
+            done = subprocess.run(
+                [sys.executable, "-c", _COUNT],
+                env={**os.environ, **environment},
+                capture_output=True,
+                text=True,
+                check=True,
+            )
+            found.append(map(int, done.stdout.split()))
+    return dict(zip(ENGINES, zip(*found, strict=True), strict=True))

@@ -1,0 +1,1 @@
+"""Radius, density and number of bodies: radius_grid."""

@@ -1,0 +1,271 @@
+"""Pictures of what space partitioning buys. Source A: Frederickx and Meerts 2010."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from gaspart.rendering import style
+
+_NS, _US, _MS = 1e9, 1e6, 1e3
+_SOURCE = style.COLOURS[4]
+_SCAN = 27  # source A's program scans its one box once for each of the boxes around it
+
+
+def naive_scaling(ds: xr.Dataset) -> Figure:
+    """Time of a step against N, and per pair test."""
+    figure, (top, bottom) = style.new(rows=2, height=3.8, height_ratios=(2.2, 1))
+    count = ds["count"].values
+    line = np.geomspace(count.min(), count.max(), 50)
+    law = 0.5 * line * (line - 1.0) * float(ds.test_seconds)
+    top.plot(
+        line, _SCAN * law * _MS, color=_SOURCE, linestyle="--", label="scanned 27 times (Frederickx & Meerts)"
+    )
+    top.plot(line, law * _MS, color=style.REFERENCE, label=r"$\frac{1}{2}N(N-1)$ tests, each once")
+    style.points(top, count, ds.seconds * _MS, ds.seconds_error * _MS, color=style.DATA, label="measured")
+    top.set(xscale="log", yscale="log", ylabel="time per step (ms)")
+    top.legend(loc="upper left")
+    each = _NS / ds.pair_tests
+    style.level(bottom, float(ds.test_seconds) * _NS)
+    style.points(bottom, count, ds.seconds * each, ds.seconds_error * each, color=style.DATA)
+    bottom.set(xlabel="number of bodies $N$", ylabel="per test (ns)")
+    bottom.set_ylim(0.0, 1.6 * float((ds.seconds * each).max()))
+    return figure
+
+
+def box_count(ds: xr.Dataset) -> Figure:
+    """Time and work against the number of boxes; round widths; the event-driven engine's sectors."""
+    figure, axes = style.new(rows=4, height=8.4, share_x=False, height_ratios=(1.2, 1.2, 1, 1.2))
+    boxes = ds.boxes_per_side.values.astype(float) ** 3
+    _scan_time(axes[0], ds, boxes)
+    _scan_work(axes[1], ds, boxes)
+    axes[1].sharex(axes[0])
+    axes[1].set(xscale="log", xlabel="number of boxes")
+    _round_widths(axes[2], ds)
+    _sectors(axes[3], ds)
+    for axis, name in zip(axes, "abcd", strict=True):
+        axis.set_title(f"({name})", loc="left", fontweight="bold", pad=3)
+    return figure
+
+
+def _scan_time(axis: Axes, ds: xr.Dataset, boxes: np.ndarray) -> None:
+    model = ds.body_seconds + ds.test_seconds * ds.pair_tests + ds.box_seconds * ds.boxes_emptied
+    style.points(axis, boxes, ds.seconds * _NS, ds.seconds_error * _NS, color=style.DATA, label="measured")
+    near = (ds.seconds <= 3.0 * ds.seconds.min()).values
+    axis.plot(
+        boxes[near], (model * _NS).values[near], color=style.REFERENCE, label="$a + b$ tests $+ c$ boxes"
+    )
+    bodies = float(boxes[-1] / ds.boxes_per_body[-1])
+    interval = [float(ds.ideal_low) * bodies, float(ds.ideal_high) * bodies]
+    if np.isfinite(interval[1]):
+        axis.axvspan(*interval, color=style.GREY, alpha=0.25, lw=0)
+    axis.axvline(
+        float(ds.source_boxes_per_body) * bodies, color=_SOURCE, linestyle="--", ymax=0.45, label="F & M"
+    )
+    axis.set(xscale="log", yscale="log", ylabel="time per body and step (ns)")
+    axis.legend(loc="upper right")
+
+
+def _scan_work(axis: Axes, ds: xr.Dataset, boxes: np.ndarray) -> None:
+    axis.plot(boxes, ds.expected_tests, color=style.COLOURS[0])
+    axis.plot(boxes, ds.expected_visits, color=style.COLOURS[1])
+    kinds = {"pair_tests": "pair tests", "box_visits": "boxes looked into", "boxes_emptied": "boxes emptied"}
+    shown: list[Any] = [
+        style.points(axis, boxes, ds[name], kind=kind, label=label)
+        for kind, (name, label) in enumerate(kinds.items())
+    ]
+    colour = style.COLOURS[1]
+    shown += axis.plot(boxes, ds.in_reach, color=colour, linestyle="--", label="boxes within a diameter")
+    shown += axis.plot(boxes, ds.touched, color=colour, linestyle=":", label="boxes touched (F & M)")
+    axis.set(yscale="log", ylabel="per body and step", ylim=(0.01, 1e8))
+    axis.legend(handles=shown, loc="upper right", fontsize=7)
+
+
+def _round_widths(axis: Axes, ds: xr.Dataset) -> None:
+    first, second = ds.isel(container=0), ds.isel(container=1)
+    per_side = first.fine_boxes_per_side.values
+    ratio = (first.fine_seconds / second.fine_seconds).values
+    error = ratio * np.hypot(
+        (first.fine_seconds_error / first.fine_seconds).values,
+        (second.fine_seconds_error / second.fine_seconds).values,
+    )
+    places, is_round = np.arange(per_side.size), np.isin(per_side, ds.round_per_side.values)
+    style.level(axis, 1.0)
+    style.points(axis, places[~is_round], ratio[~is_round], error[~is_round], color=style.DATA)
+    widths = ", ".join(f"{float(ds.container_side[0]) / n:g}" for n in ds.round_per_side.values)
+    style.points(
+        axis, places[is_round], ratio[is_round], error[is_round], kind=1, label=f"boxes of width {widths}"
+    )
+    axis.set_xticks(places, [str(int(n)) for n in per_side])
+    axis.tick_params(axis="x", top=False)
+    sides = [float(value) for value in ds.container_side]
+    axis.set(xlabel="boxes per side", ylabel=f"time, side {sides[0]:g} / {sides[1]:g}")
+    axis.legend(loc="upper left")
+
+
+def _sectors(axis: Axes, ds: xr.Dataset) -> None:
+    sectors = ds.sector_boxes_per_side.values.astype(float) ** 2
+    style.points(axis, sectors, ds.sector_pair_tests, kind=0, linestyle="-", label="pair tests")
+    style.points(axis, sectors, ds.sector_box_visits, kind=1, linestyle="-", label="sectors looked into")
+    style.points(axis, sectors, ds.sector_crossings, kind=2, linestyle="-", label="crossings")
+    style.points(
+        axis, sectors, ds.sector_seconds * _US, ds.sector_seconds_error * _US,
+        color=style.DATA, marker="X", linestyle="-", label="time (µs)",
+    )  # fmt: skip
+    axis.set(xscale="log", yscale="log", xlabel="number of sectors", ylabel="event-driven, per event")
+    axis.set_ylim(top=6e5)
+    axis.legend(loc="upper right", ncols=2, columnspacing=0.8)
+
+
+def ideal_boxes(ds: xr.Dataset) -> Figure:
+    """The ideal number of boxes against N; and how flat the minimum is."""
+    figure, (top, bottom) = style.new(rows=2, height=5.4, share_x=False)
+    count = ds["count"].values.astype(float)
+    line = np.geomspace(0.7 * count.min(), 1.5 * count.max(), 50)
+    top.fill_between(
+        line, 7.0 * line, 10.0 * line, color=_SOURCE, alpha=0.4, lw=0, label="F & M: 7 to 10 a body"
+    )
+    for kind, radius in enumerate(ds.series_radius.values):
+        of = ds.isel(gas=np.flatnonzero(ds.radius.values == radius))
+        _ideal(top, of, kind, f"ideal, $r = {radius:g}$")
+        limit = float((of.most * of["count"])[0])
+        top.axhline(limit, color=style.COLOURS[kind], linestyle=":", lw=0.8)
+        top.annotate(
+            f"boxes of a diameter, $r = {radius:g}$", (line[0 if kind else -1], limit),
+            xytext=(0, 2 if kind else -9), textcoords="offset points", ha="left" if kind else "right",
+            fontsize=7, color=style.COLOURS[kind],
+        )  # fmt: skip
+    top.set(xscale="log", yscale="log", xlabel="number of bodies $N$", ylabel="ideal number of boxes")
+    top.set_ylim(2e3, 1e8)
+    top.legend(loc="lower right")
+    shown = [int(n) for n in ds.source_gas]
+    shown.insert(0, 1)
+    for kind, gas in enumerate(shown):
+        one = ds.isel(gas=gas)
+        least = float(one.seconds.min())
+        label = f"$N = {_thousands(one['count'])}$, $r = {float(one.radius):g}$"
+        style.points(
+            bottom, one.boxes_per_body, one.seconds / least, one.seconds_error / least,
+            kind=kind, linestyle="-", label=label,
+        )  # fmt: skip
+    bottom.axvspan(7.0, 10.0, color=_SOURCE, alpha=0.4, lw=0)
+    bottom.set(xscale="log", xlabel="boxes per body", ylabel="time over the least", ylim=(0.9, 4.5))
+    bottom.legend(loc="upper center")
+    return figure
+
+
+def _thousands(number: float | xr.DataArray) -> str:
+    """A whole number with thin spaces, for mathematical text."""
+    return f"{int(number):,}".replace(",", r"\,")
+
+
+def _ideal(axis: Axes, of: xr.Dataset, kind: int, label: str) -> None:
+    """Ideal numbers with 95 % intervals. Hollow: without an interval; with an arrow where the time still
+    falls at the finest partition timed."""
+    count, interior = of["count"].values, of.ideal_interior.values.astype(bool)
+    ideal, low, high = (of[name].values * count for name in ("ideal", "ideal_low", "ideal_high"))
+    found = interior & np.isfinite(high) & (low > 0.0)
+    bars = np.where(found, [ideal - low, high - ideal], 0.0)
+    style.points(axis, count[found], ideal[found], bars[:, found], kind=kind, label=label)
+    vague = interior & ~found
+    style.points(axis, count[vague], ideal[vague], kind=kind, hollow=True)
+    rest = ~interior
+    style.points(axis, count[rest], ideal[rest], 0.6 * ideal[rest], kind=kind, hollow=True, lolims=True)
+
+
+def linear_scaling(ds: xr.Dataset) -> Figure:
+    """Time of a step with one box, the cheapest partition and a neighbour list; time and work per body."""
+    figure, (top, middle, bottom) = style.new(rows=3, height=6.4, height_ratios=(2, 1.2, 1))
+    count = ds["count"].values.astype(float)
+    far = float(ds.extrapolated_count)
+    naive = ds.naive_count.values
+    scale = float(ds.extrapolated_seconds) / far**2
+    line = np.array([naive.min(), far])
+    top.plot(
+        line,
+        _SCAN * scale * line**2,
+        color=_SOURCE,
+        linestyle="--",
+        label="one box, scanned 27 times (F & M)",
+    )
+    top.plot(line, scale * line**2, color=style.COLOURS[1], linestyle="--")
+    style.points(top, naive, ds.naive_seconds, ds.naive_seconds_error, kind=1, label="one box")
+    for kind, (radius, of) in enumerate(_by_radius(ds)):
+        style.points(
+            top, of["count"], of.seconds * of["count"], of.seconds_error * of["count"],
+            kind=2 * kind, label=f"cheapest partition, $r = {radius:g}$",
+        )  # fmt: skip
+        n = of["count"].values
+        style.points(middle, n, of.seconds * _NS, of.seconds_error * _NS, kind=2 * kind, linestyle="-")
+        style.points(bottom, n, of.box_visits, kind=2 * kind, linestyle="-")
+        style.points(bottom, n, of.pair_tests, kind=2 * kind, linestyle="--", hollow=True)
+    for radius in sorted(set(ds.list_radius.values.tolist()), reverse=True):
+        of = ds.isel(listed=np.flatnonzero(ds.list_radius.values == radius))
+        n, seconds, error = of.list_count, of.list_seconds, of.list_seconds_error
+        label = None if radius < ds.list_radius.max() else "neighbour list (ours)"
+        style.points(top, n, seconds * n, error * n, kind=3, label=label)
+        style.points(middle, n, seconds * _NS, error * _NS, kind=3, linestyle="-")
+        style.points(bottom, n, of.list_pair_tests, kind=3, linestyle="--", hollow=True)
+    guide = np.array([count.min(), count.max()])
+    top.plot(guide, guide * float(ds.seconds.min()), color=style.GREY, lw=0.8, zorder=1, label="linear")
+    for factor, offset, colour in ((_SCAN, 3, _SOURCE), (1.0, -31, style.COLOURS[1])):
+        seconds = factor * float(ds.extrapolated_seconds)
+        top.annotate(
+            _duration(seconds),
+            (far, seconds),
+            xytext=(-4, offset),
+            textcoords="offset points",
+            ha="right",
+            fontsize=7,
+            color=colour,
+        )
+    top.set(xscale="log", yscale="log", ylabel="time per step (s)", ylim=(None, 3e10))
+    top.legend(loc="upper left")
+    middle.set(yscale="log", ylabel="time per body (ns)", ylim=(1.0, None))
+    bottom.set(yscale="log", ylabel="per body", xlabel="number of bodies $N$", ylim=(0.02, 100.0))
+    bottom.text(0.02, 0.85, "boxes looked into", transform=bottom.transAxes, fontsize=7)
+    bottom.text(0.02, 0.06, "pair tests (hollow)", transform=bottom.transAxes, fontsize=7)
+    return figure
+
+
+def _by_radius(ds: xr.Dataset) -> Iterator:
+    for radius in sorted(set(ds.radius.values.tolist()), reverse=True):
+        yield radius, ds.isel(gas=np.flatnonzero(ds.radius.values == radius))
+
+
+def _duration(seconds: float) -> str:
+    """A time in the unit that reads best."""
+    for unit, length in (("h", 3600.0), ("min", 60.0), ("s", 1.0)):
+        if seconds >= length:
+            return f"{seconds / length:.2g} {unit} a step"
+    return f"{seconds * _MS:.2g} ms a step"
+
+
+def event_scaling(ds: xr.Dataset) -> Figure:
+    """Pair tests and time of an event against N, by each search."""
+    figure, (top, bottom) = style.new(rows=2, height=4.8)
+    names = {"pairs": "all pairs", "direct": "queue, all bodies", "boxes": "queue and sectors"}
+    methods = zip(ds.method_search.values, ds.method_dimension.values, strict=True)
+    for kind, (search, dimension) in enumerate(methods):
+        of = ds.isel(run=np.flatnonzero((ds.search.values == search) & (ds.dimension.values == dimension)))
+        count, hollow = of["count"].values, bool(dimension == 3)
+        label = f"{names[str(search)]}, {dimension}D"
+        style.points(top, count, of.pair_tests, kind=kind, hollow=hollow, label=label)
+        style.points(bottom, count, of.seconds * _US, of.seconds_error * _US, kind=kind, hollow=hollow)
+        power = {"pairs": 2.0, "direct": 1.0, "boxes": 0.0}[str(search)]
+        _guide(top, count, of.pair_tests.values, power, kind)
+        if str(search) != "boxes":
+            _guide(bottom, count, of.seconds.values * _US, power, kind)
+    top.set(xscale="log", yscale="log", ylabel="pair tests per event")
+    top.set_ylim(top=3e6)
+    top.legend(loc="upper right")
+    bottom.set(yscale="log", xlabel="number of bodies $N$", ylabel="time per event (µs)")
+    return figure
+
+
+def _guide(axis: Axes, count: np.ndarray, values: np.ndarray, power: float, kind: int) -> None:
+    """The power law that the search should follow, through the last point."""
+    axis.plot(count, values[-1] * (count / count[-1]) ** power, color=style.COLOURS[kind], lw=0.8, zorder=1)

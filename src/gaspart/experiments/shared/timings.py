@@ -1,0 +1,199 @@
+"""From repeated timings (`gaspart.measure.cost`) to costs per body and per event, and to their minimum.
+
+*Work* is counted, the same on every machine: pairs tested, boxes looked into, and boxes emptied (the
+time-stepped engine sorts all bodies anew in every step, so all its boxes are emptied once a step). *Time* is
+processor time: the median of the repeats, with that median's standard error.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gaspart.analysis import statistics
+from gaspart.theory.partition import ideal_boxes_per_body
+
+NEAR = 3.0
+"""A minimum is fitted to the partitions that cost at most this many times the cheapest."""
+SYSTEMATIC = 0.02
+"""Relative error that a time has in a fit beside its own: caches and clocks disturb whole runs."""
+
+
+def median(seconds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Median over the last axis, and its standard error.
+
+    The error of a median is sqrt(pi/2) standard errors of the mean; the spread is 1.4826 times the median
+    deviation, so that one disturbed repeat in five changes neither.
+    """
+    middle = np.median(seconds, axis=-1)
+    spread = 1.4826 * np.median(np.abs(seconds - middle[..., None]), axis=-1)
+    return middle, math.sqrt(0.5 * math.pi / seconds.shape[-1]) * spread
+
+
+def per_body(run: xr.Dataset) -> xr.Dataset:
+    """Costs per body and step, over the partitions of one time-stepped gas.
+
+    ``boxes_per_side``, ``boxes_per_body``; ``seconds`` with ``seconds_error``; ``pair_tests``,
+    ``box_visits`` and ``boxes_emptied``.
+    """
+    body_steps = run.attrs["count"] * run.steps.values
+    seconds, error = median(run.seconds.values)
+    boxes = run.boxes.values / run.attrs["count"]
+    columns = {
+        "boxes_per_side": run.boxes_per_side.values,
+        "boxes_per_body": boxes,
+        "seconds": seconds / body_steps,
+        "seconds_error": error / body_steps,
+        "pair_tests": run.pair_tests.values / body_steps,
+        "box_visits": run.box_visits.values / body_steps,
+        "boxes_emptied": boxes,
+    }
+    return _dataset(columns, seconds="s", seconds_error="s")
+
+
+def per_event(run: xr.Dataset) -> xr.Dataset:
+    """Costs per event (a collision, or a hit at a wall), over the partitions of one event-driven gas.
+
+    ``boxes_per_side``, ``boxes_per_body``, ``events``; ``seconds`` with ``seconds_error``; ``pair_tests``,
+    ``box_visits``, ``crossings`` of box boundaries.
+    """
+    events = (run.collisions + run.wall_hits).values
+    seconds, error = median(run.seconds.values)
+    columns = {
+        "boxes_per_side": run.boxes_per_side.values,
+        "boxes_per_body": run.boxes.values / run.attrs["count"],
+        "events": events,
+        "seconds": seconds / events,
+        "seconds_error": error / events,
+        "pair_tests": run.pair_tests.values / events,
+        "box_visits": run.box_visits.values / events,
+        "crossings": run.crossings.values / events,
+    }
+    return _dataset(columns, seconds="s", seconds_error="s")
+
+
+def _dataset(columns: dict, **units: str) -> xr.Dataset:
+    return xr.Dataset(
+        {name: ("partition", values, {"units": units.get(name, "1")}) for name, values in columns.items()}
+    )
+
+
+def weights(seconds: np.ndarray, error: np.ndarray, *work: float | np.ndarray) -> statistics.Fit:
+    """What each kind of work costs: seconds = sum of weight x work, by relative least squares.
+
+    seconds, error and every work: (points,). The covariance is scaled up by the scatter if that is larger
+    than the errors (and `SYSTEMATIC`) explain.
+    """
+    errors = np.hypot(error, SYSTEMATIC * seconds)
+    fit = statistics.fit_linear(np.stack(np.broadcast_arrays(*work), axis=1), seconds, errors)
+    if fit.degrees_of_freedom:
+        fit.covariance[...] *= max(1.0, fit.chi_square / fit.degrees_of_freedom)
+    return fit
+
+
+def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
+    """The ideal number of boxes per body of one gas, from its `per_body` costs; each with its 95 % interval.
+
+    By time: the minimum of a parabola of ln seconds against ln boxes (``ideal``, ``ideal_low``,
+    ``ideal_high``, ``ideal_interior``). By work: with seconds = a + b tests + c boxes, all per body, fitted
+    to the same partitions, the minimum is at sqrt(3^d b / 2 c) (``model``, ``model_low``, ``model_high``; NaN
+    if a weight is not positive), with ``body_seconds`` a (moving, sorting, and looking into boxes, whose
+    number hardly changes), ``test_seconds`` b, ``box_seconds`` c, and their ``_error``.
+    """
+    boxes, seconds, error = (costs[name].values for name in ("boxes_per_body", "seconds", "seconds_error"))
+    best = statistics.optimum(boxes, seconds, within=NEAR)
+    near = seconds <= max(NEAR * seconds.min(), np.sort(seconds)[min(3, len(seconds) - 1)])
+    fit = weights(seconds[near], error[near], 1.0, costs.pair_tests.values[near], boxes[near])
+    (body, test, box), errors = fit.values, fit.errors
+    model = spread = math.nan
+    if test > 0.0 and box > 0.0:
+        model = float(ideal_boxes_per_body(test, box, dimension))
+        gradient = np.array([0.0, 0.5 / test, -0.5 / box])  # of ln model
+        spread = 1.96 * math.sqrt(gradient @ fit.covariance @ gradient)
+    return {
+        "ideal": best.location,
+        "ideal_low": best.low,
+        "ideal_high": best.high,
+        "ideal_interior": int(best.interior),
+        "model": model,
+        "model_low": model * math.exp(-spread),
+        "model_high": model * math.exp(spread),
+        "body_seconds": body,
+        "body_seconds_error": errors[0],
+        "test_seconds": test,
+        "test_seconds_error": errors[1],
+        "box_seconds": box,
+        "box_seconds_error": errors[2],
+    }
+
+
+def penalty(costs: xr.Dataset, boxes_per_body: float) -> tuple[float, float]:
+    """Time at a given number of boxes per body (between partitions timed, by powers) over the least time, and
+    its standard error; NaN beyond the partitions timed."""
+    order = np.argsort(costs.boxes_per_body.values)
+    boxes, seconds, error = (
+        costs[name].values[order] for name in ("boxes_per_body", "seconds", "seconds_error")
+    )
+    after = int(np.searchsorted(boxes, boxes_per_body))
+    if not 0 < after < boxes.size:
+        return math.nan, math.nan
+    part = math.log(boxes_per_body / boxes[after - 1]) / math.log(boxes[after] / boxes[after - 1])
+    best = int(np.argmin(seconds))
+    share = np.zeros(boxes.size)  # of each time's logarithm in that of the result
+    share[[after - 1, after]] = 1.0 - part, part
+    share[best] -= 1.0
+    ratio = math.exp(share @ np.log(seconds))
+    return ratio, ratio * math.sqrt(np.sum((share * error / seconds) ** 2))
+
+
+def one_box(runs: list[xr.Dataset]) -> xr.Dataset:
+    """Over ``count``: pair tests and time of one step with one box."""
+    runs = sorted(runs, key=lambda run: run.attrs["count"])
+    steps = np.array([int(run.steps[0]) for run in runs])
+    times = np.array([median(run.seconds.values[0]) for run in runs]).reshape(-1, 2) / steps[:, None]
+    tests = np.array([int(run.pair_tests[0]) for run in runs]) / steps
+    return xr.Dataset(
+        {
+            "pair_tests": ("count", tests, {"units": "1"}),
+            "seconds": ("count", times[:, 0], {"units": "s"}),
+            "seconds_error": ("count", times[:, 1], {"units": "s"}),
+        },
+        coords={"count": [run.attrs["count"] for run in runs]},
+    )
+
+
+def listed(runs: list[xr.Dataset], gases: xr.Dataset) -> xr.Dataset:
+    """Over ``listed``: costs per body of neighbour lists, ``list_seconds`` ... as in `per_body`;
+    ``list_count``, ``list_radius``; and ``list_share``, the time over that of the gas of the same count and
+    radius among `gases` (NaN if there is none), with error."""
+    costs = xr.concat([per_body(run).isel(partition=0) for run in runs], "listed")
+    share = np.full((len(runs), 2), math.nan)
+    for n, run in enumerate(runs):
+        same = (gases["count"] == run.attrs["count"]).values & (gases.radius == run.radius).values
+        for gas in np.flatnonzero(same):
+            mine, other = costs.isel(listed=n), gases.isel(gas=gas)
+            share[n, 0] = mine.seconds / other.seconds
+            share[n, 1] = share[n, 0] * math.hypot(
+                mine.seconds_error / mine.seconds, other.seconds_error / other.seconds
+            )
+    return (
+        costs[["seconds", "seconds_error", "pair_tests"]]
+        .rename(seconds="list_seconds", seconds_error="list_seconds_error", pair_tests="list_pair_tests")
+        .assign(
+            list_count=("listed", [run.attrs["count"] for run in runs]),
+            list_radius=("listed", [run.radius for run in runs]),
+            list_share=("listed", share[:, 0]),
+            list_share_error=("listed", share[:, 1]),
+        )
+    )
+
+
+def carry_on(naive: xr.Dataset, count: float) -> tuple[float, float]:
+    """Time of one naive step with `count` bodies, and its error, from time = a N + b tests."""
+    bodies = naive["count"].values.astype(float)
+    fit = weights(naive.seconds.values, naive.seconds_error.values, bodies, naive.pair_tests.values)
+    there = np.array([count, 0.5 * count * (count - 1.0)])
+    return float(there @ fit.values), math.sqrt(there @ fit.covariance @ there)

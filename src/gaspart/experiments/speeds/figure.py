@@ -1,0 +1,157 @@
+"""Pictures of the speeds: relaxation from equal speeds, and Maxwell's distribution."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
+
+from gaspart import theory
+from gaspart.rendering import style
+
+ENGINES = {"step": "time-stepped", "event": "event-driven"}
+KOLMOGOROV_BAND = 1.36
+"""sqrt(n) times the Kolmogorov distance of n samples of the right distribution is below this in 95 %."""
+
+
+def speed_relaxation(ds: xr.Dataset) -> Figure:
+    """Histograms at the source's three times; kurtosis and never-hit fraction against collisions per body."""
+    figure, axes = style.new(rows=5, height=7.6, height_ratios=(3.2, 2.3, 1, 2.3, 1), share_x=False)
+    _histograms(axes[0], ds)
+    relaxation = theory.relaxation(ds.attrs["dimension"])
+    longest = float(ds["collisions"].max())
+    s = np.linspace(0.0, 1.04 * longest, 300)
+
+    axes[1].plot(s, relaxation.kurtosis(s), color=style.DATA, label="kinetic theory", zorder=2)
+    early = s[s < 1.6]
+    slope = theory.initial_kurtosis_slope(ds.attrs["dimension"])
+    axes[1].plot(early, 1.0 + slope * early, color=style.GREY, ls=":", label="initial slope 8/35")
+    style.level(axes[1], theory.kurtosis(ds.attrs["dimension"]), ls="--", label="Maxwell: 5/3")
+    axes[1].set_ylabel(r"kurtosis $\langle v^4\rangle/\langle v^2\rangle^2$")
+    axes[3].semilogy(s, relaxation.never_hit(s), color=style.DATA, zorder=2)
+    axes[3].set_ylabel("fraction never hit")
+
+    for top, bottom, name, curve in (
+        (axes[1], axes[2], "kurtosis", relaxation.kurtosis),
+        (axes[3], axes[4], "never_hit", relaxation.never_hit),
+    ):
+        _compare(top, bottom, ds, name, curve)
+        for axis in (top, bottom):
+            axis.set_xlim(0.0, 1.04 * longest)
+        top.tick_params(labelbottom=False)
+        bottom.set_ylabel(r"residual ($\sigma$)")
+        bottom.set_yticks([-3, 0, 3])
+    axes[4].set_xlabel(r"collisions per body $s = 2N_\mathrm{coll}/N$")
+    axes[1].set_ylim(0.97, 1.76)
+    axes[1].legend(loc="lower right")
+    axes[3].legend(loc="lower left")
+    style.letter(axes[0], "a")
+    style.letter(axes[1], "b")
+    style.letter(axes[3], "c", x=0.95)
+    return figure
+
+
+def _histograms(axis: Axes, ds: xr.Dataset) -> None:
+    """Densities at the three times: outlines from the time-stepped engine, points from the other."""
+    edges = np.append(ds["lower"].values, ds["upper"].values[-1])
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    for kind, frame in enumerate(ds["shown"].values):
+        row = ds.isel(frame=int(frame), snapshot=kind)
+        colour = style.COLOURS[kind]
+        s = float(row["collisions"].mean())
+        label = f"$t={float(row['time']):g}$, $s={s:.1f}$"
+        for engine in ds["engine"].values:
+            density = row["density"].sel(engine=engine).values
+            seen = density > 0.0
+            if str(engine) == "step":
+                axis.stairs(np.where(seen, density, np.nan), edges, color=colour, lw=0.8, label=label)
+            else:
+                error = row["density_error"].sel(engine=engine).values
+                style.points(axis, middle[seen], density[seen], error[seen], kind=kind, markersize=2)
+    u = np.linspace(1e-3, edges[-1], 300)
+    dimension = ds.attrs["dimension"]
+    axis.plot(
+        u, theory.maxwell_pdf(u, dimension, 1.0 / dimension), color=style.DATA, label="Maxwell", zorder=4
+    )
+    peak = float(ds["density"].max())
+    axis.annotate(
+        "never hit", (0.97, 0.8 * peak), (0.5, 1.2 * peak), arrowprops={"arrowstyle": "-", "lw": 0.6}
+    )
+    axis.set_yscale("log")
+    axis.set_ylim(2e-3, 20.0)
+    axis.set_xlim(0.0, edges[-1])
+    axis.set_xlabel(r"speed $v/\sqrt{\langle v^2\rangle}$")
+    axis.set_ylabel("probability density")
+    axis.legend(loc="upper right")
+
+
+def _compare(
+    top: Axes, bottom: Axes, ds: xr.Dataset, name: str, curve: Callable[[np.ndarray], ArrayLike]
+) -> None:
+    """Both engines' points on the curve, and their residuals in standard errors of each."""
+    style.band(bottom, -3.0, 3.0)
+    style.level(bottom, 0.0)
+    for kind, engine in enumerate(ds["engine"].values):
+        row = ds.sel(engine=engine).isel(frame=slice(1, None))
+        s, values, errors = (row[key].values for key in ("collisions", name, f"{name}_error"))
+        label = ENGINES[str(engine)] if name == "never_hit" else None
+        style.points(top, s, values, errors, kind=kind, hollow=kind > 0, label=label)
+        style.points(bottom, s, (values - curve(s)) / errors, kind=kind, hollow=kind > 0)
+    bottom.set_ylim(-4.5, 4.5)
+
+
+def speed_distribution_spheres(ds: xr.Dataset) -> Figure:
+    """Density, residual and cumulative difference in 3D."""
+    return _distribution(ds)
+
+
+def speed_distribution_discs(ds: xr.Dataset) -> Figure:
+    """Density, residual and cumulative difference in 2D."""
+    return _distribution(ds)
+
+
+def _distribution(ds: xr.Dataset) -> Figure:
+    dimension = ds.attrs["dimension"]
+    figure, axes = style.new(rows=4, height=6.4, height_ratios=(3, 1.3, 2.2, 1.3))
+    u = np.linspace(0.0, float(ds["upper"][-1]), 400)
+    axes[0].plot(u, theory.maxwell_pdf(u, dimension, 1.0 / dimension), color=style.DATA, label="Maxwell")
+    maxwell = theory.maxwell_cdf(ds["speed"].values, dimension, 1.0 / dimension)
+    axes[2].plot(ds["speed"], maxwell, color=style.DATA, lw=0.8, zorder=4)
+    style.band(axes[1], -3.0, 3.0)
+    style.level(axes[1], 0.0)
+    style.level(axes[3], 0.0)
+    middle = 0.5 * (ds["lower"].values + ds["upper"].values)
+    width = ds["upper"].values[0] - ds["lower"].values[0]
+    for kind in range(ds.sizes["point"]):
+        row = ds.isel(point=kind)
+        label = rf"$\eta={float(row['packing_fraction']):.2g}$, {ENGINES[str(row['engine'].values)]}"
+        density, error = row["density"].values, row["density_error"].values
+        style.points(axes[0], middle, density, error, kind=kind, hollow=True, label=label)
+        # The residuals of different packing fractions stand beside each other within their bin.
+        beside = middle + width * 0.25 * (kind - 0.5 * (ds.sizes["point"] - 1))
+        style.points(axes[1], beside, row["residual"].values, kind=kind, markersize=2.5)
+        dashes = (2.0 * kind, (2.0, 2.0 * ds.sizes["point"] - 2.0)) if ds.sizes["point"] > 1 else (0, (2, 2))
+        cumulative = row["difference"].values + maxwell
+        axes[2].plot(ds["speed"], cumulative, color=style.COLOURS[kind], ls=dashes, lw=2)
+        scaled = float(row["samples"]) ** 0.5 * row["difference"]
+        axes[3].plot(ds["speed"], scaled, color=style.COLOURS[kind])
+    style.band(axes[3], -KOLMOGOROV_BAND, KOLMOGOROV_BAND)
+    axes[0].set_ylabel("probability density")
+    axes[1].set_ylabel(r"residual ($\sigma$)")
+    axes[2].set_ylabel("cumulative probability")
+    axes[3].set_ylabel(r"$\sqrt{n}\times$ difference")
+    axes[3].set_xlabel(r"speed $v/\sqrt{\langle v^2\rangle}$")
+    axes[1].set_ylim(-4.5, 4.5)
+    axes[1].set_yticks([-3, 0, 3])
+    axes[2].set_ylim(0.0, 1.03)
+    axes[3].set_ylim(-2.0, 2.0)
+    axes[3].set_xlim(0.0, float(ds["upper"][-1]))
+    axes[0].set_ylim(0.0, 1.5 * float(ds["density"].max()))
+    axes[0].legend(loc="upper right")
+    for axis, letter in zip((axes[0], axes[2]), "ab", strict=True):
+        style.letter(axis, letter)
+    return figure

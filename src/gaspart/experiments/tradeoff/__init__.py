@@ -1,0 +1,1 @@
+"""Speed against accuracy: speed_accuracy, time_to_accuracy."""

@@ -1,0 +1,1 @@
+"""Memory of velocities: velocity_autocorrelation."""

@@ -1,0 +1,117 @@
+"""The velocity autocorrelation: its start, exponential, and its long-time tail, a power of time.
+
+Everything is in reduced units: the bodies' diameter, mass and temperature are 1; s, the clock, is time in
+Enskog's collisions of a body. The runs' total momentum is taken out, leaving velocities u about the centre of
+mass; where momentum is free (canonical) one has the centre's own beside, which does not decay:
+
+    C(t) = 1/N + <u(0).u(t)> / (d k_B T),    k_B T = m <u^2> / d * N / (N-1) .
+
+That is exact. C(t) of an infinite fluid differs from it once momentum has come round the container: sound
+does that first.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from gaspart import theory
+from gaspart.analysis.correlations import autocorrelation, between, centred
+from gaspart.analysis.statistics import bootstrap, fit_polynomial, mean_of
+from gaspart.planning import grid
+from gaspart.trajectory.run import open_trajectory
+
+
+def velocity_autocorrelation(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """C(t) of every point, the rate of its start and the amplitude and exponent of its tail.
+
+    settings: `start_to`, collisions of a body up to which -ln C is fitted by a line and a parabola, where it
+    is sampled that often; `tail`, from and to which the tail is fitted of all other points.
+
+    Returns over `point` and `lag` (NaN beyond a point's own): collisions s, time, correlation and its error;
+    over `point`: dimension, packing_fraction, count, sound (s at which it has crossed the container),
+    start_rate and its error (over the collision rate), tail_from, tail_to, tail_ratio and its error
+    (amplitude over theory's), tail_exponent and its error; NaN where a point has none.
+    """
+    rows = [_row(point, settings) for point in points]
+    lags = max(len(row["collisions"]) for row in rows)
+    dataset = xr.Dataset()
+    for name in rows[0]:
+        units = {"units": "sigma sqrt(m / k_B T)" if name == "time" else "1"}
+        if np.ndim(rows[0][name]):
+            padded = [np.pad(row[name], (0, lags - len(row[name])), constant_values=np.nan) for row in rows]
+            dataset[name] = (("point", "lag"), np.array(padded), units)
+        else:
+            dataset[name] = ("point", np.array([row[name] for row in rows]), units)
+    return dataset
+
+
+def _row(point: grid.Point, settings: dict) -> dict:
+    scene = grid.scene(point)
+    dimension, count, eta = scene.dimension, scene.count, scene.packing_fraction
+    rate = float(theory.collision_rate(eta, dimension))
+    rate *= float(theory.collision_rate_finite_size_factor(eta, dimension, count))
+    side = min(scene.container.lengths) / (2.0 * scene.largest_radius)
+    sound = side / float(theory.speed_of_sound(eta, dimension)) * rate
+    runs = [_replica(point, path, settings["tail"][1] / rate) for path in point.replica_paths]
+    shortest = min(len(values) for _, values in runs)
+    time = np.mean([times[:shortest] for times, _ in runs], axis=0)
+    samples = np.stack([values[:shortest] for _, values in runs])
+    row = {
+        "dimension": dimension,
+        "packing_fraction": eta,
+        "count": count,
+        "sound": sound,
+        "collisions": time * rate,
+        "time": time,
+        "correlation": samples.mean(axis=0),
+        "correlation_error": samples.std(axis=0, ddof=1) / math.sqrt(len(samples)),
+        **dict.fromkeys(("start_rate", "start_rate_error", "tail_from", "tail_to"), math.nan),
+        **dict.fromkeys(("tail_ratio", "tail_ratio_error"), math.nan),
+        **dict.fromkeys(("tail_exponent", "tail_exponent_error"), math.nan),
+    }
+    early = between(row["collisions"], row["collisions"][1], settings["start_to"])
+    if early.sum() >= 4:
+        slope = mean_of([_initial_rate(row["collisions"][early], values[early]) for values in samples])
+        row |= {"start_rate": slope.value, "start_rate_error": slope.error}
+    start, stop = settings["tail"][0], min(settings["tail"][1], sound)
+    late = between(row["collisions"], start, stop)
+    if late.sum() >= 4 and early.sum() < 4:  # what is sampled finely is too short for the tail
+        expected = theory.velocity_autocorrelation_tail(time[late], eta, dimension)
+        ratio = mean_of([float(values[late] @ expected / (expected @ expected)) for values in samples])
+        exponent = bootstrap(
+            lambda chosen: _exponent(time[late], chosen.mean(axis=0)), samples[:, late], repeats=200
+        )
+        row |= {"tail_from": start, "tail_to": stop, "tail_ratio": ratio.value}
+        row |= {"tail_ratio_error": ratio.error, "tail_exponent": exponent.value}
+        row["tail_exponent_error"] = exponent.error
+    return row
+
+
+def _replica(point: grid.Point, path: str, longest: float) -> tuple[np.ndarray, np.ndarray]:
+    """Times and C at them, to the lag `longest` (reduced time) but at most half the run."""
+    scene, drop = grid.scene(point), grid.schedule(point).equilibration_frames
+    with open_trajectory(path) as trajectory:
+        velocities = centred(trajectory["velocities"].values[drop:].astype(float))
+        time = trajectory["time"].values[drop:].astype(float)
+    frames, count, dimension = velocities.shape
+    thermal = math.sqrt((velocities**2).sum() / (frames * dimension * (count - 1)))
+    interval = (time[-1] - time[0]) / (frames - 1) * thermal / (2.0 * scene.largest_radius)
+    lags = min(frames // 2, math.ceil(longest / interval)) + 1
+    return interval * np.arange(lags), autocorrelation(velocities, lags) / thermal**2 + 1.0 / count
+
+
+def _initial_rate(collisions: np.ndarray, values: np.ndarray) -> float:
+    """-d ln C / ds at s = 0, of a parabola through 0."""
+    return float(fit_polynomial(collisions, -np.log(values), powers=(1, 2)).values[0])
+
+
+def _exponent(time: np.ndarray, values: np.ndarray) -> float:
+    """Of the power law through C, all lags alike in C: the noise is the same at all of them. By one Newton
+    step from the straight line in the logarithms, whose noise grows as C falls."""
+    slope, level = np.polyfit(np.log(time), np.log(np.abs(values)), 1, w=np.abs(values))
+    power = np.exp(level) * time**slope
+    design = np.stack([power, power * np.log(time)], axis=1)
+    return float(slope + np.linalg.lstsq(design, values - power, rcond=None)[0][1])

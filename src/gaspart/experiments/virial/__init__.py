@@ -1,0 +1,1 @@
+"""Equation of state: virial_discs, virial_spheres."""

@@ -1,0 +1,1 @@
+"""Pressure on walls: wall_pressure."""

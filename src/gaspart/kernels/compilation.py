@@ -1,0 +1,100 @@
+"""How kernels are compiled: one policy, in one place.
+
+IEEE arithmetic in the order written (no fastmath), so that the same source gives the same bits on every
+x86-64 machine; cached on disk, under a digest of the sources, because numba does not notice when a helper
+in another file changes.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+from gaspart.kernels.numba_loading import load_numba
+
+numba = load_numba()
+F = TypeVar("F", bound=Callable)
+_HERE = Path(__file__).parent
+
+
+def source_digest() -> str:
+    """A short digest of every module of this package: all compiled code is in it, and nothing else."""
+    digest = hashlib.sha256()
+    for path in sorted(_HERE.rglob("*.py")):
+        digest.update(path.relative_to(_HERE).as_posix().encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def cache_directory() -> Path:
+    """Where compiled kernels are kept: $GASPART_CACHE, or the user's cache folder."""
+    home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(os.environ.get("GASPART_CACHE") or Path(home) / "gaspart") / source_digest()
+
+
+def _writable(directory: Path) -> bool:
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    return os.access(directory, os.W_OK)
+
+
+_CACHE = cache_directory()
+_CACHING = _writable(_CACHE)
+if not _CACHING:
+    warnings.warn(
+        f"gaspart: cannot write the kernel cache {_CACHE}; compiling anew in every process "
+        "(set GASPART_CACHE to a writable folder)",
+        stacklevel=2,
+    )
+
+
+def _compile(function: F, **options: Any) -> F:
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(_CACHE)
+    try:
+        return numba.njit(cache=_CACHING, nogil=True, error_model="numpy", **options)(function)
+    finally:
+        numba.config.CACHE_DIR = before
+
+
+def kernel(function: F) -> F:
+    """Compile `function` with numba under the package's policy. It must not make arrays.
+
+    Without numba's reference counting, that is: counting the arrays that pass between helpers costs several
+    times what the helpers compute.
+    """
+    return _compile(function, _nrt=False)
+
+
+def helper(function: F) -> F:
+    """The same for a small function that is inlined where it is used: LLVM by itself leaves a call, which
+    passes every array as seven words."""
+    return _compile(function, _nrt=False, forceinline=True)
+
+
+def inner_kernel(function: F) -> F:
+    """A kernel that only kernels call: without the way in from Python, which for a function that takes an
+    engine's arrays takes longer to compile than what it does."""
+    return _compile(function, _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+
+
+def inner_helper(function: F) -> F:
+    """The same for a function that is inlined."""
+    return _compile(function, _nrt=False, forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+
+
+def allocating_kernel(function: F) -> F:
+    """The same for a function that makes arrays."""
+    return _compile(function)
+
+
+def parallel_kernel(function: F) -> F:
+    """The same for a function whose `prange` loops are shared among threads. What its parts write must not
+    depend on one another, so that it does not matter which is done when."""
+    return _compile(function, parallel=True)

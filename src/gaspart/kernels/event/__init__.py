@@ -1,0 +1,1 @@
+"""The event-driven engine: loop, queue, searches, growth."""

@@ -1,0 +1,277 @@
+"""Eight pairs at once: the times of their contacts, in vector instructions.
+
+What a compiler does not find by itself: eight rows, each a vector of eight numbers, are transposed into
+vectors of one number of eight bodies, and the times are worked out in these, in the same arithmetic and
+order as in `flight.pair_time`, to the same bits. LLVM makes of the vectors what the processor has, of
+whatever width.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+from gaspart.kernels.event.model import PLACES
+
+WIDTH = 8
+LAP_BITS, LAP_FIRST = 2, 32  # of a candidate, above the number of the body: per axis 1 + the lap of its image
+_DOUBLE, _INT, _WORD = ir.DoubleType(), ir.IntType(32), ir.IntType(64)
+_STAGES = (  # of a transposition: swap single lanes, pairs of lanes, halves
+    (1, [0, 8, 2, 10, 4, 12, 6, 14], [1, 9, 3, 11, 5, 13, 7, 15]),
+    (2, [0, 1, 8, 9, 4, 5, 12, 13], [2, 3, 10, 11, 6, 7, 14, 15]),
+    (4, [0, 1, 2, 3, 8, 9, 10, 11], [4, 5, 6, 7, 12, 13, 14, 15]),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Lanes:
+    """Eight values, and the expressions in them that are written into the machine code."""
+
+    builder: ir.IRBuilder
+    value: ir.Value
+
+    def all(self, scalar: float | ir.Value) -> Lanes:
+        """The same number in every lane."""
+        if not isinstance(scalar, ir.Value):
+            scalar = ir.Constant(_DOUBLE, scalar)
+        one = ir.VectorType(scalar.type, WIDTH)
+        first = self.builder.insert_element(ir.Constant(one, ir.Undefined), scalar, _INT(0))
+        everywhere = ir.Constant(ir.VectorType(_INT, WIDTH), [0] * WIDTH)
+        return Lanes(self.builder, self.builder.shuffle_vector(first, first, everywhere))
+
+    def _with(self, name: str, other: Lanes | float | ir.Value) -> Lanes:
+        other = other if isinstance(other, Lanes) else self.all(other)
+        return Lanes(self.builder, getattr(self.builder, name)(self.value, other.value))
+
+    def _than(self, sign: str, other: Lanes | float | ir.Value) -> Lanes:
+        other = other if isinstance(other, Lanes) else self.all(other)
+        return Lanes(self.builder, self.builder.fcmp_ordered(sign, self.value, other.value))
+
+    def __add__(self, other):
+        return self._with("fadd", other)
+
+    def __sub__(self, other):
+        return self._with("fsub", other)
+
+    def __mul__(self, other):
+        return self._with("fmul", other)
+
+    def __truediv__(self, other):
+        return self._with("fdiv", other)
+
+    def __and__(self, other):
+        return self._with("and_", other)
+
+    def __or__(self, other):
+        return self._with("or_", other)
+
+    def __lt__(self, other):
+        return self._than("<", other)
+
+    def __le__(self, other):
+        return self._than("<=", other)
+
+    def __gt__(self, other):
+        return self._than(">", other)
+
+    def __ge__(self, other):
+        return self._than(">=", other)
+
+    def equals(self, other):
+        """Lane by lane."""
+        return self._than("==", other)
+
+    def turned(self, step: int) -> Lanes:
+        """The lanes some steps on."""
+        places = ir.Constant(ir.VectorType(_INT, WIDTH), [(n + step) % WIDTH for n in range(WIDTH)])
+        return Lanes(self.builder, self.builder.shuffle_vector(self.value, self.value, places))
+
+    def sqrt(self):
+        """Lane by lane, rounded as IEEE wants."""
+        kind = ir.FunctionType(self.value.type, [self.value.type])
+        root = cgutils.get_or_insert_function(self.builder.module, kind, f"llvm.sqrt.v{WIDTH}f64")
+        return Lanes(self.builder, self.builder.call(root, [self.value]))
+
+    def where(self, condition: Lanes, other: Lanes | float) -> Lanes:
+        """These where the condition holds, the others elsewhere."""
+        other = other if isinstance(other, Lanes) else self.all(other)
+        return Lanes(self.builder, self.builder.select(condition.value, self.value, other.value))
+
+
+def load_rows(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) -> list[Lanes]:
+    """The rows of eight bodies as eight columns."""
+    vector = ir.VectorType(_DOUBLE, WIDTH)
+    rows = []
+    for index in indices:
+        place = builder.gep(data, [builder.mul(index, _WORD(WIDTH))])
+        rows.append(builder.load(builder.bitcast(place, vector.as_pointer()), align=8))
+    for step, *halves in _STAGES:
+        swapped = list(rows)
+        for n in range(WIDTH):
+            if not n & step:
+                for place, mask in zip((n, n + step), halves, strict=True):
+                    which = ir.Constant(ir.VectorType(_INT, WIDTH), mask)
+                    swapped[place] = builder.shuffle_vector(rows[n], rows[n + step], which)
+        rows = swapped
+    return [Lanes(builder, row) for row in rows]
+
+
+def load_row(builder: ir.IRBuilder, data: ir.Value, index: ir.Value) -> list[Lanes]:
+    """The row of one body, in every lane."""
+    start = builder.mul(index, _WORD(WIDTH))
+    values = (builder.load(builder.gep(data, [builder.add(start, _WORD(k))])) for k in range(WIDTH))
+    return [Lanes(builder, value).all(value) for value in values]
+
+
+def contact_times(one: list[Lanes], other: list[Lanes], offset: list[Lanes], pull: list[ir.Value]) -> Lanes:
+    """`flight.pair_time` in columns of rows, of one body and eight others displaced by `offset` (d,), which
+    all fall alike under a `pull` (d,), or, without any, not at all."""
+    d = len(offset)
+    start = other[2 * d].where(other[2 * d] > one[2 * d], one[2 * d])
+    late, late_other = start - one[2 * d], start - other[2 * d]
+    rr = rv = vv = start.all(0.0)
+    for k in range(d):
+        v, v_other = one[d + k], other[d + k]
+        if not pull:
+            r = (other[k] + v_other * late_other) - (one[k] + v * late) + offset[k]
+            v = v_other - v
+        else:
+            fall = start.all(pull[k])
+            x = one[k] + (v + fall * 0.5 * late) * late
+            r = (other[k] + (v_other + fall * 0.5 * late_other) * late_other) - x + offset[k]
+            v = (v_other + fall * late_other) - (v + fall * late)
+        rr = rr + r * r
+        rv = rv + r * v
+        vv = vv + v * v
+    sigma = one[2 * d + 1] + other[2 * d + 1]
+    c = rr - sigma * sigma
+    meets = (rv < 0.0) & (rv * rv >= vv * c)
+    root = c / ((rv * rv - vv * c).sqrt() - rv)
+    return (start + start.all(0.0).where(c <= 0.0, root)).where(meets, inf)
+
+
+def bits(candidates: Lanes, start: int, count: int) -> Lanes:
+    """So many bits of each candidate."""
+    builder = candidates.builder
+    shifted = builder.lshr(candidates.value, candidates.all(_WORD(start)).value)
+    return Lanes(builder, builder.and_(shifted, candidates.all(_WORD((1 << count) - 1)).value))
+
+
+def lap_of(candidates: Lanes, axis: int) -> Lanes:
+    """In which image of the container each candidate stands along an axis: -1, 0 or 1."""
+    builder = candidates.builder
+    lap = bits(candidates, LAP_FIRST + LAP_BITS * axis, LAP_BITS).value
+    lap = builder.trunc(lap, ir.VectorType(_INT, WIDTH))
+    lap = builder.sub(lap, candidates.all(_INT(1)).value)
+    return Lanes(builder, builder.sitofp(lap, ir.VectorType(_DOUBLE, WIDTH)))
+
+
+def marks(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) -> ir.Value:
+    """A bit for each body, from an array with a byte of 0 or 1 for each."""
+    found = ir.IntType(WIDTH)(0)
+    for n, index in enumerate(indices):
+        mark = builder.load(builder.gep(data, [index]))
+        found = builder.or_(found, builder.shl(mark, ir.IntType(WIDTH)(n)))
+    return found
+
+
+def fields(builder: ir.IRBuilder, kind: types.BaseNamedTuple, value: ir.Value) -> dict:
+    """The members of a named tuple by name, those that are tuples as lists."""
+    members = {}
+    for n, (name, member) in enumerate(zip(kind.fields, kind.types, strict=True)):
+        part = builder.extract_value(value, n)
+        members[name] = cgutils.unpack_tuple(builder, part) if hasattr(member, "count") else part
+    return members
+
+
+def sooner(time: Lanes, who: Lanes, other_time: Lanes, other_who: Lanes) -> tuple[Lanes, Lanes]:
+    """Of two contacts the sooner, of simultaneous ones that with the lower number."""
+    build = time.builder
+    lower = Lanes(build, build.icmp_signed("<", other_who.value, who.value))
+    other_is = (other_time < time) | (other_time.equals(time) & lower)
+    return other_time.where(other_is, time), other_who.where(other_is, who)
+
+
+@intrinsic
+def earliest(typingctx, rows, near, met, body, soon, partner, space, gravity, still):
+    """The earliest contact of a body with `met` candidates, if it is sooner than that with a partner: (time,
+    partner, a bit for each candidate of which nothing is known, since it or the body may not fall, see
+    `flight.note_still`)."""
+
+    def generate(context, builder, signature, arguments):
+        rows, near, met, body, soon, partner, space, gravity, still = arguments
+        space = fields(builder, signature.args[6], space)
+        rows = context.make_array(signature.args[0])(context, builder, rows).data
+        near = context.make_array(signature.args[1])(context, builder, near).data
+        still = context.make_array(signature.args[8])(context, builder, still).data
+        falls = not isinstance(signature.args[7], types.NoneType)
+        pull = fields(builder, signature.args[7], gravity)["pull"] if falls else []
+
+        one = load_row(builder, rows, body)
+        best = cgutils.alloca_once_value(builder, one[0].all(soon).value)
+        who = cgutils.alloca_once_value(builder, one[0].all(partner).value)
+        unknown = cgutils.alloca_once_value(builder, _WORD(0))
+        words = ir.VectorType(_WORD, WIDTH)
+        with cgutils.for_range_slice(builder, _WORD(0), met, _WORD(WIDTH), _WORD) as (first, _):
+            place = builder.bitcast(builder.gep(near, [first]), words.as_pointer())
+            candidates = Lanes(builder, builder.load(place, align=8))
+            numbers = bits(candidates, 0, LAP_FIRST)
+            indices = [builder.extract_element(numbers.value, _INT(n)) for n in range(WIDTH)]
+            others = load_rows(builder, rows, indices)
+            offset = [lap_of(candidates, k) * length for k, length in enumerate(space["lengths"])]
+            time = contact_times(one, others, offset, pull)
+            if falls:
+                mask = builder.or_(marks(builder, still, indices), marks(builder, still, [body] * WIDTH))
+                lanes = builder.bitcast(mask, ir.VectorType(ir.IntType(1), WIDTH))
+                time = time.all(inf).where(Lanes(builder, lanes), time)
+                mask = builder.shl(builder.zext(mask, _WORD), first)
+                builder.store(builder.or_(builder.load(unknown), mask), unknown)
+            so_far = Lanes(builder, builder.load(best)), Lanes(builder, builder.load(who))
+            time, numbers = sooner(*so_far, time, numbers)
+            builder.store(time.value, best)
+            builder.store(numbers.value, who)
+        time, numbers = Lanes(builder, builder.load(best)), Lanes(builder, builder.load(who))
+        for step in (4, 2, 1):
+            time, numbers = sooner(time, numbers, time.turned(step), numbers.turned(step))
+        found = [builder.extract_element(part.value, _INT(0)) for part in (time, numbers)]
+        return context.make_tuple(builder, signature.return_type, [*found, builder.load(unknown)])
+
+    found = types.Tuple((types.float64, types.int64, types.uint64))
+    word = types.uint64
+    return found(rows, near, word, word, types.float64, types.int64, space, gravity, still), generate
+
+
+@intrinsic
+def write_down(typingctx, near, met, places, box, lap):
+    """Write all places of a box, filled or not, as candidates of a lap into `near` from number `met` on."""
+
+    def generate(context, builder, signature, arguments):
+        near, met, places, box, lap = arguments
+        near = context.make_array(signature.args[0])(context, builder, near).data
+        places = context.make_array(signature.args[2])(context, builder, places).data
+        four, words = ir.VectorType(_INT, PLACES), ir.VectorType(_WORD, PLACES)
+        place = builder.gep(places, [builder.mul(box, _WORD(PLACES))])
+        bodies = builder.load(builder.bitcast(place, four.as_pointer()), align=4)
+        laps = Lanes(builder, lap).all(lap).value
+        laps = builder.shuffle_vector(laps, laps, ir.Constant(four, [0] * PLACES))
+        candidates = builder.or_(builder.zext(bodies, words), laps)
+        place = builder.bitcast(builder.gep(near, [met]), words.as_pointer())
+        builder.store(candidates, place, align=8)
+        return context.get_dummy_value()
+
+    return types.none(near, types.uint64, places, types.uint64, types.uint64), generate
+
+
+@intrinsic
+def lowest(typingctx, bits):
+    """The number of the lowest bit that is set, of a word that is not 0."""
+
+    def generate(context, builder, signature, arguments):
+        return builder.cttz(arguments[0], ir.IntType(1)(1))
+
+    return types.uint64(types.uint64), generate

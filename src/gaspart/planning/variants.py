@@ -1,0 +1,127 @@
+"""Which compiled kernels a point needs, as a name; and how to compile them, by a tiny run of its own."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import fields, is_dataclass
+from typing import TYPE_CHECKING, Any
+
+from gaspart.errors import SimulationError
+from gaspart.planning import grid
+from gaspart.planning.point import Point
+from gaspart.scene.matter import LATTICES
+
+if TYPE_CHECKING:
+    from gaspart.scene.scene import Scene
+
+_FEW = 8  # bodies, walls and the like that a tiny run has of each kind
+_MATTER = {"species.Species", "bodies.Body", "restitution.Restitution"}  # whose properties are features
+# in every kernel, or in none
+_NO_FEATURE = ("container", "count", "radius", "speed", "temperature", "centres_to_walls")
+
+
+def variant(point: Point) -> str:
+    """The kernels of a point: engine, search or precision, dimension, boundaries (`p`eriodic or `w`all), and
+    a digest of all features of its scene that a plain one is without.
+
+    Kernels are compiled for what is there at all, not for its numbers. Raises SceneError.
+    """
+    scene = grid.scene(point)
+    engine = "fill" if point.job in ("fill", "pack") else point.settings.get("engine", "event")
+    boxes = any(key in point.settings for key in ("boxes_per_side", "boxes_per_body", *grid.SCANS[:2]))
+    choice = {
+        "fill": "random",
+        "event": point.settings.get("search", "boxes"),
+        "step": "-".join(
+            ["boxes" if boxes else "list", point.settings.get("precision", "float64")]
+            + (["threads"] if point.settings.get("threads", 1) > 1 else [])
+        ),
+    }
+    boundary = "".join(kind[0] for kind in scene.container.boundary)
+    parts = [engine, choice[engine], f"{scene.dimension}d", boundary]
+    present = sorted(features(scene))
+    if present:
+        parts.append(hashlib.sha256(" ".join(present).encode()).hexdigest()[:8])
+    return "-".join(parts)
+
+
+def features(scene: Scene) -> set[str]:
+    """Dotted names of all that differs from its default in a scene, with its value where that is a word."""
+    found = set(_differing(scene)) - _MATTER
+    if len({kind.mass for kind in scene.kinds}) <= 1:
+        found -= {"species.mass", "bodies.mass"}  # equal masses are left out of the kernels
+    if scene.vibrates:  # which a temperature alone may tell
+        found.add("vibrates")
+    if len({kind.radius for kind in scene.kinds}) > 1:
+        from gaspart.state.oversized import largest_in_boxes
+
+        if largest_in_boxes(scene) < scene.largest_radius:
+            found.add("beside")
+    return found
+
+
+def _differing(thing: Any, prefix: str = "") -> Iterator[str]:
+    for field in fields(thing):
+        value, name = getattr(thing, field.name), f"{prefix}{field.name}"
+        required = field.default is field.default_factory  # both MISSING: no default
+        if field.name in _NO_FEATURE or value == field.default or value in LATTICES:
+            continue
+        if isinstance(value, dict):
+            value = tuple(value.values())
+        parts = value if isinstance(value, tuple) else (value,)
+        for part in parts:
+            if is_dataclass(part):
+                yield f"{name}.{type(part).__name__}"
+                yield from _differing(part, f"{name}.")
+            elif isinstance(part, str):
+                yield f"{name}={part}"
+            elif not required and part:  # an acceleration of zero is none
+                yield name
+
+
+def task(point: Point) -> str:
+    """What `warm` is to do for a point, as JSON: its scene, with only a few bodies if these have all of its
+    features, and its engine."""
+    from gaspart.scene.scene import Scene
+
+    recipe, whole = grid.recipe(point), grid.scene(point)
+    scene = {
+        key: value[:_FEW] if isinstance(value, list) else value for key, value in recipe["scene"].items()
+    }
+    for kind in scene.get("species", ()):
+        kind["count"] = min(kind["count"], _FEW)
+        if kind["arrangement"] in LATTICES:  # which need fewer kernels
+            kind["arrangement"] = "random"
+    if features(Scene.from_dict(scene)) != features(whole):
+        scene = whole.to_dict()
+    engine = recipe.get("engine") or recipe.get("engines", [None])[0]
+    return json.dumps({"scene": scene, "engine": engine})
+
+
+def warm(job: str) -> None:
+    """Run something tiny that needs all kernels of a `task`, so that they are compiled and cached."""
+    from gaspart.engines import engine_from_dict
+    from gaspart.scene.scene import Scene
+    from gaspart.simulation.simulation import Simulation
+    from gaspart.state.initial import initial_state
+
+    given = json.loads(job)
+    scene = Scene.from_dict(given["scene"])
+    if given["engine"] is None:
+        initial_state(scene, seed=1)
+        return
+    settings = dict(given["engine"])
+    if "boxes_per_side" in settings:  # one box does for a tiny run
+        settings["boxes_per_side"] = 1
+    simulation = Simulation(scene, engine_from_dict(settings), seed=1)
+    if "time_step" in settings:
+        limits = {"duration": 4 * settings["time_step"]}
+    else:
+        limits = {"duration": 1.0, "max_events": 100}
+    with suppress(SimulationError):  # a collapse, before which all was compiled
+        simulation.advance(**limits)
+        simulation.restore(simulation.checkpoint())
+        simulation.advance(**limits)

@@ -1,0 +1,1 @@
+"""A scene under an engine: Simulation."""

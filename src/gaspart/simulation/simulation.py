@@ -1,0 +1,255 @@
+"""The face that everything above is used through: a scene, an engine and a seed, under way."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+import numpy as np
+
+from gaspart.engines import EventDriven, TimeStepped
+from gaspart.engines.arrays import EventLog
+from gaspart.errors import SceneError, SimulationError
+from gaspart.scene.matter import Body, Plate, Species, Wall, box_of_walls
+from gaspart.scene.scene import Scene
+from gaspart.scene.validation import count_of, number
+from gaspart.state.initial import initial_state
+from gaspart.state.state import State
+from gaspart.state.tally import Tally
+
+ENERGY_DRIFT = {"float64": 1e-9, "float32": 1e-3}
+"""Relative drift of the energy at which a run is stopped, by the engine's precision."""
+PROPERTIES = (
+    "positions",
+    "unwrapped",
+    "images",
+    "velocities",
+    "speeds",
+    "spins",
+    "kinetic_energies",
+    "radii",
+    "masses",
+    "moments_of_inertia",
+    "species",
+)
+"""What `Simulation.properties` can tell of each body; explained in `State`."""
+
+
+class Simulation:
+    """One run. `seed`: a whole number, or a tuple of them, that fixes the initial state and what thermal
+    walls draw.
+
+    Raises SceneError if the scene cannot be set up, or the engine cannot model it.
+    """
+
+    def __init__(
+        self, scene: Scene, engine: EventDriven | TimeStepped, seed: int | tuple[int, ...] = 0
+    ) -> None:
+        self.scene, self.engine, self.seed = scene, engine, seed
+        self._log: EventLog | None = None
+        self._advanced = False
+        self._set_up()
+
+    def __repr__(self) -> str:
+        kind = "discs" if self.scene.dimension == 2 else "spheres"
+        reached = f"time {self.time:g}, {self._dynamics.tally.collisions} collisions"
+        return f"<Simulation of {self.scene.count} {kind}, {self.engine.name} engine: {reached}>"
+
+    def _set_up(self) -> None:
+        self._initial = initial_state(self.scene, self.seed)
+        self._energy = self._initial.energy
+        self._moving = self._initial.kinetic_energy + self._initial.vibrational_energy
+        self._dynamics = self.engine.start(self.scene, self._initial, self.seed)
+
+    def add(
+        self,
+        position: Iterable[float],
+        velocity: Iterable[float],
+        radius: float,
+        mass: float = 1.0,
+        **properties: Any,
+    ) -> None:
+        """Add one body (properties as in `Body`): `scene` becomes a new, validated scene. Refused once the
+        simulation has advanced."""
+        self._change(
+            self.scene.with_bodies(Body(tuple(position), tuple(velocity), radius, mass, **properties))
+        )
+
+    def add_random(self, count: int, radius: float, **properties: Any) -> None:
+        """Add `count` bodies at random places (properties as in `Species`), before the first advance."""
+        self._change(self.scene.with_species(Species(count, radius, **properties)))
+
+    def add_wall(self, start: Iterable[float], end: Iterable[float]) -> None:
+        """Add an interior wall from `start` to `end`. Refused after the first advance."""
+        self._change(self.scene.with_walls(Wall(tuple(start), tuple(end))))
+
+    def add_plate(self, corner: Iterable[float], edges: Iterable[Iterable[float]]) -> None:
+        """Add an interior wall of three dimensions (see `Plate`). Refused after the first advance."""
+        self._change(self.scene.with_walls(Plate(tuple(corner), tuple(map(tuple, edges)))))
+
+    def add_box(self, lower: Iterable[float], upper: Iterable[float]) -> None:
+        """Add the walls of a rectangle or of a cuboid, given opposite corners. Refused after the first
+        advance."""
+        self._change(self.scene.with_walls(*box_of_walls(tuple(lower), tuple(upper))))
+
+    def _change(self, scene: Scene) -> None:
+        if self._advanced:
+            raise SceneError(
+                "scene", "under way", "bodies and walls can only be added before the first advance"
+            )
+        before = self.scene
+        self.scene = scene
+        try:
+            self._set_up()
+        except SceneError:
+            self.scene = before
+            self._set_up()
+            raise
+
+    def advance(
+        self, duration: float | None = None, max_events: int | None = None, until: float | None = None
+    ) -> None:
+        """Advance by `duration`, to the time `until`, or by `max_events` collisions and wall hits, whichever
+        comes first. The time-stepped engine stops at the last whole step not after the target.
+
+        Raises SceneError for a target in the past, or no target at all.
+        """
+        if duration is not None:
+            until_ = self.time + number("duration", duration, "must not be negative", least=0.0)
+            until = until_ if until is None else min(until, until_)
+        if until is None:
+            if max_events is None:
+                raise SceneError("duration", None, "give duration, until or max_events")
+            until = math.inf
+        elif until < self.time:
+            raise SceneError("until", until, f"lies in the past of the present time {self.time:g}")
+        if max_events is not None:
+            count_of("max_events", max_events)
+        self._advanced = True
+        self._dynamics.advance(until, max_events, self._log)
+
+    @property
+    def time(self) -> float:
+        """The simulated time reached."""
+        return self._dynamics.time
+
+    @property
+    def state(self) -> State:
+        """All bodies now; a copy."""
+        return self._dynamics.state
+
+    @property
+    def initial_state(self) -> State:
+        """All bodies at the start; a copy."""
+        return self._initial.copy()
+
+    @property
+    def tally(self) -> Tally:
+        """What was counted since the start, or the last `reset_tally`; a copy."""
+        return self._dynamics.tally
+
+    def reset_tally(self) -> None:
+        """Begin to count anew."""
+        self._dynamics.reset_tally()
+
+    @property
+    def record_events(self) -> bool:
+        """Whether events are written down as they happen (event-driven engine only)."""
+        return self._log is not None
+
+    @record_events.setter
+    def record_events(self, wanted: bool) -> None:
+        if wanted and not isinstance(self.engine, EventDriven):
+            raise SceneError("record_events", wanted, 'needs the "event" engine; steps know no events')
+        self._log = EventLog(self.scene.dimension, self.scene.rough) if wanted else None
+
+    @property
+    def events(self) -> dict[str, np.ndarray]:
+        """The events recorded: time (M,), bodies (M, 2), positions and velocities (M, 2, d) just after; with
+        rough contacts also spins, (M, 2) in 2D and (M, 2, 3) in 3D.
+
+        The second of `bodies` is -1 - face for a hit at a face of the container or the edge of its well,
+        -1 - 2d - n for one at interior wall n.
+        """
+        if self._log is None:
+            raise SceneError("events", None, "set record_events to True before advancing")
+        return self._log.events
+
+    def replay(self, by: str = "time", interval: float | None = None) -> Iterator[State]:
+        """The states from the start to the present time, by running it again: at every `interval`
+        (by="time"), or after every event (by="event", event-driven engine only)."""
+        if by == "time":
+            step = number("interval", interval, "must be positive", above=0.0)
+            count = math.floor(self.time / step * (1 + 1e-12)) + 1
+            yield from self._states_at(min(n * step, self.time) for n in range(count))
+        elif by == "event":
+            again = Simulation(self.scene, self.engine, self.seed)
+            yield again.state
+            while True:
+                again.advance(until=self.time, max_events=1)
+                if again.time >= self.time:
+                    yield again.state
+                    return
+                yield again.state
+        else:
+            raise SceneError("by", by, 'must be "time" or "event"')
+
+    def _states_at(self, times: Iterable[float]) -> Iterator[State]:
+        """The states at rising times, by running it again."""
+        again = Simulation(self.scene, self.engine, self.seed)
+        for time in times:
+            again.advance(until=time)
+            yield again.state
+
+    def properties(self, *names: str, at: Iterable[float] | None = None) -> dict[str, np.ndarray]:
+        """Chosen properties of all bodies as arrays, by their names in `PROPERTIES`.
+
+        Now: (N, ...) each. Or at the times `at`, from the start to the present one and in any order, by
+        running it again: (T, N, ...) each, and `time` (T,) with them.
+
+        Raises SceneError for an unknown name, and for a time that lies outside.
+        """
+        for name in names:
+            if name not in PROPERTIES:
+                raise SceneError("properties", name, f"must be one of {PROPERTIES}")
+        if at is None:
+            state = self.state
+            return {name: getattr(state, name) for name in names}
+        times = [number("at", time, "must be from 0 to the present time", least=0.0) for time in at]
+        if max(times, default=0.0) > self.time:
+            raise SceneError("at", max(times), f"lies after the present time {self.time:g}")
+        rising = sorted(set(times))
+        found = {
+            time: [getattr(state, name) for name in names]
+            for time, state in zip(rising, self._states_at(rising), strict=True)
+        }
+        arrays = {name: np.array([found[time][n] for time in times]) for n, name in enumerate(names)}
+        return {"time": np.array(times), **arrays}
+
+    def check_invariants(self, state: State | None = None) -> None:
+        """Raise SimulationError if energy has drifted from what it was less what contacts and walls took, or
+        a body is not where it can be. state: the present one, if it is at hand."""
+        state = self.state if state is None else state
+        if not (np.isfinite(state.positions).all() and np.isfinite(state.velocities).all()):
+            raise SimulationError(f"at time {self.time:g} a position or velocity is not finite")
+        moving = state.kinetic_energy + state.vibrational_energy
+        drift = abs(moving + state.potential_energy + self._dynamics.dissipated - self._energy)
+        scale = max(moving, self._moving)
+        if state.gravity is not None:  # what a fall through the container can change
+            masses = state.masses[np.isfinite(state.masses)]
+            scale += float(masses.sum() * (abs(state.gravity) @ state.lengths))
+        allowed = ENERGY_DRIFT[getattr(self.engine, "precision", "float64")] * scale
+        if drift > allowed:
+            raise SimulationError(
+                f"at time {self.time:g} the energy has drifted by {drift:g} from {self._energy:g}"
+            )
+
+    def checkpoint(self) -> dict[str, np.ndarray]:
+        """Arrays from which `restore` goes on to the same bits, as if nothing had happened."""
+        return self._dynamics.checkpoint()
+
+    def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
+        """Go on from a checkpoint of a simulation of the same scene, engine and seed."""
+        self._advanced = True
+        self._dynamics.restore(checkpoint)

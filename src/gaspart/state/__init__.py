@@ -1,0 +1,1 @@
+"""All particles at one time: State and Tally, random streams, initial states."""

@@ -1,0 +1,112 @@
+"""The space partition: equal boxes on a grid, each axis divided on its own, down to one box.
+
+Box coordinates are kept for three axes whatever the dimension; a missing axis has one box and no
+neighbours. Which boxes neighbour one another is a table per axis, so that walls, periodic faces and
+axes of one or two boxes need no code of their own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gaspart.errors import SceneError
+from gaspart.scene.scene import Scene, count_of
+
+NOWHERE = -1
+
+
+@dataclass(frozen=True)
+class Boxes:
+    """A grid of boxes.
+
+    per_side: (3,) boxes along each axis; widths: (3,) their sides; strides: (3,) of the linear index;
+    neighbour: (3, most, 3) what a step of -1, 0, +1 from a box coordinate adds to the linear index, or
+    NOWHERE; shift: (3, most, 3) the container lengths that this step crosses on a periodic axis.
+    """
+
+    per_side: np.ndarray
+    widths: np.ndarray
+    strides: np.ndarray
+    neighbour: np.ndarray
+    shift: np.ndarray
+
+    @property
+    def count(self) -> int:
+        """The number of boxes."""
+        return int(self.per_side.prod())
+
+    def coordinates(self, positions: np.ndarray) -> np.ndarray:
+        """(N, 3) box coordinates of positions (N, d); the outermost box for a position outside."""
+        found = np.zeros((len(positions), 3), dtype=np.int64)
+        for k in range(positions.shape[1]):
+            along = (positions[:, k] / self.widths[k]).astype(np.int64)
+            found[:, k] = np.clip(along, 0, self.per_side[k] - 1)
+        return found
+
+    def index_of(self, position: np.ndarray) -> int:
+        """The linear index of the box that holds a position (d,)."""
+        return int(self.coordinates(position[None])[0] @ self.strides)
+
+
+def widest(scene: Scene) -> float:
+    """The smallest side a box may have: one largest diameter, lest a contact be overlooked."""
+    return 2.0 * scene.largest_radius
+
+
+def sides_for(scene: Scene, per_body: float, narrowest: float | None = None) -> tuple[int, ...]:
+    """Boxes per side (d,) for about `per_body` boxes per body, none narrower than the largest diameter, or
+    than `narrowest` if bigger bodies are kept beside the boxes."""
+    lengths = scene.container.lengths
+    width = (scene.container.volume / max(1.0, per_body * scene.count)) ** (1.0 / scene.dimension)
+    width = max(width, widest(scene) if narrowest is None else narrowest)
+    return tuple(max(1, int(length / width)) for length in lengths)
+
+
+def make_boxes(
+    scene: Scene, boxes_per_side: int | tuple[int, ...], images: bool, narrowest: float | None = None
+) -> Boxes:
+    """The grid of `boxes_per_side` (one number, or one per axis) for a scene. narrowest: the smallest side a
+    box may have, the largest diameter unless some bodies are kept beside the boxes.
+
+    On a periodic axis of fewer than three boxes the same box is a neighbour on both sides: with `images`
+    both stand in the table, each with its own shift; without, each box stands in it once.
+
+    Raises SceneError if a box would be narrower than the largest diameter.
+    """
+    lengths = scene.container.lengths
+    given = boxes_per_side
+    if not isinstance(given, (tuple, list)):
+        given = (given,) * len(lengths)
+    if len(given) != len(lengths):
+        raise SceneError("boxes_per_side", boxes_per_side, "must be one number, or one per axis")
+    sides = [count_of("boxes_per_side", n, least=1) for n in given]
+    narrowest = widest(scene) if narrowest is None else narrowest
+    for length, n in zip(lengths, sides, strict=True):
+        if n > 1 and length / n < narrowest:
+            rule = f"boxes must not be narrower than the largest diameter, {narrowest:g}"
+            raise SceneError("boxes_per_side", boxes_per_side, rule)
+    periodic = scene.container.periodic + (False,) * (3 - len(lengths))
+    per_side = np.array(sides + [1] * (3 - len(sides)), dtype=np.int64)
+    widths = np.array(
+        [length / n for length, n in zip(lengths, sides, strict=True)] + [1.0] * (3 - len(sides))
+    )
+    strides = np.array([1, per_side[0], per_side[0] * per_side[1]], dtype=np.int64)
+    most = int(per_side.max())
+    neighbour = np.full((3, most, 3), NOWHERE, dtype=np.int64)
+    shift = np.zeros((3, most, 3), dtype=np.int64)
+    for axis in range(3):
+        n = int(per_side[axis])
+        for c in range(n):
+            seen = set()
+            for step in (0, 1, -1):
+                laps, target = divmod(c + step, n)
+                if laps and not periodic[axis]:
+                    continue
+                if target in seen and not images:
+                    continue
+                seen.add(target)
+                neighbour[axis, c, step + 1] = target * strides[axis]
+                shift[axis, c, step + 1] = laps
+    return Boxes(per_side, widths, strides, neighbour, shift)

@@ -1,0 +1,152 @@
+"""How a scene starts: where the bodies are, and how they move."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from gaspart.errors import SceneError
+from gaspart.scene.matter import LATTICES
+from gaspart.scene.scene import Scene
+from gaspart.state.random import directions, natural_log, normals, stream
+from gaspart.state.state import State
+from gaspart.state.wells import places_in_wells, well_energies
+
+_POSITIONS, _VELOCITIES, _VIBRATIONS = 0, 1, 3  # 2 is that of draws at walls
+
+
+def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
+    """The state at time 0. Positions and velocities have streams of their own under the one seed.
+
+    Raises SceneError if the bodies cannot be placed.
+    """
+    explicit = len(scene.bodies)
+    counts = [explicit, *(kind.count for kind in scene.species)]
+    groups = [len(scene.species), *range(len(scene.species))]
+
+    radii, masses = per_body(scene, "radius").astype(float), per_body(scene, "mass").astype(float)
+    shape = 1 / 2 if scene.dimension == 2 else 2 / 5  # of a uniform disc or sphere
+    inertia = per_body(scene, "moment_of_inertia").astype(float)  # None becomes nan
+    inertia = np.where(np.isnan(inertia), shape * masses * radii**2, inertia)
+    fixed = per_body(scene, "fixed").astype(bool)
+    spins = np.zeros((scene.count, 3))
+    if explicit:
+        spins[:explicit] = [body.spin_vector for body in scene.bodies]
+    rng = stream(seed, _POSITIONS)
+    arrangements = {kind.arrangement for kind in scene.species if kind.count}
+    ordered = arrangements & set(LATTICES)
+    if ordered:
+        positions = lattice(scene, rng, slab="slab" in ordered)
+        hit = (scene.wall_at(place, radius) for place, radius in zip(positions, radii, strict=True))
+        if scene.walls and any(hit):
+            raise SceneError("arrangement", min(ordered), "a body would overlap an interior wall; use random")
+    elif "compressed" in arrangements:
+        positions = compressed(scene, seed)
+    else:
+        positions, _ = random_insertion(scene, rng)
+    return State(
+        time=0.0,
+        positions=positions,
+        velocities=_velocities(scene, stream(seed, _VELOCITIES)),
+        images=np.zeros((scene.count, scene.dimension), dtype=np.int64),
+        radii=radii,
+        masses=np.where(fixed, np.inf, masses),
+        species=np.repeat(groups, counts).astype(np.int64),
+        lengths=np.array(scene.container.lengths),
+        spins=spins[:, 2] if scene.dimension == 2 else spins,
+        moments_of_inertia=np.where(fixed, np.inf, inertia),
+        gravity=None if scene.gravity is None else np.array(scene.gravity),
+        well_energies=well_energies(scene, places_in_wells(scene, positions, radii)) if scene.faces else None,
+        vibrations=_vibrations(scene, stream(seed, _VIBRATIONS)) if scene.vibrates else None,
+    )
+
+
+def _vibrations(scene: Scene, rng: np.random.Generator) -> np.ndarray:
+    """(N,) energies of the modes: given, or drawn from exp(-E/kT)/kT; 0 where there is no mode."""
+    parts = [np.array([body.vibration or 0.0 for body in scene.bodies])]
+    for kind in scene.species:
+        if kind.vibrates and kind.temperature is not None:
+            parts.append(-kind.temperature * natural_log(1.0 - rng.random(kind.count)))
+        else:
+            parts.append(np.full(kind.count, kind.vibration or 0.0))
+    return np.concatenate(parts)
+
+
+def _velocities(scene: Scene, rng: np.random.Generator) -> np.ndarray:
+    """(N, d): given, of one fixed speed, Maxwellian, or none."""
+    parts = [np.array([body.velocity for body in scene.bodies], dtype=float).reshape(-1, scene.dimension)]
+    for kind in scene.species:
+        if kind.speed is not None:
+            parts.append(kind.speed * directions(rng, kind.count, scene.dimension))
+        elif kind.temperature is not None and not kind.fixed:
+            width = math.sqrt(kind.temperature / kind.mass)
+            parts.append(width * normals(rng, kind.count, scene.dimension))
+        else:
+            parts.append(np.zeros((kind.count, scene.dimension)))
+    return np.concatenate(parts)
+
+
+def lattice(scene: Scene, rng: np.random.Generator, slab: bool = False) -> np.ndarray:
+    """(N, d) positions on a triangular (2D) or face-centred cubic (3D) lattice stretched to the container.
+
+    If there are more sites than bodies, the sites left empty are random, as is who sits where in a
+    mixture. With `slab` they all lie in the upper half of the longest side, which melts where a whole
+    crystal would not: the start of a crystal beside its fluid. Raises SceneError if the lattice would have
+    to be denser than the bodies allow, or the upper half to hold fewer than no bodies.
+    """
+    margin = np.array(scene.reach(scene.largest_radius)[0])
+    walled = ~np.array(scene.container.periodic)
+    lengths = np.array(scene.container.lengths) - 2 * margin * walled
+    basis = np.array([[0, 0], [0.5, 0.5]]) if scene.dimension == 2 else _FCC
+    shape = np.array([1.0, math.sqrt(3.0)]) if scene.dimension == 2 else np.ones(3)
+    best = max(
+        _cell_counts(lengths, shape, walled, scene.count, len(basis)),
+        key=lambda cells: _spacing(lengths, cells, walled, basis),
+    )
+    spacing = _spacing(lengths, best, walled, basis)
+    if spacing < 2 * scene.largest_radius:
+        raise SceneError(
+            "arrangement", "lattice",
+            f"a spacing of {spacing:g} is too small for {scene.count} bodies of this radius",
+        )  # fmt: skip
+    cells = np.stack(np.meshgrid(*(np.arange(n) for n in best), indexing="ij"), axis=-1)
+    sites = (cells.reshape(-1, 1, scene.dimension) + basis).reshape(-1, scene.dimension)
+    sites = margin * walled + sites * (lengths / _periods(best, walled, basis))
+    spare = np.arange(len(sites))
+    if slab:
+        longest = int(np.argmax(scene.container.lengths))
+        spare = np.flatnonzero(sites[:, longest] >= 0.5 * scene.container.lengths[longest])
+        if len(spare) < len(sites) - scene.count:
+            raise SceneError("arrangement", "slab", f"{scene.count} bodies do not fill the crystal's half")
+    empty = rng.permutation(spare)[: len(sites) - scene.count]
+    chosen = np.setdiff1d(np.arange(len(sites)), empty, assume_unique=True)
+    if len(scene.species) > 1:
+        chosen = rng.permutation(chosen)
+    return sites[chosen]
+
+
+_FCC = np.array([[0.0, 0, 0], [0, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 0.5, 0]])
+
+
+def _periods(cells: np.ndarray, walled: np.ndarray, basis: np.ndarray) -> np.ndarray:
+    """(d,) lattice cells that fill the length: between walls the last half cell is empty, so not counted."""
+    return np.where(walled, np.maximum(cells - 1 + basis.max(axis=0), 0.5), cells)
+
+
+def _spacing(lengths: np.ndarray, cells: np.ndarray, walled: np.ndarray, basis: np.ndarray) -> float:
+    """Shortest distance of two sites."""
+    edge = lengths / _periods(np.asarray(cells), walled, basis)
+    diagonals = (basis[1:] * edge) if len(basis) > 1 else np.empty((0, len(edge)))
+    return float(min(np.sqrt((diagonals**2).sum(axis=1)).min(), edge.min()))
+
+
+def _cell_counts(
+    lengths: np.ndarray, shape: np.ndarray, walled: np.ndarray, count: int, per_cell: int
+) -> list[np.ndarray]:
+    """Numbers of cells (d,) near the ideal shape that hold `count` sites."""
+    ideal = (lengths / shape) * (count / per_cell / np.prod(lengths / shape)) ** (1.0 / len(lengths))
+    reach = np.stack(np.meshgrid(*([np.arange(-2, 4)] * len(lengths)), indexing="ij"), axis=-1)
+    options = np.floor(ideal).astype(int) + reach.reshape(-1, len(lengths))
+    options = options[(options > 0).all(axis=1) & (options.prod(axis=1) * per_cell >= count)]
+    return list(options)

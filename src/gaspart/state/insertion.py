@@ -1,0 +1,103 @@
+"""Random sequential insertion: one body after another at random places that are free."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaspart.errors import SceneError
+from gaspart.kernels.memory import aligned
+from gaspart.scene.scene import Scene
+from gaspart.state.boxes import Boxes, make_boxes, sides_for
+from gaspart.state.interior_walls import wall_rows
+from gaspart.state.oversized import largest_in_boxes
+
+if TYPE_CHECKING:
+    from gaspart.kernels.insertion import Block, Space, Standing
+
+PATIENCE = 2_000_000
+"""Failed attempts at placing one body after which a container counts as full."""
+
+
+def per_body(scene: Scene, attribute: str) -> np.ndarray:
+    """(N,) an attribute of all bodies, of which species share theirs."""
+    alone = [getattr(body, attribute) for body in scene.bodies]
+    return np.concatenate([alone, *(np.full(kind.count, getattr(kind, attribute)) for kind in scene.species)])
+
+
+def empty_arrays(scene: Scene, boxes: Boxes, radii: np.ndarray) -> tuple[Standing, Space, Block]:
+    """The arrays of an empty container for bodies of these radii (N,)."""
+    from gaspart.kernels.insertion import BLOCK, PLACES, Block, Space, Standing
+
+    near = aligned((boxes.count, 4, PLACES), float)
+    near[:] = np.inf
+    filled = np.zeros(boxes.count, dtype=np.uint8)
+    lists = np.full(boxes.count, -1), np.full(len(radii), -1)
+    standing = Standing(np.empty((len(radii), scene.dimension)), radii, near, filled, *lists)
+    sides = zip(scene.container.lengths, scene.container.periodic, strict=True)
+    periods = tuple(length if periodic else 4.0 * length for length, periodic in sides)
+    space = Space(periods, boxes.per_side, boxes.widths, boxes.strides, boxes.neighbour)
+    at, own, beside = np.zeros((3, BLOCK, 3), dtype=np.int64)
+    left, box = np.zeros((2, BLOCK), dtype=np.int64)
+    return standing, space, Block(np.zeros((BLOCK, 3)), at, own, beside, left, box)
+
+
+def random_insertion(
+    scene: Scene, rng: np.random.Generator, patience: int = PATIENCE
+) -> tuple[np.ndarray, np.ndarray]:
+    """Place the species one body after another at random places that are free, larger radii first.
+
+    Returns positions (N, d) and failures (N,), the failed attempts before each body found its place.
+    Raises SceneError when one body has failed `patience` times: the container is as good as full.
+    """
+    from gaspart.kernels.insertion import place, put
+
+    dimension, explicit = scene.dimension, len(scene.bodies)
+    species = sorted(range(len(scene.species)), key=lambda n: -scene.species[n].radius)
+    order = [np.arange(explicit)]  # bodies in the order in which they are placed
+    first = explicit + np.cumsum([0, *(kind.count for kind in scene.species)])
+    order += [np.arange(first[n], first[n + 1]) for n in species]
+    radii = np.concatenate(
+        [[body.radius for body in scene.bodies]]
+        + [np.full(scene.species[n].count, scene.species[n].radius) for n in species]
+    ).astype(float)
+    largest = largest_in_boxes(scene)
+    boxes = make_boxes(scene, sides_for(scene, 1.0, 2 * largest), images=False, narrowest=2 * largest)
+    walls = None
+    if scene.walls:
+        walls, _ = wall_rows(scene)
+    standing, space, block = empty_arrays(scene, boxes, radii)
+    positions = standing.positions
+    failed = np.zeros(scene.count, dtype=np.int64)
+
+    for n, body in enumerate(scene.bodies):  # their places are given, and the scene has checked them
+        positions[n] = body.position
+        put(standing, boxes.index_of(np.array(body.position)), n)
+    placed = explicit
+    for n in species:
+        kind = scene.species[n]
+        stop = placed + kind.count
+        lower, upper = scene.reach(kind.radius)
+        failures = 0
+        numbers = np.empty((max(256, min(1_000_000, 2 * kind.count)), dimension))
+        big = kind.radius > largest
+        beside = np.flatnonzero(radii[:placed] > largest)
+        while placed < stop:
+            draws = rng.random(out=numbers[: max(256, min(1_000_000, 2 * (stop - placed)))])
+            if big:  # too big for the boxes: it is tried against all that stand already, and alone
+                beside = np.arange(placed)
+            placed, failures, _ = place(
+                draws, standing, space, block, placed, placed + 1 if big else stop, lower, upper, failures,
+                patience, failed, walls, beside,
+            )  # fmt: skip
+            if failures >= patience:
+                eta = scene.packing_fraction * placed / scene.count
+                raise SceneError(
+                    f"species[{n}].count",
+                    kind.count,
+                    f"does not fit by random insertion: full after {placed} bodies, packing fraction about "
+                    f"{eta:.4f}, {patience} attempts in vain; use arrangement: lattice",
+                )
+    back = np.argsort(np.concatenate(order), kind="stable") if scene.count else np.empty(0, dtype=int)
+    return positions[back], failed[back]

@@ -1,0 +1,87 @@
+"""Interior walls as arrays: one row per wall, and per image of it that comes near a periodic face.
+
+Rows of segments and plates are described in `kernels.obstacles.segment` and `kernels.obstacles.plate`. A wall near
+a periodic face is met across it too, so it has an image wherever one comes within a radius of the container.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+
+from gaspart.scene.matter import Plate, Wall
+from gaspart.scene.scene import Scene
+from gaspart.state.boxes import Boxes
+
+_SLACK = 1e-9  # by which neighbourhoods are drawn wider, so that rounding leaves no wall out of a box's list
+
+
+def wall_rows(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    """(M, 5) segments or (M, 11) plates, and (M,) the number of the wall that each stands for."""
+    lengths, reach = np.array(scene.container.lengths), scene.largest_radius * (1 + _SLACK)
+    rows, walls = [], []
+    for n, wall in enumerate(scene.walls):
+        row = _segment(wall) if isinstance(wall, Wall) else _plate(wall)
+        for image in product(*((0, -1, 1) if periodic else (0,) for periodic in scene.container.periodic)):
+            moved = row.copy()
+            moved[: scene.dimension] += np.array(image) * lengths
+            corners = _corners(moved)
+            if (
+                any(image)
+                and ((corners.max(axis=0) < -reach) | (corners.min(axis=0) > lengths + reach)).any()
+            ):
+                continue
+            rows.append(moved)
+            walls.append(n)
+    columns = 5 if scene.dimension == 2 else 11
+    return np.array(rows).reshape(-1, columns), np.array(walls, dtype=np.int64)
+
+
+def _segment(wall: Wall) -> np.ndarray:
+    start, end = np.array(wall.start), np.array(wall.end)
+    length = float(np.hypot(*(end - start)))
+    return np.array([*start, *((end - start) / length), length])
+
+
+def _plate(wall: Plate) -> np.ndarray:
+    edges = np.array(wall.edges)
+    sizes = np.sqrt((edges**2).sum(axis=1, keepdims=True))
+    return np.concatenate([np.array(wall.corner), np.hstack([edges / sizes, sizes]).ravel()])
+
+
+def _corners(row: np.ndarray) -> np.ndarray:
+    """(2, 2) the ends of a segment, or (4, 3) the corners of a plate."""
+    if len(row) == 5:
+        return np.array([row[:2], row[:2] + row[2:4] * row[4]])
+    along, across = row[3:6] * row[6], row[7:10] * row[10]
+    return row[:3] + np.array([0 * along, along, across, along + across])
+
+
+def _normal(row: np.ndarray) -> np.ndarray:
+    """(d,) the unit normal of a segment or plate."""
+    return np.array([-row[3], row[2]]) if len(row) == 5 else np.cross(row[3:6], row[7:10])
+
+
+def walls_near(rows: np.ndarray, boxes: Boxes, reach: float) -> tuple[np.ndarray, np.ndarray]:
+    """The walls within `reach` of each box: those of box b are listed[first[b] : first[b + 1]]. All of them
+    follow the last box, for bodies that reach further."""
+    reach *= 1 + _SLACK
+    d = 2 if rows.shape[1] == 5 else 3
+    widths, per_side, strides = boxes.widths[:d], boxes.per_side[:d], boxes.strides[:d]
+    found = []
+    for m, row in enumerate(rows):
+        corners = _corners(row)
+        low = np.floor((corners.min(axis=0) - reach) / widths - _SLACK).astype(int)
+        high = np.floor((corners.max(axis=0) + reach) / widths + _SLACK).astype(int)
+        low, high = (np.clip(c, 0, per_side - 1) for c in (low, high))
+        at = np.stack(np.meshgrid(*map(np.arange, low, high + 1), indexing="ij"), axis=-1).reshape(-1, d)
+        # a box is near if the wall's line or plane passes its centre within reach and half its extent across it
+        normal = _normal(row)
+        off = abs((((at + 0.5) * widths - row[:d]) * normal).sum(axis=1))
+        near = off <= (reach + (0.5 * widths * abs(normal)).sum()) * (1 + _SLACK)
+        found += [(box, m) for box in (at * strides).sum(axis=1)[near]]
+    listed = np.array(sorted(found), dtype=np.int64).reshape(-1, 2)
+    first = np.searchsorted(listed[:, 0], np.arange(boxes.count + 1))
+    walls = np.concatenate([listed[:, 1], np.arange(len(rows))])
+    return np.append(first, len(walls)).astype(np.int64), walls

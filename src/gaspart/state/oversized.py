@@ -1,0 +1,83 @@
+"""Which bodies are too big for the partition, and stand beside it.
+
+A box may not be narrower than the diameter of any body that is found by its box alone. So a few big bodies
+would make the boxes of all the small ones huge; beside the partition, they cost a look at each of them in
+every search, and a look at all the boxes around one in a search of its own.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from gaspart.scene.scene import Scene
+from gaspart.state.boxes import Boxes, make_boxes, sides_for
+
+MOST = 256  # bodies beside the partition, at most, where the program chooses
+_GAIN = 0.75  # of the work that is left, at most, for bodies to be taken out of the partition
+
+
+def largest_in_boxes(scene: Scene) -> float:
+    """The largest radius that the boxes are made for: of the radii that leave at most `MOST` bodies beside
+    them, that with which a search looks at least, but the largest of all unless that saves a quarter."""
+    radii, counts = sizes(scene)
+    if len(radii) < 2:
+        return scene.largest_radius
+    beside = counts.sum() - counts.cumsum()
+    works = {radius: work(scene, radius) for radius in radii[beside <= MOST]}
+    best = min(works, key=works.__getitem__)
+    return float(best if works[best] <= _GAIN * works[radii[-1]] else radii[-1])
+
+
+def boxes_and_largest(scene: Scene, boxes_per_side: int | tuple[int, ...] | None) -> tuple[Boxes, float]:
+    """The partition, and the largest radius of the bodies in it: of so many boxes, or as `largest_in_boxes`
+    chooses.
+
+    Raises SceneError for boxes that are narrower than most of the bodies.
+    """
+    if boxes_per_side is None:
+        largest = largest_in_boxes(scene)
+        per_side = sides_for(scene, per_body=1.0, narrowest=2 * largest)
+        return make_boxes(scene, per_side, images=True, narrowest=2 * largest), largest
+    boxes = make_boxes(scene, boxes_per_side, images=True, narrowest=0.0)
+    narrowest = min(boxes.widths[boxes.per_side > 1], default=np.inf)
+    radii, counts = sizes(scene)
+    listed = 2.0 * radii <= narrowest
+    if counts[listed].sum() <= counts[~listed].sum():
+        return make_boxes(scene, boxes_per_side, images=True), scene.largest_radius
+    return boxes, float(radii[listed][-1])
+
+
+def sizes(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    """The different radii (K,) in rising order, and (K,) how many bodies have each."""
+    radii = [body.radius for body in scene.bodies] + [kind.radius for kind in scene.species if kind.count]
+    counts = [1] * len(scene.bodies) + [kind.count for kind in scene.species if kind.count]
+    different, which = np.unique(np.array(radii, dtype=float), return_inverse=True)
+    return different, np.bincount(which, counts, len(different)).astype(np.int64)
+
+
+def work(scene: Scene, largest: float) -> float:
+    """Boxes and bodies looked at while each body goes a unit of length, if the boxes are for radii up to
+    `largest`: in a search after every contact, and a third of one at every face of a box.
+
+    Bodies are taken to be spread evenly and to be equally fast.
+    """
+    dimension, volume = scene.dimension, scene.container.volume
+    radii, counts = sizes(scene)
+    listed = radii <= largest
+    per_side = np.array(sides_for(scene, per_body=1.0, narrowest=2 * largest))
+    widths = np.array(scene.container.lengths) / per_side
+    crowd = counts[listed].sum() / per_side.prod()
+    reach = np.where(listed, 0.0, radii + largest)
+    boxes = np.minimum(2 * np.ceil(reach[:, None] / widths) + 3, per_side).prod(axis=1)
+    looked_at = boxes * (1.0 + crowd) + counts[~listed].sum()
+    # the section that a body and any other show one another, summed over the others
+    total, first, second = counts.sum(), counts @ radii, counts @ radii**2
+    if dimension == 2:
+        sections = 2.0 * (total * radii + first)
+    else:
+        sections = math.pi * (total * radii**2 + 2.0 * radii * first + second)
+    contacts = sections / volume
+    faces = 0.5 * (1.0 / widths).sum()
+    return float(counts @ (looked_at * (contacts + faces / 3.0)))

@@ -1,0 +1,81 @@
+"""Seed streams, and random directions and velocities that are the same bits on every machine.
+
+Uniform numbers come from numpy's PCG64; everything made of them here uses +, -, x, / and the square root
+only, which IEEE 754 fixes to the last bit (library logarithms differ between machines).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gaspart.errors import SceneError
+from gaspart.kernels.logarithm import LN2, LOG_SERIES
+
+
+def stream(seed: int | tuple[int, ...], *purpose: int) -> np.random.Generator:
+    """An independent generator for one purpose (a tuple of small numbers) of one seed.
+
+    Raises SceneError unless the seed is made of non-negative whole numbers.
+    """
+    return np.random.Generator(np.random.PCG64(_sequence(seed, purpose)))
+
+
+def key_of(seed: int | tuple[int, ...], *purpose: int) -> np.ndarray:
+    """(2,) words of 64 bits for the random numbers inside kernels (see `draws`); raises the same."""
+    return _sequence(seed, purpose).generate_state(2, np.uint64)
+
+
+def _sequence(seed: int | tuple[int, ...], purpose: tuple[int, ...]) -> np.random.SeedSequence:
+    parts = seed if isinstance(seed, (tuple, list)) else (seed,)
+    for part in parts:
+        if isinstance(part, bool) or not isinstance(part, (int, np.integer)) or part < 0:
+            raise SceneError("seed", seed, "must be a whole number of at least 0, or a list of them")
+    return np.random.SeedSequence([int(part) for part in parts], spawn_key=purpose)
+
+
+def natural_log(x: np.ndarray) -> np.ndarray:
+    """ln x of positive floats, to 2 units in the last place, by +, -, x and / alone.
+
+    x = m 2^e with m in [1/sqrt 2, sqrt 2); ln m = 2 artanh((m - 1)/(m + 1)), by its series.
+    """
+    mantissa, exponent = np.frexp(np.asarray(x, dtype=float))
+    low = mantissa < 0.7071067811865476
+    mantissa = np.where(low, 2.0 * mantissa, mantissa)
+    exponent = exponent - low
+    s = (mantissa - 1.0) / (mantissa + 1.0)
+    square = s * s
+    total = np.zeros_like(s)
+    for coefficient in reversed(LOG_SERIES):
+        total = total * square + coefficient
+    return exponent * LN2 + 2.0 * s * total
+
+
+def _disc(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """`count` points (u, v) uniform in the unit disc without its centre, and s = u^2 + v^2."""
+    us, vs, have = [np.empty(0)], [np.empty(0)], 0
+    while have < count:
+        u, v = 2.0 * rng.random((2, 2 * (count - have) + 8)) - 1.0
+        s = u * u + v * v
+        inside = (s > 0.0) & (s < 1.0)
+        us.append(u[inside])
+        vs.append(v[inside])
+        have += us[-1].size
+    u, v = np.concatenate(us)[:count], np.concatenate(vs)[:count]
+    return u, v, u * u + v * v
+
+
+def directions(rng: np.random.Generator, count: int, dimension: int) -> np.ndarray:
+    """(count, d) isotropic unit vectors (Marsaglia, Ann. Math. Stat. 43, 645 (1972))."""
+    u, v, s = _disc(rng, count)
+    if dimension == 2:
+        return np.stack([(u * u - v * v) / s, 2.0 * u * v / s], axis=1)
+    root = np.sqrt(1.0 - s)
+    return np.stack([2.0 * u * root, 2.0 * v * root, 1.0 - 2.0 * s], axis=1)
+
+
+def normals(rng: np.random.Generator, count: int, dimension: int) -> np.ndarray:
+    """(count, d) independent standard normal numbers, by Marsaglia's polar method."""
+    pairs = (count * dimension + 1) // 2
+    u, v, s = _disc(rng, pairs)
+    factor = np.sqrt(-2.0 * natural_log(s) / s)
+    return np.concatenate([u * factor, v * factor])[: count * dimension].reshape(count, dimension)

@@ -1,0 +1,1 @@
+"""Runs written to files: AMBER format, recipes, checkpoints, resuming, export, provenance."""

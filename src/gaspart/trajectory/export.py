@@ -1,0 +1,114 @@
+"""One frame of a trajectory as a state for other programs: GSD (HOOMD) and LAMMPS data.
+
+Positions and velocities are those of the trajectory's frame, in single precision: bodies that touched may
+overlap by 1e-7 of a diameter. What those programs do not know (walls, faces, gravity) stays behind.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from gaspart.errors import SceneError
+from gaspart.files import writing
+
+FORMATS = (".gsd", ".data")
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """One frame: positions and velocities (N, 3), diameters, masses and types (N,), lengths (3,), time."""
+
+    positions: np.ndarray
+    velocities: np.ndarray
+    diameters: np.ndarray
+    masses: np.ndarray
+    types: np.ndarray
+    lengths: np.ndarray
+    time: float
+    dimension: int
+
+
+def export(trajectory: str | Path, path: str | Path, frame: int = -1) -> Path:
+    """Write a frame of a trajectory as .gsd or LAMMPS .data; returns the path.
+
+    frame: counted from 0, or from the end if negative. Raises SceneError for another suffix, a frame that is
+    not there, and a file that cannot be read or written.
+    """
+    path = Path(path)
+    if path.suffix not in FORMATS:
+        raise SceneError("output", str(path), f"must end in {' or '.join(FORMATS)}")
+    snapshot = _snapshot(Path(trajectory), frame)
+    with writing(path) as partial:
+        (_write_gsd if path.suffix == ".gsd" else _write_data)(partial, snapshot)
+    return path
+
+
+def _snapshot(path: Path, frame: int) -> Snapshot:
+    from gaspart.state.insertion import per_body
+    from gaspart.trajectory.recipe import opened, read_recipe
+
+    scene = read_recipe(path).scene
+    with opened(path) as file:
+        there = len(file.dimensions["frame"])
+        if not -there <= frame < there:
+            raise SceneError("frame", frame, f"the trajectory has {there}")
+        frame %= there  # the last frame of a file under way is not what -1 means to netCDF
+        radii = np.asarray(file["radius"][:])
+        return Snapshot(
+            positions=np.asarray(file["coordinates"][frame], dtype=float),
+            velocities=np.asarray(file["velocities"][frame], dtype=float),
+            diameters=2.0 * radii,
+            masses=per_body(scene, "mass")[: len(radii)].astype(float),
+            types=np.asarray(file["type"][:]),
+            lengths=np.asarray(file["cell_lengths"][frame], dtype=float),
+            time=float(file["time"][frame]),
+            dimension=scene.dimension,
+        )
+
+
+def _write_gsd(path: Path, snapshot: Snapshot) -> None:
+    """A frame of HOOMD's schema: the origin in the middle of the box, discs in a box without thickness."""
+    import gsd.hoomd
+
+    flat = snapshot.dimension == 2
+    frame = gsd.hoomd.Frame()
+    frame.configuration.dimensions = snapshot.dimension
+    sides = np.where([False, False, flat], 0.0, snapshot.lengths)
+    frame.configuration.box = [*sides, 0.0, 0.0, 0.0]
+    frame.particles.N = len(snapshot.positions)
+    frame.particles.types = [f"species_{n}" for n in range(int(snapshot.types.max()) + 1)]
+    frame.particles.typeid = snapshot.types
+    frame.particles.position = snapshot.positions - 0.5 * sides
+    frame.particles.velocity = snapshot.velocities
+    frame.particles.diameter = snapshot.diameters
+    frame.particles.mass = snapshot.masses
+    with gsd.hoomd.open(str(path), "w") as file:
+        file.append(frame)
+
+
+def _write_data(path: Path, snapshot: Snapshot) -> None:
+    """LAMMPS data of atom_style sphere: its density is that of a ball of the body's mass and diameter."""
+    count = len(snapshot.positions)
+    density = snapshot.masses / (math.pi / 6.0 * snapshot.diameters**3)
+    low = np.array([0.0, 0.0, -0.5 * snapshot.lengths[2] if snapshot.dimension == 2 else 0.0])
+    lines = [
+        f"gaspart: {count} bodies at time {snapshot.time!r}; atom_style sphere",
+        "",
+        f"{count} atoms",
+        f"{int(snapshot.types.max()) + 1} atom types",
+        "",
+    ]
+    for axis, start, side in zip("xyz", low, snapshot.lengths, strict=True):
+        lines.append(f"{float(start)!r} {float(start + side)!r} {axis}lo {axis}hi")
+    lines += ["", "Atoms # sphere", ""]
+    for n in range(count):
+        numbers = (snapshot.diameters[n], density[n], *snapshot.positions[n])
+        lines.append(f"{n + 1} {snapshot.types[n] + 1} " + " ".join(f"{x:.9g}" for x in numbers))
+    lines += ["", "Velocities", ""]
+    for n, velocity in enumerate(snapshot.velocities):
+        lines.append(f"{n + 1} " + " ".join(f"{x:.9g}" for x in velocity) + " 0 0 0")
+    path.write_text("\n".join(lines) + "\n", encoding="ascii")

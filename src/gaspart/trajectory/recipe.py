@@ -1,0 +1,180 @@
+"""All that a trajectory follows from, and how its file says so."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaspart.engines import EventDriven, TimeStepped, engine_from_dict, engine_to_dict
+from gaspart.errors import SceneError
+from gaspart.files import dump_yaml, parse_yaml
+from gaspart.scene.scene import Scene, count_of, number
+from gaspart.state.random import stream
+from gaspart.trajectory import amber, provenance
+
+if TYPE_CHECKING:
+    import netCDF4
+
+ROUNDING = 1e-9
+"""Relative deviation from a whole multiple that is put down to rounding."""
+
+
+def multiple(key: str, value: float, unit_key: str, unit: float) -> int:
+    """`value` / `unit`, which must be a whole number of at least 1 to within rounding, or a SceneError."""
+    ratio = round(value / unit) if value / unit < 2**53 else 0
+    if ratio < 1 or abs(value - ratio * unit) > ROUNDING * value:
+        raise SceneError(key, value, f"must be a whole multiple of {unit_key}, {unit:g}")
+    return ratio
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """All that a trajectory follows from. Raises SceneError for what cannot be run.
+
+    duration and sample_interval are in the scene's time; duration is a whole multiple of sample_interval,
+    and that, for the time-stepped engine, of time_step. follow: how many bodies, from the first on, are in
+    the file; None: all.
+    """
+
+    scene: Scene
+    engine: EventDriven | TimeStepped
+    seed: int | tuple[int, ...]
+    duration: float
+    sample_interval: float
+    displacements: bool = False
+    follow: int | None = None
+
+    def __post_init__(self) -> None:
+        stream(self.seed)  # complains of a seed that is none
+        for key in ("duration", "sample_interval"):
+            value = number(key, getattr(self, key), "must be positive", above=0.0)
+            object.__setattr__(self, key, value)
+        if self.scene.count == 0:
+            raise SceneError("scene", "no bodies", "a run needs at least one body")
+        if self.follow is not None:
+            if count_of("follow", self.follow, least=1) > self.scene.count:
+                raise SceneError("follow", self.follow, f"there are {self.scene.count} bodies")
+        if isinstance(self.engine, TimeStepped):
+            multiple("sample_interval", self.sample_interval, "time_step", self.engine.time_step)
+        if self.frames > amber.MOST_FRAMES:
+            rule = "makes more frames than a file can hold"
+            raise SceneError("sample_interval", self.sample_interval, rule)
+
+    @property
+    def frames(self) -> int:
+        """Frames of the whole trajectory, the one at time 0 among them."""
+        return multiple("duration", self.duration, "sample_interval", self.sample_interval) + 1
+
+    @property
+    def bodies(self) -> int:
+        """How many bodies are in the file."""
+        return self.scene.count if self.follow is None else self.follow
+
+    @property
+    def layout(self) -> amber.Layout:
+        """What a frame consists of."""
+        scene, walls = self.scene, len(self.scene.walls)
+        kept = self.displacements, walls, scene.rough, scene.vibrates
+        return amber.Layout(self.bodies, scene.dimension, *kept)
+
+    def attributes(self) -> dict:
+        """The recipe as the file's attributes, from which `read_recipe` makes it again."""
+        seed = [int(part) for part in self.seed] if isinstance(self.seed, (tuple, list)) else int(self.seed)
+        return {
+            "scene": dump_yaml(self.scene.to_dict()),
+            "engine": json.dumps(engine_to_dict(self.engine)),
+            "seed": json.dumps(seed),
+            "duration": self.duration,
+            "sample_interval": self.sample_interval,
+            "displacements": np.int32(self.displacements),
+            **({} if self.follow is None else {"follow": np.int32(self.follow)}),
+        }
+
+    def header(self, revision: str) -> bytes:
+        """The file before its first frame, as made by the present program at a git revision ("": none)."""
+        from gaspart.kernels.compilation import source_digest
+
+        scene, versions = self.scene, provenance.versions()
+        groups = [(len(scene.species), body.radius, 1) for body in scene.bodies]
+        groups += [(n, kind.radius, kind.count) for n, kind in enumerate(scene.species)]
+        types, radii, counts = (np.array(column) for column in zip(*groups, strict=True))
+        radii, types = np.repeat(radii, counts)[: self.bodies], np.repeat(types, counts)[: self.bodies]
+        attributes = {
+            "Conventions": "AMBER",
+            "ConventionVersion": "1.0",
+            "program": "gaspart",
+            "programVersion": versions["gaspart_version"],
+            "title": f"{scene.count} hard {'discs' if scene.dimension == 2 else 'spheres'}",
+            "note": amber.NOTE,
+            **self.attributes(),
+            **versions,
+            "kernels": source_digest(),
+            **({"git_revision": revision} if revision else {}),
+        }
+        return self.layout.header(attributes, radii, types)
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[netCDF4.Dataset]:
+    """A trajectory of ours as a netCDF4.Dataset. Raises SceneError for a file that is none, or truncated."""
+    import netCDF4
+
+    try:
+        size = path.stat().st_size
+        with path.open("rb"):
+            pass
+    except OSError as error:
+        raise SceneError("file", str(path), f"cannot be read: {error.strerror}") from None
+    try:
+        file = netCDF4.Dataset(path)
+    except OSError as error:
+        raise SceneError("file", str(path), f"is not a readable NetCDF file: {error.strerror}") from None
+    with file:
+        if getattr(file, "program", None) != "gaspart" or "frame_bytes" not in file.ncattrs():
+            raise SceneError("file", str(path), "is not a trajectory written by gaspart")
+        frames = len(file.dimensions["frame"])
+        whole = int(file.header_bytes) + frames * int(file.frame_bytes)
+        if size < whole:
+            rule = f"is truncated: {size} bytes, where {frames} frames need {whole}"
+            raise SceneError("file", str(path), rule)
+        yield file
+
+
+def read_recipe(path: str | Path) -> Recipe:
+    """How a trajectory, finished or not, was made. Raises SceneError if the file does not say."""
+    path = Path(path)
+    with opened(path) as file:
+        stored = file.__dict__
+    scene = Scene.from_dict(parse_yaml(stored["scene"], f"{path}, attribute scene"), str(path))
+    seed = json.loads(stored["seed"])
+    return Recipe(
+        scene=scene,
+        engine=engine_from_dict(json.loads(stored["engine"])),
+        seed=tuple(seed) if isinstance(seed, list) else seed,
+        duration=float(stored["duration"]),
+        sample_interval=float(stored["sample_interval"]),
+        displacements=bool(stored["displacements"]),
+        follow=int(stored["follow"]) if "follow" in stored else None,
+    )
+
+
+def stored_revision(path: Path) -> str:
+    """The git revision that a trajectory was begun at; "" if it was not in a checkout."""
+    with opened(path) as file:
+        return getattr(file, "git_revision", "")
+
+
+def begun_as(path: Path, wanted: Recipe) -> bool:
+    """Whether a file was begun with this recipe by this program (at whatever git revision)."""
+    try:
+        header = wanted.header(stored_revision(path))
+    except SceneError:
+        return False
+    with path.open("rb") as file:
+        return amber.same_header(file, header)

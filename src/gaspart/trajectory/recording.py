@@ -1,0 +1,131 @@
+"""The loop of a run: advance to the time of a frame, write it, and a checkpoint now and then."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gaspart.engines import TimeStepped
+from gaspart.errors import SimulationError
+from gaspart.simulation.simulation import Simulation
+from gaspart.state.state import State
+from gaspart.trajectory import amber
+from gaspart.trajectory.checkpoint import write_checkpoint
+from gaspart.trajectory.recipe import Recipe, multiple
+
+Progress = Callable[[float, float, int], None]
+"""Called with the time reached, the duration, and the collisions so far."""
+
+_STRETCH = 0.5  # seconds of work between two looks at the clock, about
+_FIRST_STRETCH = {"event": 256, "step": 1}  # events, steps
+
+
+class Recording:
+    """A simulation under way to its duration, the file of its frames, and where its checkpoints go.
+
+    every: seconds between checkpoints. Observing changes nothing: neither checkpoints nor the division into
+    stretches changes a bit of the result.
+    """
+
+    def __init__(
+        self,
+        recipe: Recipe,
+        simulation: Simulation,
+        frames: amber.Frames,
+        header: bytes,
+        checkpoint: Path,
+        every: float,
+        progress: Progress | None,
+    ) -> None:
+        self._recipe, self._simulation, self._frames = recipe, simulation, frames
+        self._header, self._checkpoint, self._every, self._progress = header, checkpoint, every, progress
+        self._origin = simulation.initial_state.unwrapped
+        self._stretch = _FIRST_STRETCH[recipe.engine.name]
+        self._saved = self._told = time.monotonic()
+
+    def finish(self, failed: Path) -> None:
+        """Write all frames that are missing. Raises SimulationError if an invariant breaks, and OSError.
+
+        In the first case the state is kept in the file `failed`.
+        """
+        try:
+            while self._frames.count < self._recipe.frames:
+                for _ in self._approach(self._frames.count):
+                    self._look_at_the_clock()
+                state = self._simulation.state
+                self._simulation.check_invariants(state)
+                self._frames.append(self._frame(state))
+                self._look_at_the_clock()
+        except SimulationError as error:
+            write_checkpoint(failed, self._header, self._frames.count, self._simulation.checkpoint())
+            raise SimulationError(f"{error}; its state is kept in {failed}") from None
+        self._frames.sync()
+
+    def _look_at_the_clock(self) -> None:
+        now = time.monotonic()
+        if self._progress and now - self._told >= _STRETCH:
+            collisions = self._simulation.tally.collisions
+            self._progress(self._simulation.time, self._recipe.duration, collisions)
+            self._told = now
+        if now - self._saved >= self._every:
+            self._simulation.check_invariants()
+            self._frames.sync()  # before the checkpoint, which says that they are there
+            arrays = self._simulation.checkpoint()
+            write_checkpoint(self._checkpoint, self._header, self._frames.count, arrays)
+            self._saved = time.monotonic()
+
+    def _approach(self, frame: int) -> Iterator[None]:
+        """Advance to the time of a frame, frame x sample_interval, by stretches."""
+        simulation, recipe = self._simulation, self._recipe
+        if isinstance(recipe.engine, TimeStepped):
+            step = recipe.engine.time_step
+            goal = frame * multiple("sample_interval", recipe.sample_interval, "time_step", step)
+            while (done := simulation.tally.steps) < goal:
+                # half a step more than wanted, lest rounding cost a step
+                self._advance(goal * step, until=(min(goal, done + self._stretch) + 0.5) * step)
+                yield
+            return
+        until = frame * recipe.sample_interval
+        while simulation.time < until:
+            self._advance(until, until=until, max_events=self._stretch)
+            yield
+        simulation.advance(until=until)  # events at this very time that a stretch may have left
+
+    def _advance(self, goal: float, **limits: Any) -> None:
+        """One stretch towards the time `goal`; the next one is fitted to take about `_STRETCH` seconds."""
+        begun = time.monotonic()
+        self._simulation.advance(**limits)
+        took = time.monotonic() - begun
+        if took > _STRETCH * 2:
+            self._stretch = max(1, self._stretch // 2)
+        elif took < _STRETCH / 2 and self._simulation.time < goal:
+            self._stretch *= 2
+
+    def _frame(self, state: State) -> dict[str, np.ndarray | float]:
+        """The present state and counters, as the variables of a frame."""
+        tally, followed = self._simulation.tally, slice(self._recipe.bodies)
+        inner: dict[str, np.ndarray] = {}
+        if self._recipe.scene.rough:
+            flat = state.dimension == 2
+            inner["spins"] = np.pad(state.spins[:, None], ((0, 0), (2, 0))) if flat else state.spins
+        if state.vibrations is not None:
+            inner["vibrations"] = state.vibrations
+        if self._recipe.displacements:
+            inner["displacements"] = state.unwrapped - self._origin
+        # in 2D the cell is one diameter thick
+        lengths = np.full(3, 2.0 * self._recipe.scene.largest_radius)
+        lengths[: state.dimension] = state.lengths
+        return {
+            "time": state.time,
+            "cell_lengths": lengths,
+            "cell_angles": np.full(3, 90.0),
+            "kinetic_energy": state.kinetic_energy,
+            **{name: getattr(tally, name) for name in amber.COUNTERS},
+            "coordinates": state.positions[followed],
+            "velocities": state.velocities[followed],
+            **{name: values[followed] for name, values in inner.items()},
+        }

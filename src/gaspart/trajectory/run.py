@@ -1,0 +1,212 @@
+"""Trajectories: written while the run goes on, continued after a kill, read by everybody's tools.
+
+A run writes `path.partial`, and now and then `path.checkpoint.npz`, from which it can go on to the same bits.
+When whole the file is renamed to `path`. Nothing in it depends on when or where it was made.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO
+
+from gaspart.engines import EventDriven, TimeStepped
+from gaspart.errors import SceneError
+from gaspart.scene.scene import Scene, number
+from gaspart.simulation.simulation import Simulation
+from gaspart.trajectory import amber, provenance
+from gaspart.trajectory.checkpoint import read_checkpoint, remove_checkpoint
+from gaspart.trajectory.recipe import Recipe, begun_as, read_recipe, stored_revision
+from gaspart.trajectory.recording import Progress, Recording
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_REDUCED = {
+    "angstrom": "length",
+    "picosecond": "time",
+    "angstrom/picosecond": "length/time",
+    "1/picosecond": "1/time",
+}
+_ENERGIES = ("kinetic_energy", "wall_energy", "virial_sum", "dissipated_energy", "vibrations")
+_UNITS = dict.fromkeys(_ENERGIES, "mass length^2/time^2") | {"wall_impulse": "mass length/time"}
+
+
+def partial_path(path: Path) -> Path:
+    """Where a trajectory is while it is being written."""
+    return path.with_name(path.name + ".partial")
+
+
+def checkpoint_path(path: Path) -> Path:
+    """Where the float64 state of an unfinished trajectory is."""
+    return path.with_name(path.name + ".checkpoint.npz")
+
+
+def open_trajectory(path: str | Path) -> xr.Dataset:
+    """A trajectory, or the finished part of a `.partial` one, as an xarray.Dataset, read as it is used.
+
+    Dimensions frame, atom, spatial (d) and face (2d); time (frame), radius and type (atom) are coordinates.
+    Of discs that spin, `spins` is (frame, atom); of spheres (frame, atom, spatial).
+    Lengths and times are in the scene's units, counters cumulative since time 0. Attributes tell the scene
+    (YAML), engine and seed (JSON), and what follows from the scene: count, dimension, packing_fraction,
+    number_density. Close it, or use it in a `with` statement.
+
+    Raises SceneError for a file that is unreadable, truncated, or not written by gaspart.
+    """
+    import xarray as xr
+
+    path = Path(path)
+    scene = read_recipe(path).scene
+    data = opened = xr.open_dataset(path, engine="netcdf4", decode_times=False)
+    attributes = {**data.attrs, "count": scene.count, "dimension": scene.dimension}
+    attributes |= {"packing_fraction": scene.packing_fraction, "number_density": scene.number_density}
+    if "spins" in data and scene.dimension == 2:
+        data["spins"] = data["spins"].isel(spatial=2)
+    data = data.isel(spatial=slice(scene.dimension)).set_coords(["time", "radius", "type"])
+    data = data.drop_vars(["cell_spatial", "cell_angular"])
+    faces = amber.face_names(scene.dimension, len(scene.walls))
+    data = data.assign_coords(spatial=list("xyz"[: scene.dimension]), face=faces)
+    for key, variable in data.variables.items():
+        name = str(key)
+        told = variable.attrs.get("units", "1")
+        if variable.dtype.kind in "fi":  # what is no length, time or energy is a number of things, or a ratio
+            variable.attrs["units"] = _UNITS.get(name, _REDUCED.get(told, told))
+    data.attrs = {key: value for key, value in attributes.items() if not key.endswith("_bytes")}
+    data.set_close(opened.close)
+    return data
+
+
+def run(
+    scene: Scene,
+    engine: EventDriven | TimeStepped,
+    seed: int | tuple[int, ...],
+    duration: float,
+    sample_interval: float,
+    path: str | Path,
+    displacements: bool = False,
+    follow: int | None = None,
+    checkpoint_seconds: float = 30.0,
+    progress: Progress | None = None,
+    overwrite: bool = False,
+) -> Path:
+    """Run a scene and write its trajectory to `path`; returns `path`.
+
+    A frame at time 0 and at every sample_interval to the duration, which must be a whole multiple of it;
+    with `displacements` also each body's float64 way since time 0, unwrapped; with rough contacts also the
+    spins; with `follow` only so many bodies, from the first on (counters are still those of all). A run of
+    the same recipe and program that was cut short is continued, and one that is whole is left as it is.
+    Anything else at `path`, or half-finished beside it, is replaced only with `overwrite`.
+
+    `progress(time, duration, collisions)` is called about twice a second.
+
+    Raises SceneError for settings that cannot be, and for a file that cannot be written; SimulationError
+    if the run breaks an invariant, with its state kept in `path.failed.npz`.
+    """
+    wanted = Recipe(scene, engine, seed, duration, sample_interval, displacements, follow)
+    return _carry_out(wanted, Path(path), checkpoint_seconds, progress, overwrite)
+
+
+def resume(path: str | Path, checkpoint_seconds: float = 30.0, progress: Progress | None = None) -> Path:
+    """Finish the run that left `path.partial`, from what it left alone; returns `path`.
+
+    Raises SceneError if there is nothing to resume, or if another version of the program has begun it.
+    """
+    path = Path(path)
+    partial = partial_path(path)
+    if not partial.exists():
+        rule = "is already whole" if path.exists() else f"there is no {partial.name} to go on from"
+        raise SceneError("path", str(path), rule)
+    wanted = read_recipe(partial)
+    if not begun_as(partial, wanted):
+        rule = "was begun by another version of gaspart, Python or a package; it could end in other bits"
+        raise SceneError("path", str(partial), rule)
+    return _carry_out(wanted, path, checkpoint_seconds, progress, overwrite=False)
+
+
+def _carry_out(wanted: Recipe, path: Path, every: float, progress: Progress | None, overwrite: bool) -> Path:
+    """Finish a trajectory, from wherever it is."""
+    number("checkpoint_seconds", every, "must not be negative", least=0.0)
+    partial, checkpoint = partial_path(path), checkpoint_path(path)
+    with _writing(path):
+        if path.is_dir() or not os.access(path.parent, os.W_OK | os.X_OK):
+            raise SceneError("path", str(path), "must be a file in an existing folder that can be written to")
+        if _holds(path, wanted, frames=wanted.frames):
+            remove_checkpoint(checkpoint)
+            return path
+        free = not path.exists() and (not partial.exists() or _is_blank(partial) or begun_as(partial, wanted))
+        if not (free or overwrite):
+            there = path if path.exists() else partial
+            rule = "exists, of another run or version, or damaged; move it away, or overwrite it (--force)"
+            raise SceneError("path", str(there), rule)
+        simulation = Simulation(wanted.scene, wanted.engine, wanted.seed)
+        with _locked(partial) as file:
+            _record(wanted, simulation, file, path, every, progress)
+            os.replace(partial, path)
+        remove_checkpoint(checkpoint)
+    return path
+
+
+def _holds(path: Path, wanted: Recipe, frames: int) -> bool:
+    """Whether a file is of this run, and of so many frames."""
+    if not (path.exists() and begun_as(path, wanted)):
+        return False
+    with path.open("rb") as file:
+        return amber.frame_count(file) == frames
+
+
+def _is_blank(path: Path) -> bool:
+    with path.open("rb") as file:
+        return amber.is_blank(file)
+
+
+def _record(
+    wanted: Recipe,
+    simulation: Simulation,
+    file: BinaryIO,
+    path: Path,
+    every: float,
+    progress: Progress | None,
+) -> None:
+    """Write all frames that the open partial file is still without."""
+    partial, checkpoint = partial_path(path), checkpoint_path(path)
+    continued = begun_as(partial, wanted)
+    header = wanted.header(stored_revision(partial) if continued else provenance.git_revision())
+    found = read_checkpoint(checkpoint, header) if continued else None
+    kept = 0
+    if found and found.frames <= amber.frame_count(file):
+        simulation.restore(found.arrays)
+        kept = found.frames
+    frames = amber.Frames(file, wanted.layout, header, kept)
+    recording = Recording(wanted, simulation, frames, header, checkpoint, every, progress)
+    recording.finish(failed=path.with_name(path.name + ".failed.npz"))
+
+
+@contextmanager
+def _writing(path: Path) -> Iterator[None]:
+    """One line for a full disk, a folder that is read-only, and the like."""
+    try:
+        yield
+    except OSError as error:
+        rule = f"cannot be written: {error.strerror}; what was written before is kept"
+        raise SceneError("path", str(path), rule) from None
+
+
+@contextmanager
+def _locked(partial: Path) -> Iterator[BinaryIO]:
+    """The partial file, open to read and write, without a buffer, and to this process alone."""
+    with open(os.open(partial, os.O_RDWR | os.O_CREAT, 0o666), "r+b", buffering=0) as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            ours = os.stat(partial).st_ino == os.fstat(file.fileno()).st_ino
+        except (BlockingIOError, FileNotFoundError):
+            ours = False
+        if not ours:
+            raise SceneError("path", str(partial), "is being written by another process")
+        try:
+            yield file
+        finally:
+            if os.fstat(file.fileno()).st_size == 0:
+                partial.unlink(missing_ok=True)
