@@ -16,7 +16,7 @@ from docutils.core import publish_parts
 
 import gaspart
 from gaspart import theory
-from gaspart.planning.families import FAMILIES, TITLES
+from gaspart.experiments.registry import families, titles
 
 ROOT = Path(__file__).parents[1]
 STYLE = """body { margin: auto; padding: 1rem; max-width: 50rem; font: 1rem/1.55 system-ui, sans-serif; }
@@ -78,7 +78,7 @@ def api():
 def family_page(family, folder):
     """What a family of figures shows, measures and claims."""
     parts = []
-    for figure in (name for name, its in FAMILIES.items() if its == family):
+    for figure in (name for name, its in families().items() if its == family):
         parts.append(f'<h2 id="{figure}">{figure}</h2>')
         picture = ROOT / f"results/figures/{figure}.svg"
         if picture.exists():
@@ -88,7 +88,7 @@ def family_page(family, folder):
     for kind, verb in (("measure", "How it is measured"), ("claims", "What is claimed")):
         told = importlib.import_module(f"gaspart.{kind}.{family}").__doc__
         parts.append(f"<h2>{verb}</h2><pre>{html.escape(told.strip())}</pre>")
-    return page(TITLES[family], "".join(parts))
+    return page(titles()[family], "".join(parts))
 
 
 def claims_of(path):
@@ -108,9 +108,9 @@ def build(folder):
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "api.html").write_text(api(), encoding="utf-8")
     links = ['<li><a href="api.html">public names</a></li>']
-    for family in dict.fromkeys(FAMILIES.values()):
+    for family in titles():
         (folder / f"{family}.html").write_text(family_page(family, folder), encoding="utf-8")
-        links.append(f'<li><a href="{family}.html">{html.escape(TITLES[family])}</a> ({family})</li>')
+        links.append(f'<li><a href="{family}.html">{html.escape(titles()[family])}</a> ({family})</li>')
     (folder / "index.html").write_text(page("gaspart", f"<ul>{''.join(links)}</ul>"), encoding="utf-8")
 
 

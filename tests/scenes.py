@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 from hypothesis import strategies as st
 
 import gaspart as gp
@@ -181,3 +182,13 @@ def partitioned(draw, most=10):
     species = [gp.Species(draw(st.integers(1, most)), draw(st.floats(0.1, 0.4)), temperature=1.0)]
     gravity = (0.0, 0.0, draw(st.sampled_from([-0.5, -2.0])))
     return gp.Scene(gp.Container(lengths, boundary), species, gravity=gravity, walls=walls)
+
+
+def closest(scene, state):
+    """The smallest gap between two surfaces, by all pairs and the nearest image."""
+    gaps = []
+    for i in range(state.count):
+        r = np.abs(state.positions[i] - state.positions[i + 1 :])
+        r = np.where(scene.container.periodic, np.minimum(r, state.lengths - r), r)
+        gaps.append(np.sqrt((r**2).sum(axis=1)) - state.radii[i] - state.radii[i + 1 :])
+    return np.concatenate(gaps).min(initial=math.inf)

@@ -1,37 +1,69 @@
-"""The table of modules in workflow/rules/common.smk against the import graph of the scripts."""
+"""The structure of the package: what each stage is made of, and that imports lead in one direction."""
 
 import ast
 import re
 from functools import cache
+from graphlib import TopologicalSorter
 from pathlib import Path
 
+import grimp
 import pytest
 
-from gaspart.planning.families import FAMILIES
+from gaspart.experiments.registry import titles
+from gaspart.planning.modules import PACKAGE, closure, imported
 
 ROOT = Path(__file__).parents[2]
-SOURCE = ROOT / "src/gaspart"
-# What a script loads by a name that is put together: package by stage.
-BY_NAME = {"measure": "measure", "judge": "claims", "draw": "figures"}
+LAYERS = [  # a module imports only from the packages above its own
+    {"errors"},
+    {"files"},
+    {"scene"},
+    {"kernels"},
+    {"state"},
+    {"engines"},
+    {"simulation"},
+    {"trajectory"},
+    {"theory"},
+    {"analysis"},
+    {"claims"},
+    {"tradeoff"},
+    {"rendering"},
+    {"planning"},
+    {"experiments"},
+    {"inspection"},
+    {"cli"},
+]
 
 
-def table():
-    """MODULES, FAMILY_MODULES and what they are made of, as the rules see them."""
-    text = (ROOT / "workflow/rules/common.smk").read_text()
-    block = text[text.index("SCENE = [") : text.index("def module_files(")]
-    names = {}
-    for statement in ast.parse(block).body:
-        names[statement.targets[0].id] = eval(ast.unparse(statement.value), {}, names)
-    return names
+@cache
+def graph():
+    """All imports, function-local ones too, without those for type hints only."""
+    return grimp.build_graph("gaspart", exclude_type_checking_imports=True, cache_dir=None)
 
 
-def path_of(module):
-    """The file of `gaspart` or `gaspart.x.y`, or None if there is none."""
-    base = SOURCE.joinpath(*module.split(".")[1:])
-    for path in (base / "__init__.py", base.with_suffix(".py")):
-        if path.exists():
-            return path
-    return None
+def test_a_package_imports_only_from_those_above_it():
+    layers = [grimp.Layer(*layer) for layer in reversed(LAYERS)]
+    illegal = graph().find_illegal_dependencies_for_layers(layers, containers={"gaspart"})
+    assert not {(one.importer, one.imported) for one in illegal}
+    known = {"gaspart.__main__"} | {f"gaspart.{name}" for layer in LAYERS for name in layer}
+    assert graph().find_children("gaspart") == known
+
+
+def test_there_are_few_modules_at_the_top_level():
+    assert len(list(PACKAGE.glob("*.py"))) <= 8
+
+
+def test_no_imports_lead_in_a_circle():
+    modules = graph().modules
+    edges = {name: graph().find_modules_directly_imported_by(name) for name in modules}
+    list(TopologicalSorter(edges).static_order())  # raises CycleError, which names them
+
+
+def test_all_compiled_code_is_in_kernels():
+    users = graph().find_modules_that_directly_import("gaspart.kernels.compilation")
+    outside = {name for name in users if not name.startswith("gaspart.kernels.")}
+    for name in outside:  # what is left may read the digest or the compiler's settings, and compile nothing
+        text = PACKAGE.joinpath(*name.split(".")[1:]).with_suffix(".py").read_text(encoding="utf-8")
+        assert not re.search(r"^@\w*(kernel|helper)$", text, re.MULTILINE), name
 
 
 class _Runs(ast.NodeTransformer):
@@ -41,73 +73,37 @@ class _Runs(ast.NodeTransformer):
         return None if ast.unparse(node.test) == "TYPE_CHECKING" else node
 
 
-def imported(path):
-    """Modules of gaspart that a file imports, anywhere in it, with the packages they lie in."""
-    package = "gaspart." + ".".join(path.relative_to(SOURCE).parts[:-1]) if SOURCE in path.parents else ""
-    found = set()
-    for node in ast.walk(_Runs().visit(ast.parse(path.read_text()))):
+def parsed(path):
+    """Files that a file imports, found by a parser."""
+    names = set()
+    for node in ast.walk(_Runs().visit(ast.parse(path.read_text(encoding="utf-8")))):
         if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
+            names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
-            base = node.module or ""
-            if node.level:
-                base = ".".join(filter(None, [package.rstrip("."), base]))
-            found.add(base)
-            found |= {f"{base}.{alias.name}" for alias in node.names}
-    found = {name for name in found if name.split(".")[0] == "gaspart" and path_of(name)}
-    parents = {".".join(name.split(".")[:n]) for name in found for n in range(1, len(name.split(".")))}
-    return found | parents
+            names |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
+    names = {name for name in names if name.split(".")[0] == "gaspart"}
+    names |= {".".join(name.split(".")[:n]) for name in names for n in range(1, name.count(".") + 1)}
+    places = [PACKAGE.joinpath(*name.split(".")[1:]) for name in names]
+    files = [file for place in places for file in (place / "__init__.py", place.with_suffix(".py"))]
+    return {file for file in files if file.is_file()}
 
 
-@cache
-def closure(path):
-    """Files of gaspart that a file needs, whatever the way."""
-    seen, queue = set(), [path]
-    while queue:
-        for name in imported(queue.pop()):
-            module = path_of(name)
-            if module not in seen:
-                seen.add(module)
-                queue.append(module)
-    return seen
+def test_the_imports_that_are_searched_for_are_those_that_a_parser_finds():
+    for path in [*PACKAGE.rglob("*.py"), *(ROOT / "workflow/scripts").glob("*.py")]:
+        assert imported(path) == parsed(path), path
 
 
-def needed(stage, family=None):
-    files = set(closure(ROOT / f"workflow/scripts/{stage}.py")) | set(
-        closure(ROOT / "workflow/scripts/_job.py")
-    )
-    if family:
-        module = SOURCE / BY_NAME[stage] / f"{family}.py"
-        files |= {module, *closure(module), SOURCE / BY_NAME[stage] / "__init__.py"}
-        files |= closure(SOURCE / BY_NAME[stage] / "__init__.py")
-    return {str(path.relative_to(SOURCE)) for path in files}
+@pytest.mark.parametrize("family", titles())
+def test_a_stage_is_made_of_what_it_uses_and_of_no_engine_where_it_simulates_nothing(family):
+    part = {stage: closure(f"gaspart.experiments.{family}.{stage}") for stage in ("claims", "figure")}
+    for files in part.values():
+        names = {path.relative_to(PACKAGE).parts[0] for path in files}
+        assert names.isdisjoint({"engines", "simulation", "trajectory", "planning"}), family
+    assert PACKAGE / f"experiments/{family}/measure.py" not in part["claims"] | part["figure"]
 
 
-def listed(stage, family=None, whole_packages=True):
-    tables = table()
-    names = tables["MODULES"][stage] + tables["FAMILY_MODULES"].get((stage, family), [])
-    names = [name for name in names if whole_packages or "*" not in name]
-    return {
-        str(path.relative_to(SOURCE))
-        for name in names
-        for path in SOURCE.glob(f"{name.format(family=family)}.py")
-    }
-
-
-FAMILY_NAMES = sorted(set(FAMILIES.values()))
-
-
-@pytest.mark.parametrize("stage", [stage for stage in table()["MODULES"] if stage not in BY_NAME])
-def test_a_stage_lists_the_modules_it_uses(stage):
-    assert listed(stage) == needed(stage)
-
-
-@pytest.mark.parametrize("stage", BY_NAME)
-def test_a_stage_of_families_lists_what_each_uses_and_nothing_that_none_uses(stage):
-    for family in FAMILY_NAMES:
-        assert needed(stage, family) <= listed(stage, family), family
-    used = set().union(*(needed(stage, family) for family in FAMILY_NAMES))
-    assert set().union(*(listed(stage, family, whole_packages=False) for family in FAMILY_NAMES)) <= used
+def test_tables_are_part_of_what_reads_them():
+    assert PACKAGE / "theory/data/virial_3d.csv" in closure("gaspart.theory.virial")
 
 
 def test_every_rule_states_what_it_needs():

@@ -8,8 +8,8 @@ import pytest
 from workspace import ROOT, SMOKE
 
 from gaspart.files import dump_yaml, read_yaml
-from gaspart.planning import grid
-from gaspart.planning.config import laid_over
+from gaspart.planning.overlay import laid_over
+from gaspart.planning.points import points
 
 pytestmark = pytest.mark.workflow
 
@@ -52,7 +52,7 @@ def test_the_points_are_shared_among_few_cluster_jobs(fresh, monkeypatch):
     monkeypatch.setenv("GASPART_SHARE", "2/3")
     plan = fresh.plan(*SMOKE, "--", "points")
     config, _ = laid_over(ROOT / "config/smoke.yaml")
-    number = sum(len(grid.points(config, experiment)) for experiment in config["experiments"])
+    number = sum(len(points(config, experiment)) for experiment in config["experiments"])
     assert sum(plan[job] for job in SIMULATIONS & set(plan)) == len(range(1, number, 3))
 
 

@@ -8,8 +8,8 @@ import pytest
 from browser import CHROMIUM, found_by
 from digests import digests
 
+from gaspart.experiments.registry import families
 from gaspart.files import read_yaml
-from gaspart.planning.families import FAMILIES
 
 pytestmark = pytest.mark.workflow
 
@@ -18,7 +18,7 @@ FIGURES = list(read_yaml(ROOT / "config/config.yaml")["figures"])
 
 
 def test_every_figure_of_the_table_is_in_the_config():
-    assert set(FIGURES) == set(FAMILIES)
+    assert set(FIGURES) == set(families())
 
 
 @pytest.mark.parametrize("figure", FIGURES)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from gaspart.files import write_yaml
-from gaspart.planning.config import laid_over
+from gaspart.planning.overlay import laid_over
 
 ROOT = Path(__file__).parents[2]
 PARTS = ["Snakefile", "config", "profiles", "src", "workflow"]

@@ -17,7 +17,7 @@ rule animate:
         mem_mb=1500,
         runtime=30,
     params:
-        modules=modules("animate"),
+        modules=digest(*sources("animate")),
         trajectory=lambda wildcards: animated(wildcards).replica_path(0),
         settings=lambda wildcards: settings_of_animation(wildcards),
     script:

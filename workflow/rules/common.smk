@@ -1,6 +1,5 @@
 # What the rules share: the checked config, the points of its grids, and which modules each stage is made of.
 
-import hashlib
 import os
 import shlex
 import sys
@@ -8,16 +7,20 @@ from functools import cache
 from pathlib import Path
 
 ROOT = Path(workflow.basedir)
+SCRIPTS = ROOT / "workflow/scripts"
 sys.path.insert(0, str(ROOT / "src"))
 # Snakemake writes its interpreter's path into shell commands without quotes: with a space in it, no job would start.
 if " " in sys.executable:
     sys.executable = shlex.quote(sys.executable)
 
-from gaspart import grid
-from gaspart.config import check
+from gaspart.experiments.config import check
+from gaspart.experiments.registry import families, titles
+from gaspart.planning import grid
+from gaspart.planning.modules import digest, kernel_digest
+from gaspart.planning.points import figure_points as grid_points
+from gaspart.planning.points import points
+from gaspart.planning.variants import task, variant
 from gaspart.errors import SceneError
-from gaspart.families import FAMILIES, TITLES
-from gaspart.variants import task, variant
 
 # A job on a cluster reads this file again, but need not judge ten thousand points again.
 if workflow.is_main_process:
@@ -34,10 +37,10 @@ if workflow.is_main_process:
         print(f"gaspart: {error}", file=sys.stderr)
         sys.exit(2)
 
-FIGURES = [figure for figure in FAMILIES if figure in config["figures"]]
+FIGURES = list(config["figures"])
 ANIMATIONS = [name for name, block in config.get("animations", {}).items() if block]
 POINTS = {
-    experiment: {point.name: point for point in grid.points(config, experiment)}
+    experiment: {point.name: point for point in points(config, experiment)}
     for experiment in config["experiments"]
 }
 
@@ -48,10 +51,15 @@ def share(paths):
     return paths[number - 1 :: of]
 
 
-def experiments(job):
-    """A pattern that matches the experiments made by one kind of job, and nothing if there are none."""
-    names = [name for name, block in config["experiments"].items() if block.get("job", "simulate") == job]
-    return "|".join(names) or "(?!)"
+# The experiments of each kind of job.
+EXPERIMENTS = {"simulate": []}
+for name, block in config["experiments"].items():
+    EXPERIMENTS.setdefault(block.get("job", "simulate"), []).append(name)
+
+
+def pattern(groups):
+    """A pattern that matches the names of all groups, and nothing if there are none."""
+    return "|".join(name for names in groups for name in names) or "(?!)"
 
 
 def point_of(wildcards):
@@ -63,7 +71,7 @@ def recipe_of(wildcards):
 
 
 def figure_points(wildcards):
-    return grid.figure_points(config, wildcards.figure)
+    return grid_points(config, wildcards.figure)
 
 
 def animated(wildcards):
@@ -77,7 +85,11 @@ def settings_of_animation(wildcards):
 
 
 def family(wildcards):
-    return FAMILIES[wildcards.figure]
+    return families()[wildcards.figure]
+
+
+def cores_of(wildcards):
+    return (workflow.resource_settings.cores or 1) if point_of(wildcards).job == "measure_cost" else 1
 
 
 def memory_of(wildcards):
@@ -94,186 +106,24 @@ def flagged(path, kind):
     return report(
         path,
         caption="../report/figure.rst",
-        category=lambda wildcards: TITLES[family(wildcards)],
+        category=lambda wildcards: titles()[family(wildcards)],
         subcategory="{figure}",
         labels={"figure": "{figure}", "type": kind},
     )
 
 
-# A digest of the modules of gaspart that each stage uses is a parameter of its rules: editing one reruns what it
-# touches. As inputs they would be half a million files for ten thousand points, each of them asked after in turn.
-# `{family}` stands for the family of a figure, `*` for every module of a package; FAMILY_MODULES are what single
-# families use beside. tests/workflow/test_modules.py compares these tables with the import graph of the scripts.
-SCENE = ["__init__", "errors", "files", "matter", "room", "scene", "surfaces", "validation"]
-ENGINES = [
-    "beside",
-    "boxes",
-    "compression",
-    "contact",
-    "coordinates",
-    "draws",
-    "engines/*",
-    "falling",
-    "fetch",
-    "initial",
-    "insertion",
-    "kernel",
-    "loading",
-    "memory",
-    "plates",
-    "random",
-    "segments",
-    "simulation",
-    "state",
-    "tally",
-    "wells",
-]
-TRAJECTORY = ["amber", "checkpoint", "provenance", "recipe", "recording", "trajectory"]
-SIMULATE = [*SCENE, *ENGINES, *TRAJECTORY]
-THEORY = ["theory/*", "theory/data/*.csv"]
-RENDERING = [f"rendering/{name}" for name in ("__init__", "bodies", "camera", "discs", "pictures", "tracer")]
-CLAIMS = ["__init__", "errors", "files", "claims/__init__"]
-MODULES = {
-    "simulate": SIMULATE,
-    "measure_cost": [*SCENE, *ENGINES, "measure/__init__", "measure/cost"],
-    "compare": [*SCENE, *ENGINES, "measure/__init__", "measure/compare"],
-    "echo": [*SCENE, *ENGINES, "measure/__init__", "measure/echo"],
-    "fill": [
-        *SCENE,
-        "boxes",
-        "coordinates",
-        "fetch",
-        "insertion",
-        "kernel",
-        "loading",
-        "memory",
-        "plates",
-        "random",
-        "segments",
-        "measure/__init__",
-        "measure/fill",
-    ],
-    "pack": [
-        *SCENE,
-        *[name for name in ENGINES if name != "simulation"],
-        "measure/__init__",
-        "measure/fill",
-        "measure/pack",
-    ],
-    "measure": [
-        *SIMULATE,
-        *THEORY,
-        "grid",
-        "point",
-        "point_scene",
-        "measure/__init__",
-        "measure/{family}",
-        "statistics",
-    ],
-    "judge": [*CLAIMS, *THEORY, "claims/{family}"],
-    "claims": CLAIMS,
-    "draw": ["__init__", "errors", "files", *THEORY, "figures/__init__", "figures/style", "figures/{family}"],
-    "animate": [*SIMULATE, "figures/__init__", "figures/style", *RENDERING, "rendering/films"],
-    "report": ["__init__", "errors", "families", "files", "provenance"],
-}
-FAMILY_MODULES = {
-    ("measure", "extremes"): ["extremes/*"],
-    ("measure", "gravity"): ["measure/columns"],
-    ("measure", "buoyancy"): ["measure/columns"],
-    ("judge", "adsorption"): ["statistics"],
-    ("judge", "buoyancy"): ["statistics"],
-    ("measure", "radius"): ["measure/pressure"],
-    ("measure", "displacement"): ["measure/correlations"],
-    ("measure", "velocity"): ["measure/correlations"],
-    ("measure", "virial"): ["measure/pressure"],
-    ("measure", "freezing"): ["measure/plateau", "measure/pressure", "measure/structure"],
-    ("measure", "scaling"): ["measure/timings"],
-    ("measure", "price"): ["measure/stripped", "measure/timings"],
-    ("measure", "brownian"): ["measure/correlations"],
-    ("measure", "tradeoff"): [
-        "measure/accuracy",
-        "measure/pressure",
-        "measure/timings",
-        "tradeoff/__init__",
-        "tradeoff/table",
-        "tradeoff/data/*.csv",
-    ],
-    ("judge", "displacement"): ["statistics"],
-    ("draw", "price"): ["claims/__init__", "claims/price"],
-    ("draw", "reversibility"): ["claims/__init__", "claims/reversibility"],
-    ("judge", "radius"): ["statistics"],
-    ("judge", "virial"): ["statistics"],
-    ("judge", "wall_pressure"): ["statistics"],
-    ("draw", "pictures"): [
-        "kernel",
-        "loading",
-        *RENDERING,
-        "state",
-        "validation",
-    ],
-    ("draw", "packing"): [
-        "kernel",
-        "loading",
-        "rendering/__init__",
-        "rendering/bodies",
-        "rendering/camera",
-        "rendering/discs",
-        "rendering/pictures",
-        "rendering/tracer",
-        "state",
-        "validation",
-    ],
-}
+# A digest of the modules that a stage is made of, found from its imports, is a parameter of its rules.
+PARTS = {"measure": "measure", "judge": "claims", "draw": "figure"}
 
 
-def module_files(stage, family=None):
-    """Paths of the modules of a stage, and of a family there."""
-    names = [name.format(family=family) for name in MODULES[stage] + FAMILY_MODULES.get((stage, family), [])]
-    patterns = [name if name.endswith(".csv") else f"{name}.py" for name in names]
-    source = ROOT / "src/gaspart"
-    return [path for pattern in patterns for path in sorted(source.glob(pattern)) or [source / pattern]]
-
-
-def digest_of(paths):
-    return hashlib.sha256(b"".join(content(path) for path in paths)).hexdigest()[:12]
-
-
-@cache
-def content(path):
-    return path.read_bytes()
-
-
-@cache
-def modules(stage, family=None):
-    """A digest of the modules of a stage, and of a family there."""
-    return digest_of(module_files(stage, family))
-
-
-def modules_of(stage):
-    """The same where the figure is a wildcard."""
-    return lambda wildcards: modules(stage, family(wildcards))
-
-
-# The modules among them whose code is compiled.
-KERNELS = [
-    "contact",
-    "coordinates",
-    "draws",
-    "engines/*",
-    "falling",
-    "fetch",
-    "insertion",
-    "kernel",
-    "plates",
-    "segments",
-]
-
-
-@cache
-def digest(job):
-    """A digest of the compiled modules that a job uses."""
-    names = [name for name in KERNELS if name in MODULES[job]]
-    return digest_of(path for name in names for path in sorted((ROOT / "src/gaspart").glob(f"{name}.py")))
+def sources(stage, family=None):
+    """The script of a stage and what it imports by name: a family's part, or a job's module."""
+    job = f"gaspart.experiments.jobs.{stage}"
+    script = stage if (SCRIPTS / f"{stage}.py").exists() else "compute"
+    named = (
+        [f"gaspart.experiments.{family}.{PARTS[stage]}"] if family else [job] if script == "compute" else []
+    )
+    return [SCRIPTS / "_job.py", SCRIPTS / f"{script}.py", *named]
 
 
 @cache
@@ -283,7 +133,7 @@ def variant_of(experiment, point):
 
 def stamp_of(wildcards):
     point = point_of(wildcards)
-    return f"results/kernels/{digest(point.job)}/{variant_of(point.experiment, point.name)}.stamp"
+    return f"results/kernels/{kernel_digest(*sources(point.job))}/{variant_of(point.experiment, point.name)}.stamp"
 
 
 def task_of(wildcards):

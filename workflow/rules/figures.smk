@@ -18,7 +18,7 @@ rule draw:
         mem_mb=1500,
         runtime=10,
     params:
-        modules=modules_of("draw"),
+        modules=lambda wildcards: digest(*sources("draw", family(wildcards))),
         family=family,
         caption=caption_of,
     script:
@@ -46,7 +46,7 @@ rule report:
         mem_mb=1000,
         runtime=10,
     params:
-        modules=modules("report"),
+        modules=digest(*sources("report")),
         figures=FIGURES,
         title=config["title"],
     script:

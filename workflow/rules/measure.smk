@@ -17,7 +17,7 @@ rule measure:
         mem_mb=4000,
         runtime=30,
     params:
-        modules=modules_of("measure"),
+        modules=lambda wildcards: digest(*sources("measure", family(wildcards))),
         family=family,
         points=lambda wildcards: [point.to_dict() for point in figure_points(wildcards)],
         settings=lambda wildcards: config["figures"][wildcards.figure],
@@ -42,7 +42,7 @@ rule judge:
         mem_mb=1000,
         runtime=10,
     params:
-        modules=modules_of("judge"),
+        modules=lambda wildcards: digest(*sources("judge", family(wildcards))),
         family=family,
     script:
         "../scripts/judge.py"
@@ -69,6 +69,6 @@ rule claims:
         mem_mb=1000,
         runtime=10,
     params:
-        modules=modules("claims"),
+        modules=digest(*sources("claims")),
     script:
         "../scripts/claims.py"

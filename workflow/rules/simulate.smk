@@ -12,7 +12,7 @@ rule simulate:
     benchmark:
         "results/benchmarks/simulate/{experiment}/{point}.tsv"
     wildcard_constraints:
-        experiment=experiments("simulate"),
+        experiment=pattern([EXPERIMENTS["simulate"]]),
     conda:
         "../envs/gaspart.yaml"
     threads: 1
@@ -20,128 +20,33 @@ rule simulate:
         mem_mb=memory_of,
         runtime=120,
     params:
-        modules=modules("simulate"),
+        modules=digest(*sources("simulate")),
         recipe=recipe_of,
     script:
         "../scripts/simulate.py"
 
 
-# Timings claim all cores, so that nothing runs beside them.
-rule measure_cost:
+# Points whose result is one data set. Timings claim all cores, so that nothing runs beside them.
+rule compute:
     input:
         kernels=lambda wildcards: ancient(stamp_of(wildcards)),
     output:
         f"{config['points']}/{{experiment}}/{{point}}.nc",
     log:
-        "results/logs/measure_cost/{experiment}/{point}.log",
+        "results/logs/compute/{experiment}/{point}.log",
     benchmark:
-        "results/benchmarks/measure_cost/{experiment}/{point}.tsv"
+        "results/benchmarks/compute/{experiment}/{point}.tsv"
     wildcard_constraints:
-        experiment=experiments("measure_cost"),
+        experiment=pattern(names for job, names in EXPERIMENTS.items() if job != "simulate"),
     conda:
         "../envs/gaspart.yaml"
-    threads: workflow.resource_settings.cores or 1
+    threads: cores_of
     resources:
         mem_mb=memory_of,
         runtime=120,
     params:
-        modules=modules("measure_cost"),
+        modules=lambda wildcards: digest(*sources(point_of(wildcards).job)),
+        job=lambda wildcards: point_of(wildcards).job,
         recipe=recipe_of,
     script:
-        "../scripts/measure_cost.py"
-
-
-rule compare:
-    input:
-        kernels=lambda wildcards: ancient(stamp_of(wildcards)),
-    output:
-        f"{config['points']}/{{experiment}}/{{point}}.nc",
-    log:
-        "results/logs/compare/{experiment}/{point}.log",
-    benchmark:
-        "results/benchmarks/compare/{experiment}/{point}.tsv"
-    wildcard_constraints:
-        experiment=experiments("compare"),
-    conda:
-        "../envs/gaspart.yaml"
-    threads: 1
-    resources:
-        mem_mb=memory_of,
-        runtime=120,
-    params:
-        modules=modules("compare"),
-        recipe=recipe_of,
-    script:
-        "../scripts/compare.py"
-
-
-rule echo:
-    input:
-        kernels=lambda wildcards: ancient(stamp_of(wildcards)),
-    output:
-        f"{config['points']}/{{experiment}}/{{point}}.nc",
-    log:
-        "results/logs/echo/{experiment}/{point}.log",
-    benchmark:
-        "results/benchmarks/echo/{experiment}/{point}.tsv"
-    wildcard_constraints:
-        experiment=experiments("echo"),
-    conda:
-        "../envs/gaspart.yaml"
-    threads: 1
-    resources:
-        mem_mb=memory_of,
-        runtime=120,
-    params:
-        modules=modules("echo"),
-        recipe=recipe_of,
-    script:
-        "../scripts/echo.py"
-
-
-rule fill:
-    input:
-        kernels=lambda wildcards: ancient(stamp_of(wildcards)),
-    output:
-        f"{config['points']}/{{experiment}}/{{point}}.nc",
-    log:
-        "results/logs/fill/{experiment}/{point}.log",
-    benchmark:
-        "results/benchmarks/fill/{experiment}/{point}.tsv"
-    wildcard_constraints:
-        experiment=experiments("fill"),
-    conda:
-        "../envs/gaspart.yaml"
-    threads: 1
-    resources:
-        mem_mb=memory_of,
-        runtime=120,
-    params:
-        modules=modules("fill"),
-        recipe=recipe_of,
-    script:
-        "../scripts/fill.py"
-
-
-rule pack:
-    input:
-        kernels=lambda wildcards: ancient(stamp_of(wildcards)),
-    output:
-        f"{config['points']}/{{experiment}}/{{point}}.nc",
-    log:
-        "results/logs/pack/{experiment}/{point}.log",
-    benchmark:
-        "results/benchmarks/pack/{experiment}/{point}.tsv"
-    wildcard_constraints:
-        experiment=experiments("pack"),
-    conda:
-        "../envs/gaspart.yaml"
-    threads: 1
-    resources:
-        mem_mb=memory_of,
-        runtime=120,
-    params:
-        modules=modules("pack"),
-        recipe=recipe_of,
-    script:
-        "../scripts/pack.py"
+        "../scripts/compute.py"

@@ -9,6 +9,8 @@ with job(snakemake):
 
     dataset = xr.load_dataset(snakemake.input.dataset)
     with style.applied():
-        picture = function(f"gaspart.figures.{snakemake.params.family}", snakemake.wildcards.figure)(dataset)
+        picture = function(
+            f"gaspart.experiments.{snakemake.params.family}.figure", snakemake.wildcards.figure
+        )(dataset)
         for path in snakemake.output:
             style.save(picture, path)

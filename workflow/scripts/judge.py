@@ -10,6 +10,6 @@ with job(snakemake):
 
     dataset = xr.load_dataset(snakemake.input.dataset)
     figure = snakemake.wildcards.figure
-    judged = function(f"gaspart.claims.{snakemake.params.family}", figure)(dataset)
+    judged = function(f"gaspart.experiments.{snakemake.params.family}.claims", figure)(dataset)
     with whole_file(snakemake.output[0]) as partial:
         claims.write(partial, figure, judged)

@@ -12,7 +12,7 @@ with job(snakemake):
     figure = snakemake.wildcards.figure
     points = [Point.from_dict(values) for values in snakemake.params.points]
     settings = {key: value for key, value in snakemake.params.settings.items() if key != "experiments"}
-    dataset = function(f"gaspart.measure.{snakemake.params.family}", figure)(points, settings)
+    dataset = function(f"gaspart.experiments.{snakemake.params.family}.measure", figure)(points, settings)
     dataset.attrs.update(
         figure=figure,
         config=snakemake.params.title,

@@ -61,8 +61,8 @@ with job(snakemake):
     import jinja2
 
     from gaspart import __version__
+    from gaspart.experiments.registry import families, titles
     from gaspart.files import whole_file
-    from gaspart.planning.families import FAMILIES, TITLES
     from gaspart.trajectory import provenance
 
     claims = rows(snakemake.input.claims)
@@ -75,7 +75,7 @@ with job(snakemake):
         strict=True,
     ):
         made = attributes(dataset)
-        sections.setdefault(TITLES[FAMILIES[figure]], []).append(
+        sections.setdefault(titles()[families()[figure]], []).append(
             {
                 "name": figure,
                 "image": base64.b64encode(Path(image).read_bytes()).decode(),

@@ -50,7 +50,7 @@ def _advise(given: argparse.Namespace) -> None:
     if (given.scene is None) == (given.config is None):
         raise UsageError("give a scene or --config, one of them")
     if given.config:
-        from gaspart.planning.advised import predict
+        from gaspart.planning.cost import predict
 
         print("\n".join(predict(given.config)))
         return

@@ -8,9 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.experiments import config
 from gaspart.inspection.checks import Check, judge_places
 from gaspart.inspection.frames import Frames
-from gaspart.planning import config, grid
+from gaspart.planning import grid
+from gaspart.planning.overlay import laid_over
+from gaspart.planning.points import points
 from gaspart.scene.scene import Scene
 
 SCHEMA = "workflow/schemas/config.schema.yaml"
@@ -38,13 +41,13 @@ def judge_config(path: Path) -> list[Check]:
     project that it lies in.
     """
     path = path.resolve()
-    merged, files = config.laid_over(path)
+    merged, files = laid_over(path)
     schema = path.parent.parent / SCHEMA
     if not schema.exists():
         raise SceneError("file", str(path), f"must lie in a folder beside {SCHEMA}, which says what may be")
     with chdir(path.parent.parent):  # where the workflow runs, and scene files are looked for
         config.check(merged, str(schema), [str(file) for file in files])
-        points = [point for name in merged["experiments"] for point in grid.points(merged, name)]
-        bodies = np.array([grid.extents(point)[0] for point in points])
-    text = f"{len(merged['experiments'])} experiments of {len(points)} points, up to {bodies.max()} bodies; "
+        made = [point for name in merged["experiments"] for point in points(merged, name)]
+        bodies = np.array([grid.extents(point)[0] for point in made])
+    text = f"{len(merged['experiments'])} experiments of {len(made)} points, up to {bodies.max()} bodies; "
     return [Check("config", True, text + f"{len(merged['figures'])} figures")]

@@ -10,8 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gaspart.kernels.compilation import inner_helper, kernel
-from gaspart.kernels.obstacles.plate import gap_to_plate
-from gaspart.kernels.obstacles.segment import square_from_segment
+from gaspart.kernels.obstacles.distance import gap_to_plate, square_from_segment
 from gaspart.kernels.periodic import box_coordinate
 from gaspart.kernels.prefetch import fetch
 

@@ -16,6 +16,7 @@ def _blend(image, row, column, cover, red, green, blue):
 
 @kernel
 def draw_discs(image, centres, radii, colours):
+    """Draw discs, later ones over earlier ones, into an image (H, W, 3)."""
     height, width = image.shape[0], image.shape[1]
     for i in range(len(centres)):
         x, y, r = centres[i, 0], centres[i, 1], radii[i]
@@ -29,6 +30,7 @@ def draw_discs(image, centres, radii, colours):
 
 @kernel
 def draw_segments(image, starts, ends, colour):
+    """Draw lines between points (M, 2) into an image (H, W, 3)."""
     height, width = image.shape[0], image.shape[1]
     for m in range(len(starts)):
         ax, ay = starts[m, 0], starts[m, 1]

@@ -1,1 +1,1 @@
-"""The simulated system: container, species, walls, faces, contact law. Immutable, validated once; no numerics."""
+"""The simulated system: container, species, walls, faces, contact law; validated once, no numerics."""

@@ -9,6 +9,8 @@ import numpy as np
 from gaspart.errors import SceneError
 from gaspart.scene.matter import LATTICES
 from gaspart.scene.scene import Scene
+from gaspart.state.compression import compressed
+from gaspart.state.insertion import per_body, random_insertion
 from gaspart.state.random import directions, natural_log, normals, stream
 from gaspart.state.state import State
 from gaspart.state.wells import places_in_wells, well_energies

@@ -1,7 +1,7 @@
 """Interior walls as arrays: one row per wall, and per image of it that comes near a periodic face.
 
-Rows of segments and plates are described in `kernels.obstacles.segment` and `kernels.obstacles.plate`. A wall near
-a periodic face is met across it too, so it has an image wherever one comes within a radius of the container.
+Rows of segments and plates are described in `kernels.obstacles.segment` and `.plate`. A wall near a periodic
+face is met across it too, so it has an image wherever one comes within a radius of the container.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def walls_near(rows: np.ndarray, boxes: Boxes, reach: float) -> tuple[np.ndarray
         high = np.floor((corners.max(axis=0) + reach) / widths + _SLACK).astype(int)
         low, high = (np.clip(c, 0, per_side - 1) for c in (low, high))
         at = np.stack(np.meshgrid(*map(np.arange, low, high + 1), indexing="ij"), axis=-1).reshape(-1, d)
-        # a box is near if the wall's line or plane passes its centre within reach and half its extent across it
+        # near: the wall's line or plane passes the box's centre within reach and half the extent across it
         normal = _normal(row)
         off = abs((((at + 0.5) * widths - row[:d]) * normal).sum(axis=1))
         near = off <= (reach + (0.5 * widths * abs(normal)).sum()) * (1 + _SLACK)

@@ -1,1 +1,4 @@
-"""Walls that hold bodies: adsorption."""
+"""Walls that hold bodies."""
+
+TITLE = "Walls that hold bodies"
+FIGURES = ("adsorption",)

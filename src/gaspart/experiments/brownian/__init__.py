@@ -1,1 +1,4 @@
-"""A large body in a gas: brownian_paths, brownian_msd."""
+"""A large body in a gas."""
+
+TITLE = "A large body in a gas"
+FIGURES = ("brownian_paths", "brownian_msd")

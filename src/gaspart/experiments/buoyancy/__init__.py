@@ -1,1 +1,4 @@
-"""Under gravity: buoyancy."""
+"""Under gravity."""
+
+TITLE = "Under gravity"
+FIGURES = ("buoyancy",)

@@ -1,1 +1,4 @@
-"""Mean-squared displacement: msd_spheres, msd_discs."""
+"""Mean-squared displacement."""
+
+TITLE = "Mean-squared displacement"
+FIGURES = ("msd_spheres", "msd_discs")

@@ -1,1 +1,4 @@
-"""Speed, accuracy, stability: stability_extremes."""
+"""Speed, accuracy, stability."""
+
+TITLE = "Speed, accuracy, stability"
+FIGURES = ("stability_extremes",)

@@ -1,1 +1,4 @@
-"""Thin films: thin_film."""
+"""Thin films."""
+
+TITLE = "Thin films"
+FIGURES = ("thin_film",)

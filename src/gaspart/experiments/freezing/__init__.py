@@ -1,1 +1,4 @@
-"""Freezing and melting: freezing_discs, freezing_spheres."""
+"""Freezing and melting."""
+
+TITLE = "Freezing and melting"
+FIGURES = ("freezing_discs", "freezing_spheres")

@@ -1,1 +1,4 @@
-"""Rough and inelastic bodies: equipartition, cooling."""
+"""Rough and inelastic bodies."""
+
+TITLE = "Rough and inelastic bodies"
+FIGURES = ("equipartition", "cooling")

@@ -1,1 +1,4 @@
-"""Under gravity: barometric, separation, heat_capacity."""
+"""Under gravity."""
+
+TITLE = "Under gravity"
+FIGURES = ("barometric", "separation", "heat_capacity")

@@ -1,1 +1,4 @@
-"""Heat between walls: heat_conduction_gas, heat_conduction_metal."""
+"""Heat between walls."""
+
+TITLE = "Heat between walls"
+FIGURES = ("heat_conduction_gas", "heat_conduction_metal")

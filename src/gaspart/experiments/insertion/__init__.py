@@ -1,1 +1,4 @@
-"""Random insertion: fill_failures."""
+"""Random insertion."""
+
+TITLE = "Random insertion"
+FIGURES = ("fill_failures",)

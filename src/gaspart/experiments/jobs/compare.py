@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from gaspart.engines import EventDriven, TimeStepped
+from gaspart.engines import EventDriven, TimeStepped, engine_from_dict
 from gaspart.engines.arrays import EventLog
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
@@ -141,3 +141,16 @@ def _astray(scene: Scene, engine: TimeStepped, state: State, steps: int, collisi
         "made_up": int((any_ & ~missed).sum()),
         "listed": int(listed.sum()),
     }
+
+
+def run(recipe: dict) -> xr.Dataset:
+    """`compare` of a point's recipe."""
+    engines = map(engine_from_dict, recipe["engines"])
+    return compare(
+        Scene.from_dict(recipe["scene"]),
+        [engine for engine in engines if isinstance(engine, TimeStepped)],
+        seed=tuple(recipe["seeds"][0]),
+        equilibration=recipe["equilibration"],
+        stretch=recipe["stretch"],
+        snapshots=recipe["repeats"],
+    )

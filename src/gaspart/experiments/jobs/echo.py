@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from gaspart.engines import EventDriven, TimeStepped
+from gaspart.engines import EventDriven, TimeStepped, engine_from_dict
 from gaspart.scene.scene import Scene
 from gaspart.simulation.simulation import Simulation
 from gaspart.state.state import State
@@ -85,3 +85,15 @@ def _distance(one: State, other: State) -> float:
     """Root-mean-square distance of all bodies between walls, in diameters."""
     apart = ((one.positions - other.positions) ** 2).sum(axis=1)
     return float(np.sqrt(apart.mean()) / (2.0 * one.radii.max()))
+
+
+def run(recipe: dict) -> xr.Dataset:
+    """`echo` of a point's recipe."""
+    return echo(
+        Scene.from_dict(recipe["scene"]),
+        engine_from_dict(recipe["engine"]),
+        seeds=[tuple(seed) for seed in recipe["seeds"]],
+        equilibration=recipe["equilibration"],
+        interval=recipe["interval"],
+        samples=recipe["samples"],
+    )

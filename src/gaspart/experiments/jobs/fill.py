@@ -61,3 +61,10 @@ def insert(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarr
         )  # fmt: skip
         used += tried
     return before, used, standing.positions[:placed]
+
+
+def run(recipe: dict) -> xr.Dataset:
+    """`fill` of a point's recipe."""
+    return fill(
+        Scene.from_dict(recipe["scene"]), recipe["attempts"], [tuple(seed) for seed in recipe["seeds"]]
+    )

@@ -44,3 +44,10 @@ def pack(scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]]) -> xr
             "length": ("axis", np.array(scene.container.lengths), {"units": "length"}),
         }
     )
+
+
+def run(recipe: dict) -> xr.Dataset:
+    """`pack` of a point's recipe."""
+    return pack(
+        Scene.from_dict(recipe["scene"]), recipe["attempts"], [tuple(seed) for seed in recipe["seeds"]]
+    )

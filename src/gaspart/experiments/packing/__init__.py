@@ -1,1 +1,4 @@
-"""Random insertion: densest_fill."""
+"""Random insertion."""
+
+TITLE = "Random insertion"
+FIGURES = ("densest_fill",)

@@ -1,1 +1,4 @@
-"""Pictures: gas_render, brownian_render."""
+"""Pictures."""
+
+TITLE = "Pictures"
+FIGURES = ("gas_render", "brownian_render")

@@ -1,1 +1,4 @@
-"""Speed against accuracy: price_of_features."""
+"""Speed against accuracy."""
+
+TITLE = "Speed against accuracy"
+FIGURES = ("price_of_features",)

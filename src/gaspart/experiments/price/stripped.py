@@ -13,24 +13,12 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
-
-from gaspart.kernels.compilation import KERNEL_MODULES
+from typing import Any
 
 FEATURES = {"gravity", "law", "masses", "record", "walls", "surfaces", "big", "watch", "vibrations", "rules"}
 """Names by which kernels know what a plain gas is without."""
 ENGINES = ("event", "step")
-_PACKAGE = Path(__file__).parents[1]
-_COUNT = """
-import gaspart as gp
-from gaspart.engines import event_kernels, step_kernels
-scene = gp.Scene(gp.Container((9.0,) * 3, "periodic"), [gp.Species(50, 0.5, temperature=1.0)])
-kernels = {gp.EventDriven(): event_kernels.run_boxes, gp.TimeStepped(0.01): step_kernels.run_steps}
-for engine, kernel in kernels.items():
-    gp.Simulation(scene, engine).advance(duration=0.1)
-    (code,) = kernel.inspect_asm().values()
-    lines = [line.strip() for line in code.splitlines() if line.startswith("\\t")]
-    print(sum(not line.startswith((".", "#")) for line in lines))
-"""
+_PACKAGE = Path(__file__).parents[2]
 
 
 class Strip(ast.NodeTransformer):
@@ -73,12 +61,11 @@ def instructions() -> dict[str, tuple[int, int]]:
             package = Path(folder) / str(strip) / "gaspart"
             shutil.copytree(_PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
             if strip:
-                for name in KERNEL_MODULES:
-                    module = package / name
+                for module in package.joinpath("kernels").rglob("*.py"):
                     module.write_text(stripped(module.read_text(encoding="utf-8")), encoding="utf-8")
             environment = {"PYTHONPATH": str(package.parent), "GASPART_CACHE": str(package.parent / "cache")}
             done = subprocess.run(
-                [sys.executable, "-c", _COUNT],
+                [sys.executable, "-m", __name__],
                 env={**os.environ, **environment},
                 capture_output=True,
                 text=True,
@@ -86,3 +73,25 @@ def instructions() -> dict[str, tuple[int, int]]:
             )
             found.append(map(int, done.stdout.split()))
     return dict(zip(ENGINES, zip(*found, strict=True), strict=True))
+
+
+def count() -> None:
+    """Print the number of instructions of each engine's main kernel for a plain gas of spheres."""
+    import gaspart as gp
+    from gaspart.kernels.event import loop as event_loop
+    from gaspart.kernels.step import loop as step_loop
+
+    scene = gp.Scene(gp.Container((9.0,) * 3, "periodic"), [gp.Species(50, 0.5, temperature=1.0)])
+    kernels: dict[Any, Any] = {
+        gp.EventDriven(): event_loop.run_boxes,
+        gp.TimeStepped(0.01): step_loop.run_steps,
+    }
+    for engine, kernel in kernels.items():
+        gp.Simulation(scene, engine).advance(duration=0.1)
+        (code,) = kernel.inspect_asm().values()
+        lines = [line.strip() for line in code.splitlines() if line.startswith("\t")]
+        print(sum(not line.startswith((".", "#")) for line in lines))
+
+
+if __name__ == "__main__":
+    count()

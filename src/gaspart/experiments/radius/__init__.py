@@ -1,1 +1,4 @@
-"""Radius, density and number of bodies: radius_grid."""
+"""Radius, density and number of bodies."""
+
+TITLE = "Radius, density and number of bodies"
+FIGURES = ("radius_grid",)

@@ -1,1 +1,4 @@
-"""Speed against accuracy: reversibility."""
+"""Speed against accuracy."""
+
+TITLE = "Speed against accuracy"
+FIGURES = ("reversibility",)

@@ -1,1 +1,4 @@
-"""Speed distributions: speed_relaxation, speed_distribution_spheres, speed_distribution_discs."""
+"""Speed distributions."""
+
+TITLE = "Speed distributions"
+FIGURES = ("speed_relaxation", "speed_distribution_spheres", "speed_distribution_discs")

@@ -1,1 +1,4 @@
-"""Speed against accuracy: speed_accuracy, time_to_accuracy."""
+"""Speed against accuracy."""
+
+TITLE = "Speed against accuracy"
+FIGURES = ("speed_accuracy", "time_to_accuracy")

@@ -1,1 +1,4 @@
-"""Memory of velocities: velocity_autocorrelation."""
+"""Memory of velocities."""
+
+TITLE = "Memory of velocities"
+FIGURES = ("velocity_autocorrelation",)

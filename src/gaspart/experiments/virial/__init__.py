@@ -1,1 +1,4 @@
-"""Equation of state: virial_discs, virial_spheres."""
+"""Equation of state."""
+
+TITLE = "Equation of state"
+FIGURES = ("virial_discs", "virial_spheres")

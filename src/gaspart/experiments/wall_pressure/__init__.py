@@ -1,1 +1,4 @@
-"""Pressure on walls: wall_pressure."""
+"""Pressure on walls."""
+
+TITLE = "Pressure on walls"
+FIGURES = ("wall_pressure",)

@@ -8,7 +8,8 @@ from gaspart.kernels.event.box_lists import box_of
 from gaspart.kernels.event.model import WALLS, WORST
 from gaspart.kernels.flight import advance_row
 from gaspart.kernels.impact import LEAST, push, strike_wall
-from gaspart.kernels.obstacles.plate import gap_to_plate, time_to_plate
+from gaspart.kernels.obstacles.distance import gap_to_plate
+from gaspart.kernels.obstacles.plate import time_to_plate
 from gaspart.kernels.obstacles.segment import time_to_segment
 
 

@@ -13,7 +13,7 @@ from gaspart.kernels.ballistic import (
     time_to_far_side,
     time_to_side,
 )
-from gaspart.kernels.compilation import helper, inner_helper, inner_kernel
+from gaspart.kernels.compilation import inner_helper, inner_kernel
 from gaspart.kernels.contact import time_to_contact
 from gaspart.kernels.flight import acceleration
 
@@ -96,16 +96,3 @@ def time_to_plate(rows, body, plates, m, space, gravity):
             corner_y = y - other * width
             best = min(best, time_to_point(far_x, corner_y, z, u, v, w, a, b, c, radius))
     return rows[body, 6] + best
-
-
-@helper
-def gap_to_plate(plates, m, x, y, z):
-    """The vector from a point to the nearest point of a plate."""
-    dx, dy, dz = x - plates[m, 0], y - plates[m, 1], z - plates[m, 2]
-    s = min(max(dx * plates[m, 3] + dy * plates[m, 4] + dz * plates[m, 5], 0.0), plates[m, 6])
-    t = min(max(dx * plates[m, 7] + dy * plates[m, 8] + dz * plates[m, 9], 0.0), plates[m, 10])
-    return (
-        s * plates[m, 3] + t * plates[m, 7] - dx,
-        s * plates[m, 4] + t * plates[m, 8] - dy,
-        s * plates[m, 5] + t * plates[m, 9] - dz,
-    )

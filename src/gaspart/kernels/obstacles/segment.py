@@ -6,7 +6,7 @@ A row of a segment is (ax, ay, ux, uy, length): its start, the unit vector along
 from math import inf
 
 from gaspart.kernels.ballistic import time_to_contact_pulled, time_to_far_side, time_to_side
-from gaspart.kernels.compilation import helper, inner_kernel
+from gaspart.kernels.compilation import inner_kernel
 from gaspart.kernels.contact import time_to_contact
 from gaspart.kernels.flight import acceleration
 
@@ -51,14 +51,3 @@ def time_to_segment(rows, body, segments, m, space, gravity):
             time = time_to_contact(rr, rv, vv, radius * radius)
         best = min(best, time)
     return rows[body, 4] + best
-
-
-@helper
-def square_from_segment(segments, m, x, y):
-    """Square of the distance of a point from a segment, its ends included."""
-    dx = x - segments[m, 0]
-    dy = y - segments[m, 1]
-    s = min(max(dx * segments[m, 2] + dy * segments[m, 3], 0.0), segments[m, 4])
-    dx -= s * segments[m, 2]
-    dy -= s * segments[m, 3]
-    return dx * dx + dy * dy

@@ -1,0 +1,262 @@
+"""The command line."""
+
+import io
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+import gaspart as gp
+from gaspart import theory
+from gaspart.cli import main, progress
+
+GAS = """\
+container: {lengths: [12.0, 12.0], boundary: wall}
+species:
+- {count: 20, radius: 0.5, temperature: 1.0}
+"""
+PERIODIC = """\
+container: {lengths: [20.0, 20.0], boundary: periodic}
+species:
+- {count: 200, radius: 0.5, temperature: 1.0}
+"""
+COMMANDS = ("run", "resume", "info", "render", "collisions", "export", "theory", "check", "advise")
+BRIEFLY = ["--duration", "1", "--sample-interval", "0.5"]
+
+
+def shell(*arguments, folder):
+    """`python -m gaspart` in a process of its own."""
+    env = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    command = [sys.executable, "-m", "gaspart", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, cwd=folder, env=env)
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scene.yaml").write_text(GAS)
+    return tmp_path
+
+
+def test_run_info_and_the_command_that_makes_it_again(folder, capsys):
+    for options in (
+        ["--engine", "event", "--boxes-per-side", "3,4", "--seed", "1,2", "--displacements", "--follow", "9"],
+        ["--engine", "step", "--time-step", "0.1", "--precision", "float32", "--no-rewind"],
+    ):
+        assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY, *options, "--force"]) == 0
+        capsys.readouterr()
+        assert main(["info", "run.nc"]) == 0
+        told = capsys.readouterr().out
+        assert "20 hard discs, 3 of 3 frames, whole" in told
+        assert f"gaspart {gp.__version__}, python " in told
+        assert re.search(r"drift of the energy: \d\.\de-\d\d", told)
+        assert " collisions per body" in told
+        assert main(["info", "run.nc", "--scene"]) == 0
+        (folder / "again.yaml").write_text(capsys.readouterr().out)
+        command = shlex.split(re.search(r"gaspart (run scene.yaml .*)", told)[1])
+        command[1] = "again.yaml"
+        command[command.index("run.nc")] = "again.nc"
+        assert main([*command, "--force"]) == 0
+        assert (folder / "again.nc").read_bytes() == (folder / "run.nc").read_bytes()
+
+
+def test_resume_and_info_of_an_unfinished_run(folder, capsys):
+    assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY]) == 0
+    whole = (folder / "run.nc").read_bytes()
+    (folder / "run.nc").rename(folder / "run.nc.partial")
+    with (folder / "run.nc.partial").open("r+b") as file:  # as after two frames
+        file.seek(7)
+        file.write(b"\x02")
+    assert main(["info", "run.nc"]) == 0
+    assert "2 of 3 frames, unfinished: `gaspart resume`" in capsys.readouterr().out
+    assert main(["resume", "run.nc"]) == 0
+    assert (folder / "run.nc").read_bytes() == whole
+    assert main(["resume", "run.nc"]) == 2
+    assert "already whole" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("scene", "options", "complaint"),
+    [
+        pytest.param(
+            GAS.replace("temperature", "temprature"), [], "temprature.*unknown key", id="unknown key"
+        ),
+        pytest.param(GAS.replace("temp", "mass: -1.0, temp"), [], "mass = -1.0: must be positive", id="mass"),
+        pytest.param(GAS.replace("0.5", ".nan"), [], "radius = nan: must be positive", id="NaN"),
+        pytest.param(
+            "container: {lengths: [9, 9]}\nbodies:\n"
+            "- {position: [3, 3], velocity: [0, 0], radius: 1}\n"
+            "- {position: [4, 3], velocity: [0, 0], radius: 1}\n",
+            [],
+            r"bodies\[1\]\.position = .*: overlaps bodies\[0\]",
+            id="overlapping bodies",
+        ),
+        pytest.param(GAS.replace("0.5", "7.0"), [], "radius = 7.0: a body must fit", id="body too large"),
+        pytest.param(
+            GAS, ["--boxes-per-side", "13"], "boxes_per_side = 13: boxes must not", id="narrow boxes"
+        ),
+        pytest.param(GAS.replace("20", "110"), [], "count = 110: does not fit by random", id="saturation"),
+        pytest.param("container: {lengths: [9, 9]}\n", [], "a run needs at least one body", id="no bodies"),
+        pytest.param("", [], "scene = None: must be a mapping", id="empty file"),
+        pytest.param("a: [1\n", [], "YAML = .*: is not valid", id="not YAML"),
+        pytest.param(b"\xff\xfe\x00", [], "cannot be read", id="not text"),
+        pytest.param(None, [], "cannot be read: .*No such file", id="no file"),
+        pytest.param(GAS, ["--engine", "magic"], "engine.name = 'magic': must be one of", id="engine"),
+        pytest.param(GAS, ["--engine", "step"], "time_step = None: is required", id="no time step"),
+        pytest.param(GAS, ["--time-step", "0.1"], "time_step = 0.1: unknown key", id="wrong engine"),
+        pytest.param(GAS, ["--sample-interval", "0.3"], "must be a whole multiple of sample", id="interval"),
+        pytest.param(GAS, ["--duration", "soon"], "argument --duration: invalid float", id="duration"),
+        pytest.param(GAS, ["--seed", "1,x"], "argument --seed: '1,x' must be a whole number", id="seed"),
+        pytest.param(GAS, ["--sed", "1"], "unrecognized arguments: --sed 1", id="unknown option"),
+        pytest.param(GAS, ["-o", "nowhere/run.nc"], "must be a file in an existing folder", id="output"),
+    ],
+)
+def test_a_mistake_costs_one_line(tmp_path, scene, options, complaint):
+    path = tmp_path / "scene.yaml"
+    if scene is not None:
+        path.write_bytes(scene if isinstance(scene, bytes) else scene.encode())
+    done = shell("run", "scene.yaml", "-o", "run.nc", *BRIEFLY, *options, folder=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert re.fullmatch(rf"gaspart: error: .*{complaint}.*\n", done.stderr), done.stderr
+    assert {file.name for file in tmp_path.iterdir()} <= {"scene.yaml"}
+
+
+def test_collisions_become_a_data_set(folder, capsys):
+    assert main(["collisions", "scene.yaml", "-o", "met.nc", "--count", "100", "--seed", "4"]) == 0
+    assert "collisions, mean free path" in capsys.readouterr().out
+    with xr.open_dataset(folder / "met.nc") as data:
+        same = gp.collision_data(gp.Scene.from_file("scene.yaml"), 100, seed=4)
+        assert data.identical(same)
+    assert main(["collisions", "scene.yaml", "-o", "nowhere/met.nc", "--count", "5"]) == 2
+
+
+def test_no_command_is_a_mistake_and_help_is_not(tmp_path, capsys):
+    assert shell(folder=tmp_path).returncode == 2
+    for command in ([], *([name] for name in COMMANDS)):
+        with pytest.raises(SystemExit) as leaving:
+            main([*command, "--help"])
+        told = capsys.readouterr().out
+        assert leaving.value.code == 0 and "usage: gaspart" in told
+        assert "example" in told or command in ([], ["resume"])
+    assert shell("--version", folder=tmp_path).stdout == f"gaspart {gp.__version__}\n"
+
+
+def test_a_broken_invariant_is_exit_code_1_and_ctrl_c_130(folder, capsys, monkeypatch):
+    for error, code, text in (
+        (gp.SimulationError("the energy\nhas drifted"), 1, "the energy has drifted"),
+        (KeyboardInterrupt(), 130, "interrupted"),
+        (MemoryError(), 2, "not enough memory"),
+    ):
+        monkeypatch.setattr("gaspart.trajectory.run", lambda *_, error=error, **__: throw(error))
+        assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY]) == code
+        told = capsys.readouterr().err
+        assert text in told and told.count("\n") == 1
+
+
+def test_progress_is_one_line_on_a_terminal_and_nothing_elsewhere(monkeypatch):
+    assert progress.progress(quiet=False) is None and progress.progress(quiet=True) is None
+    terminal = io.StringIO()
+    terminal.isatty = lambda: True
+    monkeypatch.setattr(sys, "stderr", terminal)
+    clock = iter([100.0, 110.0])
+    monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock))
+    show = progress.progress(quiet=False)
+    show(20.0, 100.0, 1000)
+    show(40.0, 100.0, 51000)
+    assert terminal.getvalue() == "\r\033[K 40.0%  5e+03 collisions/s  0:00:30 left"
+
+
+def throw(error):
+    raise error
+
+
+def test_theory(capsys):
+    assert main(["theory", "Z", "--eta", "0.3"]) == 0
+    told = capsys.readouterr().out
+    first, source, domain = told.splitlines()
+    value, error = re.fullmatch(r"Z\(eta = 0\.3, dimension = 3\) = (\S+) \+- (\S+)", first).groups()
+    assert "Kolafa" in source and "from 0 to 0.539" in domain
+    assert float(value) == pytest.approx(float(theory.compressibility_factor(0.3, 3)), rel=1e-9)
+    assert 0 < float(error) < 1e-3
+
+    assert main(["theory", "collision_rate", "--eta", "0.1,0.2", "--dimension", "2", "--mass", "4"]) == 0
+    values = [float(line.split(" = ")[-1]) for line in capsys.readouterr().out.splitlines()[:2]]
+    assert values == pytest.approx([float(theory.collision_rate(eta, 2, mass=4.0)) for eta in (0.1, 0.2)])
+
+    for name in ("contact_value", "mean_free_path", "diffusion_coefficient", "viscosity"):
+        assert main(["theory", name, "--eta", "0.1", "--dimension", "2"]) == 0
+
+    capsys.readouterr()
+    for wrong, complaint in (
+        (["Z", "--eta", "0.9", "--dimension", "3"], "holds from 0 to"),
+        (["Z", "--eta", "nan", "--dimension", "3"], "holds from 0 to"),
+        (["Z", "--eta", "0.1", "--dimension", "4"], "invalid choice"),
+        (["Y", "--eta", "0.1", "--dimension", "3"], "invalid choice"),
+        (["Z", "--eta", "0.1", "--dimension", "3", "--mass", "2"], "mass = 2.0: Z does not depend on it"),
+    ):
+        assert main(["theory", *wrong]) == 2
+        told = capsys.readouterr().err
+        assert complaint in told and told.count("\n") == 1
+
+
+def test_check_tells_what_is_wrong_by_its_exit_code(folder, capsys):
+    assert main(["check", "scene.yaml"]) == 0
+    assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY]) == 0
+    assert main(["check", "run.nc"]) == 0
+    capsys.readouterr()
+    assert main(["check", "run.nc", "--radius", "2"]) == 1
+    assert "WRONG overlaps: the deepest is 0." in capsys.readouterr().out
+    assert main(["check", "run.nc", "--lengths", "8,12"]) == 1
+    assert "WRONG container" in capsys.readouterr().out
+    for wrong, complaint in (
+        (["scene.yaml", "--radius", "1"], "radius = 1.0: has a meaning for trajectories only"),
+        (["nowhere.gsd"], "cannot be read: No such file"),
+        (["run.pdb"], "must end in .nc, .gsd, .xyz"),
+    ):
+        assert main(["check", *wrong]) == 2
+        told = capsys.readouterr().err
+        assert complaint in told and told.count("\n") == 1
+
+
+def test_check_of_a_config_is_that_of_the_workflow(folder, capsys):
+    config = Path(__file__).parents[2] / "config"
+    assert main(["check", str(config / "paper.yaml")]) == 0
+    assert re.search(r"ok +config: \d+ experiments of \d+ points", capsys.readouterr().out)
+    (folder / "alone.yaml").write_text("experiments: {}\n")
+    assert main(["check", "alone.yaml"]) == 2
+    assert "must lie in a folder beside workflow/schemas" in capsys.readouterr().err
+
+
+def test_export_says_where(folder, capsys):
+    assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY]) == 0
+    capsys.readouterr()
+    assert main(["export", "run.nc", "-o", "state.gsd"]) == 0
+    assert capsys.readouterr().out == "state.gsd\n"
+    assert main(["export", "run.nc", "-o", "state.pdb"]) == 2
+    assert main(["export", "run.nc", "-o", "state.gsd", "--frame", "3"]) == 2
+    assert "frame = 3: the trajectory has 3" in capsys.readouterr().err
+
+
+def test_advice_names_engine_length_cost_and_reason(folder, capsys):
+    (folder / "gas.yaml").write_text(PERIODIC)
+    assert main(["advise", "gas.yaml", "--observable", "Z", "--accuracy", "0.01", "--budget", "60s"]) == 0
+    told = capsys.readouterr().out
+    for part in ("engine ", "replicas ", "run length ", "predicted cost ", "half-width ", "why: "):
+        assert part in told
+    assert main(["advise", "gas.yaml", "--accuracy", "2"]) == 2
+    assert "accuracy = 2" in capsys.readouterr().err
+    assert main(["advise"]) == 2
+
+
+def test_what_a_config_costs(folder, capsys):
+    (folder / "config.yaml").write_text(
+        "seed: 1\nexperiments:\n  gas:\n    point: {dimension: 3, count: 500, radius: 0.5, "
+        "packing_fraction: 0.1, boundary: periodic, temperature: 1.0, engine: auto, accuracy: 0.01}\n"
+    )
+    assert main(["advise", "--config", "config.yaml"]) == 0
+    assert "core-hours" in capsys.readouterr().out

@@ -1,0 +1,45 @@
+import pytest
+from experiments.adsorption.data import walls
+
+from gaspart.claims import judge
+from gaspart.experiments.adsorption import claims as adsorption
+
+
+def verdicts(dataset):
+    claims = adsorption.adsorption(dataset)
+    return dict(zip((claim.claim for claim in claims), judge(claims), strict=True))
+
+
+def verdict(found, text):
+    return next(verdict for claim, verdict in found.items() if text in claim)
+
+
+def test_walls_as_theory_says_agree():
+    found = verdicts(walls())
+    assert len(found) == 11
+    assert set(found.values()) == {"agrees"}
+
+
+def test_a_thermal_wavelength_is_found():
+    found = verdicts(walls(power=-0.5))
+    assert verdict(found, "power of T in h") == "disagrees"
+    assert verdict(found, "slope of ln") == "disagrees"
+
+
+def test_a_coverage_that_follows_henrys_law_is_found():
+    assert verdict(verdicts(walls(coverage_power=1.0)), "power of the gas' density") == "disagrees"
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "change", "text"),
+    [
+        ("length", "ideal", 0.01, "over the width"),
+        ("filling", "layer", 0.06, "coverage over that of hard discs"),
+        ("slow_share", "ideal", 0.02, "wells: share"),
+        ("slow_share", "sticky", 0.3, "slow bodies that leave"),
+    ],
+)
+def test_each_claim_can_fail(name, kind, change, text):
+    dataset = walls()
+    dataset[name] = dataset[name] + change * (dataset["kind"] == kind)
+    assert verdict(verdicts(dataset), text) == "disagrees"

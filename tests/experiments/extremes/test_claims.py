@@ -1,0 +1,29 @@
+"""What the table of extremes claims, and when it does not hold."""
+
+import pytest
+from experiments.extremes.data import extremes_data
+
+from gaspart.claims import judge
+from gaspart.experiments.extremes.claims import stability_extremes
+
+
+def test_rows_that_pass_or_are_refused_agree():
+    claims = stability_extremes(extremes_data())
+    assert len(claims) == 2 + 3
+    assert set(judge(claims)) == {"agrees"}
+
+
+@pytest.mark.parametrize(
+    ("changed", "wrong"),
+    [
+        ({"verdict": "fails", "message": "energy"}, 0),
+        ({"verdict": "hangs"}, 0),
+        ({"verdict": "refused"}, 0),  # without a word
+        ({"verdict": "refused", "message": "two\nlines"}, 0),
+        ({"missed": -1}, 4),
+    ],
+)
+def test_what_hangs_fails_or_refuses_without_a_line_disagrees(changed, wrong):
+    data = extremes_data(**changed)
+    verdicts = judge(stability_extremes(data) if wrong else stability_extremes(data)[:2])
+    assert [n for n, verdict in enumerate(verdicts) if verdict != "agrees"] == [wrong]

@@ -1,0 +1,87 @@
+import pytest
+from experiments.freezing.data import discs, spheres
+
+from gaspart.claims import judge
+from gaspart.experiments.freezing import claims as freezing
+
+
+def verdicts(claims):
+    """Verdict by the claim's text."""
+    return dict(zip((claim.claim for claim in claims), judge(claims), strict=True))
+
+
+def verdict(found, text):
+    return next(verdict for claim, verdict in found.items() if text in claim)
+
+
+def test_discs_as_the_literature_has_them_agree():
+    found = verdicts(freezing.freezing_discs(discs()))
+    assert len(found) == 8
+    assert set(found.values()) == {"agrees"}
+
+
+def test_spheres_as_the_literature_has_them_agree():
+    found = verdicts(freezing.freezing_spheres(spheres()))
+    assert sum("Z of the crystal" in text for text in found) == 2
+    assert sum("Z of the fluid" in text for text in found) == 5
+    assert set(found.values()) == {"agrees"}
+
+
+def changed(dataset, name, value, **where):
+    dataset = dataset.copy(deep=True)
+    dataset[name].loc[where] = value
+    return dataset
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "where", "text"),
+    [
+        ("plateau", 8.8, {"start": "fluid"}, "from the fluid (within"),
+        ("plateau", 9.35, {"start": "fluid"}, "from the crystal minus"),
+        ("order", 0.6, {"packing_fraction": 0.6477847, "start": "crystal"}, "most ordered"),
+        ("order", 0.3, {"packing_fraction": 0.73, "start": "fluid"}, "least ordered"),
+        ("pressure", 7.0, {"packing_fraction": 0.6477847, "start": "crystal"}, "disc liquid"),
+        ("pressure", 9.3, {"packing_fraction": 0.73, "start": "crystal"}, "pressure of the crystal"),
+    ],
+)
+def test_each_claim_about_discs_can_fail(name, value, where, text):
+    data = discs()
+    if "packing_fraction" in where:
+        eta = float(
+            data["packing_fraction"].sel(packing_fraction=where["packing_fraction"], method="nearest")
+        )
+        where = {**where, "packing_fraction": eta}
+    found = verdicts(freezing.freezing_discs(changed(data, name, value, **where)))
+    assert verdict(found, text) == "disagrees"
+
+
+def test_discs_that_have_not_settled_are_inconclusive():
+    data = discs()
+    data["plateau_error"] = data["plateau_error"] * 10
+    data["disagreement"] = data["disagreement"] + 5.0
+    found = verdicts(freezing.freezing_discs(data))
+    assert verdict(found, "from the crystal (within") == "inconclusive"
+    assert verdict(found, "starts or halves differ") in ("inconclusive", "disagrees")
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "where", "text"),
+    [
+        ("order", 0.35, {"packing_fraction": 0.45, "start": "crystal"}, "largest global"),
+        ("order", 0.3, {"packing_fraction": 0.56, "start": "crystal"}, "smallest global"),
+        ("Z", 12.0, {"packing_fraction": 0.56, "start": "crystal"}, "crystal at packing fraction 0.56"),
+        ("Z", 12.0, {"packing_fraction": 0.5, "start": "fluid"}, "fluid at packing fraction 0.5"),
+        ("slab_pressure", 11.0, {}, "beside fluid, k_B"),
+        ("slab_drift", 0.6, {}, "second half"),
+        ("crystal_fraction", 0.95, {}, "crystalline at the end"),
+    ],
+)
+def test_each_claim_about_spheres_can_fail(name, value, where, text):
+    found = verdicts(freezing.freezing_spheres(changed(spheres(), name, value, **where)))
+    assert verdict(found, text) == "disagrees"
+
+
+def test_a_crystal_that_creeps_is_less_certain():
+    data = changed(spheres(), "pressure_drift", 0.5, packing_fraction=0.56, start="crystal")
+    found = verdicts(freezing.freezing_spheres(data))
+    assert verdict(found, "crystal at packing fraction 0.56") == "inconclusive"

@@ -1,0 +1,38 @@
+import pytest
+from experiments.granular.data import inelastic, rough
+
+from gaspart.claims import judge
+from gaspart.experiments.granular.claims import cooling, equipartition
+
+
+def verdicts(claims, beginning=""):
+    return {
+        verdict
+        for claim, verdict in zip(claims, judge(claims), strict=True)
+        if claim.claim.startswith(beginning)
+    }
+
+
+def test_right_data_agree():
+    assert verdicts(equipartition(rough())) == {"agrees"}
+    assert verdicts(cooling(inelastic())) == {"agrees"}
+
+
+@pytest.mark.parametrize(
+    ("wrong", "beginning"),
+    [
+        ({"rate": 1.04}, "initial decay"),
+        ({"rate": 1.2}, "T_tr - T_rot less"),
+        ({"ratio": 1.02}, "T_rot / T_tr of rough discs"),
+        ({"steady": 0.85}, "T_rot / T_tr of cooling discs"),
+    ],
+)
+def test_wrong_shares_are_found(wrong, beginning):
+    assert "disagrees" in verdicts(equipartition(rough(**wrong)), beginning)
+
+
+def test_wrong_cooling_is_found():
+    assert "disagrees" in verdicts(cooling(inelastic(rate=1.03)), "-d ln T")
+    assert "disagrees" in verdicts(cooling(inelastic(exponent=-1.9)), "exponent")
+    assert verdicts(cooling(inelastic(clustered=False)), "ln of variance") == {"disagrees"}
+    assert verdicts(cooling(inelastic(clustered=False)), "ln of T over") == {"disagrees"}

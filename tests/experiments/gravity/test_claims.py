@@ -1,0 +1,55 @@
+import pytest
+from experiments.gravity.data import capacities, columns
+
+from gaspart.claims import judge
+from gaspart.experiments.gravity import claims as gravity
+
+
+def verdicts(claims):
+    """Verdict by the claim's text."""
+    return dict(zip((claim.claim for claim in claims), judge(claims), strict=True))
+
+
+def test_theory_agrees_with_itself():
+    for found, count in (
+        (gravity.barometric(columns()), 4 + 5),
+        (gravity.separation(columns(2)), 7 + 5),
+        (gravity.heat_capacity(capacities()), 6),
+    ):
+        assert len(found) == count
+        assert set(verdicts(found).values()) == {"agrees"}
+
+
+@pytest.mark.parametrize(
+    ("judged", "name", "change", "text"),
+    [
+        (gravity.barometric, "slope_ratio", 0.02, "slope of the chemical"),
+        (gravity.barometric, "temperature_gradient", 0.02, "temperature against height"),
+        (gravity.barometric, "imbalance", 1e-6, "gain of momentum"),
+        (gravity.barometric, "mean_height_ratio", 0.06, "mean height"),
+        (gravity.barometric, "range_ratio", -0.02, "pressure that carries"),
+        (gravity.separation, "exchange_ratio", 0.02, "slope of ln(heavy/light)"),
+        (gravity.separation, "species_temperature_ratio", 0.02, "temperature of the heavy"),
+        (gravity.separation, "slope_ratio", 0.02, "of the heavy"),
+    ],
+)
+def test_each_claim_about_columns_can_fail(judged, name, change, text):
+    ds = columns(1 if judged is gravity.barometric else 2)
+    ds[name] = ds[name] + change
+    found = verdicts(judged(ds))
+    assert "disagrees" in {verdict for claim, verdict in found.items() if text in claim}
+
+
+@pytest.mark.parametrize(("name", "text"), [("slope", "dE/dT"), ("fluctuation", "fluctuations")])
+def test_each_claim_about_heat_can_fail(name, text):
+    ds = capacities()
+    ds[name] = ds[name] * 1.1
+    found = verdicts(gravity.heat_capacity(ds))
+    assert {verdict for claim, verdict in found.items() if text in claim} == {"disagrees"}
+
+
+def test_too_short_runs_are_inconclusive():
+    found = verdicts(gravity.barometric(columns(error=0.05)))
+    assert {
+        verdict for claim, verdict in found.items() if "balance" not in claim and "gain" not in claim
+    } == {"inconclusive"}

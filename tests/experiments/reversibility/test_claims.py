@@ -1,0 +1,28 @@
+from experiments.reversibility.data import measurement
+
+from gaspart.claims import judge
+from gaspart.experiments.reversibility import claims as reversibility
+
+
+def verdicts(dataset):
+    claims = reversibility.reversibility(dataset)
+    return {claim.claim: verdict for claim, verdict in zip(claims, judge(claims), strict=True)}
+
+
+def test_echoes_that_grow_as_they_should_agree(tmp_path):
+    found = verdicts(measurement(tmp_path))
+    assert len(found) == 4
+    assert set(found.values()) == {"agrees"}
+
+
+def test_another_growth_is_noticed(tmp_path):
+    found = verdicts(measurement(tmp_path, growth=2.0))
+    assert [claim for claim, verdict in found.items() if verdict == "disagrees"] == [
+        "growth of the echo per collision of a body, spheres, packing fraction 0.1"
+    ]
+
+
+def test_an_engine_that_replays_is_noticed(tmp_path):
+    dataset = measurement(tmp_path)
+    dataset["memory"] = 3.0 * dataset.memory
+    assert any(verdict == "disagrees" for claim, verdict in verdicts(dataset).items() if "memory" in claim)

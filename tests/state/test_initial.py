@@ -1,0 +1,134 @@
+"""Initial states: bodies placed where they may be, moving as they should."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from scenes import closest, gas, mixtures
+
+import gaspart as gp
+from gaspart.state.initial import initial_state, random_insertion
+from gaspart.state.random import stream
+
+
+@given(mixtures(most=30))
+def test_random_insertion_keeps_bodies_apart_and_inside(scene):
+    state = initial_state(scene, seed=1)
+    assert closest(scene, state) >= 0
+    for position, radius in zip(state.positions, state.radii, strict=True):
+        low, high = scene.reach(radius)
+        assert (position >= low).all()
+        assert (position <= high).all()
+
+
+@pytest.mark.parametrize("boundary", ["wall", "periodic"])
+@pytest.mark.parametrize(("dimension", "eta"), [(2, 0.3), (2, 0.72), (3, 0.3), (3, 0.58)])
+def test_lattices_hold_any_number(dimension, boundary, eta):
+    for count in (1, 2, 7, 64, 108, 250):
+        wanted = eta if boundary == "periodic" and count in (108, 250) else eta / 3
+        scene = gas(dimension, count, wanted if count > 2 else 0.05, boundary, arrangement="lattice")
+        state = initial_state(scene, seed=0)
+        assert len(np.unique(state.positions, axis=0)) == count
+        assert closest(scene, state) > -1e-12
+
+
+def test_a_lattice_that_would_overlap_is_refused():
+    with pytest.raises(gp.SceneError, match="a spacing of"):
+        initial_state(gas(3, 100, 0.7, arrangement="lattice"), seed=0)
+
+
+@pytest.mark.parametrize(("dimension", "eta", "boundary"), [(2, 0.4, "wall"), (3, 0.28, "periodic")])
+def test_insertion_is_that_of_one_attempt_after_another(dimension, eta, boundary):
+    scene = gas(dimension, 300, eta, boundary)
+    big, small = gp.Species(2, 1.2), gp.Species(40, 0.05)  # beside the boxes; more than a box has places for
+    scene = gp.Scene(scene.container, [*scene.species, small, big])
+    positions, failures = random_insertion(scene, stream(5))
+    lengths, rng, standing = np.array(scene.container.lengths), stream(5), []
+    radii = {0: scene.species[0].radius, 1: 0.05, 2: 1.2}
+    first = {0: 0, 1: 300, 2: 340}
+    for kind in (2, 0, 1):  # the larger ones first
+        count, low, high = scene.species[kind].count, *map(np.array, scene.reach(radii[kind]))
+        placed = failed = 0
+        while placed < count:
+            draws = rng.random((max(256, 2 * (count - placed)), dimension))
+            for place in low + draws * (high - low):
+                gaps = np.abs(place - np.array([p for p, _ in standing]).reshape(-1, dimension))
+                gaps = np.where(scene.container.periodic, np.minimum(gaps, lengths - gaps), gaps)
+                if (np.sqrt((gaps**2).sum(axis=1)) < radii[kind] + np.array([r for _, r in standing])).any():
+                    failed += 1
+                    continue
+                assert (positions[first[kind] + placed] == place).all()
+                assert failures[first[kind] + placed] == failed
+                standing.append((place, radii[kind]))
+                placed, failed = placed + 1, 0
+                if placed == count or kind == 2:  # big ones are tried alone
+                    break
+
+
+def test_insertion_gives_up_at_saturation():
+    scene = gas(3, 200, 0.5)
+    with pytest.raises(gp.SceneError, match=r"species\[0\].count = 200: does not fit") as caught:
+        random_insertion(scene, stream(0), patience=20_000)
+    assert "\n" not in str(caught.value)
+
+
+def test_failures_at_low_density_are_those_of_the_excluded_volume():
+    # the chance that an attempt fails is 2^d eta to first order; here eta grows from 0 to 0.01
+    failures = 0
+    for seed in range(20):
+        _, failed = random_insertion(gas(3, 1000, 0.01), stream(seed))
+        failures += failed.sum()
+    expected = 20 * 1000 * 8 * 0.005  # mean over the filling; the next order adds some 5 %
+    assert failures == pytest.approx(expected * 1.045, abs=4 * math.sqrt(expected))
+
+
+def test_velocities_have_their_speed_or_temperature():
+    speeds = np.sqrt(
+        (initial_state(gas(3, 500, 0.01, temperature=None, speed=2.0), 1).velocities ** 2).sum(axis=1)
+    )
+    assert np.allclose(speeds, 2.0, rtol=1e-14)
+    velocities = initial_state(gas(2, 20_000, 0.01, temperature=3.0, mass=2.0), 1).velocities
+    assert (velocities**2).mean() == pytest.approx(1.5, abs=4 * 1.5 * math.sqrt(2 / 40_000))
+    assert not initial_state(gas(2, 10, 0.01, temperature=None), 1).velocities.any()
+
+
+def test_explicit_bodies_come_first_and_stay_put():
+    body = gp.Body((5.0, 5.0), (1.0, 0.0), 2.0, mass=7.0)
+    scene = gp.Scene(gp.Container((10.0, 10.0)), [gp.Species(20, 0.3, speed=1.0)], [body])
+    state = initial_state(scene, seed=4)
+    assert state.positions[0].tolist() == [5.0, 5.0]
+    assert state.masses[0] == 7.0
+    assert state.species.tolist() == [1] + [0] * 20
+    assert closest(scene, state) >= 0
+
+
+def test_large_bodies_find_room_among_small_ones():
+    scene = gp.Scene(
+        gp.Container((12.0, 12.0)), [gp.Species(150, 0.25, speed=1.0), gp.Species(8, 1.2, speed=1.0)]
+    )
+    state = initial_state(scene, seed=2)
+    assert (state.radii[:150] == 0.25).all()
+    assert closest(scene, state) >= 0
+
+
+def test_a_slab_is_empty_in_its_upper_half_only():
+    edge = 1.6
+    container = gp.Container((4 * edge, 4 * edge, 6 * edge), "periodic")
+    scene = gp.Scene(container, [gp.Species(364, 0.5, temperature=1.0, arrangement="slab")])
+    positions = initial_state(scene, seed=1).positions
+    below = positions[:, 2] < 3 * edge - 1e-9
+    assert (below.sum(), (~below).sum()) == (4 * 16 * 3, 364 - 4 * 16 * 3)
+    assert not np.array_equal(positions, initial_state(scene, seed=2).positions)
+
+
+def test_a_slab_that_cannot_fill_its_crystal_is_refused():
+    scene = gp.Scene(gp.Container((8.0,) * 3, "periodic"), [gp.Species(1, 0.5, arrangement="slab")])
+    with pytest.raises(gp.SceneError, match="do not fill the crystal's half"):
+        initial_state(scene, seed=1)
+
+
+def test_arrangements_that_share_a_lattice_do_not_mix():
+    kinds = [gp.Species(8, 0.5, arrangement=name) for name in ("lattice", "slab")]
+    with pytest.raises(gp.SceneError, match="is shared by all"):
+        gp.Scene(gp.Container((8.0, 8.0, 8.0)), kinds)

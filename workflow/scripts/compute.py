@@ -1,0 +1,14 @@
+"""One point of a grid whose result is one data set: costs, comparisons, echoes, insertions, packings."""
+
+from _job import function, job
+
+with job(snakemake):
+    from gaspart.kernels.numba_loading import load_numba
+
+    load_numba(ours=True)
+    from gaspart.files import whole_file
+
+    run = function(f"gaspart.experiments.jobs.{snakemake.params.job}", "run")
+    dataset = run(snakemake.params.recipe)
+    with whole_file(snakemake.output[0]) as partial:
+        dataset.to_netcdf(partial)
