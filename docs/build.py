@@ -86,7 +86,7 @@ def family_page(family, folder):
         parts.append(from_rst((ROOT / f"workflow/report/{figure}.rst").read_text(encoding="utf-8")))
         parts.append(claims_of(ROOT / f"results/claims/{figure}.csv"))
     for kind, verb in (("measure", "How it is measured"), ("claims", "What is claimed")):
-        told = importlib.import_module(f"gaspart.{kind}.{family}").__doc__
+        told = importlib.import_module(f"gaspart.experiments.{family}.{kind}").__doc__
         parts.append(f"<h2>{verb}</h2><pre>{html.escape(told.strip())}</pre>")
     return page(titles()[family], "".join(parts))
 

@@ -160,7 +160,9 @@ def test_engines_can_be_written_down():
 
 
 def test_importing_the_package_starts_no_compiler():
-    code = "import sys, gaspart, gaspart.grid; print('numba' in sys.modules, 'xarray' in sys.modules)"
+    code = (
+        "import sys, gaspart, gaspart.planning.grid; print('numba' in sys.modules, 'xarray' in sys.modules)"
+    )
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment

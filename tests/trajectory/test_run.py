@@ -363,7 +363,7 @@ def test_a_spoilt_checkpoint_costs_the_work_and_nothing_else(tmp_path):
 def test_a_cache_that_cannot_be_written_is_told_and_costs_time_only(tmp_path):
     """Compiled anew, and what is computed is the same: a kernel of one line stands for all."""
     (tmp_path / "a file").write_text("")
-    code = "from gaspart.kernel import kernel; print(kernel(lambda x: 3.0 * x)(0.1))"
+    code = "from gaspart.kernels.compilation import kernel; print(kernel(lambda x: 3.0 * x)(0.1))"
     environment = _environment() | {"GASPART_CACHE": str(tmp_path / "a file" / "cache")}
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment)
     assert (done.returncode, done.stdout) == (0, f"{3.0 * 0.1}\n")

@@ -3,6 +3,7 @@
 import resource
 import subprocess
 import sys
+from collections import Counter
 
 import pytest
 from workspace import ROOT, SMOKE
@@ -13,7 +14,7 @@ from gaspart.planning.points import points
 
 pytestmark = pytest.mark.workflow
 
-SIMULATIONS = {"simulate", "measure_cost", "compare", "echo", "fill", "pack"}
+SIMULATIONS = {"simulate", "compute"}
 PACKING_FRACTIONS = read_yaml(ROOT / "config/smoke.yaml")["experiments"]["virial_discs"]["grid"][
     "packing_fraction"
 ]
@@ -113,11 +114,11 @@ def test_a_longer_run_reruns_its_experiment_only(smoke, tmp_path):
 @pytest.mark.parametrize(
     ("path", "expected"),
     [
-        ("src/gaspart/figures/virial.py", {"draw", "report", "all"}),
-        ("src/gaspart/claims/virial.py", {"judge", "claims", "report", "all"}),
+        ("src/gaspart/experiments/virial/figure.py", {"draw", "report", "all"}),
+        ("src/gaspart/experiments/virial/claims.py", {"judge", "claims", "report", "all"}),
         ("src/gaspart/theory/virial.py", {"measure", "judge", "draw", "claims", "report", "all"}),
-        ("src/gaspart/families.py", {"report", "all"}),
-        ("src/gaspart/config.py", set()),
+        ("src/gaspart/experiments/registry.py", {"report", "all"}),
+        ("src/gaspart/experiments/config.py", set()),
         ("config/README.md", set()),
     ],
 )
@@ -132,13 +133,16 @@ def test_editing_a_module_reruns_what_uses_it(smoke, path, expected):
 
 
 def test_editing_the_physics_of_a_contact_simulates_everything_again(smoke):
-    undo = smoke.edit("src/gaspart/contact.py", '"""', '"""Edited. ')
+    undo = smoke.edit("src/gaspart/kernels/contact.py", '"""', '"""Edited. ')
     try:
         plan = smoke.plan(*SMOKE)
     finally:
         undo()
-    assert set(plan) >= {"warm", "simulate", "measure_cost", "measure", "judge", "draw"}
-    assert "fill" not in plan
+    assert set(plan) >= {"warm", "simulate", "compute", "measure", "judge", "draw"}
+    config, _ = laid_over(ROOT / "config/smoke.yaml")
+    jobs = Counter(point.job for name in config["experiments"] for point in points(config, name))
+    assert jobs["fill"] > 0  # which knows no contacts
+    assert plan["compute"] == jobs.total() - jobs["simulate"] - jobs["fill"]
 
 
 def test_warming_again_reruns_nothing_else(smoke):

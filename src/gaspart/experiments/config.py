@@ -108,7 +108,7 @@ def _rule(validator: str, wanted: Any) -> str:
 
 
 def _grid_values(block: Any) -> Iterator[tuple[str, object]]:
-    """Every (key, value) that a grid holds; an empty list is left to gaspart.grid to refuse."""
+    """Every (key, value) that a grid holds; an empty list is left to gaspart.planning to refuse."""
     if isinstance(block, list):
         for part in block:
             yield from _grid_values(part)

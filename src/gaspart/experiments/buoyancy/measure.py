@@ -2,7 +2,7 @@
 
 The force on a fixed disc is what is missing in the fluid's balance of momentum, and so is exact over any
 time: floor - ceiling - weight - gain of momentum. The large disc is the scene's first body, and the small
-ones its one species. Stretches and errors are those of `gaspart.measure.gravity`.
+ones its one species. Stretches and errors are those of `gaspart.experiments.gravity.measure`.
 """
 
 from __future__ import annotations

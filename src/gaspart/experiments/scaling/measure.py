@@ -1,7 +1,7 @@
 """What space partitioning buys: the cost of a step, or of an event, against the bodies and the boxes.
 
 Every point is a `measure_cost` job: one gas, timed with one or several partitions. What is meant by work,
-time and ideal numbers, and where their errors come from, stands in `gaspart.measure.timings`.
+time and ideal numbers, and where their errors come from, stands in `gaspart.experiments.shared.timings`.
 """
 
 import math

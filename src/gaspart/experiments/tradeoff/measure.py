@@ -1,6 +1,6 @@
 """What accuracy costs: errors and costs of the time-stepped engine beside the event-driven one.
 
-Errors are those of `gaspart.measure.compare` and costs those of `gaspart.measure.cost`, of the same gases and
+Errors are those of the job `compare` and costs those of the job `measure_cost`, of the same gases and
 settings. The diffusion coefficient is that of Enskog's theory, kT / m over the rate at which a body forgets
 its velocity, taken from the memory after about one collision per body.
 """

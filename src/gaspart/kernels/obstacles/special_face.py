@@ -1,4 +1,4 @@
-"""Faces with a kind (see `gaspart.surfaces`): what a thermal, sticky or attracting wall does to a body."""
+"""Faces with a kind (see `gaspart.scene.faces`): what a thermal, sticky or attracting wall does to a body."""
 
 from math import inf, sqrt
 
