@@ -4,7 +4,7 @@ A claim agrees, disagrees, or is inconclusive (its uncertainty is above the one 
 stated bound without being significantly so): inconclusive is not a pass. With hundreds of claims some exceed
 3 sigma by chance, so the claims of one figure are a family, and a family as a whole is wrong about a true
 statement with the probability of one 3-sigma test (Holm's correction at the level 0.0027, two-sided). This
-module holds the form of a claim and the judging; `experiments/<family>/claims.py` states what each figure claims.
+module holds the form of a claim and the judging; `experiments/<family>/claims.py` states what figures claim.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""From repeated timings (`gaspart.experiments.jobs.measure_cost`) to costs per body and per event, and to their minimum.
+"""From the job `measure_cost`, repeated timings, to costs per body and per event, and to their minimum.
 
 *Work* is counted, the same on every machine: pairs tested, boxes looked into, and boxes emptied (the
 time-stepped engine sorts all bodies anew in every step, so all its boxes are emptied once a step). *Time* is
