@@ -10,7 +10,7 @@ from gaspart.engines.arrays import face_energy
 from gaspart.kernels.step.box_search import Partition
 from gaspart.kernels.step.cells import Cells
 from gaspart.scene.scene import Scene
-from gaspart.state.boxes import make_boxes
+from gaspart.state.boxes import cube_side, make_boxes
 from gaspart.state.state import State
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def cells_for(engine: TimeStepped, scene: Scene, state: State, radii: np.ndarray
 
 
 def _width(scene: Scene, count: int) -> float:
-    return (scene.container.volume / max(1.0, _CELLS_PER_BODY * count)) ** (1.0 / scene.dimension)
+    return cube_side(scene.container.lengths, _CELLS_PER_BODY * count)
 
 
 def _skin(engine: TimeStepped, scene: Scene, state: State, contact: float) -> float:

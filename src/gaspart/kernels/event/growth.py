@@ -14,6 +14,7 @@ from gaspart.kernels.event.model import COLLISIONS, NOTHING, VIRIAL
 from gaspart.kernels.event.queue import TURN, fill, is_stale, next_turn, reschedule, soonest, time_of
 from gaspart.kernels.flight import advance_row, synchronise
 from gaspart.kernels.periodic import nearest
+from gaspart.kernels.running_sum import add
 
 _PART = 2.0**-30  # of the rate of growth: bodies part at least so fast
 
@@ -166,7 +167,7 @@ def collide(rows, i, j, time, space, rate, counters):
         rows[i, d + k] -= push
         rows[j, d + k] += push
     counters.counts[COLLISIONS] += 1
-    counters.sums[VIRIAL] += approach * length
+    add(counters.sums, VIRIAL, approach * length)
 
 
 @kernel

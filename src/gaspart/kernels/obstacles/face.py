@@ -9,6 +9,7 @@ from gaspart.kernels.event.model import INNER, NOTHING
 from gaspart.kernels.flight import acceleration, advance_row, face_plane
 from gaspart.kernels.impact import strike_wall
 from gaspart.kernels.obstacles.special_face import find_edge, touch_surface
+from gaspart.kernels.running_sum import add
 
 
 @inner_helper
@@ -126,12 +127,12 @@ def bounce(rows, body, face, space, masses, counters, law, surfaces):
             return False
     if law is None:
         mass = 1.0 if masses is None else masses[body]
-        counters.wall_impulse[face] += 2.0 * mass * abs(rows[body, d + axis])
+        add(counters.wall_impulse, face, 2.0 * mass * abs(rows[body, d + axis]))
         rows[body, d + axis] = -rows[body, d + axis]
     else:
         side = 1.0 if face % 2 else -1.0
         x = side if axis == 0 else 0.0
         y = side if axis == 1 else 0.0
         z = side if axis == 2 else 0.0
-        counters.wall_impulse[face] += strike_wall(rows, body, x, y, z, 0.0, space, counters, law)
+        add(counters.wall_impulse, face, strike_wall(rows, body, x, y, z, 0.0, space, counters, law))
     return True

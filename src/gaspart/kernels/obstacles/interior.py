@@ -5,12 +5,13 @@ from math import sqrt
 from gaspart.kernels.compilation import inner_kernel
 from gaspart.kernels.contact import normal_change
 from gaspart.kernels.event.box_lists import box_of
-from gaspart.kernels.event.model import WALLS, WORST
+from gaspart.kernels.event.model import WALLS
 from gaspart.kernels.flight import advance_row
 from gaspart.kernels.impact import LEAST, push, strike_wall
 from gaspart.kernels.obstacles.distance import gap_to_plate
 from gaspart.kernels.obstacles.plate import time_to_plate
 from gaspart.kernels.obstacles.segment import time_to_segment
+from gaspart.kernels.running_sum import add
 
 
 @inner_kernel
@@ -69,7 +70,7 @@ def meet_wall(rows, body, m, time, space, masses, counters, gravity, law, walls)
         impulse = strike_wall(rows, body, x, y, z, least, space, counters, law)
     wall = 2 * d + walls.wall[m]
     counters.wall_hits[wall] += 1
-    counters.wall_impulse[wall] += impulse
+    add(counters.wall_impulse, wall, impulse)
     square = distance / rows[body, 2 * d + 1]
-    counters.sums[WORST] = max(counters.sums[WORST], abs(square * square - 1.0))
+    counters.worst[0] = max(counters.worst[0], abs(square * square - 1.0))
     return wall
