@@ -162,8 +162,6 @@ def test_engines_can_be_written_down():
 def test_importing_the_package_starts_no_compiler():
     names = "sys, gaspart, gaspart.planning.grid"
     code = f"import {names}; print('numba' in sys.modules, 'xarray' in sys.modules)"
-        "import sys, gaspart, gaspart.planning.grid; print('numba' in sys.modules, 'xarray' in sys.modules)"
-    )
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment

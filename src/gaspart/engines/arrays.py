@@ -10,27 +10,29 @@ from gaspart.scene.faces import FACES, Sticky, Thermal, Well
 from gaspart.scene.matter import Restitution
 from gaspart.scene.scene import Scene
 from gaspart.state.insertion import per_body
+from gaspart.state.interior_walls import wall_rows, walls_near
 from gaspart.state.random import key_of
 from gaspart.state.state import State
 from gaspart.state.wells import places_in_wells, well_energies, wells_of
 
 if TYPE_CHECKING:
-    from gaspart.kernels.event.model import Law, Surfaces
+    from gaspart.kernels.model import ContactLaw, Faces, InteriorWalls
+    from gaspart.state.boxes import Boxes
 
 _ROOM = 4096  # events that the record holds before it is emptied
 _WALL_DRAWS = 2  # the purpose of the random numbers of thermal walls, after those of the initial state
 
 
-def masses_for_kernel(masses: np.ndarray) -> tuple[float, np.ndarray | None]:
+def scaled_masses(masses: np.ndarray) -> tuple[float, np.ndarray | None]:
     """(unit, array): equal masses are left out of the kernel altogether, and their sums scaled by `unit`."""
     if len(masses) == 0:
         return 1.0, None
     return (float(masses[0]), None) if (masses == masses[0]).all() else (1.0, masses)
 
 
-def law_for_kernel(scene: Scene, state: State) -> Law | None:
+def contact_law(scene: Scene, state: State) -> ContactLaw | None:
     """The law of contacts, or None if all are elastic, smooth and between bodies that can move."""
-    from gaspart.kernels.event.model import Law
+    from gaspart.kernels.model import ContactLaw
 
     rule = scene.restitution or Restitution()
     if rule.smooth_and_elastic and not np.isinf(state.masses).any():
@@ -45,14 +47,12 @@ def law_for_kernel(scene: Scene, state: State) -> Law | None:
     if modes.any() and state.vibrations is not None:
         vibrations = np.where(modes, state.vibrations, -1.0)
     inverses = 1 / state.masses, 1 / state.moments_of_inertia
-    return Law(rule.normal, rule.tangential, *inverses, spins, vibrations)
+    return ContactLaw(rule.normal, rule.tangential, *inverses, spins, vibrations)
 
 
-def surfaces_for_kernel(
-    scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float
-) -> Surfaces:
-    """The kinds of the container's faces as the kernels' `Surfaces`, in units of `unit_mass`."""
-    from gaspart.kernels.event.model import HARD, STICKY, THERMAL, THERMAL_NORMAL, Surfaces
+def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float) -> Faces:
+    """The kinds of the container's faces as the kernels' `Faces`, in units of `unit_mass`."""
+    from gaspart.kernels.model import HARD, STICKY, THERMAL, THERMAL_NORMAL, Faces
 
     kinds, levels = [], []
     for name in FACES[: 2 * scene.dimension]:
@@ -68,7 +68,7 @@ def surfaces_for_kernel(
         kinds.append(kind)
         levels.append(level)
     depths, widths = wells_of(scene)
-    return Surfaces(
+    return Faces(
         kind=np.array(kinds, dtype=np.int64),
         level=np.array(levels) / unit_mass,
         depth=depths / unit_mass,
@@ -80,6 +80,15 @@ def surfaces_for_kernel(
     )
 
 
+def interior_walls(scene: Scene, boxes: Boxes, largest_radius: float) -> InteriorWalls:
+    """The interior walls as the kernels' `InteriorWalls`, with those near each box for radii up to
+    `largest_radius`."""
+    from gaspart.kernels.model import InteriorWalls
+
+    rows, wall = wall_rows(scene)
+    return InteriorWalls(rows, wall, *walls_near(rows, boxes, largest_radius), largest_radius)
+
+
 def face_energy(scene: Scene) -> float:
     """The energy that a face with a kind may be expected to give a body, at most."""
     hottest = max((getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()), default=0.0)
@@ -87,19 +96,19 @@ def face_energy(scene: Scene) -> float:
     return scene.dimension * hottest + 2.0 * deepest
 
 
-def tell_inner(
-    state: State, scene: Scene, law: Law | None, surfaces: Surfaces | None, unit_mass: float
+def write_internal(
+    state: State, scene: Scene, law: ContactLaw | None, faces: Faces | None, unit_mass: float
 ) -> None:
-    """Write into a state what a law and surfaces (or None) keep beside the flights: spins, and the energies
-    in wells and in the vibrations of fixed bodies and of those stuck to a face."""
+    """Write into a state what a law and faces (or None) keep beside the flights: spins, and the energies in
+    wells and in the vibrations of fixed particles and of those stuck to a face."""
     if law:
         state.spins = (law.spins[:, 2] if state.dimension == 2 else law.spins).copy()
-    if surfaces:
-        state.well_energies = well_energies(scene, surfaces.place)
+    if faces:
+        state.well_energies = well_energies(scene, faces.place)
     if state.vibrations is not None:
         state.vibrations = np.zeros(state.count)
-        if surfaces:
-            state.vibrations += surfaces.held.sum(axis=1) * unit_mass
+        if faces:
+            state.vibrations += faces.held.sum(axis=1) * unit_mass
         if law and law.vibrations is not None:
             state.vibrations += np.maximum(law.vibrations, 0.0)
 
@@ -108,7 +117,7 @@ class EventLog:
     """Events as they happened: bodies, and their positions, velocities and, if wanted, spins just after."""
 
     def __init__(self, dimension: int, spins: bool = False) -> None:
-        from gaspart.kernels.event.model import Record
+        from gaspart.kernels.event.monitors import Record
 
         self._keys = ("time", "bodies", "positions", "velocities", *(("spins",) if spins else ()))
         self._dimension = dimension

@@ -1,4 +1,4 @@
-"""How often the event-driven engine's clocks start again from zero, lest they lose precision."""
+"""How often the event-driven engine's clocks start again from zero, so that they lose no precision."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import numpy as np
 from gaspart.engines.arrays import face_energy
 from gaspart.scene.scene import Scene
 
-_LAP = 10  # a lap of the clocks is some 2^10 times of flight over a diameter
-_STILL = 2.0**960  # the lap of a scene in which nothing moves
-_OTHER = 2.0**10  # by which speeds must have changed for laps of another length
+_LENGTH = 10  # an epoch of the clocks is some 2^10 times of flight over a diameter
+_STILL = 2.0**960  # the epoch of a scene in which nothing moves
+_OTHER = 2.0**10  # by which speeds must have changed for epochs of another length
 QUIET = 64
-"""Laps without an event after which laps are doubled."""
+"""Epochs without an event after which epochs are doubled."""
 
 
 def _speed(scene: Scene, velocities: np.ndarray, lightest: float) -> float:
@@ -27,27 +27,27 @@ def _speed(scene: Scene, velocities: np.ndarray, lightest: float) -> float:
     return math.sqrt(square)
 
 
-def lap_length(scene: Scene, velocities: np.ndarray, lightest: float, present: float = 0.0) -> float:
+def epoch_length(scene: Scene, velocities: np.ndarray, lightest: float, present: float = 0.0) -> float:
     """The time after which clocks start again from zero, for velocities (N, d) and masses of at least
     `lightest`: a power of two, so that it scales with the units.
 
-    A `present` length is kept until speeds have changed by a factor of 2^10: a cooling gas needs longer laps,
-    since the work of a lap does not depend on its length.
+    A `present` length is kept until speeds have changed by a factor of 2^10: a cooling gas needs longer
+    epochs, since the work of an epoch does not depend on its length.
     """
     speed = _speed(scene, velocities, lightest)
     length = _STILL
     if speed > 0.0:
-        length = _power_of_two(2 * scene.smallest_radius / speed, _LAP)
+        length = _power_of_two(2 * scene.smallest_radius / speed, _LENGTH)
     return present if present / _OTHER < length < present * _OTHER else length
 
 
-def quiet_lap(scene: Scene, velocities: np.ndarray, lightest: float, lap: float, quiet: int) -> float:
-    """The length of a lap after so many `quiet` ones, in which nothing happened: twice the last one, until it
-    is a time of flight through the container. The clocks are then as precise as the positions."""
+def quiet_epoch(scene: Scene, velocities: np.ndarray, lightest: float, epoch: float, quiet: int) -> float:
+    """The length of an epoch after so many `quiet` ones, in which nothing happened: twice the last one, until
+    it is a time of flight through the container. The clocks are then as precise as the positions."""
     speed = _speed(scene, velocities, lightest)
-    most = _power_of_two(max(scene.container.lengths) / speed, 0) if speed > 0.0 else lap
-    doublings = min(max(quiet - QUIET, 0), max(0, math.frexp(most)[1] - math.frexp(lap)[1]))
-    return math.ldexp(lap, doublings)
+    most = _power_of_two(max(scene.container.lengths) / speed, 0) if speed > 0.0 else epoch
+    doublings = min(max(quiet - QUIET, 0), max(0, math.frexp(most)[1] - math.frexp(epoch)[1]))
+    return math.ldexp(epoch, doublings)
 
 
 def _power_of_two(time: float, more: int) -> float:

@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.arrays import face_energy, law_for_kernel, surfaces_for_kernel
+from gaspart.engines.arrays import contact_law, face_energy, special_faces
 from gaspart.errors import SceneError, SimulationError
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
 if TYPE_CHECKING:
     from gaspart.engines.time_stepped import TimeStepped
-    from gaspart.kernels.event.model import Law
+    from gaspart.kernels.model import ContactLaw
     from gaspart.kernels.step.boundaries import Rules
+    from gaspart.kernels.step.model import Bodies, Space
 
 _GIANTS = 16  # at most so many bodies are tested against all others
 _GIANT = 2.0  # radii of the next smaller body that make one of them
@@ -72,38 +73,44 @@ def check_scene(scene: Scene, state: State, giants: np.ndarray) -> None:
 
 
 def rules_for(
-    engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float
-) -> tuple[Rules | None, Law | None]:
-    """The kernels' `Rules` and `Law` of a scene whose faces or bodies know more than momenta, in units of
-    `unit_mass`; None, None of any other."""
+    engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...], space: Space, bodies: Bodies
+) -> Rules | None:
+    """The kernels' `Rules` of a scene with faces or contacts that change more than momenta; None for any
+    other. space, bodies: what the step engine's kernels work on, with masses in the scene's units."""
     if not needs_rules(scene):
-        return None, None
-    from gaspart.kernels.event import model as layout
-    from gaspart.kernels.step import boundaries as step_rules
+        return None
+    from gaspart.kernels.model import Gravity, Model, empty_tally, flight_dtype
+    from gaspart.kernels.step.boundaries import Rules
 
-    surfaces = surfaces_for_kernel(scene, state, seed, unit_mass)
+    fixed = np.isinf(state.masses)
+    model = Model(
+        space=space,
+        masses=bodies.masses,
+        gravity=None if scene.gravity is None else Gravity(scene.gravity, fixed, 0.0, None),
+        law=contact_law(scene, state),
+        faces=special_faces(scene, state, seed, unit_mass=1.0),
+        walls=None,
+        oversized=None,
+    )
     radius = 0.0 if scene.centres_to_walls else state.radii.max(initial=0.0)
-    inset = np.where(np.repeat(scene.container.periodic, 2), 0.0, radius + surfaces.width).reshape(-1, 2)
+    inset = np.where(np.repeat(scene.container.periodic, 2), 0.0, radius + model.faces.width).reshape(-1, 2)
     free = np.stack([inset[:, 0], np.array(scene.container.lengths) - inset[:, 1]], axis=1)
-    gravity = None
-    if scene.gravity is not None:
-        gravity = layout.Gravity(scene.gravity, np.isinf(state.masses), 0.0)
-    faces = 2 * scene.dimension
-    rules = step_rules.Rules(
-        np.zeros((state.count, 8)), surfaces, gravity,
-        layout.zero_counters(faces),
+    walls = 2 * scene.dimension
+    return Rules(
+        np.zeros(state.count, flight_dtype(scene.dimension)),
+        model,
+        empty_tally(walls),
         free.astype(engine.precision),
         holds=any(face.kind != "thermal" for face in scene.faces.values()),
-        heat=np.zeros((faces, 2), dtype=np.int64),
-    )  # fmt: skip
-    return rules, law_for_kernel(scene, state)
+        heat=np.zeros((walls, 2), dtype=np.int64),
+    )
 
 
-def changing(rules: Rules | None, law: Law | None) -> dict[str, np.ndarray]:
+def changing(rules: Rules | None, law: ContactLaw | None) -> dict[str, np.ndarray]:
     """The arrays of rules and law that a run changes, by name."""
     arrays = {}
     if rules:
-        arrays = {key: getattr(rules.surfaces, key) for key in ("place", "held", "draws")}
+        arrays = {key: getattr(rules.model.faces, key) for key in ("place", "held", "draws")}
         arrays["heat"] = rules.heat
     if law:
         arrays["spins"] = law.spins

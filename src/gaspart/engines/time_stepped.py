@@ -8,7 +8,7 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import DTypeLike
 
-from gaspart.engines.arrays import EventLog, masses_for_kernel, tell_inner
+from gaspart.engines.arrays import EventLog, scaled_masses, write_internal
 from gaspart.engines.step_limits import (
     changing,
     check_late,
@@ -86,8 +86,8 @@ class StepDynamics:
     """A scene under way; its time is a whole number of steps."""
 
     def __init__(self, engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...]) -> None:
-        from gaspart.engines import running_sum
         from gaspart.engines import step_search as search
+        from gaspart.kernels import running_sum
         from gaspart.kernels.step import loop as kernels
         from gaspart.kernels.step import model as layout
         from gaspart.kernels.step import simd as step_eight
@@ -106,7 +106,7 @@ class StepDynamics:
             real(not scene.centres_to_walls),
             *(real(number) for number in (normal, 0.5 * (1.0 + normal))),
         )
-        self._unit_mass, masses = masses_for_kernel(state.masses)
+        self._unit_mass, masses = scaled_masses(state.masses)
         if needs_rules(scene):
             self._unit_mass, masses = 1.0, state.masses
         masses = np.ones(state.count) if masses is None else masses
@@ -126,7 +126,8 @@ class StepDynamics:
         self._inset = real(self._space.margin * real(ordinary.max(initial=0.0)))
         self._partition = search.partition_for(engine, scene, state, ordinary)
         self._cells = search.cells_for(engine, scene, state, ordinary)
-        self._rules, self._law = rules_for(engine, scene, state, seed, self._unit_mass)
+        self._rules = rules_for(engine, scene, state, seed, self._space, self._bodies)
+        self._law = self._rules.model.law if self._rules else None
         self._gravity = None if scene.gravity is None else tuple(real(g) for g in scene.gravity)
         self._watch = layout.Watch(step_eight.roomy((state.count,), np.uint32), np.zeros(2))
         self._watch.reach[layout.SPENT] = np.inf  # no list is made yet
@@ -248,7 +249,7 @@ class StepDynamics:
             images=self._bodies.images.T.astype(self._reference.images.dtype),
         )
         if self._rules:
-            tell_inner(state, self._scene, self._law, self._rules.surfaces, self._unit_mass)
+            write_internal(state, self._scene, self._law, self._rules.model.faces, self._unit_mass)
         return state
 
     @property

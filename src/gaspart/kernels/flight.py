@@ -1,7 +1,7 @@
-"""Bodies between their events, as rows: straight flight, or parabolic under gravity.
+"""Particles between their events: straight flight, or parabolic under gravity.
 
-A row of 8 numbers, one cache line, holds a body's position (d), velocity (d), clock and radius, true at that
-clock. Where `gravity` is None, the machine code knows none.
+`flights` (N,) are records of position, velocity, clock and radius (`model.flight_dtype`). Where `gravity` is
+None, the machine code knows none.
 """
 
 from gaspart.kernels.ballistic import flown, time_to_contact_pulled
@@ -10,91 +10,104 @@ from gaspart.kernels.contact import time_to_contact
 
 
 @inner_helper
-def face_plane(rows, body, axis, upper, space):
-    """Where a face of the container stops, or on a periodic axis passes on, this body's centre."""
-    inset = 0.0 if space.periodic[axis] else space.margin * rows[body, 2 * len(space.lengths) + 1]
+def face_plane(flights, i, axis, upper, space):
+    """Where a face of the container stops, or on a periodic axis passes on, the centre of a particle."""
+    inset = 0.0 if space.periodic[axis] else space.margin * flights[i].radius
     return space.lengths[axis] - inset if upper else inset
 
 
 @inner_helper
-def acceleration(rows, body, axis, space, gravity):
-    """What pulls a body along an axis: nothing if it is fixed, or lies still on the face below."""
-    pull = gravity.pull[axis]
-    if pull == 0.0 or gravity.fixed[body]:
+def is_supported(support, i):
+    """Whether a particle rests on or slides along walls."""
+    if support is None:
+        return False
+    return support.number[i] > 0
+
+
+@inner_helper
+def remaining_pull(support, i, axis):
+    """The acceleration along an axis of a particle that is supported."""
+    if support is None:
         return 0.0
-    if rows[body, len(space.lengths) + axis] == 0.0:
-        x = rows[body, axis]
-        if pull < 0.0 and x <= face_plane(rows, body, axis, False, space):
+    return support.pull[i, axis]
+
+
+@inner_helper
+def acceleration_of(flights, i, axis, space, gravity):
+    """The acceleration of a particle along an axis: none if it is fixed, or lies at rest on the face
+    below."""
+    pull = gravity.acceleration[axis]
+    if pull == 0.0 or gravity.fixed[i]:
+        return 0.0
+    if flights[i].velocity[axis] == 0.0:
+        x = flights[i].position[axis]
+        if pull < 0.0 and x <= face_plane(flights, i, axis, False, space):
             return 0.0
-        if pull > 0.0 and x >= face_plane(rows, body, axis, True, space):
+        if pull > 0.0 and x >= face_plane(flights, i, axis, True, space):
             return 0.0
     return pull
 
 
 @inner_helper
-def note_still(rows, body, space, gravity, still):
-    """Note whether a body may be one that is not pulled (see `acceleration`): it is fixed, or does not move
-    along an axis with a pull."""
-    d = len(space.lengths)
-    found = gravity.fixed[body]
-    for k in range(d):
-        found |= (gravity.pull[k] != 0.0) & (rows[body, d + k] == 0.0)
-    still[body] = found
+def mark_resting(flights, i, space, gravity, resting):
+    """Mark in `resting` (N,) whether a particle may not be accelerated (see `acceleration_of`): it is fixed,
+    or does not move along an axis with a pull."""
+    if gravity is not None:
+        found = gravity.fixed[i] | is_supported(gravity.support, i)
+        for k in range(len(space.lengths)):
+            found |= (gravity.acceleration[k] != 0.0) & (flights[i].velocity[k] == 0.0)
+        resting[i] = found
 
 
 @inner_helper
-def advance_row(rows, body, time, space, gravity):
-    """Move a body along its flight to `time`."""
-    d = len(space.lengths)
-    late = time - rows[body, 2 * d]
-    for k in range(d):
+def advance(flights, i, time, space, gravity):
+    """Move a particle along its flight to `time`."""
+    late = time - flights[i].clock
+    for k in range(len(space.lengths)):
         if gravity is None:
-            rows[body, k] += rows[body, d + k] * late
+            flights[i].position[k] += flights[i].velocity[k] * late
         else:
-            pull = acceleration(rows, body, k, space, gravity)
-            rows[body, k] = flown(rows[body, k], rows[body, d + k], pull, late)
-            rows[body, d + k] += pull * late
-    rows[body, 2 * d] = time
+            pull = acceleration_of(flights, i, k, space, gravity)
+            flights[i].position[k] = flown(flights[i].position[k], flights[i].velocity[k], pull, late)
+            flights[i].velocity[k] += pull * late
+    flights[i].clock = time
 
 
 @kernel
-def advance_rows(rows, time, space, gravity):
-    """Move all bodies to `time`."""
-    for body in range(len(rows)):
-        advance_row(rows, body, time, space, gravity)
+def advance_all(flights, time, space, gravity):
+    """Move all particles to `time`."""
+    for i in range(len(flights)):
+        advance(flights, i, time, space, gravity)
 
 
 @kernel
-def synchronise(rows, time, space, gravity):
-    """Advance all bodies to `time`, and let that be time 0 of their clocks."""
-    for body in range(len(rows)):
-        advance_row(rows, body, time, space, gravity)
-        rows[body, 2 * len(space.lengths)] = 0.0
+def restart_clocks(flights, time, space, gravity):
+    """Move all particles to `time`, and let that be time 0 of their clocks."""
+    for i in range(len(flights)):
+        advance(flights, i, time, space, gravity)
+        flights[i].clock = 0.0
 
 
 @inner_helper
-def encounter(rows, i, j, offset, space, gravity):
-    """Bodies i and j, the latter displaced by `offset` (d,), at the later of their clocks: that time, and of
-    their separation r, relative velocity v and acceleration a the products rr, rv, vv, ra, va, aa."""
-    d = len(space.lengths)
-    start = max(rows[i, 2 * d], rows[j, 2 * d])
-    late_i = start - rows[i, 2 * d]
-    late_j = start - rows[j, 2 * d]
+def encounter(flights, i, j, offset, space, gravity):
+    """Particles i and j, the latter displaced by `offset` (d,), at the later of their clocks: that time, and
+    of their separation r, relative velocity v and acceleration a the products rr, rv, vv, ra, va, aa."""
+    start = max(flights[i].clock, flights[j].clock)
+    late_i = start - flights[i].clock
+    late_j = start - flights[j].clock
     rr = rv = vv = ra = va = aa = 0.0
-    for k in range(d):
+    for k in range(len(space.lengths)):
+        x_i, x_j = flights[i].position[k], flights[j].position[k]
+        v_i, v_j = flights[i].velocity[k], flights[j].velocity[k]
         if gravity is None:
-            v = rows[j, d + k] - rows[i, d + k]
-            r = (rows[j, k] + rows[j, d + k] * late_j) - (rows[i, k] + rows[i, d + k] * late_i) + offset[k]
+            v = v_j - v_i
+            r = (x_j + v_j * late_j) - (x_i + v_i * late_i) + offset[k]
         else:
-            pull_i = acceleration(rows, i, k, space, gravity)
-            pull_j = acceleration(rows, j, k, space, gravity)
+            pull_i = acceleration_of(flights, i, k, space, gravity)
+            pull_j = acceleration_of(flights, j, k, space, gravity)
             a = pull_j - pull_i
-            v = (rows[j, d + k] + pull_j * late_j) - (rows[i, d + k] + pull_i * late_i)
-            r = (
-                flown(rows[j, k], rows[j, d + k], pull_j, late_j)
-                - flown(rows[i, k], rows[i, d + k], pull_i, late_i)
-                + offset[k]
-            )
+            v = (v_j + pull_j * late_j) - (v_i + pull_i * late_i)
+            r = flown(x_j, v_j, pull_j, late_j) - flown(x_i, v_i, pull_i, late_i) + offset[k]
             ra += r * a
             va += v * a
             aa += a * a
@@ -105,18 +118,11 @@ def encounter(rows, i, j, offset, space, gravity):
 
 
 @inner_helper
-def contact_square(rows, i, j, space):
-    """The square of the distance at which two bodies touch."""
-    radius = 2 * len(space.lengths) + 1
-    sigma = rows[i, radius] + rows[j, radius]
-    return sigma * sigma
-
-
-@inner_helper
-def pair_time(rows, i, j, offset, space, gravity):
-    """When bodies i and j touch, j displaced by `offset` (d,); inf if they do not."""
-    start, rr, rv, vv, ra, va, aa = encounter(rows, i, j, offset, space, gravity)
-    ss = contact_square(rows, i, j, space)
+def time_of_contact(flights, i, j, offset, space, gravity):
+    """When particles i and j touch, j displaced by `offset` (d,); inf if they do not."""
+    start, rr, rv, vv, ra, va, aa = encounter(flights, i, j, offset, space, gravity)
+    sigma = flights[i].radius + flights[j].radius
+    ss = sigma * sigma
     if gravity is not None:
         if aa > 0.0:
             return start + time_to_contact_pulled(rr - ss, rv, vv, ra, va, aa)

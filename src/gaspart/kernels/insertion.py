@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gaspart.kernels.compilation import inner_helper, kernel
-from gaspart.kernels.obstacles.distance import gap_to_plate, square_from_segment
+from gaspart.kernels.obstacles.distance import to_wall
 from gaspart.kernels.periodic import box_coordinate
 from gaspart.kernels.prefetch import fetch
 
@@ -179,11 +179,8 @@ def is_free(place, at, radius, standing, space, walls, beside):
     """Whether no body and no interior wall is too near to a place (3,) in the box of coordinates at (3,)."""
     if walls is not None:
         for m in range(len(walls)):
-            if len(space.periods) == 2:
-                square = square_from_segment(walls, m, place[0], place[1])
-            else:
-                x, y, z = gap_to_plate(walls, m, place[0], place[1], place[2])
-                square = x * x + y * y + z * z
+            x, y, z = to_wall(walls, m, place, space.periods)
+            square = x * x + y * y + z * z
             if square < radius * radius:
                 return False
     for other in beside:
@@ -220,7 +217,7 @@ def place(
     A place is free if no body already there is nearer than the sum of the radii. lower, upper: (d,) corners
     of the region for the centres. `failures` counts the current body's failed attempts across calls; at
     `patience` the search gives up. attempts_at: (N,) number of failed attempts of each placed body.
-    walls: (M, 5) or (M, 11) interior walls to keep clear of (see `obstacles`), or None. beside: (K,)
+    walls: (M,) interior walls to keep clear of (see `obstacles`), or None. beside: (K,)
     bodies that may reach further than the boxes tell.
 
     Returns (next body to place, failures so far, draws used).

@@ -1,8 +1,8 @@
 """Eight pairs at once: the times of their contacts, in vector instructions.
 
 What a compiler does not find by itself: eight rows, each a vector of eight numbers, are transposed into
-vectors of one number of eight bodies, and the times are worked out in these, in the same arithmetic and
-order as in `flight.pair_time`, to the same bits. LLVM makes of the vectors what the processor has, of
+vectors of one number of eight particles, and the times are worked out in these, in the same arithmetic and
+order as in `flight.time_of_contact`, to the same bits. LLVM makes of the vectors what the processor has, of
 whatever width.
 """
 
@@ -16,10 +16,12 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from gaspart.kernels.event.model import PLACES
-
 WIDTH = 8
-LAP_BITS, LAP_FIRST = 2, 32  # of a candidate, above the number of the body: per axis 1 + the lap of its image
+PLACES = 4  # particles of a box that are listed at once
+IMAGE_BITS, IMAGE_FIRST = (
+    2,
+    32,
+)  # of a candidate, above the particle's number: per axis 1 + the image it is in
 _DOUBLE, _INT, _WORD = ir.DoubleType(), ir.IntType(32), ir.IntType(64)
 _STAGES = (  # of a transposition: swap single lanes, pairs of lanes, halves
     (1, [0, 8, 2, 10, 4, 12, 6, 14], [1, 9, 3, 11, 5, 13, 7, 15]),
@@ -104,7 +106,7 @@ class Lanes:
 
 
 def load_rows(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) -> list[Lanes]:
-    """The rows of eight bodies as eight columns."""
+    """The rows of eight particles as eight columns."""
     vector = ir.VectorType(_DOUBLE, WIDTH)
     rows = []
     for index in indices:
@@ -122,15 +124,15 @@ def load_rows(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) ->
 
 
 def load_row(builder: ir.IRBuilder, data: ir.Value, index: ir.Value) -> list[Lanes]:
-    """The row of one body, in every lane."""
+    """The row of one particle, in every lane."""
     start = builder.mul(index, _WORD(WIDTH))
     values = (builder.load(builder.gep(data, [builder.add(start, _WORD(k))])) for k in range(WIDTH))
     return [Lanes(builder, value).all(value) for value in values]
 
 
 def contact_times(one: list[Lanes], other: list[Lanes], offset: list[Lanes], pull: list[ir.Value]) -> Lanes:
-    """`flight.pair_time` in columns of rows, of one body and eight others displaced by `offset` (d,), which
-    all fall alike under a `pull` (d,), or, without any, not at all."""
+    """`flight.time_of_contact` in columns of rows, of one particle and eight others displaced by `offset`
+    (d,), which all fall alike under a `pull` (d,), or, without any, not at all."""
     d = len(offset)
     start = other[2 * d].where(other[2 * d] > one[2 * d], one[2 * d])
     late, late_other = start - one[2 * d], start - other[2 * d]
@@ -162,17 +164,17 @@ def bits(candidates: Lanes, start: int, count: int) -> Lanes:
     return Lanes(builder, builder.and_(shifted, candidates.all(_WORD((1 << count) - 1)).value))
 
 
-def lap_of(candidates: Lanes, axis: int) -> Lanes:
+def image_of(candidates: Lanes, axis: int) -> Lanes:
     """In which image of the container each candidate stands along an axis: -1, 0 or 1."""
     builder = candidates.builder
-    lap = bits(candidates, LAP_FIRST + LAP_BITS * axis, LAP_BITS).value
-    lap = builder.trunc(lap, ir.VectorType(_INT, WIDTH))
-    lap = builder.sub(lap, candidates.all(_INT(1)).value)
-    return Lanes(builder, builder.sitofp(lap, ir.VectorType(_DOUBLE, WIDTH)))
+    image = bits(candidates, IMAGE_FIRST + IMAGE_BITS * axis, IMAGE_BITS).value
+    image = builder.trunc(image, ir.VectorType(_INT, WIDTH))
+    image = builder.sub(image, candidates.all(_INT(1)).value)
+    return Lanes(builder, builder.sitofp(image, ir.VectorType(_DOUBLE, WIDTH)))
 
 
 def marks(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) -> ir.Value:
-    """A bit for each body, from an array with a byte of 0 or 1 for each."""
+    """A bit for each particle, from an array with a byte of 0 or 1 for each."""
     found = ir.IntType(WIDTH)(0)
     for n, index in enumerate(indices):
         mark = builder.load(builder.gep(data, [index]))
@@ -189,82 +191,92 @@ def fields(builder: ir.IRBuilder, kind: types.BaseNamedTuple, value: ir.Value) -
     return members
 
 
-def sooner(time: Lanes, who: Lanes, other_time: Lanes, other_who: Lanes) -> tuple[Lanes, Lanes]:
+def sooner(time: Lanes, number: Lanes, other_time: Lanes, other_number: Lanes) -> tuple[Lanes, Lanes]:
     """Of two contacts the sooner, of simultaneous ones that with the lower number."""
     build = time.builder
-    lower = Lanes(build, build.icmp_signed("<", other_who.value, who.value))
+    lower = Lanes(build, build.icmp_signed("<", other_number.value, number.value))
     other_is = (other_time < time) | (other_time.equals(time) & lower)
-    return other_time.where(other_is, time), other_who.where(other_is, who)
+    return other_time.where(other_is, time), other_number.where(other_is, number)
 
 
 @intrinsic
-def earliest(typingctx, rows, near, met, body, soon, partner, space, gravity, still):
-    """The earliest contact of a body with `met` candidates, if it is sooner than that with a partner: (time,
-    partner, a bit for each candidate of which nothing is known, since it or the body may not fall, see
-    `flight.note_still`)."""
+def earliest(typingctx, flights, i, count, present, boxes, space, gravity):
+    """The earliest contact of a particle with the first `count` candidates of `boxes`, if it is sooner than
+    `present`, (time, partner): (time, partner, a bit for each candidate of which nothing is known, since it
+    or the particle may not fall, see `flight.mark_resting`)."""
 
     def generate(context, builder, signature, arguments):
-        rows, near, met, body, soon, partner, space, gravity, still = arguments
-        space = fields(builder, signature.args[6], space)
-        rows = context.make_array(signature.args[0])(context, builder, rows).data
-        near = context.make_array(signature.args[1])(context, builder, near).data
-        still = context.make_array(signature.args[8])(context, builder, still).data
-        falls = not isinstance(signature.args[7], types.NoneType)
-        pull = fields(builder, signature.args[7], gravity)["pull"] if falls else []
+        flights, i, count, present, boxes, space, gravity = arguments
+        types_of = dict(zip(("boxes", "space", "gravity"), signature.args[4:], strict=True))
+        space = fields(builder, types_of["space"], space)
+        boxes = fields(builder, types_of["boxes"], boxes)
 
-        one = load_row(builder, rows, body)
-        best = cgutils.alloca_once_value(builder, one[0].all(soon).value)
-        who = cgutils.alloca_once_value(builder, one[0].all(partner).value)
+        def data(array_type, array):
+            return context.make_array(array_type)(context, builder, array).data
+
+        kinds = dict(zip(types_of["boxes"].fields, types_of["boxes"].types, strict=True))
+        rows = builder.bitcast(data(signature.args[0], flights), _DOUBLE.as_pointer())
+        near = data(kinds["candidates"], boxes["candidates"])
+        resting = data(kinds["resting"], boxes["resting"])
+        falls = not isinstance(types_of["gravity"], types.NoneType)
+        pull = fields(builder, types_of["gravity"], gravity)["acceleration"] if falls else []
+
+        one = load_row(builder, rows, i)
+        present = cgutils.unpack_tuple(builder, present)
+        best = cgutils.alloca_once_value(builder, one[0].all(present[0]).value)
+        partner = cgutils.alloca_once_value(builder, one[0].all(present[1]).value)
         unknown = cgutils.alloca_once_value(builder, _WORD(0))
         words = ir.VectorType(_WORD, WIDTH)
-        with cgutils.for_range_slice(builder, _WORD(0), met, _WORD(WIDTH), _WORD) as (first, _):
+        with cgutils.for_range_slice(builder, _WORD(0), count, _WORD(WIDTH), _WORD) as (first, _):
             place = builder.bitcast(builder.gep(near, [first]), words.as_pointer())
             candidates = Lanes(builder, builder.load(place, align=8))
-            numbers = bits(candidates, 0, LAP_FIRST)
+            numbers = bits(candidates, 0, IMAGE_FIRST)
             indices = [builder.extract_element(numbers.value, _INT(n)) for n in range(WIDTH)]
             others = load_rows(builder, rows, indices)
-            offset = [lap_of(candidates, k) * length for k, length in enumerate(space["lengths"])]
+            offset = [image_of(candidates, k) * length for k, length in enumerate(space["lengths"])]
             time = contact_times(one, others, offset, pull)
             if falls:
-                mask = builder.or_(marks(builder, still, indices), marks(builder, still, [body] * WIDTH))
+                mask = builder.or_(marks(builder, resting, indices), marks(builder, resting, [i] * WIDTH))
                 lanes = builder.bitcast(mask, ir.VectorType(ir.IntType(1), WIDTH))
                 time = time.all(inf).where(Lanes(builder, lanes), time)
                 mask = builder.shl(builder.zext(mask, _WORD), first)
                 builder.store(builder.or_(builder.load(unknown), mask), unknown)
-            so_far = Lanes(builder, builder.load(best)), Lanes(builder, builder.load(who))
+            so_far = Lanes(builder, builder.load(best)), Lanes(builder, builder.load(partner))
             time, numbers = sooner(*so_far, time, numbers)
             builder.store(time.value, best)
-            builder.store(numbers.value, who)
-        time, numbers = Lanes(builder, builder.load(best)), Lanes(builder, builder.load(who))
+            builder.store(numbers.value, partner)
+        time, numbers = Lanes(builder, builder.load(best)), Lanes(builder, builder.load(partner))
         for step in (4, 2, 1):
             time, numbers = sooner(time, numbers, time.turned(step), numbers.turned(step))
         found = [builder.extract_element(part.value, _INT(0)) for part in (time, numbers)]
         return context.make_tuple(builder, signature.return_type, [*found, builder.load(unknown)])
 
     found = types.Tuple((types.float64, types.int64, types.uint64))
+    contact = types.Tuple((types.float64, types.int64))
     word = types.uint64
-    return found(rows, near, word, word, types.float64, types.int64, space, gravity, still), generate
+    return found(flights, word, word, contact, boxes, space, gravity), generate
 
 
 @intrinsic
-def write_down(typingctx, near, met, places, box, lap):
-    """Write all places of a box, filled or not, as candidates of a lap into `near` from number `met` on."""
+def list_box(typingctx, candidates, count, places, box, image):
+    """Write all places of a box, filled or not, as candidates of an image into `candidates` from number
+    `count` on."""
 
     def generate(context, builder, signature, arguments):
-        near, met, places, box, lap = arguments
+        near, count, places, box, image = arguments
         near = context.make_array(signature.args[0])(context, builder, near).data
         places = context.make_array(signature.args[2])(context, builder, places).data
         four, words = ir.VectorType(_INT, PLACES), ir.VectorType(_WORD, PLACES)
         place = builder.gep(places, [builder.mul(box, _WORD(PLACES))])
-        bodies = builder.load(builder.bitcast(place, four.as_pointer()), align=4)
-        laps = Lanes(builder, lap).all(lap).value
-        laps = builder.shuffle_vector(laps, laps, ir.Constant(four, [0] * PLACES))
-        candidates = builder.or_(builder.zext(bodies, words), laps)
-        place = builder.bitcast(builder.gep(near, [met]), words.as_pointer())
-        builder.store(candidates, place, align=8)
+        numbers = builder.load(builder.bitcast(place, four.as_pointer()), align=4)
+        images = Lanes(builder, image).all(image).value
+        images = builder.shuffle_vector(images, images, ir.Constant(four, [0] * PLACES))
+        listed = builder.or_(builder.zext(numbers, words), images)
+        place = builder.bitcast(builder.gep(near, [count]), words.as_pointer())
+        builder.store(listed, place, align=8)
         return context.get_dummy_value()
 
-    return types.none(near, types.uint64, places, types.uint64, types.uint64), generate
+    return types.none(candidates, types.uint64, places, types.uint64, types.uint64), generate
 
 
 @intrinsic

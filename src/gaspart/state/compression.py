@@ -16,9 +16,9 @@ from typing import Literal
 import numpy as np
 
 from gaspart.errors import SceneError, SimulationError
-from gaspart.kernels.event.queue import PLAN, empty_calendar
 from gaspart.kernels.memory import aligned
 from gaspart.scene.scene import Scene, Species
+from gaspart.state.boxes import make_boxes, sides_for
 from gaspart.state.insertion import per_body, random_insertion
 from gaspart.state.random import normals, stream
 
@@ -81,7 +81,7 @@ def compress(
         )
     scale = min(end, growing.scale * (1.0 - _SPARE))
     fraction = replace(scene, species=_scaled(scene, scale)).packing_fraction
-    return Packing(growing.settled(scale), scale, fraction, growing.pressure, growing.collisions)
+    return Packing(growing.final_positions(scale), scale, fraction, growing.pressure, growing.collisions)
 
 
 def compressed(scene: Scene, seed: int | tuple[int, ...]) -> np.ndarray:
@@ -111,62 +111,61 @@ def _scaled(scene: Scene, scale: float) -> tuple[Species, ...]:
 
 
 class _Growing:
-    """The bodies of a scene, at `scale` times their radii, under way."""
+    """The particles of a scene, at `scale` times their radii, in progress."""
 
     def __init__(self, scene: Scene, seed: int | tuple[int, ...], scale: float, end: float) -> None:
-        from gaspart.kernels.event import box_lists as lists
+        from gaspart.kernels import flight, model
         from gaspart.kernels.event import growth
-        from gaspart.kernels.event import model as layout
-        from gaspart.state.boxes import make_boxes, sides_for
+        from gaspart.kernels.event.box_lists import empty_lists
+        from gaspart.kernels.event.queue import empty_queue
 
         start = replace(scene, species=_scaled(scene, scale), faces={})
         positions, _ = random_insertion(start, stream(seed, _POSITIONS))
-        self._scene, self._kernels, self._layout = scene, growth, layout
+        self._scene, self._growth, self._flight, self._kernels = scene, growth, flight, model
         d, n = scene.dimension, scene.count
         self.scale, self.pressure, self.collisions = scale, 1.0, 0
         self._radii = per_body(scene, "radius").astype(float)
-        self.rows = aligned((n, 8), float)
-        self.rows[:, :d] = positions
-        self.rows[:, d : 2 * d] = normals(stream(seed, _MOTION), n, d)
-        self.rows[:, 2 * d + 1] = self._radii * scale
+        self.flights = aligned((n,), model.flight_dtype(d))
+        self.flights["position"] = positions
+        self.flights["velocity"] = normals(stream(seed, _MOTION), n, d)
+        self.flights["radius"] = self._radii * scale
+        predictions = aligned((n,), model.PREDICTION)
+        self.particles = model.Particles(self.flights, np.zeros((n, d), dtype=np.int64), predictions)
         width = 2.0 * scene.largest_radius * end * (1.0 + 2.0 * _SPARE)  # so that boxes serve to the end
-        self._boxes = make_boxes(scene, sides_for(scene, 1.0, width), images=True, narrowest=width)
-        self._space = layout.Space(
+        boxes = make_boxes(scene, sides_for(scene, 1.0, width), images=True, narrowest=width)
+        predictions["box"] = boxes.coordinates(positions)
+        self.boxes = empty_lists(boxes, n)
+        self._space = model.Space(
             scene.container.lengths, scene.container.periodic, float(not scene.centres_to_walls)
         )
-        self._plans = aligned((n,), PLAN)
-        self._plans["at"] = self._boxes.coordinates(positions)
-        self._partition = lists.empty_partition(self._boxes, n)
-        self._calendar = empty_calendar(n)
+        self._queue = empty_queue(n)
 
     def grow(self, rate: float, end: float) -> None:
-        """Some collisions per body at this rate, or until the scale is `end`."""
+        """Some collisions per particle at this rate, or until the scale is `end`."""
         d, n = self._scene.dimension, self._scene.count
         rate /= 2.0 * self._scene.largest_radius * self.scale
         left = (end / self.scale - 1.0) / rate
-        counters = self._layout.zero_counters(2 * d)
-        self._kernels.start(self.rows, self._plans, self._calendar, self._space, self._partition, rate)
-        time = self._kernels.run_growing(
-            self.rows, self._plans, self._calendar, self._space, self._partition, rate, counters,
-            left, _COLLISIONS * n,
-        )  # fmt: skip
-        self._kernels.synchronise(self.rows, time, self._space, None)
+        tally = self._kernels.empty_tally(2 * d)
+        common = self.particles, self._queue, self.boxes, self._space
+        self._growth.start(*common, rate)
+        time = self._growth.run(*common, tally, rate, left, _COLLISIONS * n)
+        self._flight.restart_clocks(self.flights, time, self._space, None)
         self.scale = end if time == left else self.scale * (1.0 + rate * time)
-        self.rows[:, 2 * d + 1] = self._radii * self.scale
-        self.collisions += int(counters.counts[self._layout.COLLISIONS])
+        self.flights["radius"] = self._radii * self.scale
+        self.collisions += int(tally.counts[self._kernels.COLLISIONS])
         if time > 0.0:
-            self.pressure = 1.0 + float(counters.sums[self._layout.VIRIAL].sum()) / (d * n * time)
+            self.pressure = 1.0 + float(tally.sums[self._kernels.VIRIAL].sum()) / (d * n * time)
 
-    def settled(self, scale: float) -> np.ndarray:
-        """(N, d) where the bodies are, at this scale. Raises SimulationError if any two would overlap."""
-        d = self._scene.dimension
-        self.rows[:, 2 * d + 1] = self._radii * scale
-        if self._kernels.closest(self.rows, self._plans, self._space, self._partition) < 1.0:
-            raise SimulationError("bodies that were to grow without overlap do overlap")
-        positions, lengths = self.rows[:, :d], np.array(self._space.lengths)
-        margin = np.outer(self._radii * scale, self._space.margin * ~np.array(self._space.periodic))
-        # within a wall's reach, or a lap, to the last bit
-        laps = np.array(self._space.periodic) * (np.array(positions >= lengths) - 1.0 * (positions < 0.0))
-        positions = positions - laps * lengths
-        positions = np.where(np.array(self._space.periodic) & (positions >= lengths), 0.0, positions)
+    def final_positions(self, scale: float) -> np.ndarray:
+        """(N, d) positions at this scale. Raises SimulationError if any two particles would overlap."""
+        self.flights["radius"] = self._radii * scale
+        if self._growth.closest(self.particles, self.boxes, self._space) < 1.0:
+            raise SimulationError("particles that were to grow without overlap do overlap")
+        positions, lengths = self.flights["position"], np.array(self._space.lengths)
+        periodic = np.array(self._space.periodic)
+        margin = np.outer(self._radii * scale, self._space.margin * ~periodic)
+        # within a wall's reach, or an image of the container, to the last bit
+        images = periodic * (np.array(positions >= lengths) - 1.0 * (positions < 0.0))
+        positions = positions - images * lengths
+        positions = np.where(periodic & (positions >= lengths), 0.0, positions)
         return np.clip(positions, margin, lengths - margin)

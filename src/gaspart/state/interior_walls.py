@@ -18,7 +18,10 @@ _SLACK = 1e-9  # by which neighbourhoods are drawn wider, so that rounding leave
 
 
 def wall_rows(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """(M, 5) segments or (M, 11) plates, and (M,) the number of the wall that each stands for."""
+    """(M,) segments or plates, and (M,) the number of the wall that each stands for."""
+    from gaspart.kernels.obstacles.plate import PLATE
+    from gaspart.kernels.obstacles.segment import SEGMENT
+
     lengths, reach = np.array(scene.container.lengths), scene.largest_radius * (1 + _SLACK)
     rows, walls = [], []
     for n, wall in enumerate(scene.walls):
@@ -34,8 +37,8 @@ def wall_rows(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
                 continue
             rows.append(moved)
             walls.append(n)
-    columns = 5 if scene.dimension == 2 else 11
-    return np.array(rows).reshape(-1, columns), np.array(walls, dtype=np.int64)
+    row = SEGMENT if scene.dimension == 2 else PLATE
+    return np.array(rows).reshape(-1).view(row), np.array(walls, dtype=np.int64)
 
 
 def _segment(wall: Wall) -> np.ndarray:
@@ -67,10 +70,11 @@ def walls_near(rows: np.ndarray, boxes: Boxes, reach: float) -> tuple[np.ndarray
     """The walls within `reach` of each box: those of box b are listed[first[b] : first[b + 1]]. All of them
     follow the last box, for bodies that reach further."""
     reach *= 1 + _SLACK
-    d = 2 if rows.shape[1] == 5 else 3
+    numbers = rows.view(float).reshape(len(rows), -1)
+    d = 2 if numbers.shape[1] == 5 else 3
     widths, per_side, strides = boxes.widths[:d], boxes.per_side[:d], boxes.strides[:d]
     found = []
-    for m, row in enumerate(rows):
+    for m, row in enumerate(numbers):
         corners = _corners(row)
         low = np.floor((corners.min(axis=0) - reach) / widths - _SLACK).astype(int)
         high = np.floor((corners.max(axis=0) + reach) / widths + _SLACK).astype(int)

@@ -1,107 +1,44 @@
-"""The first algorithm of Spencer 2021, section 3.1: look at all pairs before every event. The referee."""
+"""The search of all pairs before every event (Spencer 2021, section 3.1): the referee of the other
+searches."""
 
 from math import inf
 
-import numpy as np
-
-from gaspart.kernels.compilation import allocating_kernel
-from gaspart.kernels.event.loop import note
-from gaspart.kernels.event.model import COLLAPSE, EDGES, EVENTS, FULL, NOTHING, PAIR_TESTS, STOP, WALLS
-from gaspart.kernels.flight import pair_time
-from gaspart.kernels.impact import collide, crowded
-from gaspart.kernels.obstacles.face import find_face, meet_face
-from gaspart.kernels.obstacles.interior import find_wall, meet_wall
-from gaspart.kernels.obstacles.special_face import meet_edge
+from gaspart.kernels.compilation import inner_helper
+from gaspart.kernels.flight import time_of_contact
+from gaspart.kernels.model import NONE, PAIR_TESTS
+from gaspart.kernels.obstacles.face import next_face
+from gaspart.kernels.obstacles.interior_wall import find_wall
 
 
-@allocating_kernel
-def run_pairs(
-    rows,
-    images,
-    plans,
-    space,
-    partition,
-    masses,
-    counters,
-    record,
-    stop,
-    most,
-    gravity,
-    law,
-    watch,
-    walls,
-    surfaces,
-):
-    """What `run_boxes` does, with the same arguments and answers but for the calendar and big bodies.
+@inner_helper
+def image_offset(image, space):
+    """(3,) the displacement of one of the 3^d images of the container, and whether there is this one."""
+    x, y, z = image % 3 - 1, image // 3 % 3 - 1, image // 9 - 1 if len(space.lengths) == 3 else 0
+    last = len(space.lengths) - 1
+    absent = (x != 0 and not space.periodic[0]) or (y != 0 and not space.periodic[1])
+    absent = absent or (z != 0 and not space.periodic[last])
+    return (x * space.lengths[0], y * space.lengths[1], z * space.lengths[last]), not absent
 
-    `partition` has one box and the plans are not used, so nothing can be out of date: the referee of
-    `run_boxes`.
-    """
-    d = len(space.lengths)
-    count = len(rows)
-    images_of_pair = 3**d
-    offset = np.zeros(3)
-    done = 0
-    last = -inf
-    while True:
-        if done >= most:
-            return EVENTS, done, last
-        if record is not None:
-            if record.filled[0] == len(record.time):
-                return FULL, done, last
-        soon = inf
-        first = NOTHING
-        second = NOTHING
-        face = NOTHING
-        for i in range(count):
-            time, code = find_face(rows, plans, i, space, partition, -inf, gravity, surfaces, None)
-            if walls is not None:
-                time, code = find_wall(rows, plans, i, space, partition, gravity, walls, time, code)
-            if time < soon:
-                soon, first, face = time, i, code
-        for i in range(count):
-            for j in range(i + 1, count):
-                for image in range(images_of_pair):
-                    rest = image
-                    absent = False
-                    for k in range(d):
-                        step = rest % 3 - 1
-                        rest //= 3
-                        absent = absent or (step != 0 and not space.periodic[k])
-                        offset[k] = step * space.lengths[k]
-                    if absent:
-                        continue
-                    counters.counts[PAIR_TESTS] += 1
-                    time = pair_time(rows, i, j, offset, space, gravity)
+
+@inner_helper
+def first_of_all(particles, boxes, model, tally):
+    """The earliest of all events: (time, particle, partner, face code), NONE for what there is not. `boxes`
+    is one box, and nothing is predicted, so nothing can be outdated."""
+    flights, space, gravity = particles.flights, model.space, model.gravity
+    soon = inf
+    first = second = face = NONE
+    for i in range(len(flights)):
+        time, code = next_face(particles, i, boxes, space, -inf, gravity, model.faces, None)
+        time, code = find_wall(particles, i, boxes, space, gravity, model.walls, time, code)
+        if time < soon:
+            soon, first, face = time, i, code
+    for i in range(len(flights)):
+        for j in range(i + 1, len(flights)):
+            for image in range(3 ** len(space.lengths)):
+                offset, present = image_offset(image, space)
+                if present:
+                    tally.counts[PAIR_TESTS] += 1
+                    time = time_of_contact(flights, i, j, offset, space, gravity)
                     if time < soon:
                         soon, first, second = time, i, j
-        if not soon <= stop or first == NOTHING:
-            return STOP, done, last
-        if second != NOTHING:
-            collide(rows, first, second, soon, space, masses, counters, gravity, law)
-        else:
-            second = -1 - face
-            if face >= WALLS:
-                if walls is not None:
-                    m = face - WALLS
-                    second = -1 - meet_wall(
-                        rows, first, m, soon, space, masses, counters, gravity, law, walls
-                    )
-            elif face >= EDGES:
-                if surfaces is not None:
-                    m = face - EDGES
-                    second = -1 - meet_edge(
-                        rows, first, m, soon, space, masses, counters, gravity, law, surfaces
-                    )
-            elif not meet_face(
-                rows, images, first, face, soon, space, masses, counters, gravity, law, surfaces
-            ):
-                continue
-        last = soon
-        done += 1
-        if record is not None:
-            note(record, soon, rows, first, second, space.lengths, law)
-        if watch is not None:
-            if second >= 0 or second < -2 * d:
-                if crowded(watch, first, soon) or (second >= 0 and crowded(watch, second, soon)):
-                    return COLLAPSE, done, last
+    return soon, first, second, face

@@ -1,98 +1,118 @@
-"""Which bodies are in which box: the first few in places of its own, any others in a linked list.
+"""Which particles are in which box: the first few in places of its own, any others in a linked list.
 
-Nearly all boxes hold a few bodies only, and a search then reads each in one go, whatever their number.
+Nearly all boxes hold a few particles only, and a search then reads each in one go, whatever their number.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
 from gaspart.kernels.compilation import inner_helper, inner_kernel
-from gaspart.kernels.event.box_search import MOST
-from gaspart.kernels.event.model import PLACES, Partition
 from gaspart.kernels.memory import aligned
-from gaspart.kernels.simd import WIDTH
+from gaspart.kernels.simd import PLACES, WIDTH
 
-_NOBODY = np.uint32(0xFFFFFFFF)
+CANDIDATES = 64  # gathered by a search before they are tested: a bit of a word for each
+_EMPTY = np.uint32(0xFFFFFFFF)
 
 
-def empty_partition(boxes, count):
-    """The `Partition` of these `Boxes` for `count` bodies, with none in them."""
-    return Partition(
+class BoxLists(NamedTuple):
+    """The grid of boxes (see `state.boxes.Boxes`): per_side, widths, strides (3,), neighbour, shift. How many
+    particles each box holds, filled (boxes,), the first of them, places (boxes, PLACES), and of the others
+    the first, head (boxes,), and the next after each particle, following (N,). candidates (M,), room for
+    those of a search; resting (N,), which particles gravity may not pull, see `flight.mark_resting`."""
+
+    per_side: np.ndarray
+    widths: np.ndarray
+    strides: np.ndarray
+    neighbour: np.ndarray
+    shift: np.ndarray
+    filled: np.ndarray
+    places: np.ndarray
+    head: np.ndarray
+    following: np.ndarray
+    candidates: np.ndarray
+    resting: np.ndarray
+
+
+def empty_lists(boxes, count):
+    """The lists of these `state.boxes.Boxes` for `count` particles, with none in them."""
+    return BoxLists(
         boxes.per_side, boxes.widths, boxes.strides, boxes.neighbour, boxes.shift,
         filled=np.zeros(boxes.count, dtype=np.uint32),
         places=aligned((boxes.count, PLACES), np.uint32),
         head=np.zeros(boxes.count, dtype=np.uint32),
         following=np.zeros(count, dtype=np.uint32),
-        near=np.zeros(MOST + WIDTH, dtype=np.uint64),
-        still=np.zeros(count, dtype=np.uint8),
+        candidates=np.zeros(CANDIDATES + WIDTH, dtype=np.uint64),
+        resting=np.zeros(count, dtype=np.uint8),
     )  # fmt: skip
 
 
 @inner_helper
-def box_of(plans, partition, body):
-    """The linear index of the body's box."""
-    at = plans[body].at
-    return at[0] * partition.strides[0] + at[1] * partition.strides[1] + at[2] * partition.strides[2]
+def box_of(predictions, boxes, i):
+    """The linear index of a particle's box."""
+    at = predictions[i].box
+    return at[0] * boxes.strides[0] + at[1] * boxes.strides[1] + at[2] * boxes.strides[2]
 
 
 @inner_helper
-def member(partition, box, n, other):
-    """The n-th body of a box that holds more; `other` is the one before it."""
+def member(boxes, box, n, other):
+    """The n-th particle of a box that holds more; `other` is the one before it."""
     if n < PLACES:
-        return partition.places[box, n]
-    return partition.head[box] if n == PLACES else partition.following[other]
+        return boxes.places[box, n]
+    return boxes.head[box] if n == PLACES else boxes.following[other]
 
 
 @inner_helper
-def put(plans, partition, body):
-    """Put a body into its box."""
-    box = np.uint64(box_of(plans, partition, body))
-    filled = partition.filled[box]
+def insert(predictions, boxes, i):
+    """Put a particle into its box."""
+    box = np.uint64(box_of(predictions, boxes, i))
+    filled = boxes.filled[box]
     if filled < PLACES:
-        partition.places[box, filled] = body
+        boxes.places[box, filled] = i
     else:
-        partition.following[np.uint64(body)] = partition.head[box]
-        partition.head[box] = body
-    partition.filled[box] = filled + np.uint32(1)
+        boxes.following[np.uint64(i)] = boxes.head[box]
+        boxes.head[box] = i
+    boxes.filled[box] = filled + np.uint32(1)
 
 
 @inner_helper
-def take(plans, partition, body):
-    """Take a body out of its box; another of the same box fills its place."""
-    box = np.uint64(box_of(plans, partition, body))
-    places, head, following = partition.places, partition.head, partition.following
-    last = np.uint64(partition.filled[box]) - np.uint64(1)
-    partition.filled[box] = last
+def remove(predictions, boxes, i):
+    """Take a particle out of its box; another of the same box fills its place."""
+    box = np.uint64(box_of(predictions, boxes, i))
+    places, head, following = boxes.places, boxes.head, boxes.following
+    last = np.uint64(boxes.filled[box]) - np.uint64(1)
+    boxes.filled[box] = last
     place = np.uint64(0)
     for n in range(np.uint64(1), np.uint64(PLACES)):
-        place += n * np.uint64(places[box, n] == body)
-    if places[box, place] == body:
+        place += n * np.uint64(places[box, n] == i)
+    if places[box, place] == i:
         if last < PLACES:
             places[box, place] = places[box, last]
-            places[box, last] = _NOBODY
+            places[box, last] = _EMPTY
         else:
             places[box, place] = head[box]
             head[box] = following[head[box]]
-    elif head[box] == body:
+    elif head[box] == i:
         head[box] = following[head[box]]
     else:
         other = head[box]
-        while following[other] != body:
+        while following[other] != i:
             other = following[other]
-        following[other] = following[np.uint64(body)]
+        following[other] = following[np.uint64(i)]
 
 
 @inner_helper
-def move(plans, partition, body, axis, to):
-    """Take a body to another box along an axis."""
-    take(plans, partition, body)
-    plans[body].at[axis] = to
-    put(plans, partition, body)
+def move(predictions, boxes, i, axis, to):
+    """Take a particle to another box along an axis."""
+    remove(predictions, boxes, i)
+    predictions[i].box[axis] = to
+    insert(predictions, boxes, i)
 
 
 @inner_kernel
-def sort_in(plans, partition):
-    """Put all bodies into their boxes."""
-    partition.filled[:] = 0
-    partition.places[:] = _NOBODY
-    for body in range(len(plans)):
-        put(plans, partition, body)
+def sort_in(predictions, boxes):
+    """Put all particles into their boxes."""
+    boxes.filled[:] = 0
+    boxes.places[:] = _EMPTY
+    for i in range(len(predictions)):
+        insert(predictions, boxes, i)

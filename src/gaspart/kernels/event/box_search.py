@@ -1,8 +1,8 @@
-"""Whom does a body touch next: the search of the boxes about it.
+"""The earliest contact of a particle: the search of the boxes about it.
 
-First everybody there is written down, then the times of all of them are worked out, eight at once (`eight`):
-with hardly a branch, so that the processor has little to guess. Indices are unsigned, since for signed ones
-numba looks at every access whether it counts from the end.
+First all particles there are listed, then the times of all their contacts are computed, eight at once
+(`simd`): with hardly a branch, so that the processor has little to predict. Indices are unsigned, since for
+signed ones numba checks at every access whether it counts from the end.
 """
 
 from math import inf
@@ -10,22 +10,22 @@ from math import inf
 from numpy import int64, uint64
 
 from gaspart.kernels.compilation import inner_helper, inner_kernel
-from gaspart.kernels.event.model import BOX_VISITS, PAIR_TESTS, PLACES
-from gaspart.kernels.flight import pair_time
-from gaspart.kernels.simd import LAP_BITS, LAP_FIRST, WIDTH, earliest, lowest, write_down
+from gaspart.kernels.event.box_lists import CANDIDATES
+from gaspart.kernels.flight import time_of_contact
+from gaspart.kernels.model import BOX_VISITS, PAIR_TESTS
+from gaspart.kernels.simd import IMAGE_BITS, IMAGE_FIRST, PLACES, WIDTH, earliest, list_box, lowest
 
-MOST = 64  # candidates gathered before they are looked at: a bit of a word for each
-_WIDTH, _PLACES, _FULL = uint64(WIDTH), uint64(PLACES), uint64(MOST - 3 * PLACES - 1)
-_BODY = uint64((1 << LAP_FIRST) - 1)
-_X, _Y, _Z = (uint64(LAP_FIRST + LAP_BITS * k) for k in range(3))
-_HERE = uint64(1)  # the lap of who stands in the container itself
-_LAP = uint64((1 << LAP_BITS) - 1)
+_WIDTH, _PLACES, _FULL = uint64(WIDTH), uint64(PLACES), uint64(CANDIDATES - 3 * PLACES - 1)
+_NUMBER = uint64((1 << IMAGE_FIRST) - 1)
+_X, _Y, _Z = (uint64(IMAGE_FIRST + IMAGE_BITS * k) for k in range(3))
+_HERE = uint64(1)  # the image of a particle in the container itself
+_IMAGE = uint64((1 << IMAGE_BITS) - 1)
 
 
 @inner_helper
 def offset_of(candidate, space):
-    """Where the image of a candidate stands (3,)."""
-    x, y, z = (candidate >> _X) & _LAP, (candidate >> _Y) & _LAP, (candidate >> _Z) & _LAP
+    """(3,) the displacement of the image of a candidate."""
+    x, y, z = (candidate >> _X) & _IMAGE, (candidate >> _Y) & _IMAGE, (candidate >> _Z) & _IMAGE
     lengths = space.lengths
     return (
         (int64(x) - 1) * lengths[0],
@@ -35,123 +35,122 @@ def offset_of(candidate, space):
 
 
 @inner_helper
-def consider(rows, plans, body, met, space, partition, counters, gravity):
-    """Note the body's contact with one of `met` candidates, if one is earlier than it has planned."""
-    near = partition.near
-    counters.counts[PAIR_TESTS] += int64(met)
+def test_candidates(particles, i, count, boxes, space, tally, gravity):
+    """Predict the contact with one of the first `count` candidates, if it is earlier than that predicted."""
+    flights, predictions, candidates = particles.flights, particles.predictions, boxes.candidates
+    tally.counts[PAIR_TESTS] += int64(count)
     for n in range(_WIDTH):
-        near[met + n] = body  # no body meets itself
-    soon, partner = plans[body].contact, int64(plans[body].partner)
-    best, who, left = earliest(rows, near, met, body, soon, partner, space, gravity, partition.still)
+        candidates[count + n] = i  # no particle meets itself
+    before, partner = predictions[i].contact_time, int64(predictions[i].partner)
+    best, found, unknown = earliest(flights, i, count, (before, partner), boxes, space, gravity)
     if gravity is not None:
-        while left:
-            candidate = near[lowest(left)]
-            left &= left - uint64(1)
-            other = candidate & _BODY
-            time = pair_time(rows, body, other, offset_of(candidate, space), space, gravity)
-            if time < best or (time == best and time < inf and int64(other) < who):
+        while unknown:
+            candidate = candidates[lowest(unknown)]
+            unknown &= unknown - uint64(1)
+            other = candidate & _NUMBER
+            time = time_of_contact(flights, i, other, offset_of(candidate, space), space, gravity)
+            if time < best or (time == best and time < inf and int64(other) < found):
                 best = time
-                who = int64(other)
-    if best < soon or who != partner:
-        plans[body].contact = best
-        plans[body].partner = who
+                found = int64(other)
+    if best < before or found != partner:
+        predictions[i].contact_time = best
+        predictions[i].partner = found
 
 
 @inner_kernel
-def settle(rows, plans, body, met, row, lap, low, end, space, partition, counters, gravity):
-    """Write down whom the boxes at steps low..end - 1 of a row could not give a place, and look at the
-    candidates whenever there may be no room for another row's. Returns how many are left."""
-    near, neighbour = partition.near, partition.neighbour
-    x = uint64(plans[body].at[0])
+def list_others(particles, i, count, row, boxes, space, tally, gravity):
+    """List the particles of a row of boxes that have no place, and test the candidates whenever there may be
+    no room for another row's. row: its first box, its image, the first step and end along it. Returns how
+    many candidates are left."""
+    first, image_yz, low, end = row
+    x = uint64(particles.predictions[i].box[0])
     for step in range(low, end):
-        beside = neighbour[0, x, step]
+        beside = boxes.neighbour[0, x, step]
         if beside < 0:
             continue
-        box = uint64(row + beside)
-        lap_x = lap | uint64(partition.shift[0, x, step] + 1) << _X
-        other = uint64(partition.head[box])
-        for _ in range(_PLACES, uint64(partition.filled[box])):
-            near[met] = other | lap_x
-            met += uint64(1)
-            if met > _FULL:
-                consider(rows, plans, body, met, space, partition, counters, gravity)
-                met = uint64(0)
-            other = uint64(partition.following[other])
-    if met > _FULL:
-        consider(rows, plans, body, met, space, partition, counters, gravity)
-        met = uint64(0)
-    return met
+        box = uint64(first + beside)
+        image = image_yz | uint64(boxes.shift[0, x, step] + 1) << _X
+        other = uint64(boxes.head[box])
+        for _ in range(_PLACES, uint64(boxes.filled[box])):
+            boxes.candidates[count] = other | image
+            count += uint64(1)
+            if count > _FULL:
+                test_candidates(particles, i, count, boxes, space, tally, gravity)
+                count = uint64(0)
+            other = uint64(boxes.following[other])
+    if count > _FULL:
+        test_candidates(particles, i, count, boxes, space, tally, gravity)
+        count = uint64(0)
+    return count
 
 
 @inner_helper
-def span(partition, axis, at, crossed):
-    """Which boxes to look into along an axis, about that at a coordinate: first step and end (0..3), how many
+def span(boxes, axis, at, crossed):
+    """Which boxes to search along an axis, about that at a coordinate: first step and end (0..3), how many
     there are, and how many of them are that box itself."""
     low, end = uint64(0), uint64(3)
     if crossed:
         low = uint64(1 + crossed)
         end = low + uint64(1)
     visits = itself = 0
-    own = partition.neighbour[axis, at, 1]
+    own = boxes.neighbour[axis, at, 1]
     for step in range(low, end):
-        beside = partition.neighbour[axis, at, step]
+        beside = boxes.neighbour[axis, at, step]
         visits += int64(beside >= 0)
         itself += int64(beside == own)
     return low, end, visits, itself
 
 
 @inner_helper
-def note_box(near, met, partition, box, lap, crowd):
-    """Write down whom a box has places for, after `met` others: how many there now are, and how many bodies
-    the fullest box so far holds, `crowd`."""
-    write_down(near, met, partition.places, box, lap)
-    filled = uint64(partition.filled[box])
-    return met + min(filled, _PLACES), max(crowd, filled)
+def list_places(boxes, count, box, image, most):
+    """List the particles that have a place in a box, after `count` others: how many there are then, and how
+    many particles the fullest box so far holds, `most`."""
+    list_box(boxes.candidates, count, boxes.places, box, image)
+    filled = uint64(boxes.filled[box])
+    return count + min(filled, _PLACES), max(most, filled)
 
 
 @inner_helper
-def find_contact(rows, plans, searcher, space, partition, counters, crossed, gravity):
-    """Look for an earlier contact of the body in the boxes about its own; if it has just `crossed` (3,) into
-    this one, in those only that were not neighbours before.
+def find_contact(particles, number, boxes, space, tally, crossed, gravity):
+    """Search for an earlier contact of a particle in the boxes about its own; if it has just `crossed` (3,)
+    into this one, in those only that were not neighbours before.
 
-    All places of a box are written down whether they are filled or not, which costs less than to ask.
+    All places of a box are listed whether they are filled or not, which costs less than to test it.
     """
-    body = uint64(searcher)
-    at = plans[body].at
+    i = uint64(number)
+    at = particles.predictions[i].box
     ax, ay, az = uint64(at[0]), uint64(at[1]), uint64(at[2])
-    neighbour, shift = partition.neighbour, partition.shift
-    low_x, end_x, visits_x, itself_x = span(partition, 0, ax, crossed[0])
-    low_y, end_y, visits_y, itself_y = span(partition, 1, ay, crossed[1])
-    low_z, end_z, visits_z, itself_z = span(partition, 2, az, crossed[2])
-    counters.counts[BOX_VISITS] += visits_x * visits_y * visits_z
-    counters.counts[PAIR_TESTS] -= itself_x * itself_y * itself_z
-    near = partition.near
-    within = crossed[0] == 0 and 0 < at[0] < partition.per_side[0] - 1  # a row's three lie side by side
-    met = uint64(0)
+    neighbour, shift = boxes.neighbour, boxes.shift
+    low_x, end_x, visits_x, itself_x = span(boxes, 0, ax, crossed[0])
+    low_y, end_y, visits_y, itself_y = span(boxes, 1, ay, crossed[1])
+    low_z, end_z, visits_z, itself_z = span(boxes, 2, az, crossed[2])
+    tally.counts[BOX_VISITS] += visits_x * visits_y * visits_z
+    tally.counts[PAIR_TESTS] -= itself_x * itself_y * itself_z
+    within = crossed[0] == 0 and 0 < at[0] < boxes.per_side[0] - 1  # a row's three lie side by side
+    count = uint64(0)
     for dz in range(low_z, end_z):
         beside_z = neighbour[2, az, dz]
         if beside_z < 0:
             continue
-        lap_z = uint64(shift[2, az, dz] + 1) << _Z
+        image_z = uint64(shift[2, az, dz] + 1) << _Z
         for dy in range(low_y, end_y):
             beside_y = neighbour[1, ay, dy]
             if beside_y < 0:
                 continue
             row = beside_y + beside_z
-            lap = lap_z | uint64(shift[1, ay, dy] + 1) << _Y
-            crowd = uint64(0)
+            image = image_z | uint64(shift[1, ay, dy] + 1) << _Y
+            most = uint64(0)
             if within:
                 first = uint64(row + at[0] - 1)
                 for box in range(first, first + uint64(3)):
-                    met, crowd = note_box(near, met, partition, box, lap | _HERE << _X, crowd)
+                    count, most = list_places(boxes, count, box, image | _HERE << _X, most)
             else:
                 for dx in range(low_x, end_x):
                     beside_x = neighbour[0, ax, dx]
                     if beside_x >= 0:
-                        box, lap_x = uint64(row + beside_x), lap | uint64(shift[0, ax, dx] + 1) << _X
-                        met, crowd = note_box(near, met, partition, box, lap_x, crowd)
-            if crowd > _PLACES or met > _FULL:
-                met = settle(
-                    rows, plans, body, met, row, lap, low_x, end_x, space, partition, counters, gravity
-                )
-    consider(rows, plans, body, met, space, partition, counters, gravity)
+                        box, image_x = uint64(row + beside_x), image | uint64(shift[0, ax, dx] + 1) << _X
+                        count, most = list_places(boxes, count, box, image_x, most)
+            if most > _PLACES or count > _FULL:
+                line = row, image, low_x, end_x
+                count = list_others(particles, i, count, line, boxes, space, tally, gravity)
+    test_candidates(particles, i, count, boxes, space, tally, gravity)

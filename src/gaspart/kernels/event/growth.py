@@ -1,225 +1,216 @@
-"""Bodies that grow while they fly and collide: the kernels of a compression (`compression`).
+"""Particles that grow while they fly and collide: the kernels of a compression (`state.compression`).
 
-Smooth bodies of mass 1, all growing in proportion, in a container of hard or periodic faces: a row's radius
-is that at time 0 of the clocks, and 1 + rate t times that at time t. Queue, boxes and rows are those of
-`event_kernels`; here every event plans its bodies afresh.
+Smooth particles of mass 1, all growing in proportion, in a container of hard or periodic faces: a flight's
+radius is that at time 0 of the clocks, and 1 + rate t times that at time t. Queue, boxes and flights are
+those of `loop`; here every event predicts its particles anew.
 """
 
 from math import inf, sqrt
 
+from gaspart.kernels.collision import gap_along
 from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
 from gaspart.kernels.contact import time_to_growing_contact, time_to_plane
 from gaspart.kernels.event.box_lists import member, move, sort_in
-from gaspart.kernels.event.model import COLLISIONS, NOTHING, VIRIAL
-from gaspart.kernels.event.queue import TURN, fill, is_stale, next_turn, reschedule, soonest, time_of
-from gaspart.kernels.flight import advance_row, synchronise
-from gaspart.kernels.periodic import nearest
+from gaspart.kernels.event.queue import (
+    EVENT_COUNT,
+    count_event,
+    fill,
+    is_outdated,
+    reschedule,
+    soonest,
+    time_of,
+)
+from gaspart.kernels.flight import advance, encounter
+from gaspart.kernels.model import COLLISIONS, NONE, VIRIAL
 from gaspart.kernels.running_sum import add
 
-_PART = 2.0**-30  # of the rate of growth: bodies part at least so fast
+_PART = 2.0**-30  # of the rate of growth: particles part at least so fast
 
 
 @inner_helper
-def pair_time(rows, i, j, offset, space, rate):
-    """When two growing bodies touch, the second displaced by `offset` (d,); inf if they do not."""
-    d = len(space.lengths)
-    start = max(rows[i, 2 * d], rows[j, 2 * d])
-    late_i = start - rows[i, 2 * d]
-    late_j = start - rows[j, 2 * d]
-    rr = rv = vv = 0.0
-    for k in range(d):
-        v = rows[j, d + k] - rows[i, d + k]
-        r = (rows[j, k] + rows[j, d + k] * late_j) - (rows[i, k] + rows[i, d + k] * late_i) + offset[k]
-        rr += r * r
-        rv += r * v
-        vv += v * v
-    sigma = rows[i, 2 * d + 1] + rows[j, 2 * d + 1]
+def time_of_contact(flights, i, j, offset, space, rate):
+    """When two growing particles touch, the second displaced by `offset` (d,); inf if they do not."""
+    start, rr, rv, vv, _, _, _ = encounter(flights, i, j, offset, space, None)
+    sigma = flights[i].radius + flights[j].radius
     return start + time_to_growing_contact(rr, rv, vv, sigma * (1.0 + rate * start), sigma * rate)
 
 
 @inner_kernel
-def find_face(rows, plans, body, space, partition, rate):
-    """The next face of its box or of the container that a body comes to: (time, 2 axis + side)."""
-    d = len(space.lengths)
-    clock = rows[body, 2 * d]
-    growth = space.margin * rows[body, 2 * d + 1] * rate
-    radius = space.margin * rows[body, 2 * d + 1] * (1.0 + rate * clock)
+def next_face(particles, i, boxes, space, rate):
+    """The next face of its box or of the container that a particle comes to: (time, 2 axis + side)."""
+    flight, at = particles.flights[i], particles.predictions[i].box
+    growth = space.margin * flight.radius * rate
+    radius = space.margin * flight.radius * (1.0 + rate * flight.clock)
     soon = inf
-    face = NOTHING
-    for k in range(d):
-        at, x, v = plans[body].at[k], rows[body, k], rows[body, d + k]
+    face = NONE
+    for k in range(len(space.lengths)):
+        x, v = flight.position[k], flight.velocity[k]
         for upper in range(2):
             time = inf
-            if at == (partition.per_side[k] - 1 if upper else 0) and not space.periodic[k]:
+            if at[k] == (boxes.per_side[k] - 1 if upper else 0) and not space.periodic[k]:
                 speed = (v if upper else -v) + growth
                 if speed > 0.0:
                     time = max(0.0, (space.lengths[k] - x if upper else x) - radius) / speed
             elif (v > 0.0) if upper else (v < 0.0):
-                # the outermost plane exactly where the container ends, whatever rounding makes of its boxes
-                plane = (
-                    space.lengths[k]
-                    if at + upper == partition.per_side[k]
-                    else ((at + upper) * partition.widths[k])
-                )
+                plane = (at[k] + upper) * boxes.widths[k]
+                if at[k] + upper == boxes.per_side[k]:
+                    plane = space.lengths[k]  # exactly, whatever rounding makes of the boxes
                 time = max(0.0, time_to_plane(x, v, plane))
-            if clock + time < soon:
-                soon = clock + time
+            if flight.clock + time < soon:
+                soon = flight.clock + time
                 face = 2 * k + upper
     return soon, face
 
 
+@inner_helper
+def box_near(boxes, at, n, space):
+    """Number n of the 27 boxes about that at coordinates (3,), -1 if there is none, and the displacement (3,)
+    of its image."""
+    a, b, c = n % 3, n // 3 % 3, n // 9
+    x, y, z = boxes.neighbour[0, at[0], a], boxes.neighbour[1, at[1], b], boxes.neighbour[2, at[2], c]
+    offset = (
+        boxes.shift[0, at[0], a] * space.lengths[0],
+        boxes.shift[1, at[1], b] * space.lengths[1],
+        boxes.shift[2, at[2], c] * space.lengths[len(space.lengths) - 1],
+    )
+    return (-1 if x < 0 or y < 0 or z < 0 else x + y + z), offset
+
+
 @inner_kernel
-def foresee(rows, plans, body, space, partition, rate, turn):
-    """Make a body's plans afresh."""
-    d = len(space.lengths)
-    at = plans[body].at
+def predict(particles, i, boxes, space, rate, number):
+    """Predict the next events of a particle anew. number: of the present event."""
+    predictions = particles.predictions
     best = inf
-    partner = NOTHING
-    for dz in range(3):
-        for dy in range(3):
-            for dx in range(3):
-                z = partition.neighbour[2, at[2], dz]
-                y = partition.neighbour[1, at[1], dy]
-                x = partition.neighbour[0, at[0], dx]
-                if x < 0 or y < 0 or z < 0:
-                    continue
-                offset = (
-                    partition.shift[0, at[0], dx] * space.lengths[0],
-                    partition.shift[1, at[1], dy] * space.lengths[1],
-                    partition.shift[2, at[2], dz] * space.lengths[d - 1],
-                )
-                box = x + y + z
-                other = NOTHING
-                for n in range(partition.filled[box]):
-                    other = int(member(partition, box, n, other))
-                    if other != body:
-                        time = pair_time(rows, body, other, offset, space, rate)
-                        if time < best or (time == best and time < inf and other < partner):
-                            best = time
-                            partner = other
-    plans[body].contact = best
-    plans[body].partner = partner
-    plans[body].foreseen = turn
-    plans[body].face_time, plans[body].face = find_face(rows, plans, body, space, partition, rate)
+    partner = NONE
+    for n in range(27):
+        box, offset = box_near(boxes, predictions[i].box, n, space)
+        if box < 0:
+            continue
+        other = NONE
+        for m in range(boxes.filled[box]):
+            other = int(member(boxes, box, m, other))
+            if other != i:
+                time = time_of_contact(particles.flights, i, other, offset, space, rate)
+                if time < best or (time == best and time < inf and other < partner):
+                    best = time
+                    partner = other
+    predictions[i].contact_time = best
+    predictions[i].partner = partner
+    predictions[i].predicted = number
+    predictions[i].face_time, predictions[i].face = next_face(particles, i, boxes, space, rate)
 
 
 @kernel
-def start(rows, plans, calendar, space, partition, rate):
-    """Bring the temperature back to 1 and the centre of mass to rest, and make all plans."""
-    d = len(space.lengths)
+def start(particles, queue, boxes, space, rate):
+    """Bring the temperature back to 1 and the centre of mass to rest, and predict all events."""
+    flights = particles.flights
+    d, count = len(space.lengths), len(flights)
     square = 0.0
     for k in range(d):
         total = 0.0
-        for body in range(len(rows)):
-            total += rows[body, d + k]
-        for body in range(len(rows)):
-            rows[body, d + k] -= total / len(rows) if len(rows) > 1 else 0.0
-            square += rows[body, d + k] * rows[body, d + k]
-    factor = sqrt(d * len(rows) / square)
-    sort_in(plans, partition)
-    for body in range(len(rows)):
+        for i in range(count):
+            total += flights[i].velocity[k]
+        for i in range(count):
+            flights[i].velocity[k] -= total / count if count > 1 else 0.0
+            square += flights[i].velocity[k] * flights[i].velocity[k]
+    factor = sqrt(d * count / square)
+    sort_in(particles.predictions, boxes)
+    for i in range(count):
         for k in range(d):
-            rows[body, d + k] *= factor
-    for body in range(len(rows)):
-        foresee(rows, plans, body, space, partition, rate, calendar.cursor[TURN])
-    fill(calendar, plans, 0.0)
+            flights[i].velocity[k] *= factor
+    for i in range(count):
+        predict(particles, i, boxes, space, rate, queue.cursor[EVENT_COUNT])
+    fill(queue, particles.predictions, 0.0)
 
 
 @inner_kernel
-def meet_face(rows, plans, body, face, time, space, partition, rate):
-    """Let a body pass into the next box, or reflect it at a wall that its growing surface touches. Returns
-    whether its flight has changed."""
-    d = len(space.lengths)
+def meet_face(particles, i, face, time, boxes, space, rate):
+    """Let a particle pass into the next box, or reflect it at a wall that its growing surface touches.
+    Returns whether its flight has changed."""
+    flights, predictions = particles.flights, particles.predictions
     axis, upper = face // 2, face % 2
-    outermost = plans[body].at[axis] == (partition.per_side[axis] - 1 if upper else 0)
+    outermost = predictions[i].box[axis] == (boxes.per_side[axis] - 1 if upper else 0)
     if outermost:
-        advance_row(rows, body, time, space, None)
+        advance(flights, i, time, space, None)
     if outermost and not space.periodic[axis]:
-        growth = space.margin * rows[body, 2 * d + 1] * rate
-        speed = (rows[body, d + axis] if upper else -rows[body, d + axis]) + growth
+        growth = space.margin * flights[i].radius * rate
+        speed = (flights[i].velocity[axis] if upper else -flights[i].velocity[axis]) + growth
         speed = max(speed, _PART * growth) + growth
-        rows[body, d + axis] = -speed if upper else speed
+        flights[i].velocity[axis] = -speed if upper else speed
         return True
-    to = plans[body].at[axis] + 2 * upper - 1
+    to = predictions[i].box[axis] + 2 * upper - 1
     if outermost:
-        rows[body, axis] = 0.0 if upper else space.lengths[axis]
-        to = 0 if upper else partition.per_side[axis] - 1
-    move(plans, partition, body, axis, to)
+        flights[i].position[axis] = 0.0 if upper else space.lengths[axis]
+        to = 0 if upper else boxes.per_side[axis] - 1
+    move(predictions, boxes, i, axis, to)
     return outermost
 
 
 @inner_kernel
-def collide(rows, i, j, time, space, rate, counters):
-    """Advance two bodies to their contact and let their growing surfaces push them apart."""
-    d = len(space.lengths)
-    advance_row(rows, i, time, space, None)
-    advance_row(rows, j, time, space, None)
+def collide(flights, i, j, time, space, rate, tally):
+    """Advance two particles to their contact and let their growing surfaces push them apart."""
+    advance(flights, i, time, space, None)
+    advance(flights, j, time, space, None)
     rr = rv = 0.0
-    for k in range(d):
-        gap = nearest(rows[j, k] - rows[i, k], space.lengths[k], space.periodic[k])
+    for k in range(len(space.lengths)):
+        gap = gap_along(flights, i, j, k, space)
         rr += gap * gap
-        rv += gap * (rows[j, d + k] - rows[i, d + k])
-    growth = (rows[i, 2 * d + 1] + rows[j, 2 * d + 1]) * rate
+        rv += gap * (flights[j].velocity[k] - flights[i].velocity[k])
+    growth = (flights[i].radius + flights[j].radius) * rate
     length = sqrt(rr)
     approach = max(growth - rv / length, _PART * growth)
-    for k in range(d):
-        push = approach * nearest(rows[j, k] - rows[i, k], space.lengths[k], space.periodic[k]) / length
-        rows[i, d + k] -= push
-        rows[j, d + k] += push
-    counters.counts[COLLISIONS] += 1
-    add(counters.sums, VIRIAL, approach * length)
+    for k in range(len(space.lengths)):
+        impulse = approach * gap_along(flights, i, j, k, space) / length
+        flights[i].velocity[k] -= impulse
+        flights[j].velocity[k] += impulse
+    tally.counts[COLLISIONS] += 1
+    add(tally.sums, VIRIAL, approach * length)
 
 
 @kernel
-def run_growing(rows, plans, calendar, space, partition, rate, counters, stop, most):
+def run(particles, queue, boxes, space, tally, rate, stop, most):
     """Process all events up to time `stop`, or `most` collisions. Returns the time that is reached."""
+    predictions = particles.predictions
     last = 0.0
-    while counters.counts[COLLISIONS] < most:
-        body = soonest(calendar, plans)
-        if body < 0 or not time_of(plans, body) <= stop:
+    while tally.counts[COLLISIONS] < most:
+        i = soonest(queue, predictions)
+        if i < 0 or not time_of(predictions, i) <= stop:
             return stop
-        time = time_of(plans, body)
+        time = time_of(predictions, i)
         last = max(last, time)
-        turn = next_turn(calendar)
-        if plans[body].face_time <= plans[body].contact:
-            if meet_face(rows, plans, body, plans[body].face, time, space, partition, rate):
-                plans[body].changed = turn
-        elif not is_stale(plans, body):
-            partner = plans[body].partner
-            collide(rows, min(body, partner), max(body, partner), time, space, rate, counters)
-            plans[body].changed = plans[partner].changed = turn
-            foresee(rows, plans, partner, space, partition, rate, turn)
-            reschedule(calendar, plans, partner)
-        foresee(rows, plans, body, space, partition, rate, turn)
-        reschedule(calendar, plans, body)
+        number = count_event(queue)
+        if predictions[i].face_time <= predictions[i].contact_time:
+            if meet_face(particles, i, predictions[i].face, time, boxes, space, rate):
+                predictions[i].changed = number
+        elif not is_outdated(predictions, i):
+            partner = predictions[i].partner
+            collide(particles.flights, min(i, partner), max(i, partner), time, space, rate, tally)
+            predictions[i].changed = predictions[partner].changed = number
+            predict(particles, partner, boxes, space, rate, number)
+            reschedule(queue, predictions, partner)
+        predict(particles, i, boxes, space, rate, number)
+        reschedule(queue, predictions, i)
     return last
 
 
 @kernel
-def closest(rows, plans, space, partition):
+def closest(particles, boxes, space):
     """The least r^2/sigma^2 of all pairs in neighbouring boxes, all at one time; inf if there is none."""
-    d = len(space.lengths)
+    flights = particles.flights
     least = inf
-    for body in range(len(rows)):
-        at = plans[body].at
+    for i in range(len(flights)):
         for n in range(27):
-            x = partition.neighbour[0, at[0], n % 3]
-            y = partition.neighbour[1, at[1], n // 3 % 3]
-            z = partition.neighbour[2, at[2], n // 9]
-            if x < 0 or y < 0 or z < 0:
+            box, _ = box_near(boxes, particles.predictions[i].box, n, space)
+            if box < 0:
                 continue
-            box = x + y + z
-            other = NOTHING
-            for m in range(partition.filled[box]):
-                other = int(member(partition, box, m, other))
-                if other != body:
+            other = NONE
+            for m in range(boxes.filled[box]):
+                other = int(member(boxes, box, m, other))
+                if other != i:
                     rr = 0.0
-                    for k in range(d):
-                        gap = nearest(rows[other, k] - rows[body, k], space.lengths[k], space.periodic[k])
+                    for k in range(len(space.lengths)):
+                        gap = gap_along(flights, i, other, k, space)
                         rr += gap * gap
-                    sigma = rows[body, 2 * d + 1] + rows[other, 2 * d + 1]
+                    sigma = flights[i].radius + flights[other].radius
                     least = min(least, rr / (sigma * sigma))
     return least
-
-
-__all__ = ["closest", "run_growing", "start", "synchronise"]

@@ -1,229 +1,194 @@
-"""From one event to the next: the kernels of the event-driven engine.
+"""The loop of the event-driven engine: take the next event, process it, predict the new events of its
+particles.
 
-A body's row of 8 numbers, one cache line, holds its position (d), velocity (d), clock and radius, true at
-that clock; between its events a body is not touched. Beside it stand its plans (see `calendar.PLAN`) and
-`images` (N, d), its laps through periodic faces. So that no bit depends on how events are searched for:
+So that no bit depends on how events are searched for:
 
 - the time of a pair's contact is always computed from the later of the two clocks, never from "now";
-- crossing into another box changes what is searched, never the row;
-- crossing a periodic face is an event: the row is advanced to the face and moved to the opposite one.
+- crossing into another box changes what is searched, never the flight;
+- crossing a periodic face is an event: the particle is advanced to the face and moved to the opposite one.
 
-Events come in the order of their time; simultaneous ones faces first, by body, then pairs by the lower
-and the higher index of their bodies.
+Events come in the order of their time; simultaneous ones faces first, by particle, then pairs by the lower
+and the higher index.
 """
 
 from math import inf
 
-import numpy as np
-
 from gaspart.kernels.compilation import inner_helper, kernel
+from gaspart.kernels.event.all_pairs import first_of_all
 from gaspart.kernels.event.box_lists import move, sort_in
 from gaspart.kernels.event.box_search import find_contact
-from gaspart.kernels.event.model import (
-    COLLAPSE,
-    CROSSINGS,
-    EDGES,
-    EVENTS,
-    FULL,
-    INNER,
-    NOTHING,
-    STALE,
-    STOP,
-    WALLS,
+from gaspart.kernels.event.monitors import collapse_detected, is_full, record_event
+from gaspart.kernels.event.oversized import search_oversized
+from gaspart.kernels.event.pair_contact import collide
+from gaspart.kernels.event.prefetch import CACHED, crossing_of, prefetch
+from gaspart.kernels.event.queue import (
+    EVENT_COUNT,
+    bucket_of,
+    count_event,
+    fill,
+    is_outdated,
+    reschedule,
+    soonest,
+    time_of,
 )
-from gaspart.kernels.event.oversized import find_beside
-from gaspart.kernels.event.prefetch import CACHED, look_ahead
-from gaspart.kernels.event.queue import TURN, fill, is_stale, next_turn, reschedule, slot_of, soonest, time_of
-from gaspart.kernels.flight import note_still
-from gaspart.kernels.impact import collide, crowded
-from gaspart.kernels.obstacles.face import find_face, meet_face
-from gaspart.kernels.obstacles.interior import find_wall, meet_wall
-from gaspart.kernels.obstacles.special_face import meet_edge
+from gaspart.kernels.flight import mark_resting
+from gaspart.kernels.model import BOX_FACES, CROSSINGS, NONE, OUTDATED, WALLS, WELL_EDGES
+from gaspart.kernels.obstacles.face import meet_face, next_face
+from gaspart.kernels.obstacles.interior_wall import find_wall, meet_wall
+from gaspart.kernels.obstacles.well import meet_edge
 from gaspart.kernels.prefetch import fetch
 
-
-@inner_helper
-def plan_face(rows, plans, body, space, partition, now, gravity, walls, surfaces, big):
-    """Note the next face or wall that the body comes to."""
-    time, face = find_face(rows, plans, body, space, partition, now, gravity, surfaces, big)
-    if walls is not None:
-        time, face = find_wall(rows, plans, body, space, partition, gravity, walls, time, face)
-    plans[body].face_time = time
-    plans[body].face = face
+STOP, EVENTS, FULL, COLLAPSE = range(
+    4
+)  # why a run ended: the time, the number of events, the record, a collapse
+_NEW = (0, 0, 0)  # no box was crossed: all is predicted anew
 
 
 @inner_helper
-def foresee(rows, plans, body, space, partition, counters, now, turn, crossed, gravity, walls, surfaces, big):
-    """Make a body's plans afresh; or, if it has just `crossed` (3,) into the next box, look about in the
-    boxes that have become neighbours."""
+def predict(particles, i, boxes, model, tally, now, number, crossed):
+    """Predict the next events of a particle anew; or, if it has just `crossed` (3,) into the next box, search
+    the boxes that have become neighbours. number: of the present event."""
+    predictions, space, gravity = particles.predictions, model.space, model.gravity
     if crossed[0] == 0 and crossed[1] == 0 and crossed[2] == 0:
-        plans[body].contact = inf
-        plans[body].partner = NOTHING
-    contact, partner = plans[body].contact, plans[body].partner
-    find_contact(rows, plans, body, space, partition, counters, crossed, gravity)
-    if big is not None:
-        find_beside(rows, plans, body, space, partition, counters, gravity, big, crossed)
-    if plans[body].contact != contact or plans[body].partner != partner:
-        plans[body].foreseen = turn
-    plan_face(rows, plans, body, space, partition, now, gravity, walls, surfaces, big)
+        predictions[i].contact_time = inf
+        predictions[i].partner = NONE
+    time, partner = predictions[i].contact_time, predictions[i].partner
+    find_contact(particles, i, boxes, space, tally, crossed, gravity)
+    search_oversized(particles, i, boxes, space, tally, crossed, gravity, model.oversized)
+    if predictions[i].contact_time != time or predictions[i].partner != partner:
+        predictions[i].predicted = number
+    time, face = next_face(particles, i, boxes, space, now, gravity, model.faces, model.oversized)
+    time, face = find_wall(particles, i, boxes, space, gravity, model.walls, time, face)
+    predictions[i].face_time = time
+    predictions[i].face = face
 
 
 @inner_helper
-def note_all_still(rows, space, gravity, partition):
-    """Note which bodies may not fall."""
-    if gravity is not None:
-        for body in range(len(rows)):
-            note_still(rows, body, space, gravity, partition.still)
+def prepare(particles, boxes, model):
+    """Sort all particles into their boxes, and mark which may rest."""
+    sort_in(particles.predictions, boxes)
+    for i in range(len(particles.flights)):
+        mark_resting(particles.flights, i, model.space, model.gravity, boxes.resting)
 
 
 @kernel
-def foresee_all(rows, plans, calendar, space, partition, counters, now, gravity, walls, surfaces, big):
-    """Sort all bodies into their boxes, make all plans and fill the calendar."""
-    sort_in(plans, partition)
-    note_all_still(rows, space, gravity, partition)
-    turn = calendar.cursor[TURN]
-    anew = (0, 0, 0)
-    for body in range(len(rows)):
-        foresee(rows, plans, body, space, partition, counters, now, turn, anew, gravity, walls, surfaces, big)
-    fill(calendar, plans, now)
+def predict_all(particles, queue, boxes, model, tally, now):
+    """Sort all particles into their boxes, predict all events and fill the queue."""
+    prepare(particles, boxes, model)
+    number = queue.cursor[EVENT_COUNT]
+    for i in range(len(particles.flights)):
+        predict(particles, i, boxes, model, tally, now, number, _NEW)
+    fill(queue, particles.predictions, now)
 
 
 @kernel
-def refill(rows, plans, calendar, space, partition, now, gravity):
-    """Rebuild lists and calendar from plans that are already made, as after a checkpoint."""
-    sort_in(plans, partition)
-    note_all_still(rows, space, gravity, partition)
-    fill(calendar, plans, now)
+def restore(particles, queue, boxes, model, now):
+    """Make the lists and the queue from the predictions of a checkpoint."""
+    prepare(particles, boxes, model)
+    fill(queue, particles.predictions, now)
 
 
 @inner_helper
-def note(record, time, rows, i, j, lengths, law):
-    """Write an event down; j is the partner, or -1 - face for a wall."""
-    d = len(lengths)
-    n = record.filled[0]
-    record.time[n] = time
-    record.bodies[n, 0] = i
-    record.bodies[n, 1] = j
-    for k in range(d):
-        record.positions[n, 0, k] = rows[i, k]
-        record.velocities[n, 0, k] = rows[i, d + k]
-        record.positions[n, 1, k] = rows[j, k] if j >= 0 else np.nan
-        record.velocities[n, 1, k] = rows[j, d + k] if j >= 0 else np.nan
-    if law is not None:
-        for k in range(3):
-            record.spins[n, 0, k] = law.spins[i, k]
-            record.spins[n, 1, k] = law.spins[j, k] if j >= 0 else np.nan
-    record.filled[0] = n + 1
+def meet_obstacle(particles, i, face, time, model, tally):
+    """Let a particle meet a face of the container, the edge of a well, or an interior wall. Returns -1 - the
+    number of the face or wall, and False if it was a periodic face."""
+    if face >= WALLS:
+        return -1 - meet_wall(particles.flights, i, face, time, model, tally, model.walls), True
+    if face >= WELL_EDGES:
+        return -1 - meet_edge(particles.flights, i, face, time, model, tally, model.faces), True
+    return -1 - face, meet_face(particles, i, face, time, model, tally)
+
+
+@inner_helper
+def predict_after(particles, pair, queue, boxes, model, tally, event, crossed):
+    """Predict the next events of the particles of an event, `pair` (2,), the second of which may be none.
+    event: its time, its number, and whether it changed flights."""
+    predictions = particles.predictions
+    time, number, changes = event
+    first, second = pair
+    mark_resting(particles.flights, first, model.space, model.gravity, boxes.resting)
+    if second >= 0:
+        mark_resting(particles.flights, second, model.space, model.gravity, boxes.resting)
+    i = first
+    while i >= 0:
+        if changes:
+            predictions[i].changed = number
+        predict(particles, i, boxes, model, tally, time, number, crossed)
+        fetch(queue.head, bucket_of(queue, predictions, i))
+        i = second if i == first else NONE
+    reschedule(queue, predictions, first)
+    if second >= 0:
+        reschedule(queue, predictions, second)
+
+
+@inner_helper
+def process(particles, i, time, queue, boxes, model, tally):
+    """Process the next event of a particle. Returns the two particles it happens to, or one and -1 - a face,
+    and whether it is an event of the model: not the crossing of a box or a periodic face, nor an outdated
+    contact."""
+    predictions = particles.predictions
+    face = predictions[i].face
+    partner = predictions[i].partner
+    number = count_event(queue)
+    happens = changes = True
+    first, second, crossed = i, NONE, _NEW
+    if predictions[i].face_time <= predictions[i].contact_time:
+        axis, upper = face % BOX_FACES // 2, face % 2
+        if BOX_FACES <= face < WELL_EDGES:
+            happens = changes = False
+            crossed = crossing_of(face)
+            move(predictions, boxes, i, axis, predictions[i].box[axis] + (1 if upper else -1))
+            tally.counts[CROSSINGS] += 1
+        else:
+            partner, happens = meet_obstacle(particles, i, face, time, model, tally)
+            if not happens and face < BOX_FACES:
+                move(predictions, boxes, i, axis, 0 if upper else boxes.per_side[axis] - 1)
+    elif is_outdated(predictions, i):
+        happens = changes = False
+        tally.counts[OUTDATED] += 1
+    else:
+        i, partner = min(i, partner), max(i, partner)
+        first, second = i, partner
+        collide(particles.flights, i, partner, time, model, tally)
+    event = time, number, changes
+    predict_after(particles, (first, second), queue, boxes, model, tally, event, crossed)
+    return i, partner, happens
 
 
 @kernel
-def run_boxes(
-    rows,
-    images,
-    plans,
-    calendar,
-    space,
-    partition,
-    masses,
-    counters,
-    record,
-    stop,
-    most,
-    gravity,
-    law,
-    watch,
-    walls,
-    surfaces,
-    big,
-):
+def run(particles, queue, boxes, model, tally, monitors, stop, most):
     """Process all events up to time `stop`, at most `most` of them (collisions and wall hits).
 
-    masses: (N,), or None if all are 1; record, gravity, law, watch, walls, surfaces, big: a Record, Gravity,
-    Law, Watch, Walls, Surfaces and Big, or None each. Returns (reason, number of events, time of the last).
+    queue: None for the search of all pairs before every event. Returns (reason, number of events, time of the
+    last).
     """
     done = 0
     last = -inf
-    seen = -1
-    while True:
-        if done >= most:
-            return EVENTS, done, last
-        if record is not None:
-            if record.filled[0] == len(record.time):
-                return FULL, done, last
-        body = soonest(calendar, plans)
-        if body < 0:
-            return STOP, done, last
-        if len(rows) > CACHED:
-            seen = look_ahead(rows, plans, calendar, partition, seen)
-        time = time_of(plans, body)
-        if not time <= stop:
-            return STOP, done, last
-        face = plans[body].face
-        partner = plans[body].partner
-        meets_face = plans[body].face_time <= plans[body].contact
-        turn = next_turn(calendar)
-        happens = changes = True
-        first, second = body, NOTHING  # whose plans are to be made anew
-        x = y = z = 0
-        if meets_face and INNER <= face < EDGES:
-            happens = changes = False
-            axis = (face - INNER) // 2
-            step = 1 if face % 2 else -1
-            x, y, z = step if axis == 0 else 0, step if axis == 1 else 0, step if axis == 2 else 0
-            move(plans, partition, body, axis, plans[body].at[axis] + step)
-            counters.counts[CROSSINGS] += 1
-        elif meets_face:
-            partner = -1 - face
-            if face >= WALLS:
-                if walls is not None:
-                    m = face - WALLS
-                    partner = -1 - meet_wall(
-                        rows, body, m, time, space, masses, counters, gravity, law, walls
-                    )
-            elif face >= EDGES:
-                if surfaces is not None:
-                    m = face - EDGES
-                    partner = -1 - meet_edge(
-                        rows, body, m, time, space, masses, counters, gravity, law, surfaces
-                    )
-            elif not meet_face(
-                rows, images, body, face, time, space, masses, counters, gravity, law, surfaces
-            ):
-                happens = False
-                axis = face // 2
-                move(plans, partition, body, axis, 0 if face % 2 else partition.per_side[axis] - 1)
-        elif is_stale(plans, body):
-            happens = changes = False
-            counters.counts[STALE] += 1
+    next_bucket = -1
+    while done < most:
+        if is_full(monitors.record):
+            return FULL, done, last
+        if queue is None:
+            time, i, partner, face = first_of_all(particles, boxes, model, tally)
         else:
-            body, partner = min(body, partner), max(body, partner)
-            first, second = body, partner
-            collide(rows, body, partner, time, space, masses, counters, gravity, law)
-        if gravity is not None:
-            note_still(rows, first, space, gravity, partition.still)
-            if second >= 0:
-                note_still(rows, second, space, gravity, partition.still)
-        searcher = first
-        while searcher >= 0:
-            if changes:
-                plans[searcher].changed = turn
-            foresee(
-                rows, plans, searcher, space, partition, counters, time, turn, (x, y, z), gravity, walls,
-                surfaces, big,
-            )  # fmt: skip
-            fetch(calendar.head, slot_of(calendar, plans, searcher))
-            searcher = second if searcher == first else NOTHING
-        reschedule(calendar, plans, first)
-        if second >= 0:
-            reschedule(calendar, plans, second)
+            i = soonest(queue, particles.predictions)
+            if i >= 0 and len(particles.flights) > CACHED:
+                next_bucket = prefetch(particles, queue, boxes, next_bucket)
+            time = time_of(particles.predictions, i) if i >= 0 else inf
+        if i < 0 or not time <= stop:
+            return STOP, done, last
+        happens = True
+        if queue is not None:
+            i, partner, happens = process(particles, i, time, queue, boxes, model, tally)
+        elif partner >= 0:
+            collide(particles.flights, i, partner, time, model, tally)
+        else:
+            partner, happens = meet_obstacle(particles, i, face, time, model, tally)
         if not happens:
             continue
         last = time
         done += 1
-        if record is not None:
-            note(record, time, rows, body, partner, space.lengths, law)
-        if watch is not None:
-            faces = 2 * len(space.lengths)
-            if partner >= 0 or partner < -faces:
-                if crowded(watch, body, time) or (partner >= 0 and crowded(watch, partner, time)):
-                    return COLLAPSE, done, last
+        record_event(particles.flights, i, partner, time, model, monitors.record)
+        if collapse_detected(i, partner, time, 2 * len(model.space.lengths), monitors.collapse):
+            return COLLAPSE, done, last
+    return EVENTS, done, last

@@ -1,25 +1,26 @@
-"""Bodies too big for the boxes of the partition: how they are searched for, and search.
+"""Particles too large for the boxes: how they are searched for, and search.
 
-Beside the partition, that is: a small body tests the big ones that are near its box; a big one tests the
-bodies in all boxes that are near its own, and all other big ones. Whether two boxes are near, for a big body,
-follows from their numbers alone, so it is the same seen from either; and no contact can come between bodies
-whose boxes are not. A body that passes into another box looks again at what has become near.
+A small particle tests the oversized ones that are near its box; an oversized one tests the particles in all
+boxes that are near its own, and all other oversized ones. Whether two boxes are near, for an oversized
+particle, follows from their numbers alone, so it is the same seen from either; and no contact can occur
+between particles whose boxes are not. A particle that passes into another box searches what has become near.
 """
 
 from math import inf, sqrt
 
 from gaspart.kernels.compilation import inner_helper, inner_kernel
 from gaspart.kernels.event.box_lists import member
-from gaspart.kernels.event.model import BOX_VISITS, NOTHING, PAIR_TESTS
-from gaspart.kernels.flight import pair_time
+from gaspart.kernels.flight import time_of_contact
+from gaspart.kernels.model import BOX_VISITS, NONE, PAIR_TESTS
 
-_SLACK = 1e-9  # by which neighbourhoods are drawn wider, lest rounding hide a contact
+_SLACK = 1e-9  # by which neighbourhoods are drawn wider, so that rounding hides no contact
 
 
 @inner_helper
-def reach_square(rows, body, space, big):
-    """Square of the greatest distance between the centre of a big body and of a small one that touches it."""
-    reach = (rows[body, 2 * len(space.lengths) + 1] + big.above) * (1.0 + _SLACK)
+def reach_square(flights, i, oversized):
+    """Square of the greatest distance between the centre of an oversized particle and of a small one that
+    touches it."""
+    reach = (flights[i].radius + oversized.largest_radius) * (1.0 + _SLACK)
     return reach * reach
 
 
@@ -36,46 +37,55 @@ def near(x, y, z, widths, square):
     return gap_square(x, widths[0]) + gap_square(y, widths[1]) + gap_square(z, widths[2]) < square
 
 
+@inner_helper
+def newly_near(x, y, z, crossed, widths, square):
+    """The same, but for boxes that were near before a step `crossed` (3,) into another box, if there was
+    one."""
+    all_new = crossed[0] == 0 and crossed[1] == 0 and crossed[2] == 0
+    return near(x, y, z, widths, square) and (
+        all_new or not near(x + crossed[0], y + crossed[1], z + crossed[2], widths, square)
+    )
+
+
 @inner_kernel
-def laps(axis, space):
-    """How many images of the container to look at on either side along an axis."""
+def images_along(axis, space):
+    """How many images of the container to search on either side along an axis."""
     return 1 if axis < len(space.lengths) and space.periodic[axis] else 0
 
 
 @inner_kernel
-def consider(rows, plans, body, other, x, y, z, space, counters, gravity):
-    """Note a body's contact with another, displaced by so many containers, if it is the earliest so far."""
+def test_pair(particles, i, other, image, space, tally, gravity):
+    """Predict the contact with another particle in an image (3,) of the container, if it is the earliest so
+    far."""
     d = len(space.lengths)
-    offset = (x * space.lengths[0], y * space.lengths[1], z * space.lengths[d - 1])
-    counters.counts[PAIR_TESTS] += 1
-    time = pair_time(rows, body, other, offset, space, gravity)
-    soon = plans[body].contact
-    if time < soon or (time == soon and time < inf and other < plans[body].partner):
-        plans[body].contact = time
-        plans[body].partner = other
+    predictions = particles.predictions
+    offset = image[0] * space.lengths[0], image[1] * space.lengths[1], image[2] * space.lengths[d - 1]
+    tally.counts[PAIR_TESTS] += 1
+    time = time_of_contact(particles.flights, i, other, offset, space, gravity)
+    before = predictions[i].contact_time
+    if time < before or (time == before and time < inf and other < predictions[i].partner):
+        predictions[i].contact_time = time
+        predictions[i].partner = other
 
 
 @inner_kernel
-def find_big(rows, plans, body, space, partition, counters, gravity, big, crossed):
-    """Look for an earlier contact of a small body with the big ones near its box; if it has crossed into that
-    box by `crossed` (3,), with those only that were not near before."""
-    here, n, widths = plans[body].at, partition.per_side, partition.widths
-    anew = crossed[0] == 0 and crossed[1] == 0 and crossed[2] == 0
-    lap_x, lap_y, lap_z = laps(0, space), laps(1, space), laps(2, space)
-    for b in range(len(big.bodies)):
-        other = big.bodies[b]
-        there = plans[other].at
-        square = reach_square(rows, other, space, big)
-        for k in range(-lap_z, lap_z + 1):
-            z = there[2] + k * n[2] - here[2]
-            for j in range(-lap_y, lap_y + 1):
-                y = there[1] + j * n[1] - here[1]
-                for i in range(-lap_x, lap_x + 1):
-                    x = there[0] + i * n[0] - here[0]
-                    if near(x, y, z, widths, square) and (
-                        anew or not near(x + crossed[0], y + crossed[1], z + crossed[2], widths, square)
-                    ):
-                        consider(rows, plans, body, other, i, j, k, space, counters, gravity)
+def find_oversized(particles, i, boxes, space, tally, crossed, gravity, oversized):
+    """Search for an earlier contact of a small particle with the oversized ones near its box; if it has
+    crossed into that box by `crossed` (3,), with those only that were not near before."""
+    here, n, widths = particles.predictions[i].box, boxes.per_side, boxes.widths
+    images_x, images_y, images_z = images_along(0, space), images_along(1, space), images_along(2, space)
+    for m in range(len(oversized.particles)):
+        other = oversized.particles[m]
+        there = particles.predictions[other].box
+        square = reach_square(particles.flights, other, oversized)
+        for c in range(-images_z, images_z + 1):
+            z = there[2] + c * n[2] - here[2]
+            for b in range(-images_y, images_y + 1):
+                y = there[1] + b * n[1] - here[1]
+                for a in range(-images_x, images_x + 1):
+                    x = there[0] + a * n[0] - here[0]
+                    if newly_near(x, y, z, crossed, widths, square):
+                        test_pair(particles, i, other, (a, b, c), space, tally, gravity)
 
 
 @inner_helper
@@ -89,61 +99,60 @@ def span(here, n, width, square, periodic):
 
 
 @inner_helper
-def lap_of(coordinate, n):
+def image_of(coordinate, n):
     """In which image of the container a box coordinate lies."""
     return 1 if coordinate >= n else (-1 if coordinate < 0 else 0)
 
 
 @inner_kernel
-def find_around(rows, plans, body, space, partition, counters, gravity, big, crossed):
-    """Look for an earlier contact of a big body with all the bodies in boxes near its own; if it has crossed
-    into that box by `crossed` (3,), in those only that were not near before."""
-    here, n, widths = plans[body].at, partition.per_side, partition.widths
-    anew = crossed[0] == 0 and crossed[1] == 0 and crossed[2] == 0
-    square = reach_square(rows, body, space, big)
-    first_x, last_x = span(here[0], n[0], widths[0], square, laps(0, space) > 0)
-    first_y, last_y = span(here[1], n[1], widths[1], square, laps(1, space) > 0)
-    first_z, last_z = span(here[2], n[2], widths[2], square, laps(2, space) > 0)
-    for k in range(first_z, last_z + 1):
-        z, lap_z = k - here[2], lap_of(k, n[2])
-        row = (k - lap_z * n[2]) * partition.strides[2]
-        for j in range(first_y, last_y + 1):
-            y, lap_y = j - here[1], lap_of(j, n[1])
-            line = row + (j - lap_y * n[1]) * partition.strides[1]
-            for i in range(first_x, last_x + 1):
-                x, lap_x = i - here[0], lap_of(i, n[0])
-                if not near(x, y, z, widths, square) or not (
-                    anew or not near(x + crossed[0], y + crossed[1], z + crossed[2], widths, square)
-                ):
+def find_around(particles, i, boxes, space, tally, crossed, gravity, oversized):
+    """Search for an earlier contact of an oversized particle with all the particles in boxes near its own; if
+    it has crossed into that box by `crossed` (3,), in those only that were not near before."""
+    here, n, widths = particles.predictions[i].box, boxes.per_side, boxes.widths
+    square = reach_square(particles.flights, i, oversized)
+    first_x, last_x = span(here[0], n[0], widths[0], square, images_along(0, space) > 0)
+    first_y, last_y = span(here[1], n[1], widths[1], square, images_along(1, space) > 0)
+    first_z, last_z = span(here[2], n[2], widths[2], square, images_along(2, space) > 0)
+    for z in range(first_z, last_z + 1):
+        c = image_of(z, n[2])
+        plane = (z - c * n[2]) * boxes.strides[2]
+        for y in range(first_y, last_y + 1):
+            b = image_of(y, n[1])
+            line = plane + (y - b * n[1]) * boxes.strides[1]
+            for x in range(first_x, last_x + 1):
+                if not newly_near(x - here[0], y - here[1], z - here[2], crossed, widths, square):
                     continue
-                counters.counts[BOX_VISITS] += 1
-                box = line + (i - lap_x * n[0]) * partition.strides[0]
-                other = NOTHING
-                for m in range(partition.filled[box]):
-                    other = int(member(partition, box, m, other))
-                    if other != body:
-                        consider(rows, plans, body, other, lap_x, lap_y, lap_z, space, counters, gravity)
+                a = image_of(x, n[0])
+                tally.counts[BOX_VISITS] += 1
+                box = line + (x - a * n[0]) * boxes.strides[0]
+                other = NONE
+                for m in range(boxes.filled[box]):
+                    other = int(member(boxes, box, m, other))
+                    if other != i:
+                        test_pair(particles, i, other, (a, b, c), space, tally, gravity)
 
 
 @inner_kernel
-def find_other_big(rows, plans, body, space, counters, gravity, big):
-    """Look for an earlier contact of a big body with the other big ones."""
-    lap_x, lap_y, lap_z = laps(0, space), laps(1, space), laps(2, space)
-    for b in range(len(big.bodies)):
-        if big.bodies[b] == body:
+def find_other_oversized(particles, i, space, tally, gravity, oversized):
+    """Search for an earlier contact of an oversized particle with the other oversized ones."""
+    images_x, images_y, images_z = images_along(0, space), images_along(1, space), images_along(2, space)
+    for m in range(len(oversized.particles)):
+        other = oversized.particles[m]
+        if other == i:
             continue
-        for k in range(-lap_z, lap_z + 1):
-            for j in range(-lap_y, lap_y + 1):
-                for i in range(-lap_x, lap_x + 1):
-                    consider(rows, plans, body, big.bodies[b], i, j, k, space, counters, gravity)
+        for c in range(-images_z, images_z + 1):
+            for b in range(-images_y, images_y + 1):
+                for a in range(-images_x, images_x + 1):
+                    test_pair(particles, i, other, (a, b, c), space, tally, gravity)
 
 
-@inner_kernel
-def find_beside(rows, plans, body, space, partition, counters, gravity, big, crossed):
-    """What `find_contact` leaves to be looked at where there are big bodies; `crossed` (3,): the step into
-    the next box that the body has just made, or none."""
-    if rows[body, 2 * len(space.lengths) + 1] <= big.above:
-        find_big(rows, plans, body, space, partition, counters, gravity, big, crossed)
-        return
-    find_around(rows, plans, body, space, partition, counters, gravity, big, crossed)
-    find_other_big(rows, plans, body, space, counters, gravity, big)
+@inner_helper
+def search_oversized(particles, i, boxes, space, tally, crossed, gravity, oversized):
+    """What `find_contact` leaves to be searched where there are oversized particles; `crossed` (3,): the step
+    into the next box that the particle has just made, or none."""
+    if oversized is not None:
+        if particles.flights[i].radius <= oversized.largest_radius:
+            find_oversized(particles, i, boxes, space, tally, crossed, gravity, oversized)
+        else:
+            find_around(particles, i, boxes, space, tally, crossed, gravity, oversized)
+            find_other_oversized(particles, i, space, tally, gravity, oversized)

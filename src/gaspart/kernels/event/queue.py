@@ -1,7 +1,7 @@
-"""The event queue: one next event per body, in a calendar of short unsorted buckets.
+"""The event queue: one next event per particle, in a calendar of short unsorted buckets.
 
 A bucket spans about the mean time between events, so finding the soonest event means looking at one or
-two bodies, whatever their number. Events beyond the calendar's horizon wait in an overflow list. The
+two particles, whatever their number. Events beyond the calendar's horizon wait in an overflow list. The
 order is strict and does not depend on the buckets: by time, then by the tie key that the caller gives.
 """
 
@@ -11,188 +11,171 @@ import numpy as np
 
 from gaspart.kernels.compilation import inner_helper, inner_kernel
 
-BUCKET, FILLED, TURN = range(3)
+BUCKET, FILLED, EVENT_COUNT = range(3)  # of Queue.cursor
 
 
-PLAN = np.dtype(
-    [
-        ("contact", "f8"),  # time of the next contact foreseen, with
-        ("face_time", "f8"),  # time of the next face of a box or of the container, and
-        ("foreseen", "i8"),  # at which turn (event) the contact was foreseen,
-        ("changed", "i8"),  # and at which this body's flight last changed
-        ("partner", "i4"),  # whom,
-        ("face", "i4"),  # which
-        ("at", "i4", 3),  # coordinates of its box
-        ("before", "i4"),  # its neighbours in its bucket of the calendar,
-        ("after", "i4"),
-        ("slot", "i4"),  # which is this one, or -1
-    ],
-    align=True,
-)
-"""One body's plans, one cache line of 64 bytes: what an event reads and writes beside the body's flight."""
-
-
-class Calendar(NamedTuple):
-    """head: first body of each bucket, the last of which is the overflow; rate (1,): buckets per unit of
-    time; cursor (3,): the current bucket, how many bodies are in buckets that are not the overflow, and the
-    turn, which counts events."""
+class Queue(NamedTuple):
+    """head: first particle of each bucket, the last of which is the overflow; rate (1,): buckets per unit of
+    time; cursor (3,): the current bucket, how many particles are in buckets that are not the overflow, and
+    the number of events processed."""
 
     head: np.ndarray
     rate: np.ndarray
     cursor: np.ndarray
 
 
-def empty_calendar(count: int) -> Calendar:
-    """A calendar for `count` bodies with nothing in it."""
+def empty_queue(count: int) -> Queue:
+    """A queue for `count` particles with nothing in it."""
     buckets = 1 << max(4, (4 * count - 1).bit_length())
-    return Calendar(np.full(buckets + 1, -1, dtype=np.int32), np.ones(1), np.zeros(3, dtype=np.int64))
+    return Queue(np.full(buckets + 1, -1, dtype=np.int32), np.ones(1), np.zeros(3, dtype=np.int64))
 
 
 @inner_helper
-def time_of(plans, body):
-    """The time of a body's next event."""
-    return min(plans[body].contact, plans[body].face_time)
+def time_of(predictions, i):
+    """The time of a particle's next event."""
+    return min(predictions[i].contact_time, predictions[i].face_time)
 
 
 @inner_helper
-def next_turn(calendar):
-    """Count an event."""
-    calendar.cursor[TURN] += 1
-    return calendar.cursor[TURN]
+def count_event(queue):
+    """The number of this event."""
+    queue.cursor[EVENT_COUNT] += 1
+    return queue.cursor[EVENT_COUNT]
 
 
 @inner_helper
-def is_stale(plans, body):
-    """Whether the partner's flight has changed since the body's contact with it was foreseen."""
-    return plans[plans[body].partner].changed > plans[body].foreseen
+def is_outdated(predictions, i):
+    """Whether the partner's flight has changed since the particle's contact with it was predicted."""
+    return predictions[predictions[i].partner].changed > predictions[i].predicted
 
 
 @inner_helper
-def tie(plans, body):
-    """What orders simultaneous events: faces first, by body, then pairs by lower and higher index.
+def tie(predictions, i):
+    """What orders simultaneous events: faces first, by particle, then pairs by lower and higher index.
 
-    No two plans have the same key, though both bodies of a pair may plan their contact: if one of the plans
-    is out of date, which comes first decides how much is searched, and a bucket's order must not decide that.
+    No two predictions have the same key, though both particles of a pair may predict their contact: if one of
+    these is outdated, which comes first decides how much is searched, and a bucket's order must not decide
+    that.
     """
-    if plans[body].face_time <= plans[body].contact:
-        return body - len(plans)
-    partner = plans[body].partner
-    return 2 * (min(body, partner) * len(plans) + max(body, partner)) + (1 if body > partner else 0)
+    if predictions[i].face_time <= predictions[i].contact_time:
+        return i - len(predictions)
+    partner = predictions[i].partner
+    return 2 * (min(i, partner) * len(predictions) + max(i, partner)) + (1 if i > partner else 0)
 
 
 @inner_helper
-def slot_of(calendar, plans, body):
-    """The bucket of a body's time: the current one at the earliest, the overflow beyond the horizon."""
-    buckets = len(calendar.head) - 1
-    current = calendar.cursor[BUCKET]
-    x = time_of(plans, body) * calendar.rate[0]
-    slot = buckets
+def bucket_of(queue, predictions, i):
+    """The bucket of a particle's time: the current one at the earliest, the overflow beyond the horizon."""
+    buckets = len(queue.head) - 1
+    current = queue.cursor[BUCKET]
+    x = time_of(predictions, i) * queue.rate[0]
+    bucket = buckets
     if x < current + buckets:
-        slot = max(int(x), current) & (buckets - 1)
-    return slot
+        bucket = max(int(x), current) & (buckets - 1)
+    return bucket
 
 
 @inner_helper
-def _link(calendar, plans, body):
-    """Put a body into the bucket of its time."""
-    slot = slot_of(calendar, plans, body)
-    if slot < len(calendar.head) - 1:
-        calendar.cursor[FILLED] += 1
-    first = calendar.head[slot]
-    plans[body].after = first
-    plans[body].before = -1
+def _link(queue, predictions, i):
+    """Put a particle into the bucket of its time."""
+    bucket = bucket_of(queue, predictions, i)
+    if bucket < len(queue.head) - 1:
+        queue.cursor[FILLED] += 1
+    first = queue.head[bucket]
+    predictions[i].after = first
+    predictions[i].before = -1
     if first >= 0:
-        plans[first].before = body
-    calendar.head[slot] = body
-    plans[body].slot = slot
+        predictions[first].before = i
+    queue.head[bucket] = i
+    predictions[i].bucket = bucket
 
 
 @inner_helper
-def _unlink(calendar, plans, body):
-    """Take a body out of its bucket."""
-    slot = plans[body].slot
-    after = plans[body].after
-    before = plans[body].before
+def _unlink(queue, predictions, i):
+    """Take a particle out of its bucket."""
+    bucket = predictions[i].bucket
+    after = predictions[i].after
+    before = predictions[i].before
     if before >= 0:
-        plans[before].after = after
+        predictions[before].after = after
     else:
-        calendar.head[slot] = after
+        queue.head[bucket] = after
     if after >= 0:
-        plans[after].before = before
-    if slot < len(calendar.head) - 1:
-        calendar.cursor[FILLED] -= 1
+        predictions[after].before = before
+    if bucket < len(queue.head) - 1:
+        queue.cursor[FILLED] -= 1
 
 
 @inner_helper
-def reschedule(calendar, plans, body):
-    """Put a body whose plans have changed where it now belongs."""
-    _unlink(calendar, plans, body)
-    _link(calendar, plans, body)
+def reschedule(queue, predictions, i):
+    """Put a particle whose predictions have changed into the bucket where it now belongs."""
+    _unlink(queue, predictions, i)
+    _link(queue, predictions, i)
 
 
 @inner_kernel
-def fill(calendar, plans, now):
-    """Sort all bodies in anew, with buckets of the mean time between their events."""
-    calendar.head[:] = -1
+def fill(queue, predictions, now):
+    """Sort all particles in, with buckets of the mean time between their events."""
+    queue.head[:] = -1
     total = 0.0
     finite = 0
-    for body in range(len(plans)):
-        if time_of(plans, body) < np.inf:
-            total += max(time_of(plans, body) - now, 0.0)
+    for i in range(len(predictions)):
+        if time_of(predictions, i) < np.inf:
+            total += max(time_of(predictions, i) - now, 0.0)
             finite += 1
-    calendar.rate[0] = finite * (finite / total) if total > 0.0 else 1.0
-    if not calendar.rate[0] * abs(now) < 2.0**52:  # times too short to number: one bucket for all
-        calendar.rate[0] = 0.0
-    calendar.cursor[BUCKET] = int(max(now, 0.0) * calendar.rate[0])
-    calendar.cursor[FILLED] = 0
-    for body in range(len(plans)):
-        _link(calendar, plans, body)
+    queue.rate[0] = finite * (finite / total) if total > 0.0 else 1.0
+    if not queue.rate[0] * abs(now) < 2.0**52:  # times too short to number: one bucket for all
+        queue.rate[0] = 0.0
+    queue.cursor[BUCKET] = int(max(now, 0.0) * queue.rate[0])
+    queue.cursor[FILLED] = 0
+    for i in range(len(predictions)):
+        _link(queue, predictions, i)
 
 
 @inner_kernel
-def _recall_overflow(calendar, plans):
-    """Move the bodies of the overflow whose time has come within the horizon into their buckets."""
-    buckets = len(calendar.head) - 1
-    body = calendar.head[buckets]
-    while body >= 0:
-        after = plans[body].after
-        if time_of(plans, body) * calendar.rate[0] < calendar.cursor[BUCKET] + buckets:
-            reschedule(calendar, plans, body)
-        body = after
+def _recall_overflow(queue, predictions):
+    """Move the particles of the overflow whose time has come within the horizon into their buckets."""
+    buckets = len(queue.head) - 1
+    i = queue.head[buckets]
+    while i >= 0:
+        after = predictions[i].after
+        if time_of(predictions, i) * queue.rate[0] < queue.cursor[BUCKET] + buckets:
+            reschedule(queue, predictions, i)
+        i = after
 
 
 @inner_kernel
-def _leap(calendar, plans):
+def _leap(queue, predictions):
     """With all buckets empty, go straight to the first event of the overflow. False if there is none."""
     first = np.inf
-    body = calendar.head[len(calendar.head) - 1]
-    while body >= 0:
-        first = min(first, time_of(plans, body))
-        body = plans[body].after
-    if not first * calendar.rate[0] < 2.0**62:
+    i = queue.head[len(queue.head) - 1]
+    while i >= 0:
+        first = min(first, time_of(predictions, i))
+        i = predictions[i].after
+    if not first * queue.rate[0] < 2.0**62:
         return False
-    calendar.cursor[BUCKET] = max(calendar.cursor[BUCKET], int(first * calendar.rate[0]))
-    _recall_overflow(calendar, plans)
+    queue.cursor[BUCKET] = max(queue.cursor[BUCKET], int(first * queue.rate[0]))
+    _recall_overflow(queue, predictions)
     return True
 
 
 @inner_helper
-def soonest(calendar, plans):
-    """The body whose event comes first, or -1 if nothing will ever happen again."""
-    buckets = len(calendar.head) - 1
+def soonest(queue, predictions):
+    """The particle whose event comes first, or -1 if there are no more events."""
+    buckets = len(queue.head) - 1
     while True:
-        if calendar.cursor[FILLED] == 0 and not _leap(calendar, plans):
+        if queue.cursor[FILLED] == 0 and not _leap(queue, predictions):
             return -1
-        best = calendar.head[calendar.cursor[BUCKET] & (buckets - 1)]
+        best = queue.head[queue.cursor[BUCKET] & (buckets - 1)]
         if best >= 0:
-            soon = time_of(plans, best)
-            body = plans[best].after
-            while body >= 0:
-                time = time_of(plans, body)
-                if time < soon or (time == soon and tie(plans, body) < tie(plans, best)):
-                    best, soon = body, time
-                body = plans[body].after
+            soon = time_of(predictions, best)
+            i = predictions[best].after
+            while i >= 0:
+                time = time_of(predictions, i)
+                if time < soon or (time == soon and tie(predictions, i) < tie(predictions, best)):
+                    best, soon = i, time
+                i = predictions[i].after
             return best
-        calendar.cursor[BUCKET] += 1
-        if calendar.cursor[BUCKET] & (buckets - 1) == 0:
-            _recall_overflow(calendar, plans)
+        queue.cursor[BUCKET] += 1
+        if queue.cursor[BUCKET] & (buckets - 1) == 0:
+            _recall_overflow(queue, predictions)

@@ -1,27 +1,39 @@
-"""How far a point is from an interior wall (rows as in `segment` and `plate`)."""
+"""From a point to the nearest point of an interior wall (rows as in `segment` and `plate`)."""
 
 from gaspart.kernels.compilation import helper
 
 
 @helper
-def square_from_segment(segments, m, x, y):
-    """Square of the distance of a point from a segment, its ends included."""
-    dx = x - segments[m, 0]
-    dy = y - segments[m, 1]
-    s = min(max(dx * segments[m, 2] + dy * segments[m, 3], 0.0), segments[m, 4])
-    dx -= s * segments[m, 2]
-    dy -= s * segments[m, 3]
-    return dx * dx + dy * dy
+def to_segment(rows, m, point):
+    """(3,) the vector from a point (2,) to the nearest point of a segment, its ends included."""
+    ux, uy = rows[m].direction[0], rows[m].direction[1]
+    dx, dy = point[0] - rows[m].start[0], point[1] - rows[m].start[1]
+    s = min(max(ux * dx + uy * dy, 0.0), rows[m].length)
+    return s * ux - dx, s * uy - dy, 0.0
 
 
 @helper
-def gap_to_plate(plates, m, x, y, z):
-    """The vector from a point to the nearest point of a plate."""
-    dx, dy, dz = x - plates[m, 0], y - plates[m, 1], z - plates[m, 2]
-    s = min(max(dx * plates[m, 3] + dy * plates[m, 4] + dz * plates[m, 5], 0.0), plates[m, 6])
-    t = min(max(dx * plates[m, 7] + dy * plates[m, 8] + dz * plates[m, 9], 0.0), plates[m, 10])
+def _dot(a, x, y, z):
+    return x * a[0] + y * a[1] + z * a[2]
+
+
+@helper
+def to_plate(rows, m, point):
+    """(3,) the vector from a point (3,) to the nearest point of a plate, its rim included."""
+    along, across, corner = rows[m].along, rows[m].across, rows[m].corner
+    dx, dy, dz = point[0] - corner[0], point[1] - corner[1], point[2] - corner[2]
+    s = min(max(_dot(along, dx, dy, dz), 0.0), rows[m].length)
+    t = min(max(_dot(across, dx, dy, dz), 0.0), rows[m].width)
     return (
-        s * plates[m, 3] + t * plates[m, 7] - dx,
-        s * plates[m, 4] + t * plates[m, 8] - dy,
-        s * plates[m, 5] + t * plates[m, 9] - dz,
+        s * along[0] + t * across[0] - dx,
+        s * along[1] + t * across[1] - dy,
+        s * along[2] + t * across[2] - dz,
     )
+
+
+@helper
+def to_wall(rows, m, point, lengths):
+    """(3,) the same for the kind of wall that stands in a container with sides `lengths` (d,)."""
+    if len(lengths) == 2:
+        return to_segment(rows, m, point)
+    return to_plate(rows, m, point)

@@ -1,63 +1,69 @@
-"""The faces of the container, and of the boxes in it: when a body comes to one, and what happens there."""
+"""The faces of the container, and of the boxes in it: when a particle comes to one, and what happens
+there."""
 
 from math import inf
 
 from gaspart.kernels.ballistic import time_against, time_along
+from gaspart.kernels.collision import collide_wall_by_law
 from gaspart.kernels.compilation import inner_helper, inner_kernel
 from gaspart.kernels.contact import time_to_plane
-from gaspart.kernels.event.model import INNER, NOTHING
-from gaspart.kernels.flight import acceleration, advance_row, face_plane
-from gaspart.kernels.impact import strike_wall
-from gaspart.kernels.obstacles.special_face import find_edge, touch_surface
+from gaspart.kernels.flight import acceleration_of, advance, face_plane
+from gaspart.kernels.model import BOX_FACES, NONE, STICKY, THERMAL, THERMAL_NORMAL
+from gaspart.kernels.obstacles.interior_wall import mass_in
+from gaspart.kernels.obstacles.resting import come_to_rest, release, release_after
+from gaspart.kernels.obstacles.sticky import collide_sticky
+from gaspart.kernels.obstacles.thermal import collide_thermal
+from gaspart.kernels.obstacles.well import mass_of, time_to_edge
 from gaspart.kernels.running_sum import add
 
 
 @inner_helper
-def plane_of(rows, plans, body, axis, upper, space, partition, big):
-    """The lower or upper face of the body's box along an axis: (coordinate for its centre, face code). A wall
-    stops a big body some boxes before the last."""
-    at = plans[body].at[axis]
+def plane_of(particles, i, axis, upper, boxes, space, oversized):
+    """The lower or upper face of a particle's box along an axis: (coordinate for its centre, face code). A
+    wall stops an oversized particle some boxes before the last."""
+    flights = particles.flights
+    at = particles.predictions[i].box[axis]
     code = 2 * axis + (1 if upper else 0)
-    if at == (partition.per_side[axis] - 1 if upper else 0):
-        return face_plane(rows, body, axis, upper, space), code
-    plane = (at + 1 if upper else at) * partition.widths[axis]
-    if big is not None:
-        outer = face_plane(rows, body, axis, upper, space)
+    if at == (boxes.per_side[axis] - 1 if upper else 0):
+        return face_plane(flights, i, axis, upper, space), code
+    plane = (at + 1 if upper else at) * boxes.widths[axis]
+    if oversized is not None:
+        outer = face_plane(flights, i, axis, upper, space)
         if outer <= plane if upper else outer >= plane:
             return outer, code
-    return plane, code + INNER
+    return plane, code + BOX_FACES
 
 
 @inner_helper
-def find_face(rows, plans, body, space, partition, now, gravity, surfaces, big):
-    """The next face that the body comes to, of its box or of the container, or the edge of a well: (time,
+def next_face(particles, i, boxes, space, now, gravity, faces, oversized):
+    """The next face that a particle comes to, of its box or of the container, or the edge of a well: (time,
     face code).
 
-    A falling body may cross the face of a box, turn, and cross it again in the same flight: `now` tells which
-    of its crossings lie behind it.
+    A falling particle may cross the face of a box, turn, and cross it again in the same flight: `now`
+    determines which of its crossings lie behind it.
     """
-    d = len(space.lengths)
+    flights = particles.flights
     soon = inf
-    face = NOTHING
-    for k in range(d):
-        v = rows[body, d + k]
+    face = NONE
+    for k in range(len(space.lengths)):
+        v = flights[i].velocity[k]
         if gravity is not None:
-            pull = acceleration(rows, body, k, space, gravity)
+            pull = acceleration_of(flights, i, k, space, gravity)
             if pull != 0.0:
-                time, code = find_face_pulled(rows, plans, body, k, pull, space, partition, now, big)
+                time, code = next_face_pulled(particles, i, k, pull, boxes, space, now, oversized)
                 if time < soon:
                     soon = time
                     face = code
                 continue
         if v == 0.0:
             continue
-        if surfaces is not None:
-            time, code = find_edge(rows, body, k, space, surfaces)
+        if faces is not None:
+            time, code = time_to_edge(flights, i, k, space, faces)
             if time < soon:
                 soon = time
                 face = code
-        plane, code = plane_of(rows, plans, body, k, v > 0.0, space, partition, big)
-        time = rows[body, 2 * d] + time_to_plane(rows[body, k], v, plane)
+        plane, code = plane_of(particles, i, k, v > 0.0, boxes, space, oversized)
+        time = flights[i].clock + time_to_plane(flights[i].position[k], v, plane)
         if time < soon:
             soon = time
             face = code
@@ -65,74 +71,116 @@ def find_face(rows, plans, body, space, partition, now, gravity, surfaces, big):
 
 
 @inner_kernel
-def find_face_pulled(rows, plans, body, axis, pull, space, partition, now, big):
+def next_face_pulled(particles, i, axis, pull, boxes, space, now, oversized):
     """The same along one axis with a pull: (time, face code).
 
-    Until a body that rises against the pull turns, it can only leave through the face ahead, and afterwards
-    only through the one that the pull leads to, so no face is ever crossed twice in the same direction (the
-    rule of Spencer 2022, section 2.1.2, in a form that rounding cannot turn into a loop).
+    Until a particle that rises against the pull turns, it can only leave through the face ahead, and
+    afterwards only through the one that the pull leads to, so no face is ever crossed twice in the same
+    direction (the rule of Spencer 2022, section 2.1.2, in a form that rounding cannot turn into a loop).
     """
-    d = len(space.lengths)
-    x = rows[body, axis]
-    clock = rows[body, 2 * d]
+    flight = particles.flights[i]
+    x, clock = flight.position[axis], flight.clock
     upper = pull > 0.0
     strength = abs(pull)
-    along = rows[body, d + axis] if upper else -rows[body, d + axis]  # speed towards where the pull leads
-    turn = clock if along >= 0.0 else clock - along / strength
+    along = flight.velocity[axis] if upper else -flight.velocity[axis]  # speed towards where the pull leads
+    summit = clock if along >= 0.0 else clock - along / strength
     if along < 0.0:
-        plane, code = plane_of(rows, plans, body, axis, not upper, space, partition, big)
+        plane, code = plane_of(particles, i, axis, not upper, boxes, space, oversized)
         gap = x - plane if upper else plane - x
         time = clock + time_against(gap, -along, strength)
-        if code < INNER:
+        if code < BOX_FACES:
             if time < inf:
                 return time, code
-        elif now < turn and time < inf:
-            return min(time, turn), code
-    plane, code = plane_of(rows, plans, body, axis, upper, space, partition, big)
+        elif now < summit and time < inf:
+            return min(time, summit), code
+    plane, code = plane_of(particles, i, axis, upper, boxes, space, oversized)
     gap = plane - x if upper else x - plane
     time = clock + time_along(gap, along, strength)
-    if code >= INNER:
-        time = max(time, turn)
+    if code >= BOX_FACES:
+        time = max(time, summit)
     return time, code
 
 
 @inner_kernel
-def meet_face(rows, images, body, face, time, space, masses, counters, gravity, law, surfaces):
-    """Reflect a body at a wall, or take it from a periodic face to the opposite one. True if a wall."""
-    d = len(space.lengths)
-    axis = face // 2
-    upper = face % 2 == 1
-    advance_row(rows, body, time, space, gravity)
-    if space.periodic[axis]:
-        rows[body, axis] = 0.0 if upper else space.lengths[axis]
-        images[body, axis] += 1 if upper else -1
+def collide_special(flights, i, face, model, tally, law, faces):
+    """Let a face with a kind act on a particle that has come to it. False if it is hard."""
+    kind = faces.kind[face]
+    if kind in (THERMAL, THERMAL_NORMAL):
+        collide_thermal(flights, i, face, model, tally, law, faces)
+    elif kind == STICKY:
+        collide_sticky(flights, i, face, model, tally, law, faces)
+    else:
         return False
-    rows[body, axis] = face_plane(rows, body, axis, upper, space)
-    hard = bounce(rows, body, face, space, masses, counters, law, surfaces)
-    if gravity is not None:
-        # a bounce too short for the clocks to tell is rest; otherwise it would be repeated for ever
-        if hard and abs(rows[body, d + axis]) < abs(gravity.pull[axis]) * gravity.blink:
-            rows[body, d + axis] = 0.0
     return True
 
 
 @inner_helper
-def bounce(rows, body, face, space, masses, counters, law, surfaces):
-    """Let a wall act on a body that has come to it. Returns whether it is a hard one."""
-    d = len(space.lengths)
+def collide_face(flights, i, face, model, tally, law, faces):
+    """Let a wall act on a particle that has come to it. Returns whether it is a hard one."""
     axis = face // 2
-    counters.wall_hits[face] += 1
-    if surfaces is not None:
-        if touch_surface(rows, body, face, space, masses, counters, law, surfaces):
+    tally.wall_hits[face] += 1
+    if faces is not None:
+        if collide_special(flights, i, face, model, tally, law, faces):
             return False
     if law is None:
-        mass = 1.0 if masses is None else masses[body]
-        add(counters.wall_impulse, face, 2.0 * mass * abs(rows[body, d + axis]))
-        rows[body, d + axis] = -rows[body, d + axis]
+        mass = mass_in(model.masses, i)
+        add(tally.wall_impulse, face, 2.0 * mass * abs(flights[i].velocity[axis]))
+        flights[i].velocity[axis] = -flights[i].velocity[axis]
     else:
         side = 1.0 if face % 2 else -1.0
-        x = side if axis == 0 else 0.0
-        y = side if axis == 1 else 0.0
-        z = side if axis == 2 else 0.0
-        add(counters.wall_impulse, face, strike_wall(rows, body, x, y, z, 0.0, space, counters, law))
+        normal = side if axis == 0 else 0.0, side if axis == 1 else 0.0, side if axis == 2 else 0.0
+        impulse = collide_wall_by_law(flights, i, normal, 0.0, model.space, tally, law)
+        add(tally.wall_impulse, face, impulse)
+    return True
+
+
+@inner_kernel
+def reflect(flights, i, face, model, tally, law, faces):
+    """`collide_face` as a function of its own."""
+    return collide_face(flights, i, face, model, tally, law, faces)
+
+
+@inner_kernel
+def rest_on_face(flights, i, face, hard, model, tally, gravity, support):
+    """Let a particle that slides along an interior wall down to a face rest on both, or release it."""
+    if support is None:
+        return
+    if support.number[i] > 0:
+        if not hard:
+            release(flights, i, model.space, support)
+            return
+        axis, side = face // 2, 1.0 if face % 2 else -1.0
+        normal = side if axis == 0 else 0.0, side if axis == 1 else 0.0, side if axis == 2 else 0.0
+        mass = mass_of(i, model.masses, model.law)
+        come_to_rest(flights, i, normal, (NONE, False), mass, model.space, tally, gravity)
+
+
+@inner_helper
+def rest_after(flights, i, face, hard, model, tally, gravity):
+    """A bounce too short for the clocks to resolve is rest; otherwise it would be repeated for ever."""
+    if gravity is not None:
+        axis = face // 2
+        shortest = abs(gravity.acceleration[axis]) * gravity.shortest_bounce
+        if hard and abs(flights[i].velocity[axis]) < shortest:
+            flights[i].velocity[axis] = 0.0
+        rest_on_face(flights, i, face, hard, model, tally, gravity, gravity.support)
+
+
+@inner_helper
+def meet_face(particles, i, face, time, model, tally):
+    """Reflect a particle at a wall, or take it from a periodic face to the opposite one. True if a wall."""
+    flights, space = particles.flights, model.space
+    axis = face // 2
+    upper = face % 2 == 1
+    advance(flights, i, time, space, model.gravity)
+    if space.periodic[axis]:
+        release_after(
+            flights, i, space, model.gravity
+        )  # it comes to rest again, on another image of the wall
+        flights[i].position[axis] = 0.0 if upper else space.lengths[axis]
+        particles.images[i, axis] += 1 if upper else -1
+        return False
+    flights[i].position[axis] = face_plane(flights, i, axis, upper, space)
+    hard = reflect(flights, i, face, model, tally, model.law, model.faces)
+    rest_after(flights, i, face, hard, model, tally, model.gravity)
     return True

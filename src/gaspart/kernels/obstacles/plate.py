@@ -1,10 +1,11 @@
 """When a sphere touches a plate, an interior wall of three dimensions: on a side, an edge or a corner.
 
-A row of a plate is a corner (3), then the unit vector along each of two edges (3) and the edge's length.
 Everything is computed in the plate's own axes: along its two edges, and across it.
 """
 
 from math import inf
+
+import numpy as np
 
 from gaspart.kernels.ballistic import (
     flown,
@@ -15,38 +16,52 @@ from gaspart.kernels.ballistic import (
 )
 from gaspart.kernels.compilation import inner_helper, inner_kernel
 from gaspart.kernels.contact import time_to_contact
-from gaspart.kernels.flight import acceleration
+from gaspart.kernels.flight import acceleration_of
+from gaspart.kernels.obstacles.resting import rests_on, time_to_leave
+
+PLATE = np.dtype(
+    [("corner", "f8", 3), ("along", "f8", 3), ("length", "f8"), ("across", "f8", 3), ("width", "f8")]
+)
+"""A row of a plate: a corner, and the unit vectors along its two edges with their lengths."""
 
 
 @inner_helper
-def _along(plates, m, first, x, y, z):
-    """The component of a vector along an edge, whose unit vector begins at column `first`."""
-    return x * plates[m, first] + y * plates[m, first + 1] + z * plates[m, first + 2]
+def _components(row, x, y, z):
+    """(3,) a vector in the plate's axes: along its two edges, and across the plate."""
+    a, b = row.along, row.across
+    nx, ny, nz = a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+    return x * a[0] + y * a[1] + z * a[2], x * b[0] + y * b[1] + z * b[2], nx * x + ny * y + nz * z
 
 
 @inner_kernel
-def time_to_point(x, y, z, vx, vy, vz, gx, gy, gz, radius):
-    """Time until a body at (x, y, z) of a point touches it; of a line, with the components along it 0."""
-    rr, rv, vv = x * x + y * y + z * z, x * vx + y * vy + z * vz, vx * vx + vy * vy + vz * vz
-    gg = gx * gx + gy * gy + gz * gz
+def time_to_point(r, v, g, radius):
+    """Time until a sphere touches a point: r, v, g (3,), its separation, velocity and acceleration from
+    there; or a line, with the components along it 0."""
+    rr = r[0] * r[0] + r[1] * r[1] + r[2] * r[2]
+    rv = r[0] * v[0] + r[1] * v[1] + r[2] * v[2]
+    vv = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
+    gg = g[0] * g[0] + g[1] * g[1] + g[2] * g[2]
     if gg > 0.0:
-        ra, va = x * gx + y * gy + z * gz, vx * gx + vy * gy + vz * gz
+        ra = r[0] * g[0] + r[1] * g[1] + r[2] * g[2]
+        va = v[0] * g[0] + v[1] * g[1] + v[2] * g[2]
         return time_to_contact_pulled(rr - radius * radius, rv, vv, ra, va, gg)
     return time_to_contact(rr, rv, vv, radius * radius)
 
 
 @inner_kernel
-def time_to_edge(x, z, vx, vz, gx, gz, y, vy, gy, length, radius):
-    """Time until a body touches an edge: (x, z) across the line, y along it from its start.
+def time_to_edge(r, v, g, length, radius):
+    """Time until a sphere touches an edge: of r, v, g (3,) the first two components are across the line, the
+    third along it from its start.
 
-    A falling body may come to the line beside the edge, leave it, and come back to it at the edge.
+    A falling sphere may come to the line beside the edge, leave it, and come back to it at the edge.
     """
+    x, z, y = r
+    vx, vz, vy = v
+    gx, gz, gy = g
     start = 0.0
     for _ in range(2):
-        time = time_to_point(
-            flown(x, vx, gx, start), 0.0, flown(z, vz, gz, start),
-            vx + gx * start, 0.0, vz + gz * start, gx, 0.0, gz, radius,
-        )  # fmt: skip
+        place = (flown(x, vx, gx, start), 0.0, flown(z, vz, gz, start))
+        time = time_to_point(place, (vx + gx * start, 0.0, vz + gz * start), (gx, 0.0, gz), radius)
         if time == inf:
             return inf
         time += start
@@ -62,23 +77,22 @@ def time_to_edge(x, z, vx, vz, gx, gz, y, vy, gy, length, radius):
 
 
 @inner_kernel
-def time_to_plate(rows, body, plates, m, space, gravity):
-    """When a body touches a plate; inf if it does not."""
-    radius = rows[body, 7]
-    dx, dy, dz = rows[body, 0] - plates[m, 0], rows[body, 1] - plates[m, 1], rows[body, 2] - plates[m, 2]
-    vx, vy, vz = rows[body, 3], rows[body, 4], rows[body, 5]
+def time_to_plate(flights, i, rows, m, space, gravity):
+    """When a sphere touches a plate; inf if it does not."""
+    radius, row = flights[i].radius, rows[m]
+    position, velocity = flights[i].position, flights[i].velocity
+    dx, dy, dz = position[0] - row.corner[0], position[1] - row.corner[1], position[2] - row.corner[2]
     gx = gy = gz = 0.0
     if gravity is not None:
-        gx = acceleration(rows, body, 0, space, gravity)
-        gy = acceleration(rows, body, 1, space, gravity)
-        gz = acceleration(rows, body, 2, space, gravity)
-    nx = plates[m, 4] * plates[m, 9] - plates[m, 5] * plates[m, 8]
-    ny = plates[m, 5] * plates[m, 7] - plates[m, 3] * plates[m, 9]
-    nz = plates[m, 3] * plates[m, 8] - plates[m, 4] * plates[m, 7]
-    x, y, z = _along(plates, m, 3, dx, dy, dz), _along(plates, m, 7, dx, dy, dz), nx * dx + ny * dy + nz * dz
-    u, v, w = _along(plates, m, 3, vx, vy, vz), _along(plates, m, 7, vx, vy, vz), nx * vx + ny * vy + nz * vz
-    a, b, c = _along(plates, m, 3, gx, gy, gz), _along(plates, m, 7, gx, gy, gz), nx * gx + ny * gy + nz * gz
-    length, width = plates[m, 6], plates[m, 10]
+        gx = acceleration_of(flights, i, 0, space, gravity)
+        gy = acceleration_of(flights, i, 1, space, gravity)
+        gz = acceleration_of(flights, i, 2, space, gravity)
+    x, y, z = _components(row, dx, dy, dz)
+    u, v, w = _components(row, velocity[0], velocity[1], velocity[2])
+    a, b, c = _components(row, gx, gy, gz)
+    length, width = row.length, row.width
+    if rests_on(i, m, gravity):
+        return flights[i].clock + min(time_to_leave(x, u, a, length), time_to_leave(y, v, b, width))
     side = 1.0 if z >= 0.0 else -1.0
     best = inf
     for far in range(2):
@@ -90,9 +104,9 @@ def time_to_plate(rows, body, plates, m, space, gravity):
             best = time
     for upper in range(2):
         far_x, far_y = x - upper * length, y - upper * width
-        best = min(best, time_to_edge(far_x, z, u, w, a, c, y, v, b, width, radius))
-        best = min(best, time_to_edge(far_y, z, v, w, b, c, x, u, a, length, radius))
+        best = min(best, time_to_edge((far_x, z, y), (u, w, v), (a, c, b), width, radius))
+        best = min(best, time_to_edge((far_y, z, x), (v, w, u), (b, c, a), length, radius))
         for other in range(2):
             corner_y = y - other * width
-            best = min(best, time_to_point(far_x, corner_y, z, u, v, w, a, b, c, radius))
-    return rows[body, 6] + best
+            best = min(best, time_to_point((far_x, corner_y, z), (u, v, w), (a, b, c), radius))
+    return flights[i].clock + best

@@ -1,31 +1,36 @@
-"""Interior walls of two dimensions: segments with solid ends, hit from both sides.
-
-A row of a segment is (ax, ay, ux, uy, length): its start, the unit vector along it, its length.
-"""
+"""Interior walls of two dimensions: segments with solid ends, hit from both sides."""
 
 from math import inf
+
+import numpy as np
 
 from gaspart.kernels.ballistic import time_to_contact_pulled, time_to_far_side, time_to_side
 from gaspart.kernels.compilation import inner_kernel
 from gaspart.kernels.contact import time_to_contact
-from gaspart.kernels.flight import acceleration
+from gaspart.kernels.flight import acceleration_of
+from gaspart.kernels.obstacles.resting import rests_on, time_to_leave
+
+SEGMENT = np.dtype([("start", "f8", 2), ("direction", "f8", 2), ("length", "f8")])
+"""A row of a segment: its start, the unit vector along it, its length."""
 
 
 @inner_kernel
-def time_to_segment(rows, body, segments, m, space, gravity):
-    """When a body touches a segment, on a side (Spencer 2022, Eqs. 3-12) or at an end; inf if it does not."""
-    radius = rows[body, 5]
-    ux, uy, length = segments[m, 2], segments[m, 3], segments[m, 4]
-    dx = rows[body, 0] - segments[m, 0]
-    dy = rows[body, 1] - segments[m, 1]
-    vx, vy = rows[body, 2], rows[body, 3]
+def time_to_segment(flights, i, rows, m, space, gravity):
+    """When a disc touches a segment, on a side (Spencer 2022, Eqs. 3-12) or at an end; inf if it does not."""
+    radius = flights[i].radius
+    ux, uy, length = rows[m].direction[0], rows[m].direction[1], rows[m].length
+    dx = flights[i].position[0] - rows[m].start[0]
+    dy = flights[i].position[1] - rows[m].start[1]
+    vx, vy = flights[i].velocity[0], flights[i].velocity[1]
     gx = gy = 0.0
     if gravity is not None:
-        gx = acceleration(rows, body, 0, space, gravity)
-        gy = acceleration(rows, body, 1, space, gravity)
+        gx = acceleration_of(flights, i, 0, space, gravity)
+        gy = acceleration_of(flights, i, 1, space, gravity)
+    along, speed, pull = ux * dx + uy * dy, ux * vx + uy * vy, ux * gx + uy * gy
+    if rests_on(i, m, gravity):
+        return flights[i].clock + time_to_leave(along, speed, pull, length)
     height = ux * dy - uy * dx
     side = 1.0 if height >= 0.0 else -1.0
-    along, speed, pull = ux * dx + uy * dy, ux * vx + uy * vy, ux * gx + uy * gy
     closing, drawn = -side * (ux * vy - uy * vx), -side * (ux * gy - uy * gx)
     best = inf
     for far in range(2):
@@ -50,4 +55,4 @@ def time_to_segment(rows, body, segments, m, space, gravity):
         else:
             time = time_to_contact(rr, rv, vv, radius * radius)
         best = min(best, time)
-    return rows[body, 4] + best
+    return flights[i].clock + best

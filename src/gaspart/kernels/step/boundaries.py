@@ -10,30 +10,29 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gaspart.kernels.collision import collide_by_law
 from gaspart.kernels.compilation import helper, kernel
 from gaspart.kernels.contact import time_to_plane
-from gaspart.kernels.event import model as layout
-from gaspart.kernels.event.model import EDGES, NOTHING, STICKY
-from gaspart.kernels.flight import advance_row, face_plane
-from gaspart.kernels.impact import strike
-from gaspart.kernels.obstacles.face import bounce
-from gaspart.kernels.obstacles.special_face import cross_edge, find_edge
+from gaspart.kernels.flight import advance, face_plane
+from gaspart.kernels.model import LOSS as LOST
+from gaspart.kernels.model import NONE, STICKY, WELL_EDGES, Model, Tally
+from gaspart.kernels.obstacles.face import collide_face
+from gaspart.kernels.obstacles.well import cross_edge, time_to_edge
 from gaspart.kernels.running_sum import add, add_whole
 from gaspart.kernels.step.model import LOSS, VIRIAL
 
-_SHORT = 2.0**-12  # of a step: bounces on a floor in less time are not told apart
+_SHORT = 2.0**-12  # of a step: bounces on a floor in less time are not distinguished
 
 
 class Rules(NamedTuple):
-    """rows (N, 8): room for bodies; surfaces, gravity (None if there is none): as the event-driven engine
-    has them; gains: its counters, room for what one event adds to them. free (d, 2): between which
-    coordinates a body that is held nowhere meets no face and no edge; holds: whether any face may hold
-    bodies. heat (2d, 2): given to each face, by `running_sum.add_whole`."""
+    """What the event-driven engine's kernels work on. flights (N,): room for particles; model: the law and
+    the faces; tally: room for what one event adds to it. free (d, 2): between which coordinates a particle
+    that is held nowhere meets no face and no edge; holds: whether any face may hold particles. heat (2d, 2):
+    given to each face, by `running_sum.add_whole`."""
 
-    rows: np.ndarray
-    surfaces: layout.Surfaces
-    gravity: layout.Gravity | None
-    gains: layout.Counters
+    flights: np.ndarray
+    model: Model
+    tally: Tally
     free: np.ndarray
     holds: bool
     heat: np.ndarray
@@ -47,64 +46,65 @@ def is_free(bodies, rules, slot):
         x = bodies.positions[k, slot]
         free &= (x >= rules.free[k, 0]) & (x < rules.free[k, 1])
         if rules.holds:
-            free &= rules.surfaces.place[bodies.index[slot], k] == 0
+            free &= rules.model.faces.place[bodies.index[slot], k] == 0
     return free
 
 
 @kernel
-def take_up(bodies, rules, slot):
-    """Put the body in a slot into its row; returns which one it is."""
-    d, body = bodies.positions.shape[0], np.int64(bodies.index[slot])
-    for k in range(d):
-        rules.rows[body, k] = bodies.positions[k, slot]
-        rules.rows[body, d + k] = bodies.velocities[k, slot]
-    rules.rows[body, 2 * d] = 0.0
-    rules.rows[body, 2 * d + 1] = bodies.radii[slot]
-    return body
+def gather(bodies, rules, slot):
+    """Write the particle in a slot into its flight, with the clock at 0; returns its number."""
+    flights, i = rules.flights, np.int64(bodies.index[slot])
+    for k in range(bodies.positions.shape[0]):
+        flights[i].position[k] = bodies.positions[k, slot]
+        flights[i].velocity[k] = bodies.velocities[k, slot]
+    flights[i].clock = 0.0
+    flights[i].radius = bodies.radii[slot]
+    return i
 
 
 @kernel
-def put_back(bodies, rules, slot):
-    """The way back; returns the square of the body's speed."""
-    d, body = bodies.positions.shape[0], bodies.index[slot]
+def scatter(bodies, rules, slot):
+    """Write a flight back into its slot; returns the square of the particle's speed."""
+    flights, i = rules.flights, bodies.index[slot]
     square = 0.0
-    for k in range(d):
-        bodies.positions[k, slot] = rules.rows[body, k]
-        bodies.velocities[k, slot] = rules.rows[body, d + k]
-        square += rules.rows[body, d + k] * rules.rows[body, d + k]
+    for k in range(bodies.positions.shape[0]):
+        bodies.positions[k, slot] = flights[i].position[k]
+        bodies.velocities[k, slot] = flights[i].velocity[k]
+        square += flights[i].velocity[k] * flights[i].velocity[k]
     return square
 
 
 @kernel
-def came(rows, body, axis, space, dt, surfaces):
-    """When a body on its present flight came through a face across an axis, or the edge of a well there:
-    (time, face code), a time up to the end of the step, or (inf, NOTHING).
+def crossing_time(flights, i, axis, space, faces):
+    """When a particle on its present flight came through a face across an axis, or the edge of a well there:
+    (time, face code), a time up to the end of the step, or (inf, NONE).
 
-    A body that is stuck to a face and moves all the same was set free, to be judged, when it left its plane.
+    A particle that is stuck to a face and moves all the same was set free, to be judged, when it left its
+    plane.
     """
-    v = rows[body, len(space.lengths) + axis]
+    v = flights[i].velocity[axis]
     if v == 0.0:
-        return inf, NOTHING
+        return inf, NONE
     upper = v > 0.0
-    place = surfaces.place[body, axis]
-    if place != 0 and surfaces.kind[2 * axis + (1 if place > 0 else 0)] == STICKY:
+    place = faces.place[i, axis]
+    if place != 0 and faces.kind[2 * axis + (1 if place > 0 else 0)] == STICKY:
         upper = place > 0
-    else:  # no body comes to a plane before the edge of its well
-        time, face = find_edge(rows, body, axis, space, surfaces)
+    else:  # no particle comes to a plane before the edge of its well
+        time, face = time_to_edge(flights, i, axis, space, faces)
         if time <= 0.0:
             return time, face
-    time = time_to_plane(rows[body, axis], v, face_plane(rows, body, axis, upper, space))
-    return (time, 2 * axis + (1 if upper else 0)) if time <= 0.0 else (inf, NOTHING)
+    time = time_to_plane(flights[i].position[axis], v, face_plane(flights, i, axis, upper, space))
+    return (time, 2 * axis + (1 if upper else 0)) if time <= 0.0 else (inf, NONE)
 
 
 @kernel
-def came_pulled(rows, body, axis, pull, space, dt):
-    """The same under a pull along the axis, with the formulas of `step_motion.reflect_falling`. A body that
-    was pushed out by a contact, or that comes down too slowly to tell its bounces apart, does so now."""
-    v = rows[body, len(space.lengths) + axis]
+def crossing_time_pulled(flights, i, axis, pull, space, dt):
+    """The same under a pull along the axis, with the formulas of `motion.reflect_falling`. A particle that
+    was pushed out by a contact, or that comes down too slowly to resolve its bounces, does so now."""
+    v = flights[i].velocity[axis]
     for side in range(2):
-        plane = face_plane(rows, body, axis, side == 1, space)
-        y, u, a = rows[body, axis] - plane, v, pull
+        plane = face_plane(flights, i, axis, side == 1, space)
+        y, u, a = flights[i].position[axis] - plane, v, pull
         if side == 1:
             y, u, a = -y, -u, -a
         if y < 0.0:
@@ -114,22 +114,23 @@ def came_pulled(rows, body, axis, pull, space, dt):
             past = 2.0 * y / (u - w)
             if u < 0.0 or (a > 0.0 and past <= dt):
                 return -past, 2 * axis + side
-    return inf, NOTHING
+    return inf, NONE
 
 
 @kernel
-def last_came(rows, body, space, dt, surfaces, gravity):
-    """What the body came to first, of all that it came through: (time, face code) as in `came`."""
-    first, face = inf, NOTHING
+def first_crossing(flights, i, space, dt, faces, gravity):
+    """The first of all faces and edges that a particle came through: (time, face code) as in
+    `crossing_time`."""
+    first, face = inf, NONE
     for k in range(len(space.lengths)):
         if not space.periodic[k]:
             pull = 0.0
             if gravity is not None:
-                pull = gravity.pull[k]
+                pull = gravity.acceleration[k]
             if pull == 0.0:
-                time, code = came(rows, body, k, space, dt, surfaces)
+                time, code = crossing_time(flights, i, k, space, faces)
             else:
-                time, code = came_pulled(rows, body, k, pull, space, dt)
+                time, code = crossing_time_pulled(flights, i, k, pull, space, dt)
             if time < first:
                 first, face = time, code
     return first, face
@@ -144,53 +145,57 @@ def taken(sums, n):
 
 
 @kernel
-def book(face, rules, counters):
-    """Enter what an event at a face has added to the counters of its own."""
-    gains = rules.gains
-    counters.wall_hits[0, face] += gains.wall_hits[face]
-    add_whole(counters.wall_impulse[0, face], taken(gains.wall_impulse, face), counters.momentum)
-    add_whole(counters.wall_loss[0], taken(gains.sums, layout.LOSS), counters.energy)
-    add_whole(rules.heat[face], taken(gains.wall_energy, face), counters.energy)
-    gains.wall_hits[face] = 0
+def record(face, rules, counters):
+    """Add what an event at a face has added to the rules' tally to the counters of the step engine."""
+    tally = rules.tally
+    counters.wall_hits[0, face] += tally.wall_hits[face]
+    add_whole(counters.wall_impulse[0, face], taken(tally.wall_impulse, face), counters.momentum)
+    add_whole(counters.wall_loss[0], taken(tally.sums, LOST), counters.energy)
+    add_whole(rules.heat[face], taken(tally.wall_energy, face), counters.energy)
+    tally.wall_hits[face] = 0
 
 
 @kernel
-def meet_faces(bodies, space, rules, law, slot, dt, counters):
-    """Let a body meet all that it has come through, one after another. Returns whether there was anything."""
-    body = take_up(bodies, rules, slot)
-    rows, surfaces, met = rules.rows, rules.surfaces, False
+def meet_faces(bodies, rules, law, slot, dt, counters):
+    """Let a particle meet all that it has come through, one after another. Returns whether there was
+    anything."""
+    i = gather(bodies, rules, slot)
+    flights, model, met = rules.flights, rules.model, False
+    space, gravity, faces = model.space, model.gravity, model.faces
     while True:
-        time, face = last_came(rows, body, space, dt, surfaces, rules.gravity)
-        if face == NOTHING:
+        time, face = first_crossing(flights, i, space, dt, faces, gravity)
+        if face == NONE:
             break
         met = True
-        advance_row(rows, body, time, space, rules.gravity)
-        if face >= EDGES:
-            face -= EDGES
-            cross_edge(rows, body, face, space, bodies.masses, rules.gains, law, surfaces)
+        advance(flights, i, time, space, gravity)
+        if face >= WELL_EDGES:
+            face -= WELL_EDGES
+            cross_edge(flights, i, face, model, rules.tally, law, faces)
         else:
             if time < 0.0:
-                rows[body, face // 2] = face_plane(rows, body, face // 2, face % 2 == 1, space)
-            bounce(rows, body, face, space, bodies.masses, rules.gains, law, surfaces)
-        advance_row(rows, body, 0.0, space, rules.gravity)
-        book(face, rules, counters)
+                flights[i].position[face // 2] = face_plane(flights, i, face // 2, face % 2 == 1, space)
+            collide_face(flights, i, face, model, rules.tally, law, faces)
+        advance(flights, i, 0.0, space, gravity)
+        record(face, rules, counters)
     if met:
-        put_back(bodies, rules, slot)
+        scatter(bodies, rules, slot)
     return met
 
 
 @kernel
-def strike_in_rows(bodies, space, i, j, ago, rr, rv, rules, law, counters):
-    """A contact under a law, at the time `ago` with the invariants rr, rv; the squares of the two speeds
-    then.
+def collide_flights(bodies, i, j, contact, rules, law, counters):
+    """A contact under a law of the particles in two slots. contact: how long ago (a negative time), and the
+    invariants rr, rv then. Returns the squares of the two speeds.
 
-    Bodies fall alike, so that relative to each other they move straight.
+    Particles fall alike, so that relative to each other they move straight.
     """
-    one, other = take_up(bodies, rules, i), take_up(bodies, rules, j)
-    advance_row(rules.rows, one, ago, space, None)
-    advance_row(rules.rows, other, ago, space, None)
-    add(counters.sums, VIRIAL, strike(rules.rows, one, other, rr, rv, space, rules.gains, law))
-    add(counters.sums, LOSS, taken(rules.gains.sums, layout.LOSS))
-    advance_row(rules.rows, one, 0.0, space, None)
-    advance_row(rules.rows, other, 0.0, space, None)
-    return put_back(bodies, rules, i), put_back(bodies, rules, j)
+    ago, rr, rv = contact
+    flights, space = rules.flights, rules.model.space
+    one, other = gather(bodies, rules, i), gather(bodies, rules, j)
+    advance(flights, one, ago, space, None)
+    advance(flights, other, ago, space, None)
+    add(counters.sums, VIRIAL, collide_by_law(flights, one, other, rr, rv, space, rules.tally, law))
+    add(counters.sums, LOSS, taken(rules.tally.sums, LOST))
+    advance(flights, one, 0.0, space, None)
+    advance(flights, other, 0.0, space, None)
+    return scatter(bodies, rules, i), scatter(bodies, rules, j)

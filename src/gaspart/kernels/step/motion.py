@@ -114,7 +114,7 @@ def note_change(bodies, space, slot, speed_squared, cells, watch):
 @kernel
 def mend_by_rules(bodies, space, slot, dt, rules, law, cells, watch, counters):
     """Bring one body back into the container whose walls have rules of their own."""
-    met = meet_faces(bodies, space, rules, law, slot, dt, counters)
+    met = meet_faces(bodies, rules, law, slot, dt, counters)
     square = dt - dt
     for k in range(len(space.lengths)):
         if space.periodic[k]:

@@ -11,7 +11,7 @@ from gaspart.kernels.contact import exchange
 from gaspart.kernels.periodic import nearest
 from gaspart.kernels.prefetch import fetch
 from gaspart.kernels.running_sum import add
-from gaspart.kernels.step.boundaries import strike_in_rows
+from gaspart.kernels.step.boundaries import collide_flights
 from gaspart.kernels.step.model import (
     COLLISIONS,
     DEEPEST,
@@ -242,7 +242,7 @@ def resolve(bodies, space, i, j, dt, turn, rewind, parting, rules, law, cells, w
         counters.extremes[WORST] = max(counters.extremes[WORST], abs(rr / ss - 1.0))
     counters.counts[COLLISIONS] += 1
     if law is not None:
-        speed_i, speed_j = strike_in_rows(bodies, space, i, j, ago, rr, rv, rules, law, counters)
+        speed_i, speed_j = collide_flights(bodies, i, j, (ago, rr, rv), rules, law, counters)
     else:
         speed_i, speed_j = bump(bodies, space, i, j, ago, rr, rv, counters)
     for k in range(len(space.lengths)):

@@ -1,0 +1,28 @@
+"""The contact of two particles in the event-driven engine."""
+
+from gaspart.kernels.collision import exchange_momentum, gap_along
+from gaspart.kernels.compilation import inner_helper
+from gaspart.kernels.flight import advance
+from gaspart.kernels.model import COLLISIONS, VIRIAL
+from gaspart.kernels.obstacles.resting import release_after
+from gaspart.kernels.running_sum import add
+
+
+@inner_helper
+def collide(flights, i, j, time, model, tally):
+    """Advance two particles to their contact and exchange momentum."""
+    space = model.space
+    advance(flights, i, time, space, model.gravity)
+    advance(flights, j, time, space, model.gravity)
+    rr = 0.0
+    rv = 0.0
+    for k in range(len(space.lengths)):
+        gap = gap_along(flights, i, j, k, space)
+        rr += gap * gap
+        rv += gap * (flights[j].velocity[k] - flights[i].velocity[k])
+    add(tally.sums, VIRIAL, exchange_momentum(flights, i, j, rr, rv, model, tally, model.law))
+    release_after(flights, i, space, model.gravity)
+    release_after(flights, j, space, model.gravity)
+    sigma = flights[i].radius + flights[j].radius
+    tally.worst[0] = max(tally.worst[0], abs(rr / (sigma * sigma) - 1.0))
+    tally.counts[COLLISIONS] += 1

@@ -1,0 +1,181 @@
+"""What kernels pass to one another: the particles, the model of the scene, the tally.
+
+Arguments come in one order: the particles and which of them, the queue, the boxes, the model, the tally, and
+last whatever may be absent. An absent entry of the model is None. It is passed on to the function that uses
+it as an argument of its own, because numba removes a branch on `None` only for arguments.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+COLLISIONS, CROSSINGS, OUTDATED, PAIR_TESTS, BOX_VISITS = range(5)  # of Tally.counts
+VIRIAL, LOSS = range(2)  # of Tally.sums
+NONE = -1  # no particle, no face
+BOX_FACES = 6  # face codes: 2 axis + side for the container's faces, BOX_FACES more for those between boxes,
+WELL_EDGES = 12  # WELL_EDGES more for the edges of the wells at the container's faces,
+WALLS = 18  # and from here on the rows of interior walls
+HARD, THERMAL, THERMAL_NORMAL, STICKY = range(4)  # kinds of faces
+
+
+def flight_dtype(dimension: int) -> np.dtype:
+    """One particle between its events, one cache line of 64 bytes: all is true at the time of its clock."""
+    vector = (float, (dimension,))
+    at = 8 * dimension
+    return np.dtype(
+        {
+            "names": ["position", "velocity", "clock", "radius"],
+            "formats": [vector, vector, float, float],
+            "offsets": [0, at, 2 * at, 2 * at + 8],
+            "itemsize": 64,
+        }
+    )
+
+
+PREDICTION = np.dtype(
+    [
+        ("contact_time", "f8"),  # time of the next contact predicted, with
+        ("face_time", "f8"),  # time of the next face, edge of a well or interior wall, and
+        ("predicted", "i8"),  # the event count at which the contact was predicted,
+        ("changed", "i8"),  # and that at which this particle's flight last changed
+        ("partner", "i4"),  # the particle met,
+        ("face", "i4"),  # the code of the face
+        ("box", "i4", 3),  # coordinates of the particle's box
+        ("before", "i4"),  # its neighbours in its bucket of the queue,
+        ("after", "i4"),
+        ("bucket", "i4"),  # which is this one, or -1
+    ],
+    align=True,
+)
+"""What is predicted of one particle, one cache line: what an event reads and writes beside the flight."""
+
+
+class Particles(NamedTuple):
+    """flights (N,), see `flight_dtype`; images (N, d), how often each has crossed the container on periodic
+    axes; predictions (N,), see `PREDICTION`."""
+
+    flights: np.ndarray
+    images: np.ndarray
+    predictions: np.ndarray
+
+
+class Space(NamedTuple):
+    """lengths (d,), periodic (d,); margin: 1 if walls stop surfaces, 0 if they stop centres."""
+
+    lengths: tuple
+    periodic: tuple
+    margin: float
+
+
+class Support(NamedTuple):
+    """What particles rest on or slide along, up to 3 planes each: number (N,) of these; normal (N, 3, 3), the
+    unit vectors towards the particle; plane (N, 3), where its centre is along them; row (N, 3), that of an
+    interior wall, or NONE for a face; pull (N, 3), the acceleration that remains. height: the highest bounce
+    on an interior wall that is taken for rest."""
+
+    number: np.ndarray
+    normal: np.ndarray
+    plane: np.ndarray
+    row: np.ndarray
+    pull: np.ndarray
+    height: float
+
+
+def no_support(count: int, height: float) -> Support:
+    """No particle rests on any wall."""
+    normal, plane, pull = np.zeros((count, 3, 3)), np.zeros((count, 3)), np.zeros((count, 3))
+    return Support(np.zeros(count, np.int64), normal, plane, np.zeros((count, 3), np.int64), pull, height)
+
+
+class Gravity(NamedTuple):
+    """acceleration (d,); fixed (N,), which particles it does not move; shortest_bounce, the longest bounce on
+    a floor that is taken for rest."""
+
+    acceleration: tuple
+    fixed: np.ndarray
+    shortest_bounce: float
+
+
+class ContactLaw(NamedTuple):
+    """normal, tangential: restitution; inverse_mass, inverse_inertia (N,), 0 if fixed; spins (N, 3);
+    vibrations (N,), energies of modes, -1 where there is none, or None if no particle has one."""
+
+    normal: float
+    tangential: float
+    inverse_mass: np.ndarray
+    inverse_inertia: np.ndarray
+    spins: np.ndarray
+    vibrations: np.ndarray | None
+
+
+class Faces(NamedTuple):
+    """Faces with a kind. Of the container's faces (2d,): kind; level, the temperature, or the momentum that
+    sticks; depth and width of the well, 0 if there is none. Of the particles: place (N, d), -1 or 1 in the
+    well of an axis' low or high face, or stuck to it; held (N, d), the energy kept there as vibration; draws
+    (N,), how often random numbers were taken for it, under `key` (2,)."""
+
+    kind: np.ndarray
+    level: np.ndarray
+    depth: np.ndarray
+    width: np.ndarray
+    place: np.ndarray
+    held: np.ndarray
+    draws: np.ndarray
+    key: np.ndarray
+
+
+class InteriorWalls(NamedTuple):
+    """rows (M, 5) or (M, 11) and wall (M,), see `obstacles.segment` and `obstacles.plate`; listed[first[b] :
+    first[b + 1]] are those near box b, for particles of a radius up to `largest_radius`; those for larger
+    ones, all, follow the last box."""
+
+    rows: np.ndarray
+    wall: np.ndarray
+    first: np.ndarray
+    listed: np.ndarray
+    largest_radius: float
+
+
+class Oversized(NamedTuple):
+    """The particles (B,) that are too large for the boxes: those with a radius above `largest_radius`."""
+
+    particles: np.ndarray
+    largest_radius: float
+
+
+class Model(NamedTuple):
+    """What is simulated. masses (N,), or None if all are 1 or the law knows them; whatever else may be absent
+    is None."""
+
+    space: Space
+    masses: np.ndarray | None
+    gravity: Gravity | None
+    law: ContactLaw | None
+    faces: Faces | None
+    walls: InteriorWalls | None
+    oversized: Oversized | None
+
+
+class Tally(NamedTuple):
+    """counts (5,); sums (2, 2) and by face and interior wall wall_impulse, wall_energy (faces + walls, 2),
+    see `running_sum.add`; wall_hits (faces + walls,); worst (1,): the largest |r^2/sigma^2 - 1| at a
+    contact."""
+
+    counts: np.ndarray
+    sums: np.ndarray
+    worst: np.ndarray
+    wall_hits: np.ndarray
+    wall_impulse: np.ndarray
+    wall_energy: np.ndarray
+
+
+def empty_tally(walls: int) -> Tally:
+    """A tally at zero, for so many faces and interior walls."""
+    return Tally(
+        counts=np.zeros(5, dtype=np.int64),
+        sums=np.zeros((2, 2)),
+        worst=np.zeros(1),
+        wall_hits=np.zeros(walls, dtype=np.int64),
+        wall_impulse=np.zeros((walls, 2)),
+        wall_energy=np.zeros((walls, 2)),
+    )

@@ -1,0 +1,229 @@
+"""Particles that rest on walls, or slide along them, under gravity.
+
+A bounce too low for positions, or too short for clocks, to resolve is taken for rest: the velocity across the
+wall becomes zero, and of gravity there remains what no wall supports, its projection on the directions that
+lead into none of them. The particle is released by the next contact that moves it, and where it leaves the
+wall.
+"""
+
+from math import inf, sqrt
+
+from gaspart.kernels.ballistic import time_to_side
+from gaspart.kernels.collision import velocity_of
+from gaspart.kernels.compilation import inner_helper, inner_kernel
+from gaspart.kernels.flight import face_plane
+from gaspart.kernels.model import LOSS, NONE
+from gaspart.kernels.running_sum import add
+
+_INTO = 2.0**-40  # of gravity: what leads less into a wall runs along it
+_PARALLEL = 2.0**-40  # squared sine of an angle between planes that are taken for one
+_HOP = (
+    2.0**20
+)  # times `shortest_bounce`: the shortest bounce where a particle cannot rest, as at the end of a wall
+
+
+@inner_kernel
+def pull_along(gravity, axis):
+    """Gravity along an axis, 0 along a third one in 2D."""
+    return gravity.acceleration[axis] if axis < len(gravity.acceleration) else 0.0
+
+
+@inner_helper
+def dot(a, b):
+    """The scalar product of two vectors (3,)."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@inner_helper
+def is_resting_on(support, i, row):
+    """Whether a particle rests on the row of an interior wall, or slides along it."""
+    if support is None:
+        return False
+    found = False
+    for n in range(support.number[i]):
+        found |= support.row[i, n] == row
+    return found
+
+
+@inner_helper
+def rests_on(i, row, gravity):
+    """The same where there may be no gravity."""
+    if gravity is None:
+        return False
+    return is_resting_on(gravity.support, i, row)
+
+
+@inner_kernel
+def within(support, i, planes, vector, dimension):
+    """(3,) the projection of a vector on the first of two planes, or on their intersection if the second is
+    not -1."""
+    first, second = planes
+    n = support.normal[i, first]
+    part = dot(n, vector)
+    flat = vector[0] - part * n[0], vector[1] - part * n[1], vector[2] - part * n[2]
+    if second < 0:
+        return flat
+    m = support.normal[i, second]
+    line = n[1] * m[2] - n[2] * m[1], n[2] * m[0] - n[0] * m[2], n[0] * m[1] - n[1] * m[0]
+    square = dot(line, line)
+    if square <= _PARALLEL:
+        return flat
+    if dimension == 2:
+        return 0.0, 0.0, 0.0
+    part = dot(vector, line) / square
+    return part * line[0], part * line[1], part * line[2]
+
+
+@inner_kernel
+def find_pull(gravity, i, dimension):
+    """Determine the acceleration that the planes of a particle leave of gravity: the largest projection on
+    one or two of them that leads into none; zero if there is none. Remove planes that it leads away from."""
+    support = gravity.support
+    whole = pull_along(gravity, 0), pull_along(gravity, 1), pull_along(gravity, 2)
+    least = _INTO * sqrt(dot(whole, whole))
+    best, pull = 0.0, support.pull[i]
+    pull[:] = 0.0
+    for first in range(support.number[i]):
+        for second in range(-1, first):
+            part = within(support, i, (first, second), whole, dimension)
+            square = dot(part, part)
+            leads_into = False
+            for n in range(support.number[i]):
+                leads_into |= dot(support.normal[i, n], part) < -least
+            if square > best and not leads_into:
+                best, pull[0], pull[1], pull[2] = square, part[0], part[1], part[2]
+    kept = 0
+    for n in range(support.number[i]):
+        if dot(support.normal[i, n], pull) <= least:
+            for k in range(3):
+                support.normal[i, kept, k] = support.normal[i, n, k]
+            support.plane[i, kept] = support.plane[i, n]
+            support.row[i, kept] = support.row[i, n]
+            kept += 1
+    support.number[i] = kept
+
+
+@inner_helper
+def add_plane(flights, i, normal, row, space, support):
+    """Add the plane that a particle touches in the direction of a unit vector (3,); the third gives way to a
+    fourth one."""
+    n = min(support.number[i], 2)
+    support.normal[i, n, 0], support.normal[i, n, 1], support.normal[i, n, 2] = (
+        -normal[0],
+        -normal[1],
+        -normal[2],
+    )
+    support.plane[i, n] = 0.0
+    for k in range(len(space.lengths)):
+        support.plane[i, n] += support.normal[i, n, k] * flights[i].position[k]
+    support.row[i, n] = row
+    support.number[i] = n + 1
+
+
+@inner_kernel
+def add_floors(flights, i, space, gravity):
+    """Add the faces of the container on which a particle lies at rest (`flight.acceleration_of`)."""
+    for k in range(len(space.lengths)):
+        pull = gravity.acceleration[k]
+        if pull != 0.0 and flights[i].velocity[k] == 0.0:
+            floor, x = face_plane(flights, i, k, pull > 0.0, space), flights[i].position[k]
+            if (x >= floor) if pull > 0.0 else (x <= floor):
+                side = 1.0 if pull > 0.0 else -1.0
+                normal = side if k == 0 else 0.0, side if k == 1 else 0.0, side if k == 2 else 0.0
+                add_plane(flights, i, normal, NONE, space, gravity.support)
+
+
+@inner_helper
+def pressing(i, normal, gravity):
+    """The acceleration of a particle in the direction of a unit vector (3,)."""
+    if gravity.support.number[i] > 0:
+        return dot(normal, gravity.support.pull[i])
+    return dot(normal, (pull_along(gravity, 0), pull_along(gravity, 1), pull_along(gravity, 2)))
+
+
+@inner_kernel
+def release(flights, i, space, support):
+    """Let gravity act on a particle in full, which is exactly at the walls that it rested on until now."""
+    if support is None:
+        return
+    for n in range(support.number[i]):
+        off = support.plane[i, n]
+        for k in range(len(space.lengths)):
+            off -= support.normal[i, n, k] * flights[i].position[k]
+        for k in range(len(space.lengths)):
+            flights[i].position[k] += off * support.normal[i, n, k]
+    support.number[i] = 0
+
+
+@inner_helper
+def release_after(flights, i, space, gravity):
+    """The same where there may be no gravity."""
+    if gravity is not None:
+        release(flights, i, space, gravity.support)
+
+
+@inner_kernel
+def come_to_rest(flights, i, normal, place, mass, space, tally, gravity):
+    """After a bounce on a wall in the direction of a unit vector (3,): let the particle rest there if the
+    bounce cannot be resolved, or else make it as long as can be. place: the row of the wall, and whether it
+    is touched at an end, where only what is balanced can rest."""
+    row, at_end = place
+    support = gravity.support
+    press = pressing(i, normal, gravity)
+    v = velocity_of(flights, i, space)
+    speed = -dot(normal, v)
+    highest = 2.0 * press * support.height
+    if not (press > 0.0 and (speed * speed <= highest or speed < press * gravity.shortest_bounce)):
+        release(flights, i, space, support)
+        return
+    if support.number[i] == 0:
+        add_floors(flights, i, space, gravity)
+    add_plane(flights, i, normal, row, space, support)
+    dimension = len(space.lengths)
+    find_pull(gravity, i, dimension)
+    last = support.number[i] - 1
+    wx, wy, wz = within(support, i, (last, last - 1 if last > 0 else -1), v, dimension)
+    if last == 2:
+        wx = wy = wz = 0.0
+    lost = (v[0] - wx) * (v[0] - wx) + (v[1] - wy) * (v[1] - wy) + (v[2] - wz) * (v[2] - wz)
+    pull = support.pull[i]
+    moves = wx != 0.0 or wy != 0.0 or wz != 0.0 or pull[0] != 0.0 or pull[1] != 0.0 or pull[2] != 0.0
+    if lost <= 4.0 * max(highest, speed * speed) and not (at_end and moves):
+        lost = dot(v, v) - (wx * wx + wy * wy + wz * wz)
+    else:
+        release(flights, i, space, support)
+        more = max(0.0, press * gravity.shortest_bounce * _HOP - speed)
+        wx, wy, wz = v[0] - more * normal[0], v[1] - more * normal[1], v[2] - more * normal[2]
+        lost = -more * (2.0 * speed + more)
+    flights[i].velocity[0], flights[i].velocity[1] = wx, wy
+    if dimension == 3:
+        flights[i].velocity[2] = wz
+    add(tally.sums, LOSS, 0.5 * mass * lost)
+
+
+@inner_helper
+def time_to_leave(at, speed, pull, length):
+    """Time until a coordinate along a wall is outside of [0, length]; inf if it never is."""
+    time = inf
+    if at <= length:
+        time = time_to_side(length - at, speed, pull)
+    if at >= 0.0:
+        time = min(time, time_to_side(at, -speed, -pull))
+    return time
+
+
+@inner_helper
+def leave(flights, i, edge, at, length, space):
+    """Move a particle that is at the end of a wall beyond it, in the direction of a unit vector (3,) along
+    which its coordinate is `at`, by more than that is rounded by."""
+    beyond = length
+    for k in range(len(space.lengths)):
+        beyond += abs(flights[i].position[k])
+    beyond *= 2.0**-46
+    more = 0.0
+    if at > 0.5 * length and at < length + beyond and at > length - beyond:
+        more = length + beyond - at
+    if at < 0.5 * length and at > -beyond and at < beyond:
+        more = -beyond - at
+    for k in range(len(space.lengths)):
+        flights[i].position[k] += more * edge[k]
