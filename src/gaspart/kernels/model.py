@@ -89,11 +89,12 @@ def no_support(count: int, height: float) -> Support:
 
 class Gravity(NamedTuple):
     """acceleration (d,); fixed (N,), which particles it does not move; shortest_bounce, the longest bounce on
-    a floor that is taken for rest."""
+    a floor that is taken for rest; support, None without interior walls."""
 
     acceleration: tuple
     fixed: np.ndarray
     shortest_bounce: float
+    support: Support | None
 
 
 class ContactLaw(NamedTuple):

@@ -91,9 +91,11 @@ def restore(particles, queue, boxes, model, now):
 @inner_helper
 def meet_obstacle(particles, i, face, time, model, tally):
     """Let a particle meet a face of the container, the edge of a well, or an interior wall. Returns -1 - the
-    number of the face or wall, and False if it was a periodic face."""
+    number of the face or wall, and False if that is no event of the model: at a periodic face, or where the
+    particle leaves a wall along which it has slid."""
     if face >= WALLS:
-        return -1 - meet_wall(particles.flights, i, face, time, model, tally, model.walls), True
+        wall = meet_wall(particles.flights, i, face, time, model, tally, model.walls)
+        return -1 - wall, wall != NONE
     if face >= WELL_EDGES:
         return -1 - meet_edge(particles.flights, i, face, time, model, tally, model.faces), True
     return -1 - face, meet_face(particles, i, face, time, model, tally)
