@@ -103,7 +103,7 @@ def test_resume_and_info_of_an_unfinished_run(folder, capsys):
         pytest.param(GAS.replace("20", "110"), [], "count = 110: does not fit by random", id="saturation"),
         pytest.param("container: {lengths: [9, 9]}\n", [], "a run needs at least one body", id="no bodies"),
         pytest.param("", [], "scene = None: must be a mapping", id="empty file"),
-        pytest.param("a: [1\n", [], "YAML = .*: is not valid", id="not YAML"),
+        pytest.param("a: [1\n", [], "line 2, column 1 = 'the end': is not valid YAML", id="not YAML"),
         pytest.param(b"\xff\xfe\x00", [], "cannot be read", id="not text"),
         pytest.param(None, [], "cannot be read: .*No such file", id="no file"),
         pytest.param(GAS, ["--engine", "magic"], "engine.name = 'magic': must be one of", id="engine"),
@@ -150,7 +150,8 @@ def test_a_broken_invariant_is_exit_code_1_and_ctrl_c_130(folder, capsys, monkey
     for error, code, text in (
         (gp.SimulationError("the energy\nhas drifted"), 1, "the energy has drifted"),
         (KeyboardInterrupt(), 130, "interrupted"),
-        (MemoryError(), 2, "not enough memory"),
+        (MemoryError(), 1, "not enough memory"),
+        (OSError(5, "Input/output error", "run.nc"), 1, "run.nc: Input/output error"),
     ):
         monkeypatch.setattr("gaspart.trajectory.run", lambda *_, error=error, **__: throw(error))
         assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY]) == code
@@ -194,7 +195,11 @@ def test_theory(capsys):
     capsys.readouterr()
     for wrong, complaint in (
         (["Z", "--eta", "0.9", "--dimension", "3"], "holds from 0 to"),
-        (["Z", "--eta", "nan", "--dimension", "3"], "holds from 0 to"),
+        (["Z", "--eta", "nan"], "'nan' must be a finite number and at least 0"),
+        (["collision_rate", "--eta", "0.1", "--mass", "0"], "'0' must be a finite number and above 0"),
+        (["collision_rate", "--eta", "0.1", "--diameter=-1"], "'-1' must be a finite number and above 0"),
+        (["viscosity", "--eta", "0.1", "--temperature=nan"], "'nan' must be a finite number"),
+        (["viscosity", "--eta", "0.1", "--diameter", "1e308"], "diameter = 1e+308: must be from 1e-30 to"),
         (["Z", "--eta", "0.1", "--dimension", "4"], "invalid choice"),
         (["Y", "--eta", "0.1", "--dimension", "3"], "invalid choice"),
         (["Z", "--eta", "0.1", "--dimension", "3", "--mass", "2"], "mass = 2.0: Z does not depend on it"),
@@ -229,7 +234,7 @@ def test_check_of_a_config_is_that_of_the_workflow(folder, capsys):
     assert re.search(r"ok +config: \d+ experiments of \d+ points", capsys.readouterr().out)
     (folder / "alone.yaml").write_text("experiments: {}\n")
     assert main(["check", "alone.yaml"]) == 2
-    assert "must lie in a folder beside workflow/schemas" in capsys.readouterr().err
+    assert "alone.yaml: title = None: is required" in capsys.readouterr().err
 
 
 def test_export_says_where(folder, capsys):
@@ -248,9 +253,17 @@ def test_advice_names_engine_length_cost_and_reason(folder, capsys):
     told = capsys.readouterr().out
     for part in ("engine ", "replicas ", "run length ", "predicted cost ", "half-width ", "why: "):
         assert part in told
-    assert main(["advise", "gas.yaml", "--accuracy", "2"]) == 2
-    assert "accuracy = 2" in capsys.readouterr().err
-    assert main(["advise"]) == 2
+    (folder / "empty.yaml").write_text(PERIODIC.replace("200", "0"))
+    for wrong, complaint in (
+        (["gas.yaml", "--accuracy", "2"], "accuracy = 2"),
+        (["gas.yaml", "--accuracy", "1e-300"], "accuracy = 1e-300: must be from 1e-08 to 1"),
+        (["gas.yaml", "--budget", "nan"], "argument --budget: 'nan' must be a finite number and above 0"),
+        (["empty.yaml"], "count = 0: advice is for a gas: the scene is empty"),
+        ([], "give a scene or --config"),
+    ):
+        assert main(["advise", *wrong]) == 2
+        told = capsys.readouterr().err
+        assert complaint in told and told.count("\n") == 1
 
 
 def test_what_a_config_costs(folder, capsys):

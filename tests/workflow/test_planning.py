@@ -8,9 +8,9 @@ from collections import Counter
 import pytest
 from workspace import ROOT, SMOKE
 
-from gaspart.files import dump_yaml, read_yaml
 from gaspart.planning.overlay import laid_over
 from gaspart.planning.points import points
+from gaspart.yaml_text import dump_yaml, read_yaml
 
 pytestmark = pytest.mark.workflow
 

@@ -8,8 +8,8 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from gaspart.files import write_yaml
 from gaspart.planning.overlay import laid_over
+from gaspart.yaml_text import write_yaml
 
 ROOT = Path(__file__).parents[2]
 PARTS = ["Snakefile", "config", "profiles", "src", "workflow"]

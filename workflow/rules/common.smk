@@ -26,7 +26,7 @@ from gaspart.errors import SceneError
 if workflow.is_main_process:
     try:
         files = ["config/config.yaml", *workflow.overwrite_configfiles]
-        check(config, str(ROOT / "workflow/schemas/config.schema.yaml"), [str(name) for name in files])
+        check(config, [str(name) for name in files if os.path.exists(name)])
         for kept in ("results", ".snakemake"):
             folder = kept if os.path.exists(kept) else "."
             if not os.access(folder, os.W_OK):

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from gaspart.errors import SceneError
 from gaspart.planning.point import Point
 from gaspart.planning.point_scene import check_scene, extents, scene
+from gaspart.scene.validation import LARGEST, SMALLEST
 
 if TYPE_CHECKING:
     from gaspart.engines import EventDriven, TimeStepped
@@ -34,6 +35,9 @@ ENGINE_KEYS = {
     ),
 }
 SCANS = ("scan_boxes_per_side", "scan_boxes_per_body", "scan_time_steps")
+
+
+_MOST_INTERVALS = 2.0**53  # above, float64 does not distinguish their numbers
 
 
 @dataclass(frozen=True)
@@ -97,9 +101,10 @@ def engine(point: Point) -> EventDriven | TimeStepped:
     if "boxes_per_body" in chosen:
         chosen["boxes_per_side"] = boxes_per_side(chosen.pop("boxes_per_body"), count, radius, lengths)
     given = chosen.get("boxes_per_side", 1)
-    for length, boxes in zip(
-        lengths, given if isinstance(given, tuple) else (given,) * len(lengths), strict=True
-    ):
+    sides = given if isinstance(given, tuple) else (given,) * len(lengths)
+    if len(sides) != len(lengths):
+        raise SceneError("boxes_per_side", given, "must be one number, or one per axis")
+    for length, boxes in zip(lengths, sides, strict=True):
         if boxes > 1 and length / boxes < 2.0 * radius:  # told here already, before any job starts
             rule = f"boxes must not be narrower than the largest diameter, {2.0 * radius:g}"
             raise SceneError("boxes_per_side", given, rule)
@@ -145,15 +150,22 @@ def schedule(point: Point) -> Schedule:
     equilibration, rounded up to whole intervals, goes before it.
     """
     check(point)
-    settings = point.settings
+    settings, where = point.settings, f"experiments.{point.experiment}"
     unit = next(key for key in LENGTHS if key in settings)
     scale = _unit_of_time(point, unit)
     samples = settings.get("samples", 1)
     interval = settings[unit] * scale / samples
+    if not SMALLEST <= interval <= LARGEST:
+        rule = f"makes a sample interval of {interval:g}, which must be from {SMALLEST:g} to {LARGEST:g}"
+        raise SceneError(f"{where}.{unit}", settings[unit], rule)
     if settings.get("engine") == "step":
         step = settings["time_step"]
         interval = step * max(1, round(interval / step))
-    dropped = math.ceil(settings.get("equilibration", 0) * scale / interval * (1.0 - 1e-12))
+    before = settings.get("equilibration", 0) * scale / interval
+    if not before < _MOST_INTERVALS:
+        rule = f"makes {before:g} sample intervals, which must be less than {_MOST_INTERVALS:g}"
+        raise SceneError(f"{where}.equilibration", settings["equilibration"], rule)
+    dropped = math.ceil(before * (1.0 - 1e-12))
     return Schedule(interval * (dropped + samples), interval, dropped, samples)
 
 
@@ -230,6 +242,8 @@ def _unit_of_time(point: Point, unit: str) -> float:
         rate = theory.collision_rate(fraction, dimension, 2.0 * radius, temperature, kind.mass)
     except ValueError as error:
         raise SceneError(key, given, f"cannot be turned into a time: {error}") from None
+    if not 0.0 < rate < math.inf:
+        raise SceneError(key, given, f"cannot be turned into a time: the collision rate is {rate:g}")
     return 1.0 / float(rate)
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from gaspart.files import read_yaml
+from gaspart.errors import SceneError
+from gaspart.yaml_text import read_yaml
 
 
 def laid_over(path: Path) -> tuple[dict[str, Any], list[Path]]:
@@ -18,14 +19,15 @@ def laid_over(path: Path) -> tuple[dict[str, Any], list[Path]]:
     files = [base, path] if base.exists() and base != path else [path]
     merged: dict[str, Any] = {}
     for file in files:
-        _lay_over(merged, read_yaml(file))
+        content = read_yaml(file)
+        if not isinstance(content, dict):
+            raise SceneError("config", content, "must be a mapping of keys to values", str(file))
+        merged = _merged(merged, content)
     return merged, files
 
 
-def _lay_over(below: dict[str, Any], above: dict[str, Any]) -> None:
+def _merged(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
     """Mappings are merged, key by key; anything else is replaced."""
-    for key, value in above.items():
-        if isinstance(value, dict) and isinstance(below.get(key), dict):
-            _lay_over(below[key], value)
-        else:
-            below[key] = value
+    both = {key: value for key, value in above.items() if isinstance(value, dict)}
+    both = {key: value for key, value in both.items() if isinstance(below.get(key), dict)}
+    return {**below, **above, **{key: _merged(below[key], value) for key, value in both.items()}}

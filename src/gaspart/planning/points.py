@@ -10,12 +10,17 @@ What measures points does not import this module, so that no measurement depends
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import replace
 from typing import Any
 
 from gaspart.errors import SceneError
 from gaspart.planning.point import Point, name_of
 from gaspart.planning.point_scene import scene
+
+WHOLE = ("dimension", "count", "samples", "steps", "attempts", "follow", "replicas", "passes", "threads")
+"""Keys of whole numbers, which may be written 1e3."""
+MOST_POINTS = 100_000
 
 
 def points(config: dict, experiment: str) -> list[Point]:
@@ -31,7 +36,7 @@ def points(config: dict, experiment: str) -> list[Point]:
                 experiment=experiment,
                 name=name_of(varying, f"{where}.grid"),
                 job=block.get("job", "simulate"),
-                settings={key: value for key, value in settings.items() if value is not None},
+                settings={key: _plain(key, value) for key, value in settings.items() if value is not None},
                 root=config.get("points", "results/points"),
                 config_seed=config["seed"],
             )
@@ -40,6 +45,11 @@ def points(config: dict, experiment: str) -> list[Point]:
             raise SceneError(f"{where}.grid", point.name, "every point of a grid must be different")
         found[point.name] = point
     return list(found.values())
+
+
+def _plain(key: str, value: Any) -> Any:
+    whole = key in WHOLE and isinstance(value, float) and value.is_integer()
+    return int(value) if whole else value
 
 
 def _chosen(point: Point) -> Point:
@@ -75,4 +85,7 @@ def _combinations(grid: Any, where: str) -> list[dict]:
     for key, values in axes.items():
         if not values:
             raise SceneError(f"{where}.{key}", values, "must not be empty")
+    count = math.prod(map(len, axes.values()))
+    if count > MOST_POINTS:
+        raise SceneError(where, count, f"a grid may have {MOST_POINTS} points")
     return [dict(zip(axes, chosen, strict=True)) for chosen in itertools.product(*axes.values())]

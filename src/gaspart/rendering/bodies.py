@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.files import parse_yaml
 from gaspart.rendering.style import COLOURS
 from gaspart.scene.validation import count_of
 from gaspart.state.state import State
+from gaspart.yaml_text import parse_yaml
 
 if TYPE_CHECKING:
     import xarray as xr

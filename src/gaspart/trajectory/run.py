@@ -9,17 +9,26 @@ from __future__ import annotations
 import fcntl
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SceneError
+from gaspart.files import Kind, may_replace, output_path, place
 from gaspart.scene.scene import Scene, number
 from gaspart.simulation.simulation import Simulation
 from gaspart.trajectory import amber, provenance
-from gaspart.trajectory.checkpoint import read_checkpoint, remove_checkpoint
-from gaspart.trajectory.recipe import Recipe, begun_as, read_recipe, stored_revision
+from gaspart.trajectory.checkpoint import checkpoint_path, read_checkpoint, remove_checkpoint
+from gaspart.trajectory.recipe import (
+    PARTIAL,
+    Recipe,
+    begun_as,
+    check_frames,
+    open_netcdf,
+    read_recipe,
+    stored_revision,
+)
 from gaspart.trajectory.recording import Progress, Recording
 
 if TYPE_CHECKING:
@@ -36,13 +45,10 @@ _UNITS = dict.fromkeys(_ENERGIES, "mass length^2/time^2") | {"wall_impulse": "ma
 
 
 def partial_path(path: Path) -> Path:
-    """Where a trajectory is while it is being written."""
-    return path.with_name(path.name + ".partial")
-
-
-def checkpoint_path(path: Path) -> Path:
-    """Where the float64 state of an unfinished trajectory is."""
-    return path.with_name(path.name + ".checkpoint.npz")
+    """Where a trajectory is while it is being written. Raises SceneError for a path without a name."""
+    if not path.name:
+        raise SceneError("path", str(path), "must be the name of a file")
+    return path.with_name(path.name + PARTIAL)
 
 
 def open_trajectory(path: str | Path) -> xr.Dataset:
@@ -54,19 +60,21 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     (YAML), engine and seed (JSON), and what follows from the scene: count, dimension, packing_fraction,
     number_density. Close it, or use it in a `with` statement.
 
-    Raises SceneError for a file that is unreadable, truncated, or not written by gaspart.
+    Raises SceneError for a file that is unreadable, truncated, damaged in its header, or not written by
+    gaspart. Frames are not checked: `gaspart info` does that.
     """
     import xarray as xr
 
     path = Path(path)
     scene = read_recipe(path).scene
-    data = opened = xr.open_dataset(path, engine="netcdf4", decode_times=False)
+    store = xr.backends.NetCDF4DataStore(open_netcdf(path))
+    data = opened = xr.open_dataset(store, decode_times=False)
     attributes = {**data.attrs, "count": scene.count, "dimension": scene.dimension}
     attributes |= {"packing_fraction": scene.packing_fraction, "number_density": scene.number_density}
     if "spins" in data and scene.dimension == 2:
         data["spins"] = data["spins"].isel(spatial=2)
     data = data.isel(spatial=slice(scene.dimension)).set_coords(["time", "radius", "type"])
-    data = data.drop_vars(["cell_spatial", "cell_angular"])
+    data = data.drop_vars(["cell_spatial", "cell_angular", "checksum"])
     faces = amber.face_names(scene.dimension, len(scene.walls))
     data = data.assign_coords(spatial=list("xyz"[: scene.dimension]), face=faces)
     for key, variable in data.variables.items():
@@ -74,7 +82,7 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
         told = variable.attrs.get("units", "1")
         if variable.dtype.kind in "fi":  # what is no length, time or energy is a number of things, or a ratio
             variable.attrs["units"] = _UNITS.get(name, _REDUCED.get(told, told))
-    data.attrs = {key: value for key, value in attributes.items() if not key.endswith("_bytes")}
+    data.attrs = {key: value for key, value in attributes.items() if key not in amber.BOOKKEEPING}
     data.set_close(opened.close)
     return data
 
@@ -98,15 +106,19 @@ def run(
     with `displacements` also each body's float64 way since time 0, unwrapped; with rough contacts also the
     spins; with `follow` only so many bodies, from the first on (counters are still those of all). A run of
     the same recipe and program that was cut short is continued, and one that is whole is left as it is.
-    Anything else at `path`, or half-finished beside it, is replaced only with `overwrite`.
+    Another trajectory at `path`, or half-finished beside it, is replaced only with `overwrite`; a file of
+    another kind never.
 
     `progress(time, duration, collisions)` is called about twice a second.
+
+    SIGINT and SIGTERM take effect after a checkpoint was written: the handlers of the program that calls
+    this are then called, of which Python's own raises KeyboardInterrupt.
 
     Raises SceneError for settings that cannot be, and for a file that cannot be written; SimulationError
     if the run breaks an invariant, with its state kept in `path.failed.npz`.
     """
     wanted = Recipe(scene, engine, seed, duration, sample_interval, displacements, follow)
-    return _carry_out(wanted, Path(path), checkpoint_seconds, progress, overwrite)
+    return _carry_out(wanted, output_path(path), checkpoint_seconds, progress, overwrite)
 
 
 def resume(path: str | Path, checkpoint_seconds: float = 30.0, progress: Progress | None = None) -> Path:
@@ -133,33 +145,69 @@ def _carry_out(wanted: Recipe, path: Path, every: float, progress: Progress | No
     with _writing(path):
         if path.is_dir() or not os.access(path.parent, os.W_OK | os.X_OK):
             raise SceneError("path", str(path), "must be a file in an existing folder that can be written to")
-        if _holds(path, wanted, frames=wanted.frames):
-            remove_checkpoint(checkpoint)
+        if _is_finished(wanted, path, overwrite):
+            if not partial.exists():
+                remove_checkpoint(checkpoint)
             return path
-        free = not path.exists() and (not partial.exists() or _is_blank(partial) or begun_as(partial, wanted))
-        if not (free or overwrite):
-            there = path if path.exists() else partial
-            rule = "exists, of another run or version, or damaged; move it away, or overwrite it (--force)"
-            raise SceneError("path", str(there), rule)
         simulation = Simulation(wanted.scene, wanted.engine, wanted.seed)
         with _locked(partial) as file:
-            _record(wanted, simulation, file, path, every, progress)
-            os.replace(partial, path)
-        remove_checkpoint(checkpoint)
+            # once more: another process may have finished or begun a run before the lock
+            if not _is_finished(wanted, path, overwrite):
+                _record(wanted, simulation, file, path, every, progress, overwrite)
+                place(partial, path, TRAJECTORY, overwrite)
+                remove_checkpoint(checkpoint)
     return path
 
 
+def _is_finished(wanted: Recipe, path: Path, overwrite: bool) -> bool:
+    """Whether this run is complete at `path`. Raises SceneError if it may not be begun or continued."""
+    partial = partial_path(path)
+    exists = may_replace(path, TRAJECTORY, overwrite=True)
+    if exists and _holds(path, wanted, frames=wanted.frames):
+        return True
+    begun = may_replace(partial, _BEGUN, overwrite=True)
+    continued = not begun or _is_blank(partial) or begun_as(partial, wanted)
+    if (exists or not continued) and not overwrite:
+        rule = "exists, of another run or version, or damaged; move it away, or overwrite it (--force)"
+        raise SceneError("path", str(path if exists else partial), rule)
+    return False
+
+
 def _holds(path: Path, wanted: Recipe, frames: int) -> bool:
-    """Whether a file is of this run, and of so many frames."""
-    if not (path.exists() and begun_as(path, wanted)):
+    """Whether a file is of this run, of so many frames, and undamaged."""
+    if not begun_as(path, wanted):
         return False
-    with path.open("rb") as file:
+    with suppress(SceneError), path.open("rb") as file:
+        check_frames(path)
         return amber.frame_count(file) == frames
+    return False
+
+
+def _can_keep(partial: Path, frames: int, overwrite: bool) -> bool:
+    """Whether the first frames are as they were written. SceneError if not, unless they may be replaced."""
+    try:
+        check_frames(partial, frames)
+    except SceneError as error:
+        if overwrite:
+            return False
+        rule = f"{error.rule}; overwrite it (--force) to start again"
+        raise SceneError("path", str(partial), rule) from None
+    return True
 
 
 def _is_blank(path: Path) -> bool:
     with path.open("rb") as file:
         return amber.is_blank(file)
+
+
+def _is_trajectory(path: Path) -> bool:
+    with path.open("rb") as file:
+        head = file.read(4096)
+    return head.startswith(b"CDF") and b"gaspart" in head
+
+
+TRAJECTORY = Kind("a trajectory written by gaspart", _is_trajectory)
+_BEGUN = Kind("an unfinished trajectory", lambda path: _is_blank(path) or _is_trajectory(path))
 
 
 def _record(
@@ -169,19 +217,19 @@ def _record(
     path: Path,
     every: float,
     progress: Progress | None,
+    overwrite: bool,
 ) -> None:
     """Write all frames that the open partial file is still without."""
-    partial, checkpoint = partial_path(path), checkpoint_path(path)
+    partial = partial_path(path)
     continued = begun_as(partial, wanted)
     header = wanted.header(stored_revision(partial) if continued else provenance.git_revision())
-    found = read_checkpoint(checkpoint, header) if continued else None
+    found = read_checkpoint(checkpoint_path(path), header) if continued else None
     kept = 0
-    if found and found.frames <= amber.frame_count(file):
+    if found and found.frames <= amber.frame_count(file) and _can_keep(partial, found.frames, overwrite):
         simulation.restore(found.arrays)
         kept = found.frames
     frames = amber.Frames(file, wanted.layout, header, kept)
-    recording = Recording(wanted, simulation, frames, header, checkpoint, every, progress)
-    recording.finish(failed=path.with_name(path.name + ".failed.npz"))
+    Recording(wanted, simulation, frames, header, path, every, progress).finish()
 
 
 @contextmanager

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-from contextlib import chdir
 from dataclasses import replace
-from pathlib import Path
 
 from gaspart import theory
 from gaspart.errors import SceneError
+from gaspart.experiments.config import checked
 from gaspart.planning import grid
-from gaspart.planning.overlay import laid_over
 from gaspart.planning.point import Point
 from gaspart.planning.points import points
 from gaspart.tradeoff import speed, table
@@ -22,9 +20,8 @@ def predict(path: str) -> list[str]:
 
     A config beside `config.yaml` is laid over that, as the workflow does. Raises SceneError.
     """
-    config, _ = laid_over(Path(path))
     lines, total, unknown = [], 0.0, []
-    with chdir(Path(path).resolve().parent.parent):  # where the workflow runs, and scene files are looked for
+    with checked(path) as config:
         for experiment in config["experiments"]:
             costs = [_seconds(point) for point in points(config, experiment)]
             known = [seconds for seconds in costs if seconds is not None]

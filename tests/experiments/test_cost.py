@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from gaspart.planning import cost
+from gaspart.experiments import cost
 
 GASES = """
 seed: 1
