@@ -94,7 +94,9 @@ def _orientation(at: xr.Dataset, melted: bool) -> Claim:
         bound=bound,
         required=0.1,
         source="liquid below 0.700, one orientation throughout above 0.720 (Bernard and Krauth 2011; recalled)",
-        fails_if="the crystal has not melted" if melted else "the fluid has not frozen, or into several grains",
+        fails_if="the crystal has not melted"
+        if melted
+        else "the fluid has not frozen, or into several grains",
     )
 
 

@@ -75,7 +75,7 @@ def _approach(one: xr.Dataset) -> Claim:
 def _source(one: xr.Dataset) -> Claim:
     """Source A's one fill beside many of ours: a draw from their distribution, if its attempts sufficed."""
     return Claim(
-        claim=f"packing fraction at which insertion ends, {_particles(one)}, complete spheres counted: "
+        claim=f"packing fraction at which insertion ends, {_particles(one)}, whole spheres counted: "
         "source A's 52 %",
         kind="reproduction",
         measured=Estimate.of(one.isel(window=0), "saturation"),

@@ -15,7 +15,13 @@ def radius_grid(dataset: xr.Dataset) -> list[Claim]:
     event = dataset.isel(point=dataset["engine"].values == "event")
     step = dataset.isel(point=dataset["engine"].values == "step")
     same, other = (event.isel(point=event["series"].values == name) for name in ("packing fraction", "count"))
-    return [_same_state(same), _reference(other), _crossings(event), _scale_invariance(same), _pair_tests(step)]
+    return [
+        _same_state(same),
+        _reference(other),
+        _crossings(event),
+        _scale_invariance(same),
+        _pair_tests(step),
+    ]
 
 
 def _same_state(same: xr.Dataset) -> Claim:
