@@ -163,8 +163,8 @@ class Claim:
     def deviation_sigma(self) -> float:
         """Signed distance from what was stated, in standard deviations; 0 inside stated bounds.
 
-        (measured - expected) / sqrt(sum of the squares of both uncertainties); for bounds, the nearer bound is
-        the expected number.
+        (measured - expected) / sqrt(sum of the squares of both uncertainties); for bounds, expected is the
+        nearer bound.
         """
         if self.exact_deviation is not None:
             return self.exact_deviation

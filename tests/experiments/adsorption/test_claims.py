@@ -33,10 +33,10 @@ def test_a_coverage_that_follows_henrys_law_is_found():
 @pytest.mark.parametrize(
     ("name", "kind", "change", "text"),
     [
-        ("length", "ideal", 0.01, "over the width"),
+        ("length", "ideal", 0.01, "over the well's width"),
         ("filling", "layer", 0.06, "coverage over that of hard discs"),
         ("slow_share", "ideal", 0.02, "wells: share"),
-        ("slow_share", "sticky", 0.3, "slow bodies that leave"),
+        ("slow_share", "sticky", 0.3, "slow particles that leave"),
     ],
 )
 def test_each_claim_can_fail(name, kind, change, text):

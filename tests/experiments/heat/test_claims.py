@@ -19,7 +19,7 @@ def test_theory_agrees_with_itself():
 @pytest.mark.parametrize(
     ("name", "factor", "text"),
     [
-        ("imbalance", 1e8, "heat that went through"),
+        ("imbalance", 1e8, "transferred heat"),
         ("wall_ratio", 1.02, "flux into the cold"),
         ("half_ratio", 1.02, "second over that in the first"),
         ("flux", 1.1, "flux over n (d + 1)"),
@@ -45,7 +45,7 @@ def test_the_shares_of_the_source_are_not_those_of_full_accommodation():
 
 def test_too_short_runs_are_inconclusive():
     found = verdicts(heat.heat_conduction_gas(gases(error=0.3)))
-    assert {verdict for claim, verdict in found.items() if "went through" not in claim} == {"inconclusive"}
+    assert {verdict for claim, verdict in found.items() if "transferred heat" not in claim} == {"inconclusive"}
 
 
 @pytest.mark.parametrize(

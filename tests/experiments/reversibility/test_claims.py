@@ -18,7 +18,7 @@ def test_echoes_that_grow_as_they_should_agree(tmp_path):
 def test_another_growth_is_noticed(tmp_path):
     found = verdicts(measurement(tmp_path, growth=2.0))
     assert [claim for claim, verdict in found.items() if verdict == "disagrees"] == [
-        "growth of the echo per collision of a body, spheres, packing fraction 0.1"
+        "growth of the echo per collision of a particle, spheres, packing fraction 0.1"
     ]
 
 

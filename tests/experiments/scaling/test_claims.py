@@ -70,4 +70,4 @@ def test_quick_round_widths_are_noticed(tmp_path):
 
 def test_no_minimum_is_no_pass(tmp_path):
     found = verdicts("ideal_boxes", dataset("ideal_boxes", tmp_path))
-    assert found["ideal number of boxes per body, N = 1200000, r = 0.1"] == "inconclusive"
+    assert found["ideal number of boxes per particle, N = 1200000, r = 0.1"] == "inconclusive"

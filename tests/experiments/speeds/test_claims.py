@@ -45,7 +45,7 @@ def test_kinetic_theory_agrees_with_itself():
     [
         ("kurtosis", 1.05, "kurtosis of the speeds at"),
         ("never_hit", 1.3, "never hit"),
-        ("collisions", 1.05, "collisions per body until"),
+        ("collisions", 1.05, "collisions per particle until"),
         ("initial_slope", 1.1, "initial slope"),
         ("temperature_drift", 1e6, "drift of the energy"),
     ],

@@ -31,7 +31,7 @@ def _ideal(ds: xr.Dataset) -> list[Claim]:
         same = ds.isel(point=np.flatnonzero(ds["width"] == width))
         claims.append(
             Claim(
-                claim=f"length in place of the thermal wavelength over the width of the well, width {width:g}",
+                claim=f"length in place of the thermal wavelength over the well's width, width {width:g}",
                 measured=_combined(same, "length") / width,
                 expected=1.0,
                 required=0.01,
@@ -64,7 +64,7 @@ def _slopes(ds: xr.Dataset, depth: float) -> list[Claim]:
             fails_if="particles leave the well with less, or more, than its depth",
         ),
         Claim(
-            claim=f"power of T in h = lambda sqrt(2 pi m k T), lambda the length in its place, depth {depth:g}",
+            claim=f"power of T in h = lambda sqrt(2 pi m k T), lambda that length, depth {depth:g}",
             measured=Estimate(power.exponent, power.exponent_error),
             expected=0.5,
             required=0.02,
@@ -82,8 +82,8 @@ def _layer(ds: xr.Dataset) -> list[Claim]:
             measured=Estimate.of(row, "filling"),
             expected=Estimate(1.0, row["layer_uncertainty"]),
             required=0.04,
-            source="spheres of a layer much thinner than their diameter, as hard discs (virial series to B10); "
-            "uncertain by the effect of the gas in front of the layer",
+            source="spheres in a layer much thinner than their diameter, as hard discs (virial series to "
+            "B10); uncertain by the effect of the gas in front of the layer",
             fails_if="adsorbed spheres do not collide with each other, or each has a site of its own",
         )
         for row in rows(ds, "point")

@@ -9,8 +9,8 @@ from gaspart.experiments.shared.claims import rows
 
 LANGEVIN = "the Langevin equation with the friction of a dilute gas (Chapman and Cowling)"
 EQUAL_SPEEDS = 0.1
-"""Relative uncertainty of energy, friction and diffusion in the source's gas, of equal speeds: theory holds for
-Maxwell's; at the same temperature, the mean of equal speeds is 8.5 % higher."""
+"""Relative uncertainty of energy, friction and diffusion in the source's gas, of equal speeds: theory holds
+for Maxwell's; at the same temperature, the mean of equal speeds is 8.5 % higher."""
 MOMENTUM_SHARE = 0.2
 """Relative uncertainty of the effect of a finite gas, all of which shares the recoil at once."""
 

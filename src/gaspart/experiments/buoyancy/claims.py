@@ -64,7 +64,7 @@ def _fixed(ds: xr.Dataset) -> list[Claim]:
 
 
 def _free(row: xr.Dataset, largest: float) -> Claim:
-    """A free disc floats where it displaces its mass, or lies on the floor above the largest displaced mass."""
+    """A free disc floats where it displaces its mass, or lies on the floor if it always displaces less."""
     mass = float(row["free_mass"])
     if mass > largest:
         return Claim.at_most(

@@ -47,8 +47,8 @@ def _exact(dataset: xr.Dataset) -> list[Claim]:
                 measured=Estimate(measured),
                 bound=bound,
                 required=0.5,
-                source="exact: conserved, hard, and the contacts of the exact answer or of the search through "
-                "all pairs",
+                source="exact: conserved, hard, and the contacts of the exact answer or of the search "
+                "through all pairs",
                 fails_if="rounding errors grow, or a root is wrong",
             )
         )

@@ -93,7 +93,8 @@ def _orientation(at: xr.Dataset, melted: bool) -> Claim:
         measured=Estimate.of(_extreme(at, "start", melted), "order"),
         bound=bound,
         required=0.1,
-        source="liquid below 0.700, one orientation throughout above 0.720 (Bernard and Krauth 2011; recalled)",
+        source="liquid below 0.700, one orientation throughout above 0.720 (Bernard and Krauth 2011; "
+        "recalled)",
         fails_if="the crystal has not melted"
         if melted
         else "the fluid has not frozen, or into several grains",
@@ -116,14 +117,14 @@ def _lattice(at: xr.Dataset, melted: bool) -> Claim:
 
 
 def _with_drift(side: xr.Dataset, name: str) -> Estimate:
-    """The variable `name`, with half the drift between the halves in its uncertainty if that is significant."""
+    """The variable `name`; half the drift between the halves is in its uncertainty if significant."""
     measured, drift = Estimate.of(side, name), Estimate.of(side, f"{name}_drift")
     significant = abs(drift.value) > EQUILIBRIUM_LIMIT * drift.error
     return Estimate(measured.value, math.hypot(measured.error, 0.5 * drift.value if significant else 0.0))
 
 
 def _liquid(at: xr.Dataset) -> list[Claim]:
-    """Only at the packing fraction that has a reference: the virial series is not accurate so near freezing."""
+    """Only at the packing fraction of the reference: the virial series is not accurate near freezing."""
     known, z = theory.DENSE_LIQUID_DISCS
     if abs(float(at["packing_fraction"]) - known) > 1e-4:
         return []

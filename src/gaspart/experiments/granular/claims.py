@@ -64,7 +64,8 @@ def _decay(row: xr.Dataset) -> list[Claim]:
             measured=Estimate(excess[worst], 1.5 * float(row["rotation_error"][worst])),
             expected=0.0,
             half_width=0.02,
-            source=f"{HUTHMANN}; a homogeneous Boltzmann gas stays within 0.012 (direct simulation, computed)",
+            source=f"{HUTHMANN}; a homogeneous Boltzmann gas stays within 0.012 (direct simulation, "
+            "computed)",
             fails_if="a gas that is not dilute, or energies that tend to other shares",
         ),
     ]
@@ -83,7 +84,8 @@ def cooling(ds: xr.Dataset) -> list[Claim]:
                 expected=Estimate(1.0, 0.003),
                 required=0.005,
                 source=VAN_NOIJE,
-                fails_if="contacts that dissipate too much or too little; without a2 it would be up to 1 % off",
+                fails_if="contacts that dissipate too much or too little; without a2 it would be up to 1 % "
+                "off",
             ),
             Claim(
                 claim=f"exponent of T against 1 + t/t_H, {which}",
@@ -91,14 +93,15 @@ def cooling(ds: xr.Dataset) -> list[Claim]:
                 expected=Estimate(-2.0, 0.01),
                 required=0.02,
                 source=VAN_NOIJE,
-                fails_if="a gas that does not stay homogeneous, or collisions that do not slow down as sqrt(T)",
+                fails_if="a gas that does not stay homogeneous, or collisions that do not slow down as "
+                "sqrt(T)",
             ),
         ]
     return claims + _clusters(ds)
 
 
 def _clusters(ds: xr.Dataset) -> list[Claim]:
-    """In the end the gas is neither homogeneous nor as cold as by Haff's law; the elastic one is unchanged."""
+    """In the end the gas is neither homogeneous nor as cold as Haff's law; the elastic one is unchanged."""
     elastic = ds.isel(clusters=(ds["cluster_restitution"] == 1.0).values)
     usual = float(elastic["variance"].isel(step=slice(1, None)).mean())
     claims = []

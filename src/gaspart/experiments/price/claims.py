@@ -16,8 +16,8 @@ def price_of_features(ds: xr.Dataset) -> list[Claim]:
     """Kernels without a feature are those whose source never had it; with one they are not much slower."""
     absent = [
         Claim.within(
-            claim=f"absent features: instructions of the {one['kernel'].item()} engine's kernel over those of "
-            "one whose source never had them",
+            claim=f"absent features: instructions of the {one['kernel'].item()} engine's kernel over those "
+            "of one whose source never had them",
             measured=Estimate(one["instructions"] / one["stripped"]),
             expected=1.0,
             half_width=_REORDERED,

@@ -294,7 +294,7 @@ def event_scaling(ds: xr.Dataset) -> list[Claim]:
             "boxes": (0.0, "4.4: sectors"),
         }[search]
         where = f'per event in N, search "{search}", {int(method.method_dimension)}D'
-        common = {"expected": power, "source": f"{C}, section {section}"}
+        common: dict[str, Any] = {"expected": power, "source": f"{C}, section {section}"}
         claims.append(
             _exponent(
                 f"pair tests {where}",

@@ -49,7 +49,7 @@ def speed_relaxation(ds: xr.Dataset) -> list[Claim]:
 
 
 def _frame(row: xr.Dataset, by: str, relaxation: Relaxation) -> list[Claim]:
-    """At one time. The collisions scatter too, but together with the run's kurtosis: the runs' scatter has it."""
+    """At one time. The scatter of the runs includes that of the collisions."""
     collisions = float(row["collisions"])
     when = f"at t = {float(row['time']):g} ({by})"
     return [

@@ -144,7 +144,7 @@ def _steady(at: xr.Dataset) -> Claim:
 
 
 def time_to_accuracy(ds: xr.Dataset) -> list[Claim]:
-    """The model predicts the cost of both engines, and chooses the setting that is measured to be the best."""
+    """The model predicts the cost of both engines, and chooses the setting measured to be the best."""
     claims = []
     for engine in ds.engine.values:
         at = ds.sel(engine=engine, accuracy=ds.accuracy[ds.accuracy >= FLOOR])

@@ -25,7 +25,8 @@ def velocity_autocorrelation(ds: xr.Dataset) -> list[Claim]:
                     measured=Estimate.of(row, "start_rate") / (2.0 / dimension),
                     expected=1.0,
                     required=0.005,
-                    source="Enskog, exact at the start: contacts of equilibrium, velocities not yet correlated",
+                    source="Enskog, exact at the start: contacts of equilibrium, velocities not yet "
+                    "correlated",
                     fails_if="a wrong collision rate or impulse",
                 )
             )

@@ -23,7 +23,7 @@ EXACT = {
     3: "exact: Boltzmann 1899",
 }
 KOLAFA_RANGE = (0.19, 0.41)
-"""Packing fractions at which Carnahan and Starling's equation is 0.13 to 0.3 % low, a resolvable difference."""
+"""Packing fractions at which Carnahan and Starling's equation is 0.13 to 0.3 % low, which is resolved."""
 
 
 def virial_discs(dataset: xr.Dataset) -> list[Claim]:

@@ -60,8 +60,8 @@ def _between_walls(part: xr.Dataset, name: str) -> list[Claim]:
 def _closed(row: xr.Dataset) -> Claim:
     expected = Estimate.of(row, "expected")
     return Claim(
-        claim=f"pressure of {int(row['count'])} {PARTICLES[int(row['dimension'])]} in a closed container over "
-        f"theory's, packing fraction {float(row['packing_fraction']):.2g}",
+        claim=f"pressure of {int(row['count'])} {PARTICLES[int(row['dimension'])]} in a closed container "
+        f"over theory's, packing fraction {float(row['packing_fraction']):.2g}",
         measured=Estimate.of(row, "pressure") / expected.value,
         expected=expected / expected.value,
         required=RELATIVE_ERROR,
