@@ -1,13 +1,12 @@
 import pytest
+from claims.data import judged
 from experiments.adsorption.data import walls
 
-from gaspart.claims import judge
 from gaspart.experiments.adsorption import claims as adsorption
 
 
 def verdicts(dataset):
-    claims = adsorption.adsorption(dataset)
-    return dict(zip((claim.claim for claim in claims), judge(claims), strict=True))
+    return judged(adsorption.adsorption(dataset))
 
 
 def verdict(found, text):

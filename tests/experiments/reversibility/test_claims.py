@@ -1,12 +1,11 @@
+from claims.data import judged
 from experiments.reversibility.data import measurement
 
-from gaspart.claims import judge
 from gaspart.experiments.reversibility import claims as reversibility
 
 
 def verdicts(dataset):
-    claims = reversibility.reversibility(dataset)
-    return {claim.claim: verdict for claim, verdict in zip(claims, judge(claims), strict=True)}
+    return judged(reversibility.reversibility(dataset))
 
 
 def test_echoes_that_grow_as_they_should_agree(tmp_path):

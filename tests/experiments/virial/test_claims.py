@@ -1,17 +1,16 @@
 import numpy as np
 import pytest
+from claims.data import judged
 from experiments.virial.data import equation_of_state
 
 from gaspart import theory
-from gaspart.claims import judge
 from gaspart.experiments.virial.claims import virial_discs, virial_spheres
 
 CLAIMS = {2: virial_discs, 3: virial_spheres}
 
 
 def verdicts(dimension, dataset):
-    claims = CLAIMS[dimension](dataset)
-    return {claim.claim: verdict for claim, verdict in zip(claims, judge(claims), strict=True)}
+    return judged(CLAIMS[dimension](dataset))
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
