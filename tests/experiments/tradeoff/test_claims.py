@@ -33,12 +33,12 @@ def test_steps_cheaper_than_events_for_a_thousandth_of_a_dense_gas_are_noticed(t
     assert (set(dear), set(cheap)) == ({"agrees"}, {"disagrees"})
 
 
-def choice_verdicts(dataset):
+def choice(dataset):
     claims = tradeoff.time_to_accuracy(dataset)
     return dict(zip(("event", "step", "choice"), judge(claims), strict=True))
 
 
-def test_a_model_that_foretells_the_costs_agrees_and_one_that_does_not_is_noticed():
-    assert choice_verdicts(time_to_accuracy_measurement()) == dict.fromkeys(("event", "step", "choice"), "agrees")
-    wrong = choice_verdicts(time_to_accuracy_measurement(dearer=4.0))
+def test_a_model_that_predicts_the_costs_agrees_and_one_that_does_not_is_noticed():
+    assert choice(time_to_accuracy_measurement()) == dict.fromkeys(("event", "step", "choice"), "agrees")
+    wrong = choice(time_to_accuracy_measurement(dearer=4.0))
     assert wrong == {"event": "agrees", "step": "disagrees", "choice": "disagrees"}
