@@ -35,7 +35,7 @@ def test_a_bias_of_three_in_a_thousand_is_found(dimension):
     assert found[next(text for text in found if text.startswith("Z at all"))] == "disagrees"
 
 
-def test_carnahan_and_starlings_fluid_is_told_from_the_true_one():
+def test_carnahan_and_starlings_fluid_is_distinguished_from_the_true_one():
     found = verdicts(3, equation_of_state(3, true=lambda eta, _: theory.carnahan_starling(eta)))
     assert found[next(text for text in found if text.startswith("excess of Z over Carnahan"))] == "disagrees"
 
