@@ -16,7 +16,7 @@ def test_theory_agrees_with_itself():
 
 
 @pytest.mark.parametrize(
-    ("judged", "name", "change", "text"),
+    ("statement", "name", "change", "text"),
     [
         (gravity.barometric, "slope_ratio", 0.02, "slope of the chemical"),
         (gravity.barometric, "temperature_gradient", 0.02, "temperature against height"),
@@ -28,10 +28,10 @@ def test_theory_agrees_with_itself():
         (gravity.separation, "slope_ratio", 0.02, "of the heavy"),
     ],
 )
-def test_each_claim_about_columns_can_fail(judged, name, change, text):
-    ds = columns(1 if judged is gravity.barometric else 2)
+def test_each_claim_about_columns_can_fail(statement, name, change, text):
+    ds = columns(1 if statement is gravity.barometric else 2)
     ds[name] = ds[name] + change
-    found = judged(judged(ds))
+    found = judged(statement(ds))
     assert "disagrees" in {verdict for claim, verdict in found.items() if text in claim}
 
 

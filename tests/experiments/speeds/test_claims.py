@@ -57,10 +57,10 @@ def test_too_few_runs_are_inconclusive():
     assert {verdict for claim, verdict in found.items() if "kurtosis of" in claim} == {"inconclusive"}
 
 
-@pytest.mark.parametrize("judged", [speeds.speed_distribution_spheres, speeds.speed_distribution_discs])
-def test_maxwell_agrees(judged):
-    dimension = 3 if judged is speeds.speed_distribution_spheres else 2
-    assert set(judged(judged(distribution(dimension))).values()) == {"agrees"}
+@pytest.mark.parametrize("statement", [speeds.speed_distribution_spheres, speeds.speed_distribution_discs])
+def test_maxwell_agrees(statement):
+    dimension = 3 if statement is speeds.speed_distribution_spheres else 2
+    assert set(judged(statement(distribution(dimension))).values()) == {"agrees"}
 
 
 @pytest.mark.parametrize(
