@@ -42,7 +42,9 @@ def _orders(ds: xr.Dataset) -> list[Claim]:
         if rewound and fraction <= 0.01:
             expected.append(("Z", 3.0))
         source = (
-            "grazing contacts are missed, others are exact" if rewound else "contacts late by half a step"
+            "contacts at their true positions; grazing ones are missed"
+            if rewound
+            else "contacts late by half a step"
         )
         claims += [
             Claim.within(
