@@ -1,13 +1,12 @@
 import pytest
+from claims.data import judged
 from experiments.adsorption.data import walls
 
-from gaspart.claims import judge
 from gaspart.experiments.adsorption import claims as adsorption
 
 
 def verdicts(dataset):
-    claims = adsorption.adsorption(dataset)
-    return dict(zip((claim.claim for claim in claims), judge(claims), strict=True))
+    return judged(adsorption.adsorption(dataset))
 
 
 def verdict(found, text):
@@ -33,10 +32,10 @@ def test_a_coverage_that_follows_henrys_law_is_found():
 @pytest.mark.parametrize(
     ("name", "kind", "change", "text"),
     [
-        ("length", "ideal", 0.01, "over the width"),
+        ("length", "ideal", 0.01, "over the well's width"),
         ("filling", "layer", 0.06, "coverage over that of hard discs"),
         ("slow_share", "ideal", 0.02, "wells: share"),
-        ("slow_share", "sticky", 0.3, "slow bodies that leave"),
+        ("slow_share", "sticky", 0.3, "slow particles that leave"),
     ],
 )
 def test_each_claim_can_fail(name, kind, change, text):

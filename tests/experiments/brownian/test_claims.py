@@ -1,5 +1,6 @@
 import pytest
 import xarray as xr
+from claims.data import judged
 
 from gaspart.claims import judge
 from gaspart.experiments.brownian import claims as brownian
@@ -30,8 +31,7 @@ def measured(**changes):
 
 
 def verdicts(ds):
-    claims = [*brownian.brownian_paths(ds), *brownian.brownian_msd(ds)]
-    return dict(zip((claim.claim for claim in claims), judge(claims), strict=True))
+    return judged([*brownian.brownian_paths(ds), *brownian.brownian_msd(ds)])
 
 
 def test_theory_agrees_with_itself():

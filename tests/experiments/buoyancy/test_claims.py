@@ -1,17 +1,12 @@
 import pytest
+from claims.data import judged
 from experiments.buoyancy.data import measurement
 
-from gaspart.claims import judge
 from gaspart.experiments.buoyancy import claims as buoyancy
 
 
-def verdicts(claims):
-    """Verdict by the claim's text."""
-    return dict(zip((claim.claim for claim in claims), judge(claims), strict=True))
-
-
 def test_theory_agrees_with_itself():
-    found = verdicts(buoyancy.buoyancy(measurement()))
+    found = judged(buoyancy.buoyancy(measurement()))
     assert len(found) == 4 + 2 + 2
     assert set(found.values()) == {"agrees"}
 
@@ -30,10 +25,10 @@ def test_theory_agrees_with_itself():
 def test_each_claim_can_fail(name, change, text):
     ds = measurement()
     ds[name] = ds[name] + change
-    found = verdicts(buoyancy.buoyancy(ds))
+    found = judged(buoyancy.buoyancy(ds))
     assert "disagrees" in {verdict for claim, verdict in found.items() if text in claim}
 
 
 def test_too_short_runs_are_inconclusive():
-    found = verdicts(buoyancy.buoyancy(measurement(error=0.6)))
+    found = judged(buoyancy.buoyancy(measurement(error=0.6)))
     assert {verdict for claim, verdict in found.items() if "radius" in claim} == {"inconclusive"}

@@ -1,24 +1,19 @@
 import numpy as np
 import pytest
+from claims.data import judged
 from experiments.displacement.data import discs, spheres
 
-from gaspart.claims import judge
 from gaspart.experiments.displacement import claims as displacement
 
 
-def verdicts(claims):
-    """Verdict by the claim's text."""
-    return dict(zip((claim.claim for claim in claims), judge(claims), strict=True))
-
-
 def test_spheres_as_theory_says_agree():
-    found = verdicts(displacement.msd_spheres(spheres()))
+    found = judged(displacement.msd_spheres(spheres()))
     assert len(found) == 6
     assert set(found.values()) == {"agrees"}
 
 
 def test_discs_as_mode_coupling_says_agree():
-    found = verdicts(displacement.msd_discs(discs()))
+    found = judged(displacement.msd_discs(discs()))
     assert len(found) == 4
     assert set(found.values()) == {"agrees"}
 
@@ -39,40 +34,40 @@ def scaled(ds, name, factor, where):
     ],
 )
 def test_each_claim_about_spheres_can_fail(name, factor, where, text):
-    found = verdicts(displacement.msd_spheres(scaled(spheres(), name, factor, where)))
+    found = judged(displacement.msd_spheres(scaled(spheres(), name, factor, where)))
     assert {verdict for claim, verdict in found.items() if text in claim} == {"disagrees"}
 
 
 def test_enskog_alone_fails_where_collisions_are_correlated():
     ds = spheres()
     dense = np.flatnonzero(ds["largest"].values & (ds["packing_fraction"].values == 0.3))
-    found = verdicts(displacement.msd_spheres(scaled(ds, "diffusion", 1 / 1.34, dense)))
+    found = judged(displacement.msd_spheres(scaled(ds, "diffusion", 1 / 1.34, dense)))
     assert found["D over Erpenbeck and Wood's at packing fraction 0.3 (within 0.97 to 1.03)"] == "disagrees"
 
 
 def test_no_size_dependence_disagrees_and_a_noisy_one_is_inconclusive():
     text = "slope of D against 1/L at packing fraction 0.3"
     ds = spheres()
-    assert verdicts(displacement.msd_spheres(ds.assign(size_slope=0.0)))[text] == "disagrees"
-    assert verdicts(displacement.msd_spheres(ds.assign(size_slope_error=0.1)))[text] == "inconclusive"
+    assert judged(displacement.msd_spheres(ds.assign(size_slope=0.0)))[text] == "disagrees"
+    assert judged(displacement.msd_spheres(ds.assign(size_slope_error=0.1)))[text] == "inconclusive"
 
 
 def test_without_dilute_points_the_limit_is_inconclusive():
     ds = spheres().isel(point=slice(1, None))
-    found = verdicts(displacement.msd_spheres(ds))
+    found = judged(displacement.msd_spheres(ds))
     assert {verdict for claim, verdict in found.items() if "dilute" in claim} == {"inconclusive"}
 
 
 def test_a_plateau_of_discs_disagrees_and_a_noisy_slope_is_inconclusive():
     flat = scaled(discs(), "logarithmic_slope", 0.0, [0, 1])
-    found = verdicts(displacement.msd_discs(flat))
+    found = judged(displacement.msd_discs(flat))
     assert {verdict for claim, verdict in found.items() if "ln t" in claim} == {"disagrees"}
     noisy = scaled(discs(), "logarithmic_slope_error", 10.0, [0, 1])
-    found = verdicts(displacement.msd_discs(noisy))
+    found = judged(displacement.msd_discs(noisy))
     assert {verdict for claim, verdict in found.items() if "ln t" in claim} == {"inconclusive"}
 
 
 def test_velocities_that_are_not_the_displacements_disagree():
     ds = discs()
-    found = verdicts(displacement.msd_discs(scaled(ds, "integral_difference", 30.0, [2])))
+    found = judged(displacement.msd_discs(scaled(ds, "integral_difference", 30.0, [2])))
     assert {verdict for claim, verdict in found.items() if "Green-Kubo" in claim} == {"disagrees"}

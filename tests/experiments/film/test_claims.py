@@ -1,13 +1,12 @@
 import pytest
+from claims.data import judged
 from experiments.film.data import slits
 
-from gaspart.claims import judge
 from gaspart.experiments.film import claims as film
 
 
 def verdicts(dataset):
-    claims = film.thin_film(dataset)
-    return dict(zip((claim.claim for claim in claims), judge(claims), strict=True))
+    return judged(film.thin_film(dataset))
 
 
 def verdict(found, text):

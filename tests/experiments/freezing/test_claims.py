@@ -1,13 +1,8 @@
 import pytest
+from claims.data import judged
 from experiments.freezing.data import discs, spheres
 
-from gaspart.claims import judge
 from gaspart.experiments.freezing import claims as freezing
-
-
-def verdicts(claims):
-    """Verdict by the claim's text."""
-    return dict(zip((claim.claim for claim in claims), judge(claims), strict=True))
 
 
 def verdict(found, text):
@@ -15,13 +10,13 @@ def verdict(found, text):
 
 
 def test_discs_as_the_literature_has_them_agree():
-    found = verdicts(freezing.freezing_discs(discs()))
+    found = judged(freezing.freezing_discs(discs()))
     assert len(found) == 8
     assert set(found.values()) == {"agrees"}
 
 
 def test_spheres_as_the_literature_has_them_agree():
-    found = verdicts(freezing.freezing_spheres(spheres()))
+    found = judged(freezing.freezing_spheres(spheres()))
     assert sum("Z of the crystal" in text for text in found) == 2
     assert sum("Z of the fluid" in text for text in found) == 5
     assert set(found.values()) == {"agrees"}
@@ -51,7 +46,7 @@ def test_each_claim_about_discs_can_fail(name, value, where, text):
             data["packing_fraction"].sel(packing_fraction=where["packing_fraction"], method="nearest")
         )
         where = {**where, "packing_fraction": eta}
-    found = verdicts(freezing.freezing_discs(changed(data, name, value, **where)))
+    found = judged(freezing.freezing_discs(changed(data, name, value, **where)))
     assert verdict(found, text) == "disagrees"
 
 
@@ -59,7 +54,7 @@ def test_discs_that_have_not_settled_are_inconclusive():
     data = discs()
     data["plateau_error"] = data["plateau_error"] * 10
     data["disagreement"] = data["disagreement"] + 5.0
-    found = verdicts(freezing.freezing_discs(data))
+    found = judged(freezing.freezing_discs(data))
     assert verdict(found, "from the crystal (within") == "inconclusive"
     assert verdict(found, "starts or halves differ") in ("inconclusive", "disagrees")
 
@@ -77,11 +72,11 @@ def test_discs_that_have_not_settled_are_inconclusive():
     ],
 )
 def test_each_claim_about_spheres_can_fail(name, value, where, text):
-    found = verdicts(freezing.freezing_spheres(changed(spheres(), name, value, **where)))
+    found = judged(freezing.freezing_spheres(changed(spheres(), name, value, **where)))
     assert verdict(found, text) == "disagrees"
 
 
 def test_a_crystal_that_creeps_is_less_certain():
     data = changed(spheres(), "pressure_drift", 0.5, packing_fraction=0.56, start="crystal")
-    found = verdicts(freezing.freezing_spheres(data))
+    found = judged(freezing.freezing_spheres(data))
     assert verdict(found, "crystal at packing fraction 0.56") == "inconclusive"

@@ -22,7 +22,7 @@ def test_right_data_agree():
     ("wrong", "beginning"),
     [
         ({"rate": 1.04}, "initial decay"),
-        ({"rate": 1.2}, "T_tr - T_rot less"),
+        ({"rate": 1.2}, "T_tr - T_rot minus"),
         ({"ratio": 1.02}, "T_rot / T_tr of rough discs"),
         ({"steady": 0.85}, "T_rot / T_tr of cooling discs"),
     ],

@@ -1,13 +1,8 @@
 import pytest
+from claims.data import judged
 from experiments.gravity.data import capacities, columns
 
-from gaspart.claims import judge
 from gaspart.experiments.gravity import claims as gravity
-
-
-def verdicts(claims):
-    """Verdict by the claim's text."""
-    return dict(zip((claim.claim for claim in claims), judge(claims), strict=True))
 
 
 def test_theory_agrees_with_itself():
@@ -17,11 +12,11 @@ def test_theory_agrees_with_itself():
         (gravity.heat_capacity(capacities()), 6),
     ):
         assert len(found) == count
-        assert set(verdicts(found).values()) == {"agrees"}
+        assert set(judged(found).values()) == {"agrees"}
 
 
 @pytest.mark.parametrize(
-    ("judged", "name", "change", "text"),
+    ("statement", "name", "change", "text"),
     [
         (gravity.barometric, "slope_ratio", 0.02, "slope of the chemical"),
         (gravity.barometric, "temperature_gradient", 0.02, "temperature against height"),
@@ -33,10 +28,10 @@ def test_theory_agrees_with_itself():
         (gravity.separation, "slope_ratio", 0.02, "of the heavy"),
     ],
 )
-def test_each_claim_about_columns_can_fail(judged, name, change, text):
-    ds = columns(1 if judged is gravity.barometric else 2)
+def test_each_claim_about_columns_can_fail(statement, name, change, text):
+    ds = columns(1 if statement is gravity.barometric else 2)
     ds[name] = ds[name] + change
-    found = verdicts(judged(ds))
+    found = judged(statement(ds))
     assert "disagrees" in {verdict for claim, verdict in found.items() if text in claim}
 
 
@@ -44,12 +39,12 @@ def test_each_claim_about_columns_can_fail(judged, name, change, text):
 def test_each_claim_about_heat_can_fail(name, text):
     ds = capacities()
     ds[name] = ds[name] * 1.1
-    found = verdicts(gravity.heat_capacity(ds))
+    found = judged(gravity.heat_capacity(ds))
     assert {verdict for claim, verdict in found.items() if text in claim} == {"disagrees"}
 
 
 def test_too_short_runs_are_inconclusive():
-    found = verdicts(gravity.barometric(columns(error=0.05)))
+    found = judged(gravity.barometric(columns(error=0.05)))
     assert {
         verdict for claim, verdict in found.items() if "balance" not in claim and "gain" not in claim
     } == {"inconclusive"}

@@ -1,17 +1,12 @@
 import pytest
+from claims.data import judged
 from experiments.heat.data import gases, metals
 
-from gaspart.claims import judge
 from gaspart.experiments.heat import claims as heat
 
 
-def verdicts(claims):
-    """Verdict by the claim's text."""
-    return dict(zip((claim.claim for claim in claims), judge(claims), strict=True))
-
-
 def test_theory_agrees_with_itself():
-    found = verdicts(heat.heat_conduction_gas(gases()))
+    found = judged(heat.heat_conduction_gas(gases()))
     assert len(found) == 5 * 3 + 4 + 3
     assert set(found.values()) == {"agrees"}
 
@@ -19,7 +14,7 @@ def test_theory_agrees_with_itself():
 @pytest.mark.parametrize(
     ("name", "factor", "text"),
     [
-        ("imbalance", 1e8, "heat that went through"),
+        ("imbalance", 1e8, "transferred heat"),
         ("wall_ratio", 1.02, "flux into the cold"),
         ("half_ratio", 1.02, "second over that in the first"),
         ("flux", 1.1, "flux over n (d + 1)"),
@@ -31,21 +26,23 @@ def test_theory_agrees_with_itself():
 def test_each_claim_can_fail(name, factor, text):
     ds = gases()
     ds[name] = ds[name] * factor
-    found = verdicts(heat.heat_conduction_gas(ds))
+    found = judged(heat.heat_conduction_gas(ds))
     assert {verdict for claim, verdict in found.items() if text in claim} == {"disagrees"}
 
 
 def test_the_shares_of_the_source_are_not_those_of_full_accommodation():
     ds = gases()
     ds["flux"] = ds["full"]
-    found = verdicts(heat.heat_conduction_gas(ds))
+    found = judged(heat.heat_conduction_gas(ds))
     wrong = {claim for claim, verdict in found.items() if verdict == "disagrees" and "normal" in claim}
     assert len(wrong) == 2
 
 
 def test_too_short_runs_are_inconclusive():
-    found = verdicts(heat.heat_conduction_gas(gases(error=0.3)))
-    assert {verdict for claim, verdict in found.items() if "went through" not in claim} == {"inconclusive"}
+    found = judged(heat.heat_conduction_gas(gases(error=0.3)))
+    assert {verdict for claim, verdict in found.items() if "transferred heat" not in claim} == {
+        "inconclusive"
+    }
 
 
 @pytest.mark.parametrize(
@@ -60,7 +57,7 @@ def test_too_short_runs_are_inconclusive():
 )
 def test_each_claim_about_metals_can_fail(name, text):
     ds = metals()
-    assert set(verdicts(heat.heat_conduction_metal(ds)).values()) == {"agrees"}
+    assert set(judged(heat.heat_conduction_metal(ds)).values()) == {"agrees"}
     ds[name] = ds[name] * 1.1
-    found = verdicts(heat.heat_conduction_metal(ds))
+    found = judged(heat.heat_conduction_metal(ds))
     assert {verdict for claim, verdict in found.items() if text in claim} == {"disagrees"}

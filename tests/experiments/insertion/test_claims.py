@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 import xarray as xr
+from claims.data import judged
 
 from gaspart import theory
-from gaspart.claims import judge
 from gaspart.experiments.insertion.claims import fill_failures
 
 
@@ -39,8 +39,7 @@ def dataset(**changes):
 
 
 def verdicts(found):
-    claims = fill_failures(found)
-    return {claim.claim: verdict for claim, verdict in zip(claims, judge(claims), strict=True)}
+    return judged(fill_failures(found))
 
 
 def test_right_data_agree():

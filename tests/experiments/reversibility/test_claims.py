@@ -1,12 +1,11 @@
+from claims.data import judged
 from experiments.reversibility.data import measurement
 
-from gaspart.claims import judge
 from gaspart.experiments.reversibility import claims as reversibility
 
 
 def verdicts(dataset):
-    claims = reversibility.reversibility(dataset)
-    return {claim.claim: verdict for claim, verdict in zip(claims, judge(claims), strict=True)}
+    return judged(reversibility.reversibility(dataset))
 
 
 def test_echoes_that_grow_as_they_should_agree(tmp_path):
@@ -18,7 +17,7 @@ def test_echoes_that_grow_as_they_should_agree(tmp_path):
 def test_another_growth_is_noticed(tmp_path):
     found = verdicts(measurement(tmp_path, growth=2.0))
     assert [claim for claim, verdict in found.items() if verdict == "disagrees"] == [
-        "growth of the echo per collision of a body, spheres, packing fraction 0.1"
+        "growth of the echo per collision of a particle, spheres, packing fraction 0.1"
     ]
 
 

@@ -1,6 +1,7 @@
 """The scaling figures' claims hold on a machine of known costs, and fail on falsified data."""
 
 import pytest
+from claims.data import judged
 from experiments.scaling.data import SCALING, points, settings
 
 from gaspart import claims as core
@@ -15,8 +16,7 @@ def dataset(figure, folder):
 
 def verdicts(figure, ds):
     """Verdict of each claim, by its text."""
-    claims = getattr(scaling, figure)(ds)
-    return {claim.claim: verdict for claim, verdict in zip(claims, judge(claims), strict=True)}
+    return judged(getattr(scaling, figure)(ds))
 
 
 @pytest.mark.parametrize("figure", SCALING)
@@ -70,4 +70,4 @@ def test_quick_round_widths_are_noticed(tmp_path):
 
 def test_no_minimum_is_no_pass(tmp_path):
     found = verdicts("ideal_boxes", dataset("ideal_boxes", tmp_path))
-    assert found["ideal number of boxes per body, N = 1200000, r = 0.1"] == "inconclusive"
+    assert found["ideal number of boxes per particle, N = 1200000, r = 0.1"] == "inconclusive"

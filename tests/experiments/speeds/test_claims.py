@@ -1,16 +1,11 @@
 import numpy as np
 import pytest
 import xarray as xr
+from claims.data import judged
 from experiments.speeds.data import relaxation_measurement
 
 from gaspart import theory
-from gaspart.claims import judge
 from gaspart.experiments.speeds import claims as speeds
-
-
-def verdicts(claims):
-    """Verdict by the claim's text."""
-    return dict(zip((claim.claim for claim in claims), judge(claims), strict=True))
 
 
 def distribution(dimension=3, **changes):
@@ -35,7 +30,7 @@ def distribution(dimension=3, **changes):
 
 
 def test_kinetic_theory_agrees_with_itself():
-    found = verdicts(speeds.speed_relaxation(relaxation_measurement()))
+    found = judged(speeds.speed_relaxation(relaxation_measurement()))
     assert len(found) == 18
     assert set(found.values()) == {"agrees"}
 
@@ -45,7 +40,7 @@ def test_kinetic_theory_agrees_with_itself():
     [
         ("kurtosis", 1.05, "kurtosis of the speeds at"),
         ("never_hit", 1.3, "never hit"),
-        ("collisions", 1.05, "collisions per body until"),
+        ("collisions", 1.05, "collisions per particle until"),
         ("initial_slope", 1.1, "initial slope"),
         ("temperature_drift", 1e6, "drift of the energy"),
     ],
@@ -53,19 +48,19 @@ def test_kinetic_theory_agrees_with_itself():
 def test_each_claim_about_relaxation_can_fail(name, factor, text):
     ds = relaxation_measurement()
     ds[name] = ds[name] * factor
-    found = verdicts(speeds.speed_relaxation(ds))
+    found = judged(speeds.speed_relaxation(ds))
     assert "disagrees" in {verdict for claim, verdict in found.items() if text in claim}
 
 
 def test_too_few_runs_are_inconclusive():
-    found = verdicts(speeds.speed_relaxation(relaxation_measurement(error=0.02)))
+    found = judged(speeds.speed_relaxation(relaxation_measurement(error=0.02)))
     assert {verdict for claim, verdict in found.items() if "kurtosis of" in claim} == {"inconclusive"}
 
 
-@pytest.mark.parametrize("judged", [speeds.speed_distribution_spheres, speeds.speed_distribution_discs])
-def test_maxwell_agrees(judged):
-    dimension = 3 if judged is speeds.speed_distribution_spheres else 2
-    assert set(verdicts(judged(distribution(dimension))).values()) == {"agrees"}
+@pytest.mark.parametrize("statement", [speeds.speed_distribution_spheres, speeds.speed_distribution_discs])
+def test_maxwell_agrees(statement):
+    dimension = 3 if statement is speeds.speed_distribution_spheres else 2
+    assert set(judged(statement(distribution(dimension))).values()) == {"agrees"}
 
 
 @pytest.mark.parametrize(
@@ -80,5 +75,5 @@ def test_maxwell_agrees(judged):
     ],
 )
 def test_each_claim_about_maxwell_can_fail(changes, text):
-    found = verdicts(speeds.distribution(distribution(3, **changes)))
+    found = judged(speeds.distribution(distribution(3, **changes)))
     assert {verdict for claim, verdict in found.items() if text in claim} == {"disagrees"}

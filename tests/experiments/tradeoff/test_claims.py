@@ -1,3 +1,4 @@
+from claims.data import judged
 from experiments.tradeoff.data import speed_accuracy_measurement, time_to_accuracy_measurement
 
 from gaspart.claims import judge
@@ -5,8 +6,7 @@ from gaspart.experiments.tradeoff import claims as tradeoff
 
 
 def verdicts(dataset):
-    claims = tradeoff.speed_accuracy(dataset)
-    return {claim.claim: verdict for claim, verdict in zip(claims, judge(claims), strict=True)}
+    return judged(tradeoff.speed_accuracy(dataset))
 
 
 def test_orders_losses_and_frontier_agree_where_theory_holds(tmp_path):
@@ -26,19 +26,19 @@ def test_contacts_late_by_half_a_step_are_noticed(tmp_path):
 def test_steps_cheaper_than_events_for_a_thousandth_of_a_dense_gas_are_noticed(tmp_path):
     dataset = speed_accuracy_measurement(tmp_path)
     dataset["gas_packing_fraction"] = dataset.gas_packing_fraction * 0.0 + 0.3
-    dear = [verdict for claim, verdict in verdicts(dataset).items() if "time of steps over" in claim]
+    expensive = [verdict for claim, verdict in verdicts(dataset).items() if "time of steps over" in claim]
     for name in ("best_ratio", "best_ratio_error"):
         dataset[name] = 0.1 * dataset[name]
     cheap = [verdict for claim, verdict in verdicts(dataset).items() if "time of steps over" in claim]
-    assert (set(dear), set(cheap)) == ({"agrees"}, {"disagrees"})
+    assert (set(expensive), set(cheap)) == ({"agrees"}, {"disagrees"})
 
 
-def judged(dataset):
+def choice(dataset):
     claims = tradeoff.time_to_accuracy(dataset)
     return dict(zip(("event", "step", "choice"), judge(claims), strict=True))
 
 
-def test_a_model_that_foretells_the_costs_agrees_and_one_that_does_not_is_noticed():
-    assert judged(time_to_accuracy_measurement()) == dict.fromkeys(("event", "step", "choice"), "agrees")
-    wrong = judged(time_to_accuracy_measurement(dearer=4.0))
+def test_a_model_that_predicts_the_costs_agrees_and_one_that_does_not_is_noticed():
+    assert choice(time_to_accuracy_measurement()) == dict.fromkeys(("event", "step", "choice"), "agrees")
+    wrong = choice(time_to_accuracy_measurement(dearer=4.0))
     assert wrong == {"event": "agrees", "step": "disagrees", "choice": "disagrees"}

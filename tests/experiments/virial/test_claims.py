@@ -1,17 +1,16 @@
 import numpy as np
 import pytest
+from claims.data import judged
 from experiments.virial.data import equation_of_state
 
 from gaspart import theory
-from gaspart.claims import judge
 from gaspart.experiments.virial.claims import virial_discs, virial_spheres
 
 CLAIMS = {2: virial_discs, 3: virial_spheres}
 
 
 def verdicts(dimension, dataset):
-    claims = CLAIMS[dimension](dataset)
-    return {claim.claim: verdict for claim, verdict in zip(claims, judge(claims), strict=True)}
+    return judged(CLAIMS[dimension](dataset))
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -36,7 +35,7 @@ def test_a_bias_of_three_in_a_thousand_is_found(dimension):
     assert found[next(text for text in found if text.startswith("Z at all"))] == "disagrees"
 
 
-def test_carnahan_and_starlings_fluid_is_told_from_the_true_one():
+def test_carnahan_and_starlings_fluid_is_distinguished_from_the_true_one():
     found = verdicts(3, equation_of_state(3, true=lambda eta, _: theory.carnahan_starling(eta)))
     assert found[next(text for text in found if text.startswith("excess of Z over Carnahan"))] == "disagrees"
 

@@ -1,12 +1,11 @@
+from claims.data import judged
 from experiments.wall_pressure.data import pressures
 
-from gaspart.claims import judge
 from gaspart.experiments.wall_pressure.claims import wall_pressure
 
 
 def verdicts(dataset):
-    claims = wall_pressure(dataset)
-    return {claim.claim: verdict for claim, verdict in zip(claims, judge(claims), strict=True)}
+    return judged(wall_pressure(dataset))
 
 
 def test_right_data_agree():

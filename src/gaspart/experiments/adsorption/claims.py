@@ -1,4 +1,4 @@
-"""What the figure of walls that hold bodies claims."""
+"""Claims about walls that adsorb particles."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.statistics import combine, fit_polynomial, fit_power_law
-from gaspart.claims import Claim
+from gaspart.claims import Claim, Estimate
+from gaspart.experiments.shared.claims import rows
 from gaspart.theory.adsorption import planck_constant, slow_flux_share
 
 LANGMUIR = "Boltzmann factor of the well (exact for an ideal gas; Langmuir's formula, source A section 4.5)"
@@ -14,26 +15,28 @@ OWN_LENGTH = "equilibrium of an ideal gas with a step well: the length is its wi
 
 
 def adsorption(ds: xr.Dataset) -> list[Claim]:
-    """Slope, prefactor, hard layer, and the balance that the source's own rule breaks."""
+    """Slope, prefactor, hard layer, and the detailed balance that the source's own rule violates."""
     kinds = {kind: ds.isel(point=np.flatnonzero(ds["kind"] == kind)) for kind in ("ideal", "layer", "sticky")}
     return [*_ideal(kinds["ideal"]), *_layer(kinds["layer"]), *_sticky(kinds["sticky"], kinds["ideal"])]
+
+
+def _combined(ds: xr.Dataset, name: str) -> Estimate:
+    mean = combine(ds[name].values, ds[f"{name}_error"].values)
+    return Estimate(mean.value, mean.error)
 
 
 def _ideal(ds: xr.Dataset) -> list[Claim]:
     claims = []
     for width in np.unique(ds["width"]):
         same = ds.isel(point=np.flatnonzero(ds["width"] == width))
-        length = combine(same["length"].values, same["length_error"].values)
         claims.append(
             Claim(
-                f"length in the place of the thermal wavelength over the width of the well, width {width:g}",
-                "test",
-                length.value / width,
-                length.error / width,
-                0.01,
-                1.0,
-                OWN_LENGTH,
-                fails_if="a prefactor of its own: bodies let in or out against the Boltzmann factor",
+                claim=f"length in place of the thermal wavelength over the well's width, width {width:g}",
+                measured=_combined(same, "length") / width,
+                expected=1.0,
+                required=0.01,
+                source=OWN_LENGTH,
+                fails_if="an additional prefactor: particles enter or leave against the Boltzmann factor",
             )
         )
         for depth in np.unique(same["depth"]):
@@ -44,7 +47,7 @@ def _ideal(ds: xr.Dataset) -> list[Claim]:
 
 
 def _slopes(ds: xr.Dataset, depth: float) -> list[Claim]:
-    """Of temperatures of one well."""
+    """Dependence on temperature of one well."""
     slope = fit_polynomial(
         1.0 / ds["temperature"].values, ds["log_ratio"].values, ds["log_ratio_error"].values
     )
@@ -53,23 +56,19 @@ def _slopes(ds: xr.Dataset, depth: float) -> list[Claim]:
     power = fit_power_law(ds["temperature"].values, planck, error)
     return [
         Claim(
-            f"slope of ln(N_ads/N_gas) against 1/kT over the depth, depth {depth:g}",
-            "test",
-            slope.values[1] / depth,
-            slope.errors[1] / depth,
-            0.005,
-            1.0,
-            LANGMUIR,
-            fails_if="bodies that leave the well with less, or more, than its depth",
+            claim=f"slope of ln(N_ads/N_gas) against 1/kT over the depth, depth {depth:g}",
+            measured=Estimate(slope.values[1], slope.errors[1]) / depth,
+            expected=1.0,
+            required=0.005,
+            source=LANGMUIR,
+            fails_if="particles leave the well with less, or more, than its depth",
         ),
         Claim(
-            f"power of T in h = lambda sqrt(2 pi m k T), lambda the length in that place, depth {depth:g}",
-            "test",
-            power.exponent,
-            power.exponent_error,
-            0.02,
-            0.5,
-            f"{OWN_LENGTH}; Planck's constant would be constant, the power 0",
+            claim=f"power of T in h = lambda sqrt(2 pi m k T), lambda that length, depth {depth:g}",
+            measured=Estimate(power.exponent, power.exponent_error),
+            expected=0.5,
+            required=0.02,
+            source=f"{OWN_LENGTH}; Planck's constant would be constant, the power 0",
             fails_if="a length that depends on T: a thermal wavelength, and so Planck's constant, at -1/2",
         ),
     ]
@@ -78,56 +77,46 @@ def _slopes(ds: xr.Dataset, depth: float) -> list[Claim]:
 def _layer(ds: xr.Dataset) -> list[Claim]:
     return [
         Claim(
-            f"coverage over that of hard discs at the gas' pressure, depth {float(row['depth']):g}, "
+            claim=f"coverage over that of hard discs at the gas' pressure, depth {float(row['depth']):g}, "
             f"coverage {float(row['coverage']):.2f}",
-            "test",
-            row["filling"],
-            row["filling_error"],
-            0.04,
-            1.0,
-            "spheres of a layer much thinner than they are, as hard discs (virial series to B10); uncertain "
-            "by what the gas before the layer does",
-            expected_uncertainty=float(row["layer_uncertainty"]),
-            fails_if="spheres that adsorb as if they did not meet, or as if each had a place of its own",
+            measured=Estimate.of(row, "filling"),
+            expected=Estimate(1.0, row["layer_uncertainty"]),
+            required=0.04,
+            source="spheres in a layer much thinner than their diameter, as hard discs (virial series to "
+            "B10); uncertain by the effect of the gas in front of the layer",
+            fails_if="adsorbed spheres do not collide with each other, or each has a site of its own",
         )
-        for row in (ds.isel(point=n) for n in range(ds.sizes["point"]))
+        for row in rows(ds, "point")
     ]
 
 
 def _sticky(ds: xr.Dataset, wells: xr.Dataset) -> list[Claim]:
     power = fit_power_law(ds["gas_density"].values, ds["coverage"].values, ds["coverage_error"].values)
     slow = float(slow_flux_share(ds["slow_speed"].values[0]))
-    stuck = combine(ds["slow_share"].values, ds["slow_share_error"].values)
-    well = combine(wells["slow_share"].values, wells["slow_share_error"].values)
     return [
         Claim.at_most(
-            "sticky rule: power of the gas' density in the coverage of a wall that is hardly covered",
-            "test",
-            power.exponent,
-            power.exponent_error,
-            0.1,
-            0.2,
-            "the gas both brings bodies and frees them, both as its density; Henry's law asks for 1",
-            "a coverage that follows the pressure, as it does if detailed balance holds",
+            claim="sticky rule: power of the gas' density in the coverage of a wall at low coverage",
+            measured=Estimate(power.exponent, power.exponent_error),
+            bound=0.2,
+            required=0.1,
+            source="the gas both brings and frees particles, both as its density; Henry's law requires 1",
+            fails_if="a coverage that is proportional to the pressure, as under detailed balance",
         ),
         Claim.at_most(
-            "sticky rule: slow bodies that leave the wall, over those that would in equilibrium",
-            "test",
-            stuck.value / slow,
-            stuck.error / slow,
-            0.1,
-            0.5,
-            "slow ones stick, and none is sent back so slowly: only those that lose speed when freed remain",
-            "a wall that sends back as many slow bodies as it takes",
+            claim="sticky rule: slow particles that leave the wall, over those that would in equilibrium",
+            measured=_combined(ds, "slow_share") / slow,
+            bound=0.5,
+            required=0.1,
+            source="slow particles stick, and none is sent back so slowly: only those slowed down when freed "
+            "remain",
+            fails_if="a wall that sends back as many slow particles as it takes",
         ),
         Claim(
-            "wells: share of the bodies that leave below sqrt(kT/m)",
-            "test",
-            well.value,
-            well.error,
-            0.005,
-            float(slow_flux_share(1.0)),
-            "flux of a Maxwellian, 1 - e^(-1/2) (exact)",
-            fails_if="a well that sorts bodies by their speed",
+            claim="wells: share of the particles that leave below sqrt(kT/m)",
+            measured=_combined(wells, "slow_share"),
+            expected=slow_flux_share(1.0),
+            required=0.005,
+            source="flux of a Maxwellian, 1 - e^(-1/2) (exact)",
+            fails_if="a well that selects particles by their speed",
         ),
     ]

@@ -1,4 +1,4 @@
-"""What the figure of buoyancy claims."""
+"""Claims about buoyancy."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.statistics import combine
-from gaspart.claims import Claim
+from gaspart.claims import Claim, Estimate
+from gaspart.experiments.shared.claims import rows
 
 THEORY = "scaled-particle theory (Helfand, Frisch and Lebowitz 1961)"
 THEORY_ERROR = 0.03
@@ -14,29 +15,24 @@ THEORY_ERROR = 0.03
 
 
 def buoyancy(ds: xr.Dataset) -> list[Claim]:
-    """Archimedes's principle; which radius counts as displaced; and where free discs are."""
-    return [*_fixed(ds), *_free(ds)]
+    """Archimedes's principle; the displaced radius; the heights of free discs."""
+    return [*_fixed(ds), *(_free(row, float(ds["displaced"].max())) for row in rows(ds, "free"))]
 
 
 def _fixed(ds: xr.Dataset) -> list[Claim]:
-    """The force on discs held fast."""
-    claims = []
-    for n in range(ds.sizes["fixed"]):
-        row = ds.isel(fixed=n)
-        claims.append(
-            Claim(
-                f"radius displaced beyond the disc's own, in small radii, by the small discs missing, "
-                f"height {float(row['fixed_height']):g}",
-                "test",
-                row["fixed_count_radius"],
-                row["fixed_count_radius_error"],
-                0.15,
-                row["fixed_radius_expected"],
-                THEORY,
-                expected_uncertainty=THEORY_ERROR,
-                fails_if="a fluid that is not drawn to the disc's edge as theory says",
-            )
+    """The force on fixed discs."""
+    claims = [
+        Claim(
+            claim="radius displaced beyond the disc's own, in small radii, by the small discs missing, "
+            f"height {float(row['fixed_height']):g}",
+            measured=Estimate.of(row, "fixed_count_radius"),
+            expected=Estimate(row["fixed_radius_expected"], THEORY_ERROR),
+            required=0.15,
+            source=THEORY,
+            fails_if="a fluid that does not accumulate at the disc's edge as theory states",
         )
+        for row in rows(ds, "fixed")
+    ]
     force, count = ds["fixed_force"].values, ds["fixed_missing"].values
     errors = np.hypot(
         ds["fixed_force_error"].values / count, force * ds["fixed_missing_error"].values / count**2
@@ -44,65 +40,46 @@ def _fixed(ds: xr.Dataset) -> list[Claim]:
     ratio = combine(force / count, errors)
     radius = combine(ds["fixed_force_radius"].values, ds["fixed_force_radius_error"].values)
     weights = 1.0 / ds["fixed_force_radius_error"].values ** 2
-    expected = float(np.average(ds["fixed_radius_expected"].values, weights=weights))
-    claims += [
+    expected = np.average(ds["fixed_radius_expected"].values, weights=weights)
+    return [
+        *claims,
         Claim(
-            "force on discs held fast over the weight of the small discs missing, all heights",
-            "test",
-            ratio.value,
-            ratio.error,
-            0.04,
-            1.0,
-            "Archimedes: F = m g dW/dmu, the work of insertion's slope (exact far from floor and ceiling)",
-            fails_if="a force that is not the weight of the fluid displaced",
+            claim="force on fixed discs over the weight of the small discs missing, all heights",
+            measured=Estimate(ratio.value, ratio.error),
+            expected=1.0,
+            required=0.04,
+            source="Archimedes: F = m g dW/dmu, the slope of the work of insertion (exact far from floor and "
+            "ceiling)",
+            fails_if="a force that is not the weight of the displaced fluid",
         ),
         Claim(
-            "radius displaced beyond the disc's own, in small radii, by the force, all heights",
-            "test",
-            radius.value,
-            radius.error,
-            0.1,
-            expected,
-            THEORY,
-            expected_uncertainty=THEORY_ERROR,
+            claim="radius displaced beyond the disc's own, in small radii, by the force, all heights",
+            measured=Estimate(radius.value, radius.error),
+            expected=Estimate(expected, THEORY_ERROR),
+            required=0.1,
+            source=THEORY,
             fails_if="R (0) or R + r (1) alone as the radius that counts in a dense fluid",
         ),
     ]
-    return claims
 
 
-def _free(ds: xr.Dataset) -> list[Claim]:
-    """Free discs float where they displace their mass, or lie on the floor."""
-    claims = []
-    most = float(ds["displaced"].max())
-    for n in range(ds.sizes["free"]):
-        row = ds.isel(free=n)
-        mass = float(row["free_mass"])
-        if mass > most:
-            claims.append(
-                Claim.at_most(
-                    f"mean height above the floor of a free disc of mass {mass:g}, which displaces less",
-                    "test",
-                    row["free_height"] - row["free_lowest"],
-                    row["free_height_error"],
-                    0.5,
-                    2.0,
-                    "its weight beyond what it displaces holds it down: kT/(Mg - F)",
-                    "a disc that is heavier than what it displaces and does not sink",
-                )
-            )
-            continue
-        claims.append(
-            Claim(
-                f"mean height of a free disc of mass {mass:g}",
-                "test",
-                row["free_height"],
-                row["free_height_error"],
-                2.0,
-                row["free_expected"],
-                f"Boltzmann's factor of its weight and the work of insertion, {THEORY}",
-                expected_uncertainty=THEORY_ERROR * float(row["free_expected_spread"]),
-                fails_if="a disc that does not float where it displaces its own mass",
-            )
+def _free(row: xr.Dataset, largest: float) -> Claim:
+    """A free disc floats where it displaces its mass, or lies on the floor if it always displaces less."""
+    mass = float(row["free_mass"])
+    if mass > largest:
+        return Claim.at_most(
+            claim=f"mean height above the floor of a free disc of mass {mass:g}, which displaces less",
+            measured=Estimate.of(row, "free_height") - row["free_lowest"],
+            bound=2.0,
+            required=0.5,
+            source="its weight beyond the displaced one holds it down: kT/(Mg - F)",
+            fails_if="a disc that is heavier than the fluid it displaces and does not sink",
         )
-    return claims
+    return Claim(
+        claim=f"mean height of a free disc of mass {mass:g}",
+        measured=Estimate.of(row, "free_height"),
+        expected=Estimate(row["free_expected"], THEORY_ERROR * float(row["free_expected_spread"])),
+        required=2.0,
+        source=f"Boltzmann's factor of its weight and the work of insertion, {THEORY}",
+        fails_if="a disc that does not float where it displaces its own mass",
+    )

@@ -1,4 +1,4 @@
-"""What the displacement figures claim: D of spheres against theory; of discs, that D(t) grows as ln t."""
+"""Claims about displacements: D of spheres against theory; of discs, that D(t) grows as ln t."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.statistics import combine
-from gaspart.claims import Claim
+from gaspart.claims import Claim, Estimate
+from gaspart.experiments.shared.claims import MODE_COUPLING, rows
 
 DILUTE = 0.02
 """Packing fraction up to which a gas counts as dilute: D is within 0.7 % of Enskog's there."""
@@ -18,22 +19,20 @@ ERPENBECK_WOOD = "Erpenbeck & Wood 1991 (recalled; good to 3 %)"
 
 def msd_spheres(ds: xr.Dataset) -> list[Claim]:
     """D against Enskog where the gas is dilute, and against simulations of the literature where it is not."""
-    claims = [_dilute_limit(ds)]
-    for point in np.flatnonzero(ds["largest"]):
-        row = ds.isel(point=point)
-        eta = float(row["packing_fraction"])
-        if eta > DILUTE * (1.0 + 1e-6):
-            expected = theory.erpenbeck_wood_diffusion(eta)
+    largest = rows(ds.isel(point=np.flatnonzero(ds["largest"])), "point")
+    claims = [_dilute_limit([row for row in largest if _is_dilute(row)])]
+    for row in largest:
+        if not _is_dilute(row):
+            eta = float(row["packing_fraction"])
             claims.append(
                 Claim.within(
-                    f"D over Erpenbeck and Wood's at packing fraction {eta:g}",
-                    "test",
-                    float(row["diffusion"] + row["correction"]) / expected,
-                    _error(row) / expected,
-                    1.0,
-                    theory.ERPENBECK_WOOD_UNCERTAINTY,
-                    ERPENBECK_WOOD,
-                    "correlated collisions missing, a msd not yet straight, a wrong finite-size correction",
+                    claim=f"D over Erpenbeck and Wood's at packing fraction {eta:g}",
+                    measured=_diffusion(row) / theory.erpenbeck_wood_diffusion(eta),
+                    expected=1.0,
+                    half_width=theory.ERPENBECK_WOOD_UNCERTAINTY,
+                    source=ERPENBECK_WOOD,
+                    fails_if="correlated collisions missing, a msd not yet straight, a wrong finite-size "
+                    "correction",
                 )
             )
     if bool(ds["in_series"].any()):
@@ -41,75 +40,66 @@ def msd_spheres(ds: xr.Dataset) -> list[Claim]:
     return claims + _short_times(ds, 3)
 
 
-def _error(row: xr.Dataset) -> float:
-    return float(np.hypot(row["diffusion_error"], row["correction_uncertainty"]))
+def _is_dilute(row: xr.Dataset) -> bool:
+    return bool(row["packing_fraction"] <= DILUTE * (1.0 + 1e-6))
 
 
-def _dilute_limit(ds: xr.Dataset) -> Claim:
+def _diffusion(row: xr.Dataset) -> Estimate:
+    return Estimate.of(row, "diffusion") + Estimate(row["correction"], row["correction_uncertainty"])
+
+
+def _dilute_limit(dilute: list[xr.Dataset]) -> Claim:
     """Mean of D over Enskog's at the lowest packing fractions, weighted by the errors."""
-    rows = [ds.isel(point=point) for point in np.flatnonzero(ds["largest"])]
-    rows = [row for row in rows if row["packing_fraction"] <= DILUTE * (1.0 + 1e-6)]
-    enskog = [float(theory.enskog_diffusion(float(row["packing_fraction"]), 3)) for row in rows]
-    ratios = [
-        float(row["diffusion"] + row["correction"]) / value for row, value in zip(rows, enskog, strict=True)
-    ]
-    errors = [_error(row) / value for row, value in zip(rows, enskog, strict=True)]
-    mean = combine(ratios, errors) if rows else None
+    ratios = [_diffusion(row) / theory.enskog_diffusion(float(row["packing_fraction"]), 3) for row in dilute]
+    measured = Estimate(math.nan, math.nan)
+    if ratios:
+        mean = combine([ratio.value for ratio in ratios], [ratio.error for ratio in ratios])
+        measured = Estimate(mean.value, mean.error)
     return Claim.within(
-        f"D over Enskog's in the dilute limit (packing fraction {DILUTE:g} and below)",
-        "test",
-        mean.value if mean else math.nan,
-        mean.error if mean else math.nan,
-        1.0,
-        0.02,
-        "Enskog theory, 1.01895 times the first Sonine approximation",
-        "a wrong mean free path, or a msd not yet straight; the first approximation is 1.9 % low",
-        required_uncertainty=0.005,
+        claim=f"D over Enskog's in the dilute limit (packing fraction {DILUTE:g} and below)",
+        measured=measured,
+        expected=1.0,
+        half_width=0.02,
+        required=0.005,
+        source="Enskog theory, 1.01895 times the first Sonine approximation",
+        fails_if="a wrong mean free path, or a msd not yet straight; the first approximation is 1.9 % low",
     )
 
 
 def _size_slope(ds: xr.Dataset) -> Claim:
-    series = ds.isel(point=ds["in_series"].values)
-    first = series.isel(point=0)
+    first = ds.isel(point=ds["in_series"].values).isel(point=0)
     expected = -float(first["correction"] * first["side"])
     return Claim(
-        f"slope of D against 1/L at packing fraction {float(first['packing_fraction']):g}",
-        "test",
-        ds["size_slope"],
-        ds["size_slope_error"],
-        0.15 * abs(expected),
-        expected,
-        "Yeh & Hummer 2004, with Enskog's viscosity",
-        0.05 * abs(expected),
-        "D that does not depend on the container as hydrodynamics says",
+        claim=f"slope of D against 1/L at packing fraction {float(first['packing_fraction']):g}",
+        measured=Estimate.of(ds, "size_slope"),
+        expected=Estimate(expected, 0.05 * abs(expected)),
+        required=0.15 * abs(expected),
+        source="Yeh & Hummer 2004, with Enskog's viscosity",
+        fails_if="D that does not depend on the container as hydrodynamics states",
     )
 
 
 def msd_discs(ds: xr.Dataset) -> list[Claim]:
-    """The slope of D(t) against ln t; no D, for there is none."""
+    """The slope of D(t) against ln t; no D, since none exists."""
     claims = []
-    for point in np.flatnonzero(np.isfinite(ds["logarithmic_slope"])):
-        row = ds.isel(point=point)
+    for row in rows(ds.isel(point=np.isfinite(ds["logarithmic_slope"].values)), "point"):
         eta = float(row["packing_fraction"])
         expected = float(theory.logarithmic_slope(eta))
         claims.append(
             Claim(
-                f"slope of D(t) against ln t at packing fraction {eta:g}",
-                "test",
-                row["logarithmic_slope"],
-                row["logarithmic_slope_error"],
-                0.15 * expected,
-                expected,
-                "mode coupling with Enskog's D and viscosity (Ernst, Hauge & van Leeuwen 1970; recalled)",
-                expected * _renormalisation(row),
-                "a velocity autocorrelation that has no 1/t tail, so that D exists",
+                claim=f"slope of D(t) against ln t at packing fraction {eta:g}",
+                measured=Estimate.of(row, "logarithmic_slope"),
+                expected=Estimate(expected, expected * _renormalisation(row)),
+                required=0.15 * expected,
+                source=MODE_COUPLING,
+                fails_if="a velocity autocorrelation that has no 1/t tail, so that D exists",
             )
         )
     return claims + _short_times(ds, 2)
 
 
 def _renormalisation(row: xr.Dataset) -> float:
-    """Relative uncertainty of the predicted slope: what the measured D(t) for Enskog's D would change."""
+    """Relative uncertainty of the predicted slope: its change if the measured D(t) replaces Enskog's D."""
     eta = float(row["packing_fraction"])
     enskog = float(theory.enskog_diffusion(eta, 2))
     middle = math.sqrt(float(row["fit_from"]) * float(row["fit_to"]))
@@ -121,31 +111,27 @@ def _renormalisation(row: xr.Dataset) -> float:
 def _short_times(ds: xr.Dataset, dimension: int) -> list[Claim]:
     """From the finely sampled runs: the ballistic start, and Einstein's D(t) against Green and Kubo's."""
     claims = []
-    for point in np.flatnonzero(np.isfinite(ds["integral_difference"])):
-        row = ds.isel(point=point)
-        eta = float(row["packing_fraction"])
-        first = row.isel(lag=1)
+    for row in rows(ds.isel(point=np.isfinite(ds["integral_difference"].values)), "point"):
+        eta, first = float(row["packing_fraction"]), row.isel(lag=1)
         ballistic = theory.enskog_mean_squared_displacement(float(first["time"]), eta, dimension)
         claims += [
             Claim.within(
-                f"Green-Kubo integral over Einstein slope at packing fraction {eta:g}",
-                "identity",
-                1.0 + float(row["integral_difference"]),
-                row["integral_difference_error"],
-                1.0,
-                0.01,
-                "stationarity (exact)",
-                "displacements that are not the integral of the velocities, or sampling too coarse",
+                claim=f"Green-Kubo integral over Einstein slope at packing fraction {eta:g}",
+                kind="identity",
+                measured=Estimate.of(row, "integral_difference") + 1.0,
+                expected=1.0,
+                half_width=0.01,
+                source="stationarity (exact)",
+                fails_if="displacements that are not the integral of the velocities, or sampling too coarse",
             ),
             Claim.within(
-                f"msd over Enskog's after {float(row['interval']):.2g} collisions, packing fraction {eta:g}",
-                "test",
-                float(first["msd"]) / ballistic,
-                float(first["msd_error"]) / ballistic,
-                1.0,
-                0.005,
-                "exponential velocity autocorrelation, 2 to 3 % of whose rate matter (Enskog)",
-                "a wrong temperature, time or initial decay of the velocity",
+                claim=f"msd over Enskog's after {float(row['interval']):.2g} collisions, "
+                f"packing fraction {eta:g}",
+                measured=Estimate.of(first, "msd") / ballistic,
+                expected=1.0,
+                half_width=0.005,
+                source="exponential velocity autocorrelation, 2 to 3 % of whose rate matter (Enskog)",
+                fails_if="a wrong temperature, time or initial decay of the velocity",
             ),
         ]
     return claims

@@ -1,4 +1,4 @@
-"""What is claimed of the scenes that are drawn."""
+"""Claims about the scenes that are drawn."""
 
 from __future__ import annotations
 
@@ -7,87 +7,79 @@ import math
 import xarray as xr
 
 from gaspart import theory
-from gaspart.claims import Claim
+from gaspart.claims import Claim, Estimate
 
 
 def gas_render(ds: xr.Dataset) -> list[Claim]:
-    """All are there, as thin as the source says, put right by each step, with Maxwell's mean speed."""
+    """All are present, as dilute as the source states, without overlaps after a step, with Maxwell's mean
+    speed."""
     resolved = float(ds["resolved"])
     expected = 2.0 * resolved**2 / ds.attrs["count"]
     scatter = math.sqrt(max(expected, 1.0))
-    temperature = float(ds["mean_square_speed"]) / 3.0
     return [
-        _all_there(ds),
+        _number(ds),
         Claim.within(
-            "packing fraction of the spheres drawn",
-            "reproduction",
-            _drawn_fraction(ds),
-            0.0,
-            0.001,
-            0.0005,
-            "Frederickx and Meerts (2010): about 0.1 %",
-            "another radius or container than the source's",
+            claim="packing fraction of the spheres drawn",
+            kind="reproduction",
+            measured=Estimate(_drawn_fraction(ds)),
+            expected=0.001,
+            half_width=0.0005,
+            source="Frederickx and Meerts (2010): about 0.1 %",
+            fails_if="another radius or container than the source's",
         ),
         Claim(
-            "pairs that overlap at the end of a step",
-            "test",
-            ds["overlaps"],
-            scatter,
-            scatter,
-            expected,
-            f"next to none of the {resolved:.3g} found: a body in two contacts (at most, Poisson)",
-            fails_if="overlaps that a step finds and does not put right",
+            claim="pairs that overlap at the end of a step",
+            measured=Estimate(ds["overlaps"], scatter),
+            expected=expected,
+            required=scatter,
+            source=f"almost none of the {resolved:.3g} found: a particle in two contacts (at most, Poisson)",
+            fails_if="overlaps that a step finds and does not resolve",
         ),
         Claim(
-            "mean speed",
-            "test",
-            ds["mean_speed"],
-            ds["mean_speed_error"],
-            0.02 * float(ds["mean_speed"]),
-            float(theory.mean_speed(3, temperature)),
-            "Maxwell at the temperature <v^2>/3",
+            claim="mean speed",
+            measured=Estimate.of(ds, "mean_speed"),
+            expected=theory.mean_speed(3, float(ds["mean_square_speed"]) / 3.0),
+            required=0.02 * float(ds["mean_speed"]),
+            source="Maxwell at the temperature <v^2>/3",
             fails_if="speeds that are not Maxwell's",
         ),
     ]
 
 
 def brownian_render(ds: xr.Dataset) -> list[Claim]:
-    """All are there, and none overlaps another."""
+    """All are present, and none overlaps another."""
     return [
-        _all_there(ds),
+        _number(ds),
         Claim(
-            "pairs that overlap",
-            "identity",
-            ds["overlaps"],
-            0.0,
-            0.0,
-            0.0,
-            "hard spheres (exact)",
-            fails_if="a body that has got into another",
+            claim="pairs that overlap",
+            kind="identity",
+            measured=Estimate(ds["overlaps"]),
+            expected=0.0,
+            required=0.0,
+            source="hard spheres (exact)",
+            fails_if="a particle that has entered another",
         ),
         Claim(
-            "packing fraction of the spheres drawn",
-            "identity",
-            _drawn_fraction(ds),
-            1e-12,
-            1e-9,
-            ds.attrs["packing_fraction"],
-            "the scene's",
-            fails_if="a body that is not drawn, or not in its size",
+            claim="packing fraction of the spheres drawn",
+            kind="identity",
+            measured=Estimate(_drawn_fraction(ds), 1e-12),
+            expected=ds.attrs["packing_fraction"],
+            required=1e-9,
+            source="the scene's",
+            fails_if="a particle that is not drawn, or not in its size",
         ),
     ]
 
 
-def _all_there(ds: xr.Dataset) -> Claim:
+def _number(ds: xr.Dataset) -> Claim:
     return Claim(
-        "spheres drawn",
-        "identity",
-        ds.sizes["body"],
-        0.0,
-        0.0,
-        ds.attrs["count"],
-        "the scene's number of bodies",
-        fails_if="a body that is lost",
+        claim="spheres drawn",
+        kind="identity",
+        measured=Estimate(ds.sizes["body"]),
+        expected=ds.attrs["count"],
+        required=0.0,
+        source="the scene's number of particles",
+        fails_if="a particle that is lost",
     )
 
 

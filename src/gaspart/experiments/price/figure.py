@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from gaspart.experiments.price.claims import DEAREST
+from gaspart.experiments.price.claims import LARGEST_RATIO
 from gaspart.rendering import style
 
 ENGINES = ("event", "step")
@@ -21,7 +21,7 @@ def price_of_features(ds: xr.Dataset) -> Figure:
     names = list(dict.fromkeys(ds["feature"].values))
     place = {name: -k for k, name in enumerate(names)}
     left.axvline(1.0, color=style.GREY, linewidth=0.6, zorder=1)
-    left.axvspan(0.0, DEAREST, color=style.GREY, alpha=0.18, linewidth=0, zorder=0)
+    left.axvspan(0.0, LARGEST_RATIO, color=style.GREY, alpha=0.18, linewidth=0, zorder=0)
     for kind, engine in enumerate(ENGINES):
         one = ds.isel(point=np.flatnonzero(ds["engine"].values == engine))
         if not one.sizes["point"]:

@@ -1,4 +1,4 @@
-"""What the figure of one packing fraction at several radii claims."""
+"""Claims about one packing fraction at several radii."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.statistics import combine, fit_power_law
-from gaspart.claims import Claim
+from gaspart.claims import Claim, Estimate
+from gaspart.experiments.shared.claims import deviations
 
 
 def radius_grid(dataset: xr.Dataset) -> list[Claim]:
@@ -18,7 +19,7 @@ def radius_grid(dataset: xr.Dataset) -> list[Claim]:
         _same_state(same),
         _reference(other),
         _crossings(event),
-        _lens(same),
+        _scale_invariance(same),
         _pair_tests(step),
     ]
 
@@ -28,70 +29,57 @@ def _same_state(same: xr.Dataset) -> Claim:
     mean = combine(same["Z"].values, same["Z_error"].values)
     radii, eta = same["radius"].values, float(same["packing_fraction"][0])
     return Claim.chi_square(
-        f"one Z at packing fraction {eta:.3g} for all radii, {radii.min():.3g} "
+        claim=f"one Z at packing fraction {eta:.3g} for all radii, {radii.min():.3g} "
         f"to {radii.max():.3g} (N = {int(same['count'].min())} to {int(same['count'].max())}), "
         "corrected to first order in 1/N (chi-square per degree of freedom about their mean)",
-        "test",
-        mean.chi_square,
-        mean.degrees_of_freedom,
-        "hard spheres have no length but their diameter: Z is a function of the packing fraction",
-        "anything depends on the radius but through the packing fraction, or the 1/N correction is wrong",
+        chi_square=mean.chi_square,
+        degrees_of_freedom=mean.degrees_of_freedom,
+        source="hard spheres have no length but their diameter: Z is a function of the packing fraction",
+        fails_if="something depends on the radius other than through the packing fraction, or the 1/N "
+        "correction is wrong",
     )
 
 
 def _reference(other: xr.Dataset) -> Claim:
-    spread = np.hypot(other["Z_error"], other["reference_error"])
-    sigmas = ((other["Z"] - other["reference"]) / spread).values
-    return Claim.chi_square(
-        f"Z of N = {int(other['count'][0])} at all radii against the equation of state "
-        "(chi-square per degree of freedom)",
-        "test",
-        float(np.sum(sigmas**2)),
-        sigmas.size,
-        "Kolafa, Labík and Malijevský 2004, shifted to first order in 1/N",
-        "Z is biased at some radius",
+    return Claim.joint(
+        claim=f"Z of N = {int(other['count'][0])} at all radii against the equation of state",
+        deviations=deviations(other, "Z", "reference"),
+        source="Kolafa, Labík and Malijevský 2004, shifted to first order in 1/N",
+        fails_if="Z is biased at some radius",
     )
 
 
 def _crossings(event: xr.Dataset) -> Claim:
-    sigmas = ((event["crossings"] - 1.0) / event["crossings_error"]).values
-    return Claim.chi_square(
-        "crossings of box boundaries per body and time over d <|v_x|> (n-1)/L, all radii "
-        "(chi-square per degree of freedom)",
-        "test",
-        float(np.sum(sigmas**2)),
-        sigmas.size,
-        "kinetic theory, exact in equilibrium",
-        "crossings are missed or counted twice, or velocities are not Maxwellian",
+    return Claim.joint(
+        claim="crossings of box boundaries per particle and time over d <|v_x|> (n-1)/L, all radii",
+        deviations=(event["crossings"] - 1.0) / event["crossings_error"],
+        source="kinetic theory, exact in equilibrium",
+        fails_if="crossings are missed or counted twice, or velocities are not Maxwellian",
     )
 
 
-def _lens(same: xr.Dataset) -> Claim:
-    """The exponent of a collision's cost against the radius at one packing fraction: none."""
+def _scale_invariance(same: xr.Dataset) -> Claim:
+    """The exponent of a collision's cost against the radius at one packing fraction is 0."""
     law = fit_power_law(same["radius"].values, same["pair_tests"].values)
     return Claim.within(
-        "exponent of the event-driven engine's pair tests per collision, "
+        claim="exponent of the event-driven engine's pair tests per collision, "
         "against the radius at one packing fraction",
-        "test",
-        law.exponent,
-        law.exponent_error,
-        0.0,
-        0.05,
-        "scale invariance: the same gas, enlarged, but for bodies that come round the container (order 1/n)",
-        "the cost of a collision depends on the number of bodies",
+        measured=Estimate(law.exponent, law.exponent_error),
+        expected=0.0,
+        half_width=0.05,
+        source="scale invariance: the same gas, enlarged, except for periodic images (order 1/n)",
+        fails_if="the cost of a collision depends on the number of particles",
     )
 
 
 def _pair_tests(step: xr.Dataset) -> Claim:
     ratios = (step["pair_tests"] / step["pair_tests_expected"]).values
     return Claim.within(
-        "pair tests per body and step over those expected, time-stepped, mean over all radii",
-        "test",
-        float(ratios.mean()),
-        float(ratios.std(ddof=1) / np.sqrt(ratios.size)),
-        1.0,
-        0.01,
-        "half of the bodies in 3^d boxes, less the hole that each makes: "
+        claim="pair tests per particle and step over those expected, time-stepped, mean over all radii",
+        measured=Estimate(ratios.mean(), ratios.std(ddof=1) / np.sqrt(ratios.size)),
+        expected=1.0,
+        half_width=0.01,
+        source="half of the particles in 3^d boxes, minus the hole that each makes: "
         "f N + (S - 1) - f S, 1/S = d(eta Z)/d eta",
-        "pairs are tested twice or missed, or bodies are kept in wrong boxes",
+        fails_if="pairs are tested twice or missed, or particles are kept in wrong boxes",
     )

@@ -1,151 +1,160 @@
-"""What the scaling figures claim. Source A: Frederickx and Meerts 2010; C: Spencer 2022.
+"""Claims about scaling. Source A: Frederickx and Meerts 2010; C: Spencer 2022.
 
 Work is counted, so it is judged strictly. Times belong to a machine and a program: what the sources report
 of theirs is a reproduction, in which disagreement is a result and not a fault.
 """
 
+from __future__ import annotations
+
 import math
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from gaspart.claims import Claim
+from gaspart.claims import Claim, Estimate
+from gaspart.experiments.shared.claims import rows
 
 A = "Frederickx & Meerts 2010"
 C = "Spencer 2022"
 YEAR = 365.25 * 86400.0
 _INTERVAL = 2.0 * 1.96  # a 95 % interval in standard errors
-_OTHER_MACHINE = "another machine or program weighs tests and boxes differently"
+_OTHER_CAUSE = "something other than the pair tests takes the time"
 
 
-def _exponent(
-    kind: str,
-    what: str,
-    ds: xr.Dataset,
-    name: str,
-    expected: float,
-    half_width: float,
-    source: str,
-    fails_if: str,
-) -> Claim:
-    """The exponent ``name`` of a dataset lies in a band."""
-    value, error = float(ds[name]), float(ds[f"{name}_error"])
-    what = f"exponent of the {what}"
-    return Claim.within(what, kind, value, error, expected, half_width, source, fails_if)
+def _exponent(what: str, ds: xr.Dataset, name: str = "exponent", **others: Any) -> Claim:
+    """The exponent `name` of a dataset lies in a band. others: as of `Claim.within`."""
+    return Claim.within(claim=f"exponent of the {what}", measured=Estimate.of(ds, name), **others)
 
 
-def _all_pairs(what: str, excess: float) -> Claim:
+def _all_pairs(what: str, excess: xr.DataArray) -> Claim:
     """Counted pair tests are N(N-1)/2."""
-    claim = f"{what}: largest relative difference of the pair tests from N(N-1)/2"
-    fails_if = "a pair is tested twice, or not at all"
-    return Claim(claim, "identity", excess, 0.0, 1e-12, 0.0, "each pair once", fails_if=fails_if)
+    return Claim(
+        claim=f"{what}: largest relative difference of the pair tests from N(N-1)/2",
+        kind="identity",
+        measured=Estimate(excess),
+        expected=0.0,
+        required=1e-12,
+        source="each pair once",
+        fails_if="a pair is tested twice, or not at all",
+    )
+
+
+def _ideal_number(gas: str, ideal: Estimate, source_number: float, source: str) -> Claim:
+    """The ideal number of boxes per particle is the source's, to 10 %."""
+    return Claim(
+        claim=f"ideal number of boxes per particle, {gas}",
+        kind="reproduction",
+        measured=ideal,
+        expected=Estimate(source_number, 0.1 * source_number),
+        required=0.3 * ideal.value,
+        source=source,
+        fails_if="another machine or program has other relative costs of tests and boxes",
+    )
 
 
 def naive_scaling(ds: xr.Dataset) -> list[Claim]:
-    """Quadratic: exactly in pair tests, and in time as far as the caches let it be."""
-    fails_if = "something else than the pair tests takes the time"
+    """Quadratic: exactly in pair tests, and in time as far as the caches permit."""
     return [
         _all_pairs("one box, every step", ds.tests_excess),
         _exponent(
-            "test", "time per step in N, one box", ds, "exponent", 2.0, 0.15, f"{A}, figure 3", fails_if
+            "time per step in N, one box",
+            ds,
+            expected=2.0,
+            half_width=0.15,
+            source=f"{A}, figure 3",
+            fails_if=_OTHER_CAUSE,
         ),
     ]
 
 
 def box_count(ds: xr.Dataset) -> list[Claim]:
-    """An optimum exists, the counts are those expected, and round widths are no quicker."""
-    seconds = ds.seconds.values
-    error = ds.seconds_error.values / seconds
-    best = int(np.argmin(seconds))
+    """An optimum exists, the counts are those expected, and round widths are no faster."""
+    relative = ds.seconds_error.values / ds.seconds.values
+    seconds = [Estimate(t, t * e) for t, e in zip(ds.seconds.values, relative, strict=True)]
+    least = min(seconds, key=lambda time: time.value)
     claims = []
     for name, at, bound in (("one box", 0, 10.0), ("the most boxes", -1, 1.5)):
-        ratio = seconds[at] / seconds[best]
-        spread = ratio * math.hypot(error[at], error[best])
-        what = f"there is an optimum: time with {name} over the least"
-        fails_if = "time rises or falls with the number of boxes throughout"
+        ratio = seconds[at] / least
         claims.append(
-            Claim.at_least(what, "test", ratio, spread, 0.25 * ratio, bound, f"{A}, figure 4", fails_if)
+            Claim.at_least(
+                claim=f"there is an optimum: time with {name} over the least",
+                measured=ratio,
+                bound=bound,
+                required=0.25 * ratio.value,
+                source=f"{A}, figure 4",
+                fails_if="time rises or falls with the number of boxes throughout",
+            )
         )
-    return claims + _counts(ds) + [_ideal_number(ds)] + _round_widths(ds) + _sectors(ds)
+    # The source's figure 6 at this number of particles.
+    ideal = Estimate(ds.ideal, (ds.ideal_high - ds.ideal_low) / _INTERVAL)
+    gas = f"N = {int(ds['count'])}, r = {float(ds.radius):g}"
+    number = _ideal_number(gas, ideal, float(ds.source_boxes_per_body), f"{A}, figure 6")
+    return [*claims, *_counts(ds), number, *_round_widths(ds), *_sectors(ds)]
 
 
 def _counts(ds: xr.Dataset) -> list[Claim]:
-    """Pair tests (where there is about one a body) and box visits (everywhere) are those expected."""
+    """Pair tests (where there is about one a particle) and box visits (everywhere) are those expected."""
     source = "uniform density, gaspart.theory.partition"
     one = ds.isel(scan=int(np.argmin(np.abs(ds.expected_tests.values - 1.0))))
     visits = (ds.box_visits / ds.expected_visits).values
-    farthest = visits[np.argmax(np.abs(visits - 1.0))]
     return [
         Claim(
-            f"pair tests per body and step, {int(one.boxes_per_side)} boxes per side",
-            "test",
-            one.pair_tests,
-            one.tests_spread,
-            0.05,
-            one.expected_tests,
-            source,
-            fails_if="pairs are overlooked or tested twice, or the gas is not uniform",
+            claim=f"pair tests per particle and step, {int(one.boxes_per_side)} boxes per side",
+            measured=Estimate(one.pair_tests, one.tests_spread),
+            expected=one.expected_tests,
+            required=0.05,
+            source=source,
+            fails_if="pairs are missed or tested twice, or the gas is not uniform",
         ),
         Claim.within(
-            "box visits per body over those expected, the scan's farthest",
-            "test",
-            farthest,
-            visits.std(ddof=1),
-            1.0,
-            0.02,
-            source,
-            "boxes are left out or looked into twice",
+            claim="box visits per particle over those expected, the scan's largest deviation",
+            measured=Estimate(visits[np.argmax(np.abs(visits - 1.0))], visits.std(ddof=1)),
+            expected=1.0,
+            half_width=0.02,
+            source=source,
+            fails_if="boxes are omitted or searched twice",
         ),
     ]
 
 
-def _ideal_number(ds: xr.Dataset) -> Claim:
-    """The source's figure 6 at this number of bodies."""
-    return Claim(
-        f"ideal number of boxes per body, N = {int(ds['count'])}, r = {float(ds.radius):g}",
-        "reproduction",
-        ds.ideal,
-        (ds.ideal_high - ds.ideal_low) / _INTERVAL,
-        0.3 * ds.ideal,
-        ds.source_boxes_per_body,
-        f"{A}, figure 6",
-        expected_uncertainty=0.1 * float(ds.source_boxes_per_body),
-        fails_if=_OTHER_MACHINE,
-    )
-
-
 def _round_widths(ds: xr.Dataset) -> list[Claim]:
     """The source's explanation of its plateaus, tested."""
-    widths = float(ds.container_side[0]) / ds.round_per_side.values
+    side = float(ds.container_side[0])
     return [
         Claim(
-            f"ln of time saved by boxes of width {width:g} for being a power of two",
-            "test",
-            advantage,
-            spread,
-            0.02,
-            0.0,
-            f"arithmetic does not care; {A}, section 3.4, holds that it does",
-            fails_if="boxes whose width is a power of two make a step quicker",
+            claim=f"ln of time saved by boxes of width {side / float(power.round_per_side):g} for being a "
+            "power of two",
+            measured=Estimate.of(power, "advantage"),
+            expected=0.0,
+            required=0.02,
+            source=f"arithmetic does not depend on it; {A}, section 3.4, states that it does",
+            fails_if="boxes whose width is a power of two make a step faster",
         )
-        for width, advantage, spread in zip(
-            widths, ds.advantage.values, ds.advantage_error.values, strict=True
-        )
+        for power in rows(ds, "power")
     ]
 
 
 def _sectors(ds: xr.Dataset) -> list[Claim]:
     """What a sector costs the event-driven engine."""
-    value, error = float(ds.crossing_searches), float(ds.crossing_searches_error)
-    source = f"{C}, section 4.4: of the nine adjacent sectors, three are new"
-    fails_if = "searches look farther than the adjacent sectors, or overlook some"
-    what = "crossings per event in the number of planes between sectors"
-    theory, lost = "free flight through uniform density", "crossings are lost or made up"
     return [
         Claim.within(
-            "neighbourhoods searched at a crossing", "test", value, error, 1.0 / 3.0, 0.05, source, fails_if
+            claim="neighbourhoods searched at a crossing",
+            measured=Estimate.of(ds, "crossing_searches"),
+            expected=1.0 / 3.0,
+            half_width=0.05,
+            source=f"{C}, section 4.4: of the nine adjacent sectors, three are new",
+            fails_if="searches extend beyond the adjacent sectors, or miss some",
         ),
-        _exponent("test", what, ds, "crossing_exponent", 1.0, 0.05, theory, lost),
+        _exponent(
+            "crossings per event in the number of planes between sectors",
+            ds,
+            "crossing_exponent",
+            expected=1.0,
+            half_width=0.05,
+            source="free flight through uniform density",
+            fails_if="missed or spurious crossings",
+        ),
     ]
 
 
@@ -154,145 +163,159 @@ def ideal_boxes(ds: xr.Dataset) -> list[Claim]:
     worst = ds.isel(gas=int(np.nanargmax(ds.penalty.values)))
     ratio = np.log(ds.model / ds.ideal).values
     ratio = ratio[ds.ideal_interior.values.astype(bool) & np.isfinite(ratio)]
-    enough = ratio.size > 1
+    model = Estimate(math.nan, math.nan)
+    if ratio.size > 1:
+        model = Estimate(ratio.mean(), ratio.std(ddof=1) / math.sqrt(ratio.size))
     claims = [
         Claim.at_most(
-            f"time with {float(ds.rule):g} boxes per body over the least, the worst of all gases",
-            "test",
-            float(worst.penalty),
-            float(worst.penalty_error),
-            0.1,
-            1.25,
-            f"{A}, section 3.5: ideal is roughly ten",
-            "the source's rule is far from the minimum on this machine",
+            claim=f"time with {float(ds.rule):g} boxes per particle over the least, the worst of all gases",
+            measured=Estimate.of(worst, "penalty"),
+            bound=1.25,
+            required=0.1,
+            source=f"{A}, section 3.5: ideal is roughly ten",
+            fails_if="the source's rule is far from the minimum on this machine",
         ),
         Claim.within(
-            "ln of the ideal number by counted work over that by time, mean of the gases",
-            "test",
-            ratio.mean() if enough else math.nan,
-            ratio.std(ddof=1) / math.sqrt(ratio.size) if enough else math.nan,
-            0.0,
-            0.3,
-            "(3^d c_test / 2 c_box)^(1/2), gaspart.theory.partition",
-            "something else than pair tests and boxes decides the optimum",
+            claim="ln of the ideal number by counted work over that by time, mean of the gases",
+            measured=model,
+            expected=0.0,
+            half_width=0.3,
+            source="(3^d c_test / 2 c_box)^(1/2), gaspart.theory.partition",
+            fails_if="something other than pair tests and boxes determines the optimum",
         ),
     ]
-    source, fails_if = (
-        f"{A}, figures 5 to 7: linear",
-        "the ideal number per body depends on N, as when caches overflow",
-    )
-    for n in range(ds.sizes["series"]):
-        series = ds.isel(series=n)
-        what = f"ideal number of boxes in N, r = {float(series.series_radius):g}"
-        claims.append(_exponent("reproduction", what, series, "exponent", 1.0, 0.4, source, fails_if))
-    for n in range(ds.sizes["source"]):
-        claims += _source_numbers(ds.isel(source=n), f"{A}, figure {5 + n}")
+    claims += [
+        _exponent(
+            f"ideal number of boxes in N, r = {float(series.series_radius):g}",
+            series,
+            kind="reproduction",
+            expected=1.0,
+            half_width=0.4,
+            source=f"{A}, figures 5 to 7: linear",
+            fails_if="the ideal number per particle depends on N, as when caches overflow",
+        )
+        for series in rows(ds, "series")
+    ]
+    for number, source in enumerate(rows(ds, "source"), start=5):
+        claims += _source_numbers(source, f"{A}, figure {number}")
     return claims
 
 
 def _source_numbers(source: xr.Dataset, origin: str) -> list[Claim]:
-    """The source's number for one gas: is it the ideal one, and if not, how much slower?
+    """Whether the source's number for one gas is the ideal one, and how much slower it is.
 
-    If no minimum lies between the partitions timed, its interval is infinite and the claim inconclusive."""
-    number, ideal = float(source.source_number), float(source.source_ideal)
-    name = f"N = {int(source.source_count)}, r = {float(source.source_radius):g}"
+    If no minimum lies between the timed partitions, its interval is infinite and the claim inconclusive."""
+    number = float(source.source_number)
+    gas = f"N = {int(source.source_count)}, r = {float(source.source_radius):g}"
+    interval = float(source.source_ideal_high - source.source_ideal_low)
     return [
-        Claim(
-            f"ideal number of boxes per body, {name}",
-            "reproduction",
-            ideal,
-            float(source.source_ideal_high - source.source_ideal_low) / _INTERVAL,
-            0.3 * ideal,
-            number,
-            origin,
-            expected_uncertainty=0.1 * number,
-            fails_if=_OTHER_MACHINE,
-        ),
+        _ideal_number(gas, Estimate(source.source_ideal, interval / _INTERVAL), number, origin),
         Claim.at_most(
-            f"time with {number:g} boxes per body over the least, {name}",
-            "reproduction",
-            float(source.source_penalty),
-            float(source.source_penalty_error),
-            0.05,
-            1.1,
-            origin,
-            "the source's number is far from the minimum on this machine",
+            claim=f"time with {number:g} boxes per particle over the least, {gas}",
+            kind="reproduction",
+            measured=Estimate.of(source, "source_penalty"),
+            bound=1.1,
+            required=0.05,
+            source=origin,
+            fails_if="the source's number is far from the minimum on this machine",
         ),
     ]
 
 
 def linear_scaling(ds: xr.Dataset) -> list[Claim]:
     """Linear in counted work; in time, the source's three regimes; and its years of the naive method."""
-    what, source = "pair tests and box visits per step in N, cheapest partition", f"{A}, section 1.2"
-    claims = [
-        _exponent("test", what, ds, "work_exponent", 1.0, 0.05, source, "the work per body depends on N")
-    ]
-    for n in range(ds.sizes["part"]):
-        part = ds.isel(part=n)
-        what = f"time per step in N, N = {int(part.part_low)} to {int(part.part_high)}"
-        source, slow = f"{A}, figure {8 + n}", "the time per body depends on N, as when caches overflow"
-        if n == 1:
-            value, error, source = float(part.exponent), float(part.exponent_error), f"{source}: superlinear"
-            bound = (value, error, 0.15, 1.0, source, "larger gases are no slower per body")
-            claims.append(Claim.at_least(f"exponent of the {what}", "reproduction", *bound))
-        else:
-            claims.append(
-                _exponent("reproduction", what, part, "exponent", 1.0, 0.1, f"{source}: linear", slow)
-            )
     slowest = ds.isel(listed=int(np.nanargmax(ds.list_share.values)))
-    claims.append(
+    ratio = Estimate.of(ds, "extrapolated_ratio") * 27.0
+    return [
+        _exponent(
+            "pair tests and box visits per step in N, cheapest partition",
+            ds,
+            "work_exponent",
+            expected=1.0,
+            half_width=0.05,
+            source=f"{A}, section 1.2",
+            fails_if="the work per particle depends on N",
+        ),
+        *(_regime(part, number) for number, part in enumerate(rows(ds, "part"), start=8)),
         Claim.at_most(
-            "time with a neighbour list over the cheapest partition's, the worst of all gases",
-            "test",
-            float(slowest.list_share),
-            float(slowest.list_share_error),
-            0.1,
-            0.5,
-            "most steps test the pairs of the list alone; boxes are filled and looked into in every step",
-            "a list costs more than it saves",
-        )
-    )
-    ratio, error = 27.0 * float(ds.extrapolated_ratio), 27.0 * float(ds.extrapolated_ratio_error)
-    claims.append(
+            claim="time with a neighbour list over the cheapest partition's, the worst of all gases",
+            measured=Estimate.of(slowest, "list_share"),
+            bound=0.5,
+            required=0.1,
+            source="most steps test the pairs of the list alone; boxes are filled and searched in every step",
+            fails_if="a list costs more than it saves",
+        ),
         Claim(
-            f"log10 of time, one box scanned 27 times over best partition, N = {int(ds.extrapolated_count)}",
-            "reproduction",
-            math.log10(ratio),
-            error / ratio / math.log(10.0),
-            0.1,
-            math.log10(float(ds.source_years) * YEAR),
-            f"{A}, section 3.4: {float(ds.source_years):g} years instead of a second",
+            claim="log10 of time, one box scanned 27 times over best partition, "
+            f"N = {int(ds.extrapolated_count)}",
+            kind="reproduction",
+            measured=Estimate(math.log10(ratio.value), ratio.error / ratio.value / math.log(10.0)),
+            expected=math.log10(float(ds.source_years) * YEAR),
+            required=0.1,
+            source=f"{A}, section 3.4: {float(ds.source_years):g} years instead of a second",
             fails_if="the source's years are not those of one step",
+        ),
+    ]
+
+
+def _regime(part: xr.Dataset, number: int) -> Claim:
+    """One of the source's figures 8 to 10: linear, but for the superlinear 9."""
+    what = f"time per step in N, N = {int(part.part_low)} to {int(part.part_high)}"
+    source = f"{A}, figure {number}"
+    if number == 9:
+        return Claim.at_least(
+            claim=f"exponent of the {what}",
+            kind="reproduction",
+            measured=Estimate.of(part, "exponent"),
+            bound=1.0,
+            required=0.15,
+            source=f"{source}: superlinear",
+            fails_if="larger gases are no slower per particle",
         )
+    return _exponent(
+        what,
+        part,
+        kind="reproduction",
+        expected=1.0,
+        half_width=0.1,
+        source=f"{source}: linear",
+        fails_if="the time per particle depends on N, as when caches overflow",
     )
-    return claims
 
 
 def event_scaling(ds: xr.Dataset) -> list[Claim]:
     """How the cost of an event grows with N, by each search."""
     claims = [_all_pairs("all pairs, every event", ds.pairs_excess)]
-    expected = {
-        "pairs": (2.0, "4.2: all pairs"),
-        "direct": (1.0, "4.3: a queue"),
-        "boxes": (0.0, "4.4: sectors"),
-    }
-    for n in range(ds.sizes["method"]):
-        method = ds.isel(method=n)
+    for method in rows(ds, "method"):
         search = str(method.method_search.values)
-        power, section = expected[search]
-        source, where = (
-            f"{C}, section {section}",
-            f'per event in N, search "{search}", {int(method.method_dimension)}D',
-        )
-        more = "the search looks at more bodies than it should"
+        power, section = {
+            "pairs": (2.0, "4.2: all pairs"),
+            "direct": (1.0, "4.3: a queue"),
+            "boxes": (0.0, "4.4: sectors"),
+        }[search]
+        where = f'per event in N, search "{search}", {int(method.method_dimension)}D'
+        common: dict[str, Any] = {"expected": power, "source": f"{C}, section {section}"}
         claims.append(
-            _exponent("test", f"pair tests {where}", method, "work_exponent", power, 0.05, source, more)
+            _exponent(
+                f"pair tests {where}",
+                method,
+                "work_exponent",
+                half_width=0.05,
+                fails_if="the search tests more particles than it should",
+                **common,
+            )
         )
         if power > 0.0:
-            other = "something else than the pair tests takes the time"
-            claims.append(_exponent("test", f"time {where}", method, "exponent", power, 0.2, source, other))
+            claims.append(_exponent(f"time {where}", method, half_width=0.2, fails_if=_OTHER_CAUSE, **common))
         else:
-            value, error = float(method.exponent), float(method.exponent_error)
-            bound = (value, error, 0.1, 0.4, "constant work; caches", "the queue's cost grows with N")
-            claims.append(Claim.at_most(f"exponent of the time {where}", "test", *bound))
+            claims.append(
+                Claim.at_most(
+                    claim=f"exponent of the time {where}",
+                    measured=Estimate.of(method, "exponent"),
+                    bound=0.4,
+                    required=0.1,
+                    source="constant work; caches",
+                    fails_if="the queue's cost grows with N",
+                )
+            )
     return claims

@@ -1,4 +1,4 @@
-"""What the figure about the memory of velocities claims."""
+"""Claims about the velocity autocorrelation."""
 
 from __future__ import annotations
 
@@ -8,29 +8,25 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.claims import Claim
-
-NAMES = {2: "discs", 3: "spheres"}
-MODE_COUPLING = "mode coupling with Enskog's D and viscosity (Ernst, Hauge & van Leeuwen 1970; recalled)"
+from gaspart.claims import Claim, Estimate
+from gaspart.experiments.shared.claims import MODE_COUPLING, PARTICLES, rows
 
 
 def velocity_autocorrelation(ds: xr.Dataset) -> list[Claim]:
     """The initial decay, which is exact, and the amplitude and exponent of the long-time tail."""
     claims = []
-    for row in (ds.isel(point=k) for k in range(ds.sizes["point"])):
+    for row in rows(ds, "point"):
         dimension, eta = int(row["dimension"]), float(row["packing_fraction"])
-        which = f"{NAMES[dimension]}, packing fraction {eta:.2g}"
+        which = f"{PARTICLES[dimension]}, packing fraction {eta:.2g}"
         if np.isfinite(row["start_rate"]):
-            exact = 2.0 / dimension
             claims.append(
                 Claim(
-                    f"initial decay of C(t) over 2 nu / d, {which}",
-                    "test",
-                    float(row["start_rate"]) / exact,
-                    float(row["start_rate_error"]) / exact,
-                    0.005,
-                    1.0,
-                    "Enskog, exact at the start: contacts of equilibrium, velocities not yet correlated",
+                    claim=f"initial decay of C(t) over 2 nu / d, {which}",
+                    measured=Estimate.of(row, "start_rate") / (2.0 / dimension),
+                    expected=1.0,
+                    required=0.005,
+                    source="Enskog, exact at the start: contacts of equilibrium, velocities not yet "
+                    "correlated",
                     fails_if="a wrong collision rate or impulse",
                 )
             )
@@ -38,26 +34,20 @@ def velocity_autocorrelation(ds: xr.Dataset) -> list[Claim]:
             window = f"collisions {float(row['tail_from']):.3g} to {float(row['tail_to']):.3g}, {which}"
             claims += [
                 Claim(
-                    f"long-time tail over ((d-1)/(d rho)) [4 pi (D+nu) t]^(-d/2), {window}",
-                    "test",
-                    float(row["tail_ratio"]),
-                    float(row["tail_ratio_error"]),
-                    0.05,
-                    1.0,
-                    MODE_COUPLING,
-                    spreading_uncertainty(dimension, eta),
-                    "no vortex forms about a moving body, or the wrong viscosity spreads it",
+                    claim=f"long-time tail over ((d-1)/(d rho)) [4 pi (D+nu) t]^(-d/2), {window}",
+                    measured=Estimate.of(row, "tail_ratio"),
+                    expected=Estimate(1.0, spreading_uncertainty(dimension, eta)),
+                    required=0.05,
+                    source=MODE_COUPLING,
+                    fails_if="no vortex forms about a moving particle, or the wrong viscosity spreads it",
                 ),
                 Claim(
-                    f"exponent of the long-time tail, {window}",
-                    "test",
-                    float(row["tail_exponent"]),
-                    float(row["tail_exponent_error"]),
-                    0.1 * dimension,
-                    -0.5 * dimension,
-                    MODE_COUPLING,
-                    0.05 * dimension,
-                    "an exponential decay, or momentum that spreads otherwise than by diffusion",
+                    claim=f"exponent of the long-time tail, {window}",
+                    measured=Estimate.of(row, "tail_exponent"),
+                    expected=Estimate(-0.5 * dimension, 0.05 * dimension),
+                    required=0.1 * dimension,
+                    source=MODE_COUPLING,
+                    fails_if="an exponential decay, or momentum that spreads other than by diffusion",
                 ),
             ]
     return claims

@@ -1,4 +1,4 @@
-"""What the figure about the pressure on walls claims."""
+"""Claims about the pressure on walls."""
 
 from __future__ import annotations
 
@@ -6,27 +6,28 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.statistics import combine, fit_power_law
-from gaspart.claims import Claim
+from gaspart.claims import Claim, Estimate
+from gaspart.experiments.shared.claims import PARTICLES, deviations, rows
 
 RELATIVE_ERROR = 1e-3
 """The largest standard error of a pressure, relative to it, at which a mean of comparisons means anything."""
 THEORY = (
     "bulk equation of state, surface tension and edges of the container (Hansen-Goos & Roth 2006; computed)"
 )
-NAMES = {2: "discs", 3: "spheres"}
-FAILS = "walls miss hits or count them twice, or the wrong area, volume or density is taken"
+FAILS = "wall collisions are missed or counted twice, or the wrong area, volume or density is taken"
 
 
 def wall_pressure(ds: xr.Dataset) -> list[Claim]:
-    """Walls feel the bulk's pressure, once the container is accounted for; it is proportional to T; without
-    that account the comparison is off by far more than the error."""
+    """The pressure on walls is the bulk's, with the container's surface terms; it is proportional to T;
+    without these terms the deviation is far larger than the error."""
     slits, closed = (
         ds.isel(point=((ds["axes"] < ds["dimension"]) == chosen).values) for chosen in (True, False)
     )
     claims = []
     for dimension in sorted(set(slits["dimension"].values)):
-        claims += _between_walls(slits.isel(point=(slits["dimension"] == dimension).values), NAMES[dimension])
-    claims += [_closed(closed.isel(point=point)) for point in range(closed.sizes["point"])]
+        part = slits.isel(point=(slits["dimension"] == dimension).values)
+        claims += _between_walls(part, PARTICLES[dimension])
+    claims += [_closed(row) for row in rows(closed, "point")]
     for dimension, count in ((2, 100), (3, 125)):
         small = (closed["dimension"] == dimension) & (closed["count"] == count)
         small &= np.abs(closed["packing_fraction"] - 0.1) < 0.005
@@ -37,59 +38,48 @@ def wall_pressure(ds: xr.Dataset) -> list[Claim]:
 
 def _between_walls(part: xr.Dataset, name: str) -> list[Claim]:
     error = np.hypot(part["pressure_error"], part["expected_error"])
-    sigmas = ((part["pressure"] - part["expected"]) / error).values
     ratio = combine((part["pressure"] / part["expected"]).values, np.asarray(error / part["expected"]))
     return [
         Claim(
-            f"pressure of {name} between two walls over theory's, mean of {sigmas.size} slits",
-            "test",
-            ratio.value,
-            ratio.error,
-            RELATIVE_ERROR,
-            1.0,
-            THEORY,
+            claim=f"pressure of {name} between two walls over theory's, mean of {part.sizes['point']} slits",
+            measured=Estimate(ratio.value, ratio.error),
+            expected=1.0,
+            required=RELATIVE_ERROR,
+            source=THEORY,
             fails_if=FAILS,
         ),
-        Claim.chi_square(
-            f"pressure of {name} between two walls against theory's (chi-square per degree of freedom)",
-            "test",
-            float(np.sum(sigmas**2)),
-            sigmas.size,
-            THEORY,
-            "an error that grows with density, or wrong error bars",
+        Claim.joint(
+            claim=f"pressure of {name} between two walls against theory's",
+            deviations=deviations(part, "pressure", "expected"),
+            source=THEORY,
+            fails_if="an error that grows with density, or wrong error bars",
         ),
     ]
 
 
 def _closed(row: xr.Dataset) -> Claim:
-    expected = float(row["expected"])
-    eta, name = float(row["packing_fraction"]), NAMES[int(row["dimension"])]
+    expected = Estimate.of(row, "expected")
     return Claim(
-        f"pressure of {int(row['count'])} {name} in a closed container over theory's, "
-        f"packing fraction {eta:.2g}",
-        "test",
-        float(row["pressure"]) / expected,
-        float(row["pressure_error"]) / expected,
-        RELATIVE_ERROR,
-        1.0,
-        THEORY,
-        float(row["expected_error"]) / expected,
-        FAILS,
+        claim=f"pressure of {int(row['count'])} {PARTICLES[int(row['dimension'])]} in a closed container "
+        f"over theory's, packing fraction {float(row['packing_fraction']):.2g}",
+        measured=Estimate.of(row, "pressure") / expected.value,
+        expected=expected / expected.value,
+        required=RELATIVE_ERROR,
+        source=THEORY,
+        fails_if=FAILS,
     )
 
 
 def _naive(row: xr.Dataset) -> Claim:
-    ratio = float(row["bulk_pressure"] / row["pressure"])
-    name, count = NAMES[int(row["dimension"])], int(row["count"])
+    dimension, count = int(row["dimension"]), int(row["count"])
     return Claim.at_most(
-        f"bulk pressure at N/V over what the walls of {count} {name} measure, packing fraction 0.1",
-        "test",
-        ratio,
-        ratio * float(row["pressure_error"] / row["pressure"]),
-        0.01,
-        {2: 0.95, 3: 0.8}[int(row["dimension"])],
-        "the accessible volume is smaller than the container's: -7 % (discs), -34 % (spheres)",
-        "walls that need no account of the bodies' size",
+        claim=f"bulk pressure at N/V over that on the walls of {count} {PARTICLES[dimension]}, "
+        "packing fraction 0.1",
+        measured=Estimate(row["bulk_pressure"]) / Estimate.of(row, "pressure"),
+        bound={2: 0.95, 3: 0.8}[dimension],
+        required=0.01,
+        source="the accessible volume is smaller than the container's: -7 % (discs), -34 % (spheres)",
+        fails_if="the pressure on walls does not depend on the particles' size",
     )
 
 
@@ -106,14 +96,13 @@ def _temperature(ds: xr.Dataset) -> list[Claim]:
         )
         claims.append(
             Claim(
-                f"exponent of P against T at packing fraction {float(part['packing_fraction'][0]):.3g}",
-                "identity",
-                law.exponent,
-                law.exponent_error,
-                2e-3,
-                1.0,
-                "hard bodies have no energy scale (exact)",
-                fails_if="an energy or time scale hides in the program",
+                claim=f"exponent of P against T at packing fraction {float(part['packing_fraction'][0]):.3g}",
+                kind="identity",
+                measured=Estimate(law.exponent, law.exponent_error),
+                expected=1.0,
+                required=2e-3,
+                source="hard particles have no energy scale (exact)",
+                fails_if="the program has a hidden energy or time scale",
             )
         )
     return claims
