@@ -15,7 +15,9 @@ from gaspart.planning.modules import PACKAGE, closure, imported
 ROOT = Path(__file__).parents[2]
 LAYERS = [  # a module imports only from the packages above its own
     {"errors"},
+    {"interruption"},
     {"files"},
+    {"yaml_text"},
     {"scene"},
     {"kernels"},
     {"state"},

@@ -173,7 +173,7 @@ class EventDynamics:
                 many, begun = MANY, self._clock
             stop = until - self._start
             ends_epoch = stop > self._epoch
-            reason, done, last = self._run(log and log.room, min(stop, self._epoch), min(left, many))
+            reason, done, last = self._run(log.room if log else None, min(stop, self._epoch), min(left, many))
             left -= done
             many -= done
             self._quiet = 0 if done else self._quiet

@@ -83,17 +83,18 @@ def rules_for(
     from gaspart.kernels.step.boundaries import Rules
 
     fixed = np.isinf(state.masses)
+    faces = special_faces(scene, state, seed, unit_mass=1.0)
     model = Model(
         space=space,
         masses=bodies.masses,
         gravity=None if scene.gravity is None else Gravity(scene.gravity, fixed, 0.0, None),
         law=contact_law(scene, state),
-        faces=special_faces(scene, state, seed, unit_mass=1.0),
+        faces=faces,
         walls=None,
         oversized=None,
     )
     radius = 0.0 if scene.centres_to_walls else state.radii.max(initial=0.0)
-    inset = np.where(np.repeat(scene.container.periodic, 2), 0.0, radius + model.faces.width).reshape(-1, 2)
+    inset = np.where(np.repeat(scene.container.periodic, 2), 0.0, radius + faces.width).reshape(-1, 2)
     free = np.stack([inset[:, 0], np.array(scene.container.lengths) - inset[:, 1]], axis=1)
     walls = 2 * scene.dimension
     return Rules(

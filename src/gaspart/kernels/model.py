@@ -5,7 +5,7 @@ last whatever may be absent. An absent entry of the model is None. It is passed 
 it as an argument of its own, because numba removes a branch on `None` only for arguments.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -145,10 +145,10 @@ class Oversized(NamedTuple):
 
 
 class Model(NamedTuple):
-    """What is simulated. masses (N,), or None if all are 1 or the law knows them; whatever else may be absent
-    is None."""
+    """What is simulated. space: a `Space`, of either engine; masses (N,), or None if all are 1 or the law
+    knows them; whatever else may be absent is None."""
 
-    space: Space
+    space: Any
     masses: np.ndarray | None
     gravity: Gravity | None
     law: ContactLaw | None

@@ -83,7 +83,7 @@ def count() -> None:
 
     scene = gp.Scene(gp.Container((9.0,) * 3, "periodic"), [gp.Species(50, 0.5, temperature=1.0)])
     kernels: dict[Any, Any] = {
-        gp.EventDriven(): event_loop.run_boxes,
+        gp.EventDriven(): event_loop.run,
         gp.TimeStepped(0.01): step_loop.run_steps,
     }
     for engine, kernel in kernels.items():
