@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
+from gaspart.planning.keys import ENGINES, LENGTHS, SCANS
 from gaspart.planning.point import Point
 from gaspart.planning.point_scene import check_scene, extents, scene
 from gaspart.scene.validation import LARGEST, SMALLEST
@@ -18,24 +19,6 @@ if TYPE_CHECKING:
     from gaspart.engines import EventDriven, TimeStepped
     from gaspart.scene.matter import Species
     from gaspart.scene.scene import Scene
-
-LENGTHS = ("collisions_per_body", "duration", "steps")
-ENGINE_KEYS = {
-    "event": ("search", "boxes_per_side", "boxes_per_body"),
-    "step": (
-        "time_step",
-        "boxes_per_side",
-        "boxes_per_body",
-        "near_boxes",
-        "precision",
-        "rewind",
-        "passes",
-        "skin",
-        "threads",
-    ),
-}
-SCANS = ("scan_boxes_per_side", "scan_boxes_per_body", "scan_time_steps")
-
 
 _MOST_INTERVALS = 2.0**53  # above, float64 does not distinguish their numbers
 
@@ -71,8 +54,8 @@ def check(point: Point) -> None:
     engine = settings.get("engine", "event")
     if engine == "step" and "time_step" not in settings:
         raise SceneError(f"{where}.time_step", None, "must be given with engine: step")
-    for key in set().union(*ENGINE_KEYS.values()) - set(ENGINE_KEYS[engine]):
-        if key in settings:
+    for key in (*ENGINES["event"], *ENGINES["step"]):
+        if key in settings and key not in ENGINES[engine]:
             raise SceneError(f"{where}.{key}", settings[key], f"has no meaning with engine: {engine}")
     if settings.get("record_events") and (point.job, engine) != ("measure_cost", "event"):
         rule = "has a meaning with job: measure_cost and engine: event only"
@@ -94,7 +77,7 @@ def engine(point: Point) -> EventDriven | TimeStepped:
 
     check(point)
     name = point.settings.get("engine", "event")
-    chosen = {key: point.settings[key] for key in ENGINE_KEYS[name] if key in point.settings}
+    chosen = {key: point.settings[key] for key in ENGINES[name] if key in point.settings}
     if isinstance(chosen.get("boxes_per_side"), list):
         chosen["boxes_per_side"] = tuple(chosen["boxes_per_side"])
     count, radius, lengths = extents(point)
@@ -105,7 +88,7 @@ def engine(point: Point) -> EventDriven | TimeStepped:
     if len(sides) != len(lengths):
         raise SceneError("boxes_per_side", given, "must be one number, or one per axis")
     for length, boxes in zip(lengths, sides, strict=True):
-        if boxes > 1 and length / boxes < 2.0 * radius:  # told here already, before any job starts
+        if boxes > 1 and length / boxes < 2.0 * radius:  # found before any job starts
             rule = f"boxes must not be narrower than the largest diameter, {2.0 * radius:g}"
             raise SceneError("boxes_per_side", given, rule)
     return EventDriven(**chosen) if name == "event" else TimeStepped(**chosen)

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gaspart.errors import SceneError, shown
+from gaspart.planning.keys import EXTENTS, GAS, PREFIX
 from gaspart.planning.point import Point
 from gaspart.scene.validation import MOST_BODIES
 from gaspart.yaml_text import read_yaml
@@ -19,18 +20,13 @@ from gaspart.yaml_text import read_yaml
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
 
-EXTENTS = ("count", "radius", "packing_fraction", "side")
-_OTHERS = ("dimension", "boundary", "mass", "temperature", "speed", "arrangement", "centres_to_walls")
-PREFIX = "scene."
-"""How a key begins that replaces a value of the scene file: ``scene.species.0.mass``."""
-
 
 def check_scene(point: Point) -> None:
     """Refuse settings that describe no scene, or two, with SceneError; the cheap part, reading no file."""
     settings, where = point.settings, f"experiments.{point.experiment}"
     replaced = [key for key in settings if key.startswith(PREFIX)]
     if "scene" in settings:
-        for key in (*_OTHERS, *EXTENTS):
+        for key in (*GAS, *EXTENTS):
             if key in settings:
                 rule = f"has no meaning beside a scene file, of which {PREFIX}... replaces single values"
                 raise SceneError(f"{where}.{key}", settings[key], rule)
@@ -42,7 +38,7 @@ def check_scene(point: Point) -> None:
         raise SceneError(f"{where}.dimension", None, "is required, unless there is a scene file")
     given = [key for key in EXTENTS if key in settings]
     if len(given) != 3:
-        raise SceneError(where, given, "exactly three of count, radius, packing_fraction, side must be given")
+        raise SceneError(where, given, f"exactly three of {', '.join(EXTENTS)} must be given")
 
 
 def scene(point: Point) -> Scene:

@@ -31,7 +31,7 @@ def variant(point: Point) -> str:
     """
     scene = grid.scene(point)
     engine = "fill" if point.job in ("fill", "pack") else point.settings.get("engine", "event")
-    boxes = any(key in point.settings for key in ("boxes_per_side", "boxes_per_body", *grid.SCANS[:2]))
+    boxes = any(key in point.settings for key in ("boxes_per_side", "boxes_per_body", "scan_boxes_per_side", "scan_boxes_per_body"))
     choice = {
         "fill": "random",
         "event": point.settings.get("search", "boxes"),

@@ -1,4 +1,4 @@
 """Radius, density and number of bodies."""
 
 TITLE = "Radius, density and number of bodies"
-FIGURES = ("radius_grid",)
+FIGURES: dict[str, dict] = {"radius_grid": {}}
