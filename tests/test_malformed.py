@@ -13,7 +13,7 @@ from gaspart.engines import engine_from_dict
 from gaspart.errors import SceneError
 from gaspart.experiments.config import check
 from gaspart.scene.faces import Sticky, Thermal, Well
-from gaspart.scene.matter import Plate, box_of_walls
+from gaspart.scene.walls import Plate, box_of_walls
 from gaspart.yaml_text import dump_yaml
 
 VALID = {

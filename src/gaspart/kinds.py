@@ -1,7 +1,7 @@
 """Kinds of values that a key of a file may have, each as a part of a JSON schema (draft 2020-12).
 
-A key is declared by a kind with its meaning, as in `count("bins of the histogram")`; validation, messages, the
-schemas for editors and the reference page follow from these declarations.
+A key is declared by a kind with its meaning, as in `count("bins of the histogram")`; validation, messages,
+the schemas for editors and the reference page follow from these declarations.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ ANY: Kind = {}
 
 def described(kind: Kind, meaning: str, **more: Any) -> Kind:
     """A kind with its meaning, and what else the schema is to state, such as `default` or `maximum`."""
-    return {**kind, **more, "description": meaning}
+    return {**kind, **more} | ({"description": meaning} if meaning else {})
 
 
 def positive(meaning: str, **more: Any) -> Kind:

@@ -14,8 +14,8 @@ from malformed import one_line
 
 from gaspart.errors import SceneError
 from gaspart.experiments.config import check, laid_over
+from gaspart.experiments.cost import predict
 from gaspart.inspection.written import judge_config
-from gaspart.planning.advised import predict
 from gaspart.yaml_text import dump_yaml, read_yaml
 
 ROOT = Path(__file__).parents[2]

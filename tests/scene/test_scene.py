@@ -1,5 +1,6 @@
 """Scenes: what they refuse, in one line, and that a file gives back what was written."""
 
+import dataclasses
 import math
 import time
 
@@ -186,3 +187,23 @@ def test_what_is_made_in_python_is_refused_in_one_line_too(make, complaint):
     with pytest.raises(gp.SceneError, match=complaint) as caught:
         make()
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        gp.Scene,
+        gp.Container,
+        gp.Species,
+        gp.Body,
+        gp.Restitution,
+        gp.Wall,
+        gp.Plate,
+        gp.Thermal,
+        gp.Well,
+        gp.Sticky,
+    ],
+)
+def test_every_field_of_a_scene_has_a_rule_and_a_meaning(kind):
+    for item in dataclasses.fields(kind):
+        assert item.metadata["rule"].kind and item.metadata["meaning"], item.name

@@ -11,8 +11,8 @@ from typing import Any
 
 from gaspart.errors import SceneError
 from gaspart.experiments.schema import schema
-from gaspart.planning import grid, keys
 from gaspart.kinds import Kind
+from gaspart.planning import grid, keys
 from gaspart.planning.overlay import laid_over
 from gaspart.planning.points import figure_points, points
 from gaspart.scene.validation import finite, size
@@ -123,7 +123,7 @@ def _validator() -> Any:
 
 
 def _against(kind: Kind, value: object, where: str) -> None:
-    """Raise SceneError with the most relevant rule of ``kind``, a part of the schema, that ``value`` breaks."""
+    """Raise SceneError with the most relevant rule of a part of the schema that ``value`` breaks."""
     from jsonschema.exceptions import best_match
 
     error = best_match(_validator()(kind).iter_errors(value))

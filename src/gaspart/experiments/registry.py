@@ -1,8 +1,8 @@
 """The figures, by family: found in the folders of this package.
 
 The folder of a family states its `TITLE` and its `FIGURES` in `__init__.py`, which imports nothing heavy, and
-holds a function of the name of each figure in `measure.py`, `claims.py` and `figure.py`. `FIGURES` declares the
-settings of each figure: the kind of each key, with its meaning.
+holds a function of the name of each figure in `measure.py`, `claims.py` and `figure.py`. `FIGURES` declares
+the settings of each figure: the kind of each key, with its meaning.
 """
 
 from __future__ import annotations

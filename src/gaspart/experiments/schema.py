@@ -1,7 +1,7 @@
 """The JSON schema of a config, and what is generated from the declarations of all keys.
 
-`python -m gaspart.experiments.schema`, run in the folder of the project, writes the schemas of configs and scene
-files for editors, and the reference page.
+`python -m gaspart.experiments.schema`, run in the folder of the project, writes the schemas of configs and
+scene files for editors, and the reference page.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ _TYPES |= {"string": "text"}
 _INTRODUCTION = """# Reference of all keys
 
 Generated from the declarations in the code by `python -m gaspart.experiments.schema`; do not edit it.
-What the keys are for is explained in [config/README.md](../config/README.md). The same rules as JSON schemas, for
-editors: `workflow/schemas/config.schema.json` and `workflow/schemas/scene.schema.json`.
+What the keys are for is explained in [config/README.md](../config/README.md).
+For editors, `workflow/schemas` has the same rules as JSON schemas.
 A key without a default is required. A default of *none* means that the key is absent.
 """
 
@@ -41,8 +41,8 @@ def schema() -> Kind:
 
 def scene_schema() -> Kind:
     """The JSON schema of a scene file; rules that concern several keys are not part of it."""
-    from gaspart.scene.scene import Scene
     from gaspart.scene.keys import schema_of
+    from gaspart.scene.scene import Scene
 
     return {"$schema": _DRAFT, **schema_of(Scene)}
 
@@ -60,7 +60,8 @@ def documents() -> dict[str, str]:
 def reference() -> str:
     """The reference page, in Markdown: every key with its kind, default and meaning."""
     top, scene = schema()["properties"], scene_schema()
-    parts = [_INTRODUCTION, "## Config\n", _table(top), "### Experiment\n", _table(keys.EXPERIMENT)]
+    parts = [_INTRODUCTION, "## Config\n", _table(top), "### Experiment\n"]
+    parts.append(_table({**keys.EXPERIMENT, "point": {**keys.EXPERIMENT["point"], "properties": {}}}))
     for title, tables in (
         ("Point: one species in a container (exactly three of the first four)", keys.EXTENTS | keys.GAS),
         ("Point: a scene file", keys.SCENE_FILE),
@@ -71,7 +72,7 @@ def reference() -> str:
         ("Animation", keys.ANIMATION),
     ):
         parts += [f"### {title}\n", _table(tables)]
-    parts.append("## Settings of figures\n\nBeside `experiments`, the experiments whose points are measured.\n")
+    parts.append("## Settings of figures\n\nEach figure also has `experiments`, whose points it measures.\n")
     for figure, settings in registry.settings().items():
         if settings:
             parts += [f"### `{figure}`\n", _table(settings)]
@@ -89,7 +90,8 @@ def _parts(scene: Kind) -> list[tuple[str, Kind]]:
         kind = left.pop(0)
         if "title" in kind:
             found[kind["title"]] = kind
-        left += [*kind.get("properties", {}).values(), *kind.get("anyOf", ()), *filter(None, [kind.get("items")])]
+        inner = [kind[name] for name in ("items", "additionalProperties") if isinstance(kind.get(name), dict)]
+        left += [*kind.get("properties", {}).values(), *kind.get("anyOf", ()), *inner]
     return list(found.items())
 
 
@@ -124,8 +126,12 @@ def _typed(kind: Kind, name: str) -> str:
     """One of the types of a kind, with the rules for it."""
     word = _TYPES.get(name, name)
     if name in ("number", "integer"):
-        rules = [f"{sign}{kind[end]:g}" for end, sign in _ENDS.items() if end in kind]
+        rules = [f"{sign}{kind[end]:.10g}" for end, sign in _ENDS.items() if end in kind]
         return f"{word} {' and '.join(rules)}".rstrip()
+    if name == "object" and kind.get("properties"):
+        return "mapping of " + ", ".join(
+            f"`{key}` ({in_words(item)})" for key, item in kind["properties"].items()
+        )
     if name != "array":
         return word
     least, most = kind.get("minItems", 0), kind.get("maxItems")

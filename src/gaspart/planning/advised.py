@@ -30,7 +30,9 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
     except SceneError as error:
         raise error.inside(where) from None
     engine = found.setting.engine
-    made = {key: value for key, value in settings.items() if key not in keys.ENGINES["auto"]} | {"engine": engine.name}
+    made = {key: value for key, value in settings.items() if key not in keys.ENGINES["auto"]} | {
+        "engine": engine.name
+    }
     if engine.name == "step":
         made |= {"time_step": engine.time_step, "precision": engine.precision}
     if not keys.LENGTHS.keys() & settings.keys():

@@ -17,8 +17,8 @@ from gaspart.scene.validation import LARGEST, SMALLEST
 
 if TYPE_CHECKING:
     from gaspart.engines import EventDriven, TimeStepped
-    from gaspart.scene.matter import Species
     from gaspart.scene.scene import Scene
+    from gaspart.scene.species import Species
 
 _MOST_INTERVALS = 2.0**53  # above, float64 does not distinguish their numbers
 

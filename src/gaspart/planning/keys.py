@@ -75,8 +75,8 @@ SCENE_FILE: dict[str, Kind] = {
 
 ENGINE: dict[str, Kind] = {
     "engine": choice(
-        "`auto` is the cheapest engine for an `accuracy`, with its time step and precision, and the length of "
-        "the run if none is given (see `gaspart advise`)",
+        "`auto` is the cheapest engine for an `accuracy`, with its time step and precision, and the length "
+        "of the run if none is given (see `gaspart advise`)",
         *("event", "step", "auto"),
         default="event",
     )
@@ -179,9 +179,7 @@ RUN: dict[str, Kind] = {
 _ENGINE_KEYS: dict[str, Kind] = {name: kind for keys in ENGINES.values() for name, kind in keys.items()}
 POINT: dict[str, Kind] = {
     name: kind if name == "dimension" else nullable(kind)
-    for name, kind in (
-        EXTENTS | GAS | SCENE_FILE | ENGINE | _ENGINE_KEYS | SCANS | LENGTHS | RUN
-    ).items()
+    for name, kind in (EXTENTS | GAS | SCENE_FILE | ENGINE | _ENGINE_KEYS | SCANS | LENGTHS | RUN).items()
 }
 """All keys of a point; null takes a key back."""
 
@@ -198,7 +196,7 @@ JOBS = {
     "compare": "time-stepped runs beside exact ones from the same states",
     "echo": "runs forward and back",
     "fill": "random insertion, every failure counted",
-    "pack": "random insertion until nothing more fits, or with `arrangement: compressed` growth until all jam",
+    "pack": "random insertion until nothing more fits; with `arrangement: compressed` growth until all jam",
 }
 
 _BLOCK: Kind = {"type": "object"}  # each value is checked against its key's kind

@@ -84,7 +84,9 @@ def extents(point: Point) -> tuple[int, float, tuple[float, ...]]:
 
 def _made(point: Point) -> Scene:
     """The scene of one species that the settings describe."""
-    from gaspart.scene.scene import Container, Scene, Species
+    from gaspart.scene.container import Container
+    from gaspart.scene.scene import Scene
+    from gaspart.scene.species import Species
 
     settings = point.settings
     count, radius, lengths = extents(point)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from gaspart.errors import SimulationError
 from gaspart.planning import grid
 from gaspart.planning.point import Point
-from gaspart.scene.matter import LATTICES
+from gaspart.scene.species import LATTICES
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -31,7 +31,10 @@ def variant(point: Point) -> str:
     """
     scene = grid.scene(point)
     engine = "fill" if point.job in ("fill", "pack") else point.settings.get("engine", "event")
-    boxes = any(key in point.settings for key in ("boxes_per_side", "boxes_per_body", "scan_boxes_per_side", "scan_boxes_per_body"))
+    boxes = any(
+        key in point.settings
+        for key in ("boxes_per_side", "boxes_per_body", "scan_boxes_per_side", "scan_boxes_per_body")
+    )
     choice = {
         "fill": "random",
         "event": point.settings.get("search", "boxes"),

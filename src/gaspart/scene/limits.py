@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from gaspart.errors import SceneError
 
 if TYPE_CHECKING:
-    from gaspart.scene.scene import Container
+    from gaspart.scene.container import Container
 
 _RESOLVED = 1e12  # diameters in the longest side, at most: contacts are then right to a thousandth
 _ROOM = 1e-6  # of a radius: what a body between two walls must have at least

@@ -7,8 +7,8 @@ FIGURES = {
     "adsorption": {
         "blocks": count("stretches of each replica"),
         "near": positive(
-            "distance from the edge of the well, or from where particles stick, within which the velocities of "
-            "leaving particles are read"
+            "distance from the edge of the well, or from where particles stick, within which the "
+            "velocities of leaving particles are read"
         ),
         "bins": count("bins of their speeds"),
     }

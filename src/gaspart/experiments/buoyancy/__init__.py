@@ -8,7 +8,9 @@ FIGURES = {
         "bins": count("bins of height"),
         "blocks": count("stretches of each replica"),
         "clear": positive("small diameters next to floor and ceiling that are left out, where layers are"),
-        "far": positive("horizontal distance from the large disc's centre beyond which the fluid is undisturbed"),
+        "far": positive(
+            "horizontal distance from the large disc's centre beyond which the fluid is undisturbed"
+        ),
         "near": positive("radius about that centre within which the missing small discs are counted"),
     }
 }

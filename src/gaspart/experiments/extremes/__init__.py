@@ -1,6 +1,6 @@
 """Speed, accuracy, stability."""
 
-from gaspart.kinds import listed, names, TEXT
+from gaspart.kinds import TEXT, listed, names
 
 TITLE = "Speed, accuracy, stability"
 FIGURES = {

@@ -1,6 +1,6 @@
 """Thin films."""
 
-from gaspart.kinds import count, listed, positive, POSITIVE
+from gaspart.kinds import POSITIVE, count, listed, positive
 
 TITLE = "Thin films"
 FIGURES = {

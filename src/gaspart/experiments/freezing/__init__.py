@@ -1,6 +1,6 @@
 """Freezing and melting."""
 
-from gaspart.kinds import count, listed, positive, POSITIVE
+from gaspart.kinds import POSITIVE, count, listed, positive
 
 TITLE = "Freezing and melting"
 FIGURES = {

@@ -1,6 +1,6 @@
 """Under gravity."""
 
-from gaspart.kinds import count, listed, positive, POSITIVE
+from gaspart.kinds import POSITIVE, count, listed, positive
 
 TITLE = "Under gravity"
 _PROFILES = {

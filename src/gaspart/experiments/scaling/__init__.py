@@ -1,6 +1,6 @@
 """What space partitioning buys."""
 
-from gaspart.kinds import COUNT, count, listed, positive, POSITIVE, record
+from gaspart.kinds import COUNT, count, listed, positive, record
 
 TITLE = "What space partitioning buys"
 FIGURES = {

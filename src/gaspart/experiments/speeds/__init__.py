@@ -1,6 +1,6 @@
 """Speed distributions."""
 
-from gaspart.kinds import count, listed, positive, POSITIVE
+from gaspart.kinds import POSITIVE, count, listed, positive
 
 TITLE = "Speed distributions"
 _HISTOGRAM = {

@@ -1,6 +1,6 @@
 """Speed against accuracy."""
 
-from gaspart.kinds import COUNT, listed, positive, POSITIVE
+from gaspart.kinds import COUNT, POSITIVE, listed, positive
 
 TITLE = "Speed against accuracy"
 _ACCURACIES = listed(POSITIVE, "relative accuracies of the cheapest settings")

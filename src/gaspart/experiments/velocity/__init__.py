@@ -1,6 +1,6 @@
 """Memory of velocities."""
 
-from gaspart.kinds import listed, positive, POSITIVE
+from gaspart.kinds import POSITIVE, listed, positive
 
 TITLE = "Memory of velocities"
 FIGURES = {
