@@ -76,7 +76,8 @@ class Scene:
 
     def __post_init__(self) -> None:
         validate(self)
-        instances("walls", self.walls, _wall_kind(self.container), _WALLS)
+        if self.walls:
+            instances("walls", self.walls, _wall_kind(self.container), _WALLS)
         if self.count > MOST_BODIES:
             raise SceneError("count", self.count, f"there may be {MOST_BODIES} bodies")
         self._check_gravity()
