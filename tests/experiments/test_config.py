@@ -199,7 +199,7 @@ def test_a_scene_without_bodies_has_no_points(tmp_path):
     config = copy.deepcopy(GOOD)
     point = {"scene": str(tmp_path / "empty.yaml"), "duration": 1.0, "boxes_per_body": 1.0}
     config["experiments"]["gas"] = {"point": point}
-    with pytest.raises(SceneError, match="needs at least one body"):
+    with pytest.raises(SceneError, match="needs at least one particle"):
         check(config)
 
 

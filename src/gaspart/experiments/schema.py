@@ -60,8 +60,8 @@ def documents() -> dict[str, str]:
 def reference() -> str:
     """The reference page, in Markdown: every key with its kind, default and meaning."""
     top, scene = schema()["properties"], scene_schema()
-    parts = [_INTRODUCTION, "## Config\n", _table(top), "### Experiment\n"]
-    parts.append(_table({**keys.EXPERIMENT, "point": {**keys.EXPERIMENT["point"], "properties": {}}}))
+    parts = [_INTRODUCTION, "## Config\n", _table(_outline(top))]
+    parts += ["### Experiment\n", _table(_outline(keys.EXPERIMENT))]
     for title, tables in (
         ("Point: one species in a container (exactly three of the first four)", keys.EXTENTS | keys.GAS),
         ("Point: a scene file", keys.SCENE_FILE),
@@ -93,6 +93,11 @@ def _parts(scene: Kind) -> list[tuple[str, Kind]]:
         inner = [kind[name] for name in ("items", "additionalProperties") if isinstance(kind.get(name), dict)]
         left += [*kind.get("properties", {}).values(), *kind.get("anyOf", ()), *inner]
     return list(found.items())
+
+
+def _outline(table: dict[str, Kind]) -> dict[str, Kind]:
+    """The same keys without those inside their mappings, which have tables of their own."""
+    return {name: {**kind, "properties": {}} for name, kind in table.items()}
 
 
 def _table(kinds: dict[str, Kind]) -> str:

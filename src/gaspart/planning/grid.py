@@ -1,6 +1,6 @@
-"""From a point of a grid to what its job needs: engine, schedule, recipe.
+"""Engine, schedule and recipe of a point of a grid.
 
-Planning a workflow reads every point of every grid, so nothing heavy is imported here before it is needed.
+Planning a workflow reads every point of every grid, so slow imports are made inside functions.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ class Schedule:
 
     @property
     def equilibration(self) -> float:
-        """The time before the measured stretch."""
+        """The time before the measurement."""
         return self.equilibration_frames * self.sample_interval
 
 
 def check(point: Point) -> None:
-    """Refuse settings that contradict each other, with SceneError; the cheap part, needing no scene."""
+    """Refuse settings that contradict each other, with SceneError; the cheap part, without a scene."""
     settings, where = point.settings, f"experiments.{point.experiment}"
     check_scene(point)
     if point.job == "fill":
@@ -72,7 +72,7 @@ def check(point: Point) -> None:
 
 
 def engine(point: Point) -> EventDriven | TimeStepped:
-    """The point's engine: ``EventDriven`` or ``TimeStepped``. Raises SceneError."""
+    """The point's engine. Raises SceneError."""
     from gaspart.engines import EventDriven, TimeStepped
 
     check(point)
@@ -121,16 +121,17 @@ def engines(point: Point) -> list:
 
 
 def boxes_per_side(per_body: float, count: int, radius: float, lengths: tuple[float, ...]) -> tuple[int, ...]:
-    """(d,) boxes per axis: nearly cubic ones, ``per_body`` for each body, none smaller than a diameter."""
+    """(d,) boxes per axis: nearly cubic ones, ``per_body`` for each particle, none smaller than a
+    diameter."""
     edge = (math.prod(lengths) / (per_body * count)) ** (1.0 / len(lengths))
     return tuple(max(1, min(round(length / edge), int(length / (2.0 * radius)))) for length in lengths)
 
 
 def schedule(point: Point) -> Schedule:
-    """Duration and sampling of a point's runs, whatever unit its length is given in.
+    """Duration and sampling of a point's runs, in the scene's time.
 
     The length is divided into ``samples`` intervals (whole time steps with the step engine); the
-    equilibration, rounded up to whole intervals, goes before it.
+    equilibration, rounded up to complete intervals, precedes it.
     """
     check(point)
     settings, where = point.settings, f"experiments.{point.experiment}"
@@ -153,7 +154,8 @@ def schedule(point: Point) -> Schedule:
 
 
 def recipe(point: Point) -> dict:
-    """All that the point's job needs, in plain values: what its result depends on, and nothing else."""
+    """The parameters of the point's job, in plain values: all that its result depends on, and nothing
+    else."""
     check(point)
     made = {
         "scene": scene(point).to_dict(),
@@ -168,7 +170,7 @@ def recipe(point: Point) -> dict:
     times = schedule(point)
     follow, count = point.settings.get("follow"), extents(point)[0]
     if follow is not None and follow > count:
-        raise SceneError(f"experiments.{point.experiment}.follow", follow, f"there are {count} bodies")
+        raise SceneError(f"experiments.{point.experiment}.follow", follow, f"there are {count} particles")
     if point.job in ("measure_cost", "compare"):
         recording = (
             {"record": point.settings.get("record_events", False)} if point.job == "measure_cost" else {}
@@ -210,7 +212,7 @@ def _unit_of_time(point: Point, unit: str) -> float:
     key, given = f"experiments.{point.experiment}.collisions_per_body", point.settings[unit]
     kind = _only_species(scene(point))
     if kind is None:
-        rule = "is known for one species of smooth bodies alone, without gravity or obstacles; give duration"
+        rule = "is known only for one species of smooth particles without gravity or obstacles; give duration"
         raise SceneError(key, given, rule)
     count, radius, lengths = extents(point)
     dimension = len(lengths)
@@ -231,7 +233,7 @@ def _unit_of_time(point: Point, unit: str) -> float:
 
 
 def _only_species(made: Scene) -> Species | None:
-    """The species of a scene that holds nothing else; None if there is more to it."""
+    """The species of a scene of one species and nothing else; None for any other scene."""
     from gaspart.scene.scene import Scene
 
     kinds = made.species

@@ -1,6 +1,6 @@
 """The scene of a point: made of its settings, or read from a scene file in which some values are replaced.
 
-Planning a workflow makes the scene of every point, so nothing heavy is imported here before it is needed.
+Planning a workflow makes the scene of every point, so slow imports are made inside functions.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 
 def check_scene(point: Point) -> None:
-    """Refuse settings that describe no scene, or two, with SceneError; the cheap part, reading no file."""
+    """Refuse settings that describe no scene, or two, with SceneError; the cheap part, without reading a
+    file."""
     settings, where = point.settings, f"experiments.{point.experiment}"
     replaced = [key for key in settings if key.startswith(PREFIX)]
     if "scene" in settings:
@@ -48,17 +49,18 @@ def scene(point: Point) -> Scene:
 
 
 def extents(point: Point) -> tuple[int, float, tuple[float, ...]]:
-    """Number of bodies, largest radius and side lengths. Raises SceneError.
+    """Number of particles, largest radius and side lengths. Raises SceneError.
 
     Three of count, radius, packing fraction and side are given and the fourth follows: a count that follows
-    is rounded to a whole number; a side that follows is the same on every axis. A scene file says it itself.
+    is rounded to a whole number; a side that follows is the same on every axis. A scene file states all of
+    them.
     """
     check_scene(point)
     settings, where = point.settings, f"experiments.{point.experiment}"
     if "scene" in settings:
         read = scene(point)
         if read.count == 0:
-            raise SceneError(f"{where}.scene", settings["scene"], "a point needs at least one body")
+            raise SceneError(f"{where}.scene", settings["scene"], "a point needs at least one particle")
         return read.count, read.largest_radius, read.container.lengths
     dimension = settings["dimension"]
     unit = math.pi if dimension == 2 else 4.0 / 3.0 * math.pi
@@ -72,7 +74,7 @@ def extents(point: Point) -> tuple[int, float, tuple[float, ...]]:
         if count is None:
             found = fraction * volume / (unit * radius**dimension)
             if not 0.5 < found <= MOST_BODIES:
-                rule = f"makes {found:g} bodies, which must be from 1 to {MOST_BODIES}"
+                rule = f"makes {found:g} particles, which must be from 1 to {MOST_BODIES}"
                 raise SceneError(f"{where}.packing_fraction", fraction, rule)
             count = round(found)
         elif radius is None:

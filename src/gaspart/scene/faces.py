@@ -137,5 +137,5 @@ def check_faces(scene: Scene) -> None:
             low, high = scene.reach(scene.largest_radius)
             both = (scene.faces.get(known[2 * axis + side]) for side in (0, 1))
             if sum(face.width for face in both if isinstance(face, Well)) >= high[axis] - low[axis]:
-                rule = "leaves no room outside the wells of this axis for the largest body"
+                rule = "leaves no room outside the wells of this axis for the largest particle"
                 raise SceneError(f"faces.{name}.width", surface.width, rule)

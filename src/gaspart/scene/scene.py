@@ -79,15 +79,15 @@ class Scene:
         if self.walls:
             instances("walls", self.walls, _wall_kind(self.container), _WALLS)
         if self.count > MOST_BODIES:
-            raise SceneError("count", self.count, f"there may be {MOST_BODIES} bodies")
+            raise SceneError("count", self.count, f"there may be {MOST_BODIES} particles")
         self._check_gravity()
         if self.centres_to_walls and self.rough:
-            rule = "rough bodies (tangential above -1) touch walls with their surfaces"
+            rule = "rough particles (tangential above -1) touch walls with their surfaces"
             raise SceneError("centres_to_walls", True, rule)
         self._check_walls()
         check_faces(self)
         if self.vibrates and self.restitution is not None and self.restitution.normal != 1.0:
-            rule = "must be 1 where bodies vibrate, lest energy be lost twice"
+            rule = "must be 1 where particles vibrate: energy would be lost twice"
             raise SceneError("restitution.normal", self.restitution.normal, rule)
         for n, kind in enumerate(self.species):
             if kind.count:
@@ -95,7 +95,7 @@ class Scene:
         arrangements = {kind.arrangement for kind in self.species}
         for shared in arrangements & set(SHARED):
             if self.bodies or arrangements != {shared}:
-                raise SceneError("arrangement", shared, "is shared by all bodies of a scene")
+                raise SceneError("arrangement", shared, "is shared by all particles of a scene")
         earlier = Nearby(self.container, max((2.0 * body.radius for body in self.bodies), default=0.0))
         for n, body in enumerate(self.bodies):
             self._check_body(n, body, earlier)
@@ -110,13 +110,13 @@ class Scene:
         vector("gravity", self.gravity, self.dimension)
         for component, periodic in zip(self.gravity, self.container.periodic, strict=True):
             if component != 0.0 and periodic:
-                rule = "must not point along a periodic axis, where particles would gain energy for ever"
+                rule = "must not point along a periodic axis, where particles would gain energy without limit"
                 raise SceneError("gravity", self.gravity, rule)
 
     def _check_walls(self) -> None:
         for n, wall in enumerate(self.walls):
             if self.centres_to_walls:
-                raise SceneError("centres_to_walls", True, "interior walls stop the bodies' surfaces")
+                raise SceneError("centres_to_walls", True, "interior walls stop the surfaces of particles")
             for key, point in wall.corners.items():
                 if not all(
                     0.0 <= x <= length for x, length in zip(point, self.container.lengths, strict=True)
@@ -147,7 +147,9 @@ class Scene:
         lower, upper = self.reach(body.radius)
         for x, low, high in zip(body.position, lower, upper, strict=True):
             if not low <= x <= high:
-                raise SceneError(f"{where}.position", body.position, "must lie wholly inside the container")
+                raise SceneError(
+                    f"{where}.position", body.position, "must be completely inside the container"
+                )
         if wall := self.wall_at(body.position, body.radius):
             raise SceneError(f"{where}.position", body.position, f"overlaps {wall}")
         for m in earlier.around(body.position):

@@ -42,7 +42,7 @@ def _check_matter(thing: Species | Body) -> None:
             rule = f"must be from {SMALLEST:g} to {LARGEST:g} times the mass times the radius squared"
             raise SceneError("moment_of_inertia", thing.moment_of_inertia, rule)
     if thing.vibration is not None and not thing.fixed:
-        raise SceneError("vibration", thing.vibration, "only a fixed body vibrates")
+        raise SceneError("vibration", thing.vibration, "only a fixed particle vibrates")
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ class Body:
             settle(self, spin=spin)
         for key, value in (("velocity", self.velocity), ("spin", self.spin_vector)):
             if self.fixed and any(value):
-                raise SceneError(key, value, "a fixed body has none")
+                raise SceneError(key, value, "a fixed particle has none")
 
     @property
     def vibrates(self) -> bool:

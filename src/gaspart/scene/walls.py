@@ -33,7 +33,7 @@ class Wall:
     def __post_init__(self) -> None:
         validate(self)
         if self.start == self.end:
-            raise SceneError("end", self.end, "a wall must have a length; for a post take a fixed body")
+            raise SceneError("end", self.end, "a wall must have a length; for a post use a fixed particle")
         positive("length", math.dist(self.start, self.end))
 
     @property

@@ -1,8 +1,8 @@
-"""Walls that hold bodies."""
+"""Walls that hold particles."""
 
 from gaspart.kinds import count, positive
 
-TITLE = "Walls that hold bodies"
+TITLE = "Walls that hold particles"
 FIGURES = {
     "adsorption": {
         "blocks": count("stretches of each replica"),

@@ -1,8 +1,8 @@
-"""Rough and inelastic bodies."""
+"""Rough and inelastic particles."""
 
 from gaspart.kinds import count, names, positive
 
-TITLE = "Rough and inelastic bodies"
+TITLE = "Rough and inelastic particles"
 FIGURES = {
     "equipartition": {
         "steady_from": positive(

@@ -1,8 +1,8 @@
-"""What space partitioning buys."""
+"""Gain from space partitioning."""
 
 from gaspart.kinds import COUNT, count, listed, positive, record
 
-TITLE = "What space partitioning buys"
+TITLE = "Gain from space partitioning"
 FIGURES = {
     "naive_scaling": {},
     "box_count": {

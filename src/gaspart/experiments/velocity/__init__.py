@@ -1,8 +1,8 @@
-"""Memory of velocities."""
+"""Velocity autocorrelation."""
 
 from gaspart.kinds import POSITIVE, listed, positive
 
-TITLE = "Memory of velocities"
+TITLE = "Velocity autocorrelation"
 FIGURES = {
     "velocity_autocorrelation": {
         "start_to": positive("collisions of a particle up to which the initial decay is fitted"),
