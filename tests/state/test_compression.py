@@ -106,7 +106,7 @@ def test_what_cannot_be_compressed_is_refused():
     with pytest.raises(gp.SceneError, match="jam at 0.6") as caught:
         compress(gas(3, 200, 0.72), 1)
     assert "\n" not in str(caught.value)
-    with pytest.raises(gp.SceneError, match="shared by all bodies"):
+    with pytest.raises(gp.SceneError, match="shared by all particles"):
         replace(gas(3, 2, 0.1), species=[gp.Species(1, 0.5), gp.Species(1, 0.5, arrangement="compressed")])
     with pytest.raises(gp.SceneError, match="free to move"):
         compress(replace(gas(2, 5, 0.1), walls=[gp.Wall((0.0, 0.0), (1.0, 1.0))]))
