@@ -1,4 +1,3 @@
-import numpy as np
 from experiments.drawn import Points, draw, follows, line, lines, obeys, shows, varied
 from experiments.gravity.data import capacities, columns
 

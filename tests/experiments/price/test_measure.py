@@ -8,11 +8,9 @@ import pytest
 from gaspart.claims import judge
 from gaspart.experiments.jobs.measure_cost import measure_cost
 from gaspart.experiments.price.claims import price_of_features as claims
-from gaspart.experiments.price.figure import price_of_features as draw
 from gaspart.experiments.price.measure import price_of_features
 from gaspart.experiments.price.stripped import instructions, stripped
 from gaspart.planning import grid
-from gaspart.rendering import style
 
 ROOT = Path(__file__).parents[3]
 SETTINGS = {"count_instructions": False}
@@ -43,8 +41,6 @@ def test_costs_are_those_of_the_plain_scene_times_a_ratio(points):
     assert ds["ratio"].values == pytest.approx(ds["seconds"].values / ds["seconds"].values[0])
     assert ds["ratio_error"].values[0] == 0.0
     assert np.all(ds["pair_tests"] > 1.0)
-    with style.applied():
-        assert len(draw(ds).axes) == 2
 
 
 def test_there_must_be_a_plain_scene(points):
