@@ -6,8 +6,8 @@ centre is within w of the lowest place that it can reach.
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked, checked_packing_fraction
-from .equations import STABLE_DISCS
+from gaspart.theory._arguments import Numbers, Values, checked, checked_packing_fraction
+from gaspart.theory.equations import STABLE_DISCS
 
 
 @checked

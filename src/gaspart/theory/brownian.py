@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked
+from gaspart.theory._arguments import Numbers, Values, checked
 
 SONINE_EQUAL_MASSES = 1.01895
 """D of a body as heavy as the gas's, over the first Sonine approximation k_B T / (M rate) (recalled, as in

@@ -11,10 +11,10 @@ import math
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked, checked_dimension
-from .geometry import number_density, unit_sphere_surface
-from .speeds import mean_speed
-from .state import compressibility_factor, contact_value, finite_size_correction
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
+from gaspart.theory.geometry import number_density, unit_sphere_surface
+from gaspart.theory.speeds import mean_speed
+from gaspart.theory.state import compressibility_factor, contact_value, finite_size_correction
 
 # Exact solutions of the linear Boltzmann equation over the first Sonine approximation, at zero density:
 # diffusion (recalled); and viscosity and conductivity in units of diameter = mass = k_B T = 1 (recalled).

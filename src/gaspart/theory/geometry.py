@@ -2,7 +2,7 @@
 
 import math
 
-from ._arguments import Numbers, Values, checked, checked_dimension
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
 
 CLOSE_PACKING = {2: math.pi / math.sqrt(12.0), 3: math.pi / math.sqrt(18.0)}
 """Packing fraction of the densest arrangement: triangular lattice (2D), face-centred cubic (3D); exact."""

@@ -7,7 +7,7 @@ before clustering.
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked, checked_dimension
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
 
 
 def fourth_cumulant(restitution: Numbers, dimension: int) -> Values:

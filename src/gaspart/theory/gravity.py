@@ -9,9 +9,9 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._arguments import Numbers, Values, checked, checked_dimension
-from .geometry import body_volume
-from .potential import packing_fraction_at
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
+from gaspart.theory.geometry import body_volume
+from gaspart.theory.potential import packing_fraction_at
 
 
 @checked

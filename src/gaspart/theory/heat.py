@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked, checked_dimension
-from .enskog import enskog_conductivity, mean_free_path
-from .geometry import number_density, packing_fraction
-from .state import compressibility_factor
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
+from gaspart.theory.enskog import enskog_conductivity, mean_free_path
+from gaspart.theory.geometry import number_density, packing_fraction
+from gaspart.theory.state import compressibility_factor
 
 TEMPERATURE_JUMP = 2.127
 """T_gas - T_wall over l_0 dT/dn at a diffuse wall, hard spheres, l_0 = 1 / (sqrt 2 pi n sigma^2): 2.4001

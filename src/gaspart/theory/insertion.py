@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
 
 RSA_SATURATION = {2: 0.547074, 3: 0.384131}
 """Packing fraction at which no further body fits, infinite container (Zhang, Torquato 2013; literature)."""

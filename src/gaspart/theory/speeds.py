@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked, checked_dimension
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
 
 _TABLES = Path(__file__).parent / "data"
 

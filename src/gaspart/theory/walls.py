@@ -24,9 +24,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
-from .geometry import number_density
-from .state import compressibility_factor, compressibility_uncertainty, finite_size_correction
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
+from gaspart.theory.geometry import number_density
+from gaspart.theory.state import compressibility_factor, compressibility_uncertainty, finite_size_correction
 
 _TABLES = Path(__file__).parent / "data"
 _DENSEST = 0.49
