@@ -82,9 +82,7 @@ def parsed(path):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
-            assert not node.level, (
-                f"{path}:{node.lineno}: a relative import, which `imported` does not follow"
-            )
+            assert not node.level, f"{path}:{node.lineno}: `imported` follows absolute imports only"
             names |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
     names = {name for name in names if name.split(".")[0] == "gaspart"}
     names |= {".".join(name.split(".")[:n]) for name in names for n in range(1, name.count(".") + 1)}

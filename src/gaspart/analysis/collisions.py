@@ -15,7 +15,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.statistics import Estimate, mean_of
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.statistics import mean_of
 from gaspart.engines import EventDriven
 from gaspart.errors import SceneError, SimulationError
 from gaspart.files import Kind, begins_with, writing
