@@ -23,6 +23,7 @@ from gaspart.files import Kind, begins_with, writing
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of, number
 from gaspart.simulation.simulation import Simulation
+from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.trajectory.provenance import git_revision, versions
 
 _CHUNK = 20_000  # events that are kept at once
@@ -139,7 +140,7 @@ def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
     if len(kinds) != 1:
         raise SceneError("species", len(kinds), "the contact value is told of equal bodies only")
     diameter = 2.0 * kinds.pop()[0]
-    surface = {2: 2.0, 3: 4.0}[scene.dimension] * math.pi
+    surface = unit_sphere_surface(scene.dimension)
     times, approach = data["time"].values, data["approach"].values
     ends = np.linspace(0, len(times), blocks + 1).astype(int)
     start = data.attrs["equilibration"]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.scene.geometry import ball_volume
 from gaspart.scene.scene import Container
 
 
@@ -47,8 +48,7 @@ class Frames:
     @property
     def packing_fraction(self) -> float:
         """Volume (area) of all bodies over that of the container."""
-        unit = np.pi if self.dimension == 2 else 4.0 / 3.0 * np.pi
-        return float(unit * (self.radii**self.dimension).sum() / np.prod(self.lengths))
+        return float(ball_volume(self.dimension) * (self.radii**self.dimension).sum() / np.prod(self.lengths))
 
 
 def settled(

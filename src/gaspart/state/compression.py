@@ -8,7 +8,6 @@ grow: fast, spheres jam at a packing fraction of about 0.64 and discs at 0.84; s
 
 from __future__ import annotations
 
-import math
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -17,6 +16,7 @@ import numpy as np
 
 from gaspart.errors import SceneError, SimulationError
 from gaspart.kernels.memory import aligned
+from gaspart.scene.geometry import CLOSE_PACKING
 from gaspart.scene.scene import Scene, Species
 from gaspart.state.boxes import make_boxes, sides_for
 from gaspart.state.insertion import per_body, random_insertion
@@ -66,9 +66,7 @@ def compress(
         return Packing(np.empty((0, scene.dimension)), 1.0, 0.0, 1.0, 0)
     d = scene.dimension
     unit = scene.packing_fraction
-    wanted = (
-        unit if until is None else math.pi / math.sqrt(12 if d == 2 else 18) if until == "jammed" else until
-    )
+    wanted = unit if until is None else CLOSE_PACKING[d] if until == "jammed" else until
     end = _root(wanted / unit, d)
     growing = _Growing(scene, seed, min(end, _root(_START[d] / unit, d)), end)
     while growing.scale < end * (1.0 + _SPARE) and growing.pressure < jammed:

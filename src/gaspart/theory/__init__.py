@@ -1,10 +1,11 @@
 """What theory and the literature say about hard discs and spheres: formulas, provenance, range of validity.
 
-Imports nothing of the engines, and only numpy. Every docstring says where its formula is from: exact (closed
+Independent of the engines; imports only numpy. Every docstring says where its formula is from: exact (closed
 form), literature (read in the source), recalled (from memory of the source), computed (this project's own
 numerics). Arguments that are out of range raise SceneError, which is a ValueError.
 """
 
+from gaspart.scene.geometry import CLOSE_PACKING
 from gaspart.theory.brownian import (
     friction_rate,
     langevin_msd,
@@ -60,7 +61,6 @@ from gaspart.theory.freezing import (
     speedy_crystal,
 )
 from gaspart.theory.geometry import (
-    CLOSE_PACKING,
     body_volume,
     number_density,
     packing_fraction,

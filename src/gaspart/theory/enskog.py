@@ -28,6 +28,13 @@ def _density_and_contact(packing_fraction: Numbers, dimension: int, diameter: fl
     return density, contact_value(packing_fraction, dimension)
 
 
+def _kinetic(dilute: float, factor: float, packing_fraction: Numbers, dimension: int) -> Values:
+    """(dilute / chi) [1 + factor b chi / (d+2)]^2, b = 2^(d-1) times the packing fraction."""
+    contact = contact_value(packing_fraction, dimension)
+    excess = 2.0 ** (dimension - 1) * np.asarray(packing_fraction) * contact
+    return dilute / contact * (1.0 + factor * excess / (dimension + 2)) ** 2
+
+
 @checked
 def collision_rate(
     packing_fraction: Numbers,
@@ -131,11 +138,9 @@ def enskog_viscosity(
     b^2 chi] (Gass). Good to a few per cent to eta = 0.3 (3D), too low beyond. Unit mass length^(2-d) / time.
     """
     checked_dimension(dimension)
-    contact = contact_value(packing_fraction, dimension)
     dilute = _DILUTE_VISCOSITY[dimension] * math.sqrt(mass * temperature) / diameter ** (dimension - 1)
-    excess = 2.0 ** (dimension - 1) * np.asarray(packing_fraction) * contact
+    kinetic = _kinetic(dilute, 2.0, packing_fraction, dimension)
     bulk = enskog_bulk_viscosity(packing_fraction, dimension, diameter, temperature, mass)
-    kinetic = dilute / contact * (1.0 + 2.0 * excess / (dimension + 2)) ** 2
     return kinetic + dimension / (dimension + 2) * bulk
 
 
@@ -154,9 +159,7 @@ def enskog_conductivity(
     0.8716 b^2 chi]. Unit 1 / (length^(d-2) time), with k_B = 1.
     """
     checked_dimension(dimension)
-    contact = contact_value(packing_fraction, dimension)
     dilute = _DILUTE_CONDUCTIVITY[dimension] * math.sqrt(temperature / mass) / diameter ** (dimension - 1)
-    excess = 2.0 ** (dimension - 1) * np.asarray(packing_fraction) * contact
+    kinetic = _kinetic(dilute, 3.0, packing_fraction, dimension)
     bulk = enskog_bulk_viscosity(packing_fraction, dimension, diameter, temperature, mass)
-    kinetic = dilute / contact * (1.0 + 3.0 * excess / (dimension + 2)) ** 2
     return kinetic + 0.5 * dimension / mass * bulk

@@ -6,8 +6,8 @@ All raise ValueError outside the stated range. `state` says which of them is the
 
 import numpy as np
 
+from gaspart.scene.geometry import CLOSE_PACKING
 from gaspart.theory._arguments import Numbers, Values, checked_dimension, checked_packing_fraction
-from gaspart.theory.geometry import CLOSE_PACKING
 
 STABLE_DISCS = 0.70
 """Highest packing fraction of the disc fluid (Bernard and Krauth 2011; recalled)."""

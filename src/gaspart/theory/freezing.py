@@ -5,8 +5,9 @@ Diameter 1 and k_B T = 1: number densities in 1 / sigma^d, pressures in k_B T / 
 
 import numpy as np
 
+from gaspart.scene.geometry import CLOSE_PACKING
 from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
-from gaspart.theory.geometry import CLOSE_PACKING, packing_fraction
+from gaspart.theory.geometry import packing_fraction
 
 COEXISTENCE_PRESSURE = {2: 9.185, 3: 11.573}
 """Pressure P sigma^d / k_B T at which fluid and ordered phase coexist, infinite system.

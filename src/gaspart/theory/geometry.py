@@ -2,10 +2,8 @@
 
 import math
 
+from gaspart.scene.geometry import ball_volume
 from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
-
-CLOSE_PACKING = {2: math.pi / math.sqrt(12.0), 3: math.pi / math.sqrt(18.0)}
-"""Packing fraction of the densest arrangement: triangular lattice (2D), face-centred cubic (3D); exact."""
 
 
 def unit_sphere_surface(dimension: int) -> float:
@@ -16,7 +14,7 @@ def unit_sphere_surface(dimension: int) -> float:
 @checked
 def body_volume(dimension: int, diameter: float = 1.0) -> float:
     """Area of a disc, pi sigma^2 / 4, or volume of a sphere, pi sigma^3 / 6 (exact; length^dimension)."""
-    return unit_sphere_surface(dimension) / dimension * (0.5 * diameter) ** dimension
+    return ball_volume(checked_dimension(dimension), 0.5 * diameter)
 
 
 @checked

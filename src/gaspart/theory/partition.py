@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from gaspart.scene.geometry import ball_volume
 from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
 
 
@@ -45,8 +46,7 @@ def expected_pair_tests(
     variance is that of a sum over pairs of independent bodies (Hoeffding 1948; exact for points).
     """
     _, share, square = _moments(per_side, side, radius) ** checked_dimension(dimension)
-    ball = math.pi if dimension == 2 else 4.0 / 3.0 * math.pi
-    excluded = ball * (2.0 * radius) ** dimension / (side - 2.0 * radius) ** dimension
+    excluded = ball_volume(dimension, 2.0 * radius) / (side - 2.0 * radius) ** dimension
     pairs = 0.5 * count * (count - 1.0)
     mean = pairs * (share - excluded) / (1.0 - excluded)
     variance = pairs * (share - share**2) + 2.0 * pairs * max(count - 2.0, 0.0) * (square - share**2)

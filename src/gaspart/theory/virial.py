@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from gaspart.scene.geometry import CLOSE_PACKING
 from gaspart.theory._arguments import Numbers, Values, checked_dimension, checked_packing_fraction
-from gaspart.theory.geometry import CLOSE_PACKING
 
 HIGHEST_ORDER = 10
 _TABLES = Path(__file__).parent / "data"
