@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaspart.kernels.model import HARD, STICKY, THERMAL, THERMAL_NORMAL, ContactLaw, Faces, InteriorWalls
 from gaspart.scene.faces import FACES, Sticky, Thermal, Well
 from gaspart.scene.matter import Restitution
 from gaspart.scene.scene import Scene
@@ -16,7 +17,6 @@ from gaspart.state.state import State
 from gaspart.state.wells import places_in_wells, well_energies, wells_of
 
 if TYPE_CHECKING:
-    from gaspart.kernels.model import ContactLaw, Faces, InteriorWalls
     from gaspart.state.boxes import Boxes
 
 _ROOM = 4096  # events that the record holds before it is emptied
@@ -32,8 +32,6 @@ def scaled_masses(masses: np.ndarray) -> tuple[float, np.ndarray | None]:
 
 def contact_law(scene: Scene, state: State) -> ContactLaw | None:
     """The law of contacts, or None if all are elastic, smooth and between bodies that can move."""
-    from gaspart.kernels.model import ContactLaw
-
     rule = scene.restitution or Restitution()
     if rule.smooth_and_elastic and not np.isinf(state.masses).any():
         return None
@@ -52,8 +50,6 @@ def contact_law(scene: Scene, state: State) -> ContactLaw | None:
 
 def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float) -> Faces:
     """The kinds of the container's faces as the kernels' `Faces`, in units of `unit_mass`."""
-    from gaspart.kernels.model import HARD, STICKY, THERMAL, THERMAL_NORMAL, Faces
-
     kinds, levels = [], []
     for name in FACES[: 2 * scene.dimension]:
         match scene.faces.get(name):
@@ -83,8 +79,6 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
 def interior_walls(scene: Scene, boxes: Boxes, largest_radius: float) -> InteriorWalls:
     """The interior walls as the kernels' `InteriorWalls`, with those near each box for radii up to
     `largest_radius`."""
-    from gaspart.kernels.model import InteriorWalls
-
     rows, wall = wall_rows(scene)
     return InteriorWalls(rows, wall, *walls_near(rows, boxes, largest_radius), largest_radius)
 

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from gaspart import theory
 from gaspart.analysis.statistics import block_average, histogram_chi_square
@@ -59,8 +60,6 @@ def _tolerated(frames: Frames, tolerance: float | None) -> float:
 
 def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Check:
     """The deepest overlap of two bodies, as a part of their contact distance."""
-    from scipy.spatial import cKDTree
-
     sides, most = np.where(frames.periodic, frames.lengths, 0.0), 2.0 * float(frames.radii.max())
     if np.any((sides > 0.0) & (sides <= 2.0 * most)):
         return Check("overlaps", None, "the container is too small to look for them by nearest images")

@@ -7,6 +7,7 @@ of the shells' counts with fixed coefficients; so each frame gives one number, a
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from gaspart.inspection.frames import Frames
 from gaspart.scene.geometry import ball_volume
@@ -19,8 +20,6 @@ steepest (measured against the equation of state), less elsewhere."""
 
 def contact_values(frames: Frames) -> np.ndarray:
     """(T,) g(sigma) of each frame of equal bodies in a periodic container. Dimensionless."""
-    from scipy.spatial import cKDTree
-
     n, d, sigma = frames.count, frames.dimension, frames.diameter
     assert sigma is not None, "judged of equal bodies only"
     edges = 1.0 + _WIDTH * np.linspace(0.0, 1.0, _SHELLS + 1)

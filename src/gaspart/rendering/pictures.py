@@ -10,6 +10,7 @@ import numpy as np
 from gaspart.errors import SceneError
 from gaspart.files import Kind, begins_with
 from gaspart.rendering.bodies import Bodies, bodies_of, colours_of
+from gaspart.rendering.camera import camera_for
 from gaspart.scene.validation import count_of
 
 if TYPE_CHECKING:
@@ -57,7 +58,6 @@ def picture(
 ) -> np.ndarray:
     """The pixels, uint8 (H, W, 3), of bodies in these colours (N, 3); lines, (M, 2) each, lie over discs."""
     if bodies.dimension == 3:
-        from gaspart.rendering.camera import camera_for
         from gaspart.rendering.tracer import trace
 
         camera = camera_for(bodies.lengths, *size)

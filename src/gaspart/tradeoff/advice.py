@@ -11,6 +11,7 @@ import math
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from gaspart import theory
 from gaspart.engines import EventDriven, TimeStepped
@@ -22,6 +23,8 @@ from gaspart.tradeoff.table import LEAST, QUANTILE, SETTLING
 
 ACCURACIES = 1e-8, 1.0
 """The sharpest relative accuracy that float64 sums and the table can stand for, and the coarsest."""
+SpeedOf: TypeAlias = Callable[[int, str, str, int], float]
+"""A function as `gaspart.tradeoff.speed.factor`."""
 _PER_SETTLING = 10.0  # a replica is to be so many times longer than its start
 _BULK = 4.0  # the finite size of a gas should cost no more than this part of the accuracy
 
@@ -85,6 +88,17 @@ class Advice:
         return self.setting.half_width <= self.accuracy * (1.0 + 1e-9)
 
 
+@dataclass(frozen=True)
+class _Wish:
+    """What is to be reached: the arguments of `advise`, and the noise of the observable."""
+
+    observable: str
+    accuracy: float
+    noise: float
+    budget: float | None
+    speed_of: SpeedOf
+
+
 def plain_gas(scene: Scene) -> Gas:
     """The gas of a scene that holds nothing else. Raises SceneError where costs were not measured."""
     kinds = scene.species
@@ -119,7 +133,7 @@ def advise(
     observable: str,
     accuracy: float,
     budget: float | None = None,
-    speed_of: Callable[[int, str, str, int], float] = speed.factor,
+    speed_of: SpeedOf = speed.factor,
 ) -> Advice:
     """The cheapest way to a relative `accuracy` (95 % half-width) of an observable: Z, collision_rate or D.
 
@@ -141,10 +155,11 @@ def advise(
         raise SceneError(
             "observable", observable, "discs have no diffusion coefficient: it grows with the size"
         )
+    wish = _Wish(observable, accuracy, noise, budget, speed_of)
     settings = [
         made
         for engine, precision, step in _engines(gas)
-        if (made := _setting(gas, engine, precision, step, observable, accuracy, noise, budget, speed_of))
+        if (made := _setting(gas, wish, engine, precision, step))
     ]
     best = min(settings, key=lambda made: (max(made.half_width, accuracy), made.seconds))
     others = tuple(
@@ -180,30 +195,22 @@ def _engines(gas: Gas) -> Iterator[tuple[EventDriven | TimeStepped, str, float]]
 
 
 def _setting(
-    gas: Gas,
-    engine: EventDriven | TimeStepped,
-    precision: str,
-    step: float,
-    observable: str,
-    accuracy: float,
-    noise: float,
-    budget: float | None,
-    speed_of: Callable[[int, str, str, int], float],
+    gas: Gas, wish: _Wish, engine: EventDriven | TimeStepped, precision: str, step: float
 ) -> Setting | None:
-    """None if the error of its steps leaves no room, or nothing is known of it."""
+    """Cost and error of one setting; None if its time step is too inaccurate or was not measured."""
     bias = 0.0
     if engine.name == "step":
-        bias = table.bias(gas.dimension, gas.packing_fraction, precision, step, observable)
-    room = (accuracy - bias) / QUANTILE
+        bias = table.bias(gas.dimension, gas.packing_fraction, precision, step, wish.observable)
+    room = (wish.accuracy - bias) / QUANTILE
     each = table.seconds(gas.dimension, gas.packing_fraction, engine.name, precision, step)
     if room <= 0.0 or not math.isfinite(each):
         return None
-    each *= speed_of(gas.dimension, engine.name, precision, gas.count)
+    each *= wish.speed_of(gas.dimension, engine.name, precision, gas.count)
     settling = 0.5 * gas.count * SETTLING
-    contacts = max(noise / room**2, 0.5 * gas.count * LEAST)
-    if budget is not None:
-        contacts = min(contacts, max(budget / each - settling, 1.0))
-    half_width = bias + QUANTILE * math.sqrt(noise / contacts)
+    contacts = max(wish.noise / room**2, 0.5 * gas.count * LEAST)
+    if wish.budget is not None:
+        contacts = min(contacts, max(wish.budget / each - settling, 1.0))
+    half_width = bias + QUANTILE * math.sqrt(wish.noise / contacts)
     return Setting(engine, bias, contacts, (contacts + settling) * each, half_width)
 
 

@@ -14,6 +14,8 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.files import Kind, begins_with, output_path, writing
+from gaspart.state.insertion import per_body
+from gaspart.trajectory.recipe import opened, read_recipe
 
 KINDS = {
     ".gsd": Kind("a GSD file", begins_with(b"\xdf\x65" * 4)),
@@ -52,9 +54,6 @@ def export(trajectory: str | Path, path: str | Path, frame: int = -1, overwrite:
 
 
 def _snapshot(path: Path, frame: int) -> Snapshot:
-    from gaspart.state.insertion import per_body
-    from gaspart.trajectory.recipe import opened, read_recipe
-
     scene = read_recipe(path).scene
     with opened(path) as file:
         there = len(file.dimensions["frame"])

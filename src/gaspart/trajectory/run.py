@@ -94,6 +94,7 @@ def run(
     duration: float,
     sample_interval: float,
     path: str | Path,
+    *,
     displacements: bool = False,
     follow: int | None = None,
     checkpoint_seconds: float = 30.0,
