@@ -10,7 +10,7 @@ BLACK = np.zeros((1, 3))
 
 
 def state(positions, radii, lengths, velocities=None):
-    """A state of bodies at rest, or not."""
+    """A state of particles at rest, or not."""
     bodies = [
         gp.Body(tuple(x), tuple(v), r)
         for x, r, v in zip(positions, radii, velocities or np.zeros_like(positions), strict=True)

@@ -9,7 +9,7 @@ from gaspart.errors import SceneError
 from gaspart.scene.matter import Restitution
 from gaspart.scene.scene import Container, Scene, Species
 from gaspart.tradeoff import speed, table
-from gaspart.tradeoff.advice import QUANTILE, SETTLING, advise
+from gaspart.tradeoff.advice import QUANTILE, EQUILIBRATION, advise
 
 
 def gas(fraction, count=1000, dimension=3, **more):
@@ -69,7 +69,7 @@ def test_time_steps_scale_with_the_scene():
 def test_settling_and_finite_size_are_told():
     found = advice(0.3, 1e-3, count=100)
     assert found.finite_size < 0.0 and found.bulk_count > 100
-    assert found.setting.seconds > 0.5 * 100 * SETTLING * table.seconds(3, 0.3, "event")
+    assert found.setting.seconds > 0.5 * 100 * EQUILIBRATION * table.seconds(3, 0.3, "event")
 
 
 @pytest.mark.parametrize(

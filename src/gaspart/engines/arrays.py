@@ -31,7 +31,7 @@ def scaled_masses(masses: np.ndarray) -> tuple[float, np.ndarray | None]:
 
 
 def contact_law(scene: Scene, state: State) -> ContactLaw | None:
-    """The law of contacts, or None if all are elastic, smooth and between bodies that can move."""
+    """The law of contacts, or None if all are elastic, smooth and between particles that can move."""
     rule = scene.restitution or Restitution()
     if rule.smooth_and_elastic and not np.isinf(state.masses).any():
         return None
@@ -84,7 +84,7 @@ def interior_walls(scene: Scene, boxes: Boxes, largest_radius: float) -> Interio
 
 
 def face_energy(scene: Scene) -> float:
-    """The energy that a face with a kind may be expected to give a body, at most."""
+    """The energy that a face with a kind may be expected to give a particle, at most."""
     hottest = max((getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()), default=0.0)
     deepest = max((getattr(face, "depth", 0.0) for face in scene.faces.values()), default=0.0)
     return scene.dimension * hottest + 2.0 * deepest
@@ -108,7 +108,8 @@ def write_internal(
 
 
 class EventLog:
-    """Events as they happened: bodies, and their positions, velocities and, if wanted, spins just after."""
+    """Events as they happened: particles, and their positions, velocities and, if wanted, spins just
+    after."""
 
     def __init__(self, dimension: int, spins: bool = False) -> None:
         from gaspart.kernels.event.monitors import Record

@@ -19,7 +19,7 @@ steepest (measured against the equation of state), less elsewhere."""
 
 
 def contact_values(frames: Frames) -> np.ndarray:
-    """(T,) g(sigma) of each frame of equal bodies in a periodic container. Dimensionless."""
+    """(T,) g(sigma) of each frame of equal particles in a periodic container. Dimensionless."""
     n, d, sigma = frames.count, frames.dimension, frames.diameter
     assert sigma is not None, "judged of equal bodies only"
     edges = 1.0 + _WIDTH * np.linspace(0.0, 1.0, _SHELLS + 1)

@@ -13,7 +13,7 @@ from gaspart.scene.scene import Container
 
 @dataclass(frozen=True)
 class Frames:
-    """What can be judged of a trajectory of T frames of N bodies.
+    """What can be judged of a trajectory of T frames of N particles.
 
     positions (T, N, d), on periodic axes inside the container [0, L]; velocities (T, N, d) and time (T,), or
     None where the file does not tell; radii (N,); periodic (d,) whether each axis is; plain: whether
@@ -42,12 +42,12 @@ class Frames:
 
     @property
     def diameter(self) -> float | None:
-        """That of all bodies, or None if they differ."""
+        """That of all particles, or None if they differ."""
         return float(2.0 * self.radii[0]) if np.ptp(self.radii) == 0.0 else None
 
     @property
     def packing_fraction(self) -> float:
-        """Volume (area) of all bodies over that of the container."""
+        """Volume (area) of all particles over that of the container."""
         return float(ball_volume(self.dimension) * (self.radii**self.dimension).sum() / np.prod(self.lengths))
 
 

@@ -16,7 +16,7 @@ from gaspart.state.initial import initial_state
 
 
 def judge_scene(path: Path, tolerance: float | None = None) -> list[Check]:
-    """Can it be, and can its bodies be placed? Raises SceneError where it cannot."""
+    """Can it be, and can its particles be placed? Raises SceneError where it cannot."""
     scene = Scene.from_file(path)
     facts = f"{scene.count} bodies, packing fraction {scene.packing_fraction:.6g}"
     checks = [Check("scene", True, f"{facts}, number density {scene.number_density:.6g}")]

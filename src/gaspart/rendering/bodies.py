@@ -1,4 +1,4 @@
-"""What a picture shows: bodies at one time, from a state or a frame of a trajectory, and their colours."""
+"""What a picture shows: particles at one time, from a state or a frame of a trajectory, and their colours."""
 
 from __future__ import annotations
 
@@ -40,12 +40,12 @@ class Bodies:
 
     @property
     def root_mean_square_speed(self) -> float:
-        """Of all bodies; 0 if there are none."""
+        """Of all particles; 0 if there are none."""
         return float(np.sqrt((self.speeds**2).mean())) if len(self.speeds) else 0.0
 
 
 def bodies_of(source: State | xr.Dataset, frame: int = -1) -> Bodies:
-    """The bodies of a `State`, or of a frame (counted from the end if negative) of an open trajectory.
+    """The particles of a `State`, or of a frame (counted from the end if negative) of an open trajectory.
 
     Raises SceneError for a frame that is not there. A state knows of no interior walls.
     """

@@ -1,4 +1,4 @@
-"""One picture of bodies, as an array of pixels."""
+"""One picture of particles, as an array of pixels."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def render(
     Spheres are seen in perspective, with light and shadow, over the container's floor (z = 0); discs from
     above, with all walls. size: (W, H) pixels. colour: "speed", from dark at rest to bright at the speed
     `fastest` (twice the root-mean-square one) and above; "species"; or an array (N, 3) of red, green and
-    blue from 0 to 1. The same bodies give the same pixels.
+    blue from 0 to 1. The same particles give the same pixels.
 
     Raises SceneError for a frame that is not there, an impossible size or an unknown colouring.
     """
@@ -56,7 +56,8 @@ def checked_size(size: tuple[int, int]) -> tuple[int, int]:
 def picture(
     bodies: Bodies, size: tuple[int, int], colours: np.ndarray, lines: Sequence[np.ndarray] = ()
 ) -> np.ndarray:
-    """The pixels, uint8 (H, W, 3), of bodies in these colours (N, 3); lines, (M, 2) each, lie over discs."""
+    """The pixels, uint8 (H, W, 3), of particles in these colours (N, 3); lines, (M, 2) each, lie over
+    discs."""
     if bodies.dimension == 3:
         from gaspart.rendering.tracer import trace
 

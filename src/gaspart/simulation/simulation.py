@@ -35,7 +35,7 @@ PROPERTIES = (
     "moments_of_inertia",
     "species",
 )
-"""What `Simulation.properties` can tell of each body; explained in `State`."""
+"""What `Simulation.properties` can tell of each particle; explained in `State`."""
 
 
 class Simulation:
@@ -72,14 +72,14 @@ class Simulation:
         mass: float = 1.0,
         **properties: Any,
     ) -> None:
-        """Add one body (properties as in `Body`): `scene` becomes a new, validated scene. Refused once the
-        simulation has advanced."""
+        """Add one particle (properties as in `Body`): `scene` becomes a new, validated scene. Refused once
+        the simulation has advanced."""
         self._change(
             self.scene.with_bodies(Body(tuple(position), tuple(velocity), radius, mass, **properties))
         )
 
     def add_random(self, count: int, radius: float, **properties: Any) -> None:
-        """Add `count` bodies at random places (properties as in `Species`), before the first advance."""
+        """Add `count` particles at random places (properties as in `Species`), before the first advance."""
         self._change(self.scene.with_species(Species(count, radius, **properties)))
 
     def add_wall(self, start: Iterable[float], end: Iterable[float]) -> None:
@@ -145,12 +145,12 @@ class Simulation:
 
     @property
     def state(self) -> State:
-        """All bodies now; a copy."""
+        """All particles now; a copy."""
         return self._dynamics.state
 
     @property
     def initial_state(self) -> State:
-        """All bodies at the start; a copy."""
+        """All particles at the start; a copy."""
         return self._initial.copy()
 
     @property
@@ -212,7 +212,7 @@ class Simulation:
             yield again.state
 
     def properties(self, *names: str, at: Iterable[float] | None = None) -> dict[str, np.ndarray]:
-        """Chosen properties of all bodies as arrays, by their names in `PROPERTIES`.
+        """Chosen properties of all particles as arrays, by their names in `PROPERTIES`.
 
         Now: (N, ...) each. Or at the times `at`, from the start to the present one and in any order, by
         running it again: (T, N, ...) each, and `time` (T,) with them.
@@ -238,7 +238,7 @@ class Simulation:
 
     def check_invariants(self, state: State | None = None) -> None:
         """Raise SimulationError if energy has drifted from what it was less what contacts and walls took, or
-        a body is not where it can be. state: the present one, if it is at hand."""
+        a particle is not where it can be. state: the present one, if it is at hand."""
         state = self.state if state is None else state
         if not (np.isfinite(state.positions).all() and np.isfinite(state.velocities).all()):
             raise SimulationError(f"at time {self.time:g} a position or velocity is not finite")

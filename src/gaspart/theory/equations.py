@@ -1,7 +1,7 @@
 """Equations of state by name: compressibility factor Z = P / (rho k_B T) against packing fraction.
 
 All take `packing_fraction` (number or array) and return Z of the same shape, dimensionless.
-All raise ValueError outside the stated range. `state` says which of them is the reference.
+All raise ValueError outside the stated range. `state` defines which of them is the reference.
 """
 
 import numpy as np

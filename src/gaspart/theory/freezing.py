@@ -68,9 +68,9 @@ def alder_hoover_young_crystal(packing_fraction: Numbers, dimension: int) -> Val
 
 @checked
 def crystal_finite_size_correction(compressibility_factor: Values, count: Values) -> Values:
-    """Z_N - Z_infinity = -(Z - 1) / N of a periodic crystal of N bodies, its centre of mass free.
+    """Z_N - Z_infinity = -(Z - 1) / N of a periodic crystal of N particles, its centre of mass free.
 
-    The centre of mass explores the whole volume V, the other N - 1 bodies their free volumes: Q_N ~ V
+    The centre of mass explores the complete volume V, the other N - 1 particles their free volumes: Q_N ~ V
     v_f^(N-1), so Z_N = 1/N + (1 - 1/N) Z (exact towards close packing; further terms of order 1/N elsewhere
     are small).
     """

@@ -1,4 +1,4 @@
-"""Volume of a body, number density and packing fraction: one definition for discs and spheres."""
+"""Volume of a particle, number density and packing fraction: one definition for discs and spheres."""
 
 import math
 
@@ -19,11 +19,11 @@ def body_volume(dimension: int, diameter: float = 1.0) -> float:
 
 @checked
 def number_density(packing_fraction: Numbers, dimension: int, diameter: float = 1.0) -> Values:
-    """Bodies per volume, rho = eta / v (exact; 1 / length^dimension)."""
+    """Particles per volume, rho = eta / v (exact; 1 / length^dimension)."""
     return packing_fraction / body_volume(dimension, diameter)
 
 
 @checked
 def packing_fraction(number_density: Numbers, dimension: int, diameter: float = 1.0) -> Values:
-    """Fraction of the container's volume that bodies fill, eta = rho v (exact; dimensionless)."""
+    """Fraction of the container's volume that particles fill, eta = rho v (exact; dimensionless)."""
     return number_density * body_volume(dimension, diameter)

@@ -47,7 +47,7 @@ def face_names(dimension: int, walls: int = 0) -> list[str]:
 class Layout:
     """The variables of one frame, in their order in the file: name -> (type, dimensions, attributes).
 
-    count: bodies in the file; displacements, spins, vibrations: whether these are there; walls: interior
+    count: particles in the file; displacements, spins, vibrations: whether these are there; walls: interior
     ones.
     """
 

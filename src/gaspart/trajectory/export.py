@@ -1,6 +1,6 @@
 """One frame of a trajectory as a state for other programs: GSD (HOOMD) and LAMMPS data.
 
-Positions and velocities are those of the trajectory's frame, in single precision: bodies that touched may
+Positions and velocities are those of the trajectory's frame, in single precision: particles that touched may
 overlap by 1e-7 of a diameter. What those programs do not know (walls, faces, gravity) stays behind.
 """
 
@@ -94,7 +94,7 @@ def _write_gsd(path: Path, snapshot: Snapshot) -> None:
 
 
 def _write_data(path: Path, snapshot: Snapshot) -> None:
-    """LAMMPS data of atom_style sphere: its density is that of a ball of the body's mass and diameter."""
+    """LAMMPS data of atom_style sphere: its density is that of a ball of the particle's mass and diameter."""
     count = len(snapshot.positions)
     density = snapshot.masses / (math.pi / 6.0 * snapshot.diameters**3)
     low = np.array([0.0, 0.0, -0.5 * snapshot.lengths[2] if snapshot.dimension == 2 else 0.0])

@@ -42,7 +42,7 @@ class Recipe:
     """All that a trajectory follows from. Raises SceneError for what cannot be run.
 
     duration and sample_interval are in the scene's time; duration is a whole multiple of sample_interval,
-    and that, for the time-stepped engine, of time_step. follow: how many bodies, from the first on, are in
+    and that, for the time-stepped engine, of time_step. follow: how many particles, from the first on, are in
     the file; None: all.
     """
 
@@ -77,7 +77,7 @@ class Recipe:
 
     @property
     def bodies(self) -> int:
-        """How many bodies are in the file."""
+        """How many particles are in the file."""
         return self.scene.count if self.follow is None else self.follow
 
     @property

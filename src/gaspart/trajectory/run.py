@@ -103,9 +103,9 @@ def run(
 ) -> Path:
     """Run a scene and write its trajectory to `path`; returns `path`.
 
-    A frame at time 0 and at every sample_interval to the duration, which must be a whole multiple of it;
-    with `displacements` also each body's float64 way since time 0, unwrapped; with rough contacts also the
-    spins; with `follow` only so many bodies, from the first on (counters are still those of all). A run of
+    A frame at time 0 and at every sample_interval to the duration, which must be a whole multiple of it; with
+    `displacements` also each particle's float64 way since time 0, unwrapped; with rough contacts also the
+    spins; with `follow` only so many particles, from the first on (counters are still those of all). A run of
     the same recipe and program that was cut short is continued, and one that is whole is left as it is.
     Another trajectory at `path`, or half-finished beside it, is replaced only with `overwrite`; a file of
     another kind never.
