@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.rendering.bodies import bodies_of, colours_of
+from gaspart.rendering.particles import particles_of, colours_of
 from gaspart.rendering.discs import Canvas
 from gaspart.rendering.pictures import render
 
@@ -56,7 +56,7 @@ def test_a_picture_is_the_same_pixels_each_time(dimension):
 
 
 def test_colours():
-    found = bodies_of(state([[2.0, 2.0], [5.0, 5.0]], [1.0, 1.0], [8.0, 8.0], [(0.0, 0.0), (3.0, 4.0)]))
+    found = particles_of(state([[2.0, 2.0], [5.0, 5.0]], [1.0, 1.0], [8.0, 8.0], [(0.0, 0.0), (3.0, 4.0)]))
     assert found.speeds.tolist() == [0.0, 5.0]
     slow, fast = colours_of(found, "speed", fastest=5.0)
     assert slow.mean() < 0.3 < 0.5 < fast.mean()

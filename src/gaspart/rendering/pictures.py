@@ -9,7 +9,7 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.files import Kind, begins_with
-from gaspart.rendering.bodies import Bodies, bodies_of, colours_of
+from gaspart.rendering.particles import DrawnParticles, particles_of, colours_of
 from gaspart.rendering.camera import camera_for
 from gaspart.scene.validation import count_of
 
@@ -39,8 +39,8 @@ def render(
 
     Raises SceneError for a frame that is not there, an impossible size or an unknown colouring.
     """
-    bodies = bodies_of(source, frame)
-    return picture(bodies, checked_size(size), colours_of(bodies, colour, fastest))
+    particles = particles_of(source, frame)
+    return picture(particles, checked_size(size), colours_of(particles, colour, fastest))
 
 
 def checked_size(size: tuple[int, int]) -> tuple[int, int]:
@@ -54,29 +54,29 @@ def checked_size(size: tuple[int, int]) -> tuple[int, int]:
 
 
 def picture(
-    bodies: Bodies, size: tuple[int, int], colours: np.ndarray, lines: Sequence[np.ndarray] = ()
+    particles: DrawnParticles, size: tuple[int, int], colours: np.ndarray, lines: Sequence[np.ndarray] = ()
 ) -> np.ndarray:
     """The pixels, uint8 (H, W, 3), of particles in these colours (N, 3); lines, (M, 2) each, lie over
     discs."""
-    if bodies.dimension == 3:
+    if particles.dimension == 3:
         from gaspart.rendering.tracer import trace
 
-        camera = camera_for(bodies.lengths, *size)
-        image, _ = trace(bodies.positions, bodies.radii, colours, bodies.lengths, camera, size)
+        camera = camera_for(particles.lengths, *size)
+        image, _ = trace(particles.positions, particles.radii, colours, particles.lengths, camera, size)
     else:
-        image = _plane(bodies, size, colours, lines)
+        image = _plane(particles, size, colours, lines)
     return np.rint(255.0 * image).astype(np.uint8)
 
 
 def _plane(
-    bodies: Bodies, size: tuple[int, int], colours: np.ndarray, lines: Sequence[np.ndarray]
+    particles: DrawnParticles, size: tuple[int, int], colours: np.ndarray, lines: Sequence[np.ndarray]
 ) -> np.ndarray:
     from gaspart.rendering.discs import Canvas
 
-    canvas = Canvas(bodies.lengths, size)
-    canvas.discs(bodies.positions, bodies.radii, colours)
-    x, y = bodies.lengths
+    canvas = Canvas(particles.lengths, size)
+    canvas.discs(particles.positions, particles.radii, colours)
+    x, y = particles.lengths
     canvas.line(np.array([[0.0, 0.0], [x, 0.0], [x, y], [0.0, y], [0.0, 0.0]]))
-    for line in (*bodies.walls, *lines):
+    for line in (*particles.walls, *lines):
         canvas.line(line)
     return canvas.image

@@ -1,7 +1,7 @@
 """One frame of a trajectory as a state for other programs: GSD (HOOMD) and LAMMPS data.
 
 Positions and velocities are those of the trajectory's frame, in single precision: particles that touched may
-overlap by 1e-7 of a diameter. What those programs do not know (walls, faces, gravity) stays behind.
+overlap by 1e-7 of a diameter. Walls, faces and gravity are not part of these formats.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def export(trajectory: str | Path, path: str | Path, frame: int = -1, overwrite:
     """Write a frame of a trajectory as .gsd or LAMMPS .data; returns the path.
 
     frame: counted from 0, or from the end if negative. A file of the same kind at `path` is replaced only
-    with `overwrite`, any other never. Raises SceneError for another suffix, a frame that is not there, and a
+    with `overwrite`, any other never. Raises SceneError for another suffix, a missing frame, and a
     file that cannot be read or written.
     """
     path = output_path(path)
@@ -59,7 +59,7 @@ def _snapshot(path: Path, frame: int) -> Snapshot:
         there = len(file.dimensions["frame"])
         if not -there <= frame < there:
             raise SceneError("frame", frame, f"the trajectory has {there}")
-        frame %= there  # the last frame of a file under way is not what -1 means to netCDF
+        frame %= there  # netCDF counts -1 from the allocated frames of an unfinished file
         radii = np.asarray(file["radius"][:])
         return Snapshot(
             positions=np.asarray(file["coordinates"][frame], dtype=float),
