@@ -1,5 +1,6 @@
 """The pages in docs/: what they show runs as it stands there, and the reference is complete."""
 
+import ast
 import importlib.util
 import re
 import shlex
@@ -12,6 +13,7 @@ from gaspart.cli import main
 from gaspart.experiments.registry import families
 
 DOCS = Path(__file__).parents[1] / "docs"
+GENERIC = {"measure.py", "claims.py", "figure.py"}  # of every family
 
 
 @pytest.mark.parametrize("name", ["quickstart", "tools"])
@@ -33,6 +35,50 @@ def test_a_page_runs_from_top_to_bottom(name, tmp_path, monkeypatch, capsys):
     assert "WRONG" not in capsys.readouterr().out
 
 
+def script(name):
+    """A script of docs/ as a module."""
+    spec = importlib.util.spec_from_file_location(name, DOCS / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_the_architecture_is_that_of_the_code():
+    picture = script("architecture_picture")
+    graph, order = picture.imports(), list(picture.purposes())
+    assert set(order) == set(graph)
+    for package, used in graph.items():
+        assert all(order.index(one) < order.index(package) for one in used), package
+    drawn = re.search(r"<dc:description>(.*?)</dc:description>", (DOCS / "architecture.svg").read_text())[1]
+    assert drawn.replace("&gt;", ">") == picture.stated(picture.reduced(graph)), "draw the picture again"
+
+
+def test_an_import_that_follows_from_others_is_not_drawn():
+    picture = script("architecture_picture")
+    graph = {"a": set(), "b": {"a"}, "c": {"a", "b"}}
+    assert picture.reduced(graph) == {"a": set(), "b": {"a"}, "c": {"b"}}
+    assert picture.rows(picture.reduced(graph)) == {"c": 0, "b": 1, "a": 2}
+
+
+@pytest.mark.parametrize("name", ["architecture", "newcomers"])
+def test_files_and_functions_that_a_page_names_exist(name):
+    """Files in backticks, from the root of the project or of the package; `function` in `file` together."""
+    text = (DOCS / f"{name}.md").read_text(encoding="utf-8")
+    files = set(re.findall(r"`([\w/.-]+\.(?:py|yaml|json|md|smk))`", text))
+    table = set(re.findall(r"^\| `(\w+)` \| [^|]+ \| ([^|]+) \|", text, re.MULTILINE))
+    within = {(DOCS.parent / "src/gaspart" / package, file) for package, row in table
+              for file in re.findall(r"`([\w/]+(?:\.py|/))`", row)}  # fmt: skip
+    assert all((folder / file).exists() for folder, file in within), within
+    for file in files - {file for _, file in within} - GENERIC:
+        assert any((root / file).exists() for root in (DOCS.parent, DOCS.parent / "src/gaspart")), file
+    for names, file in re.findall(r"((?:`\w+`(?:, | and )?)+) in\s`([\w/]+\.py)`", text):
+        tree = ast.parse((DOCS.parent / "src/gaspart" / file).read_text(encoding="utf-8"))
+        defined = {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef | ast.ClassDef)}
+        defined |= {target.id for node in tree.body if isinstance(node, ast.Assign) for target in node.targets
+                    if isinstance(target, ast.Name)}  # fmt: skip
+        assert set(re.findall(r"\w+", names)) <= defined, (names, file)
+
+
 def test_links_between_pages_lead_somewhere():
     for path in [*DOCS.glob("*.md"), DOCS.parent / "README.md"]:
         for target in re.findall(r"\]\(([^)#:]+)\)", path.read_text(encoding="utf-8")):
@@ -40,10 +86,7 @@ def test_links_between_pages_lead_somewhere():
 
 
 def test_the_reference_has_every_public_name_and_every_figure(tmp_path):
-    spec = importlib.util.spec_from_file_location("build", DOCS / "build.py")
-    build = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(build)
-    build.build(tmp_path)
+    script("build").build(tmp_path)
     api = (tmp_path / "api.html").read_text()
     for name in gp.__all__:
         assert f'<h3 id="{name}">' in api
