@@ -1,7 +1,7 @@
 """Draw docs/architecture.svg, the packages and their imports: python docs/architecture_picture.py
 
-Imports are those of the code; names, order and purposes those of the table in docs/architecture.md. An arrow that
-follows from others (a imports b, b imports c, so a may import c) is left out.
+Imports are those of the code; names, order and purposes those of the table in docs/architecture.md. An arrow
+that follows from others (a imports b, b imports c, so a may import c) is left out.
 """
 
 import re
