@@ -18,7 +18,7 @@ def workspace(tmp_path_factory):
     """A copy of the project in which the page has been followed."""
     copy = copy_of_project(tmp_path_factory.mktemp("a new figure"))
     blocks = list(BLOCK.finditer((ROOT / "docs/adding-a-figure.md").read_text(encoding="utf-8")))
-    assert len(blocks) == 9
+    assert len(blocks) == 8
     for block in blocks:
         file = copy.path / block["path"]
         if block["after"] is None:
