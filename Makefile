@@ -1,9 +1,9 @@
-# make            set up, reproduce every figure, write results/report.html
-# make test       set up, run all tests (a small copy of the whole workflow among them)
-# make check-all  the linters, the tests, 2500 new random scenes for each property of the engines, and what takes long
+# make            set up, reproduce every figure, write results/report.html, print the verdicts
+# make test       set up, run all tests (among them the whole workflow, small)
+# make check-all  the linters, the tests, 2500 new random scenes for each property of the engines, and the slow tests
 # make smoke      all figures, small
-# make docs       public names, and a page for each family of figures: results/docs/index.html
-# make benchmark  how fast the engines are on this machine, with nothing else running: results/tables/performance.csv
+# make docs       a page of all public names, a page for each family of figures: results/docs/index.html
+# make benchmark  the speed of the engines on this machine, which should run nothing else: results/tables/performance.csv
 # make coverage   which lines of src/gaspart the tests run (at least 95 %); compiles all kernels anew
 # make lint | report | clean | distclean
 #
@@ -18,10 +18,13 @@ PYTHON ?= $(shell command -v python3.11 || command -v python3)
 CORES ?= all
 PIP = .venv/bin/python -m pip --quiet --disable-pip-version-check
 SNAKEMAKE = .venv/bin/python -m snakemake --cores $(CORES)
+# Printed after Snakemake has ended, also if there was nothing to do.
+VERDICTS = @.venv/bin/python -c 'from gaspart.claims import summary; print(summary("results/tables/claims.csv"))'
 
 all: setup
 	$(SNAKEMAKE) --quiet rules
-	@echo "done: results/report.html"
+	$(VERDICTS)
+	@echo "report: results/report.html"
 
 setup: .venv/gaspart.stamp
 
@@ -32,7 +35,7 @@ setup: .venv/gaspart.stamp
 	$(PIP) install --require-hashes --requirement environment.txt
 	@touch $@
 
-# Nothing unlocked gets in: no dependencies, no build tools from the network.
+# Only locked packages are installed: neither dependencies nor build tools come from the network here.
 .venv/gaspart.stamp: .venv/environment.stamp pyproject.toml
 	$(PIP) install --no-deps --no-build-isolation --editable .
 	@touch $@
@@ -46,6 +49,7 @@ check-all: lint test
 
 smoke: setup
 	$(SNAKEMAKE) --quiet rules --configfile config/smoke.yaml
+	$(VERDICTS)
 
 benchmark: setup
 	mkdir -p results/benchmarks
@@ -53,7 +57,7 @@ benchmark: setup
 	.venv/bin/python benchmarks/table.py results/benchmarks/performance.json \
 		results/tables/performance.csv results/figures/performance.png
 
-# The workflow's tests run copies of the project, and what they run has tests of its own.
+# Without the tests of the workflow: they run copies of the project, and the functions they call have their own tests.
 coverage: export GASPART_CACHE = $(CURDIR)/results/coverage/kernels
 coverage: export COVERAGE_FILE = $(CURDIR)/results/coverage/data
 coverage: setup
@@ -75,7 +79,7 @@ docs: setup
 	.venv/bin/python docs/build.py results/docs
 
 clean:
-	rm -rf results .snakemake
+	rm -rf .snakemake $(filter-out results/README.md,$(wildcard results/*))
 
 distclean: clean
 	rm -rf .venv .pytest_cache .ruff_cache .mypy_cache .hypothesis src/*.egg-info

@@ -1,12 +1,12 @@
-# gaspart, at a glance: simulate every point of every grid, measure, judge, draw, report.
+# The entry point of the workflow: simulate every point of every grid, measure, judge, draw, report.
 #
 #   snakemake --cores all                                      everything
 #   snakemake --cores all results/figures/virial_discs.png     one figure (.png or .svg)
 #   snakemake --cores all claims                               results/tables/claims.csv
 #   snakemake --cores all report                               results/report.html
 #   snakemake --cores all animations                           results/animations/*.mp4
-#   snakemake --cores all points                               every simulation, and nothing of it measured
-#   snakemake --cores all --configfile config/smoke.yaml       all of it, small
+#   snakemake --cores all points                               every simulation, without the measurements
+#   snakemake --cores all --configfile config/smoke.yaml       everything, small
 
 from snakemake.utils import min_version
 
@@ -27,11 +27,18 @@ include: "workflow/rules/figures.smk"
 include: "workflow/rules/animate.smk"
 
 
-# Snakemake wakes its scheduler once a second for every job that has ended (snakemake/snakemake#3744), lest more
-# start in a second than it allows: after a few hundred jobs that takes a core. On one machine no limit is needed.
+# Snakemake wakes its scheduler once a second for every job that has ended (snakemake/snakemake#3744), to limit how
+# many start in a second: after a few hundred jobs that takes a core. On one machine no limit is needed.
 onstart:
     if workflow.local_exec:
         workflow.scheduler.job_rate_limiter = None
+
+
+# The verdicts, unless the run was of a part, such as one figure. `make` prints them itself: Snakemake has no hook for
+# a run that finds nothing to do.
+onsuccess:
+    if "MAKELEVEL" not in os.environ and any(job.rule.name == "claims" for job in workflow.dag.jobs):
+        print(summary("results/tables/claims.csv"))
 
 
 localrules:

@@ -1,7 +1,7 @@
-"""The reference pages: python docs/build.py FOLDER. An API reference, and a page for each family of figures.
+"""Write the reference pages: python docs/build.py FOLDER. An API reference, and a page for each family.
 
-The API is that of the docstrings; a family's page is made of its captions, of what its modules say they
-measure and claim, and, where the workflow has run, of its figures and claims.
+The API reference is made from the docstrings; the page of a family from its captions, the docstrings of its
+modules and, if the workflow has run, its figures and claims.
 """
 
 import csv
@@ -27,7 +27,7 @@ td, th { text-align: left; padding-right: 1rem; }"""
 
 
 def page(title, body):
-    """A whole page of HTML."""
+    """A complete page of HTML."""
     head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{title}</title>'
     head += f"<style>{STYLE}</style>"
     return f'<!doctype html><html lang="en"><head>{head}</head><body><h1>{title}</h1>{body}</body></html>'
@@ -40,25 +40,25 @@ def from_rst(text):
 
 
 def entry(name, thing):
-    """A public name: how it is called, and its docstring."""
-    called = ""
-    if callable(thing) and thing is not gaspart.SimulationError:  # which takes what any error takes
-        called = str(inspect.signature(thing)).replace("gaspart.", "")
-    told = inspect.getdoc(thing) if callable(thing) else repr(thing)
-    return f'<h3 id="{name}">{name}</h3><pre>{html.escape(name + called)}\n\n{html.escape(told or "")}</pre>'
+    """A public name: its signature and its docstring."""
+    signature = ""
+    if callable(thing) and thing is not gaspart.SimulationError:  # which has the signature of any exception
+        signature = str(inspect.signature(thing)).replace("gaspart.", "")
+    text = (inspect.getdoc(thing) if callable(thing) else repr(thing)) or ""
+    return f'<h3 id="{name}">{name}</h3><pre>{html.escape(name + signature)}\n\n{html.escape(text)}</pre>'
 
 
 def methods(kind):
     """The public methods and properties of a class, each with the first line of its docstring."""
     rows = []
     for name, thing in vars(kind).items():
-        told = inspect.getdoc(thing)
+        text = inspect.getdoc(thing)
         if (
             not name.startswith("_")
-            and told
+            and text
             and (callable(thing) or isinstance(thing, property | classmethod))
         ):
-            rows.append(f"<tr><td><code>{name}</code></td><td>{html.escape(told.splitlines()[0])}</td></tr>")
+            rows.append(f"<tr><td><code>{name}</code></td><td>{html.escape(text.splitlines()[0])}</td></tr>")
     return f"<table>{''.join(rows)}</table>" if rows else ""
 
 
@@ -76,7 +76,7 @@ def api():
 
 
 def family_page(family, folder):
-    """What a family of figures shows, measures and claims."""
+    """The page of a family: captions, figures, claims, and the docstrings of its modules."""
     parts = []
     for figure in (name for name, its in families().items() if its == family):
         parts.append(f'<h2 id="{figure}">{figure}</h2>')
@@ -85,14 +85,14 @@ def family_page(family, folder):
             parts.append(f'<img alt="{figure}" src="{os.path.relpath(picture, folder)}">')
         parts.append(from_rst((ROOT / f"workflow/report/{figure}.rst").read_text(encoding="utf-8")))
         parts.append(claims_of(ROOT / f"results/claims/{figure}.csv"))
-    for kind, verb in (("measure", "How it is measured"), ("claims", "What is claimed")):
-        told = importlib.import_module(f"gaspart.experiments.{family}.{kind}").__doc__
-        parts.append(f"<h2>{verb}</h2><pre>{html.escape(told.strip())}</pre>")
+    for kind, title in (("measure", "Measurement"), ("claims", "Claims")):
+        text = importlib.import_module(f"gaspart.experiments.{family}.{kind}").__doc__
+        parts.append(f"<h2>{title}</h2><pre>{html.escape(text.strip())}</pre>")
     return page(titles()[family], "".join(parts))
 
 
 def claims_of(path):
-    """A table of the claims that the workflow has judged; nothing where it has not run."""
+    """A table of the claims with their verdicts; empty if the workflow has not run."""
     if not path.exists():
         return ""
     with path.open(newline="", encoding="utf-8") as file:

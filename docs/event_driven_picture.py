@@ -1,4 +1,4 @@
-"""Draw docs/event-driven.svg: what an event is. Run it from anywhere: python docs/event_driven_picture.py"""
+"""Draw docs/event-driven.svg, events of four particles: python docs/event_driven_picture.py"""
 
 from pathlib import Path
 
@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
 RADIUS, SIDE = 0.45, 2.0
-BODIES = {  # where it is and how it moves: the other numbers of the picture follow
+PARTICLES = {  # position, velocity, colour; the other numbers of the picture follow
     "A": ((0.9, 3.0), (1.0, 0.0), "#4477aa"),
     "B": ((4.2, 2.8), (-0.5, 0.0), "#ee6677"),
     "C": ((1.0, 1.1), (0.2, -0.8), "#228833"),
@@ -27,24 +27,24 @@ def contact(r, v, sigma):
 
 
 def events():
-    """(time, body, what) of the next event of each body, and of a crossing that goes before it."""
+    """(time, particle, event) for the next event of each particle, and for a crossing before one of them."""
     (a, va, _), (b, vb, _), (c, vc, _), (d, vd, _) = (
-        (np.array(x), np.array(v), colour) for x, v, colour in BODIES.values()
+        (np.array(x), np.array(v), colour) for x, v, colour in PARTICLES.values()
     )
     pair = contact(b - a, vb - va, 2 * RADIUS)
     return [
-        ((RADIUS - c[1]) / vc[1], "C", "meets a face of the container"),
-        ((SIDE - a[0]) / va[0], "A", "passes into the next box: not an event of physics"),
-        (contact(d - WALL[1], vd, RADIUS), "D", "meets the end of a wall"),
-        (pair, "A", "meets B"),
-        (pair, "B", "meets A"),
+        ((RADIUS - c[1]) / vc[1], "C", "hits a face of the container"),
+        ((SIDE - a[0]) / va[0], "A", "crosses into the next box: no event of physics"),
+        (contact(d - WALL[1], vd, RADIUS), "D", "hits the end of a wall"),
+        (pair, "A", "hits B"),
+        (pair, "B", "hits A"),
     ]
 
 
 def space(axes, found):
-    """Bodies where they are, and dashed where their next events are."""
+    """The particles now, and dashed at their next events."""
     axes.set(xlim=(-0.08, 6.08), ylim=(-0.08, 4.08), aspect="equal", xticks=[], yticks=[])
-    axes.set_title("bodies now, and (dashed) where they will be", loc="left")
+    axes.set_title("particles now, and (dashed) at their next events", loc="left")
     axes.axis("off")
     axes.add_patch(plt.Rectangle((0, 0), 6, 4, fill=False, lw=2))
     for x in (SIDE, 2 * SIDE):
@@ -52,12 +52,12 @@ def space(axes, found):
     axes.plot([0, 6], [SIDE, SIDE], color="0.75", lw=0.8, zorder=0)
     axes.text(0.08, SIDE + 0.07, "box", color="0.5")
     axes.plot(*WALL.T, color="k", lw=2, solid_capstyle="round")
-    for name, (place, velocity, colour) in BODIES.items():
+    for name, (place, velocity, colour) in PARTICLES.items():
         place, velocity = np.array(place), np.array(velocity)
         axes.add_patch(plt.Circle(place, RADIUS, color=colour, alpha=0.35, lw=0))
         axes.text(*place, name, ha="center", va="center", weight="bold")
-        for n, (time, body, _) in enumerate(found):
-            if body == name:
+        for n, (time, particle, _) in enumerate(found):
+            if particle == name:
                 there = place + velocity * time
                 axes.annotate(
                     "", there, place, arrowprops={"arrowstyle": "->", "color": colour, "shrinkA": 6}
@@ -69,21 +69,21 @@ def space(axes, found):
 
 
 def queue(axes, found):
-    """The next event of each body on a line of time."""
+    """The next event of each particle on a time axis."""
     axes.set(xlim=(-0.25, 2.0), ylim=(-0.6, 3.6), yticks=range(4), yticklabels=list("DCBA"))
-    axes.set_title("plans: the earlier of each body is in the queue", loc="left")
+    axes.set_title("predictions: the earlier one is in the queue", loc="left")
     axes.set_xlabel("time")
     axes.set_xticks([0.0], ["now"])
     for side in ("left", "right", "top"):
         axes.spines[side].set_visible(False)
     axes.tick_params(axis="y", length=0)
-    for n, (time, body, what) in enumerate(found):
-        y, colour = "DCBA".index(body), BODIES[body][2]
+    for n, (time, particle, event) in enumerate(found):
+        y, colour = "DCBA".index(particle), PARTICLES[particle][2]
         axes.plot([0, 1.95], [y, y], color="0.85", lw=0.8, zorder=0)
         axes.plot(0, y, "o", color=colour, ms=4)
         crossing = n == 1
         axes.plot(time, y, "|" if crossing else "D", color=colour, ms=9 if crossing else 6)
-        label = f"{n + 1 if body != 'B' else 4} {what}"
+        label = f"{n + 1 if particle != 'B' else 4} {event}"
         if crossing:
             axes.text(time, y - 0.42, label, ha="center", fontsize=6.5, color="0.35")
         else:

@@ -1,4 +1,4 @@
-"""Some figures of a reproduction, side by side: `python docs/gallery.py results/figures docs/gallery.png`."""
+"""Some figures of a reproduction in one picture: python docs/gallery.py results/figures docs/gallery.png"""
 
 import sys
 from pathlib import Path

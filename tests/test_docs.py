@@ -12,6 +12,8 @@ from gaspart.cli import main
 from gaspart.experiments.registry import families
 
 DOCS = Path(__file__).parents[1] / "docs"
+SOURCE = DOCS.parent / "src/gaspart"
+FAMILY = {SOURCE / name for name in ("measure.py", "claims.py", "figure.py")}  # one in each family
 
 
 @pytest.mark.parametrize("name", ["quickstart", "tools"])
@@ -33,6 +35,54 @@ def test_a_page_runs_from_top_to_bottom(name, tmp_path, monkeypatch, capsys):
     assert "WRONG" not in capsys.readouterr().out
 
 
+def script(name):
+    """A script of docs/ as a module."""
+    spec = importlib.util.spec_from_file_location(name, DOCS / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_the_architecture_is_that_of_the_code():
+    picture = script("architecture_picture")
+    graph, order = picture.imports(), list(picture.purposes())
+    assert set(order) == set(graph)
+    for package, used in graph.items():
+        assert all(order.index(one) < order.index(package) for one in used), package
+    drawn = re.search(r"<dc:description>(.*?)</dc:description>", (DOCS / "architecture.svg").read_text())[1]
+    assert drawn.replace("&gt;", ">") == picture.stated(picture.reduced(graph)), "draw the picture again"
+
+
+def test_an_import_that_follows_from_others_is_not_drawn():
+    picture = script("architecture_picture")
+    graph = {"a": set(), "b": {"a"}, "c": {"a", "b"}}
+    assert picture.reduced(graph) == {"a": set(), "b": {"a"}, "c": {"b"}}
+    assert picture.rows(picture.reduced(graph)) == {"c": 0, "b": 1, "a": 2}
+
+
+def named_files(text):
+    """Paths of the files that a page names; in a row of a table, in the package of that row."""
+    for line in text.splitlines():
+        row = re.match(r"\| `(\w+)` \|", line)
+        for name in re.findall(r"`([\w/.-]+(?:\.py|\.yaml|\.json|\.md|/))`", line):
+            places = [SOURCE / row[1] / name] if row else [SOURCE / name, DOCS.parent / name]
+            yield next((place for place in places if place.exists()), places[0])
+
+
+@pytest.mark.parametrize("page", ["architecture", "newcomers"])
+def test_files_and_functions_that_a_page_names_exist(page):
+    text = (DOCS / f"{page}.md").read_text(encoding="utf-8")
+    files = [path for path in named_files(text) if path not in FAMILY]
+    assert len(files) > 20
+    assert not [path for path in files if not path.exists()]
+    found = re.findall(r"`(\w+)`(?: and `(\w+)`)? in\s+`([\w/]+\.py)`", text)
+    assert page == "architecture" or len(found) > 30
+    for *names, file in found:
+        code = (SOURCE / file).read_text(encoding="utf-8")
+        for name in filter(None, names):
+            assert re.search(rf"^(?:def |class )?(?:\w+, )*{name}\b.*[:=(]", code, re.MULTILINE), (name, file)
+
+
 def test_links_between_pages_lead_somewhere():
     for path in [*DOCS.glob("*.md"), DOCS.parent / "README.md"]:
         for target in re.findall(r"\]\(([^)#:]+)\)", path.read_text(encoding="utf-8")):
@@ -40,10 +90,7 @@ def test_links_between_pages_lead_somewhere():
 
 
 def test_the_reference_has_every_public_name_and_every_figure(tmp_path):
-    spec = importlib.util.spec_from_file_location("build", DOCS / "build.py")
-    build = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(build)
-    build.build(tmp_path)
+    script("build").build(tmp_path)
     api = (tmp_path / "api.html").read_text()
     for name in gp.__all__:
         assert f'<h3 id="{name}">' in api

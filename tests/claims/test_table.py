@@ -28,13 +28,18 @@ def test_table_goes_out_and_comes_back(tmp_path):
     table = claims.collect([path, path])
     assert tuple(table.columns) == claims.COLUMNS
     assert len(table) == 6
-    assert claims.summary(table) == "6 claims: 2 agree, 2 disagree, 2 inconclusive"
+    table.to_csv(path, index=False)
+    assert claims.summary(path).splitlines() == [
+        "6 claims: 2 agree, 2 disagree, 2 inconclusive",
+        *['disagrees: virial_discs: Z at "0.2", dense'] * 2,
+    ]
 
 
-def test_collecting_nothing_gives_an_empty_table():
+def test_collecting_nothing_gives_an_empty_table(tmp_path):
     table = claims.collect([])
     assert tuple(table.columns) == claims.COLUMNS
-    assert claims.summary(table) == "0 claims: 0 agree, 0 disagree, 0 inconclusive"
+    table.to_csv(tmp_path / "claims.csv", index=False)
+    assert claims.summary(tmp_path / "claims.csv") == "0 claims: 0 agree, 0 disagree, 0 inconclusive"
 
 
 def test_two_claims_with_one_text_are_refused(tmp_path):

@@ -3,6 +3,7 @@
 import ast
 import copy
 import math
+import re
 import sys
 import tomllib
 from datetime import date
@@ -259,7 +260,7 @@ def test_all_that_gaspart_imports_and_reads_comes_with_it():
                 needed |= {alias.name.split(".")[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
                 needed.add(node.module.split(".")[0])
-    names = {name.lower() for name in project["project"]["dependencies"]}
+    names = {re.split("[<>=]", name)[0].lower() for name in project["project"]["dependencies"]}
     for module in needed - own - {"coverage", "cycler", "PIL"}:  # the last two come with matplotlib
         assert {name.lower() for name in distributions[module]} & names, module
     packed = project["tool"]["setuptools"]["package-data"]

@@ -1,4 +1,4 @@
-"""The workflow's own linters."""
+"""The linters of the workflow."""
 
 import subprocess
 import sys
@@ -9,7 +9,7 @@ from workspace import ROOT, SMOKE
 pytestmark = pytest.mark.workflow
 
 
-def test_snakemake_finds_nothing_to_complain_about(fresh):
+def test_snakemake_has_no_complaint(fresh):
     result = fresh.snakemake("--lint", *SMOKE)
     assert result.returncode == 0, result.stdout
 

@@ -13,6 +13,7 @@ sys.path.insert(0, str(ROOT / "src"))
 if " " in sys.executable:
     sys.executable = shlex.quote(sys.executable)
 
+from gaspart.claims.table import summary
 from gaspart.experiments.config import check
 from gaspart.experiments.registry import families, titles
 from gaspart.planning import grid

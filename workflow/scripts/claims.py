@@ -6,7 +6,6 @@ with job(snakemake):
     from gaspart import claims
     from gaspart.files import whole_file
 
-    table = claims.collect(snakemake.input.tables)
-    print(claims.summary(table))
     with whole_file(snakemake.output[0]) as partial:
-        table.to_csv(partial, index=False)
+        claims.collect(snakemake.input.tables).to_csv(partial, index=False)
+    print(claims.summary(snakemake.output[0]))

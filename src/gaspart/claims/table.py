@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -63,7 +64,7 @@ def write(path: str | Path, figure: str, claims: Sequence[Claim]) -> None:
 
 
 def read(path: str | Path) -> list[dict[str, Any]]:
-    """Rows of a claims table as dictionaries by column; the numbers as floats.
+    """Rows of a claims table as dictionaries by column; the numbers as floats, NaN where pandas left none.
 
     Raises ValueError, naming the file, if its columns are not COLUMNS or a number or verdict is invalid.
     """
@@ -74,7 +75,7 @@ def read(path: str | Path) -> list[dict[str, Any]]:
         rows = list(table)
     for row in rows:
         try:
-            row.update({name: float(row[name]) for name in _NUMBERS})
+            row.update({name: math.nan if row[name] == "" else float(row[name]) for name in _NUMBERS})
         except (TypeError, ValueError) as error:
             raise ValueError(f"{path}: {error} in the row {row['claim']!r}") from None
         if row["verdict"] not in VERDICTS:
@@ -89,10 +90,14 @@ def collect(paths: Iterable[str | Path]) -> pandas.DataFrame:
     return pandas.DataFrame([row for path in paths for row in read(path)], columns=list(COLUMNS))
 
 
-def summary(table: pandas.DataFrame) -> str:
-    """One line that counts the verdicts of a `collect`ed table: "212 claims: 205 agree, 3 disagree, ..."."""
-    counts = {verdict: int((table["verdict"] == verdict).sum()) for verdict in VERDICTS}
-    return (
-        f"{len(table)} claims: {counts['agrees']} agree, {counts['disagrees']} disagree, "
+def summary(path: str | Path) -> str:
+    """What a claims table says, in one line, "212 claims: 205 agree, 3 disagree, ...", and a line for each
+    claim that disagrees. Raises ValueError as `read` does."""
+    rows = read(path)
+    counts = {verdict: sum(row["verdict"] == verdict for row in rows) for verdict in VERDICTS}
+    lines = [
+        f"{len(rows)} claims: {counts['agrees']} agree, {counts['disagrees']} disagree, "
         f"{counts['inconclusive']} inconclusive"
-    )
+    ]
+    lines += [f"disagrees: {row['figure']}: {row['claim']}" for row in rows if row["verdict"] == "disagrees"]
+    return "\n".join(lines)
