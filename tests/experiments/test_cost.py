@@ -10,7 +10,7 @@ GASES = """
 title: gases
 seed: 1
 points: results/points
-figures: {radius_grid: {experiments: [gas]}}
+figures: {gas_render: {experiments: [gas]}}
 experiments:
   gas:
     point: &gas {dimension: 3, count: 1000000, radius: 0.5, boundary: periodic, speed: 1.0, duration: 100}
