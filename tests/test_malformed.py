@@ -73,7 +73,7 @@ def test_valid_ones_are_accepted():
         (gp.Container, {"lengths": range(10**9)}, "must be a list of 2 or 3 finite numbers"),
     ],
 )
-def test_what_python_could_not_compute_with_is_named(kind, changes, message):
+def test_values_that_cannot_be_computed_with_are_named(kind, changes, message):
     with pytest.raises(SceneError) as refused:
         kind(**{**VALID[kind], **changes})
     assert message in str(refused.value)

@@ -1,4 +1,4 @@
-"""What a config may not say, and how that is reported."""
+"""Invalid configs, and how they are reported."""
 
 import ast
 import copy
@@ -148,7 +148,7 @@ def test_the_last_file_that_holds_the_key_is_named(tmp_path):
         ((*GRID, "scene./x"), [1], "experiments.gas.grid", "may hold letters, digits"),
     ],
 )  # fmt: skip
-def test_what_could_not_be_computed_with_is_named(keys, value, key, rule):
+def test_values_that_cannot_be_computed_with_are_named(keys, value, key, rule):
     config = with_value(keys, value)
     if key is None:
         check(config)
@@ -275,7 +275,7 @@ def test_all_that_gaspart_imports_and_reads_comes_with_it():
             assert file in found, file
 
 
-def test_the_projects_configs_hold_every_figure_and_smoke_says_nothing_new():
+def test_the_projects_configs_are_valid_and_smoke_has_no_experiment_of_its_own():
     full, smoke = (read_yaml(ROOT / f"config/{name}.yaml") for name in ("config", "smoke"))
     check(full)
     assert set(smoke["experiments"]) <= set(full["experiments"])

@@ -1,4 +1,4 @@
-"""From a config to the points of its grids, and from a point to what is run."""
+"""From a config to the points of its grids, and from a point to the recipe of its job."""
 
 import math
 import subprocess

@@ -1,4 +1,4 @@
-"""Kernel variants: what tells two of them apart, and that a tiny run compiles what a point needs."""
+"""Kernel variants: how two of them differ, and that a tiny run compiles the kernels of a point."""
 
 import json
 
@@ -61,7 +61,7 @@ def test_points_that_differ_in_numbers_share_their_kernels():
         (gp.Scene(BOX, [GAS], faces={"y_low": gp.Well(1.0, 0.1, 3.0)}), {"faces.Well"}),
     ],
 )
-def test_every_feature_of_a_scene_that_changes_kernels_tells_variants_apart(scene, expected):
+def test_every_feature_of_a_scene_that_changes_kernels_distinguishes_variants(scene, expected):
     assert features(scene) == expected
 
 

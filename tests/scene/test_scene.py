@@ -1,4 +1,4 @@
-"""Scenes: what they refuse, in one line, and that a file gives back what was written."""
+"""Scenes: invalid ones are refused in one line, and a file returns the scene that was written."""
 
 import dataclasses
 import math
@@ -70,14 +70,14 @@ def test_one_line_names_file_key_and_value(path, value, key):
     assert "\n" not in message
 
 
-def test_overlap_is_seen_across_a_periodic_face():
+def test_overlap_is_found_across_a_periodic_face():
     bodies = [gp.Body((0.2, 5.0), (0, 0), 0.5), gp.Body((9.8, 5.0), (0, 0), 0.5)]
     with pytest.raises(gp.SceneError, match="overlaps"):
         gp.Scene(gp.Container((10.0, 10.0), "periodic"), bodies=bodies)
 
 
 @given(st.data())
-def test_overlaps_are_those_that_a_look_at_all_pairs_finds(data):
+def test_overlaps_are_those_that_a_search_of_all_pairs_finds(data):
     dimension = data.draw(st.sampled_from([2, 3]))
     lengths = data.draw(st.lists(st.floats(2.0, 9.0), min_size=dimension, max_size=dimension))
     boundary = data.draw(
@@ -116,7 +116,7 @@ def test_many_single_bodies_are_compared_with_their_neighbours_only():
 
 
 @given(mixtures())
-def test_a_file_gives_back_the_scene(tmp_path_factory, scene):
+def test_a_file_returns_the_scene(tmp_path_factory, scene):
     path = tmp_path_factory.mktemp("scene") / "scene.yaml"
     scene.to_file(path)
     assert gp.Scene.from_file(path) == scene
@@ -183,7 +183,7 @@ HOLED = {"x_low": gp.Well(1.0, 2.0), "x_high": gp.Well(1.0, 2.0)}
         (lambda: thermal_face(gp.Scene(FLAT), "y_low"), "faces.y_low = None: must be thermal"),
     ],
 )
-def test_what_is_made_in_python_is_refused_in_one_line_too(make, complaint):
+def test_a_mistake_in_python_is_refused_in_one_line_too(make, complaint):
     with pytest.raises(gp.SceneError, match=complaint) as caught:
         make()
     assert "\n" not in str(caught.value)

@@ -1,4 +1,4 @@
-"""docs/adding-a-figure.md, followed word by word: the new figure is drawn and judged."""
+"""docs/adding-a-figure.md, followed word by word: the new figure is drawn and its claims are evaluated."""
 
 import csv
 import re
@@ -35,7 +35,7 @@ def workspace(tmp_path_factory):
     return copy
 
 
-def test_the_new_figure_is_drawn_and_judged(workspace):
+def test_the_new_figure_is_drawn_and_its_claims_evaluated(workspace):
     targets = ["results/figures/free_path.png", "results/claims/free_path.csv"]
     result = workspace.snakemake("--cores", "2", *targets, *SMOKE)
     assert result.returncode == 0, result.stdout[-20_000:]

@@ -1,4 +1,4 @@
-"""A user's mistake, as Snakemake tells it: one line, exit code 2, nothing written."""
+"""A user's mistake, as Snakemake reports it: one line, exit code 2, nothing written."""
 
 import os
 import subprocess
@@ -12,7 +12,7 @@ pytestmark = pytest.mark.workflow
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ("experiments: {virial_discs: {point: {mass: -1}}}", "experiments.virial_discs.point.mass = -1"),
         ("experiments: {virial_discs: {point: {mass: .nan}}}", "experiments.virial_discs.point.mass = nan"),
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.workflow
         ("experiments: {virial_discs: {grid: {packing_fraction: []}}}", "must not be empty"),
     ],
 )
-def test_a_bad_config_is_one_line_that_names_the_file(fresh, tmp_path, text, told):
+def test_a_bad_config_is_one_line_that_names_the_file(fresh, tmp_path, text, message):
     bad = tmp_path / "bad.yaml"
     bad.write_text(text)
     result = fresh.snakemake("--cores", "1", *SMOKE, str(bad))
@@ -30,11 +30,11 @@ def test_a_bad_config_is_one_line_that_names_the_file(fresh, tmp_path, text, tol
     assert result.returncode == 2
     assert len(lines) == 1
     assert lines[0].startswith(f"gaspart: {bad}: ")
-    assert told in lines[0]
+    assert message in lines[0]
     assert not (fresh.path / "results").exists()
 
 
-def test_what_only_a_job_can_find_out_is_one_line_in_its_log(fresh, tmp_path):
+def test_a_mistake_that_only_a_job_can_find_is_one_line_in_its_log(fresh, tmp_path):
     """Random insertion beyond saturation: the workflow fails, the log says why, and no output is left."""
     bad = tmp_path / "full.yaml"
     dense = "{point: {arrangement: random, count: 64}, grid: {packing_fraction: [0.6]}}"

@@ -1,4 +1,4 @@
-"""What is run again after a change, and what is not."""
+"""Which rules run again after a change."""
 
 import resource
 import subprocess
@@ -21,7 +21,7 @@ PACKING_FRACTIONS = read_yaml(ROOT / "config/smoke.yaml")["experiments"]["virial
 
 
 def processor_time(work):
-    """Seconds that the processes take which are started by `work`; the other tests here hardly change it."""
+    """Processor time in seconds of the processes that `work` starts; other tests hardly affect it."""
     start = resource.getrusage(resource.RUSAGE_CHILDREN)
     work()
     end = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -37,7 +37,7 @@ def test_nothing_to_do_takes_less_than_three_seconds(smoke):
 
 @pytest.mark.thorough
 def test_ten_thousand_points_are_planned_in_less_than_thirty_seconds(fresh, tmp_path):
-    """Of two settings that vary, a hundred values each."""
+    """Two settings vary, with a hundred values each."""
     big = tmp_path / "big.yaml"
     fractions = [round(0.01 + 0.006 * n, 3) for n in range(100)]
     varied = {"packing_fraction": fractions, "samples": list(range(2, 102))}
@@ -73,7 +73,7 @@ print(*{{"scipy.linalg", "coverage", "xarray", "pandas", "matplotlib"}} & set(sy
 
 
 def start_job(folder):
-    """Do what the job of a tiny point does, and tell what it loaded in vain."""
+    """Run what the job of a tiny point runs; returns the modules that it loads without need."""
     path = folder / "run.nc"
     path.unlink(missing_ok=True)
     code = START.format(scripts=str(ROOT / "workflow/scripts"), path=str(path))
@@ -82,7 +82,7 @@ def start_job(folder):
     return done.stdout.split()
 
 
-def test_a_job_that_starts_loads_nothing_in_vain(tmp_path):
+def test_a_job_loads_no_module_without_need(tmp_path):
     assert start_job(tmp_path) == []
 
 
@@ -141,7 +141,7 @@ def test_editing_the_physics_of_a_contact_simulates_everything_again(smoke):
     assert set(plan) >= {"warm", "simulate", "compute", "measure", "judge", "draw"}
     config, _ = laid_over(ROOT / "config/smoke.yaml")
     jobs = Counter(point.job for name in config["experiments"] for point in points(config, name))
-    assert jobs["fill"] > 0  # which knows no contacts
+    assert jobs["fill"] > 0  # without contacts
     assert plan["compute"] == jobs.total() - jobs["simulate"] - jobs["fill"]
 
 
@@ -149,7 +149,7 @@ def test_warming_again_reruns_nothing_else(smoke):
     assert set(smoke.plan(*SMOKE, "--forcerun", "warm")) == {"warm"}
 
 
-def test_one_figure_and_the_named_targets_can_be_asked_for(fresh):
+def test_one_figure_and_the_named_targets_can_be_requested(fresh):
     plan = fresh.plan(*SMOKE, "--", "results/figures/virial_discs.png")
     assert plan["draw"] == plan["measure"] == 1
     assert "judge" not in plan

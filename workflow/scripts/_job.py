@@ -1,4 +1,4 @@
-"""What every script of the workflow does around its work: this checkout, one log, one clear line."""
+"""Common frame of all scripts of the workflow: this checkout's library, one log, one line per failure."""
 
 import gc
 import os
@@ -13,16 +13,16 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "src"))
 from gaspart.errors import SceneError, SimulationError
 from gaspart.interruption import exit_on_signals
 
-exit_on_signals()  # before the scripts import what takes long
-gc.set_threshold(1_000_000)  # half a million objects that stay are not looked through again and again: 0.15 s
+exit_on_signals()  # before the slow imports of the scripts
+gc.set_threshold(1_000_000)  # half a million permanent objects are not searched repeatedly: 0.15 s
 
 
 @contextmanager
 def job(snakemake):
-    """Send what is printed to the rule's log. A failure is one line, there and on the terminal.
+    """Send output to the rule's log. A failure is one line, there and on the terminal.
 
-    A user's mistake leaves no traceback and gives exit code 2; anything else leaves one, in the log alone. So
-    is the end by a signal one line: exit code 130 or 143, and what can be continued was saved.
+    A user's mistake leaves no traceback and gives exit code 2; any other failure leaves a traceback in the
+    log alone. A signal is one line too, with exit code 130 or 143, after the state has been saved.
     """
     name = " ".join(["gaspart:", snakemake.rule, *snakemake.wildcards])
     terminal = os.dup(2)
@@ -35,7 +35,7 @@ def job(snakemake):
             """Write without locks, which another thread may hold."""
             line = f"{name}: {text}"
             for number, where in ((terminal, f" ({snakemake.log[0]})"), (log.fileno(), "")):
-                with suppress(OSError):  # the log may be what there is no room for
+                with suppress(OSError):  # there may be no room for the log
                     os.write(number, f"{line}{where}\n".encode(errors="surrogateescape"))
 
         exit_on_signals(report)
@@ -51,5 +51,5 @@ def job(snakemake):
 
 
 def function(module, name):
-    """The function ``name`` of a module that is known by its name only."""
+    """The function ``name`` of a module given by name."""
     return getattr(import_module(module), name)

@@ -1,4 +1,4 @@
-"""One page with everything on it: figures, captions, claims, where they come from and what they took."""
+"""The report: figures, captions, claims, their provenance and run times."""
 
 import base64
 import csv
@@ -22,7 +22,7 @@ def rows(path):
 
 
 def html_of(rst):
-    """reStructuredText as HTML, without a page around it."""
+    """reStructuredText as a fragment of HTML."""
     from docutils.core import publish_parts
 
     settings = {"file_insertion_enabled": False, "raw_enabled": False, "math_output": "MathML"}
@@ -42,7 +42,7 @@ def run_times(folder):
 
 
 def number(text):
-    """A number as one reads it: five significant digits; what is no number stays as it is."""
+    """A number with five significant digits; other text unchanged."""
     try:
         return f"{float(text):.5g}"
     except ValueError:

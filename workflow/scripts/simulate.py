@@ -13,7 +13,7 @@ with job(snakemake):
     from gaspart.trajectory.run import run
 
     recipe = snakemake.params.recipe
-    # Beside the declared output, which Snakemake deletes before a rerun: a run cut short goes on from here.
+    # Beside the declared output, which Snakemake deletes before a rerun: an interrupted run resumes here.
     partial = Path(f"{snakemake.output[0]}.partial")
     partial.mkdir(parents=True, exist_ok=True)
     paths = [partial / f"replica-{replica}.nc" for replica in range(len(recipe["seeds"]))]
@@ -28,7 +28,7 @@ with job(snakemake):
             path=path,
             displacements=recipe["displacements"],
             follow=recipe["follow"],
-            overwrite=True,  # what is left of another recipe
+            overwrite=True,  # the remainder of another recipe
         )
     for leftover in set(partial.iterdir()) - set(paths):
         leftover.unlink()

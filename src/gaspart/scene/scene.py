@@ -22,7 +22,7 @@ from gaspart.scene.keys import FLAG, VECTOR, checked_by_class, declared, instanc
 from gaspart.scene.limits import Nearby, check_room
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.species import SHARED, Body, Species
-from gaspart.scene.validation import MOST_BODIES, from_mapping, instances, vector
+from gaspart.scene.validation import MOST_BODIES, from_mapping, vector
 from gaspart.scene.walls import Plate, Wall
 from gaspart.yaml_text import read_yaml, write_yaml
 
@@ -77,8 +77,6 @@ class Scene:
 
     def __post_init__(self) -> None:
         validate(self)
-        if self.walls:
-            instances("walls", self.walls, _wall_kind(self.container), _WALLS)
         if self.count > MOST_BODIES:
             raise SceneError("count", self.count, f"there may be {MOST_BODIES} particles")
         self._check_gravity()
@@ -116,6 +114,8 @@ class Scene:
 
     def _check_walls(self) -> None:
         for n, wall in enumerate(self.walls):
+            if not isinstance(wall, _wall_kind(self.container)):
+                raise SceneError(f"walls[{n}]", wall, _WALLS)
             if self.centres_to_walls:
                 raise SceneError("centres_to_walls", True, "interior walls stop the surfaces of particles")
             for key, point in wall.corners.items():
