@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.rendering.particles import particles_of, colours_of
 from gaspart.rendering.discs import Canvas
+from gaspart.rendering.particles import colours_of, particles_of
 from gaspart.rendering.pictures import render
 
 BLACK = np.zeros((1, 3))

@@ -9,7 +9,7 @@ from gaspart.errors import SceneError
 from gaspart.scene.matter import Restitution
 from gaspart.scene.scene import Container, Scene, Species
 from gaspart.tradeoff import speed, table
-from gaspart.tradeoff.advice import QUANTILE, EQUILIBRATION, advise
+from gaspart.tradeoff.advice import EQUILIBRATION, QUANTILE, advise
 
 
 def gas(fraction, count=1000, dimension=3, **more):

@@ -13,7 +13,7 @@ from gaspart.errors import SceneError
 from gaspart.scene.scene import Container, Scene, Species
 from gaspart.simulation.simulation import Simulation
 from gaspart.tradeoff import table
-from gaspart.tradeoff.advice import QUANTILE, EQUILIBRATION, advise
+from gaspart.tradeoff.advice import EQUILIBRATION, QUANTILE, advise
 
 SCENES = 60
 ALLOWED = 7
@@ -95,7 +95,9 @@ def test_the_promise_is_kept():
         found = advise(gas, observable, accuracy)
         rate = found.gas.collision_rate
         values = [
-            run(gas, found.setting.engine, observable, found.duration, 2.0 * EQUILIBRATION / rate, (number, k))
+            run(
+                gas, found.setting.engine, observable, found.duration, 2.0 * EQUILIBRATION / rate, (number, k)
+            )
             for k in range(found.replicas)
         ]
         error = np.mean([value for value, _ in values]) / truth(gas, observable) - 1.0

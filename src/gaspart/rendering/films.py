@@ -12,7 +12,7 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.files import Kind, begins_with, output_path, writing
-from gaspart.rendering.particles import FASTEST, particles_of, colours_of
+from gaspart.rendering.particles import FASTEST, colours_of, particles_of
 from gaspart.rendering.pictures import SIZE, checked_size, picture
 from gaspart.scene.validation import count_of, number
 from gaspart.trajectory.run import open_trajectory

@@ -70,7 +70,9 @@ def particles_of(source: State | xr.Dataset, frame: int = -1) -> DrawnParticles:
     )
 
 
-def colours_of(particles: DrawnParticles, colour: str | np.ndarray, fastest: float | None = None) -> np.ndarray:
+def colours_of(
+    particles: DrawnParticles, colour: str | np.ndarray, fastest: float | None = None
+) -> np.ndarray:
     """(N, 3) red, green and blue from 0 to 1.
 
     colour: "speed", dark at rest and bright from `fastest` on (without it, from `FASTEST` root-mean-square

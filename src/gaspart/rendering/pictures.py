@@ -9,8 +9,8 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.files import Kind, begins_with
-from gaspart.rendering.particles import DrawnParticles, particles_of, colours_of
 from gaspart.rendering.camera import camera_for
+from gaspart.rendering.particles import DrawnParticles, colours_of, particles_of
 from gaspart.scene.validation import count_of
 
 if TYPE_CHECKING:

@@ -72,7 +72,9 @@ def sides_for(scene: Scene, per_body: float, narrowest: float | None = None) -> 
     """Boxes per side (d,) for about `per_body` boxes per particle, none narrower than the largest diameter,
     or than `narrowest` if larger particles are kept outside the boxes."""
     lengths = scene.container.lengths
-    width = max(cube_side(lengths, per_body * scene.count), narrowest_box(scene) if narrowest is None else narrowest)
+    width = max(
+        cube_side(lengths, per_body * scene.count), narrowest_box(scene) if narrowest is None else narrowest
+    )
     return tuple(max(1, int(length / width)) for length in lengths)
 
 

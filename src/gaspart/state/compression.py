@@ -61,7 +61,9 @@ def compress(
     dense as wanted.
     """
     if scene.bodies or scene.walls or any(kind.fixed for kind in scene.species):
-        raise SceneError("arrangement", "compressed", "all particles must be free to move, without interior walls")
+        raise SceneError(
+            "arrangement", "compressed", "all particles must be free to move, without interior walls"
+        )
     if scene.count == 0:
         return Packing(np.empty((0, scene.dimension)), 1.0, 0.0, 1.0, 0)
     d = scene.dimension

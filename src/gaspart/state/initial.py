@@ -42,7 +42,9 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
         positions = lattice(scene, rng, slab="slab" in ordered)
         hit = (scene.wall_at(place, radius) for place, radius in zip(positions, radii, strict=True))
         if scene.walls and any(hit):
-            raise SceneError("arrangement", min(ordered), "a particle would overlap an interior wall; use random")
+            raise SceneError(
+                "arrangement", min(ordered), "a particle would overlap an interior wall; use random"
+            )
     elif "compressed" in arrangements:
         positions = compressed(scene, seed)
     else:
@@ -92,10 +94,10 @@ def _velocities(scene: Scene, rng: np.random.Generator) -> np.ndarray:
 def lattice(scene: Scene, rng: np.random.Generator, slab: bool = False) -> np.ndarray:
     """(N, d) positions on a triangular (2D) or face-centred cubic (3D) lattice stretched to the container.
 
-    If there are more sites than particles, the sites left empty are random, as is the order of the
-    species in a mixture. With `slab` they are all in the upper half of the longest side, which melts where a
-    complete crystal would not: the start of a crystal that coexists with its fluid. Raises SceneError if the lattice would have
-    to be denser than the particles allow, or if the particles are too few for the slab.
+    If there are more sites than particles, the sites left empty are random, as is the order of the species in
+    a mixture. With `slab` they are all in the upper half of the longest side, which melts where a complete
+    crystal would not: the start of a crystal that coexists with its fluid. Raises SceneError if the lattice
+    would have to be denser than the particles allow, or if the particles are too few for the slab.
     """
     margin = np.array(scene.reach(scene.largest_radius)[0])
     walled = ~np.array(scene.container.periodic)

@@ -108,7 +108,10 @@ class Recipe:
         groups = [(len(scene.species), body.radius, 1) for body in scene.bodies]
         groups += [(n, kind.radius, kind.count) for n, kind in enumerate(scene.species)]
         types, radii, counts = (np.array(column) for column in zip(*groups, strict=True))
-        radii, types = np.repeat(radii, counts)[: self.stored_count], np.repeat(types, counts)[: self.stored_count]
+        radii, types = (
+            np.repeat(radii, counts)[: self.stored_count],
+            np.repeat(types, counts)[: self.stored_count],
+        )
         attributes = {
             "Conventions": "AMBER",
             "ConventionVersion": "1.0",

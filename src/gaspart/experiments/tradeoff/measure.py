@@ -15,7 +15,7 @@ from gaspart.experiments.shared.accuracy import add_costs, costs, errors, settin
 from gaspart.experiments.shared.pressure import pressure
 from gaspart.planning import grid
 from gaspart.tradeoff import table
-from gaspart.tradeoff.table import LEAST, PRECISIONS, QUANTILE, REFERENCE, EQUILIBRATION, STEP
+from gaspart.tradeoff.table import EQUILIBRATION, LEAST, PRECISIONS, QUANTILE, REFERENCE, STEP
 
 OBSERVABLES = ("collision_rate", "Z", "D")
 SEEN = 3.5
