@@ -43,7 +43,7 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_run_info_and_the_command_that_makes_it_again(folder, capsys):
+def test_run_info_and_the_command_that_reproduces_it(folder, capsys):
     for options in (
         ["--engine", "event", "--boxes-per-side", "3,4", "--seed", "1,2", "--displacements", "--follow", "9"],
         ["--engine", "step", "--time-step", "0.1", "--precision", "float32", "--no-rewind"],
@@ -67,7 +67,7 @@ def test_run_info_and_the_command_that_makes_it_again(folder, capsys):
 
 def test_resume_and_info_of_an_unfinished_run(folder, capsys):
     assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY]) == 0
-    whole = (folder / "run.nc").read_bytes()
+    complete = (folder / "run.nc").read_bytes()
     (folder / "run.nc").rename(folder / "run.nc.partial")
     with (folder / "run.nc.partial").open("r+b") as file:  # as after two frames
         file.seek(7)
@@ -75,7 +75,7 @@ def test_resume_and_info_of_an_unfinished_run(folder, capsys):
     assert main(["info", "run.nc"]) == 0
     assert "2 of 3 frames, unfinished: `gaspart resume`" in capsys.readouterr().out
     assert main(["resume", "run.nc"]) == 0
-    assert (folder / "run.nc").read_bytes() == whole
+    assert (folder / "run.nc").read_bytes() == complete
     assert main(["resume", "run.nc"]) == 2
     assert "already complete" in capsys.readouterr().err
 
@@ -268,7 +268,7 @@ def test_advice_names_engine_length_cost_and_reason(folder, capsys):
         assert complaint in output and output.count("\n") == 1
 
 
-def test_what_a_config_costs(folder, capsys):
+def test_the_cost_of_a_config(folder, capsys):
     (folder / "config.yaml").write_text(
         "seed: 1\nexperiments:\n  gas:\n    point: {dimension: 3, count: 500, radius: 0.5, "
         "packing_fraction: 0.1, boundary: periodic, temperature: 1.0, engine: auto, accuracy: 0.01}\n"
