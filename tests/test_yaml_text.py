@@ -58,7 +58,7 @@ def test_values_are_those_that_a_user_expects(text, value):
         ("a: &a [*a]", "x.yaml: line 1, column 8 = '.a': no value above has this name"),
         (CHAIN, "values may be nested"),
         ("a: *b", r"line 1, column 4 = '\*b': no value above has this name"),
-        ("mass: 1\nm: 2\nmass: 3", "line 3, column 1 = 'mass': is a duplicate key: its first use is in line 1"),
+        ("mass: 1\nm: 2\nmass: 3", "line 3, column 1 = 'mass': is a duplicate key, first in line 1"),
         ("a: {<<: {p: 1}, <<: {q: 1}}", "<< must be given once"),
         ("<<: 3", "<< must be given once"),
         ("3: a", "line 1, column 1 = 3: a key must be text"),

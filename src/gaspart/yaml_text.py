@@ -201,7 +201,7 @@ class _Document:
         if not isinstance(key, str):
             raise _error(mark, key, "a key must be text: write it in quotes")
         if key in top.lines:
-            raise _error(mark, key, f"is a duplicate key: its first use is in line {top.lines[key]}")
+            raise _error(mark, key, f"is a duplicate key, first in line {top.lines[key]}")
         top.lines[key], top.key = mark.line + 1, key
 
     @staticmethod
