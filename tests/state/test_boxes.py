@@ -32,11 +32,11 @@ def test_neighbours_are_those_within_one_box(boundary, per_side, images):
     for x, y in itertools.product(range(n[0]), range(n[1])):
         expected = set()
         for dx, dy in itertools.product((-1, 0, 1), repeat=2):
-            laps_x, to_x = divmod(x + dx, n[0])
-            laps_y, to_y = divmod(y + dy, n[1])
-            if (laps_x and boundary[0] == "wall") or (laps_y and boundary[1] == "wall"):
+            images_x, to_x = divmod(x + dx, n[0])
+            images_y, to_y = divmod(y + dy, n[1])
+            if (images_x and boundary[0] == "wall") or (images_y and boundary[1] == "wall"):
                 continue
-            expected.add((to_x + n[0] * to_y, (laps_x, laps_y, 0)))
+            expected.add((to_x + n[0] * to_y, (images_x, images_y, 0)))
         found = neighbours(boxes, (x, y, 0))
         if images:
             assert sorted(found) == sorted(expected)

@@ -110,9 +110,7 @@ def scene_and_options(folder):
 
 
 @pytest.mark.parametrize("numbers", NUMBERS, ids=["sample", "search"])
-def test_damage_to_an_unfinished_run_is_detected_or_repaired(
-    tmp_path, capsys, complete, unfinished, numbers
-):
+def test_damage_to_an_unfinished_run_is_detected_or_repaired(tmp_path, capsys, complete, unfinished, numbers):
     path = tmp_path / "run.nc"
     for number in numbers:
         rng = np.random.default_rng(number)
