@@ -1,6 +1,6 @@
 """The entry point of the command line: `gaspart`, and `python -m gaspart`.
 
-What has to be in place before anything large is imported: signals, and three standard streams.
+Prepares signals and the three standard streams before anything large is imported.
 """
 
 import os
@@ -31,8 +31,8 @@ def _exit(signum: int, frame: object) -> None:
 def _open_closed_streams() -> None:
     """Give a process that was started with closed streams (`2>&-`) the null device in their place.
 
-    Otherwise the next file to be opened, a trajectory say, would take the number of stderr, and with it what
-    libraries print there.
+    Otherwise the next file to be opened, such as a trajectory, would get the number of stderr, and the output
+    of libraries.
     """
     for number in range(3):
         try:
@@ -42,7 +42,7 @@ def _open_closed_streams() -> None:
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w"))  # noqa: SIM115
-    # names of files that are no UTF-8 are printed as the bytes that they are
+    # file names that are not UTF-8 are printed as their bytes
     if isinstance(sys.stdout, TextIOWrapper) and sys.stdout.encoding.lower() == "utf-8":
         sys.stdout.reconfigure(errors="surrogateescape")
 

@@ -1,4 +1,4 @@
-"""The two kinds of errors that gaspart raises for its user, and how they print values."""
+"""The two kinds of errors that gaspart raises for its user, and the form of values in messages."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class SceneError(ValueError):
 
 
 class SimulationError(RuntimeError):
-    """A run broke one of its invariants, or cannot go on; the last good state is kept by the caller."""
+    """A run broke one of its invariants, or cannot continue; the last good state is kept by the caller."""
 
 
 def shown(value: object) -> str:

@@ -1,4 +1,4 @@
-"""The one writer of results: complete files, which replace no others."""
+"""The one writer of results: complete files, which replace no files of other kinds."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def begins_with(*beginnings: bytes, at: int = 0) -> Callable[[Path], bool]:
 
 
 def output_path(path: str | Path) -> Path:
-    """`path` as that of a file to be written. Raises SceneError for one that names none ("", "a/", ".")."""
+    """`path` as the path of a file to be written. Raises SceneError if it names no file ("", "a/", ".")."""
     text = os.fspath(path)
     if os.path.basename(text) in ("", ".", "..") or "\0" in text:
         raise SceneError("path", text, "must be the name of a file")
@@ -49,9 +49,9 @@ def output_path(path: str | Path) -> Path:
 
 
 def may_replace(path: Path, kind: Kind | None, overwrite: bool) -> bool:
-    """Whether there is a file at `path` that a result may replace; False if there is nothing.
+    """Whether there is a file at `path` that a result may replace; False if there is none.
 
-    Raises SceneError for a folder, link or device, a file of another kind (None: any will do), and, without
+    Raises SceneError for a folder, link or device, a file of another kind (None: any kind), and, without
     `overwrite`, any file. An empty file is of every kind. May raise OSError.
     """
     try:
@@ -73,7 +73,7 @@ def place(scratch: Path, path: Path, kind: Kind | None, overwrite: bool) -> None
     while True:
         if may_replace(path, kind, overwrite):
             return os.replace(scratch, path)
-        with suppress(FileExistsError):  # of another process, meanwhile: to be judged like any other
+        with suppress(FileExistsError):  # another process wrote it meanwhile: apply `may_replace` to it
             return _rename_to_new(scratch, path)
 
 
@@ -85,7 +85,7 @@ def _rename_to_new(old: Path, new: Path) -> None:
     code = ctypes.get_errno() if rename else errno.ENOSYS
     if code not in (errno.ENOSYS, errno.EINVAL, errno.EOPNOTSUPP):
         raise OSError(code, os.strerror(code), str(new))
-    # This file system or C library cannot. An empty file of our own is replaced instead.
+    # Not supported by this file system or C library: a new, empty file is replaced instead.
     os.close(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
     os.replace(old, new)
 
@@ -94,9 +94,8 @@ def _rename_to_new(old: Path, new: Path) -> None:
 def writing(path: str | Path, kind: Kind | None = None, overwrite: bool = False) -> Iterator[Path]:
     """Give a scratch file to write to; on success it is renamed to `path`, atomically.
 
-    What `may_replace` forbids is found out before the work is done, and again at the end. The scratch file
-    lies in the folder of `path`, under a name of its own, and goes if the work fails; what a kill has left
-    of it goes with the next attempt.
+    `may_replace` is applied before the work and again at its end. The scratch file is in the folder of
+    `path`, under a unique name, and is removed if the work fails; after a kill the next attempt removes it.
 
     Raises SceneError as `output_path` and `may_replace` do, and for a missing folder, a full disk and the
     like.
@@ -124,7 +123,7 @@ def whole_file(path: str | Path) -> AbstractContextManager[Path]:
 
 @contextmanager
 def _scratch(path: Path) -> Iterator[Path]:
-    """A new file beside `path`, of this process alone, and removed in the end."""
+    """A new file next to `path`, used by this process only, and removed at the end."""
     of = hashlib.sha256(os.fsencode(path.name) + socket.gethostname().encode()).hexdigest()[:12]
     for old in path.parent.glob(f".gaspart-{of}-*.partial"):
         if not _is_running(old.name.split("-")[2]):

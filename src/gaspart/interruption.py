@@ -1,4 +1,4 @@
-"""SIGINT and SIGTERM: when they take effect, and what is done before the process ends.
+"""SIGINT and SIGTERM: when they take effect, and what the process does before it ends.
 
 An exception raised by a signal handler surfaces wherever the interpreter happens to be: also while a compiled
 kernel hands its result over, which then fails with a SystemError. So no handler of this module raises.
@@ -6,8 +6,8 @@ kernel hands its result over, which then fails with a SystemError. So no handler
 `exit_on_signals` is for processes that belong to gaspart: the command line, and the jobs of the workflow. A
 thread waits for the signal, so that imports, compilers and kernels need not return first.
 
-`deferred` is for work that has something to save. In a process of gaspart a signal then waits until the work
-has saved its state; in any other program, a notebook say, that program's own handler is called thereafter.
+`deferred` is for work with state to save. In a process of gaspart a signal then waits until the work has
+saved its state; in any other program, such as a notebook, that program's own handler is called thereafter.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import time
 from contextlib import contextmanager, suppress
 
 TYPE_CHECKING = False
-if TYPE_CHECKING:  # no module that takes time: until the handlers are set, Ctrl-C is a traceback
+if TYPE_CHECKING:  # no slow imports: until the handlers are set, Ctrl-C gives a traceback
     from collections.abc import Callable, Iterator
     from pathlib import Path
     from typing import NoReturn
@@ -67,7 +67,8 @@ class Deferral:
 
 
 class _Process:
-    """What the watching thread knows. announce: prints the one line; note: what is kept of the work."""
+    """State shared with the watching thread. announce: prints the line; note: the part of the work that is
+    kept."""
 
     def __init__(self) -> None:
         self.watched = False
@@ -97,11 +98,11 @@ def exit_on_signals(announce: Callable[[str], None] | None = None) -> None:
     threading.Thread(target=_watch, args=(reader,), name="signals", daemon=True).start()
     for number in SIGNALS:
         if signal.getsignal(number) is not signal.SIG_IGN:
-            signal.signal(number, _leave_it_to_the_thread)
+            signal.signal(number, _defer_to_thread)
             signal.siginterrupt(number, False)  # C libraries do not all repeat what a signal interrupts
 
 
-def _leave_it_to_the_thread(signum: int, frame: object) -> None:
+def _defer_to_thread(signum: int, frame: object) -> None:
     """Do nothing: the interpreter has written the signal's number to the pipe."""
 
 
@@ -114,7 +115,7 @@ def _watch(reader: int) -> None:
 
 def _defer(signum: int) -> bool:
     """Whether a signal can wait. A repeated one does not, because files are resumable at any moment; unless
-    it comes with the first, as when a terminal and a parent process both send one."""
+    it arrives with the first, as when a terminal and a parent process both send one."""
     with _process.lock:
         deferral = _process.deferral
         if deferral is None or not deferral.unsaved:
@@ -125,7 +126,7 @@ def _defer(signum: int) -> bool:
 
 
 def _exit(signum: int) -> NoReturn:
-    """End the process, from whatever thread."""
+    """End the process, from any thread."""
     _process.exiting.acquire()  # never released: the first of two threads ends the process
     for path in tuple(_process.scratch):
         with suppress(OSError):
@@ -143,13 +144,13 @@ def _announce(text: str) -> None:
 
 
 def interrupted(signum: int = signal.SIGINT) -> str:
-    """One line on an interruption, and on what is kept."""
+    """One line about an interruption, and about the part of the work that is kept."""
     how = "interrupted" if signum == signal.SIGINT else "terminated"
     return f"{how}; {_process.note}" if _process.note else how
 
 
 def set_note(text: str) -> None:
-    """State what is kept of the work, for the line that is printed at an interruption."""
+    """Set the statement of the work that is kept, for the line that is printed at an interruption."""
     _process.note = text
 
 

@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     import yaml
 
 MOST_BYTES, MOST_VALUES, MOST_COPIES, DEEPEST = 2**26, 2_500_000, 100_000, 64
-"""Limits of a text: its size, its values, those of them that stand for aliases, and their nesting. The text
+"""Limits of a text: its size, its values, those of them that come from aliases, and their nesting. The text
 of every valid scene is within them (`validation.MOST_LISTED`)."""
 _LONGEST_NUMBER = 1000  # characters
 _NUMBERS = re.compile(r"[-+]?(\d[\d_]*(\.[\d_]*)?|\.\d[\d_]*)[eE][-+]?\d+\Z")
 _SCALARS = tuple(f"tag:yaml.org,2002:{kind}" for kind in ("null", "bool", "int", "float"))
 _MERGE = "tag:yaml.org,2002:merge"
-_MERGING = object()  # stands for the key <<
+_MERGING = object()  # marks the key <<
 
 
 def read_yaml(path: str | Path) -> Any:
@@ -70,13 +70,13 @@ def dump_yaml(content: object) -> str:
 
 
 def write_yaml(path: str | Path, content: object) -> None:
-    """Write `content` as a YAML file, whole or not at all."""
+    """Write `content` as a YAML file, completely or not at all."""
     with whole_file(path) as partial:
         partial.write_text(dump_yaml(content), encoding="utf-8")
 
 
 def _with_exponents(base: Any) -> Any:
-    """A loader or dumper that knows 1e3 and 1.5e3, which YAML 1.1 reads as text, as numbers."""
+    """A loader or dumper that reads 1e3 and 1.5e3 as numbers, which are text in YAML 1.1."""
     made: Any = type("WithExponents", (base,), {})
     made.add_implicit_resolver(_SCALARS[-1], _NUMBERS, list("-+.0123456789"))
     return made
@@ -106,7 +106,7 @@ class _Open:
     def __init__(self, content: list | dict, start: yaml.CollectionStartEvent) -> None:
         self.content, self.start = content, start
         self.key: Any = None  # whose value comes next
-        self.lines: dict[str, int] = {}  # where each key stands
+        self.lines: dict[str, int] = {}  # the line of each key
         self.merged: dict[str, Any] = {}
 
     def close(self) -> list | dict:
@@ -179,7 +179,7 @@ class _Document:
             self._place(value, event)
 
     def _place(self, value: Any, event: yaml.NodeEvent) -> None:
-        """Put a complete value where it belongs."""
+        """Store a complete value in its list or mapping."""
         if getattr(event, "anchor", None) and not isinstance(event, self._yaml.AliasEvent):
             self._anchors[event.anchor] = value
         if not self._open:
@@ -201,7 +201,7 @@ class _Document:
         if not isinstance(key, str):
             raise _error(mark, key, "a key must be text: write it in quotes")
         if key in top.lines:
-            raise _error(mark, key, f"is a duplicate key: it stands in line {top.lines[key]} already")
+            raise _error(mark, key, f"is a duplicate key, first in line {top.lines[key]}")
         top.lines[key], top.key = mark.line + 1, key
 
     @staticmethod
@@ -214,11 +214,11 @@ class _Document:
             top.merged.update(part)
 
     def _copy(self, value: Any, depth: int, mark: yaml.Mark) -> Any:
-        """What an alias stands for; its values count as if they were written there."""
+        """A copy of an alias's value; its values count like written ones."""
         self._count(depth, mark)
         self._copies += 1
         if self._copies > MOST_COPIES:
-            raise _error(mark, self._copies, f"aliases may stand for {MOST_COPIES} values")
+            raise _error(mark, self._copies, f"aliases may give {MOST_COPIES} values")
         if isinstance(value, dict):
             return {key: self._copy(item, depth + 1, mark) for key, item in value.items()}
         if isinstance(value, list):

@@ -10,7 +10,7 @@ from gaspart import theory
 
 
 @pytest.mark.parametrize("boundary", ["periodic", "wall"])
-def test_rows_are_what_the_events_say(boundary):
+def test_rows_agree_with_the_events(boundary):
     scene = gas(2, 20, 0.2, boundary)
     data = gp.collision_data(scene, 200, seed=3)
     assert data.sizes["collision"] >= 200
@@ -44,7 +44,7 @@ def test_the_contact_value_is_that_of_theory(data):
     assert abs(chi.value - float(theory.contact_value(0.2, dimension)) * float(finite)) < 3 * chi.error
 
 
-def test_bodies_meet_at_every_offset_alike(data):
+def test_impact_parameters_are_uniform(data):
     """The offset's power d - 1 is uniform, for the flux of pairs through a disc (a line) is."""
     cosine = (data["approach"] / data["relative_speed"]).values
     offset = np.sqrt(1.0 - cosine**2) ** (data.sizes["axis"] - 1)
@@ -59,7 +59,7 @@ def test_the_mean_free_path_is_that_of_theory(data):
     assert abs(path.mean() - expected) < 3 * 2 * path.std() / np.sqrt(len(path))
 
 
-def test_what_is_refused():
+def test_invalid_input_is_refused():
     with pytest.raises(gp.SceneError, match="gravity"):
         gp.collision_data(gp.Scene(gp.Container((9.0, 9.0)), gravity=(0.0, -1.0)), 10)
     with pytest.raises(gp.SceneError, match="collisions = 0"):
@@ -67,5 +67,5 @@ def test_what_is_refused():
     with pytest.raises(gp.SimulationError, match="no event"):
         gp.collision_data(gp.Scene(gp.Container((9.0, 9.0), "periodic"), [gp.Species(1, 0.5)]), 10)
     mixed = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(5, r, speed=1.0) for r in (0.3, 0.5)])
-    with pytest.raises(gp.SceneError, match="equal bodies"):
+    with pytest.raises(gp.SceneError, match="equal particles"):
         gp.contact_value(gp.collision_data(mixed, 50))

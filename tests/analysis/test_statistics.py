@@ -37,13 +37,13 @@ def test_block_average_finds_the_error_of_a_correlated_series():
     assert result.errors[0] < 0.4 * result.error
 
 
-def test_block_average_says_when_the_series_is_too_short():
+def test_block_average_reports_a_series_that_is_too_short():
     result = statistics.block_average(np.cumsum(np.random.default_rng(3).standard_normal(256)))
     assert not result.flat
     assert result.block_length == 16
 
 
-def test_block_error_holds_what_it_promises():
+def test_block_errors_have_the_stated_coverage():
     deviations = []
     for seed in range(60):
         result = statistics.block_average(autoregressive(2048, 0.8, 100 + 2 * seed))
@@ -92,7 +92,7 @@ def test_polynomial_fit_recovers_coefficients_within_their_errors():
     assert abs(np.std(pulls) - 1.0) < 0.15
 
 
-def test_terms_held_fixed_are_taken_out():
+def test_fixed_terms_are_subtracted():
     x = np.linspace(0.1, 1.0, 9)
     y = 1.0 + 2.0 * x + 3.0 * x**2
     fit = statistics.fit_polynomial(x, y, 0.1, powers=(1,), fixed={0: 1.0, 2: 3.0})
@@ -152,7 +152,7 @@ def test_bootstrap_of_a_mean_is_its_standard_error():
     assert statistics.bootstrap(np.mean, samples) == estimate
 
 
-def test_jackknife_of_a_ratio_knows_what_its_parts_share():
+def test_jackknife_of_a_ratio_includes_correlations():
     generator = np.random.default_rng(11)
     common, own = generator.normal(10.0, 1.0, 400), generator.normal(0.0, 0.1, (400, 3))
     value, error = statistics.jackknife(lambda a, b: a / b, common[:, None] + own, common)
@@ -187,7 +187,7 @@ def test_optimum_without_errors_uses_the_scatter():
     assert best.low < 8.0 < best.high < 10.0
 
 
-def test_optimum_at_the_edge_is_not_one():
+def test_a_minimum_at_the_edge_is_not_an_optimum():
     x = np.geomspace(1.0, 100.0, 9)
     best = statistics.optimum(x, 1.0 / x, 0.01 / x, within=1e3)
     assert not best.interior

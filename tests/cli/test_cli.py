@@ -25,6 +25,7 @@ container: {lengths: [20.0, 20.0], boundary: periodic}
 species:
 - {count: 200, radius: 0.5, temperature: 1.0}
 """
+CONFIGS = Path(__file__).parents[2] / "config"
 COMMANDS = ("run", "resume", "info", "render", "collisions", "export", "theory", "check", "advise")
 BRIEFLY = ["--duration", "1", "--sample-interval", "0.5"]
 
@@ -43,7 +44,7 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_run_info_and_the_command_that_makes_it_again(folder, capsys):
+def test_run_info_and_the_command_that_reproduces_it(folder, capsys):
     for options in (
         ["--engine", "event", "--boxes-per-side", "3,4", "--seed", "1,2", "--displacements", "--follow", "9"],
         ["--engine", "step", "--time-step", "0.1", "--precision", "float32", "--no-rewind"],
@@ -51,14 +52,14 @@ def test_run_info_and_the_command_that_makes_it_again(folder, capsys):
         assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY, *options, "--force"]) == 0
         capsys.readouterr()
         assert main(["info", "run.nc"]) == 0
-        told = capsys.readouterr().out
-        assert "20 hard discs, 3 of 3 frames, whole" in told
-        assert f"gaspart {gp.__version__}, python " in told
-        assert re.search(r"drift of the energy: \d\.\de-\d\d", told)
-        assert " collisions per body" in told
+        output = capsys.readouterr().out
+        assert "20 hard discs, 3 of 3 frames, complete" in output
+        assert f"gaspart {gp.__version__}, python " in output
+        assert re.search(r"drift of the energy: \d\.\de-\d\d", output)
+        assert " collisions per particle" in output
         assert main(["info", "run.nc", "--scene"]) == 0
         (folder / "again.yaml").write_text(capsys.readouterr().out)
-        command = shlex.split(re.search(r"gaspart (run scene.yaml .*)", told)[1])
+        command = shlex.split(re.search(r"gaspart (run scene.yaml .*)", output)[1])
         command[1] = "again.yaml"
         command[command.index("run.nc")] = "again.nc"
         assert main([*command, "--force"]) == 0
@@ -67,7 +68,7 @@ def test_run_info_and_the_command_that_makes_it_again(folder, capsys):
 
 def test_resume_and_info_of_an_unfinished_run(folder, capsys):
     assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY]) == 0
-    whole = (folder / "run.nc").read_bytes()
+    complete = (folder / "run.nc").read_bytes()
     (folder / "run.nc").rename(folder / "run.nc.partial")
     with (folder / "run.nc.partial").open("r+b") as file:  # as after two frames
         file.seek(7)
@@ -75,7 +76,7 @@ def test_resume_and_info_of_an_unfinished_run(folder, capsys):
     assert main(["info", "run.nc"]) == 0
     assert "2 of 3 frames, unfinished: `gaspart resume`" in capsys.readouterr().out
     assert main(["resume", "run.nc"]) == 0
-    assert (folder / "run.nc").read_bytes() == whole
+    assert (folder / "run.nc").read_bytes() == complete
     assert main(["resume", "run.nc"]) == 2
     assert "already complete" in capsys.readouterr().err
 
@@ -142,9 +143,9 @@ def test_no_command_is_a_mistake_and_help_is_not(tmp_path, capsys):
     for command in ([], *([name] for name in COMMANDS)):
         with pytest.raises(SystemExit) as leaving:
             main([*command, "--help"])
-        told = capsys.readouterr().out
-        assert leaving.value.code == 0 and "usage: gaspart" in told
-        assert "example" in told or command in ([], ["resume"])
+        output = capsys.readouterr().out
+        assert leaving.value.code == 0 and "usage: gaspart" in output
+        assert "example" in output or command in ([], ["resume"])
     assert shell("--version", folder=tmp_path).stdout == f"gaspart {gp.__version__}\n"
 
 
@@ -157,8 +158,8 @@ def test_a_broken_invariant_is_exit_code_1_and_ctrl_c_130(folder, capsys, monkey
     ):
         monkeypatch.setattr("gaspart.trajectory.run.run", lambda *_, error=error, **__: throw(error))
         assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY]) == code
-        told = capsys.readouterr().err
-        assert text in told and told.count("\n") == 1
+        output = capsys.readouterr().err
+        assert text in output and output.count("\n") == 1
 
 
 def test_progress_is_one_line_on_a_terminal_and_nothing_elsewhere(monkeypatch):
@@ -180,8 +181,8 @@ def throw(error):
 
 def test_theory(capsys):
     assert main(["theory", "Z", "--eta", "0.3"]) == 0
-    told = capsys.readouterr().out
-    first, source, domain = told.splitlines()
+    output = capsys.readouterr().out
+    first, source, domain = output.splitlines()
     value, error = re.fullmatch(r"Z\(eta = 0\.3, dimension = 3\) = (\S+) \+- (\S+)", first).groups()
     assert "Kolafa" in source and "from 0 to 0.539" in domain
     assert float(value) == pytest.approx(float(theory.compressibility_factor(0.3, 3)), rel=1e-9)
@@ -207,11 +208,11 @@ def test_theory(capsys):
         (["Z", "--eta", "0.1", "--dimension", "3", "--mass", "2"], "mass = 2.0: Z does not depend on it"),
     ):
         assert main(["theory", *wrong]) == 2
-        told = capsys.readouterr().err
-        assert complaint in told and told.count("\n") == 1
+        output = capsys.readouterr().err
+        assert complaint in output and output.count("\n") == 1
 
 
-def test_check_tells_what_is_wrong_by_its_exit_code(folder, capsys):
+def test_check_reports_failed_checks_by_its_exit_code(folder, capsys):
     assert main(["check", "scene.yaml"]) == 0
     assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY]) == 0
     assert main(["check", "run.nc"]) == 0
@@ -226,20 +227,19 @@ def test_check_tells_what_is_wrong_by_its_exit_code(folder, capsys):
         (["run.pdb"], "must end in .nc, .gsd, .xyz"),
     ):
         assert main(["check", *wrong]) == 2
-        told = capsys.readouterr().err
-        assert complaint in told and told.count("\n") == 1
+        output = capsys.readouterr().err
+        assert complaint in output and output.count("\n") == 1
 
 
 def test_check_of_a_config_is_that_of_the_workflow(folder, capsys):
-    config = Path(__file__).parents[2] / "config"
-    assert main(["check", str(config / "paper.yaml")]) == 0
+    assert main(["check", str(CONFIGS / "paper.yaml")]) == 0
     assert re.search(r"ok +config: \d+ experiments of \d+ points", capsys.readouterr().out)
     (folder / "alone.yaml").write_text("experiments: {}\n")
     assert main(["check", "alone.yaml"]) == 2
     assert "alone.yaml: title = None: is required" in capsys.readouterr().err
 
 
-def test_export_says_where(folder, capsys):
+def test_export_prints_the_path(folder, capsys):
     assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY]) == 0
     capsys.readouterr()
     assert main(["export", "run.nc", "-o", "state.gsd"]) == 0
@@ -252,9 +252,9 @@ def test_export_says_where(folder, capsys):
 def test_advice_names_engine_length_cost_and_reason(folder, capsys):
     (folder / "gas.yaml").write_text(PERIODIC)
     assert main(["advise", "gas.yaml", "--observable", "Z", "--accuracy", "0.01", "--budget", "60s"]) == 0
-    told = capsys.readouterr().out
+    output = capsys.readouterr().out
     for part in ("engine ", "replicas ", "run length ", "predicted cost ", "half-width ", "why: "):
-        assert part in told
+        assert part in output
     (folder / "empty.yaml").write_text(PERIODIC.replace("200", "0"))
     for wrong, complaint in (
         (["gas.yaml", "--accuracy", "2"], "accuracy = 2"),
@@ -264,15 +264,10 @@ def test_advice_names_engine_length_cost_and_reason(folder, capsys):
         ([], "give a scene or --config"),
     ):
         assert main(["advise", *wrong]) == 2
-        told = capsys.readouterr().err
-        assert complaint in told and told.count("\n") == 1
+        output = capsys.readouterr().err
+        assert complaint in output and output.count("\n") == 1
 
 
-def test_what_a_config_costs(folder, capsys):
-    (folder / "config.yaml").write_text(
-        "title: a gas\nseed: 1\npoints: results/points\nfigures: {gas_render: {experiments: [gas]}}\n"
-        "experiments:\n  gas:\n    point: {dimension: 3, count: 500, radius: 0.5, "
-        "packing_fraction: 0.1, boundary: periodic, temperature: 1.0, engine: auto, accuracy: 0.01}\n"
-    )
-    assert main(["advise", "--config", "config.yaml"]) == 0
+def test_the_cost_of_a_config(capsys):
+    assert main(["advise", "--config", str(CONFIGS / "smoke.yaml")]) == 0
     assert "core-hours" in capsys.readouterr().out

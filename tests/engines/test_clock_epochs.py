@@ -1,4 +1,4 @@
-"""How long the laps of the clocks are: with the present speeds, and while nothing happens."""
+"""Length of the clocks' epochs: with the present speeds, and without events."""
 
 import numpy as np
 import pytest
@@ -8,12 +8,12 @@ from gaspart.engines.clock_epochs import QUIET, epoch_length, quiet_epoch
 
 
 def alone(side, restitution=None, radius=0.5, velocity=(1.0, 0.3), boundary="wall"):
-    body = gp.Body((0.4 * side, 0.5 * side), velocity, radius)
+    particle = gp.Body((0.4 * side, 0.5 * side), velocity, radius)
     law = None if restitution is None else gp.Restitution(restitution)
-    return gp.Scene(gp.Container((side, side), boundary), bodies=[body], restitution=law)
+    return gp.Scene(gp.Container((side, side), boundary), bodies=[particle], restitution=law)
 
 
-def test_a_disc_that_has_slowed_down_still_meets_walls():
+def test_a_disc_that_has_slowed_down_still_hits_walls():
     """After 237 hits with restitution 0.9 its speed is some 1e-6, and after 3000 some 1e-80."""
     sim = gp.Simulation(alone(5.0, 0.9), gp.EventDriven(), seed=1)
     sim.advance(max_events=3000)
@@ -24,7 +24,7 @@ def test_a_disc_that_has_slowed_down_still_meets_walls():
 
 
 @pytest.mark.parametrize("side", [1e7, 1e9, 1e11])
-def test_a_disc_in_a_vast_container_meets_its_walls(side):
+def test_a_disc_in_a_vast_container_hits_its_walls(side):
     sim = gp.Simulation(alone(side), gp.EventDriven(), seed=1)
     sim.record_events = True
     sim.advance(max_events=10)
@@ -39,27 +39,27 @@ def test_a_disc_in_a_vast_container_meets_its_walls(side):
 
 
 def test_splits_and_checkpoints_change_no_bit_of_a_long_flight():
-    whole, parts = (gp.Simulation(alone(1e7, 0.9), gp.EventDriven(), seed=1) for _ in range(2))
-    whole.advance(until=3e9)
+    complete, parts = (gp.Simulation(alone(1e7, 0.9), gp.EventDriven(), seed=1) for _ in range(2))
+    complete.advance(until=3e9)
     for until in np.linspace(0.0, 3e9, 50)[1:]:
         parts.advance(until=until)
         again = gp.Simulation(alone(1e7, 0.9), gp.EventDriven(), seed=1)
         again.restore(parts.checkpoint())
         parts = again
-    assert np.array_equal(whole.state.positions, parts.state.positions)
-    assert np.array_equal(whole.state.velocities, parts.state.velocities)
-    assert whole.time == parts.time
+    assert np.array_equal(complete.state.positions, parts.state.positions)
+    assert np.array_equal(complete.state.velocities, parts.state.velocities)
+    assert complete.time == parts.time
 
 
-def test_a_run_in_which_nothing_can_happen_is_given_up():
+def test_a_run_without_possible_events_is_stopped():
     bodies = [gp.Body((x, 5.0), (1.0, 0.0), 0.5) for x in (2.0, 6.0)]
     scene = gp.Scene(gp.Container((10.0, 10.0), "periodic"), bodies=bodies)
     sim = gp.Simulation(scene, gp.EventDriven(), seed=1)
-    with pytest.raises(gp.SimulationError, match="bodies miss one another"):
+    with pytest.raises(gp.SimulationError, match="particles miss one another"):
         sim.advance(max_events=1)
 
 
-def test_laps_follow_large_changes_only():
+def test_epochs_follow_large_changes_only():
     scene = alone(5.0)
     velocities = np.array([[1.0, 0.3]])
     first = epoch_length(scene, velocities, 1.0)

@@ -62,7 +62,7 @@ def test_a_coarse_file_does_not_excuse_spheres_at_one_place(runs, resolution):
     assert found.name == "overlaps" and found.passed is False and "1 of a contact distance" in found.text
 
 
-def test_bodies_behind_walls(runs):
+def test_particles_behind_walls(runs):
     good = replace(runs["discs"], periodic=(False, False))
     assert verdicts(good)["container"] is True
     out = good.positions.copy()

@@ -105,7 +105,7 @@ def test_two_spheres_at_one_place_are_found_in_an_xyz_file(tmp_path, capsys):
     assert "WRONG overlaps: the deepest is 1 of a contact distance" in capsys.readouterr().out
 
 
-def test_a_trajectory_of_ours_tells_what_moves_its_bodies(tmp_path):
+def test_a_trajectory_of_gaspart_states_the_forces_on_its_particles(tmp_path):
     plain = gp.run(gas(2, 20, 0.1, "wall"), gp.EventDriven(), 1, 1.0, 0.5, tmp_path / "a.nc")
     frames = read_frames(plain)
     assert frames.plain and frames.dimension == 2 and not any(frames.periodic)
@@ -127,7 +127,7 @@ def test_a_trajectory_of_ours_tells_what_moves_its_bodies(tmp_path):
         ("a.nc", lambda path: lammps(path, sides=SIDES * [[1], [1], [2]]), "changes its size"),
     ],
 )
-def test_what_cannot_be_judged_is_said_in_one_line(tmp_path, name, make, complaint):
+def test_unreadable_files_are_reported_in_one_line(tmp_path, name, make, complaint):
     path = tmp_path / name
     make(path)
     with pytest.raises(gp.SceneError, match=complaint) as said:

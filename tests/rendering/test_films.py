@@ -78,7 +78,7 @@ def test_the_command_line_makes_pictures_and_films(runs, capsys):
         (["discs.nc", "-o", "new.png", "--trail", "1"], "trail = 1: has no meaning for a picture"),
         (["discs.nc", "-o", "new.gif", "--trail", "21"], "trail = 21: the trajectory has 21 particles"),
         (["spheres.nc", "-o", "new.gif", "--trail", "0"], "trail = 0: is drawn among discs only"),
-        (["discs.nc", "-o", "new.png", "--size", "9"], "argument --size: '9' must be as 1000x750"),
+        (["discs.nc", "-o", "new.png", "--size", "9"], "argument --size: '9' must be of the form 1000x750"),
         (["discs.nc", "-o", "a.mp4", "--size", "9x9"], "size = 9: must be a whole number of at least 16"),
         (["discs.nc", "-o", "new.png", "--colour", "red"], "colour = 'red': must be one of speed, species"),
         (["discs.nc", "-o", "none/a.png"], "path = 'none/a.png': cannot be written: No such file"),
@@ -97,6 +97,6 @@ def test_a_mistake_costs_one_line(runs, monkeypatch, capsys, options, complaint)
     monkeypatch.chdir(runs)
     before = sorted(runs.iterdir())
     assert main(["render", *options]) == 2
-    told = capsys.readouterr().err
-    assert complaint in told and told.count("\n") == 1
+    output = capsys.readouterr().err
+    assert complaint in output and output.count("\n") == 1
     assert sorted(runs.iterdir()) == before

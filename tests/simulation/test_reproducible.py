@@ -98,7 +98,7 @@ def test_cut_short_after_any_checkpoint_and_resumed(tmp_path, monkeypatch, engin
     cut_and_resume(tmp_path, monkeypatch, cut_after, small("periodic"), engine, displacements=True)
 
 
-def test_spins_and_counters_of_some_bodies_cut_short_and_resumed(tmp_path, monkeypatch):
+def test_spins_and_counters_of_some_particles_cut_short_and_resumed(tmp_path, monkeypatch):
     rough = replace(small("wall"), restitution=gp.Restitution(0.9, 0.5))
     cut_and_resume(tmp_path, monkeypatch, 5, rough, ENGINES["event"], follow=7)
 
@@ -107,7 +107,7 @@ def cut_and_resume(tmp_path, monkeypatch, cut_after, scene, engine, **settings):
     """Checkpoints lie between frames here, and at frames; the work after the last one is lost on purpose."""
     monkeypatch.setitem(recording._FIRST_STRETCH, "event", 20)
     monkeypatch.setattr(recording, "_STRETCH", 1e-9)  # stretches stay short
-    whole = gp.run(scene, engine, 7, 4.0, 0.5, tmp_path / "whole.nc", **settings).read_bytes()
+    complete = gp.run(scene, engine, 7, 4.0, 0.5, tmp_path / "complete.nc", **settings).read_bytes()
     path, write, saved = tmp_path / "cut.nc", recording.write_checkpoint, []
 
     def write_some(*arguments):
@@ -121,8 +121,8 @@ def cut_and_resume(tmp_path, monkeypatch, cut_after, scene, engine, **settings):
         gp.run(scene, engine, 7, 4.0, 0.5, path, checkpoint_seconds=0.0, **settings)
     monkeypatch.setattr(recording, "write_checkpoint", write)
     assert checkpoint_path(path).exists() and not path.exists()
-    assert gp.resume(path).read_bytes() == whole
-    assert sorted(tmp_path.iterdir()) == [path, tmp_path / "whole.nc"]
+    assert gp.resume(path).read_bytes() == complete
+    assert sorted(tmp_path.iterdir()) == [path, tmp_path / "complete.nc"]
 
 
 def gaspart(*arguments, env=None, wait=True):

@@ -46,7 +46,7 @@ def test_same_seed_same_bits_and_another_seed_another_gas():
         ({}, "duration"),
     ],
 )
-def test_a_target_that_cannot_be_is_refused_and_changes_nothing(engine, target, key):
+def test_an_invalid_target_is_refused_and_changes_nothing(engine, target, key):
     sim = gp.Simulation(gas(2, 20, 0.1, "wall"), engine, seed=1)
     before = sim.state
     with pytest.raises(gp.SceneError) as caught:
@@ -56,7 +56,7 @@ def test_a_target_that_cannot_be_is_refused_and_changes_nothing(engine, target, 
     sim.add_random(1, 0.1)  # which is refused after the first advance
 
 
-def test_steps_refuse_what_they_cannot_reach():
+def test_the_time_stepped_engine_refuses_unreachable_targets():
     sim = gp.Simulation(gas(2, 20, 0.1, "wall"), gp.TimeStepped(0.01), seed=1)
     for target, key in (
         ({"until": math.inf, "max_events": 3}, "max_events"),
@@ -73,7 +73,7 @@ def test_steps_refuse_what_they_cannot_reach():
 @pytest.mark.parametrize(
     "given", [10**9, (10**5, 10**5), (1,) * 4, 0, -1, 1.5, "9", math.nan, (3, None), True]
 )
-def test_a_partition_that_cannot_be_is_refused_before_anything_is_allocated(make, given):
+def test_an_invalid_partition_is_refused_before_anything_is_allocated(make, given):
     with pytest.raises(gp.SceneError, match="boxes_per_side = ") as caught:
         make(boxes_per_side=given)
     assert caught.value.key == "boxes_per_side"
@@ -126,7 +126,7 @@ def test_chosen_properties_at_any_time():
         sim.properties("time")
 
 
-def test_energies_of_spinning_and_fixed_bodies():
+def test_energies_of_spinning_and_fixed_particles():
     for spin in (2.0, (0.0, 0.0, 2.0)):
         d = 2 if isinstance(spin, float) else 3
         bodies = [
@@ -151,7 +151,7 @@ def test_max_events_is_exact_and_tallies_can_be_reset():
     assert sim.tally.collisions == 7
 
 
-def test_bodies_are_added_before_the_start_only():
+def test_particles_are_added_before_the_start_only():
     sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0))), gp.EventDriven(), seed=1)
     sim.add(position=(5.0, 5.0), velocity=(1.0, 0.0), radius=1.0, mass=2.0)
     sim.add_random(10, radius=0.3, speed=1.0)
@@ -168,8 +168,8 @@ def test_bodies_are_added_before_the_start_only():
 def test_a_notebook_shows_what_a_simulation_is():
     simulation = gp.Simulation(gas(2, 20, 0.1), gp.EventDriven(), 1)
     simulation.advance(duration=2.0)
-    told = f"<Simulation of 20 discs, event engine: time 2, {simulation.tally.collisions} collisions>"
-    assert repr(simulation) == told
+    expected = f"<Simulation of 20 discs, event engine: time 2, {simulation.tally.collisions} collisions>"
+    assert repr(simulation) == expected
 
 
 @pytest.mark.parametrize(
@@ -183,7 +183,7 @@ def test_a_notebook_shows_what_a_simulation_is():
         ({"max_events": 2.5}, "max_events"),
     ],
 )
-def test_targets_that_are_none(arguments, key):
+def test_targets_that_are_not_numbers(arguments, key):
     sim = gp.Simulation(gas(2, 5, 0.1), gp.EventDriven(), seed=1)
     with pytest.raises(gp.SceneError, match=key):
         sim.advance(**arguments)
@@ -199,7 +199,7 @@ def test_states_and_tallies_are_copies():
     assert not sim.tally.wall_hits.any()
 
 
-def test_engines_can_be_written_down():
+def test_engines_can_be_serialised():
     for engine in (
         gp.EventDriven("direct"),
         gp.EventDriven(boxes_per_side=(2, 3)),

@@ -32,11 +32,11 @@ def test_neighbours_are_those_within_one_box(boundary, per_side, images):
     for x, y in itertools.product(range(n[0]), range(n[1])):
         expected = set()
         for dx, dy in itertools.product((-1, 0, 1), repeat=2):
-            laps_x, to_x = divmod(x + dx, n[0])
-            laps_y, to_y = divmod(y + dy, n[1])
-            if (laps_x and boundary[0] == "wall") or (laps_y and boundary[1] == "wall"):
+            images_x, to_x = divmod(x + dx, n[0])
+            images_y, to_y = divmod(y + dy, n[1])
+            if (images_x and boundary[0] == "wall") or (images_y and boundary[1] == "wall"):
                 continue
-            expected.add((to_x + n[0] * to_y, (laps_x, laps_y, 0)))
+            expected.add((to_x + n[0] * to_y, (images_x, images_y, 0)))
         found = neighbours(boxes, (x, y, 0))
         if images:
             assert sorted(found) == sorted(expected)
@@ -52,19 +52,19 @@ def test_boxes_narrower_than_a_diameter_are_refused():
 
 
 @pytest.mark.parametrize("wrong", [0, -1, 2.5, (2,), "many"])
-def test_numbers_of_boxes_that_are_none(wrong):
+def test_invalid_numbers_of_boxes(wrong):
     with pytest.raises(gp.SceneError, match="boxes_per_side"):
         make_boxes(gas(2, 10, 0.1), wrong, images=True)
 
 
-def test_the_number_of_boxes_follows_the_number_of_bodies():
+def test_the_number_of_boxes_follows_the_number_of_particles():
     assert np.prod(sides_for(gas(3, 1000, 0.01), per_body=1.0)) == 1000
     dense = gas(3, 1000, 0.4)
     assert dense.container.lengths[0] / sides_for(dense, per_body=10.0)[0] >= 1.0
 
 
 @pytest.mark.parametrize("lengths", [(1e30, 1.0), (1e-30, 1e30), (1e20, 1.0, 1.0), (1e12, 1e12, 1.0)])
-def test_a_long_container_has_about_one_box_a_body(lengths):
+def test_a_long_container_has_about_one_box_per_particle(lengths):
     scene = gp.Scene(gp.Container(lengths), [gp.Species(10, 1e-6 * min(lengths), temperature=1.0)])
     sides = sides_for(scene, 1.0)
     assert math.prod(sides) <= 10

@@ -13,7 +13,7 @@ from gaspart.state.random import stream
 
 
 @given(mixtures(most=30))
-def test_random_insertion_keeps_bodies_apart_and_inside(scene):
+def test_random_insertion_keeps_particles_apart_and_inside(scene):
     state = initial_state(scene, seed=1)
     assert closest(scene, state) >= 0
     for position, radius in zip(state.positions, state.radii, strict=True):
@@ -93,7 +93,7 @@ def test_velocities_have_their_speed_or_temperature():
     assert not initial_state(gas(2, 10, 0.01, temperature=None), 1).velocities.any()
 
 
-def test_explicit_bodies_come_first_and_stay_put():
+def test_explicit_particles_come_first_and_keep_their_positions():
     body = gp.Body((5.0, 5.0), (1.0, 0.0), 2.0, mass=7.0)
     scene = gp.Scene(gp.Container((10.0, 10.0)), [gp.Species(20, 0.3, speed=1.0)], [body])
     state = initial_state(scene, seed=4)
@@ -103,7 +103,7 @@ def test_explicit_bodies_come_first_and_stay_put():
     assert closest(scene, state) >= 0
 
 
-def test_large_bodies_find_room_among_small_ones():
+def test_large_particles_fit_among_small_ones():
     scene = gp.Scene(
         gp.Container((12.0, 12.0)), [gp.Species(150, 0.25, speed=1.0), gp.Species(8, 1.2, speed=1.0)]
     )

@@ -50,6 +50,6 @@ PINNED = ["0x1.67abd8bb5fc2dp-1", "0x1.dc7d4879b2dcep-1", "-0x1.60657645c754cp+0
 
 
 @pytest.mark.parametrize("seed", [-1, 1.5, "one", True, (1, -2)])
-def test_a_seed_that_is_none(seed):
+def test_invalid_seeds(seed):
     with pytest.raises(gp.SceneError, match="seed"):
         stream(seed)

@@ -4,7 +4,7 @@ import pytest
 from gaspart import theory
 
 
-def test_friction_of_a_body_as_large_as_the_gas_is_enskogs():
+def test_friction_of_a_particle_as_large_as_the_gas_is_enskogs():
     """For R = r and M = m it is the velocity decay rate of the gas itself, and D is Enskog's, if dilute."""
     eta = 1e-7
     density = theory.number_density(eta, 3)
@@ -13,7 +13,7 @@ def test_friction_of_a_body_as_large_as_the_gas_is_enskogs():
     assert theory.tagged_diffusion(rate, 1.0) == pytest.approx(theory.enskog_diffusion(eta, 3), rel=1e-5)
 
 
-def test_friction_of_a_heavy_body_is_the_drag_of_free_molecular_flow():
+def test_friction_of_a_heavy_particle_is_the_drag_of_free_molecular_flow():
     """M g V = (4/3) pi a^2 n m <v> V (Epstein's drag of a smooth sphere)."""
     drag = 1e6 * theory.friction_rate(0.01, 3.0, 1e6, 1.0, 2.0)
     assert drag == pytest.approx(4 / 3 * np.pi * 9.0 * 0.01 * theory.mean_speed(3, 2.0), rel=1e-6)

@@ -46,7 +46,7 @@ def test_the_ratio_is_where_the_temperatures_tend():
     assert rotation / translation == pytest.approx(theory.rough_ratio(0.5, 0.2, 0.9), rel=1e-9)
 
 
-def test_smooth_discs_cool_as_haff_says():
+def test_smooth_discs_cool_by_haffs_law():
     assert theory.rough_matrix(0.5, -1.0, 0.9)[0, 0] == pytest.approx(-(1.0 - 0.81) / 2.0)
     assert theory.fourth_cumulant(0.9, 3) == pytest.approx(-0.01456, abs=1e-5)
     assert theory.fourth_cumulant(np.sqrt(0.5), 2) == pytest.approx(0.0, abs=1e-15)
@@ -65,6 +65,6 @@ def test_smooth_discs_cool_as_haff_says():
         (theory.rough_ratio, (0.5, -1.0)),
     ],
 )
-def test_what_cannot_be_is_refused(function, arguments):
+def test_invalid_arguments_are_refused(function, arguments):
     with pytest.raises(ValueError):
         function(*arguments)

@@ -7,7 +7,7 @@ from gaspart.theory.geometry import packing_fraction
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_free_flight_is_the_sum_of_what_bodies_carry(dimension):
+def test_the_flux_of_free_flight_is_the_sum_over_particles(dimension):
     """Flux-weighted energies drawn from both walls, times how often a particle goes there and back."""
     rng = np.random.default_rng(1)
     energies, times = {}, 0.0
@@ -23,9 +23,9 @@ def test_free_flight_is_the_sum_of_what_bodies_carry(dimension):
 
 @pytest.mark.parametrize(("dimension", "share"), [(2, 2 / 3), (3, 1 / 2)])
 def test_the_normal_component_alone_carries_a_part(dimension, share):
-    whole = heat.free_molecular_flux(0.1, 2.0, 1.0, dimension)
+    complete = heat.free_molecular_flux(0.1, 2.0, 1.0, dimension)
     assert heat.free_molecular_flux(0.1, 2.0, 1.0, dimension, components="normal") == pytest.approx(
-        share * whole
+        share * complete
     )
 
 
@@ -39,7 +39,7 @@ def test_a_wide_dilute_gap_obeys_the_power_law():
     assert slab.density * slab.temperature == pytest.approx(slab.density[0] * slab.temperature[0], rel=1e-3)
 
 
-def test_the_slab_has_its_bodies_and_its_jumps():
+def test_the_slab_has_its_particles_and_its_jumps():
     slab = heat.conducting_slab(200.0, 0.04, 2.0, 1.0)
     mean = np.trapezoid(slab.density, slab.position) / 200.0
     assert mean == pytest.approx(0.04, rel=1e-6)

@@ -21,7 +21,7 @@ def test_source_a_reaches_fifty_two_per_cent_only_because_centres_go_to_the_wall
     assert theory.insertion_saturation(3, side, "wall") < theory.RSA_SATURATION[3]
 
 
-def test_bodies_inside_are_the_same_bodies_as_centres_in_the_smaller_box():
+def test_particles_inside_are_equivalent_to_centres_in_the_smaller_box():
     inner, outer = 7.0, 8.0
     centres = theory.insertion_saturation(3, inner, "centres_to_walls")
     inside = theory.insertion_saturation(3, outer, "wall")

@@ -64,6 +64,6 @@ def test_the_ideal_number_is_the_minimum():
 
 
 @pytest.mark.parametrize("call", [(10, 0, 3, 1.0, 0.1), (10, 2, 4, 1.0, 0.1), (10, 2, 3, 1.0, 0.6)])
-def test_refuses_what_cannot_be(call):
+def test_invalid_arguments_are_refused(call):
     with pytest.raises(ValueError):
         partition.expected_pair_tests(*call)

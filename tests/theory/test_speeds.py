@@ -31,7 +31,7 @@ def test_maxwell_cdf_is_the_integral_of_the_pdf_and_ppf_its_inverse(dimension):
 
 @pytest.mark.parametrize("zero_momentum", [False, True])
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_kurtosis_of_a_few_bodies_at_fixed_energy(dimension, zero_momentum):
+def test_kurtosis_of_a_few_particles_at_fixed_energy(dimension, zero_momentum):
     count = 4
     velocities = np.random.default_rng(5).standard_normal((200_000, count, dimension))
     if zero_momentum:

@@ -84,7 +84,7 @@ def test_uncertainty_is_below_what_the_figures_ask_for():
     assert theory.compressibility_uncertainty(0.49, 3) < 3e-5 * theory.compressibility_factor(0.49, 3)
 
 
-def test_reference_tells_itself_from_carnahan_starling():
+def test_the_reference_differs_from_carnahan_starling():
     eta = np.array([0.2, 0.3, 0.4])
     reference = theory.compressibility_factor(eta, 3)
     low = 1.0 - theory.carnahan_starling(eta) / reference

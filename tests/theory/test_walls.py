@@ -64,6 +64,6 @@ def test_a_wide_slit_holds_the_bulk():
     ("arguments", "message"),
     [((1.0, 0.1, 10, 2, 1), "length"), ((9.0, 0.1, 10, 2, 3), "axes"), ((9.0, 1.3, 99, 3, 1), "density")],
 )
-def test_containers_that_cannot_be_are_refused(arguments, message):
+def test_invalid_containers_are_refused(arguments, message):
     with pytest.raises(ValueError, match=message):
         theory.wall_pressure(*arguments)

@@ -68,7 +68,7 @@ def test_time_steps_scale_with_the_scene():
     )
 
 
-def test_settling_and_finite_size_are_told():
+def test_equilibration_and_finite_size_are_reported():
     found = advice(0.3, 1e-3, count=100)
     assert found.finite_size < 0.0 and found.bulk_count > 100
     assert found.setting.seconds > 0.5 * 100 * EQUILIBRATION * table.seconds(3, 0.3, "event")
@@ -83,6 +83,6 @@ def test_settling_and_finite_size_are_told():
         (gas(0.2, dimension=2), "D", 0.01, "observable"),
     ],
 )
-def test_what_nobody_measured_is_refused(scene, observable, accuracy, key):
+def test_unmeasured_cases_are_refused(scene, observable, accuracy, key):
     with pytest.raises(SceneError, match=key):
         advise(scene, observable, accuracy, None, speed.as_measured)

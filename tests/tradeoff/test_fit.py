@@ -52,9 +52,9 @@ def folder(tmp_path):
 
 def test_the_table_holds_what_was_measured(folder, capsys):
     fit.main(str(folder))
-    told = capsys.readouterr().out
-    assert told.startswith("# What accuracy costs")
-    rows = list(csv.DictReader(io.StringIO("".join(told.splitlines(keepends=True)[2:]))))
+    output = capsys.readouterr().out
+    assert output.startswith("# What accuracy costs")
+    rows = list(csv.DictReader(io.StringIO("".join(output.splitlines(keepends=True)[2:]))))
     assert tuple(rows[0]) == table.COLUMNS
     found = {(row["engine"], row["time_step"], row["quantity"], row["dimension"]): row for row in rows}
     assert len(found) == len(rows) == 1 + 3 + 2 + 4 + 1

@@ -23,7 +23,7 @@ def test_longer_steps_lose_more_contacts():
         assert lost[-1] > 2.0 / 3.0 * 0.9 * 0.32**2
 
 
-def test_nothing_is_said_of_steps_where_nobody_measured_them():
+def test_unmeasured_time_steps_have_no_bound():
     assert math.isinf(table.bias(3, 0.45, "float64", 0.08, "Z"))
     assert math.isinf(table.bias(3, 0.1, "float64", 0.123, "Z"))
     assert math.isinf(table.seconds(3, 0.45, "step", "float64", 0.08))

@@ -22,9 +22,9 @@ NUMBERS = [range(25), pytest.param(range(25, 525), marks=pytest.mark.thorough)]
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory):
+def complete(tmp_path_factory):
     """The bytes of a finished trajectory of 17 frames."""
-    return gp.run(*RECIPE, tmp_path_factory.mktemp("whole") / "run.nc").read_bytes()
+    return gp.run(*RECIPE, tmp_path_factory.mktemp("complete") / "run.nc").read_bytes()
 
 
 @pytest.fixture(scope="module")
@@ -81,17 +81,17 @@ def damaged(rng, content):
 def complains(capsys, *arguments):
     """Whether a command refuses with one line."""
     code = main([*map(str, arguments)])
-    told = capsys.readouterr().err
-    assert (code, told.count("\n")) in ((0, 0), (2, 1)), (code, told)
-    assert "Traceback" not in told
+    output = capsys.readouterr().err
+    assert (code, output.count("\n")) in ((0, 0), (2, 1)), (code, output)
+    assert "Traceback" not in output
     return code == 2
 
 
 @pytest.mark.parametrize("numbers", NUMBERS, ids=["sample", "search"])
-def test_damage_to_a_trajectory_is_detected(tmp_path, capsys, whole, numbers):
+def test_damage_to_a_trajectory_is_detected(tmp_path, capsys, complete, numbers):
     path = tmp_path / "run.nc"
     for number in numbers:
-        path.write_bytes(damaged(np.random.default_rng(number), whole))
+        path.write_bytes(damaged(np.random.default_rng(number), complete))
         assert complains(capsys, "info", path), number
         assert complains(capsys, "check", path), number
         assert complains(capsys, "run", *scene_and_options(tmp_path)), number
@@ -110,7 +110,7 @@ def scene_and_options(folder):
 
 
 @pytest.mark.parametrize("numbers", NUMBERS, ids=["sample", "search"])
-def test_damage_to_an_unfinished_run_is_detected_or_costs_work(tmp_path, capsys, whole, unfinished, numbers):
+def test_damage_to_an_unfinished_run_is_detected_or_repaired(tmp_path, capsys, complete, unfinished, numbers):
     path = tmp_path / "run.nc"
     for number in numbers:
         rng = np.random.default_rng(number)
@@ -123,20 +123,20 @@ def test_damage_to_an_unfinished_run_is_detected_or_costs_work(tmp_path, capsys,
         refused = complains(capsys, "resume", path)
         assert not (refused and which), number  # without a checkpoint it starts again
         if not refused:
-            assert path.read_bytes() == whole, number
+            assert path.read_bytes() == complete, number
             path.unlink()
-        assert gp.run(*RECIPE, path, overwrite=True).read_bytes() == whole
+        assert gp.run(*RECIPE, path, overwrite=True).read_bytes() == complete
         path.unlink()
 
 
 @pytest.mark.parametrize("numbers", NUMBERS, ids=["sample", "search"])
-def test_edited_attributes_are_detected(tmp_path, capsys, whole, numbers):
+def test_edited_attributes_are_detected(tmp_path, capsys, complete, numbers):
     import netCDF4
 
     path, values = tmp_path / "run.nc", ["", "[", "nonsense", np.float64(np.nan), np.int32(-1), b"\xff"]
     for number in numbers:
         rng = np.random.default_rng(number)
-        path.write_bytes(whole)
+        path.write_bytes(complete)
         with netCDF4.Dataset(path, "a") as file:
             names = file.ncattrs()
             name = names[rng.integers(len(names))]
@@ -150,12 +150,12 @@ def test_edited_attributes_are_detected(tmp_path, capsys, whole, numbers):
             gp.open_trajectory(path)
 
 
-def test_frames_in_each_others_place_and_frames_of_another_run_are_detected(tmp_path, capsys, whole):
+def test_exchanged_frames_and_frames_of_another_run_are_detected(tmp_path, capsys, complete):
     other = gp.run(SCENE, gp.EventDriven(), 2, 8.0, 0.5, tmp_path / "other.nc").read_bytes()
     path = tmp_path / "run.nc"
-    size = next(size for size in range(len(whole) // 17, 0, -1) if header_ends(whole, size))
-    frames = [whole[len(whole) - (17 - n) * size :][:size] for n in range(17)]
-    header = whole[: len(whole) - 17 * size]
+    size = next(size for size in range(len(complete) // 17, 0, -1) if header_ends(complete, size))
+    frames = [complete[len(complete) - (17 - n) * size :][:size] for n in range(17)]
+    header = complete[: len(complete) - 17 * size]
     exchanged = [frames[1], frames[0], *frames[2:]]
     foreign = [*frames[:16], other[-size:]]
     for changed, place in ((exchanged, 0), (foreign, 16)):
@@ -171,7 +171,7 @@ def header_ends(content, size):
     return np.array_equal(times, 0.5 * np.arange(17))
 
 
-def test_a_damaged_frame_stops_a_resumption_and_loses_nothing(tmp_path, whole, unfinished):
+def test_a_damaged_frame_stops_a_resumption_and_loses_nothing(tmp_path, complete, unfinished):
     path = tmp_path / "run.nc"
     partial, checkpoint = unfinished
     spoilt = bytearray(partial)
@@ -181,7 +181,7 @@ def test_a_damaged_frame_stops_a_resumption_and_loses_nothing(tmp_path, whole, u
     with pytest.raises(gp.SceneError, match=r"frame \d+ is damaged: .*--force"):
         gp.resume(path)
     assert partial_path(path).read_bytes() == spoilt
-    assert gp.run(*RECIPE, path, overwrite=True).read_bytes() == whole
+    assert gp.run(*RECIPE, path, overwrite=True).read_bytes() == complete
 
 
 def test_a_checkpoint_with_a_pickle_inside_is_not_loaded(tmp_path, unfinished):
@@ -203,8 +203,8 @@ def test_a_run_without_a_first_byte_is_named_as_such(tmp_path, capsys):
     (tmp_path / "run.nc.partial").touch()
     for command in ("resume", "info"):
         assert main([command, str(tmp_path / "run.nc")]) == 2
-        told = capsys.readouterr().err
-        assert "nothing was written to it yet; start the run again with `gaspart run`" in told
+        output = capsys.readouterr().err
+        assert "nothing was written to it yet; start the run again with `gaspart run`" in output
     assert main(["run", *map(str, scene_and_options(tmp_path))]) == 0
 
 
@@ -214,9 +214,9 @@ def test_paths_that_name_no_file(capsys):
             assert complains(capsys, command, path)
 
 
-def test_names_that_are_not_utf_8(tmp_path, whole):
+def test_names_that_are_not_utf_8(tmp_path, complete):
     path = Path(str(tmp_path) + "/a\udcff.nc")
-    path.write_bytes(whole)
+    path.write_bytes(complete)
     with gp.open_trajectory(path) as data:
         assert data.sizes["frame"] == 17
     for command in (["info", path], ["check", path], ["export", path, "-o", tmp_path / "state.data"]):

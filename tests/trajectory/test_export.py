@@ -52,7 +52,7 @@ def test_a_frame_is_counted_from_either_end(state):
     assert (folder / "0.data").read_bytes() == (folder / "-3.data").read_bytes()
 
 
-def test_what_cannot_be_exported(state):
+def test_invalid_exports_are_refused(state):
     folder, _ = state
     for path, frame, complaint in (
         ("a.pdb", -1, "must end in .gsd or .data"),

@@ -128,7 +128,7 @@ def test_open_trajectory_gives_every_number_its_name(written):
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_rough_bodies_have_their_spins_and_only_the_bodies_that_are_followed_are_written(tmp_path, dimension):
+def test_rough_particles_have_spins_and_only_followed_particles_are_written(tmp_path, dimension):
     scene = replace(gas(dimension, 20, 0.2, "wall"), restitution=gp.Restitution(0.9, 0.5))
     path = gp.run(scene, ENGINES["event"], 5, 4.0, 2.0, tmp_path / "run.nc", displacements=True, follow=3)
     simulation = gp.Simulation(scene, ENGINES["event"], 5)
@@ -146,7 +146,7 @@ def test_rough_bodies_have_their_spins_and_only_the_bodies_that_are_followed_are
     assert read_recipe(path) == Recipe(scene, ENGINES["event"], 5, 4.0, 2.0, True, 3)
 
 
-def test_a_file_says_how_it_was_made(tmp_path):
+def test_a_file_states_its_recipe(tmp_path):
     scene = mixture(3)
     engine = gp.TimeStepped(time_step=0.1, boxes_per_side=(3, 2, 2), precision="float32", rewind=False)
     path = gp.run(scene, engine, (3, 2**60), 0.6, 0.3, tmp_path / "run.nc")
@@ -189,7 +189,7 @@ def test_no_frame_is_lost_to_rounding(tmp_path):
         ({"checkpoint_seconds": -1.0}, "checkpoint_seconds = -1.0: must not be negative"),
     ],
 )
-def test_what_cannot_be_run_is_refused_before_anything_is_written(tmp_path, change, complaint):
+def test_invalid_settings_are_refused_before_anything_is_written(tmp_path, change, complaint):
     settings = {"scene": gas(2, 4, 0.1), "engine": gp.EventDriven(), "seed": 1, "duration": 1.0}
     settings = {**settings, "sample_interval": 0.5, "path": tmp_path / "run.nc", **change}
     with pytest.raises(gp.SceneError, match=complaint.replace("(", r"\(")):
@@ -197,7 +197,7 @@ def test_what_cannot_be_run_is_refused_before_anything_is_written(tmp_path, chan
     assert list(tmp_path.iterdir()) == []
 
 
-def test_whole_multiples():
+def test_integer_multiples():
     assert multiple("a", 0.3, "b", 0.1) == 3
     assert multiple("a", 1e9, "b", 0.1) == 10**10
     for value in (0.05, 0.30001, 1e300):
@@ -205,7 +205,7 @@ def test_whole_multiples():
             multiple("a", value, "b", 0.1)
 
 
-def test_a_whole_trajectory_is_left_alone_and_another_run_never_overwrites_it(tmp_path):
+def test_a_complete_trajectory_is_kept_and_another_run_never_overwrites_it(tmp_path):
     scene, path = gas(2, 10, 0.1), tmp_path / "run.nc"
     gp.run(scene, gp.EventDriven(), 1, 1.0, 0.5, path)
     before, stamp = path.read_bytes(), path.stat().st_mtime_ns
@@ -236,7 +236,7 @@ def test_a_run_under_way_belongs_to_one_process_and_is_not_replaced_by_another_r
         gp.resume(tmp_path / "other.nc")
 
 
-def test_a_run_killed_while_its_header_was_written_begins_anew(tmp_path):
+def test_a_run_killed_while_its_header_was_written_begins_again(tmp_path):
     path = tmp_path / "run.nc"
     partial_path(path).write_bytes(bytes(4) + b"half a header")
     gp.run(gas(2, 10, 0.1), gp.EventDriven(), 1, 1.0, 0.5, path)
@@ -247,15 +247,15 @@ def test_a_run_killed_while_its_header_was_written_begins_anew(tmp_path):
 def test_files_that_are_no_trajectories(tmp_path):
     import netCDF4
 
-    whole = gp.run(gas(2, 10, 0.1), gp.EventDriven(), 1, 1.0, 0.5, tmp_path / "run.nc").read_bytes()
+    complete = gp.run(gas(2, 10, 0.1), gp.EventDriven(), 1, 1.0, 0.5, tmp_path / "run.nc").read_bytes()
     with netCDF4.Dataset(tmp_path / "foreign", "w") as file:
         file.title = "of somebody else"
-    contents = {"frames": whole[:-1], "header": whole[:600], "text": b"container:\n", "empty": b""}
+    contents = {"frames": complete[:-1], "header": complete[:600], "text": b"container:\n", "empty": b""}
     for name, content in contents.items():
         (tmp_path / name).write_bytes(content)
     complaints = {
         "missing": "cannot be read: No such file",
-        "frames": f"is truncated: {len(whole) - 1} bytes, where 3 frames need {len(whole)}",
+        "frames": f"is truncated: {len(complete) - 1} bytes, where 3 frames need {len(complete)}",
         "header": "is truncated or damaged: 600 bytes, where the header alone needs",
         "text": "is not a readable NetCDF file",
         "empty": "is not a readable NetCDF file",
@@ -294,8 +294,8 @@ FULL_DISK = """
 def test_a_full_disk_loses_nothing(tmp_path):
     """A limit on the file's size fails a write where a full disk would: in a frame, or in the header."""
     path, reference = tmp_path / "run.nc", tmp_path / "reference.nc"
-    whole = gp.run(gas(2, 100, 0.1), gp.EventDriven(), 1, 10.0, 0.5, reference).read_bytes()
-    for limit, frames in ((len(whole) // 2, range(5, 15)), (1000, None)):
+    complete = gp.run(gas(2, 100, 0.1), gp.EventDriven(), 1, 10.0, 0.5, reference).read_bytes()
+    for limit, frames in ((len(complete) // 2, range(5, 15)), (1000, None)):
         command = [sys.executable, "-c", textwrap.dedent(FULL_DISK), str(path), str(limit)]
         # What measures coverage would have to write as well.
         env = {key: value for key, value in _environment().items() if not key.startswith("COVERAGE")}
@@ -305,7 +305,7 @@ def test_a_full_disk_loses_nothing(tmp_path):
         if frames:
             with gp.open_trajectory(partial_path(path)) as data:
                 assert data.sizes["frame"] in frames
-            assert gp.resume(path).read_bytes() == whole
+            assert gp.resume(path).read_bytes() == complete
             path.unlink()
     assert list(tmp_path.iterdir()) == [reference]
 
@@ -332,9 +332,9 @@ def test_a_broken_invariant_stops_the_run_and_keeps_its_state(tmp_path, monkeypa
         assert kept["trajectory frames"] == 4
 
 
-def test_progress_is_told(tmp_path, monkeypatch):
+def test_progress_is_reported(tmp_path, monkeypatch):
     monkeypatch.setattr(recording, "_PROGRESS", 0.0)
-    told = []
+    reported = []
     gp.run(
         gas(2, 10, 0.1),
         gp.EventDriven(),
@@ -342,24 +342,24 @@ def test_progress_is_told(tmp_path, monkeypatch):
         2.0,
         0.5,
         tmp_path / "run.nc",
-        progress=lambda *x: told.append(x),
+        progress=lambda *x: reported.append(x),
     )
-    times, durations, collisions = zip(*told, strict=True)
+    times, durations, collisions = zip(*reported, strict=True)
     assert times[-1] == 2.0 and set(durations) == {2.0}
     assert list(times) == sorted(times) and list(collisions) == sorted(collisions) and collisions[-1] > 0
 
 
-def test_a_spoilt_checkpoint_costs_the_work_and_nothing_else(tmp_path):
+def test_a_damaged_checkpoint_costs_the_work_and_nothing_else(tmp_path):
     scene, path = gas(2, 10, 0.1), tmp_path / "run.nc"
-    whole = gp.run(scene, gp.EventDriven(), 1, 2.0, 0.5, path).read_bytes()
-    for spoilt in (b"", b"PK\x03\x04 not a zip file", whole):
+    complete = gp.run(scene, gp.EventDriven(), 1, 2.0, 0.5, path).read_bytes()
+    for spoilt in (b"", b"PK\x03\x04 not a zip file", complete):
         path.rename(partial_path(path))
         checkpoint_path(path).write_bytes(spoilt)
-        assert gp.resume(path).read_bytes() == whole
+        assert gp.resume(path).read_bytes() == complete
         assert list(tmp_path.iterdir()) == [path]
 
 
-def test_a_cache_that_cannot_be_written_is_told_and_costs_time_only(tmp_path):
+def test_a_cache_that_cannot_be_written_is_reported_and_costs_time_only(tmp_path):
     """Compiled anew, and what is computed is the same: a kernel of one line stands for all."""
     (tmp_path / "a file").write_text("")
     code = "from gaspart.kernels.compilation import kernel; print(kernel(lambda x: 3.0 * x)(0.1))"

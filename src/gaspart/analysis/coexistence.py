@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 REPEATS = 100
-"""Redrawn loops, from whose scatter the error follows."""
+"""Number of redrawn loops, whose scatter gives the error."""
 _FINE = 2000
 
 

@@ -1,4 +1,4 @@
-"""A data set of collisions: who met whom, how squarely, and after how long a flight.
+"""A data set of collisions: the particles, the geometry of the contact, and the flights before it.
 
 What kinetic theory averages over, one row per collision of two particles: free times and free paths since
 each particle's last event, the normal at contact, the speeds of approach. Hits of walls end flights but are
@@ -50,15 +50,15 @@ def collision_data(
     that had no event before. Memory is bounded by the data themselves. Attributes: scene, seed, versions,
     revision.
 
-    Raises SceneError for gravity, under which paths are no lines, for fewer than two particles, and for a
-    count below 1 or beyond this machine's memory; SimulationError where nothing ever happens.
+    Raises SceneError for gravity, under which paths are not straight, for fewer than two particles, and for a
+    count below 1 or beyond this machine's memory; SimulationError if no collision occurs.
     """
     _check_memory(count_of("collisions", collisions, least=1), scene)
     number("equilibration", equilibration, "must not be negative", least=0.0)
     if scene.gravity is not None:
         raise SceneError("gravity", scene.gravity, "free paths are straight only without gravity")
     if scene.count < 2:
-        raise SceneError("count", scene.count, "two bodies are needed for a collision")
+        raise SceneError("count", scene.count, "a collision needs two particles")
     simulation = Simulation(scene, EventDriven(), seed)
     simulation.advance(duration=equilibration)
     state = simulation.state
@@ -76,7 +76,7 @@ def collision_data(
         found += part.sizes["collision"]
         alone = 0 if part.sizes["collision"] else alone + events
         if alone > _PATIENCE:
-            raise SimulationError(f"none of the last {_PATIENCE} events was a collision of two bodies")
+            raise SimulationError(f"none of the last {_PATIENCE} events was a collision of two particles")
     return xr.concat(parts, "collision").assign_attrs(
         scene=json.dumps(scene.to_dict()),
         seed=json.dumps(seed),
@@ -134,7 +134,7 @@ def _check_memory(collisions: int, scene: Scene) -> None:
 
 
 def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
-    """g at contact of equal particles, from how often they collide: chi = 2 M / (N t S rho sigma^(d-1)
+    """g at contact of equal particles, from their collision rate: chi = 2 M / (N t S rho sigma^(d-1)
     sqrt(kT / (pi m))), S = 2 pi (2D), 4 pi (3D), exact in equilibrium (Chapman & Cowling 1970). The
     temperature is that of the mean approach, sqrt(pi kT / m); the error that of `blocks` stretches.
 
@@ -143,7 +143,7 @@ def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
     scene = Scene.from_dict(json.loads(data.attrs["scene"]))
     kinds = {(thing.radius, thing.mass) for thing in scene.kinds}
     if len(kinds) != 1:
-        raise SceneError("species", len(kinds), "the contact value is told of equal bodies only")
+        raise SceneError("species", len(kinds), "the contact value is defined for equal particles only")
     diameter = 2.0 * kinds.pop()[0]
     surface = unit_sphere_surface(scene.dimension)
     times, approach = data["time"].values, data["approach"].values
@@ -159,32 +159,32 @@ def _pairs(events: dict, last: tuple, scene: Scene) -> tuple[xr.Dataset, tuple]:
     """The collisions of two particles among `events`, and each particle's time and velocity after its last
     one."""
     bodies, times, after = events["bodies"], events["time"], events["velocities"]
-    number_of_bodies = len(last[0])
-    # what each particle did, in order: first what it did before, then its part in every event
+    number_of_particles = len(last[0])
+    # each particle's history in order: its state before, then its part in every event
     rows = np.arange(len(times))
     inside = bodies >= 0
-    who = np.concatenate([np.arange(number_of_bodies), bodies[inside]])
+    index = np.concatenate([np.arange(number_of_particles), bodies[inside]])
     when = np.concatenate([last[0], np.broadcast_to(times[:, None], bodies.shape)[inside]])
     velocity = np.concatenate([last[1], after[inside]])
     slot = np.full(bodies.shape, -1)
-    slot[inside] = number_of_bodies + np.arange(inside.sum())
-    order = np.argsort(who, kind="stable")
-    before = np.empty(len(who), dtype=int)
-    before[order[1:]] = order[:-1]  # wrong only for what a particle did first, which nobody asks for
-    final = order[np.append(np.flatnonzero(np.diff(who[order])), len(who) - 1)]
+    slot[inside] = number_of_particles + np.arange(inside.sum())
+    order = np.argsort(index, kind="stable")
+    before = np.empty(len(index), dtype=int)
+    before[order[1:]] = order[:-1]  # not valid for a particle's first entry, which is not used
+    final = order[np.append(np.flatnonzero(np.diff(index[order])), len(index) - 1)]
 
-    met = rows[inside[:, 1]]
-    pair = bodies[met]
-    previous = before[slot[met]]
+    collided = rows[inside[:, 1]]
+    pair = bodies[collided]
+    previous = before[slot[collided]]
     incoming = velocity[previous]
-    free_time = times[met, None] - when[previous]
-    apart = events["positions"][met, 1] - events["positions"][met, 0]
+    free_time = times[collided, None] - when[previous]
+    apart = events["positions"][collided, 1] - events["positions"][collided, 0]
     lengths = np.where(scene.container.periodic, scene.container.lengths, np.inf)
     apart -= lengths * np.round(apart / lengths) if np.isfinite(lengths).any() else 0.0
     normal = apart / np.sqrt((apart**2).sum(axis=1))[:, None]
     relative = incoming[:, 1] - incoming[:, 0]
     values = {
-        "time": (("collision",), times[met]),
+        "time": (("collision",), times[collided]),
         "bodies": (("collision", "of"), pair),
         "normal": (("collision", "axis"), normal),
         "approach": (("collision",), -(relative * normal).sum(axis=1)),

@@ -1,8 +1,8 @@
-"""How particles are ordered: bond order, distances and Fourier modes, by freud.
+"""Order of particles: bond order, pair distances and Fourier modes, by freud.
 
 Ramasubramani and others, Comput. Phys. Commun. 254, 107275 (2020). Everywhere: positions (N, d) in [0, L]
-of a periodic container of lengths (d,). freud works in single precision and on one thread here, which is
-how the workflow counts jobs.
+of a periodic container of lengths (d,). freud works in single precision, and here on one thread, as the
+workflow assumes of a job.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def _freud() -> ModuleType:
 
 
 def _system(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> tuple[Any, np.ndarray]:
-    """Box and positions as freud takes them: the origin in the middle, and z = 0 for discs."""
+    """Box and positions in freud's convention: the origin in the middle, and z = 0 for discs."""
     box = _freud().box.Box(*map(float, lengths), is2D=len(lengths) == 2)
     points = np.zeros((len(positions), 3), dtype=np.float32)
     points[:, : len(lengths)] = np.asarray(positions) - 0.5 * np.asarray(lengths)
@@ -76,9 +76,9 @@ def structure_factor(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Wave numbers (K,), (L,) along x and y up to `highest`, and S(k) = |sum exp(i k.r)|^2 / N there, (K, L).
 
-    Discs: mean over frames (T, N, 2), at the wave vectors that the container admits; S(0) is NaN. By
-    ourselves, because freud's structure factors refuse two dimensions, and its diffraction pattern boxes
-    that are not square.
+    Discs: mean over frames (T, N, 2), at the wave vectors that the container admits; S(0) is NaN. Computed
+    here, because freud's structure factors refuse two dimensions, and its diffraction pattern boxes that are
+    not square.
     """
     unit = 2.0 * np.pi / np.asarray(lengths)
     waves = [step * np.arange(-int(highest / step), int(highest / step) + 1) for step in unit]

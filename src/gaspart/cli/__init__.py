@@ -1,7 +1,7 @@
-"""The command line: a module for each command, which adds it to the parser and carries it out.
+"""The command line: a module for each command, with its arguments and its function.
 
-A user's mistake is one line on stderr and exit code 2. A run that broke an invariant, a file or memory that
-failed, or something that `check` finds wrong: 1. An interruption: 130 (SIGINT) or 143 (SIGTERM).
+A user's mistake is one line on stderr and exit code 2. A run that breaks an invariant, a failure of a file or
+of memory, or an error found by `check`: 1. An interruption: 130 (SIGINT) or 143 (SIGTERM).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import TextIO
 from gaspart import __version__
 from gaspart.cli.advise import add_advise
 from gaspart.cli.arguments import Parser, UsageError
-from gaspart.cli.check import Wrong, add_check
+from gaspart.cli.check import CheckFailed, add_check
 from gaspart.cli.collisions import add_collisions
 from gaspart.cli.export import add_export
 from gaspart.cli.info import add_info
@@ -49,7 +49,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             sys.stdout.flush()  # here, where a full disk can still be reported
     except (SceneError, UsageError) as error:
         return _complain(f"error: {error}", 2)
-    except Wrong:
+    except CheckFailed:
         return 1
     except SimulationError as error:
         return _complain(f"error: {error}", 1)
@@ -57,7 +57,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _complain(interrupted(), 130)
     except MemoryError:
         return _complain("error: there is not enough memory for this", 1)
-    except BrokenPipeError:  # the reader of the output, `head` say, has had enough
+    except BrokenPipeError:  # the reader of the output has ended, as `head` does
         _discard(sys.stdout)
     except OSError as error:
         where = error.filename or "a file or the standard output"
@@ -74,13 +74,13 @@ def _complain(text: str, code: int) -> int:
         try:
             stream.write(line)
             stream.flush()
-        except OSError:  # full or closed: the exit code must do
+        except OSError:  # full or closed: only the exit code is left
             _discard(stream)
     return code
 
 
 def _discard(stream: TextIO) -> None:
-    """Send what a stream still holds to the null device, where the interpreter can flush it."""
+    """Redirect a stream to the null device, where the interpreter can flush it."""
     null = os.open(os.devnull, os.O_WRONLY)
     os.dup2(null, stream.fileno())
     os.close(null)

@@ -1,4 +1,4 @@
-"""What the commands' arguments have in common."""
+"""Common parts of the commands: the parser, readers of numbers, shared options."""
 
 from __future__ import annotations
 
@@ -12,32 +12,33 @@ from gaspart.scene.validation import number
 
 T = TypeVar("T")
 Commands: TypeAlias = "argparse._SubParsersAction[Parser]"
-"""What a command adds itself to."""
+"""The object that commands are added to."""
 
 
 class UsageError(Exception):
-    """What argparse has to complain of."""
+    """An invalid command line, with the message of argparse."""
 
 
 class Parser(argparse.ArgumentParser):
-    """Raises what argparse would print, takes options in full only, and leaves lines of text as they are."""
+    """Raises UsageError instead of leaving, accepts complete options only, and keeps line breaks."""
 
     def __init__(self, **settings: Any) -> None:
         settings["description"] = fill(settings["description"], width=100)
         super().__init__(allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter, **settings)
 
     def error(self, message: str) -> NoReturn:
-        """Raise what argparse would print and exit for."""
+        """Raise UsageError with a message of argparse."""
         raise UsageError(message)
 
 
 def real(**limits: float) -> Callable[[str], float]:
-    """What reads a finite number within limits, those of `gaspart.validation.number`: above, least, most."""
+    """A reader of a finite number within the limits of `gaspart.scene.validation.number`: above, least,
+    most."""
     return _reader(float, "a finite number", limits)
 
 
-def whole(**limits: float) -> Callable[[str], int]:
-    """What reads a whole number within such limits."""
+def integer(**limits: float) -> Callable[[str], int]:
+    """A reader of an integer within such limits."""
     return _reader(int, "a whole number", limits)
 
 
@@ -56,20 +57,34 @@ def _reader(kind: Callable[[str], T], name: str, limits: dict[str, float]) -> Ca
     return read
 
 
+def add_command(
+    commands: Commands,
+    name: str,
+    run: Callable[[argparse.Namespace], None],
+    brief: str,
+    description: str,
+    examples: str | None = None,
+) -> Parser:
+    """Add a command that `run` carries out. brief: its line in the list of commands; returns its parser."""
+    parser = commands.add_parser(name, help=brief, description=description, epilog=examples)
+    parser.set_defaults(command=run)
+    return parser
+
+
 def add_output(parser: argparse.ArgumentParser, what: str, overwrite: str) -> None:
     """Add the options of a command that writes a result: `-o`, and `--force` to replace an older one."""
     parser.add_argument("-o", "--output", required=True, metavar="FILE", help=what)
     parser.add_argument("--force", action="store_true", help=f"replace {overwrite}")
 
 
-def say(text: object) -> None:
-    """Print a line; what the standard output cannot encode, as in the name of a file, is escaped."""
+def print_line(text: object) -> None:
+    """Print a line; characters that the standard output cannot encode, as in file names, are escaped."""
     encoding = sys.stdout.encoding or "utf-8"
     print(str(text).encode(encoding, "backslashreplace").decode(encoding))
 
 
 def several(kind: Callable[[str], T]) -> Callable[[str], tuple[T, ...]]:
-    """What reads `1` or `1,2,3` as a tuple of what `kind`, a type or a reader, makes of each part."""
+    """A reader of `1` or `1,2,3` as a tuple, each part read by `kind`, a type or a reader."""
 
     def read(text: str) -> tuple[T, ...]:
         try:

@@ -1,44 +1,44 @@
-"""`gaspart check`: is this scene, config or trajectory, of whatever program, as it should be?"""
+"""`gaspart check`: validate a scene, a config, or a trajectory of any program."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
 
-from gaspart.cli.arguments import Commands, real, several
+from gaspart.cli.arguments import Commands, add_command, real, several
 from gaspart.errors import SceneError
+from gaspart.yaml_text import read_yaml
 
 _EXAMPLES = """examples:
-  gaspart check scene.yaml                          can it be, and can its bodies be placed?
+  gaspart check scene.yaml                          validity, and placement of its particles
   gaspart check config/paper.yaml                   every point of every grid
   gaspart check run.nc                              a trajectory of gaspart, AMBER or LAMMPS (dump netcdf)
   gaspart check dump.gsd --time-step 0.005          of HOOMD, which counts steps
   gaspart check frames.xyz --radius 0.5 --lengths 10,10,10
 
-exit code: 0 if nothing is wrong, 1 if something is, 2 if it cannot be read"""
+exit code: 0 if all checks pass, 1 if one fails, 2 if the file cannot be read"""
 
 
-class Wrong(Exception):
-    """Something that was checked is wrong; it has been told already."""
+class CheckFailed(Exception):
+    """A check has failed; its line is printed already."""
 
 
 def add_check(commands: Commands) -> None:
     """Add the command to the others."""
     text = (
         "Judge a scene, a config, or a trajectory of any program (AMBER or LAMMPS netCDF, GSD, XYZ): "
-        "overlaps, the container, the speed law, g(sigma) and with it Z, and D; a line each."
+        "overlaps, the container, the speed distribution, g(sigma) and Z, and D; a line each."
     )
-    check = commands.add_parser("check", help="is it as it should be?", description=text, epilog=_EXAMPLES)
-    check.set_defaults(command=_check)
-    add = check.add_argument
+    brief = "validate a scene, config or trajectory"
+    add = add_command(commands, "check", _check, brief, text, _EXAMPLES).add_argument
     add("file", metavar="FILE", help=".yaml, .nc, .gsd or .xyz")
-    add("--radius", type=real(above=0.0), metavar="R", help="of all bodies, where the file does not tell")
+    add("--radius", type=real(above=0.0), metavar="R", help="of all particles, if the file does not state it")
     add(
         "--lengths", type=several(real(above=0.0)), metavar="X,Y[,Z]", help="sides of the container, likewise"
     )
     add("--boundary", metavar="NAME", help="periodic (default for other programs' files) or wall")
     add("--time-step", type=real(above=0.0), metavar="T", help="time of a step (GSD) or of a frame (XYZ)")
-    add("--tolerance", type=real(least=0.0), metavar="X", help="let overlaps of this part of a diameter pass")
+    add("--tolerance", type=real(least=0.0), metavar="X", help="allowed overlap, as a fraction of a diameter")
 
 
 def _check(given: argparse.Namespace) -> None:
@@ -51,21 +51,19 @@ def _check(given: argparse.Namespace) -> None:
         from gaspart.inspection.checks import judge
         from gaspart.inspection.readers import read_frames
 
-        told = (given.radius, given.lengths, given.boundary, given.time_step)
-        frames = read_frames(given.file, *told)
+        frames = read_frames(given.file, given.radius, given.lengths, given.boundary, given.time_step)
         kind = "discs" if frames.dimension == 2 else "spheres"
         print(f"{given.file}: {frames.count} {kind} in {len(frames.positions)} frames")
         found = judge(frames, given.tolerance)
     for check in found:
         print(check)
     if any(check.passed is False for check in found):
-        raise Wrong
+        raise CheckFailed
 
 
 def _written(path: Path, tolerance: float | None) -> list:
     """The checks of a YAML file: a scene, or a config of the workflow."""
     from gaspart.inspection.written import judge_config, judge_scene
-    from gaspart.yaml_text import read_yaml
 
     content = read_yaml(path)
     if isinstance(content, dict) and ("experiments" in content or "figures" in content):

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import argparse
 
-from gaspart.cli.arguments import Commands, add_output, real, say, whole
+from gaspart.cli.arguments import Commands, add_command, add_output, integer, print_line, real
+from gaspart.scene.scene import Scene
 
 _EXAMPLE = """
 example:
@@ -15,28 +16,26 @@ example:
 def add_collisions(commands: Commands) -> None:
     """Add the command to the others."""
     text = (
-        "Run a scene under the event-driven engine and write down its collisions (netCDF): the bodies, the "
-        "normal, the speed of approach, the time and path since each body's last event."
+        "Run a scene under the event-driven engine and record its collisions (netCDF): the particles, the "
+        "normal, the speed of approach, the time and path since each particle's last event."
     )
-    help_text = "a data set of collisions"
-    parser = commands.add_parser("collisions", help=help_text, description=text, epilog=_EXAMPLE)
-    parser.set_defaults(command=_collisions)
+    brief = "a data set of collisions"
+    parser = add_command(commands, "collisions", _collisions, brief, text, _EXAMPLE)
     add = parser.add_argument
     add("scene", metavar="SCENE")
     add_output(parser, "data set (netCDF)", "a data set of collisions")
-    add("--count", type=whole(least=1), required=True, metavar="M", help="collisions, at least")
+    add("--count", type=integer(least=1), required=True, metavar="M", help="collisions, at least")
     text = "time before the first; default: 0"
     add("--equilibration", type=real(least=0.0), default=0.0, metavar="T", help=text)
-    add("--seed", type=whole(least=0), default=0, metavar="N", help="default: 0")
+    add("--seed", type=integer(least=0), default=0, metavar="N", help="default: 0")
 
 
 def _collisions(given: argparse.Namespace) -> None:
     from gaspart.analysis.collisions import record_collisions
-    from gaspart.scene.scene import Scene
 
     scene = Scene.from_file(given.scene)
     data = record_collisions(
         scene, given.output, given.count, given.seed, given.equilibration, overwrite=given.force
     )
     paths = data["free_path"].mean().item()
-    say(f"{given.output}: {data.sizes['collision']} collisions, mean free path {paths:.6g}")
+    print_line(f"{given.output}: {data.sizes['collision']} collisions, mean free path {paths:.6g}")

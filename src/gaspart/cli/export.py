@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from gaspart.cli.arguments import Commands, add_output, say, whole
+from gaspart.cli.arguments import Commands, add_command, add_output, integer, print_line
 
 _EXAMPLES = """examples:
   gaspart export run.nc -o state.gsd                the last frame, for HOOMD and OVITO
@@ -14,17 +14,14 @@ _EXAMPLES = """examples:
 def add_export(commands: Commands) -> None:
     """Add the command to the others."""
     text = "One frame of a trajectory as a state for other programs: GSD, or LAMMPS data (atom_style sphere)."
-    export = commands.add_parser(
-        "export", help="a state for other programs", description=text, epilog=_EXAMPLES
-    )
-    export.set_defaults(command=_export)
+    export = add_command(commands, "export", _export, "a state for other programs", text, _EXAMPLES)
     export.add_argument("trajectory", metavar="FILE")
     add_output(export, "ends in .gsd or .data", "a state that was exported")
     text = "counted from 0, or from the end if negative; default: -1"
-    export.add_argument("--frame", type=whole(), default=-1, metavar="N", help=text)
+    export.add_argument("--frame", type=integer(), default=-1, metavar="N", help=text)
 
 
 def _export(given: argparse.Namespace) -> None:
     from gaspart.trajectory.export import export
 
-    say(export(given.trajectory, given.output, given.frame, given.force))
+    print_line(export(given.trajectory, given.output, given.frame, given.force))

@@ -1,4 +1,4 @@
-"""`gaspart info`: what a trajectory holds, and the command that makes it again."""
+"""`gaspart info`: contents of a trajectory, and the command that reproduces it."""
 
 from __future__ import annotations
 
@@ -7,21 +7,20 @@ import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaspart.cli.arguments import Commands
+from gaspart.cli.arguments import Commands, add_command
 
 if TYPE_CHECKING:
     from gaspart.trajectory.recipe import Recipe
 
 _EXAMPLES = """examples:
   gaspart info run.nc
-  gaspart info run.nc --scene > scene.yaml      and then the command that it prints, for the same bits"""
+  gaspart info run.nc --scene > scene.yaml      then the printed command, for the same bits"""
 
 
 def add_info(commands: Commands) -> None:
     """Add the command to the others."""
-    text = "What a trajectory holds, how good it is, and the command that makes it again."
-    info = commands.add_parser("info", help="what a trajectory holds", description=text, epilog=_EXAMPLES)
-    info.set_defaults(command=_info)
+    text = "Contents and quality of a trajectory, and the command that reproduces it."
+    info = add_command(commands, "info", _info, "contents of a trajectory", text, _EXAMPLES)
     info.add_argument("trajectory", metavar="FILE")
     info.add_argument("--scene", action="store_true", help="print the scene file and nothing else")
 
@@ -41,7 +40,7 @@ def _info(given: argparse.Namespace) -> None:
         return
     check_frames(found)
     scene = recipe.scene
-    state = "whole" if frames == recipe.frames else "unfinished: `gaspart resume` goes on with it"
+    state = "complete" if frames == recipe.frames else "unfinished: `gaspart resume` continues it"
     versions = [f"{key.removesuffix('_version')} {stored[key]}" for key in stored if key.endswith("_version")]
     remake = [
         f"gaspart info --scene {shlex.quote(str(found))} > scene.yaml",
@@ -50,16 +49,16 @@ def _info(given: argparse.Namespace) -> None:
     print(f"{found}: {stored['title']}, {frames} of {recipe.frames} frames, {state}")
     print(f"packing fraction {scene.packing_fraction:.6g}, number density {scene.number_density:.6g}")
     print("\n".join(certificate(found)))
-    print(f"checksums: the header and {'all frames' if frames else 'no frames yet'} are as they were written")
+    print(f"checksums: the header and {'all frames' if frames else 'no frames yet'} are undamaged")
     print(f"written by {', '.join(versions)}; revision {stored.get('git_revision', 'none')}")
-    print("made again, to the same bits, by")
+    print("reproduced, to the same bits, by")
     print("\n".join(f"    {line}" for line in remake))
     print("scene:")
     print("".join(f"    {line}\n" for line in stored["scene"].splitlines()), end="")
 
 
 def _run_options(path: Path, recipe: Recipe, stored: dict) -> list[str]:
-    """The options of `gaspart run` that stand for a recipe."""
+    """The options of `gaspart run` for a recipe."""
     from gaspart.engines import engine_to_dict
 
     settings = engine_to_dict(recipe.engine)

@@ -1,4 +1,4 @@
-"""How far a run is, on one line of a terminal."""
+"""Progress of a run on one line of a terminal."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def progress(quiet: bool) -> Progress | None:
-    """Something that shows the progress of a run on one line, or None where nobody would see it."""
+    """A function that prints the progress of a run on one line; None if quiet or without a terminal."""
     if quiet or not sys.stderr.isatty():
         return None
     begun: tuple[float, float, int] | None = None
@@ -34,7 +34,7 @@ def progress(quiet: bool) -> Progress | None:
 
 
 def clear_line() -> str:
-    """What wipes the line that progress is shown on, where it is."""
+    """Control characters that clear the line of progress; empty without a terminal."""
     return "\r\033[K" if sys.stderr.isatty() else ""
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from gaspart.cli.arguments import Commands, add_output, real, say, whole
+from gaspart.cli.arguments import Commands, add_command, add_output, integer, print_line, real
 from gaspart.errors import SceneError
+from gaspart.files import output_path, writing
 
 PICTURES = (".png",)
 
@@ -20,16 +21,15 @@ def add_render(commands: Commands) -> None:
     """Add the command to the others."""
     text = (
         "A picture (.png) of one frame of a trajectory, or a film (.mp4, .gif) of all: spheres with light "
-        "and shadow, discs as seen from above."
+        "and shadow, discs from above."
     )
-    render = commands.add_parser("render", help="a picture or a film", description=text, epilog=_EXAMPLES)
-    render.set_defaults(command=_render)
+    render = add_command(commands, "render", _render, "a picture or a film", text, _EXAMPLES)
     add = render.add_argument
     add("trajectory", metavar="FILE")
     add_output(render, "ends in .png, .mp4 or .gif", "a picture or a film")
     add(
         "--frame",
-        type=whole(),
+        type=integer(),
         metavar="N",
         help="picture: counted from 0, or from the end if negative; default: -1",
     )
@@ -38,9 +38,9 @@ def add_render(commands: Commands) -> None:
     add("--frames-per-second", type=real(above=0.0), metavar="X", help="film; default: 25")
     add(
         "--trail",
-        type=whole(least=0),
+        type=integer(least=0),
         metavar="N",
-        help="film of discs: draw the way of body N, counted from 0",
+        help="film of discs: draw the path of particle N, counted from 0",
     )
 
 
@@ -48,13 +48,11 @@ def _size(text: str) -> tuple[int, int]:
     try:
         width, height = (int(part) for part in text.split("x"))
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} must be as 1000x750") from None
+        raise argparse.ArgumentTypeError(f"{text!r} must be of the form 1000x750") from None
     return width, height
 
 
 def _render(given: argparse.Namespace) -> None:
-    from gaspart.files import output_path
-
     output = output_path(given.output)
     named = ("size", "colour", "frame", "frames_per_second", "trail")
     options = {key: getattr(given, key) for key in named if getattr(given, key) is not None}
@@ -69,13 +67,12 @@ def _render(given: argparse.Namespace) -> None:
         if output.suffix not in KINDS:
             raise SceneError("output", given.output, f"must end in {', '.join((*PICTURES, *KINDS))}")
         if "frame" in options:
-            raise SceneError("frame", given.frame, "has no meaning for a film, which shows all")
+            raise SceneError("frame", given.frame, "has no meaning for a film, which shows all frames")
         film(given.trajectory, output, **options, overwrite=given.force)
-    say(output)
+    print_line(output)
 
 
 def _picture(trajectory: str, output: Path, options: dict, overwrite: bool) -> None:
-    from gaspart.files import writing
     from gaspart.rendering.pictures import PICTURE, render
     from gaspart.trajectory.run import open_trajectory
 

@@ -7,9 +7,11 @@ import shlex
 import sys
 from pathlib import Path
 
-from gaspart.cli.arguments import Commands, several
+from gaspart.cli.arguments import Commands, add_command, several
 from gaspart.cli.progress import clear_line, progress
 from gaspart.interruption import set_note
+from gaspart.kernels.numba_loading import load_numba
+from gaspart.scene.scene import Scene
 
 _ENGINE_SETTINGS: tuple[str, ...] = ("time_step", "boxes_per_side", "precision", "rewind", "search")
 _ENGINE_SETTINGS += ("passes", "skin", "near_boxes", "threads")
@@ -25,31 +27,42 @@ def add_run(commands: Commands) -> None:
     """Add `run` to the other commands."""
     text = (
         "Run a scene and write its trajectory. A run of the same settings that was cut short is continued, "
-        "and one that is whole is left as it is; another one is replaced only with --force."
+        "and a complete one is not changed; another one is replaced only with --force."
     )
-    run = commands.add_parser("run", help="run a scene", description=text, epilog=_EXAMPLES)
-    run.set_defaults(command=_run)
-    add, whole = run.add_argument, several(int)
+    run = add_command(commands, "run", _run, "run a scene", text, _EXAMPLES)
+    add, integers = run.add_argument, several(int)
     add("scene", help="scene file (YAML)")
     add("-o", "--output", required=True, metavar="FILE", help="trajectory (AMBER NetCDF)")
     add("--engine", default="event", metavar="NAME", help="event (exact; the default) or step")
     add("--duration", type=float, required=True, metavar="T", help="in the scene's time")
-    add("--sample-interval", type=float, required=True, metavar="T", help="a whole part of the duration")
-    add("--seed", type=whole, default=(1,), metavar="N[,N...]", help="default: 1")
+    add("--sample-interval", type=float, required=True, metavar="T", help="the duration is a multiple of it")
+    add("--seed", type=integers, default=(1,), metavar="N[,N...]", help="default: 1")
     add(
-        "--displacements", action="store_true", help="write unwrapped float64 displacements since time 0, too"
+        "--displacements",
+        action="store_true",
+        help="write unwrapped float64 displacements since time 0 as well",
     )
-    add("--follow", type=int, metavar="N", help="write the first N bodies only")
-    add("--time-step", type=float, metavar="T", help="step engine: a whole part of the sample interval")
-    add("--boxes-per-side", type=whole, metavar="N[,N...]", help="one number for all sides, or one per side")
+    add("--follow", type=int, metavar="N", help="write the first N particles only")
+    add("--time-step", type=float, metavar="T", help="step engine: the sample interval is a multiple of it")
+    add(
+        "--boxes-per-side",
+        type=integers,
+        metavar="N[,N...]",
+        help="one number for all sides, or one per side",
+    )
     add("--precision", metavar="TYPE", help="step engine: float64 (default) or float32")
-    text = "step engine: collide pairs as they lie after the step, not as they were at their contact"
+    text = "step engine: collide pairs at their positions after the step, not at contact"
     add("--no-rewind", dest="rewind", action="store_false", default=None, help=text)
-    add("--passes", type=int, metavar="N", help="step engine: how often a step may look for overlaps (4)")
-    add("--skin", type=float, metavar="L", help="step engine: of its neighbour list; by default it chooses")
-    text = "step engine: look only into boxes within reach of a contact"
+    add(
+        "--passes",
+        type=int,
+        metavar="N",
+        help="step engine: largest number of searches for overlaps in a step (4)",
+    )
+    add("--skin", type=float, metavar="L", help="step engine: of its neighbour list; automatic by default")
+    text = "step engine: search only boxes within reach of a contact"
     add("--near-boxes", action="store_true", default=None, help=text)
-    add("--threads", type=int, metavar="N", help="step engine: how many share the work (1)")
+    add("--threads", type=int, metavar="N", help="step engine: number of threads (1)")
     add("--search", metavar="NAME", help="event engine: boxes (default), direct or pairs")
     add("--force", action="store_true", help="replace a trajectory of another run")
     _add_progress(run)
@@ -57,15 +70,14 @@ def add_run(commands: Commands) -> None:
 
 def add_resume(commands: Commands) -> None:
     """Add `resume` to the other commands."""
-    text = "Finish a run that was cut short, from FILE.partial and FILE.checkpoint.npz alone."
-    resume = commands.add_parser("resume", help="finish a run that was cut short", description=text)
-    resume.set_defaults(command=_resume)
-    resume.add_argument("trajectory", metavar="FILE", help="the trajectory that the run was to write")
+    text = "Finish a run that was cut short, from FILE.partial and FILE.checkpoint.npz."
+    resume = add_command(commands, "resume", _resume, "finish a run that was cut short", text)
+    resume.add_argument("trajectory", metavar="FILE", help="the trajectory of the run")
     _add_progress(resume)
 
 
 def _add_progress(parser: argparse.ArgumentParser) -> None:
-    text = "time between checkpoints, default 30: what a kill may cost"
+    text = "time between checkpoints, default 30: the most that a kill can cost"
     parser.add_argument("--checkpoint-seconds", type=float, default=30.0, metavar="S", help=text)
     parser.add_argument("--quiet", action="store_true", help="show no progress")
 
@@ -73,8 +85,6 @@ def _add_progress(parser: argparse.ArgumentParser) -> None:
 def _run(given: argparse.Namespace) -> None:
     set_note("no state was saved yet; the same command starts it again")
     from gaspart.engines import engine_from_dict
-    from gaspart.kernels.numba_loading import load_numba
-    from gaspart.scene.scene import Scene
     from gaspart.trajectory.run import run
 
     settings = {key: getattr(given, key) for key in _ENGINE_SETTINGS if getattr(given, key) is not None}
@@ -96,7 +106,7 @@ def _run(given: argparse.Namespace) -> None:
         progress=progress(given.quiet),
         overwrite=given.force,
     )
-    _tell(path)
+    _report(path)
 
 
 def _alone(numbers: tuple[int, ...]) -> int | tuple[int, ...]:
@@ -105,14 +115,13 @@ def _alone(numbers: tuple[int, ...]) -> int | tuple[int, ...]:
 
 def _resume(given: argparse.Namespace) -> None:
     set_note("nothing was changed; the same command starts it again")
-    from gaspart.kernels.numba_loading import load_numba
     from gaspart.trajectory.run import resume
 
     load_numba(ours=True)
-    _tell(resume(given.trajectory, given.checkpoint_seconds, progress(given.quiet)))
+    _report(resume(given.trajectory, given.checkpoint_seconds, progress(given.quiet)))
 
 
-def _tell(path: Path) -> None:
+def _report(path: Path) -> None:
     if wiped := clear_line():  # even an empty line fails where stderr is full
         print(wiped, end="", file=sys.stderr)
-    print(f"{path} is whole; `gaspart info {shlex.quote(str(path))}` tells what it holds")
+    print(f"{path} is complete; `gaspart info {shlex.quote(str(path))}` lists its contents")

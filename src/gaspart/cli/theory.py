@@ -1,14 +1,14 @@
-"""`gaspart theory`: a number that theory says, how sure it is, where it is from, and where it holds."""
+"""`gaspart theory`: a value of theory, with its uncertainty, source and range of validity."""
 
 from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
 
-from gaspart.cli.arguments import Commands, real, several
+from gaspart.cli.arguments import Commands, add_command, real, several
 from gaspart.errors import SceneError
 
-_BODY = ("diameter", "temperature", "mass")
+_PARTICLE = ("diameter", "temperature", "mass")
 _STATE = {
     2: "virial series to B10 with a linear tail (Clisby and McCoy 2006)",
     3: "Kolafa, Labik and Malijevsky 2004",
@@ -18,7 +18,7 @@ _FLUID = {2: "the fluid of discs", 3: "the fluid of spheres (metastable from 0.4
 
 @dataclass(frozen=True)
 class _Quantity:
-    """A function of gaspart.theory, the particle's properties it takes, what it is, and where it is from."""
+    """A function of gaspart.theory, the particle's properties that it depends on, its meaning and source."""
 
     function: str
     takes: tuple[str, ...]
@@ -35,9 +35,9 @@ _QUANTITIES = {
     "Z": _Quantity("compressibility_factor", (), "compressibility factor PV/(N k_B T)", _STATE),
     "contact_value": _Quantity("contact_value", (), "pair distribution at contact g(sigma)", _RATE),
     "mean_free_path": _Quantity("mean_free_path", ("diameter",), "mean free path", _RATE),
-    "collision_rate": _Quantity("collision_rate", _BODY, "collisions per body and time", _RATE),
-    "diffusion_coefficient": _Quantity("enskog_diffusion", _BODY, "self-diffusion coefficient", _ENSKOG),
-    "viscosity": _Quantity("enskog_viscosity", _BODY, "shear viscosity", _ENSKOG),
+    "collision_rate": _Quantity("collision_rate", _PARTICLE, "collisions per particle and time", _RATE),
+    "diffusion_coefficient": _Quantity("enskog_diffusion", _PARTICLE, "self-diffusion coefficient", _ENSKOG),
+    "viscosity": _Quantity("enskog_viscosity", _PARTICLE, "shear viscosity", _ENSKOG),
 }
 _EXAMPLES = """examples:
   gaspart theory Z --eta 0.3
@@ -47,15 +47,12 @@ _EXAMPLES = """examples:
 def add_theory(commands: Commands) -> None:
     """Add the command to the others."""
     names = "; ".join(f"{name}: {quantity.meaning}" for name, quantity in _QUANTITIES.items())
-    theory = commands.add_parser(
-        "theory", help="what theory says", description=f"{names}. Units: k_B = 1.", epilog=_EXAMPLES
-    )
-    theory.set_defaults(command=_theory)
-    add = theory.add_argument
+    text = f"{names}. Units: k_B = 1."
+    add = add_command(commands, "theory", _theory, "values of theory", text, _EXAMPLES).add_argument
     add("quantity", choices=_QUANTITIES, metavar="QUANTITY", help=", ".join(_QUANTITIES))
     add("--eta", type=several(real(least=0.0)), required=True, metavar="X[,X...]", help="packing fraction")
     add("--dimension", type=int, choices=(2, 3), default=3, help="default: 3")
-    for name in _BODY:
+    for name in _PARTICLE:
         add(f"--{name}", type=real(above=0.0), help="default: 1")
 
 
@@ -63,7 +60,7 @@ def _theory(given: argparse.Namespace) -> None:
     from gaspart import theory
 
     quantity, dimension = _QUANTITIES[given.quantity], given.dimension
-    properties = {key: getattr(given, key) for key in _BODY}
+    properties = {key: getattr(given, key) for key in _PARTICLE}
     properties = {key: value for key, value in properties.items() if value is not None}
     for key in properties:
         if key not in quantity.takes:

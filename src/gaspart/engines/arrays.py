@@ -127,7 +127,7 @@ class EventLog:
         )
 
     def _copy(self, count: int) -> tuple[np.ndarray, ...]:
-        """The first events in the kernel's record; of spins in two dimensions the component normal to the plane."""
+        """The first events in the kernel's record; of spins in 2D the component normal to the plane."""
         found = {key: getattr(self.room, key)[:count] for key in self._keys}
         if "spins" in found and self._dimension == 2:
             found["spins"] = found["spins"][..., 2]

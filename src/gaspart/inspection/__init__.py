@@ -1,1 +1,1 @@
-"""Judging runs: trajectories of this and other programs, scenes, configs; and the certificate of a run."""
+"""Validation of trajectories of this and other programs, of scenes and configs; the certificate of a run."""

@@ -1,4 +1,4 @@
-"""How good a run of gaspart was, from what it counted: a few lines to trust it by, or not."""
+"""The certificate of a run of gaspart: its quality in a few lines, from its counters."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def certificate(path: Path) -> list[str]:
 
 
 def _drift(scene: Scene, energy: np.ndarray) -> str:
-    """Of the kinetic energy, where nothing may change it."""
+    """Drift of the kinetic energy, where the scene conserves it."""
     elastic = scene.restitution is None or (scene.restitution.normal == 1.0 and not scene.rough)
     if not elastic or scene.gravity is not None or scene.faces or scene.vibrates:
         return f"kinetic energy from {energy[0]:.6g} to {energy[-1]:.6g}: this scene does not conserve it"
@@ -33,20 +33,20 @@ def _drift(scene: Scene, energy: np.ndarray) -> str:
 
 
 def _contacts(series: dict) -> str:
-    """What the engine got wrong, as it counted it."""
-    told = f"{series['collisions'][-1]:.0f} collisions"
+    """Errors of the engine, from its counters."""
+    counted = f"{series['collisions'][-1]:.0f} collisions"
     if series["steps"][-1]:
         deepest, left = series["deepest_overlap"][-1], series["overlaps_left"][-1]
-        return f"{told}; deepest overlap {deepest:.2g} of a contact distance, {left:.0f} left after a step"
-    return f"{told}; worst contact off by {series['worst_contact'][-1]:.1e} of its distance, squared"
+        return f"{counted}; deepest overlap {deepest:.2g} of a contact distance, {left:.0f} left after a step"
+    return f"{counted}; worst contact off by {series['worst_contact'][-1]:.1e} of its distance, squared"
 
 
 def _samples(scene: Scene, series: dict) -> str:
     """Independent values of the pressure: intervals between frames over twice their correlation time."""
     counted = np.diff(series["virial_sum"])
     per_body = 2.0 * series["collisions"][-1] / max(scene.count, 1)
-    told = f"{per_body:.4g} collisions per body"
+    collisions = f"{per_body:.4g} collisions per particle"
     if len(counted) < 4:
-        return told
+        return collisions
     independent = len(counted) / (2.0 * autocorrelation_time(counted))
-    return f"{told}; {independent:.3g} independent samples of the pressure in {len(counted)} intervals"
+    return f"{collisions}; {independent:.3g} independent samples of the pressure in {len(counted)} intervals"

@@ -1,5 +1,4 @@
-"""What can be wrong with a trajectory of hard particles: a check each, which says what it found in one
-line."""
+"""Checks of a trajectory of hard particles; each gives its result in one line."""
 
 from __future__ import annotations
 
@@ -16,15 +15,15 @@ from gaspart.inspection.diffusion import diffusion, expected_diffusion, why_not
 from gaspart.inspection.frames import Frames
 
 TOUCH = 1e-5
-"""Of a diameter: overlaps up to here are put down to rounding; more where the file itself is coarser."""
+"""Of a diameter: overlaps up to here are attributed to rounding; more if the file's numbers are coarser."""
 COARSEST = 0.1
-"""Of a diameter: overlaps beyond are not put down to rounding, however coarse the file is."""
+"""Of a diameter: overlaps beyond are not attributed to rounding, however coarse the file is."""
 LIMIT = 4.0
-"""Standard errors from theory beyond which a number is called wrong: by chance once in 16 000."""
+"""Standard errors from theory beyond which a check fails: by chance once in 16 000."""
 MOST_FRAMES = 200
-"""As many, evenly spaced, are looked at for overlaps and contact values."""
+"""Number of frames, evenly spaced, that are searched for overlaps and contact values."""
 _LEAST_FRAMES = 16
-_RARE = 1e-4  # a probability below which speeds are called wrong
+_RARE = 1e-4  # the check of speeds fails below this probability
 
 
 @dataclass(frozen=True)
@@ -41,14 +40,14 @@ class Check:
 
 
 def judge(frames: Frames, tolerance: float | None = None) -> list[Check]:
-    """All checks of a trajectory. tolerance: overlaps up to this part of a diameter are let pass."""
+    """All checks of a trajectory. tolerance: allowed overlap, as a fraction of a diameter."""
     seen = np.unique(np.linspace(0, len(frames.positions) - 1, MOST_FRAMES).astype(int))
     checks = [*judge_places(frames, tolerance), _speeds(frames), _kurtosis(frames)]
     return [*checks, _pressure(frames, seen), _diffusion(frames)]
 
 
 def judge_places(frames: Frames, tolerance: float | None = None) -> list[Check]:
-    """Do particles overlap, or stick out of the container?"""
+    """Checks of positions: overlaps, and particles outside the container."""
     seen = np.unique(np.linspace(0, len(frames.positions) - 1, MOST_FRAMES).astype(int))
     return [_overlaps(frames, seen, tolerance), _inside(frames, tolerance)]
 
@@ -63,7 +62,7 @@ def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Chec
     """The deepest overlap of two particles, as a part of their contact distance."""
     sides, most = np.where(frames.periodic, frames.lengths, 0.0), 2.0 * float(frames.radii.max())
     if np.any((sides > 0.0) & (sides <= 2.0 * most)):
-        return Check("overlaps", None, "the container is too small to look for them by nearest images")
+        return Check("overlaps", None, "the container is too small to search them by nearest images")
     deepest, where = 0.0, 0
     for n in seen:
         pairs = cKDTree(frames.positions[n], boxsize=sides).query_pairs(most, output_type="ndarray")
@@ -83,7 +82,7 @@ def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Chec
 
 
 def _inside(frames: Frames, tolerance: float | None) -> Check:
-    """How far a centre lies outside of the walls; on periodic axes nothing can."""
+    """The largest distance of a centre outside the walls; none on periodic axes."""
     walls = ~np.array(frames.periodic)
     if not walls.any():
         return Check("container", None, "periodic, so that nothing can leave it")
@@ -94,11 +93,11 @@ def _inside(frames: Frames, tolerance: float | None) -> Check:
 
 
 def _judged_speeds(frames: Frames) -> str | None:
-    """Why the speeds cannot be judged, if so."""
+    """The reason why speeds cannot be checked; None if they can."""
     if frames.velocities is None or not np.any(frames.velocities[-1]):
         return "the file has no velocities"
     if not frames.plain or frames.diameter is None:
-        return "bodies differ, or something else than elastic contacts moves them"
+        return "particles differ, or are moved by more than elastic contacts"
     return None
 
 
@@ -111,7 +110,7 @@ def _speeds(frames: Frames) -> Check:
     moving = frames.velocities[-1] - frames.velocities[-1].mean(axis=0)
     bins = min(30, frames.count // 10)
     if bins < 4:
-        return Check(name, None, f"{frames.count} bodies are too few for a histogram")
+        return Check(name, None, f"{frames.count} particles are too few for a histogram")
     temperature = float((moving**2).sum() / (frames.dimension * (frames.count - 1)))
     speeds = np.sqrt((moving**2).sum(axis=1))
     found = histogram_chi_square(speeds, lambda v: theory.maxwell_cdf(v, frames.dimension, temperature), bins)
@@ -138,11 +137,12 @@ def _kurtosis(frames: Frames) -> Check:
 
 
 def _pressure(frames: Frames, seen: np.ndarray) -> Check:
-    """Z by the pair distribution at contact against the equation of state of so many particles."""
+    """Z by the pair distribution at contact against the equation of state, corrected for the finite
+    number."""
     name = "pressure Z"
     if not all(frames.periodic) or frames.diameter is None or not frames.plain:
         return Check(
-            name, None, "needs equal bodies in a periodic container, moved by elastic contacts alone"
+            name, None, "needs equal particles in a periodic container, moved by elastic contacts alone"
         )
     eta, d = frames.packing_fraction, frames.dimension
     if eta > theory.HIGHEST_PACKING_FRACTION[d]:

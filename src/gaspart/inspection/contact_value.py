@@ -1,4 +1,4 @@
-"""The pair distribution at contact, g(sigma), from positions alone; it tells Z = 1 + 2^(d-1) eta g(sigma).
+"""The pair distribution at contact, g(sigma), from positions alone; it gives Z = 1 + 2^(d-1) eta g(sigma).
 
 g(r) in thin shells from contact to 1.3 diameters is fitted by a cubic in r, whose value at contact is a sum
 of the shells' counts with fixed coefficients; so each frame gives one number, and blocks of them the error.
@@ -14,20 +14,20 @@ from gaspart.scene.geometry import ball_volume
 
 _WIDTH, _SHELLS, _DEGREE = 0.3, 15, 3
 FIT_ERROR = 0.005
-"""What the cubic itself may lack, relative: 0.5 % for spheres at packing fraction 0.45, where g falls
+"""Relative error of the cubic: 0.5 % for spheres at packing fraction 0.45, where g falls
 steepest (measured against the equation of state), less elsewhere."""
 
 
 def contact_values(frames: Frames) -> np.ndarray:
     """(T,) g(sigma) of each frame of equal particles in a periodic container. Dimensionless."""
     n, d, sigma = frames.count, frames.dimension, frames.diameter
-    assert sigma is not None, "judged of equal bodies only"
+    assert sigma is not None, "requires equal particles"
     edges = 1.0 + _WIDTH * np.linspace(0.0, 1.0, _SHELLS + 1)
     volumes = ball_volume(d) * np.diff(edges**d)
     coefficients = _at_contact(edges, volumes, d)
     pairs = n * (n / np.prod(frames.lengths / sigma)) * volumes
     reach = sigma * edges
-    reach[0] *= 1.0 - 1e-5  # pairs that rounding has brought below contact belong into the first shell
+    reach[0] *= 1.0 - 1e-5  # pairs that rounding has brought below contact belong to the first shell
     values = []
     for positions in frames.positions:
         tree = cKDTree(positions, boxsize=frames.lengths)
@@ -43,5 +43,5 @@ def _at_contact(edges: np.ndarray, volumes: np.ndarray, dimension: int) -> np.nd
     weights = weights * radii ** (dimension - 1)
     weights /= weights.sum(axis=1, keepdims=True)
     powers = np.stack([(weights * (radii - 1.0) ** k).sum(axis=1) for k in range(_DEGREE + 1)], axis=1)
-    scale = np.sqrt(volumes)  # counts of larger shells are the surer ones
+    scale = np.sqrt(volumes)  # counts of larger shells are the more certain ones
     return np.linalg.pinv(powers * scale[:, None])[0] * scale

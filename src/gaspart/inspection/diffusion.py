@@ -1,4 +1,4 @@
-"""The diffusion coefficient of spheres from a trajectory, and what theory says of so many in such a cube."""
+"""The diffusion coefficient of spheres from a trajectory, and that of theory for their number and cube."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from gaspart import theory
 from gaspart.analysis.statistics import mean_of
 from gaspart.inspection.frames import Frames
 
-_SETTLED = 12.0  # collisions per particle, from which on the displacement's square grows evenly
+_LINEAR_FROM = 12.0  # collisions per particle, from which on the displacement's square grows evenly
 _DENSEST = 0.4915  # where spheres freeze, and the range of Erpenbeck and Wood ends
 
 
 def why_not(frames: Frames) -> str | None:
-    """Why no D can be taken from a trajectory of equal particles with velocities; None if it can."""
+    """The reason why D cannot be measured from a trajectory of equal particles with velocities, or None."""
     if frames.dimension == 2:
         return "discs have none: the displacement's square grows like t ln t"
     if frames.time is None or not all(frames.periodic):
@@ -26,7 +26,7 @@ def why_not(frames: Frames) -> str | None:
     if len(interval) == 0 or np.ptp(interval) > 1e-3 * interval.mean():
         return "needs frames at even times"
     if np.abs(_steps(frames)).max() > 0.45 * frames.lengths[0]:
-        return "frames are too far apart to follow a body over the boundary"
+        return "frames are too far apart to follow a particle across the boundary"
     first, last = _lags(frames)
     if last - first < 1 or len(interval) < 2 * last:
         start = first * interval.mean()
@@ -38,14 +38,16 @@ def diffusion(frames: Frames) -> tuple[float, float]:
     """D and its standard error, by the rise of the mean-squared displacement from 12 to 24 collisions a
     particle.
 
-    Of N particles whose total momentum is zero D is (N - 1) / N of what it is without this condition; that is
-    made up for. The error is the scatter of groups of particles.
+    Of N particles whose total momentum is zero D is (N - 1) / N of its value without this condition; this is
+    corrected. The error is the scatter of groups of particles.
     """
     steps, n = _steps(frames), frames.count
-    way = np.concatenate([np.zeros_like(steps[:1]), np.cumsum(steps, axis=0)])
-    way -= way.mean(axis=1, keepdims=True)
+    path = np.concatenate([np.zeros_like(steps[:1]), np.cumsum(steps, axis=0)])
+    path -= path.mean(axis=1, keepdims=True)
     first, last = _lags(frames)
-    squares = [((way[lag:] - way[:-lag]) ** 2).sum(axis=2).mean(axis=0) for lag in (first, last)]  # (N,) each
+    squares = [
+        ((path[lag:] - path[:-lag]) ** 2).sum(axis=2).mean(axis=0) for lag in (first, last)
+    ]  # (N,) each
     time = (last - first) * _interval(frames)
     rise = (squares[1] - squares[0]) / (6.0 * time) * n / (n - 1.0)
     found = mean_of(np.array([part.mean() for part in np.array_split(rise, min(n, 32))]))
@@ -55,7 +57,8 @@ def diffusion(frames: Frames) -> tuple[float, float]:
 def expected_diffusion(frames: Frames) -> tuple[float, float]:
     """D in this cube and its uncertainty: Enskog's, Erpenbeck and Wood's ratio, Yeh and Hummer's shift.
 
-    The shift is taken as sure to a half of itself, because hydrodynamics overestimates that of a dilute gas.
+    The shift is taken as uncertain by half its value, because hydrodynamics overestimates that of a dilute
+    gas.
     """
     eta, sigma, temperature = frames.packing_fraction, _diameter(frames), _thermal_speed(frames) ** 2
     infinite = float(theory.erpenbeck_wood_diffusion(eta, sigma, temperature))
@@ -65,7 +68,7 @@ def expected_diffusion(frames: Frames) -> tuple[float, float]:
 
 
 def _steps(frames: Frames) -> np.ndarray:
-    """(T - 1, N, d) ways from frame to frame, by the nearest image."""
+    """(T - 1, N, d) displacements from frame to frame, by the nearest image."""
     steps = np.diff(frames.positions, axis=0)
     return steps - frames.lengths * np.round(steps / frames.lengths)
 
@@ -78,7 +81,7 @@ def _interval(frames: Frames) -> float:
 
 def _diameter(frames: Frames) -> float:
     """That of all particles."""
-    assert frames.diameter is not None, "judged of equal bodies only"
+    assert frames.diameter is not None, "requires equal particles"
     return frames.diameter
 
 
@@ -94,4 +97,4 @@ def _lags(frames: Frames) -> tuple[int, int]:
     temperature = _thermal_speed(frames) ** 2
     rate = float(theory.collision_rate(frames.packing_fraction, 3, _diameter(frames), temperature))
     interval = _interval(frames)
-    return math.ceil(_SETTLED / rate / interval), math.ceil(2.0 * _SETTLED / rate / interval)
+    return math.ceil(_LINEAR_FROM / rate / interval), math.ceil(2.0 * _LINEAR_FROM / rate / interval)

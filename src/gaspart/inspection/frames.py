@@ -16,7 +16,7 @@ class Frames:
     """What can be judged of a trajectory of T frames of N particles.
 
     positions (T, N, d), on periodic axes inside the container [0, L]; velocities (T, N, d) and time (T,), or
-    None where the file does not tell; radii (N,); periodic (d,) whether each axis is; plain: whether
+    None if the file does not state it; radii (N,); periodic (d,) whether each axis is; plain: whether
     nothing but elastic contacts moves them, as far as the file knows; resolution: by how much a
     position may be off, as a length.
     """
@@ -51,33 +51,33 @@ class Frames:
         return float(ball_volume(self.dimension) * (self.radii**self.dimension).sum() / np.prod(self.lengths))
 
 
-def settled(
+def complete_frames(
     found: dict, path: str, radius: float | None, lengths: tuple[float, ...] | None, boundary: str | None
 ) -> Frames:
-    """Frames from what a reader found, and what the user says of it, which goes first.
+    """Frames from the result of a reader and the user's arguments, which take precedence.
 
     found: positions (T, N, 3) or (T, N, d), and perhaps their `origin` (d,), lengths, radii, velocities,
-    time, boundary, plain, flat (two dimensions), resolution. Raises SceneError for what is missing or cannot
-    be.
+    time, boundary, plain, flat (two dimensions), resolution. Raises SceneError for missing or invalid
+    values.
     """
     positions = np.asarray(found["positions"])
     if positions.ndim != 3 or positions.shape[0] < 1 or positions.shape[1] < 2:
-        raise SceneError("file", path, "needs at least one frame of at least two bodies")
+        raise SceneError("file", path, "needs at least one frame of at least two particles")
     if not np.isfinite(positions).all():
         raise SceneError("file", path, "has positions that are not finite")
     flat = found.get("flat", positions.shape[2] == 3 and np.ptp(positions[:, :, 2]) == 0.0)
     d = 2 if flat or positions.shape[2] == 2 else 3
     sides = found.get("lengths") if lengths is None else np.array(lengths)
     if sides is None or len(sides) < d or not (np.asarray(sides[:d]) > 0.0).all():
-        raise SceneError("lengths", lengths, f"{path} does not tell them: give --lengths X,Y[,Z]")
+        raise SceneError("lengths", lengths, f"{path} does not state them: give --lengths X,Y[,Z]")
     radii = found.get("radii") if radius is None else np.full(positions.shape[1], radius)
     if radii is None or not (np.asarray(radii) > 0.0).all():
-        raise SceneError("radius", radius, f"{path} does not tell it: give --radius")
+        raise SceneError("radius", radius, f"{path} does not state it: give --radius")
     container = Container(tuple(float(x) for x in sides[:d]), boundary or found.get("boundary", "periodic"))
     sides = np.array(container.lengths)
     places = positions[:, :, :d].astype(float) - np.asarray(found.get("origin", np.zeros(3)))[:d]
     wrapped = np.where(container.periodic, places - sides * np.floor(places / sides), places)
-    wrapped = np.where((wrapped >= sides) & container.periodic, 0.0, wrapped)  # what rounding made of -1e-17
+    wrapped = np.where((wrapped >= sides) & container.periodic, 0.0, wrapped)  # rounding of -1e-17
     velocities = found.get("velocities")
     precision = np.finfo(positions.dtype).eps if positions.dtype.kind == "f" else 0.0
     return Frames(

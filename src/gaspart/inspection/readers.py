@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.inspection.frames import Frames, settled
+from gaspart.inspection.frames import Frames, complete_frames
 from gaspart.trajectory.amber import BOOKKEEPING
 from gaspart.trajectory.recipe import check_frames, open_descriptor, opened, read_recipe
 
@@ -25,11 +25,11 @@ def read_frames(
     boundary: str | None = None,
     time_step: float | None = None,
 ) -> Frames:
-    """The frames of a trajectory; what the arguments say goes before what the file says.
+    """The frames of a trajectory; the arguments take precedence over the file.
 
-    radius: of all particles; lengths: (d,) sides; boundary: "periodic" (what foreign files are taken for) or
-    "wall"; time_step: simulated time of one step, where a file counts steps (GSD) or frames (XYZ). Raises
-    SceneError for a file that cannot be read, or from which something is missing.
+    radius: of all particles; lengths: (d,) sides; boundary: "periodic" (the default for files of other
+    programs) or "wall"; time_step: simulated time of one step, where a file counts steps (GSD) or frames
+    (XYZ). Raises SceneError for a file that cannot be read, or for missing data.
     """
     path = Path(path)
     readers = {".nc": _netcdf, ".ncdf": _netcdf, ".partial": _netcdf, ".gsd": _gsd, ".xyz": _xyz}
@@ -43,16 +43,16 @@ def read_frames(
     except SceneError:
         raise
     except (OSError, RuntimeError, ValueError, KeyError, IndexError) as error:
-        told = getattr(error, "strerror", None) or error
-        raise SceneError("file", str(path), f"cannot be read: {told}") from None
+        reason = getattr(error, "strerror", None) or error
+        raise SceneError("file", str(path), f"cannot be read: {reason}") from None
     steps = found.pop("steps", None)
     if steps is not None and time_step is not None:
         found["time"] = time_step * np.asarray(steps, dtype=float)
-    return settled(found, str(path), radius, lengths, boundary)
+    return complete_frames(found, str(path), radius, lengths, boundary)
 
 
 def _netcdf(path: Path) -> dict:
-    """AMBER's convention, which LAMMPS follows; with more in it where gaspart wrote it."""
+    """AMBER's convention, which LAMMPS follows; with more variables in files of gaspart."""
     own = _is_own(path)
     if own:
         check_frames(path)
@@ -78,7 +78,7 @@ def _netcdf(path: Path) -> dict:
 
 
 def _is_own(path: Path) -> bool:
-    """Whether gaspart wrote a file. The beginning shows it in more than one place, lest damage hide it."""
+    """Whether gaspart wrote a file. Several attributes are tried, so that damage to one does not hide it."""
     with path.open("rb") as file:
         head = file.read(4096)
     return any(name.encode() in head for name in BOOKKEEPING)
@@ -92,7 +92,7 @@ def _foreign(path: Path) -> Iterator[Any]:
 
 
 def _own(path: Path) -> dict:
-    """What a trajectory of gaspart says of its scene."""
+    """Properties of the scene of a trajectory of gaspart."""
     scene = read_recipe(path).scene
     elastic = scene.restitution is None or (scene.restitution.normal == 1.0 and not scene.rough)
     quiet = scene.gravity is None and not scene.faces and not scene.walls and not scene.vibrates
@@ -114,14 +114,14 @@ def _constant(cells: np.ndarray, path: Path) -> np.ndarray:
 
 
 def _gsd(path: Path) -> dict:
-    """HOOMD's format: the origin lies in the middle of the box, and a frame tells its step."""
+    """HOOMD's format: the origin is the middle of the box, and a frame states its step."""
     import gsd.hoomd
 
     with gsd.hoomd.open(str(path), "r") as file:
         frames = list(file)
     boxes = np.array([frame.configuration.box for frame in frames], dtype=float)
     if np.any(boxes[:, 3:] != 0.0):
-        raise SceneError("box", boxes[0, 3:].tolist(), f"{path}: a tilted box cannot be judged")
+        raise SceneError("box", boxes[0, 3:].tolist(), f"{path}: a tilted box cannot be checked")
     sides = _constant(boxes[:, :3], path)
     return {
         "positions": np.array([frame.particles.position for frame in frames]),
@@ -144,7 +144,9 @@ def _xyz(path: Path) -> dict:
         count = int(lines[at])
         rows = [line.split() for line in lines[at + 2 : at + 2 + count]]
         if len(rows) < count:
-            raise SceneError("file", str(path), f"is truncated: frame {len(frames)} has {len(rows)} bodies")
+            raise SceneError(
+                "file", str(path), f"is truncated: frame {len(frames)} has {len(rows)} particles"
+            )
         frames.append(rows)
         comments.append(lines[at + 1])
         at += count + 2
@@ -169,7 +171,7 @@ def _xyz(path: Path) -> dict:
     if lattice:
         cell = np.array(lattice[1].split(), dtype=float).reshape(3, 3)
         if np.any(cell != np.diag(np.diag(cell))):
-            raise SceneError("Lattice", lattice[1], f"{path}: a tilted box cannot be judged")
+            raise SceneError("Lattice", lattice[1], f"{path}: a tilted box cannot be checked")
         found["lengths"] = np.diag(cell)
     origin = re.search(r'Origin="([^"]*)"', comments[0])
     if origin:

@@ -1,4 +1,4 @@
-"""Judging what people write: scene files, and configs of the workflow."""
+"""Validation of scene files, and of configs of the workflow."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from gaspart.state.initial import initial_state
 
 
 def judge_scene(path: Path, tolerance: float | None = None) -> list[Check]:
-    """Can it be, and can its particles be placed? Raises SceneError where it cannot."""
+    """Checks of a scene, and of the placement of its particles. Raises SceneError for an invalid scene."""
     scene = Scene.from_file(path)
-    facts = f"{scene.count} bodies, packing fraction {scene.packing_fraction:.6g}"
+    facts = f"{scene.count} particles, packing fraction {scene.packing_fraction:.6g}"
     checks = [Check("scene", True, f"{facts}, number density {scene.number_density:.6g}")]
     if scene.count < 2:
         return checks
@@ -29,12 +29,12 @@ def judge_scene(path: Path, tolerance: float | None = None) -> list[Check]:
 
 
 def judge_config(path: Path) -> list[Check]:
-    """Every point of every grid, and every figure. Raises SceneError for what cannot be run.
+    """Every point of every grid, and every figure. Raises SceneError for a config that cannot be run.
 
-    A config beside `config.yaml` is laid over that, as the workflow does.
+    A config next to `config.yaml` is merged over it, as in the workflow.
     """
     with config.checked(path) as merged:
         made = [point for name in merged["experiments"] for point in points(merged, name)]
-        bodies = np.array([grid.extents(point)[0] for point in made])
-    text = f"{len(merged['experiments'])} experiments of {len(made)} points, up to {bodies.max()} bodies; "
+        counts = np.array([grid.extents(point)[0] for point in made])
+    text = f"{len(merged['experiments'])} experiments of {len(made)} points, up to {counts.max()} particles; "
     return [Check("config", True, text + f"{len(merged['figures'])} figures")]

@@ -1,4 +1,4 @@
-"""Where a picture of three dimensions is taken from: outside the container, all of which is in it."""
+"""The camera of a picture of spheres: outside the container, which is completely in the picture."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MARGIN = 1.04
 @dataclass(frozen=True)
 class Camera:
     """eye (3,); forward, right, up (3,) unit vectors; half_width, half_height: tangents of half the angles of
-    view; near, far: distances along `forward` between which the container lies; light (3,), the unit vector
+    view; near, far: distances along `forward` between which the container is; light (3,), the unit vector
     to the lamp, at the upper left behind the camera."""
 
     eye: np.ndarray
@@ -31,7 +31,7 @@ class Camera:
     light: np.ndarray
 
     def ray(self, column: float, row: float, width: int, height: int) -> np.ndarray:
-        """(3,) the direction of a place in the picture, in pixels from its upper left corner."""
+        """(3,) the direction of a point in the picture, in pixels from its upper left corner."""
         across = (2.0 * column / width - 1.0) * self.half_width
         along = (1.0 - 2.0 * row / height) * self.half_height
         direction = self.forward + across * self.right + along * self.up
@@ -39,7 +39,7 @@ class Camera:
 
 
 def camera_for(lengths: np.ndarray, width: int, height: int) -> Camera:
-    """The camera from whose place a container of `lengths` (3,) just fills a picture of so many pixels."""
+    """The camera for which a container of `lengths` (3,) just fills a picture of so many pixels."""
     azimuth, elevation = np.radians(AZIMUTH), np.radians(ELEVATION)
     outward = np.array(
         [np.cos(azimuth) * np.cos(elevation), np.sin(azimuth) * np.cos(elevation), np.sin(elevation)]

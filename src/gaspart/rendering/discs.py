@@ -1,4 +1,4 @@
-"""Discs, walls and paths in the plane, drawn by the part of each pixel that they cover."""
+"""Discs, walls and paths in the plane, drawn by the fraction of each pixel that they cover."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ INK = (0.16, 0.16, 0.16)
 
 
 class Canvas:
-    """A white picture of `size` (W, H) pixels, in the middle of which lies a container of `lengths` (2,)."""
+    """A white picture of `size` (W, H) pixels, with a container of `lengths` (2,) in the middle."""
 
     def __init__(self, lengths: np.ndarray, size: tuple[int, int]) -> None:
         width, height = size

@@ -41,11 +41,12 @@ def film(
 ) -> Path:
     """Write all frames of a trajectory (a path, or an open one) as a film, .mp4 or .gif; returns its path.
 
-    size, colour as in `render`; speeds have one scale throughout. For .mp4 the size is rounded down to even
-    numbers. trail: the number of a disc whose way is drawn (it ends anew where a periodic face is crossed).
-    A film at `path` is replaced only with `overwrite`, any other file never.
+    size, colour as in `render`; all frames have one scale of speeds. For .mp4 the size is rounded down to
+    even numbers. trail: the index of a disc whose path is drawn (interrupted where it crosses a periodic
+    face). A film at `path` is replaced only with `overwrite`, any other file never.
 
-    Raises SceneError for another suffix, a file that cannot be read or written, and what `render` refuses.
+    Raises SceneError for another suffix, a file that cannot be read or written, and for arguments that
+    `render` refuses.
     """
     path = output_path(path)
     if path.suffix not in KINDS:
@@ -74,7 +75,7 @@ def _opened(trajectory: str | Path | xr.Dataset) -> AbstractContextManager[xr.Da
 def _pictures(
     trajectory: xr.Dataset, size: tuple[int, int], colour: str | np.ndarray, trail: int | None
 ) -> Iterator[np.ndarray]:
-    """The pictures, one after the other; all is checked before the first."""
+    """The pictures in order; all arguments are checked before the first."""
     frames = trajectory.sizes["frame"]
     if frames == 0:
         raise SceneError("frame", 0, "the trajectory has no frame yet")
@@ -95,22 +96,22 @@ def _shown(
     colour: str | np.ndarray,
     trail: int | None,
 ) -> Iterator[np.ndarray]:
-    """The pictures, one after the other."""
+    """The pictures in order."""
     fastest = FASTEST * max(particles_of(trajectory, n).root_mean_square_speed for n in range(frames))
-    way = []
+    path = []
     for n in range(frames):
         particles = particles_of(trajectory, n)
         if trail is not None:
-            way.append(particles.positions[trail])
-        lines = _pieces(way, particles.lengths)
+            path.append(particles.positions[trail])
+        lines = _pieces(path, particles.lengths)
         yield picture(particles, size, colours_of(particles, colour, fastest), lines)
 
 
-def _pieces(way: list[np.ndarray], lengths: np.ndarray) -> list[np.ndarray]:
-    """A way as lines (M, 2), cut where it leaves the container to come in on the other side."""
-    if len(way) < 2:
+def _pieces(path: list[np.ndarray], lengths: np.ndarray) -> list[np.ndarray]:
+    """A path as lines (M, 2), cut where it crosses a periodic face."""
+    if len(path) < 2:
         return []
-    points = np.array(way)
+    points = np.array(path)
     jumps = (np.abs(np.diff(points, axis=0)) > 0.5 * lengths).any(axis=1)
     return [part for part in np.split(points, np.flatnonzero(jumps) + 1) if len(part) > 1]
 
@@ -127,14 +128,14 @@ def _mp4(scratch: Path, shown: Iterator[np.ndarray], size: tuple[int, int], rate
     from imageio_ffmpeg import write_frames
 
     options = ["-f", "mp4", "-fflags", "+bitexact", "-flags:v", "+bitexact"]  # no date, no program in it
-    quiet = {"ffmpeg_log_level": "quiet"}  # the one line of an error is ours
+    quiet = {"ffmpeg_log_level": "quiet"}  # gaspart prints the one line of an error
     writer = write_frames(str(scratch), size, fps=rate, macro_block_size=2, output_params=options, **quiet)
     try:
         writer.send(None)
         for image in shown:
             writer.send(np.ascontiguousarray(image))
     finally:
-        writer.close()  # returns when ffmpeg has ended, which does not report how
+        writer.close()  # returns when ffmpeg has ended, without its exit code
     if not _is_complete_mp4(scratch):
         raise OSError(errno.EIO, "its writer has failed")
 

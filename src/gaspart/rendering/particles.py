@@ -1,4 +1,4 @@
-"""What a picture shows: particles at one time, from a state or a frame of a trajectory, and their colours."""
+"""The particles in a picture, from a state or a frame of a trajectory, and their colours."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class DrawnParticles:
 def particles_of(source: State | xr.Dataset, frame: int = -1) -> DrawnParticles:
     """The particles of a `State`, or of a frame (counted from the end if negative) of an open trajectory.
 
-    Raises SceneError for a frame that is not there. A state knows of no interior walls.
+    Raises SceneError for a missing frame. A state has no interior walls.
     """
     if isinstance(source, State):
         speeds = np.sqrt((source.velocities**2).sum(axis=1))
@@ -93,6 +93,6 @@ def colours_of(
     given = np.asarray(colour, dtype=float)
     if given.shape != (len(particles.radii), 3):
         raise SceneError(
-            "colour", f"an array of shape {given.shape}", "must have three columns, a row a body"
+            "colour", f"an array of shape {given.shape}", "must have three columns, and a row per particle"
         )
     return given

@@ -32,12 +32,12 @@ def render(
 ) -> np.ndarray:
     """A picture of a `State`, or of a frame of an open trajectory (the last one): uint8, (H, W, 3).
 
-    Spheres are seen in perspective, with light and shadow, over the container's floor (z = 0); discs from
+    Spheres are drawn in perspective, with light and shadow, over the container's floor (z = 0); discs from
     above, with all walls. size: (W, H) pixels. colour: "speed", from dark at rest to bright at the speed
     `fastest` (twice the root-mean-square one) and above; "species"; or an array (N, 3) of red, green and
     blue from 0 to 1. The same particles give the same pixels.
 
-    Raises SceneError for a frame that is not there, an impossible size or an unknown colouring.
+    Raises SceneError for a missing frame, an impossible size or an unknown colouring.
     """
     particles = particles_of(source, frame)
     return picture(particles, checked_size(size), colours_of(particles, colour, fastest))

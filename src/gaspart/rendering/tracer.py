@@ -1,8 +1,8 @@
 """A small ray tracer for spheres on the floor of a container: one lamp, its shadows, and ambient light.
 
 Rays find spheres through a grid of cells. Ambient light is dimmed by each near sphere by the part of the sky
-that it takes, in closed form, so that no ray is drawn at random and no grain is seen. One ray goes through
-the middle of each pixel; where neighbours show different things, SUBRAYS x SUBRAYS take its place.
+that it covers, in closed form, without random rays and without noise. One ray goes through
+the middle of each pixel; where neighbours show different objects, SUBRAYS x SUBRAYS take its place.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def trace(
     camera: Camera,
     size: tuple[int, int],
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The picture (H, W, 3), from 0 to 1, and what stands in the middle of each pixel (H, W).
+    """The picture (H, W, 3), from 0 to 1, and the kind of object in the middle of each pixel (H, W).
 
     positions (N, 3), radii (N,), colours (N, 3); lengths (3,) of the container, whose lower face is the
     floor; size: (W, H) pixels.

@@ -126,7 +126,7 @@ def make_boxes(
     shift = np.zeros((3, most, 3), dtype=np.int64)
     for axis in range(3):
         n = int(per_side[axis])
-        for step in (0, 1, -1)[: 3 if images else n]:
+        for step in (0, 1, -1)[: n if periodic[axis] and not images else 3]:
             images_crossed, target = np.divmod(np.arange(n) + step, n)
             there = (images_crossed == 0) | periodic[axis]
             neighbour[axis, :n, step + 1][there] = target[there] * strides[axis]

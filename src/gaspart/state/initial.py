@@ -94,10 +94,10 @@ def _velocities(scene: Scene, rng: np.random.Generator) -> np.ndarray:
 def lattice(scene: Scene, rng: np.random.Generator, slab: bool = False) -> np.ndarray:
     """(N, d) positions on a triangular (2D) or face-centred cubic (3D) lattice stretched to the container.
 
-    If there are more sites than particles, the sites left empty are random, as is the order of the
-    species in a mixture. With `slab` they are all in the upper half of the longest side, which melts where a
-    complete crystal would not: the start of a crystal that coexists with its fluid. Raises SceneError if the lattice would have
-    to be denser than the particles allow, or if the particles are too few for the slab.
+    If there are more sites than particles, the sites left empty are random, as is the order of the species in
+    a mixture. With `slab` they are all in the upper half of the longest side, which melts where a complete
+    crystal would not: the start of a crystal that coexists with its fluid. Raises SceneError if the lattice
+    would have to be denser than the particles allow, or if the particles are too few for the slab.
     """
     margin = np.array(scene.reach(scene.largest_radius)[0])
     walled = ~np.array(scene.container.periodic)

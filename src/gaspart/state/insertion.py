@@ -81,14 +81,14 @@ def random_insertion(
         lower, upper = scene.reach(kind.radius)
         failures = 0
         numbers = np.empty((max(256, min(1_000_000, 2 * kind.count)), dimension))
-        is_oversized = kind.radius > largest
+        alone = kind.radius > largest
         oversized = np.flatnonzero(radii[:placed] > largest)
         while placed < stop:
             draws = rng.random(out=numbers[: max(256, min(1_000_000, 2 * (stop - placed)))])
-            if is_oversized:  # too large for the boxes: tested against all placed particles, one at a time
+            if alone:  # too large for the boxes: tested against all placed particles, one at a time
                 oversized = np.arange(placed)
             placed, failures, _ = place(
-                draws, standing, space, block, placed, placed + 1 if is_oversized else stop, lower, upper, failures,
+                draws, standing, space, block, placed, placed + 1 if alone else stop, lower, upper, failures,
                 patience, failed, walls, oversized,
             )  # fmt: skip
             if failures >= patience:
@@ -96,8 +96,8 @@ def random_insertion(
                 raise SceneError(
                     f"species[{n}].count",
                     kind.count,
-                    f"does not fit by random insertion: full after {placed} particles, packing fraction about "
-                    f"{eta:.4f}, {patience} failed attempts; use arrangement: lattice",
+                    f"does not fit by random insertion: full after {placed} particles, packing fraction "
+                    f"about {eta:.4f}, {patience} failed attempts; use arrangement: lattice",
                 )
     back = np.argsort(np.concatenate(order), kind="stable") if scene.count else np.empty(0, dtype=int)
     return positions[back], failed[back]

@@ -1,8 +1,8 @@
 """Theory of hard discs and spheres: formulas, provenance, range of validity.
 
-Independent of the engines; imports only numpy. Every docstring states the source of its formula: exact (closed
-form), literature (read in the source), recalled (from memory of the source), computed (this project's own
-numerics). Arguments that are out of range raise SceneError, which is a ValueError.
+Independent of the engines; imports only numpy. Every docstring states the source of its formula: exact
+(closed form), literature (read in the source), recalled (from memory of the source), computed (this project's
+own numerics). Arguments that are out of range raise SceneError, which is a ValueError.
 """
 
 from gaspart.scene.geometry import CLOSE_PACKING

@@ -1,7 +1,7 @@
 """A large particle in a dilute gas: friction, diffusion, and the Langevin equation's mean-squared
 displacement.
 
-k_B = 1. Times, lengths and masses in any units that agree.
+k_B = 1. Times, lengths and masses in any consistent units.
 """
 
 import math

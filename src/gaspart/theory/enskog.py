@@ -46,8 +46,8 @@ def collision_rate(
     """Collisions of one particle per time, nu = S rho sigma^(d-1) chi sqrt(k_B T / (pi m)).
 
     S = 2 pi (2D), 4 pi (3D), so 2 rho sigma chi sqrt(pi k_B T / m) and 4 rho sigma^2 chi sqrt(pi k_B T / m).
-    Exact in equilibrium (velocities independent of positions), with the accuracy of chi. In a run: 2 N_coll / (N t).
-    Unit 1 / time.
+    Exact in equilibrium (velocities independent of positions), with the accuracy of chi. In a run: 2 N_coll /
+    (N t). Unit 1 / time.
     """
     density, contact = _density_and_contact(packing_fraction, dimension, diameter)
     speed = math.sqrt(temperature / (math.pi * mass))

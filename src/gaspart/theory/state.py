@@ -54,10 +54,10 @@ def compressibility_uncertainty(packing_fraction: Numbers, dimension: int) -> Va
     """Standard uncertainty of `compressibility_factor` (computed estimate; same shape).
 
     2D, in quadrature: the coefficients' uncertainties; the tail's slope; the difference to Liu's independent
-    equation, but no more than the complete tail, because at low density the series is the better of the two; and
-    what both are found to lack near freezing, 0.4 % at eta = 0.65 and 10 % at 0.70. 3D: the sharper of two
-    bounds: the data's own error (2e-5 of Z), or the difference to the virial series to B10 plus its tail and
-    the coefficients' uncertainties (below 1e-6 for eta < 0.1).
+    equation, but no more than the complete tail, because at low density the series is the better of the two;
+    and what both are found to lack near freezing, 0.4 % at eta = 0.65 and 10 % at 0.70. 3D: the sharper of
+    two bounds: the data's own error (2e-5 of Z), or the difference to the virial series to B10 plus its tail
+    and the coefficients' uncertainties (below 1e-6 for eta < 0.1).
     """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     coefficients = partial_sum_uncertainty(eta, HIGHEST_ORDER, dimension)

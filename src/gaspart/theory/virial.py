@@ -84,8 +84,8 @@ def partial_sum_uncertainty(packing_fraction: Numbers, order: int, dimension: in
 def linear_tail(packing_fraction: Numbers, dimension: int) -> Values:
     """Terms beyond B10 if b_n continues linearly with the last known difference (computed; an extrapolation).
 
-    b_(10+k) = b_10 + k (b_10 - b_9), so the tail is eta^10 [b_10 / (1-eta) + (b_10 - b_9) / (1-eta)^2].
-    In 2D the differences converge (0.989, 0.967, 0.953, 0.944), which makes this a good estimate up to eta = 0.65;
+    b_(10+k) = b_10 + k (b_10 - b_9), so the tail is eta^10 [b_10 / (1-eta) + (b_10 - b_9) / (1-eta)^2]. In 2D
+    the differences converge (0.989, 0.967, 0.953, 0.944), which makes this a good estimate up to eta = 0.65;
     in 3D they still grow by about 2 each time, which makes it a lower bound.
     """
     coefficients, _ = virial_coefficients(dimension)

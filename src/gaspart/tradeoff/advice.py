@@ -63,8 +63,9 @@ class Setting:
 class Advice:
     """The setting to take, the best one of each other kind, and what follows for the run.
 
-    collisions_per_body: measured, in each replica; duration: the same in the scene's time; finite_size: relative difference from the infinite gas; bulk_count:
-    particles for which that is a quarter of the accuracy. Both NaN where there is no theory.
+    collisions_per_body: measured, in each replica; duration: the same in the scene's time; finite_size:
+    relative difference from the infinite gas; bulk_count: particles for which that is a quarter of the
+    accuracy. Both NaN where there is no theory.
     """
 
     gas: Gas
@@ -135,7 +136,8 @@ def advise(
     budget: float | None = None,
     speed_of: SpeedOf = speed.factor,
 ) -> Advice:
-    """The cheapest setting for a relative `accuracy` (95 % half-width) of an observable: Z, collision_rate or D.
+    """The cheapest setting for a relative `accuracy` (95 % half-width) of an observable: Z, collision_rate or
+    D.
 
     budget: processor time in seconds; if it does not suffice, the most accurate setting within it is advised.
     speed_of: this machine's time over the table's (see `gaspart.tradeoff.speed`).

@@ -104,10 +104,10 @@ def run(
 ) -> Path:
     """Run a scene and write its trajectory to `path`; returns `path`.
 
-    A frame at time 0 and at every sample_interval to the duration, which must be an integer multiple of it; with
-    `displacements` also each particle's float64 way since time 0, unwrapped; with rough contacts also the
-    spins; with `follow` only so many particles, from the first on (counters are still those of all). A run of
-    the same recipe and program that was cut short is continued, and a complete one is not changed.
+    A frame at time 0 and at every sample_interval to the duration, which must be an integer multiple of it;
+    with `displacements` also each particle's float64 way since time 0, unwrapped; with rough contacts also
+    the spins; with `follow` only so many particles, from the first on (counters are still those of all). A
+    run of the same recipe and program that was cut short is continued, and a complete one is not changed.
     Another trajectory at `path`, or unfinished next to it, is replaced only with `overwrite`; a file of
     another kind never.
 
