@@ -10,7 +10,6 @@ from experiments.scaling.data import points, settings
 from gaspart.experiments.scaling import figure as scaling
 from gaspart.experiments.scaling import measure as measured
 
-
 IDEAL = ("ideal", "ideal_low", "ideal_high")
 
 
