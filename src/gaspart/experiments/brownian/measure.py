@@ -45,7 +45,7 @@ def setting_of(point: grid.Point) -> Setting:
     """The setting of a point's scene; SceneError for one that has not one particle and one species."""
     scene, where = grid.scene(point), f"experiments.{point.experiment}.scene"
     if len(scene.bodies) != 1 or len(scene.species) != 1:
-        raise SceneError(where, point.settings.get("scene"), "must have one body and one species")
+        raise SceneError(where, point.settings.get("scene"), "must have one entry of bodies and one species")
     body, gas = scene.bodies[0], scene.species[0]
     temperature = gas.temperature
     if temperature is None:

@@ -68,7 +68,7 @@ def _scene(point: grid.Point) -> xr.Dataset:
 
 
 def overlapping(places: np.ndarray, radii: np.ndarray, lengths: np.ndarray, periodic: Sequence[bool]) -> int:
-    """How many pairs of bodies (N, d) overlap by more than rounding.
+    """How many pairs of particles (N, d) overlap by more than rounding.
 
     The few particles that are larger than twice the median radius are compared with all others.
     """

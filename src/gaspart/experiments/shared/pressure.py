@@ -83,7 +83,7 @@ def read_run(point: grid.Point, path: str) -> Run:
     with open_trajectory(path) as trajectory:
         if trajectory.sizes["frame"] != first + schedule.samples + 1 or trajectory.sizes["atom"] != count:
             raise ValueError(
-                f"{path}: {dict(trajectory.sizes)} are not the frames and bodies of {point.path}"
+                f"{path}: {dict(trajectory.sizes)} are not the frames and particles of {point.path}"
             )
         drift = trajectory["velocities"][first].values.astype(float).mean(axis=0)
         energy = float(trajectory["kinetic_energy"][first:].mean())

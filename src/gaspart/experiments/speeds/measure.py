@@ -291,7 +291,7 @@ def _given_temperature(point: grid.Point) -> float:
     settings = point.settings
     if "speed" not in settings:
         raise SceneError(
-            f"experiments.{point.experiment}.speed", None, "is required: all bodies start with it"
+            f"experiments.{point.experiment}.speed", None, "is required: all particles start with it"
         )
     return settings.get("mass", 1.0) * settings["speed"] ** 2 / settings["dimension"]
 
