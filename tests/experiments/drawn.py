@@ -103,7 +103,7 @@ def lines(axis):
         if isinstance(one, ErrorbarContainer)
         for part in (one.lines[0], *one.lines[1])
     }
-    return [one for one in axis.lines if one not in parts and one.get_transform() == axis.transData]
+    return [one for one in axis.lines if one not in parts and one.get_transform() is axis.transData]
 
 
 def line(axis, label):

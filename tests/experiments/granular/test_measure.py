@@ -58,7 +58,7 @@ def test_rough_discs_share_as_theory_says(tmp_path):
     assert total == pytest.approx(np.full(11, total[0]), rel=2e-3)
 
 
-def test_an_inelastic_gas_cools_as_haff_says_and_crowding_is_counted(tmp_path):
+def test_an_inelastic_gas_cools_as_haff_says_and_the_number_variance_is_counted(tmp_path):
     points = [
         made(tmp_path, "haff", gas(restitution=gp.Restitution(0.8)), duration=200.0, samples=16),
         made(
@@ -77,7 +77,7 @@ def test_an_inelastic_gas_cools_as_haff_says_and_crowding_is_counted(tmp_path):
     assert np.all((ds["variance"].values > 0.1) & (ds["variance"].values < 1.0))
 
 
-def test_crowding_of_equal_cells_is_zero_and_of_one_cell_is_largest(monkeypatch):
+def test_number_variance_of_equal_cells_is_zero_and_of_one_cell_is_largest(monkeypatch):
     import xarray as xr
 
     scene = gp.Scene(gp.Container((4.0, 4.0), "periodic"), [gp.Species(8, 0.1)])
@@ -85,4 +85,4 @@ def test_crowding_of_equal_cells_is_zero_and_of_one_cell_is_largest(monkeypatch)
     frames = np.stack([2.0 * even, np.full((8, 2), 4.0)])  # the last on the upper boundary
     positions = xr.Dataset({"coordinates": (("frame", "atom", "spatial"), frames)})
     monkeypatch.setattr(granular, "open_trajectory", lambda path: positions)
-    assert granular._crowding("made up", scene, 2) == pytest.approx([0.0, 6.0])
+    assert granular._number_variance("made up", scene, 2) == pytest.approx([0.0, 6.0])

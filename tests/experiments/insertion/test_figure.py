@@ -1,11 +1,11 @@
-import numpy as np
 import pytest
+from experiments.drawn import Points, draw, follows, lines, obeys, shows, varied
 
+from gaspart import theory
 from gaspart.experiments.insertion import figure as insertion
 from gaspart.experiments.insertion.measure import fill_failures
 from gaspart.experiments.jobs.fill import fill
 from gaspart.planning import grid
-from gaspart.rendering import style
 
 
 @pytest.fixture
@@ -27,12 +27,29 @@ def dataset(tmp_path):
     )
 
 
-def test_it_draws_saturation_and_low_density(dataset, tmp_path):
-    with style.applied():
-        figure = insertion.fill_failures(dataset)
-        style.save(figure, tmp_path / "figure.svg")
-    assert len(figure.axes) == 3
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == [
-        insertion.SERIES[3, "centres_to_walls"], insertion.SERIES[2, "periodic"]
-    ]  # fmt: skip
-    assert np.isfinite(dataset["saturation"].values[:2]).all()
+def test_failures_and_the_approach_to_saturation_are_drawn(dataset, tmp_path):
+    kept = ("side_over_diameter", "packing_fraction")
+    ds = varied(dataset, *kept)
+    figure = draw(insertion.fill_failures, ds, tmp_path)
+    failures, dilute, filled = figure.axes
+    source, discs, thin = (ds.isel(container=k) for k in range(3))
+    names = [insertion.SERIES[key] for key in ((3, "centres_to_walls"), (2, "periodic"), (3, "periodic"))]
+
+    def series(one, label):
+        positive = one["failures_per_body"].where(one["failures_per_body"] > 0)
+        return Points(label, one["packing_fraction"], positive, one["failures_per_body_error"])
+
+    shows(failures, "packing fraction", "failed", series(source, names[0]), series(discs, names[1]))
+    shows(dilute, "packing fraction", "failures", series(thin, names[2]))
+    for one, dimension in zip(lines(dilute), (2, 3), strict=True):
+        obeys(one, lambda eta, d=dimension: theory.failures_per_body(eta, d))
+    drawn = lines(filled)
+    for n, (one, dimension) in enumerate(((source, 3), (discs, 2))):
+        points, fit, limit = drawn[3 * n : 3 * n + 3]
+        follows(points, one["time"] ** (-1.0 / dimension), one["filled"])
+        slope, end = (float(one[name][0]) for name in ("saturation_slope", "saturation"))
+        obeys(fit, lambda x, a=end, b=slope: a + b * x)
+        rule, side = one["rule"].item(), float(one["side_over_diameter"])
+        follows(limit, [0.0], [theory.insertion_saturation(dimension, side, rule)])
+    assert "attempts" in filled.get_xlabel() and "packing fraction" in filled.get_ylabel()
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == names[:2]

@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 
 from gaspart.engines import EventDriven, TimeStepped
-from gaspart.experiments.jobs.echo import NUDGE, echo
-from gaspart.scene.container import Container
-from gaspart.scene.scene import Scene
-from gaspart.scene.species import Species
+from gaspart.experiments.jobs.echo import DISPLACEMENT, echo
+from gaspart.scene.scene import Container, Scene, Species
 
 GAS = Scene(Container((8.0,) * 3), species=(Species(40, 0.5, temperature=1.0),))
 
@@ -19,4 +17,4 @@ def test_a_short_way_leads_back_to_the_start_and_a_long_one_does_not(engine):
     short = echo(GAS, engine, [(1,), (2,)], 1.0, 0.5, 2)
     assert (short.echo < 1e-11).all()
     assert (np.diff(short.collisions, axis=1) > 0.0).all()
-    assert (short.divergence > 0.5 * NUDGE).all() and (short.divergence < 1e-6).all()
+    assert (short.divergence > 0.5 * DISPLACEMENT).all() and (short.divergence < 1e-6).all()

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from experiments.drawn import Points, draw, follows, line, obeys, shows, varied
+from experiments.drawn import Points, draw, follows, line, lines, obeys, shows, varied
 from experiments.virial.data import equation_of_state
 
 from gaspart import theory
@@ -25,9 +25,10 @@ def test_z_its_residuals_and_the_coefficients(dimension, tmp_path):
     ratio = Points(None, eta, 100.0 * (ds["Z"] / ds["reference"] - 1.0), error)
     shows(residuals, "packing fraction", "ref", ratio)
     name = "Henderson" if dimension == 2 else "1986"
-    x = line(residuals, name).get_xdata()
+    curve = lines(residuals)[-1]
+    x = curve.get_xdata()
     reference = theory.compressibility_factor(x, dimension)
-    follows(line(residuals, name), x, 100.0 * (LABELS[dimension][name](x) / reference - 1.0))
+    follows(curve, x, 100.0 * (LABELS[dimension][name](x) / reference - 1.0))
     fitted = []
     for k, (order, scale) in enumerate({2: 1e-3, 3: 1e-2, 4: 1e-1}.items()):
         at = ds.sel(order=order)

@@ -21,12 +21,13 @@ def test_pressures_against_temperature_and_density_and_their_deviation(tmp_path)
     temperatures, densities, residuals = draw(wall_pressure, ds, tmp_path).axes
     series = ds.isel(point=[2, 8, 9]).sortby("temperature")
     t = series["temperature"]
+    label = f"$\\eta={series['packing_fraction'][0].item():.2g}$"
     shows(
         temperatures, "temperature", "pressure",
-        Points(r"$\eta", t, series["pressure"] * t, series["pressure_error"] * t),
+        Points(label, t, series["pressure"] * t, series["pressure_error"] * t),
     )  # fmt: skip
     obeys(lines(temperatures)[0], lambda x: x * float(series["expected"][0]))
-    obeys(lines(temperatures)[1], lambda x: x * float(series["density"][0]))
+    obeys(lines(temperatures)[1], lambda x: x * float(series["density"][0].round(9)))
     expected = []
     for dimension, name in NAMES.items():
         own = ds.isel(point=(ds["dimension"] == dimension).values)

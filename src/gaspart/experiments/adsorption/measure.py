@@ -1,7 +1,7 @@
-"""Bodies held by a wall: how many, how densely, and how fast they leave it.
+"""Adsorption on a wall: the amount, the coverage, and the speeds of desorption.
 
 The wall is the face x_low, a well or a sticky one; opposite is a wall at the temperature. Runs are cut into
-stretches, `blocks` of each replica, which are taken as independent; errors are the jackknife's over them.
+`blocks` of each replica, which are assumed independent; errors are the jackknife's over them.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ _REACH = 4.0  # of the histogram of speeds, in units of sqrt(kT/m)
 
 @dataclass(frozen=True)
 class Holder:
-    """A wall that holds bodies, and the gas before it; lengths in the scene's units.
+    """An adsorbing wall, and the gas next to it; lengths in the scene's units.
 
-    kind: "ideal" (a gas that hardly fills the well), "layer" (a well narrower than a body) or "sticky";
-    depth and width of the well, 0 if there is none; momentum below which bodies stick, or 0; outside: the
+    kind: "ideal" (a gas dilute also in the well), "layer" (a well narrower than a particle) or "sticky";
+    depth and width of the well, 0 if there is none; momentum below which particles stick, or 0; outside: the
     length along x that centres of the gas can reach.
     """
 
@@ -68,7 +68,8 @@ class Holder:
         )
 
     def held(self, height: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-        """Whether bodies are held: in the well, or without a velocity along x, as only stuck bodies are.
+        """Whether particles are held: in the well, or without a velocity along x, as only stuck particles
+        are.
 
         height: of centres above the lowest place, of any shape, and velocity along x of the same.
         """
@@ -83,8 +84,8 @@ class Holder:
         return count / ((self.outside - 4.0 * self.radius) * self.area)
 
     def activity(self, density: float | np.ndarray) -> float | np.ndarray:
-        """The pressure of the gas in k_B T, in terms of what it would hold if bodies in the layer did not
-        meet: beta P w e^{depth/kT} pi sigma^2 / 4, a packing fraction (0 without a well)."""
+        """The pressure of the gas in k_B T, as the coverage of a layer whose particles do not
+        interact: beta P w e^{depth/kT} pi sigma^2 / 4, a packing fraction (0 without a well)."""
         eta = density * body_volume(3, 2.0 * self.radius)
         pressure = density * compressibility_factor(eta, 3)
         return pressure * self._hold
@@ -94,8 +95,8 @@ class Holder:
         return self.width * np.exp(self.depth / self.temperature) * body_volume(2, 2.0 * self.radius)
 
     def uncertainty(self, density: float) -> float:
-        """Relative, of the coverage: the layer and the gas before it feel each other, which puts the gas'
-        activity in the place of its pressure, wholly at most."""
+        """Relative, of the coverage: the layer interacts with the gas next to it, so that the gas'
+        activity replaces its pressure, at most completely."""
         eta = density * body_volume(3, 2.0 * self.radius)
         both = np.array([compressibility_factor(eta, 3), np.exp(excess_chemical_potential(eta, 3))])
         low, high = packing_fraction_at(density * both * self._hold, 2)
@@ -103,15 +104,15 @@ class Holder:
 
 
 def adsorption(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """Walls that hold bodies, point by point.
+    """Adsorption on a wall, by point.
 
-    settings: `blocks` of each replica; `near`, the distance from the edge of the well, or from where bodies
-    stick, within which the velocities of leaving bodies are read; `bins` of their speeds.
+    settings: `blocks` of each replica; `near`, the distance from the edge of the well, or from where
+    particles stick, within which the velocities of leaving particles are read; `bins` of their speeds.
 
     Dimensions point, bin. Of every point: kind, temperature, depth, width, momentum, mass and outside, as in
-    `Holder`; with _error: held, the mean number of held bodies; ratio, of it to the others, and log_ratio;
-    length, what stands in the place of the thermal wavelength; coverage, the share of the wall's area that
-    they cover; gas_density far from both walls; flux (bin), the density of the normal speeds of bodies that
+    `Holder`; with _error: held, the mean number of held particles; ratio, of it to the others, and log_ratio;
+    length, which takes the place of the thermal wavelength; coverage, the share of the wall's area that they
+    cover; gas_density far from both walls; flux (bin), the density of the normal speeds of particles that
     leave, in units of sqrt(kT/m), and slow_share, that of those below `slow_speed`, the sticky wall's limit
     (1 for wells; NaN both for layers). Of layers: activity, beta P w e^(depth/kT) pi sigma^2/4, and filling,
     the coverage over that of hard discs in equilibrium with it, whose uncertainty is layer_uncertainty.
@@ -175,7 +176,7 @@ def _amounts(holder: Holder, held: np.ndarray, free: np.ndarray, far: np.ndarray
 
 
 def _desorption(slowly: np.ndarray, flux: np.ndarray, width: float) -> dict[str, tuple]:
-    """(value, error) of the density of the normal speeds in bins of a width, and of the share of slow ones."""
+    """(value, error) of the density of normal speeds in bins of a width, and of the share of slow ones."""
     return {
         "flux": jackknife(lambda share: share / (share.sum() * width), flux),
         "slow_share": jackknife(lambda some, share: some / share.sum(), slowly, flux),
@@ -196,9 +197,9 @@ def _isotherm(holder: Holder, held: np.ndarray, far: np.ndarray) -> dict[str, tu
 
 
 def counts_of(holder: Holder, height: np.ndarray, velocity: np.ndarray, settings: dict, slow: float) -> tuple:
-    """Means over the frames of one stretch: held bodies, the others, those of the gas that are a diameter and
-    more from both walls (and from the well); and of those that leave near the wall, the flux below the speed
-    `slow`, and (bins,) by speed.
+    """Means over the frames of one block: held particles, the others, those of the gas that are a diameter
+    and more from both walls (and from the well); and of those that leave near the wall, the flux below the
+    speed `slow`, and (bins,) by speed.
 
     height (T, N): of centres above the lowest place; velocity (T, N) along x.
     """
@@ -207,7 +208,7 @@ def counts_of(holder: Holder, height: np.ndarray, velocity: np.ndarray, settings
     far = (above > 2.0 * holder.radius) & (above < holder.outside - 2.0 * holder.radius)
     leaving = ~held & (above < settings["near"]) & (velocity > 0.0)
     speed = velocity[leaving] / np.sqrt(holder.temperature / holder.mass)
-    # a body is near for a time that goes as 1 / speed
+    # a particle is near for a time proportional to 1 / speed
     flux = np.histogram(speed, settings["bins"], (0.0, _REACH), weights=speed)[0]
     frames = len(height)
     parts = held.sum(), (~held).sum(), far.sum(), speed[speed < slow].sum(), flux
@@ -217,12 +218,12 @@ def counts_of(holder: Holder, height: np.ndarray, velocity: np.ndarray, settings
 def _parts(
     holder: Holder, point: grid.Point, path: str, blocks: int
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """(height, velocity) of each stretch of a run, without its equilibration."""
+    """(height, velocity) of each block of a run, without its equilibration."""
     first = grid.schedule(point).equilibration_frames + 1
     with open_trajectory(path) as trajectory:
         height = trajectory["coordinates"][first:, :, 0].values.astype(float) - holder.radius
         velocity = trajectory["velocities"][first:, :, 0].values.astype(float)
     if len(height) < blocks:
         raise ValueError(f"blocks: {blocks} (more than the {len(height)} frames of {path})")
-    stretches = (np.array_split(series, blocks) for series in (height, velocity))
-    return zip(*stretches, strict=True)
+    parts = (np.array_split(series, blocks) for series in (height, velocity))
+    return zip(*parts, strict=True)

@@ -1,7 +1,7 @@
-"""A large body among small ones: its paths, its mean-squared displacement, its friction.
+"""A large particle among small ones: its paths, its mean-squared displacement, its friction.
 
-The scene's first body is the one that is followed; its gas is the first species. Theory's time is that of the
-friction: 1 / `friction`, from the gas that is really there, outside the large body.
+The scene's first particle is the tracked one; its gas is the first species. Theory's time is that of the
+friction: 1 / `friction`, from the actual gas density, outside the large particle.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from gaspart.trajectory.run import open_trajectory
 LONGEST = 8.0
 """Friction times up to which curves are taken."""
 FRICTION_AT, DIFFUSION_AT = 0.2, 5.0
-"""Friction times at which the velocity autocorrelation tells the friction, and the msd the diffusion."""
+"""Friction times at which the velocity autocorrelation gives the friction, and the msd the diffusion."""
 
 
 @dataclass(frozen=True)
 class Setting:
-    """What theory says of a point. share: the large body's part of all mass where momentum is conserved (all
-    axes periodic), else 0."""
+    """Theory's predictions for a point. share: the large particle's part of all mass where momentum is
+    conserved (all axes periodic), else 0."""
 
     mass: float
     gas_mass: float
@@ -42,10 +42,10 @@ class Setting:
 
 
 def setting_of(point: grid.Point) -> Setting:
-    """The setting of a point's scene; SceneError for one that has not one body and one species."""
+    """The setting of a point's scene; SceneError for one that has not one particle and one species."""
     scene, where = grid.scene(point), f"experiments.{point.experiment}.scene"
     if len(scene.bodies) != 1 or len(scene.species) != 1:
-        raise SceneError(where, point.settings.get("scene"), "must have one body and one species")
+        raise SceneError(where, point.settings.get("scene"), "must have one entry of bodies and one species")
     body, gas = scene.bodies[0], scene.species[0]
     temperature = gas.temperature
     if temperature is None:
@@ -69,7 +69,7 @@ def setting_of(point: grid.Point) -> Setting:
 
 
 def _followed(point: grid.Point) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Of each replica: times (T,), displacements and velocities of the first body (T, 1, 3)."""
+    """Of each replica: times (T,), displacements and velocities of the first particle (T, 1, 3)."""
     if not point.settings.get("displacements", False):
         raise SceneError(f"experiments.{point.experiment}.displacements", False, "must be true")
     for path in point.replica_paths:
@@ -115,9 +115,10 @@ def brownian_paths(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 
 def brownian_msd(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """Mean-squared displacement and velocity autocorrelation of the large body, and what follows from them.
+    """Mean-squared displacement and velocity autocorrelation of the large particle, and the quantities
+    derived from them.
 
-    In a periodic container the gas as a whole drifts, and takes up the momentum that the body gives away:
+    In a periodic container the gas as a whole drifts, and absorbs the momentum that the particle loses:
     with `share` s and friction g the correlation is (k_B T / M)(1 - s)(exp(-g' t) + s), g' = g / (1 - s).
     The constant part is subtracted from correlation and msd; what follows is brought to an infinite gas:
     `equipartition` is M <V^2> / (3 k_B T (1 - s)), `measured_friction` (1 - s) times the decay rate until
@@ -173,7 +174,7 @@ def _statistics(point: grid.Point) -> dict:
 
 
 def _facts(point: grid.Point, setting: Setting) -> dict:
-    """What every row tells of its point."""
+    """The columns of every row."""
     return {"experiment": point.experiment, "replicas": point.replicas, **vars(setting)}
 
 

@@ -1,7 +1,7 @@
 """A large disc in a fluid of small ones under gravity: the force on it held fast, where it floats set free.
 
 The force on a fixed disc is what is missing in the fluid's balance of momentum, and so is exact over any
-time: floor - ceiling - weight - gain of momentum. The large disc is the scene's first body, and the small
+time: floor - ceiling - weight - gain of momentum. The large disc is the scene's first particle, and the small
 ones its one species. Stretches and errors are those of `gaspart.experiments.gravity.measure`.
 """
 
@@ -52,7 +52,7 @@ def buoyancy(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 
 def _far(place: Field, stretch: Stretch, settings: dict) -> np.ndarray:
-    """(B,) density of the small discs beside the large one, far off, in bins of height."""
+    """(B,) density of the small discs far from the large one, in bins of height."""
     across = np.abs(stretch.positions[..., 0] - stretch.positions[:, :1, 0])
     far = np.minimum(across, place.width - across) > settings["far"]
     counts, _ = np.histogram(stretch.heights[far], settings["bins"], (0.0, place.height))
@@ -76,7 +76,7 @@ def _fluid(
 
 
 def _fixed(point: grid.Point, settings: dict) -> dict:
-    """Force and effective radius of a disc held fast, and the fluid beside it."""
+    """Force and effective radius of a fixed disc, and the fluid at its height."""
     place, found = field(point), stretches(point, settings["blocks"])
     radius, height = _large(point, place)
     ratio = 2.0 * radius / place.diameter
@@ -90,7 +90,8 @@ def _fixed(point: grid.Point, settings: dict) -> dict:
     chord /= chord.sum()
     volume = body_volume(2, place.diameter)
 
-    # One smooth fluid for all stretches, scaled to each one's number: what is missing is counted in it.
+    # One smooth profile for all blocks, scaled to each one's number: missing discs are counted relative to
+    # it.
     fluid = _fluid(place, density.mean(axis=0), temperatures.mean(), settings)
     across, up = _disc(settings["near"])
     undisturbed = float((fluid(height + up) * across).sum() / volume)

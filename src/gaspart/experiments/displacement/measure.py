@@ -1,6 +1,6 @@
 """Mean-squared displacement: from ballistic to diffusive, and the diffusion coefficient where there is one.
 
-Everything is in reduced units, in which the bodies' diameter, mass and temperature are 1. The temperature
+Everything is in reduced units, in which the particles' diameter, mass and temperature are 1. The temperature
 2 E' / (d (N - 1)) is each replica's own, E' the energy about the centre of mass, whose drift is taken out of
 displacements and velocities. One species. Errors are standard errors of the mean over replicas.
 """
@@ -21,15 +21,15 @@ from gaspart.planning import grid
 from gaspart.trajectory.run import open_trajectory
 
 SETTLE_COLLISIONS, SETTLE_SHEAR_TIMES = 12.0, 3.0
-"""D is the slope of the msd from this many collisions per body, or decay times of the container's slowest
+"""D is the slope of the msd from this many collisions per particle, or decay times of the container's slowest
 shear mode, whichever is later, to twice that time."""
 SHORT_INTERVAL = 0.5
-"""A run sampled at least this often (collisions per body) is there for short times: its velocity
+"""A run sampled at least this often (collisions per particle) is there for short times: its velocity
 autocorrelation is integrated (Simpson's rule, good to 1e-4 at this spacing), and no D is taken from it."""
 GREEN_KUBO_FROM, GREEN_KUBO_TO = 8.0, 16.0
-"""Collisions per body between which the integral is compared with the slope of the msd."""
+"""Collisions per particle between which the integral is compared with the slope of the msd."""
 LOGARITHM_FROM = 15.0
-"""Collisions per body after which discs' velocity autocorrelation has its long-time form."""
+"""Collisions per particle after which discs' velocity autocorrelation has its long-time form."""
 
 
 def replicas(point: grid.Point, longest: float) -> list[Curves]:
@@ -63,9 +63,9 @@ def replicas(point: grid.Point, longest: float) -> list[Curves]:
 def msd_spheres(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """Mean-squared displacement and diffusion coefficient of spheres; see `_spheres` for a point's numbers.
 
-    Dimensions point and lag (NaN beyond a point's own lags). `largest`: the long run with the most bodies at
-    its packing fraction. `in_series`: one of three or more sizes at one packing fraction; through these goes
-    the line size_intercept + size_slope / L, or with Yeh and Hummer's slope one from `size_limit`.
+    Dimensions point and lag (NaN beyond a point's own lags). `largest`: the long run with the most particles
+    at its packing fraction. `in_series`: one of three or more sizes at one packing fraction; through these
+    goes the line size_intercept + size_slope / L, or with Yeh and Hummer's slope one from `size_limit`.
     Raises SceneError for a run too short for its straight stretch.
     """
     dataset = _dataset([_spheres(point) for point in points], 3)
@@ -91,7 +91,7 @@ def msd_discs(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 
 def _state(point: grid.Point) -> dict:
-    """What theory says of a point's scene: collision rate, decay time of the slowest shear mode ..."""
+    """Theory's predictions for a point's scene: collision rate, decay time of the slowest shear mode ..."""
     dimension = point.settings["dimension"]
     count, radius, lengths = grid.extents(point)
     eta = count * theory.body_volume(dimension, 2.0 * radius) / math.prod(lengths)
@@ -112,7 +112,7 @@ def _state(point: grid.Point) -> dict:
 
 
 def _common(point: grid.Point, state: dict, curves: list[Curves]) -> dict:
-    """What every point has: its state, its sampling in collisions per body, its curves."""
+    """The columns of every point: its state, its sampling in collisions per particle, its curves."""
     time = np.mean([one.time for one in curves], axis=0)
     rows = {
         **state,
@@ -133,19 +133,19 @@ def _common(point: grid.Point, state: dict, curves: list[Curves]) -> dict:
 
 
 def _absent(*names: str, empty: float | np.ndarray = math.nan) -> dict:
-    """Entries, and those of their errors, for what a point does not tell."""
+    """Entries, and those of their errors, for quantities that a point does not measure."""
     return {key: empty for name in names for key in (name, f"{name}_error")}
 
 
 def _spheres(point: grid.Point) -> dict:
     """D, D of the infinite system, and the curves.
 
-    Of N bodies whose total momentum is zero, D is (N - 1) / N of that of N bodies without this condition
-    (exact for a dilute gas, where the others carry -1 / (N - 1) of a body's momentum each): all curves are
-    multiplied by N / (N - 1). The rest of the finite size is hydrodynamic: Yeh and Hummer's correction with
-    Enskog's viscosity. Its uncertainty is that of the viscosity, 5 % (15 % above packing fraction 0.3), and
-    (2 pi mean free path / side)^2 of it, the next order of hydrodynamics in the slowest mode, but not more
-    than all of it.
+    Of N particles whose total momentum is zero, D is (N - 1) / N of that of N particles without this
+    condition (exact for a dilute gas, where the others carry -1 / (N - 1) of a particle's momentum each): all
+    curves are multiplied by N / (N - 1). The rest of the finite size is hydrodynamic: Yeh and Hummer's
+    correction with Enskog's viscosity. Its uncertainty is that of the viscosity, 5 % (15 % above packing
+    fraction 0.3), and (2 pi mean free path / side)^2 of it, the next order of hydrodynamics in the slowest
+    mode, but not more than all of it.
     """
     state = _state(point)
     start = max(SETTLE_COLLISIONS / state["collision_rate"], SETTLE_SHEAR_TIMES * state["shear_time"])
@@ -183,9 +183,10 @@ def _spheres(point: grid.Point) -> dict:
 def _discs(point: grid.Point) -> dict:
     """The slope of D(t), the msd's derivative over 2d, against ln t, and the curves.
 
-    Until sound has crossed the container a body does not feel its size, but it feels at once that the total
-    momentum is zero: without this condition all would share a velocity of mean square d / N. So 1 / N is
-    added to the correlation, t / N to D(t) and d t^2 / N to the msd, exact until then; the curves end there.
+    Until sound has crossed the container a particle is not affected by its size, but is affected at once by
+    the fact that the total momentum is zero: without this condition all would share a velocity of mean square
+    d / N. So 1 / N is added to the correlation, t / N to D(t) and d t^2 / N to the msd, exact until then; the
+    curves end there.
     """
     state = _state(point)
     start, stop = LOGARITHM_FROM / state["collision_rate"], state["sound_time"]
@@ -213,8 +214,8 @@ def _green_kubo(curves: list[Curves], rate: float, dimension: int) -> dict:
     """The integral of the velocity autocorrelation, and how far it is from the msd's slope.
 
     `integral_difference`: (slope of the twice integrated correlation) / (slope of the msd over 2d) - 1, both
-    by a line from GREEN_KUBO_FROM to GREEN_KUBO_TO collisions per body; the first from velocities alone, the
-    second from displacements alone.
+    by a line from GREEN_KUBO_FROM to GREEN_KUBO_TO collisions per particle; the first from velocities alone,
+    the second from displacements alone.
     """
     integrals = [cumulative_simpson(one.correlation, x=one.time, initial=0.0) for one in curves]
     differences = []

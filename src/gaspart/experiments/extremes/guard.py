@@ -1,4 +1,4 @@
-"""Work that may hang: done in a process of its own, which is ended when it does."""
+"""Work that may hang: done in a separate process, which is killed when it does."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from multiprocessing.connection import Connection
 
 
 def guarded(work: Callable, items: Sequence, limit: float) -> list:
-    """`work(item)` for each item, in order; None for one that takes more than `limit` seconds, or kills its
-    process. Compiled code cannot be interrupted, so it is run in a child that can be."""
+    """`work(item)` for each item, in order; None for one that takes more than `limit` seconds, or ends its
+    process. Compiled code cannot be interrupted, so it is run in a child process, which can be killed."""
     results: list = []
     context = get_context("fork")
     while len(results) < len(items):
@@ -20,7 +20,7 @@ def guarded(work: Callable, items: Sequence, limit: float) -> list:
         try:
             while len(results) < len(items) and receiver.poll(limit):
                 results.append(receiver.recv())
-        except EOFError:  # the child is gone
+        except EOFError:  # the child has ended
             pass
         if len(results) < len(items):
             results.append(None)

@@ -1,4 +1,4 @@
-"""The table of extremes: what is run, for how long, and how many contacts there must be."""
+"""The table of extremes: the scenes, their durations and exact numbers of contacts."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from gaspart.scene.scene import Scene
 class Row:
     """One line of the table.
 
-    name; group; scene, a function that makes it, since that may be refused already; duration and time_step,
-    in the scene's time; contacts: those of bodies and walls that there must be, where that is known by
-    itself; else the search through all pairs tells. chaotic: a gas, in which an engine of another rounding
-    has as many contacts only on average.
+    name; group; scene, a function that makes it, which may be refused; duration and time_step,
+    in the scene's time; contacts: the exact number of those of particles and walls, where it is known;
+    else that of the search of all pairs counts. chaotic: a gas, in which an engine with other rounding
+    has the same number of contacts only on average.
     """
 
     name: str

@@ -16,12 +16,13 @@ GRAZE = 2.0**-50
 
 
 def between_walls(lengths: tuple[float, ...], *bodies: Body, **rest: Any) -> Scene:
-    """A few bodies in a container with walls."""
+    """A few particles in a container with walls."""
     return Scene(Container(lengths), bodies=bodies, **rest)
 
 
 def galperin(ratio: float) -> Scene:
-    """A wall, a light disc at rest, 1 from it, and a heavy one, 1 from that, which comes with speed 1."""
+    """A wall, a light disc at rest, 1 from it, and a heavy one, 1 from that, which approaches with speed
+    1."""
     light, heavy = Body((1.5, 2.0), (0.0, 0.0), 0.5), Body((3.5, 2.0), (-1.0, 0.0), 0.5, mass=ratio)
     return between_walls((20.0, 4.0), light, heavy)
 
@@ -42,12 +43,12 @@ def slow_beside_fast() -> Scene:
 
 
 def unequal_masses() -> Scene:
-    """As many discs of mass 1 as of mass 1e16, at one temperature."""
+    """Equal numbers of discs of mass 1 and of mass 1e16, at one temperature."""
     return gas(Species(10, 0.5, 1.0, temperature=1.0), Species(10, 0.5, 1e16, temperature=1.0))
 
 
 def unequal_sizes(dimension: int = 2) -> Scene:
-    """A body of radius 1 among 200 of 1e-4."""
+    """A particle of radius 1 among 200 of 1e-4."""
     species = Species(200, 1e-4, temperature=1.0), Species(1, 1.0, temperature=1.0)
     return gas(*species, side=4.0, dimension=dimension)
 
@@ -60,20 +61,20 @@ def grazing(nearer: float) -> Scene:
 
 
 def cradle() -> Scene:
-    """Newton's: a disc comes to four that touch."""
+    """Newton's: a disc hits four that touch."""
     still = (Body((4.0 + n, 2.0), (0.0, 0.0), 0.5) for n in range(4))
     return between_walls((12.0, 4.0), Body((2.0, 2.0), (1.0, 0.0), 0.5), *still)
 
 
 def four_at_once() -> Scene:
-    """Four discs come to one point from four sides, and touch at one instant."""
+    """Four discs approach one point from four sides, and touch at one instant."""
     sides = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
     bodies = (Body((4.0 - 2.0 * x, 4.0 - 2.0 * y), (x, y), 0.5) for x, y in sides)
     return between_walls((8.0, 8.0), *bodies)
 
 
 def corner(dimension: int) -> Scene:
-    """A body goes into a corner, where all faces are hit at once."""
+    """A particle moves into a corner, where all faces are hit at once."""
     body = Body((2.0,) * dimension, (-1.0,) * dimension, 0.5)
     return between_walls((4.0,) * dimension, body)
 
@@ -84,7 +85,7 @@ def one_fast() -> Scene:
 
 
 def crystal(packing_fraction: float, dimension: int) -> Scene:
-    """Discs in a triangular lattice, spheres in a face-centred cubic one, wider than close packing."""
+    """Discs on a triangular lattice, spheres on a face-centred cubic one, expanded from close packing."""
     shape = (10.0, 10.0 * math.sqrt(0.75)) if dimension == 2 else (3.0 * math.sqrt(2.0),) * 3
     stretch = (CLOSE_PACKING[dimension] / packing_fraction) ** (1.0 / dimension)
     kind = Species(100 if dimension == 2 else 108, 0.5, temperature=1.0, arrangement="lattice")
@@ -105,7 +106,7 @@ def touching() -> Scene:
 
 
 def wedged() -> Scene:
-    """A disc just as wide as its container."""
+    """A disc exactly as wide as its container."""
     return between_walls((1.0, 4.0), Body((0.5, 2.0), (1.0, 0.5), 0.5))
 
 
@@ -121,25 +122,25 @@ LINE_STARTS, LINE_VELOCITIES = (123456.7, 401234.5, 812345.6), (0.7, -0.9, 0.45)
 
 
 def line() -> Scene:
-    """Three discs on a line, wide apart between two walls."""
+    """Three discs on a line, far apart between two walls."""
     places = ((x + 5.0 + 10.0 * n, 10.0) for n, x in enumerate(LINE_STARTS))
     moves = ((v, 0.0) for v in LINE_VELOCITIES)
     return between_walls((1e6 + 30.0, 20.0), *(Body(x, v, 5.0) for x, v in zip(places, moves, strict=True)))
 
 
 def sticking() -> Scene:
-    """A disc meets another, and they part at no speed."""
+    """A disc hits another, and they separate at zero speed."""
     bodies = Body((2.0, 2.0), (1.0, 0.0), 0.5), Body((5.0, 2.0), (0.0, 0.0), 0.5)
     return between_walls((10.0, 4.0), *bodies, restitution=Restitution(0.0))
 
 
 def dissipative_gas() -> Scene:
-    """Sixty discs that lose all but 1e-12 of their speed of approach at each contact."""
+    """Sixty discs that retain 1e-12 of their speed of approach at each contact."""
     return Scene(Container((16.0, 16.0)), [Species(60, 0.5, temperature=1.0)], restitution=Restitution(1e-12))
 
 
 def bouncing(gravity: float) -> Scene:
-    """A disc falls from a height of 2 on to a floor, and comes back."""
+    """A disc falls from a height of 2 on to a floor, and bounces."""
     return between_walls((4.0, 4.0), Body((1.0, 2.5), (0.0, 0.0), 0.5), gravity=(0.0, -gravity))
 
 
@@ -149,5 +150,5 @@ def falling_gas(gravity: float) -> Scene:
 
 
 def few(count: int) -> Scene:
-    """So many discs, and a species of none."""
+    """This number of discs, and a species without any."""
     return gas(Species(count, 0.5, speed=1.0), Species(0, 0.7, temperature=1.0), side=3.0)

@@ -1,4 +1,4 @@
-"""One scene of the table in one engine: what it kept, what it missed, and the verdict."""
+"""One scene of the table in one engine: drifts, missed contacts, and the verdict."""
 
 from __future__ import annotations
 
@@ -24,22 +24,23 @@ ENGINES: dict[str, Callable[[Row], EventDriven | TimeStepped]] = {
 }
 PASSES, REFUSED, FAILS = "passes", "refused", "fails"
 OVERLAP = {"event": 1e-9, "step": 0.01}
-"""Of a contact distance: the deepest overlap that may be left, by the engine's name."""
+"""Largest permitted overlap, in contact distances, by the engine's name."""
 MISCOUNTED = 0.03
-"""The part of a gas's contacts by which time steps may count wrong, beside chance."""
+"""The permitted relative error of a gas's number of contacts with time steps, in addition to statistical
+error."""
 MOST_EVENTS, MOST_TESTS = 10_000_000, 50_000_000
-"""Contacts after which an event-driven run ends; with the search through all pairs, tests of a pair."""
-LOOKS = 8
-"""How often a run is looked at for overlaps."""
+"""Contacts after which an event-driven run ends; with the search of all pairs, pair tests."""
+CHECKS = 8
+"""How often a run is checked for overlaps."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one scene in one engine.
+    """The outcome of one scene in one engine.
 
-    verdict; message: of what was refused, or failed; energy, momentum: relative drifts (momentum nan where
-    walls take some); overlap: the deepest seen, in contact distances; contacts: of bodies and walls, and
-    how many were missed (negative: made up); seconds; bits: a digest of the last state.
+    verdict; message: of the refusal or failure; energy, momentum: relative drifts (momentum nan where walls
+    absorb some); overlap: the deepest observed, in contact distances; contacts: of particles and walls, and
+    how many were missed (negative: spurious); seconds; bits: a digest of the last state.
     """
 
     verdict: str
@@ -54,11 +55,11 @@ class Outcome:
 
 
 def attempt(row: Row, engine: str, referee: Outcome | None = None) -> Outcome:
-    """Run a row in one of `ENGINES`; where its contacts are not known by themselves, `referee` tells them."""
+    """Run a row in one of `ENGINES`; where the exact number of contacts is not known, `referee` gives it."""
     start = time.perf_counter()
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # of steps that cost percents
+            warnings.simplefilter("ignore", UserWarning)  # of steps with errors of per cents
             outcome = _run(row, engine, referee)
     except (SceneError, SimulationError) as refusal:
         outcome = {"verdict": REFUSED, "message": str(refusal)}
@@ -68,9 +69,12 @@ def attempt(row: Row, engine: str, referee: Outcome | None = None) -> Outcome:
 def _run(row: Row, engine: str, referee: Outcome | None) -> dict:
     simulation = Simulation(row.scene(), ENGINES[engine](row), seed=1)
     overlap = 0.0
-    for look in range(1, LOOKS + 1):
-        if not _advance(simulation, row.duration * look / LOOKS):
-            return {"verdict": FAILS, "message": "not at its end after the most contacts that it may have"}
+    for check in range(1, CHECKS + 1):
+        if not _advance(simulation, row.duration * check / CHECKS):
+            return {
+                "verdict": FAILS,
+                "message": "not at its end after the largest permitted number of contacts",
+            }
         overlap = max(overlap, deepest_overlap(simulation.state, simulation.scene.container.periodic))
         simulation.check_invariants()
     tally, state = simulation.tally, simulation.state
@@ -93,7 +97,7 @@ def _run(row: Row, engine: str, referee: Outcome | None) -> dict:
 
 
 def _advance(simulation: Simulation, until: float) -> bool:
-    """Go on to a time; whether it was reached before too many contacts."""
+    """Advance to a time; whether it was reached within the permitted contacts."""
     if isinstance(simulation.engine, TimeStepped):
         simulation.advance(until=until)
         return True
@@ -104,7 +108,7 @@ def _advance(simulation: Simulation, until: float) -> bool:
 
 
 def _faults(row: Row, engine: EventDriven | TimeStepped, found: dict, expected: int | None) -> dict:
-    """The verdict, if any of the numbers says that the run is wrong."""
+    """The verdict, if any of the numbers shows that the run is incorrect."""
     drift = ENERGY_DRIFT[getattr(engine, "precision", "float64")]
     allowed = 0.0
     if row.chaotic and engine.name == "step" and expected:

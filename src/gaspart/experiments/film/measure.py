@@ -45,7 +45,7 @@ def thin_film(points: list[grid.Point], settings: dict) -> xr.Dataset:
     of the curve.
 
     Returns over `width` (surface to surface, in diameters): pressure, contact (rho(0), k_B T = 1), each
-    with _error; truncation, what the cubic misses of the density functional's contact value;
+    with _error; truncation, the cubic's error for the density functional's contact value;
     chemical_potential with _error; at_bulk, the pressure at exactly the bulk's chemical potential, to first
     order, with _error; functional_pressure; count. Over `bin`: place, density, density_error of the widest
     slit, and functional, at these places. Of the widest slit: middle, the density in the middle two
@@ -150,7 +150,7 @@ def _widom(slit: Slit, insertions: int, seed: int | tuple[int, ...]) -> tuple[fl
     """mu / k_B T = ln[(N + 1) / (V p)], p the chance that a further sphere fits (Widom, J. Chem. Phys. 39,
     2808 (1963)).
 
-    V is the volume that centres can reach; lengths in diameters, no thermal wavelength.
+    V is the volume accessible to centres; lengths in diameters, no thermal wavelength.
     """
     from scipy.spatial import cKDTree
 

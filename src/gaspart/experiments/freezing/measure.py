@@ -1,4 +1,4 @@
-"""Freezing: pressure and order from both sides, the plateau of discs, and crystal beside fluid."""
+"""Freezing: pressure and order of both starts, the plateau of discs, and coexisting crystal and fluid."""
 
 from __future__ import annotations
 
@@ -56,11 +56,11 @@ def freezing_discs(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 
 def freezing_spheres(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """Z and Q_6 of spheres against packing fraction from both starts, and a crystal beside its fluid.
+    """Z and Q_6 of spheres against packing fraction from both starts, and coexisting crystal and fluid.
 
     settings: none. Returns over `start` and `packing_fraction`: see `_states`, the order being the global
     Q_6; crystalline, 1 if it stayed above CRYSTAL_ORDER; Z and Z_error of the infinite system (first order
-    in 1/N taken off), finite_size, reference (of the branch that the run is on; NaN beyond its range). Of
+    in 1/N subtracted), finite_size, reference (of the run's branch; NaN beyond its range). Of
     the slab: slab_pressure, slab_error, slab_drift, slab_drift_error; over `half` and `position` its
     profiles of local order (slab_order) and number density (slab_density); over `half` crystal_fraction.
     """
@@ -105,7 +105,7 @@ def _states(points: list[grid.Point], order: Callable[[np.ndarray, Sequence[floa
     Returns over `start` and `packing_fraction`: pressure (k_B T / sigma^d), order, their _error, _drift and
     _drift_error; over `packing_fraction`: count, density (1 / sigma^d) and disagreement: the largest of the
     deviations, in standard errors, between the two starts and between the halves of each run, of pressure and
-    order. More than 3 says that the runs are not in equilibrium.
+    order. More than 3 shows that the runs are not in equilibrium.
     """
     by_start = {start: _of_start(points, start) for start in STARTS.values()}
     by_start = {start: chosen for start, chosen in by_start.items() if chosen}
@@ -148,7 +148,7 @@ def _disagreement(dataset: xr.Dataset) -> xr.DataArray:
 
 def _plateau(side: xr.Dataset, unlike: xr.DataArray) -> tuple[float, float, float, float]:
     """The plateau of one start. A point's uncertainty holds half of its drift and of how `unlike` the
-    starts are: a run that has not settled is not known."""
+    starts are: a run out of equilibrium is uncertain."""
     side = side.assign(unlike=unlike).dropna("packing_fraction", subset=["pressure"])
     parts = side["pressure_error"], 0.5 * side["pressure_drift"], 0.5 * side["unlike"]
     error = np.sqrt(sum(part.values**2 for part in parts))
@@ -229,7 +229,7 @@ def _slab(points: list[grid.Point]) -> xr.Dataset:
     scene = grid.scene(point)
     lengths, diameter = np.array(scene.container.lengths), 2.0 * scene.largest_radius
     axis = int(np.argmax(lengths))
-    # A bin for each cell of the crystal, lest its layers fall into bins unevenly.
+    # A bin for each cell of the crystal, so that its layers fall into bins evenly.
     cell = (4.0 / theory.COEXISTENCE_DENSITY[3][1]) ** (1.0 / 3.0) * diameter
     bins = round(lengths[axis] / cell)
     runs, orders, densities, fractions = [], [], [], []
@@ -251,7 +251,7 @@ def _slab(points: list[grid.Point]) -> xr.Dataset:
 
     position = (np.arange(bins) + 0.5) * lengths[axis] / bins / diameter
     error, drift_error = (np.sqrt(np.sum(parts[:, k] ** 2)) / len(runs) for k in (1, 3))
-    if len(runs) > 2:  # slow interfaces: the scatter of replicas knows what blocks of one run cannot
+    if len(runs) > 2:  # slow interfaces: the scatter of replicas shows what blocks of one run cannot
         error = max(error, mean_of(parts[:, 0]).error)
     return xr.Dataset(
         {

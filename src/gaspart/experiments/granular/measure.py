@@ -1,7 +1,8 @@
 """Rough and inelastic gases: how rotation and translation share energy, Haff's cooling, clusters.
 
-Collisions per body, s = 2 N_coll / N, are the clock. Temperatures are per degree of freedom, T_tr = m <v^2> /
-d about the centre of mass (N - 1 bodies count), T_rot = I <w^2>, in units of T_tr at the start of the run.
+Time is measured in collisions per particle, s = 2 N_coll / N. Temperatures are per degree of freedom, T_tr =
+m <v^2> / d about the centre of mass (N - 1 particles count), T_rot = I <w^2>, in units of T_tr at the start
+of the run.
 """
 
 from __future__ import annotations
@@ -19,12 +20,12 @@ from gaspart.scene.scene import Scene
 from gaspart.trajectory.run import open_trajectory
 
 SETTLED = 3.0
-"""Collisions per body after which an inelastic gas has left Maxwell's distribution for its own."""
+"""Collisions per particle after which an inelastic gas has relaxed from Maxwell's distribution to its own."""
 
 
 @dataclass(frozen=True)
 class Run:
-    """One replica over T frames: time, collisions per body, T_tr and T_rot, (T,) each; first T_tr."""
+    """One replica over T frames: time, collisions per particle, T_tr and T_rot, (T,) each; first T_tr."""
 
     time: np.ndarray
     collisions: np.ndarray
@@ -34,7 +35,7 @@ class Run:
 
 
 def read_run(point: grid.Point, path: str) -> Run:
-    """One trajectory, in which all bodies are alike, without its equilibration."""
+    """One trajectory, in which all particles are alike, without its equilibration."""
     first = grid.schedule(point).equilibration_frames
     with open_trajectory(path) as trajectory:
         velocities = trajectory["velocities"].values.astype(float)
@@ -74,7 +75,7 @@ def equipartition(points: list[grid.Point], settings: dict) -> xr.Dataset:
     equilibration, and start without spins if not. settings: `steady_from`, see `_cooling`.
 
     Returns, over `start` and `frame`: collisions, translation, rotation, with errors; over `start`: inertia q
-    = I / (m R^2), rate and its error, of T_tr - T_rot's decay per collision of a body at the start. Over
+    = I / (m R^2), rate and its error, of T_tr - T_rot's decay per collision of a particle at the start. Over
     `equilibrium`: equilibrium_inertia, equilibrium_ratio T_rot / T_tr and its error. Over `cooling` and
     `step`: cooling_collisions, cooling_ratio; over `cooling`: tangential, cooling_inertia, steady_ratio and
     its error.
@@ -156,7 +157,7 @@ def _equilibrium(point: grid.Point) -> dict:
 
 def _cooling(point: grid.Point, steady_from: float) -> dict:
     """The ratio of the mean temperatures of all replicas, frame by frame, and its mean over the frames later
-    than `steady_from` collisions per body."""
+    than `steady_from` collisions per particle."""
     runs = read_runs(point)
     collisions = np.mean([run.collisions for run in runs], axis=0)
     late = collisions > steady_from
@@ -183,9 +184,9 @@ def cooling(points: list[grid.Point], settings: dict) -> xr.Dataset:
     Returns, over `gas` and `frame`: collisions, time (over Haff's t_H), temperature and its error; over
     `gas`: dimension, restitution, rate and its error (-d ln T / ds, per replica between `SETTLED` and the
     end), exponent and its error (of T against 1 + t / t_H). Over `clusters` and `step`: cluster_collisions;
-    cluster_excess, T over exp(-rate s) of theory, and its error; variance, of the number of bodies in a cell
-    over its mean, and its error; over `clusters`: cluster_restitution. Over `body`: x, y, at the end of one
-    run of the least restitution; attrs side, radius.
+    cluster_excess, T over exp(-rate s) of theory, and its error; variance, of the number of particles in a
+    cell over its mean, and its error; over `clusters`: cluster_restitution. Over `body`: x, y, at the end of
+    one run of the least restitution; attrs side, radius.
     """
     apart = [point for point in points if point.experiment in settings["clustering"]]
     gases = _table("gas", [_gas(point) for point in points if point not in apart], "frame")
@@ -231,7 +232,7 @@ def _clusters(point: grid.Point, cells: int) -> dict:
     rate = theory.cooling_rate(restitution, scene.dimension)
     # Of logarithms: after so many collisions replicas differ by factors.
     excess, relative = _spread([np.log(run.translation) + rate * run.collisions for run in runs])
-    variance, error = _spread([_crowding(path, scene, cells) for path in point.replica_paths])
+    variance, error = _spread([_number_variance(path, scene, cells) for path in point.replica_paths])
     return {
         "cluster_restitution": restitution,
         "cluster_collisions": collisions,
@@ -242,11 +243,11 @@ def _clusters(point: grid.Point, cells: int) -> dict:
     }
 
 
-def _crowding(path: str, scene: Scene, cells: int) -> np.ndarray:
-    """(T,) variance of the number of bodies in a cell, over its mean: 1 for independent bodies."""
+def _number_variance(path: str, scene: Scene, cells: int) -> np.ndarray:
+    """(T,) variance of the number of particles in a cell, over its mean: 1 for independent particles."""
     with open_trajectory(path) as trajectory:
         positions = trajectory["coordinates"].values.astype(float)
-    # Single precision may put a body that is about to leave on the boundary itself.
+    # Single precision may put a particle that is about to leave on the boundary itself.
     place = np.minimum((positions / scene.container.lengths * cells).astype(int), cells - 1)
     cell = place @ cells ** np.arange(place.shape[2])
     counts = np.stack([np.bincount(frame, minlength=cells ** place.shape[2]) for frame in cell])

@@ -40,14 +40,14 @@ def separation(points: list[grid.Point], settings: dict) -> xr.Dataset:
 def profiles(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """Columns of discs of one size under gravity, point by point.
 
-    settings: `bins` of height; `blocks`, the stretches of each replica; `clear`, the diameters next to floor
-    and ceiling that are left out of every comparison (layers there are real, and not hydrostatics); `ranges`,
-    pairs of packing fractions between which the equation of state is averaged.
+    settings: `bins` of height; `blocks`, the time blocks of each replica; `clear`, the diameters next to
+    floor and ceiling that are left out of every comparison (layers there are real, and not hydrostatics);
+    `ranges`, pairs of packing fractions between which the equation of state is averaged.
 
     Dimensions point, species, bin, range. `pressure_ratio` is the pressure that carries the weight of what is
     above over rho T Z(eta) of the reference; `slope_ratio` that of ln eta_i + mu_excess against height over
-    -m_i g / T; `exchange_ratio` that of ln (eta_1 / eta_0) over -(m_1 - m_0) g / T, which for bodies of one
-    size is exact at any density: given their places, which of them is heavy has no other energy.
+    -m_i g / T; `exchange_ratio` that of ln (eta_1 / eta_0) over -(m_1 - m_0) g / T, which for particles of
+    one size is exact at any density: given their places, which of them is heavy has no other energy.
     """
     rows = [_column(point, settings) for point in points]
     axes = {
@@ -89,7 +89,7 @@ class Bins:
 
     place: the column; masses (S,) of its species; height (B,) of the middles, width of each; used (B,), which
     are clear of floor and ceiling. Arguments of the methods are averages over time: density (S, B); energy
-    (B,), density times temperature; pressure (B,); temperature, of the whole column.
+    (B,), density times temperature; pressure (B,); temperature, of the entire column.
     """
 
     place: Field
@@ -137,7 +137,7 @@ class Bins:
         return -slope * temperature / ((self.masses[-1] - self.masses[0]) * self.place.strength)
 
     def temperature_gradient(self, energy: np.ndarray, density: np.ndarray) -> float:
-        """dT/dz over the mean weight of a body: d ln T / dz in scale heights."""
+        """dT/dz over the mean weight of a particle: d ln T / dz in scale heights."""
         total = density.sum(axis=0)
         return self._slope(energy / total, total) / (self.place.weight / len(self.place.masses))
 
@@ -154,7 +154,7 @@ class Bins:
         return line + np.average((value - line)[known], weights=1.0 / error[known] ** 2)
 
     def hydrostatics(self, density: np.ndarray, temperature: float) -> np.ndarray:
-        """(S, B) hydrostatic densities with as many bodies of each kind as there are in the used bins."""
+        """(S, B) hydrostatic densities with as many particles of each kind as there are in the used bins."""
         first, last = np.flatnonzero(self.used)[[0, -1]]
         z = np.linspace(first, last + 1, 8 * (last - first + 1) + 1) * self.width
         numbers = density[:, self.used].sum(axis=1) * self.width
@@ -177,7 +177,7 @@ def _column(point: grid.Point, settings: dict) -> dict:
     parts = [profile(place, stretch, settings["bins"]) for stretch in found]
     density = np.array([part.density for part in parts])
     pressure = np.array([part.pressure for part in parts])
-    # Where a stretch found nothing its temperature is not known, and weighs nothing.
+    # A block without particles in a bin has no temperature there, and weight 0.
     energy = np.array([np.nan_to_num(part.temperature) * part.density.sum(axis=0) for part in parts])
     warm = np.array([temperature(place, stretch) for stretch in found])
     own = [place.species == n for n in range(bins.masses.size)]
@@ -190,7 +190,7 @@ def _column(point: grid.Point, settings: dict) -> dict:
         ratio = bins.pressure_ratio(*means)
         return np.array([ratio[mask].mean() if mask.any() else np.nan for mask in ranges])
 
-    with np.errstate(invalid="ignore", divide="ignore"):  # bins where nothing was
+    with np.errstate(invalid="ignore", divide="ignore"):  # empty bins
         made = {
             "density": jackknife(lambda rho: rho, density),
             "packing_fraction": jackknife(bins.packing_fraction, density),
@@ -227,7 +227,7 @@ def heat_capacity(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
     Points come in pairs of one scene at two energies. From them, C = dE/dT; and from the fluctuations of the
     kinetic energy in each run, at constant energy, `lebowitz_percus_verlet`. What an ideal gas of as many
-    bodies and the same energy gives for both is exact: `..._expected`. settings: `blocks` of each replica.
+    particles and the same energy gives for both is exact: `..._expected`. settings: `blocks` of each replica.
 
     Dimensions pair, run (of a pair). Raises ValueError for points that are not such pairs.
     """
@@ -266,7 +266,7 @@ def _energies(point: grid.Point, blocks: int) -> dict:
         kinetic = trajectory["kinetic_energy"].values[grid.schedule(point).equilibration_frames + 1 :]
     parts = kinetic[: len(kinetic) // blocks * blocks].reshape(blocks, -1) / count
 
-    shift = parts.mean()  # the square of what is left loses no digits where the energy hardly changes
+    shift = parts.mean()  # the squares of the deviations lose no digits where the energy hardly changes
     fluctuation, spread = jackknife(
         lambda mean, square: lebowitz_percus_verlet(
             count * (mean + shift), count**2 * (square - mean**2), count, 2

@@ -46,9 +46,10 @@ class Gap:
 
 @dataclass(frozen=True)
 class Averages:
-    """Averages over K stretches of time: given (K,) and taken (K,), the fluxes out of the hot and into the
-    cold wall; density (K, B) of bodies in bins, energy (K, B) theirs per volume, as a temperature; imbalance,
-    the largest difference between what the walls gave and what the bodies got, over what went through."""
+    """Averages over K time blocks: given (K,) and taken (K,), the fluxes out of the hot and into the cold
+    wall; density (K, B) of particles in bins, energy (K, B) theirs per volume, as a temperature; imbalance,
+    the largest difference between the energy given by the walls and that gained by the particles, over the
+    heat conducted."""
 
     given: np.ndarray
     taken: np.ndarray
@@ -63,7 +64,7 @@ class Averages:
 
 
 def averages(point: grid.Point, gap: Gap, blocks: int, bins: int) -> Averages:
-    """Of the measured part of all replicas of bodies of mass 1, each cut into `blocks` stretches.
+    """Of the measured part of all replicas of particles of mass 1, each cut into `blocks`.
 
     Raises ValueError for too few frames.
     """
@@ -96,17 +97,18 @@ def averages(point: grid.Point, gap: Gap, blocks: int, bins: int) -> Averages:
 
 
 def heat_conduction_gas(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """Flux through gases of one kind of bodies, and their profiles.
+    """Flux through gases of one kind of particles, and their profiles.
 
     settings: `bins` across the gap; `blocks` of each replica; `clear`, the mean free paths next to the walls
     that are left out where profiles are compared with Fourier's law.
 
     Dimensions point, bin. `flux` is the mean of both walls, `wall_ratio` cold over hot, `half_ratio` the
-    second over the first half of the run; `free` and `fourier` what theory has for bodies that meet nothing
-    but walls, and for a gas so dilute that only its conductivity counts. Where the Knudsen number is below
-    FLUID, three dimensions, walls of full accommodation: `slab_flux` of Fourier's law with jumps, its
-    profiles, `profile_ratio` the mean of T over it, and `jump`, the temperature jumps in units of the mean
-    free path times the slope: T^(3/2), a straight line away from the walls, continued to both of them.
+    second over the first half of the run; `free` and `fourier` theory's fluxes for particles that collide
+    with nothing but walls, and for a gas so dilute that only its conductivity counts. Where the Knudsen
+    number is below FLUID, three dimensions, walls of full accommodation: `slab_flux` of Fourier's law with
+    jumps, its profiles, `profile_ratio` the mean of T over it, and `jump`, the temperature jumps in units of
+    the mean free path times the slope: T^(3/2), a straight line away from the walls, continued to both of
+    them.
     """
     rows = [_gas(point, settings) for point in points]
     long = {name for name, value in rows[0].items() if np.ndim(value)}

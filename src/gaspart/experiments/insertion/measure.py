@@ -1,10 +1,10 @@
-r"""Random sequential insertion: what it costs to place a body, and where it ends.
+r"""Random sequential insertion: failed attempts per particle, and saturation.
 
-With k bodies in the container an attempt succeeds with the probability that a random point is free, the
+With k particles in the container an attempt succeeds with the probability that a random point is free, the
 available fraction; failures before the next success are geometric. Time is counted in attempts per volume
-of a body, :math:`t = T v / V` for T attempts. Late insertion fills single small holes, whose sizes are
-uniform down to nothing, so :math:`\eta_s - \eta(t) \propto t^{-1/d}` (Feder 1980, Swendsen 1981; recalled):
-a straight line in :math:`t^{-1/d}` leads to the saturation :math:`\eta_s`, though no run ever reaches it.
+of a particle, :math:`t = T v / V` for T attempts. Late insertion fills single small holes, whose sizes are
+uniform down to zero, so :math:`\eta_s - \eta(t) \propto t^{-1/d}` (Feder 1980, Swendsen 1981; recalled):
+a straight line in :math:`t^{-1/d}` leads to the saturation :math:`\eta_s`, although no run ever reaches it.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ TIMES = 60
 
 @dataclass(frozen=True)
 class Fill:
-    """All replicas of one container: `failures` (replica, body) before each body, -1 for one never placed,
-    and `attempts` (replica,) in all; body: packing fraction of one body; dimension."""
+    """All replicas of one container: `failures` (replica, body) before each particle, -1 for one never
+    placed, and `attempts` (replica,) in all; body: packing fraction of one particle; dimension."""
 
     failures: np.ndarray
     attempts: np.ndarray
@@ -36,7 +36,7 @@ class Fill:
 
     @property
     def placed(self) -> np.ndarray:
-        """(replica,) bodies placed."""
+        """(replica,) particles placed."""
         return (self.failures >= 0).sum(axis=1)
 
     @property
@@ -51,27 +51,27 @@ class Fill:
         return self.body * np.array([np.searchsorted(one, attempts, side="right") for one in placed_at])
 
     def trials(self) -> tuple[np.ndarray, np.ndarray]:
-        """(replica, body) failures and successes while `body` bodies were there; zero beyond the end."""
+        """(replica, body) failures and successes at each number of particles; zero beyond the end."""
         successes = (self.failures >= 0).astype(int)
         failures = np.where(self.failures >= 0, self.failures, 0)
         for k, placed in enumerate(self.placed):
-            if placed < failures.shape[1]:  # the attempts after the last success belong to the state it left
+            if placed < failures.shape[1]:  # the attempts after the last success belong to the state after it
                 failures[k, placed] = self.attempts[k] - failures[k].sum() - placed
         return failures, successes
 
 
 def fill_failures(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """Failures per body against packing fraction, and the saturation, of every container.
+    """Failures per particle against packing fraction, and the saturation, of every container.
 
-    settings: `bins`, number of packing-fraction bins up to the densest fill; `windows`, list of the ratios
-    of the last time to the first one of the fitted window (the first is the one claimed); `saturated`, the
-    experiments that are filled until no more is found; `dilute`, the packing fraction up to which
-    failures are compared with the low-density expansion.
+    settings: `bins`, number of packing-fraction bins up to the densest fill; `windows`, list of the ratios of
+    the last time to the first one of the fitted window (the first is the one claimed); `saturated`, the
+    experiments that are filled to saturation; `dilute`, the packing fraction up to which failures are
+    compared with the low-density expansion.
 
     Returns over `container` (the experiment's name): dimension, side_over_diameter, rule, replicas, placed
     (mean); final and final_spread, mean and standard deviation of the packing fraction of a single fill at
     its end; last_time, in t; failures_per_body with its error at packing_fraction, each (container, bin), NaN
-    where nothing was tried; filled (container, sample), mean packing fraction at `time` (container, sample);
+    without attempts; filled (container, sample), mean packing fraction at `time` (container, sample);
     saturation and its error (container, window), NaN for those not in `saturated`, and slope of its line
     in t^(-1/d); approach and its error: exponent p of eta_s - eta ~ t^-p with the literature's eta_s
     (saturated periodic containers only); dilute_failures with error: failures over those expected at low
@@ -155,10 +155,10 @@ def _rule(point: grid.Point) -> str:
 
 
 def failures_by_density(fill: Fill, bins: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Mean packing fraction, failures per body placed, and its standard error: each (bins,).
+    """Mean packing fraction, failures per particle placed, and its standard error: each (bins,).
 
     The bins are of equal width from 0 to the densest fill. NaN where less than half of the replicas placed a
-    body: those that did are the lucky ones. Error: jackknife over the replicas, but no less than the
+    particle: those that did are a biased sample. Error: jackknife over the replicas, but no less than the
     geometric distribution's own scatter.
     """
     failures, successes = fill.trials()
@@ -177,10 +177,10 @@ def failures_by_density(fill: Fill, bins: int) -> tuple[np.ndarray, np.ndarray, 
 
 
 def _jackknife(numerator: np.ndarray, denominator: np.ndarray) -> float:
-    """Standard error of sum(numerator) / sum(denominator) over replicas; 0 if it cannot be told."""
+    """Standard error of sum(numerator) / sum(denominator) over replicas; 0 if undetermined."""
     count = len(numerator)
     left = denominator.sum() - denominator
-    if np.any(left == 0):  # all successes in one replica, or only one replica: nothing to leave out
+    if np.any(left == 0):  # all successes in one replica, or only one replica: nothing to omit
         return 0.0
     without = (numerator.sum() - numerator) / left
     return float(np.sqrt((count - 1) / count * np.sum((without - without.mean()) ** 2)))
@@ -216,10 +216,10 @@ def approach_exponent(fill: Fill, window: float) -> tuple[float, float]:
 
 
 def dilute_failures(fill: Fill, up_to: float) -> tuple[float, float]:
-    """Failures met below the packing fraction `up_to`, over those expected, and the ratio's standard error.
+    """Failures below the packing fraction `up_to`, over those expected, and the ratio's standard error.
 
-    Expected: for each body k the `theory.failures_per_body` at k bodies. Error: the geometric distribution's,
-    sqrt(sum of f (1 + f)) over the sum of f.
+    Expected: for each particle k the `theory.failures_per_body` at k particles. Error: the geometric
+    distribution's, sqrt(sum of f (1 + f)) over the sum of f.
     """
     failures, _ = fill.trials()
     states = np.arange(failures.shape[1])

@@ -1,9 +1,9 @@
-"""What time stepping gets wrong: each setting beside the exact, event-driven run from the same state.
+"""Errors of time stepping: each setting compared with the exact, event-driven run from the same state.
 
 Both engines start from the same equilibrium snapshot and run for the same short time, about one collision per
-body. Where a step finds every contact, the two runs are the same but for rounding; so what they differ by
-comes from contacts that were missed, made up or wrong alone, and its noise is that of those few contacts
-instead of that of all. (In long runs, errors of 0.01 % drown in the noise of 1e8 collisions.)
+particle. Where a step finds every contact, the two runs are the same except for rounding; so their difference
+is due to missed, spurious or wrong contacts only, and its noise is that of those few contacts instead of that
+of all. (In long runs, errors of 0.01 % are hidden by the noise of 1e8 collisions.)
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from gaspart.simulation.simulation import Simulation
 from gaspart.state.state import State
 
 LEAST_STEPS = 4
-"""A run covers so many steps at least, lest the start from a state without overlaps count."""
-_LISTED = 0.25  # collisions per body in the part of a run that is compared body by body
-_LISTED_STEPS = 64  # a longer part would take longer than it tells
-_SLACK = 1e-6  # of a time step: so that rounding of a stretch loses no step
+"""Fewest steps of a run, so that the initial state without overlaps has no effect."""
+_LISTED = 0.25  # collisions per particle in the part of a run that is compared particle by particle
+_LISTED_STEPS = 64  # a longer part adds time but little information
+_SLACK = 1e-6  # of a time step: so that rounding of the duration loses no step
 
 
 def compare(
@@ -40,24 +40,24 @@ def compare(
 
     equilibration, stretch: in the scene's time. Returns over ``setting`` (the engines) and ``snapshot``, each
     for both, the exact one with the prefix ``exact_``: ``collisions``; ``virial``, the sum of |dr.dp|;
-    ``memory``, sum v(0).v(t) / sum v(0)^2; ``z``, of the exact run; of the time-stepped one
-    ``energy_drift``, relative; ``deepest_overlap`` as a part of the contact distance; ``pair_tests``. In the
-    first part of a run, against the list of exact events: bodies that a step should have changed and did not,
-    ``missed`` (or late), or the reverse, ``made_up``; and ``listed``, the entries of that list; NaN where it
-    takes too many steps. Over
-    ``setting``: ``time_step``, ``steps``, and ``refused``, 1 if the engine refuses that step (all is NaN).
+    ``memory``, sum v(0).v(t) / sum v(0)^2; ``z``, of the exact run; of the time-stepped one ``energy_drift``,
+    relative; ``deepest_overlap`` as a part of the contact distance; ``pair_tests``. In the first part of a
+    run, against the list of exact events: particles that a step should have changed and did not, ``missed``
+    (or late), or the reverse, ``made_up``; and ``listed``, the entries of that list; NaN where it takes too
+    many steps. Over ``setting``: ``time_step``, ``steps``, and ``refused``, 1 if the engine refuses that step
+    (all is NaN).
     """
     exact = Simulation(scene, EventDriven(), seed=seed)
     exact.advance(duration=equilibration)
     rows: list[list[dict]] = [[] for _ in engines]
     for _ in range(snapshots):
-        state, known = exact.state, {}
+        state, references = exact.state, {}
         for row, engine in zip(rows, engines, strict=True):
             steps = max(LEAST_STEPS, round(stretch / engine.time_step))
             duration = steps * engine.time_step
-            if duration not in known:
-                known[duration] = _run(scene, EventDriven(), state, duration)
-            row.append(_pair(scene, engine, state, steps, known[duration]))
+            if duration not in references:
+                references[duration] = _run(scene, EventDriven(), state, duration)
+            row.append(_pair(scene, engine, state, steps, references[duration]))
         exact.advance(duration=stretch)
     names = rows[0][0]
     table = {
@@ -85,7 +85,7 @@ def compare(
 
 
 def _run(scene: Scene, engine: EventDriven | TimeStepped, state: State, duration: float) -> dict:
-    """What one engine makes of a state in a time."""
+    """The results of one engine after a time."""
     dynamics = engine.start(scene, state)
     dynamics.advance(state.time + duration)
     tally, after = dynamics.tally, dynamics.state
@@ -103,20 +103,21 @@ def _run(scene: Scene, engine: EventDriven | TimeStepped, state: State, duration
 
 
 def _pair(scene: Scene, engine: TimeStepped, state: State, steps: int, exact: dict) -> dict:
-    """One engine beside the exact run; NaN throughout if it refuses its step."""
+    """One engine compared with the exact run; NaN throughout if it refuses its step."""
     found = {f"exact_{name}": exact[name] for name in ("collisions", "virial", "memory", "z")}
     try:
         own = _run(scene, engine, state, (steps + _SLACK) * engine.time_step)
         own.pop("z")
-        return found | own | _astray(scene, engine, state, steps, exact["collisions"] / state.count)
+        return found | own | _missed_contacts(scene, engine, state, steps, exact["collisions"] / state.count)
     except SceneError:
         names = ("collisions", "virial", "memory", "energy_drift", "deepest_overlap", "pair_tests")
         return found | dict.fromkeys((*names, "missed", "made_up", "listed"), np.nan)
 
 
-def _astray(scene: Scene, engine: TimeStepped, state: State, steps: int, collisions: float) -> dict:
-    """Bodies whose velocity a step leaves, where the exact list has a contact in it (missed), or changes
-    where it has none (made up): the first time for each body, as all later ones may follow from it."""
+def _missed_contacts(scene: Scene, engine: TimeStepped, state: State, steps: int, collisions: float) -> dict:
+    """Particles whose velocity a step leaves unchanged although the exact list has a contact in it (missed),
+    or changes although it has none (made up): the first time for each particle, as later ones may follow from
+    it."""
     steps = max(1, min(steps, round(steps * _LISTED / max(2.0 * collisions, _LISTED))))
     if steps > _LISTED_STEPS:
         return dict.fromkeys(("missed", "made_up", "listed"), np.nan)

@@ -1,7 +1,8 @@
-"""Loschmidt's echo: run a gas, turn all velocities round, run it back, and see how far it is from its start.
+"""Loschmidt's echo: run a gas, reverse all velocities, run it back, and measure the distance from its initial
+state.
 
-Exact mechanics comes back. Rounding errors grow by exp(lambda) with every collision of a body, on the way
-back as on the way there, so the echo's distance tells how long the memory of the start lasts, and its growth
+Exact mechanics returns. Rounding errors grow by exp(lambda) with every collision of a particle, in both
+directions, so the echo's distance shows how long the memory of the initial state lasts, and its growth
 is the largest Lyapunov exponent.
 """
 
@@ -18,9 +19,9 @@ from gaspart.scene.scene import Scene
 from gaspart.simulation.simulation import Simulation
 from gaspart.state.state import State
 
-NUDGE = 1e-10
+DISPLACEMENT = 1e-10
 """Root-mean-square displacement, in diameters, from which the exact flow's divergence is measured."""
-_SLACK = 1e-6  # of a time step: so that rounding of a stretch loses no step
+_SLACK = 1e-6  # of a time step: so that rounding of the duration loses no step
 
 
 def echo(
@@ -33,26 +34,27 @@ def echo(
 ) -> xr.Dataset:
     """Echoes from equilibrium states of a scene, one for each seed.
 
-    Returns over ``seed`` and ``sample``, of runs of 1 ... `samples` intervals: ``collisions`` per body on the
-    way there, twice the number of contacts over that of bodies; ``echo``, the root-mean-square distance from
-    the start after the way back, in diameters; ``divergence``, that of two event-driven runs which start
-    `NUDGE` apart, after the way there. Attributes: the gas (`side` in diameters) and engine.
+    Returns over ``seed`` and ``sample``, of runs of 1 ... `samples` intervals: ``collisions`` per particle
+    before the reversal, twice the number of contacts over that of particles; ``echo``, the root-mean-square
+    distance from the initial state after the return, in diameters; ``divergence``, that of two event-driven
+    runs which start `DISPLACEMENT` apart, at the reversal. Attributes: the gas (`side` in diameters) and
+    engine.
     """
     shape = (len(seeds), samples)
     found = {name: np.empty(shape) for name in ("collisions", "echo", "divergence")}
     slack = _SLACK * getattr(engine, "time_step", 0.0)
     for n, seed in enumerate(seeds):
-        settled = Simulation(scene, EventDriven(), seed=seed)
-        settled.advance(duration=equilibration)
-        state = settled.state
+        equilibrium = Simulation(scene, EventDriven(), seed=seed)
+        equilibrium.advance(duration=equilibration)
+        state = equilibrium.state
         there = engine.start(scene, state)
         start = there.state  # rounded to the engine's precision
-        pair = [EventDriven().start(scene, one) for one in (state, _nudged(state, seed))]
+        pair = [EventDriven().start(scene, one) for one in (state, _displaced(state, seed))]
         for k in range(samples):
             time = (k + 1) * interval
             there.advance(state.time + time + slack)
-            turned = replace(there.state, time=0.0, velocities=-there.state.velocities)
-            back = engine.start(scene, turned)
+            reversed_state = replace(there.state, time=0.0, velocities=-there.state.velocities)
+            back = engine.start(scene, reversed_state)
             back.advance(time + slack)
             for one in pair:
                 one.advance(state.time + time)
@@ -73,16 +75,16 @@ def echo(
     )
 
 
-def _nudged(state: State, seed: tuple[int, ...]) -> State:
-    """All bodies displaced at random, by so little that none overlap unless they touch."""
+def _displaced(state: State, seed: tuple[int, ...]) -> State:
+    """All particles displaced at random, by so little that only touching ones can overlap."""
     away = np.random.default_rng(seed).standard_normal(state.positions.shape)
-    away *= NUDGE * 2.0 * state.radii.max() / np.sqrt((away**2).sum(axis=1).mean())
+    away *= DISPLACEMENT * 2.0 * state.radii.max() / np.sqrt((away**2).sum(axis=1).mean())
     inside = np.clip(state.positions + away, state.radii[:, None], state.lengths - state.radii[:, None])
     return replace(state, positions=inside)
 
 
 def _distance(one: State, other: State) -> float:
-    """Root-mean-square distance of all bodies between walls, in diameters."""
+    """Root-mean-square distance of all particles between walls, in diameters."""
     apart = ((one.positions - other.positions) ** 2).sum(axis=1)
     return float(np.sqrt(apart.mean()) / (2.0 * one.radii.max()))
 

@@ -1,4 +1,4 @@
-"""Random sequential insertion into a container until it is as good as full, every failure counted."""
+"""Random sequential insertion into a container up to saturation, with all failures counted."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ CHUNK = 1 << 16
 
 
 def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> xr.Dataset:
-    """Offer the container ``attempts`` random places for each body of the scene's one species; once per seed.
+    """Offer the container ``attempts`` random positions for each particle of the scene's one species; once
+    per seed.
 
-    The scene's count is the number of bodies at hand, which may be more than ever find room: insertion
+    The scene's count is the largest number of particles, which may exceed saturation: insertion
     stops when all are placed or the attempts (``attempts`` times the count) are used up.
 
-    Returns a dataset: ``failures`` (replica, body), failed attempts before each body found its place, -1
-    for a body without one; ``placed`` and ``attempts`` (replica,).
+    Returns a dataset: ``failures`` (replica, body), failed attempts before each particle was placed, -1
+    for one never placed; ``placed`` and ``attempts`` (replica,).
     Attributes: packing_fraction_per_body, side, radius.
     """
     runs = [_fill_once(scene, attempts * scene.count, seed) for seed in seeds]
@@ -40,14 +41,14 @@ def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> xr.Datase
 
 
 def _fill_once(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarray, int]:
-    """Failures before each body (N,), -1 where there was no room; and the attempts that were made."""
+    """Failures before each particle (N,), -1 for one never placed; and the number of attempts."""
     before, used, _ = insert(scene, attempts, seed)
     return before, used
 
 
 def insert(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarray, int, np.ndarray]:
-    """Failures before each body (N,), -1 where there was no room; the attempts that were made; and the places
-    of the bodies (M, d) that found one."""
+    """Failures before each particle (N,), -1 for one never placed; the number of attempts; and the positions
+    (M, d) of those placed."""
     boxes = make_boxes(scene, sides_for(scene, per_body=1.0), images=False)
     lower, upper = scene.reach(scene.largest_radius)
     standing, space, block = empty_arrays(scene, boxes, np.full(scene.count, scene.largest_radius))

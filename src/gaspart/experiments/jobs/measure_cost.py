@@ -1,4 +1,4 @@
-"""What a run costs: work that is counted, the same on every machine, and time that is measured.
+"""The cost of a run: work that is counted, the same on every machine, and time that is measured.
 
 Every timing starts from one and the same state, so the repeated timings of an engine are of exactly the
 same work, and differ by what disturbs the clock alone; and engines that differ in their partition are timed
@@ -23,7 +23,7 @@ from gaspart.state.initial import initial_state
 from gaspart.state.state import State
 
 COUNTED = ("steps", "collisions", "wall_hits", "pair_tests", "box_visits", "crossings")
-_SLACK = 1e-6  # of a time step: so that rounding of a stretch loses no step
+_SLACK = 1e-6  # of a time step: so that rounding of the duration loses no step
 
 
 def measure_cost(
@@ -47,7 +47,7 @@ def measure_cost(
 
     Raises SceneError, and SimulationError if the counted work of a repeat differs from the first one's.
     """
-    # By the shortest step: a longer one leaves overlaps, for which a shorter would be blamed.
+    # By the shortest step: a longer one leaves overlaps, which would count against a shorter one.
     careful = min(engines, key=lambda engine: getattr(engine, "time_step", 0.0))
     state = _start(scene, careful, seed, equilibration)
     seconds = np.empty((len(engines), repeats))

@@ -1,4 +1,4 @@
-"""The densest states of a scene that chance leads to: inserted until full, or grown until jammed."""
+"""The densest random states of a scene: inserted to saturation, or grown until jammed."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ GROWTH = 2.0**-6
 
 
 def pack(scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]]) -> xr.Dataset:
-    """Pack a scene of one species, once per seed: offer the container `attempts` random places for each body,
-    or, with None, let the bodies grow until they jam.
+    """Pack a scene of one species, once per seed: offer the container `attempts` random positions for each
+    particle, or, with None, let the particles grow until they jam.
 
-    Returns a dataset: position (replica, body, axis), NaN for a body without a place; radius and
+    Returns a dataset: position (replica, body, axis), NaN for a particle never placed; radius and
     packing_fraction (replica,); pressure (replica,), reduced, NaN for an insertion; length (axis,).
     """
     shape = (len(seeds), scene.count, scene.dimension)

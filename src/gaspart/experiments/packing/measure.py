@@ -1,4 +1,4 @@
-"""The densest random packings: how dense they are, and how many neighbours a body touches there."""
+"""The densest random packings: packing fractions, and contacts per particle."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 from gaspart.planning import grid
 
 TOUCH = 1e-4
-"""Gap, in diameters, up to which two bodies of a jammed packing count as touching: contacts that carry the
+"""Gap, in diameters, up to which two particles of a jammed packing count as touching: contacts that carry the
 reduced pressure of 10^6 have gaps of some 10^-6, and few other neighbours are as near."""
 BACKBONE = 4
 """Contacts that hold a sphere in place; one with fewer rattles in its cage."""

@@ -22,16 +22,16 @@ def gas_render(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 
 def brownian_render(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """The same for the large body in its gas."""
+    """The same for the large sphere in its gas."""
     return _scene(points[0])
 
 
 def _scene(point: grid.Point) -> xr.Dataset:
-    """Bodies of one frame, and counts over replicas.
+    """Particles of one frame, and counts over replicas.
 
     `overlaps`: pairs that overlap by more than rounding. `resolved`: with the time-stepped engine, the
     collisions of the step before each frame, overlaps that it found and put right; with the other none.
-    `mean_speed` of the last species, with the standard error over bodies.
+    `mean_speed` of the last species, with the standard error over particles.
     """
     scene, overlaps, collisions, speeds = grid.scene(point), [], [], []
     for path in point.replica_paths:
@@ -68,9 +68,9 @@ def _scene(point: grid.Point) -> xr.Dataset:
 
 
 def overlapping(places: np.ndarray, radii: np.ndarray, lengths: np.ndarray, periodic: Sequence[bool]) -> int:
-    """How many pairs of bodies (N, d) overlap by more than rounding.
+    """How many pairs of particles (N, d) overlap by more than rounding.
 
-    The few bodies that are larger than twice the median radius are compared with all others.
+    The few particles that are larger than twice the median radius are compared with all others.
     """
     box = np.where(periodic, lengths, 0.0)
 

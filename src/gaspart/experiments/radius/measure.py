@@ -1,19 +1,19 @@
-r"""One packing fraction at several radii, one number of bodies at several radii: what they cost, and Z.
+r"""One packing fraction at several radii, one number of particles at several radii: cost, and Z.
 
-What is counted is predicted (periodic container of side L, n boxes of width w = L/n a side, N bodies):
+Predicted counts (periodic container of side L, n boxes of width w = L/n a side, N particles):
 
-- crossings of the boundaries between boxes, per body and time, from kinetic theory (exact):
+- crossings of the boundaries between boxes, per particle and time, from kinetic theory (exact):
   :math:`d\, \langle |v_x| \rangle (n-1)/L = d \sqrt{2 k_B T / (\pi m)}\,(n-1)/(n w)`, since the periodic face
   of the container, one of the n boundaries of an axis, is counted apart;
-- the time-stepped engine's pair tests per body and step, each pair of bodies in neighbouring boxes once: half
-  of the other bodies in the 3^d boxes around a body, which hold the fraction f of the volume:
+- the time-stepped engine's pair tests per particle and step, each pair in neighbouring boxes once: half
+  of the other particles in the 3^d boxes around a particle, which hold the fraction f of the volume:
   :math:`\tfrac12 [f N + (S - 1) - f S]`, S = S(0) the structure factor at zero wave number,
-  :math:`1/S = d(\eta Z)/d\eta`: :math:`\rho \int (g - 1) = S - 1` is the hole that a body makes around
+  :math:`1/S = d(\eta Z)/d\eta`: :math:`\rho \int (g - 1) = S - 1` is the hole that a particle makes around
   itself, and -f S what the others make up for because their number is fixed. Holds if correlations end
   within w;
-- everything per collision depends on the packing fraction and on the boxes per body alone: a larger radius in
-  the same container is the same gas seen through a lens. What is left are terms of order 1/N, and 1/n where
-  the partition meets the periodic faces.
+- per collision, everything depends on the packing fraction and the boxes per particle alone: a larger
+  radius in the same container is the same gas magnified. There remain terms of order 1/N, and of order
+  1/n at the periodic faces.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ def radius_grid(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
     Returns over `point`: series, engine ("event" or "step"), radius, count, packing_fraction, boxes_per_side.
     Event-driven points: Z, Z_error (corrected to the infinite system), finite_size, reference and its error;
-    crossings, per body and time over the kinetic theory's, and its error; pair_tests, box_visits
+    crossings, per particle and time over the kinetic theory's, and its error; pair_tests, box_visits
     and crossings_counted, per collision; crossings_expected, the same from kinetic theory and Enskog's rate.
-    Time-stepped points: pair_tests and box_visits per body and step, pair_tests_expected. NaN elsewhere.
+    Time-stepped points: pair_tests and box_visits per particle and step, pair_tests_expected. NaN elsewhere.
     """
     rows = [_row(point) for point in points]
     experiments = {point.experiment for point in points}
@@ -100,7 +100,7 @@ def _row(point: grid.Point) -> dict[str, float]:
 
 
 def _crossings(runs: list[Run], scene: Scene, per_side: int) -> tuple[float, float]:
-    """Crossings per body and time over the kinetic theory's, and the standard error."""
+    """Crossings per particle and time over the kinetic theory's, and the standard error."""
     between = scene.dimension * (per_side - 1) / scene.container.lengths[0] * math.sqrt(2.0 / math.pi)
     ratios = [
         block_average(run.counters["crossings"] / (scene.count * run.interval * between * run.speed))
@@ -113,14 +113,15 @@ def _crossings(runs: list[Run], scene: Scene, per_side: int) -> tuple[float, flo
 def crossings_per_collision(packing_fraction: float, width: float, per_side: int, dimension: int) -> float:
     """Boundaries between boxes that are crossed for each collision; width of a box in diameters.
 
-    2 d sqrt(2 / pi) (n - 1) / (n w nu), nu Enskog's rate of one body with k_B T = m = sigma = 1.
+    2 d sqrt(2 / pi) (n - 1) / (n w nu), nu Enskog's rate of one particle with k_B T = m = sigma = 1.
     """
     rate = float(theory.collision_rate(packing_fraction, dimension))
     return 2.0 * dimension * math.sqrt(2.0 / math.pi) * (per_side - 1) / (per_side * width * rate)
 
 
 def expected_pair_tests(count: int, per_side: int, packing_fraction: float, dimension: int) -> float:
-    """Pair tests per body and step of the time-stepped engine in a periodic container (see the module)."""
+    """Pair tests per particle and step of the time-stepped engine in a periodic container (see the
+    module)."""
     share = (3.0 / per_side) ** dimension if per_side > 3 else 1.0
     compressibility = structure_factor(packing_fraction, dimension)
     return 0.5 * (share * count + (compressibility - 1.0) - share * compressibility)

@@ -17,14 +17,15 @@ FORGOTTEN = 0.1
 
 
 def reversibility(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """Growth of the echo per collision of a body, and the collisions after which the start is forgotten.
+    """Growth of the echo per collision of a particle, and the collisions after which the initial state is
+    forgotten.
 
     points: `echo` jobs. Over (``row``, ``sample``): ``collisions`` (mean) and ``echo`` (median over seeds, in
     diameters). Over ``row``: ``dimension``, ``packing_fraction``, ``count``, ``side`` (in diameters),
-    ``engine``, ``precision``; ``growth`` of the logarithm of the echo per collision of a body, ``divergence``
-    of two exact runs likewise, and ``memory``, in collisions per body, until the echo is `FORGOTTEN`, each
-    with its ``_error`` over the seeds; ``jumps``, the part of the echoes that leave the window in one
-    interval from its lower half.
+    ``engine``, ``precision``; ``growth`` of the logarithm of the echo per collision of a particle,
+    ``divergence`` of two exact runs likewise, and ``memory``, in collisions per particle, until the echo is
+    `FORGOTTEN`, each with its ``_error`` over the seeds; ``jumps``, the part of the echoes that leave the
+    window in one interval from its lower half.
     """
     rows = [_row(xr.load_dataset(point.path)) for point in points]
     rows = sorted(rows, key=lambda row: (row["dimension"], row["packing_fraction"]))

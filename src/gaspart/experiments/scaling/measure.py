@@ -1,4 +1,4 @@
-"""What space partitioning buys: the cost of a step, or of an event, against the bodies and the boxes.
+"""What space partitioning gains: the cost of a step, or of an event, against the particles and the boxes.
 
 Every point is a `measure_cost` job: one gas, timed with one or several partitions. What is meant by work,
 time and ideal numbers, and where their errors come from, stands in `gaspart.experiments.shared.timings`.
@@ -12,7 +12,7 @@ import xarray as xr
 
 from gaspart.analysis import statistics
 from gaspart.experiments.shared.timings import (
-    carry_on,
+    extrapolate,
     ideal,
     listed,
     one_box,
@@ -26,7 +26,7 @@ from gaspart.theory import partition as theory
 
 
 def naive_scaling(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """One box: the cost of a step against the number of bodies N.
+    """One box: the cost of a step against the number of particles N.
 
     Over ``count``: ``pair_tests`` per step, ``seconds`` per step with ``seconds_error``. Scalars:
     ``exponent`` of the time in N with ``exponent_error`` from the scatter; ``tests_excess``, the largest
@@ -53,7 +53,7 @@ def box_count(points: list[grid.Point], settings: dict) -> xr.Dataset:
     ``source_boxes_per_body``, the ideal number in its figure 6.
 
     Over ``scan`` (the scan that has one box): costs as in `per_body`; ``expected_tests`` with
-    ``tests_spread`` and ``expected_visits``; the boxes that a body would look into, with each
+    ``tests_spread`` and ``expected_visits``; the boxes that a particle would search, with each
     pair tested once, if it left out those that it does not touch (``touched``: within a radius) or those
     that can hold no partner (``in_reach``: within a diameter).
     Over (``container``, ``fine``): ``fine_seconds`` ... of the two other scans, in containers whose sides
@@ -104,12 +104,12 @@ def box_count(points: list[grid.Point], settings: dict) -> xr.Dataset:
 def ideal_boxes(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """The ideal number of boxes of many gases.
 
-    settings: ``rule``, source A's boxes per body; ``source_numbers``, those that it found for the largest gas
-    of its figures 5, 6 and 7 (each with ``count``, ``radius``, ``boxes_per_body``).
+    settings: ``rule``, source A's boxes per particle; ``source_numbers``, those that it found for the largest
+    gas of its figures 5, 6 and 7 (each with ``count``, ``radius``, ``boxes_per_body``).
 
     Over (``gas``, ``partition``): costs as in `per_body`, NaN beyond a gas's own partitions. Over ``gas``:
-    ``count``, ``radius``, ``most`` (boxes per body of a diameter's width, the limit), the results of `ideal`,
-    and ``penalty``, the time at the rule's number over the least, with error. Over ``source``:
+    ``count``, ``radius``, ``most`` (boxes per particle of a diameter's width, the limit), the results of
+    `ideal`, and ``penalty``, the time at the rule's number over the least, with error. Over ``source``:
     ``source_number``, and what was found there: ``source_ideal`` with interval, ``source_penalty`` at that
     number, with error. Over ``series`` (gases of one ``series_radius``): ``exponent`` of the ideal number of
     boxes in N, where it was found between the partitions timed, with error from the scatter.
@@ -145,10 +145,10 @@ def ideal_boxes(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 
 def linear_scaling(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """The cost of a step with the cheapest partition of each gas, against the number of bodies N.
+    """The cost of a step with the cheapest partition of each gas, against the number of particles N.
 
     settings: ``source_figures``, radius and range of counts of source A's figures 8, 9 and 10;
-    ``naive_count``, to which the naive method is carried on; ``source_years``, what A says of that.
+    ``naive_count``, to which the naive method is extrapolated; ``source_years``, A's estimate for it.
     Over ``gas`` (points with several partitions): ``count``, ``radius``, costs of the cheapest partition as
     in `per_body`, and ``work``, pair tests and box visits together. Over ``naive`` (points with one box):
     ``naive_count``, ``naive_seconds`` per step, with error. Over ``part`` (A's figures): ``part_low``,
@@ -174,7 +174,7 @@ def linear_scaling(points: list[grid.Point], settings: dict) -> xr.Dataset:
         low, high = part["counts"]
         chosen = (radius == part["radius"]) & (low <= count) & (count <= high)
         parts.append(_trend(count[chosen], seconds[chosen]))
-    carried = carry_on(naive, settings["naive_count"])
+    carried = extrapolate(naive, settings["naive_count"])
     step, step_error = seconds[-1], count[-1] * gases.seconds_error.values[-1]
     scale = settings["naive_count"] / count[-1]
     ratio = carried[0] / (scale * step)
@@ -199,7 +199,7 @@ def linear_scaling(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 
 def event_scaling(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """The cost of an event, by each way of searching for the next one, against the number of bodies N.
+    """The cost of an event, by each method of searching for the next one, against the number of particles N.
 
     settings: ``fit_from``, for each search the least N in the fits. Over ``run``: ``search``, ``dimension``,
     ``count``, and costs as in `per_event`. Over ``method`` (a ``method_search`` in a ``method_dimension``):
@@ -252,7 +252,7 @@ def _names(prefix: str, costs: xr.Dataset) -> dict[str, Any]:
 
 
 def _expected(run: xr.Dataset) -> dict:
-    """Expected counts per body of a scan, for `box_count`."""
+    """Expected counts per particle of a scan, for `box_count`."""
     gas = {"dimension": run.dimension, "side": run.side, "radius": run.radius}
     count, sides = run.attrs["count"], run.boxes_per_side.values
     tests = np.array([theory.expected_pair_tests(count, int(n), **gas) for n in sides]) / count

@@ -1,4 +1,4 @@
-"""Errors of time-stepped settings, and what they cost, from `compare` and `measure_cost` jobs."""
+"""Errors of time-stepped settings, and their costs, from `compare` and `measure_cost` jobs."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from gaspart.planning import grid
 
 
 def setting_name(rewind: bool, passes: int, precision: str) -> str:
-    """How figures and claims call a setting of the time-stepped engine."""
+    """The name of a setting in figures and claims, that of the time-stepped engine."""
     name = f"{passes} passes" if passes > 1 else "1 pass"
     return name + ("" if rewind else ", no rewinding") + (", float32" if precision == "float32" else "")
 
@@ -79,7 +79,8 @@ def costs(point: grid.Point) -> dict:
 
 
 def add_costs(row: dict, timed: list[dict]) -> None:
-    """What its steps cost, where they were timed, and the event-driven engine in the same gas."""
+    """Add the costs of a row's steps, where they were timed, and of the event-driven engine in the same
+    gas."""
     same = [one for one in timed if one["gas"] == (row["dimension"], row["packing_fraction"])]
     event = next(one for one in same if one["setting"] == "event")
     rate = float(event["collisions"][0])

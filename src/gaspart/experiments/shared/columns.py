@@ -1,7 +1,7 @@
-"""A column of gas under gravity: heights, energies and forces of runs, averaged over stretches of time.
+"""A column of gas under gravity: heights, energies and forces of runs, averaged over blocks of time.
 
-Gravity points down the last axis of a container of two dimensions. Heights are those of bodies' centres above
-the lowest place that the centre of the smallest body can reach.
+Gravity points down the last axis of a container of two dimensions. Heights are those of particles' centres
+above the lowest place that the centre of the smallest particle can reach.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from gaspart.trajectory.run import open_trajectory
 
 @dataclass(frozen=True)
 class Field:
-    """What a point's scene says: accelerations and lengths in its units.
+    """The gravity, container and particles of a point's scene, in its units.
 
     strength: of gravity, positive downwards; width and height: of the place where the centres of the smallest
-    bodies can be (the width of a periodic axis is its length); diameter: of the smallest bodies; masses (N,),
-    infinite for fixed bodies; species (N,), numbered as in the scene, single bodies after them; across:
-    whether the other axis is periodic, so that momentum along it is conserved.
+    particles can be (the width of a periodic axis is its length); diameter: of the smallest particles; masses
+    (N,), infinite for fixed particles; species (N,), numbered as in the scene, single particles after them;
+    across: whether the other axis is periodic, so that momentum along it is conserved.
     """
 
     strength: float
@@ -35,7 +35,7 @@ class Field:
 
     @property
     def weight(self) -> float:
-        """Of all bodies that move."""
+        """Of all particles that move."""
         return float(self.strength * self.masses[np.isfinite(self.masses)].sum())
 
 
@@ -59,11 +59,11 @@ def field(point: grid.Point) -> Field:
 
 @dataclass(frozen=True)
 class Stretch:
-    """Consecutive frames of one run; T frames, N bodies.
+    """Consecutive frames of one run; T frames, N particles.
 
     positions (T, N, 2), the second one the height; energies (T, N), kinetic ones, without the centre of
     mass's motion along a periodic axis; floor, ceiling: mean forces on them; gain: mean rate at which the
-    bodies' upward momentum grew.
+    particles' upward momentum grew.
     """
 
     positions: np.ndarray
@@ -79,7 +79,8 @@ class Stretch:
 
 
 def stretches(point: grid.Point, number: int) -> list[Stretch]:
-    """The measured part of every replica, cut into `number` stretches of equal length (a rest is left out).
+    """The measured part of every replica, cut into `number` stretches of equal length (a remainder is
+    omitted).
 
     Neighbours share a frame at which momenta are read, and no other. Raises ValueError for too few frames.
     """
@@ -118,7 +119,7 @@ def _stretch(
     moving = np.isfinite(place.masses)
     masses = np.where(moving, place.masses, 0.0)
     drift = np.zeros((len(velocities), 1))
-    if place.across and moving.all():  # a fixed body takes momentum away
+    if place.across and moving.all():  # a fixed particle takes momentum away
         drift = (velocities[..., 0] @ masses / masses.sum())[:, None]
     energies = 0.5 * masses * ((velocities[..., 0] - drift) ** 2 + velocities[..., 1] ** 2)
     heights = positions[..., 1] - 0.5 * place.diameter
@@ -140,8 +141,8 @@ def temperature(place: Field, stretch: Stretch) -> float:
 
 @dataclass(frozen=True)
 class Profile:
-    """Averages in B bins of height: density (S, B) of each species; temperature (B,), NaN where nothing was;
-    pressure (B,), the force per length that carries what is above: that of the ceiling and the weight."""
+    """Averages in B bins of height: density (S, B) of each species; temperature (B,), NaN in empty bins;
+    pressure (B,), the force per length that carries the gas above: that of the ceiling and the weight."""
 
     density: np.ndarray
     temperature: np.ndarray
@@ -149,10 +150,10 @@ class Profile:
 
 
 def profile(place: Field, stretch: Stretch, bins: int) -> Profile:
-    """Profiles of a stretch without fixed bodies, averaged over each of `bins` equal bins of height.
+    """Profiles of a stretch without fixed particles, averaged over each of `bins` equal bins of height.
 
     In a steady state the momentum below any height is constant, so the pressure at z is (F_ceiling +
-    sum of m g over bodies above z) / width (exact; no equation of state is used).
+    sum of m g over particles above z) / width (exact; no equation of state is used).
     """
     frames, count = stretch.heights.shape
     scaled = stretch.heights.ravel() * (bins / place.height)
@@ -163,7 +164,7 @@ def profile(place: Field, stretch: Stretch, bins: int) -> Profile:
     counts = np.bincount(places, minlength=kinds * bins).reshape(kinds, bins)
     total = counts.sum(axis=0)
     energy = np.bincount(bin_of, stretch.energies.ravel(), minlength=bins)
-    # In a bin's average over z, a body within it counts for the part of the bin that lies below it.
+    # In a bin's average over z, a particle within it counts for the part of the bin that lies below it.
     mass = np.bincount(bin_of, masses, minlength=bins)
     within = np.bincount(bin_of, masses * np.clip(scaled - bin_of, 0.0, 1.0), minlength=bins)
     above = np.cumsum(mass[::-1])[::-1] - mass + within

@@ -7,14 +7,14 @@ impulses :math:`\Delta p` exchanged at the distance :math:`\Delta r`,
 
 The total momentum of a periodic scene is conserved, and the temperature is that of the motion about it:
 :math:`N - 1` velocities are independent, so :math:`k_B T = 2 E_\mathrm{cm} / (d (N - 1))`, with
-:math:`E_\mathrm{cm} = E - |\sum m v|^2 / (2 \sum m)`. What Z then is for finite N: a pair at contact gives
+:math:`E_\mathrm{cm} = E - |\sum m v|^2 / (2 \sum m)`. The value of Z for finite N: a pair at contact gives
 :math:`|\Delta p| \propto |v_n|` at a rate :math:`\propto |v_n|`, so the sum grows with
 :math:`\langle v_n^2 \rangle`, v_n one component of :math:`v_1 - v_2`. That is linear in the energy (fixing
 the energy changes nothing), and with zero total momentum
 :math:`\langle v_1 \cdot v_2 \rangle = -\langle v^2 \rangle / (N - 1)`, hence
-:math:`\langle v_n^2 \rangle = 2 k_B T / m` with just this T. So :math:`Z_N - 1` is that of the canonical
-ensemble of N bodies, whose distance from the infinite system is known to first order in 1/N
-(``gaspart.theory.finite_size_correction(..., ensemble="canonical")``). What remains is of order
+:math:`\langle v_n^2 \rangle = 2 k_B T / m` with this T. So :math:`Z_N - 1` is that of the canonical
+ensemble of N particles, whose distance from the infinite system is known to first order in 1/N
+(``gaspart.theory.finite_size_correction(..., ensemble="canonical")``). The remainder is of order
 :math:`1/N^2`, and terms that fall exponentially with the side over the correlation length.
 """
 
@@ -32,12 +32,12 @@ from gaspart.trajectory.run import open_trajectory
 
 @dataclass(frozen=True)
 class Run:
-    """The measured stretch of one replica, its equilibration dropped.
+    """The measured part of one replica, without its equilibration.
 
     z: (samples,) compressibility factor of each interval between frames; rate: (samples,) collisions of one
-    body per time, times sigma sqrt(m / kT) (dimensionless), with kT = 2 E_cm / (d N); interval: time between
-    frames; counters: (samples,) each, what was counted in every interval, by name; speed: sqrt(<v^2> / d) in
-    the container's frame.
+    particle per time, times sigma sqrt(m / kT) (dimensionless), with kT = 2 E_cm / (d N); interval: time
+    between frames; counters: (samples,) each, the counts of every interval, by name; speed: sqrt(<v^2> / d)
+    in the container's frame.
     """
 
     z: np.ndarray
@@ -72,9 +72,9 @@ COUNTED = ("collisions", "pair_tests", "box_visits", "crossings", "steps")
 
 
 def read_run(point: grid.Point, path: str) -> Run:
-    """The measured stretch of one trajectory of a periodic point of one species.
+    """The measured part of one trajectory of a periodic point of one species.
 
-    Raises OSError for a file that cannot be read and ValueError for one that is not this point's.
+    Raises OSError for a file that cannot be read and ValueError for one of another point.
     """
     schedule = grid.schedule(point)
     count, radius, _ = grid.extents(point)
@@ -83,7 +83,7 @@ def read_run(point: grid.Point, path: str) -> Run:
     with open_trajectory(path) as trajectory:
         if trajectory.sizes["frame"] != first + schedule.samples + 1 or trajectory.sizes["atom"] != count:
             raise ValueError(
-                f"{path}: {dict(trajectory.sizes)} are not the frames and bodies of {point.path}"
+                f"{path}: {dict(trajectory.sizes)} are not the frames and particles of {point.path}"
             )
         drift = trajectory["velocities"][first].values.astype(float).mean(axis=0)
         energy = float(trajectory["kinetic_energy"][first:].mean())
@@ -127,7 +127,7 @@ def combine_runs(runs: list[Run]) -> Pressure:
 
 
 def totals(runs: list[Run]) -> dict[str, float]:
-    """What was counted in all replicas together, by name."""
+    """Sums of the counters over all replicas, by name."""
     return {name: float(sum(run.counters[name].sum() for run in runs)) for name in COUNTED}
 
 

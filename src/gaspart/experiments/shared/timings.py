@@ -1,8 +1,8 @@
-"""From the job `measure_cost`, repeated timings, to costs per body and per event, and to their minimum.
+"""From the job `measure_cost`, repeated timings, to costs per particle and per event, and to their minimum.
 
-*Work* is counted, the same on every machine: pairs tested, boxes looked into, and boxes emptied (the
-time-stepped engine sorts all bodies anew in every step, so all its boxes are emptied once a step). *Time* is
-processor time: the median of the repeats, with that median's standard error.
+*Work* is counted, the same on every machine: pairs tested, boxes searched, and boxes emptied (the
+time-stepped engine sorts all particles anew in every step, so all its boxes are emptied once a step). *Time*
+is processor time: the median of the repeats, with that median's standard error.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from gaspart.theory.partition import ideal_boxes_per_body
 NEAR = 3.0
 """A minimum is fitted to the partitions that cost at most this many times the cheapest."""
 SYSTEMATIC = 0.02
-"""Relative error that a time has in a fit beside its own: caches and clocks disturb whole runs."""
+"""Relative error that is added to that of a time in a fit: caches and clocks disturb entire runs."""
 
 
 def median(seconds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -34,7 +34,7 @@ def median(seconds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def per_body(run: xr.Dataset) -> xr.Dataset:
-    """Costs per body and step, over the partitions of one time-stepped gas.
+    """Costs per particle and step, over the partitions of one time-stepped gas.
 
     ``boxes_per_side``, ``boxes_per_body``; ``seconds`` with ``seconds_error``; ``pair_tests``,
     ``box_visits`` and ``boxes_emptied``.
@@ -82,7 +82,7 @@ def _dataset(columns: dict, **units: str) -> xr.Dataset:
 
 
 def weights(seconds: np.ndarray, error: np.ndarray, *work: float | np.ndarray) -> statistics.Fit:
-    """What each kind of work costs: seconds = sum of weight x work, by relative least squares.
+    """The cost of each kind of work: seconds = sum of weight x work, by relative least squares.
 
     seconds, error and every work: (points,). The covariance is scaled up by the scatter if that is larger
     than the errors (and `SYSTEMATIC`) explain.
@@ -95,13 +95,14 @@ def weights(seconds: np.ndarray, error: np.ndarray, *work: float | np.ndarray) -
 
 
 def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
-    """The ideal number of boxes per body of one gas, from its `per_body` costs; each with its 95 % interval.
+    """The ideal number of boxes per particle of one gas, from its `per_body` costs; each with its 95 %
+    interval.
 
     By time: the minimum of a parabola of ln seconds against ln boxes (``ideal``, ``ideal_low``,
-    ``ideal_high``, ``ideal_interior``). By work: with seconds = a + b tests + c boxes, all per body, fitted
-    to the same partitions, the minimum is at sqrt(3^d b / 2 c) (``model``, ``model_low``, ``model_high``; NaN
-    if a weight is not positive), with ``body_seconds`` a (moving, sorting, and looking into boxes, whose
-    number hardly changes), ``test_seconds`` b, ``box_seconds`` c, and their ``_error``.
+    ``ideal_high``, ``ideal_interior``). By work: with seconds = a + b tests + c boxes, all per particle,
+    fitted to the same partitions, the minimum is at sqrt(3^d b / 2 c) (``model``, ``model_low``,
+    ``model_high``; NaN if a weight is not positive), with ``body_seconds`` a (moving, sorting, and looking
+    into boxes, whose number hardly changes), ``test_seconds`` b, ``box_seconds`` c, and their ``_error``.
     """
     boxes, seconds, error = (costs[name].values for name in ("boxes_per_body", "seconds", "seconds_error"))
     best = statistics.optimum(boxes, seconds, within=NEAR)
@@ -131,8 +132,8 @@ def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
 
 
 def penalty(costs: xr.Dataset, boxes_per_body: float) -> tuple[float, float]:
-    """Time at a given number of boxes per body (between partitions timed, by powers) over the least time, and
-    its standard error; NaN beyond the partitions timed."""
+    """Time at a given number of boxes per particle (between partitions timed, by powers) over the least time,
+    and its standard error; NaN beyond the partitions timed."""
     order = np.argsort(costs.boxes_per_body.values)
     boxes, seconds, error = (
         costs[name].values[order] for name in ("boxes_per_body", "seconds", "seconds_error")
@@ -166,7 +167,7 @@ def one_box(runs: list[xr.Dataset]) -> xr.Dataset:
 
 
 def listed(runs: list[xr.Dataset], gases: xr.Dataset) -> xr.Dataset:
-    """Over ``listed``: costs per body of neighbour lists, ``list_seconds`` ... as in `per_body`;
+    """Over ``listed``: costs per particle of neighbour lists, ``list_seconds`` ... as in `per_body`;
     ``list_count``, ``list_radius``; and ``list_share``, the time over that of the gas of the same count and
     radius among `gases` (NaN if there is none), with error."""
     costs = xr.concat([per_body(run).isel(partition=0) for run in runs], "listed")
@@ -191,9 +192,9 @@ def listed(runs: list[xr.Dataset], gases: xr.Dataset) -> xr.Dataset:
     )
 
 
-def carry_on(naive: xr.Dataset, count: float) -> tuple[float, float]:
-    """Time of one naive step with `count` bodies, and its error, from time = a N + b tests."""
+def extrapolate(naive: xr.Dataset, count: float) -> tuple[float, float]:
+    """Time of one naive step with `count` particles, and its error, from time = a N + b tests."""
     bodies = naive["count"].values.astype(float)
     fit = weights(naive.seconds.values, naive.seconds_error.values, bodies, naive.pair_tests.values)
-    there = np.array([count, 0.5 * count * (count - 1.0)])
-    return float(there @ fit.values), math.sqrt(there @ fit.covariance @ there)
+    work = np.array([count, 0.5 * count * (count - 1.0)])
+    return float(work @ fit.values), math.sqrt(work @ fit.covariance @ work)

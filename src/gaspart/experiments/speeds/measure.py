@@ -1,7 +1,7 @@
-"""Speeds of the bodies: relaxation from equal speeds, and the distribution in equilibrium.
+"""Speeds of the particles: relaxation from equal speeds, and the distribution in equilibrium.
 
 Speeds are given as u = v / sqrt(<v^2>), root-mean-square speed 1: at fixed energy that is the unit of the
-sources (all speeds 1 at first, temperature 1/d). Collisions per body are s = 2 N_collisions / N, counted.
+sources (all speeds 1 at first, temperature 1/d). Collisions per particle are s = 2 N_collisions / N, counted.
 """
 
 from __future__ import annotations
@@ -21,10 +21,11 @@ from gaspart.trajectory.run import open_trajectory
 
 @dataclass(frozen=True)
 class Run:
-    """One replica. Frames are those kept; T frames, N bodies, d axes.
+    """One replica. Frames are those kept; T frames, N particles, d axes.
 
-    time (T,); collisions (T,), per body since the start; velocities (T, N, d), single precision as stored;
-    first (N, d), the velocities at time 0; temperature (T,), 2 E / (d N) from the energy in double precision.
+    time (T,); collisions (T,), per particle since the start; velocities (T, N, d), single precision as
+    stored; first (N, d), the velocities at time 0; temperature (T,), 2 E / (d N) from the energy in double
+    precision.
     """
 
     time: np.ndarray
@@ -67,10 +68,10 @@ def kurtosis(speeds: np.ndarray) -> np.ndarray:
 
 
 def never_hit(velocities: np.ndarray, first: np.ndarray) -> np.ndarray:
-    """(T,) fraction of bodies that no other body has hit.
+    """(T,) fraction of particles that no other particle has hit.
 
-    A wall only flips the sign of a component, so |v_k| of such a body keeps its bits in every component;
-    a collision changes them all (but for exceptions of probability 0).
+    A wall only reverses the sign of a component, so |v_k| of such a particle keeps its bits in every
+    component; a collision changes them all (but for exceptions of probability 0).
     """
     return (np.abs(velocities) == np.abs(first)).all(axis=-1).mean(axis=-1)
 
@@ -89,7 +90,8 @@ def shared_error(samples: list[np.ndarray]) -> list[np.ndarray]:
 
 
 def speed_relaxation(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """Kurtosis, never-hit fraction and histogram on the way from equal speeds to Maxwell's distribution.
+    """Kurtosis, fraction never hit and histogram during relaxation from equal speeds to Maxwell's
+    distribution.
 
     One point for each engine, of the same scene and sampling. settings: `times`, those of the histograms
     (each must be a sampled one), `bins` of the histograms up to speed `highest` (over root-mean-square).
@@ -108,7 +110,7 @@ def speed_relaxation(points: list[grid.Point], settings: dict) -> xr.Dataset:
             raise SceneError(
                 f"experiments.{point.experiment}", point.name, "must be the others' scene and times"
             )
-    shown = np.array([_frame_at(time, wanted) for wanted in settings["times"]])
+    shown = np.array([_frame_at(time, chosen) for chosen in settings["times"]])
     edges = np.linspace(0.0, settings["highest"], settings["bins"] + 1)
 
     dataset = xr.Dataset(
@@ -149,12 +151,12 @@ def speed_relaxation(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 
 def _rate_between_walls(scene: Scene, temperature: float) -> float:
-    """Collisions per body and time of a dilute gas whose centres are confined to the container.
+    """Collisions per particle and time of a dilute gas whose centres are confined to the container.
 
-    Enskog's rate times (N - 1) / N, as a body has N - 1 partners, and times the chance that the other body of
-    a contact, at distance sigma in the direction n, lies within the walls too: the mean over n of prod_k (1 -
-    sigma |n_k| / L_k) to first order in sigma / L, with <|n_k|> = 1/2 in 3D, 2/pi in 2D. Exact to that order
-    for a dilute gas, whose density is uniform up to the walls.
+    Enskog's rate times (N - 1) / N, as a particle has N - 1 partners, and times the chance that the other
+    particle of a contact, at distance sigma in the direction n, lies within the walls too: the mean over n of
+    prod_k (1 - sigma |n_k| / L_k) to first order in sigma / L, with <|n_k|> = 1/2 in 3D, 2/pi in 2D. Exact to
+    that order for a dilute gas, whose density is uniform up to the walls.
     """
     diameter = 2.0 * scene.largest_radius
     accessible = [upper - lower for lower, upper in zip(*scene.reach(scene.largest_radius), strict=True)]
@@ -169,10 +171,10 @@ def _rate_between_walls(scene: Scene, temperature: float) -> float:
     return float(theory.collision_rate(fraction, scene.dimension, diameter, temperature) * share)
 
 
-def _frame_at(time: np.ndarray, wanted: float) -> int:
-    frame = int(np.argmin(np.abs(time - wanted)))
-    if abs(time[frame] - wanted) > 1e-6 * max(1.0, abs(wanted)):
-        raise SceneError("figures.speed_relaxation.times", wanted, "must be a sampled time")
+def _frame_at(time: np.ndarray, chosen: float) -> int:
+    frame = int(np.argmin(np.abs(time - chosen)))
+    if abs(time[frame] - chosen) > 1e-6 * max(1.0, abs(chosen)):
+        raise SceneError("figures.speed_relaxation.times", chosen, "must be a sampled time")
     return frame
 
 
@@ -201,7 +203,7 @@ def speed_distribution_discs(points: list[grid.Point], settings: dict) -> xr.Dat
 def distribution(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """Speeds in equilibrium, of all snapshots and replicas, against Maxwell's distribution without a fit.
 
-    Snapshots are the frames after equilibration; how many collisions per body lie between them is in
+    Snapshots are the frames after equilibration; how many collisions per particle lie between them is in
     `collisions_between` (they are independent samples from about 3 on). settings: `bins` of the histogram
     up to speed `highest` (over root-mean-square), `classes` of equal probability for chi-square.
 
@@ -285,11 +287,11 @@ def _distribution(
 
 
 def _given_temperature(point: grid.Point) -> float:
-    """m v^2 / d of the speed that all bodies were given."""
+    """m v^2 / d of the speed that all particles were given."""
     settings = point.settings
     if "speed" not in settings:
         raise SceneError(
-            f"experiments.{point.experiment}.speed", None, "is required: all bodies start with it"
+            f"experiments.{point.experiment}.speed", None, "is required: all particles start with it"
         )
     return settings.get("mass", 1.0) * settings["speed"] ** 2 / settings["dimension"]
 

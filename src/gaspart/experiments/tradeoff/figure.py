@@ -116,7 +116,7 @@ def time_to_accuracy(ds: xr.Dataset) -> Figure:
 
 
 def _times(axis: Axes, gas: xr.Dataset) -> None:
-    """Points measured, lines of the model; hollow and dashed for the larger number of bodies."""
+    """Points measured, lines of the model; hollow and dashed for the larger number of particles."""
     axis.set(xscale="log", yscale="log")
     names = {"event": "event-driven", "step": "time-stepped"}
     for kind, engine in enumerate(gas.engine.values):

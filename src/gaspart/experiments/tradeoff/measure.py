@@ -1,8 +1,8 @@
-"""What accuracy costs: errors and costs of the time-stepped engine beside the event-driven one.
+"""The cost of accuracy: errors and costs of the time-stepped engine relative to the event-driven one.
 
 Errors are those of the job `compare` and costs those of the job `measure_cost`, of the same gases and
-settings. The diffusion coefficient is that of Enskog's theory, kT / m over the rate at which a body forgets
-its velocity, taken from the memory after about one collision per body.
+settings. The diffusion coefficient is that of Enskog's theory, kT / m over the rate at which a particle
+forgets its velocity, taken from the memory after about one collision per particle.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ def frontier(dataset: xr.Dataset) -> xr.Dataset:
     """The cheapest time-stepped setting whose error, with two standard errors of it, is within each accuracy.
 
     Over ``gas``: ``gas_dimension``, ``gas_packing_fraction``. Over (``gas``, ``observable``, ``accuracy``):
-    ``best_seconds`` per exact collision (NaN if none is known to do), ``best_ratio`` of it to the
+    ``best_seconds`` per exact collision (NaN if none is known to reach it), ``best_ratio`` of it to the
     event-driven engine's with ``best_ratio_error``, ``best_step``, ``best_setting``.
     """
     gases = list(dict.fromkeys(zip(dataset.dimension.values, dataset.packing_fraction.values, strict=True)))
@@ -120,10 +120,10 @@ def frontier(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def time_to_accuracy(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """What a wanted accuracy costs in gases that the model does not know, measured and by the model.
+    """The cost of a required accuracy in gases that the model was not fitted to, measured and by the model.
 
     points: as for `speed_accuracy`, of gases that are not in the model's table; and timings of its reference
-    gas, which carry the table's times over to this machine. settings: ``counts`` of bodies, ``accuracies``.
+    gas, which scale the table's times to this machine. settings: ``counts`` of particles, ``accuracies``.
 
     Over (``gas``, ``observable``, ``count``, ``accuracy``, ``engine``): ``measured`` and ``model``, processor
     time in s of the cheapest setting (see `gaspart.tradeoff.advice`), NaN where there is none. Without
@@ -242,7 +242,8 @@ def _orders(row: dict, largest: float) -> list[tuple[float, float]]:
 
 
 def _steady(point: grid.Point, rows: list[dict]) -> dict:
-    """Z in a long run of the time-stepped engine, beside the exact Z of the paired runs with their error."""
+    """Z in a long run of the time-stepped engine, compared with the exact Z of the paired runs with their
+    error."""
     own = point.settings
     long = pressure(point)
     name = setting_name(own.get("rewind", True), own.get("passes", 4), own.get("precision", "float64"))

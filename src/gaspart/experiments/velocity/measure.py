@@ -1,8 +1,8 @@
 """The velocity autocorrelation: its start, exponential, and its long-time tail, a power of time.
 
-Everything is in reduced units: the bodies' diameter, mass and temperature are 1; s, the clock, is time in
-Enskog's collisions of a body. The runs' total momentum is taken out, leaving velocities u about the centre of
-mass; where momentum is free (canonical) one has the centre's own beside, which does not decay:
+Everything is in reduced units: the particles' diameter, mass and temperature are 1; s is time in Enskog's
+collisions of a particle. The runs' total momentum is subtracted, leaving velocities u relative to the centre
+of mass; where momentum is free (canonical) one has the centre's own beside, which does not decay:
 
     C(t) = 1/N + <u(0).u(t)> / (d k_B T),    k_B T = m <u^2> / d * N / (N-1) .
 
@@ -27,8 +27,8 @@ from gaspart.trajectory.run import open_trajectory
 def velocity_autocorrelation(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """C(t) of every point, the rate of its start and the amplitude and exponent of its tail.
 
-    settings: `start_to`, collisions of a body up to which -ln C is fitted by a line and a parabola, where it
-    is sampled that often; `tail`, from and to which the tail is fitted of all other points.
+    settings: `start_to`, collisions of a particle up to which -ln C is fitted by a line and a parabola, where
+    it is sampled that often; `tail`, from and to which the tail is fitted of all other points.
 
     Returns over `point` and `lag` (NaN beyond a point's own): collisions s, time, correlation and its error;
     over `point`: dimension, packing_fraction, count, sound (s at which it has crossed the container),

@@ -23,14 +23,14 @@ def virial_spheres(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 
 def equation_of_state(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """Z against packing fraction of one dimension, beside the reference, and fits of B2, B3, B4.
+    """Z against packing fraction of one dimension, with the reference, and fits of B2, B3, B4.
 
     settings: `fits`, a list of mappings {free: highest coefficient left free, up_to: largest packing fraction
     used, held: bool} (see `fit_coefficients`), the first of them being the one that is claimed.
 
     Returns over `packing_fraction` (ascending): Z and Z_error, corrected to the infinite system by adding
     -finite_size; finite_size; poisson_error, (Z-1)/sqrt(collisions); reference, reference_error;
-    collision_rate with its error, over Enskog's for N bodies; replica_chi_square and
+    collision_rate with its error, over Enskog's for N particles; replica_chi_square and
     replica_degrees_of_freedom; correlation (in samples); flat; collisions, count. Over `fit` and `order`:
     coefficient and coefficient_error (in powers of the packing fraction; NaN where it was not free), exact;
     over `fit`: free, up_to, held, chi_square, degrees_of_freedom, held_error (`order`, `fit`).

@@ -1,6 +1,6 @@
-"""Pressure from the momentum that bodies give to the walls of their container.
+"""Pressure from the momentum transferred to the walls of the container.
 
-Everything is in reduced units: the bodies' diameter, mass and temperature are 1. Along a periodic axis the
+Everything is in reduced units: the particles' diameter, mass and temperature are 1. Along a periodic axis the
 total momentum is conserved: the temperature is that of the motion about it, k_B T = 2 E' / (d N - p) with p
 periodic axes.
 """
@@ -18,12 +18,12 @@ from gaspart.trajectory.run import open_trajectory
 
 
 def wall_pressure(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """The pressure on the walls of containers that have them on some or all axes, beside theory for each.
+    """The pressure on the walls of containers that have them on some or all axes, with theory for each.
 
     Returns over `point`: pressure with its error, the mean force on a wall over the area that centres can
-    touch; whole_pressure, the same force over the whole area of the wall; bulk_pressure, of an infinite fluid
-    with as many bodies per volume of the container; expected with its error, what theory says of this
-    container; density, bodies per volume of the container, and packing_fraction; temperature, with force, the
+    touch; whole_pressure, the same force over the full area of the wall; bulk_pressure, of an infinite fluid
+    with as many particles per volume of the container; expected with its error, theory for this container;
+    density, particles per volume of the container, and packing_fraction; temperature, with force, the
     pressure in the scene's own units, and its error; hits; count, dimension, axes with walls, length along
     them. Raises SceneError for containers without walls, or with walled sides of several lengths.
     """
