@@ -1,4 +1,4 @@
-"""Malformed input: valid scenes, configs and texts that hypothesis changes."""
+"""Malformed input: valid scenes, configs and texts that hypothesis mutates."""
 
 import copy
 import itertools
@@ -13,7 +13,8 @@ import numpy as np
 from hypothesis import strategies as st
 
 from gaspart.errors import SceneError
-from gaspart.yaml_text import dump_yaml, read_yaml
+from gaspart.planning.keys import POINT
+from gaspart.yaml_text import dump_yaml
 
 ROOT = Path(__file__).parents[1]
 LIMIT = 2.0
@@ -162,11 +163,10 @@ SIZES += [1e-60, 1e60, 1e-30, 1e30, 1e-20, 1e20, 2.0, 5.0]
 def extreme_configs(draw):
     """Configs whose points hold any keys, with values that the schema allows: planning has to refuse them."""
     config = copy.deepcopy(draw(st.sampled_from(configs())))
-    schema = _rules()
     (block,) = config["experiments"].values()
     for _ in range(draw(st.integers(1, 4))):
-        key = draw(st.sampled_from([*schema, "count", "radius", "side", "packing_fraction"]))
-        values = [draw(_allowed(schema[key])) for _ in range(2)]
+        key = draw(st.sampled_from([*POINT, "count", "radius", "side", "packing_fraction"]))
+        values = [draw(_allowed(POINT[key])) for _ in range(2)]
         grid = block.get("grid")
         if isinstance(grid, dict) and draw(st.booleans()):
             grid[key] = values
@@ -220,11 +220,6 @@ def planned_configs(draw):
         "experiments": {"gas": experiment},
         "figures": figures,
     }
-
-
-@cache
-def _rules():
-    return read_yaml(ROOT / "src/gaspart/config.schema.yaml")["$defs"]["point"]["properties"]
 
 
 def _allowed(rule):

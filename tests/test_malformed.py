@@ -13,7 +13,7 @@ from gaspart.engines import engine_from_dict
 from gaspart.errors import SceneError
 from gaspart.experiments.config import check
 from gaspart.scene.faces import Sticky, Thermal, Well
-from gaspart.scene.matter import Plate, box_of_walls
+from gaspart.scene.walls import Plate, box_of_walls
 from gaspart.yaml_text import dump_yaml
 
 VALID = {
@@ -88,7 +88,7 @@ def test_the_kind_of_a_face_and_of_an_engine_is_text():
 
 def test_a_scene_of_more_bodies_than_can_be_numbered_is_refused():
     kinds = [gp.Species(2**31 - 1, 1e-6), gp.Species(1, 1e-6)]
-    with pytest.raises(SceneError, match="count = 2147483648: there may be 2147483647 bodies"):
+    with pytest.raises(SceneError, match="count = 2147483648: there may be 2147483647 particles"):
         gp.Scene(gp.Container((1e5, 1e5)), kinds)
 
 

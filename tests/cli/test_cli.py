@@ -153,7 +153,7 @@ def test_a_broken_invariant_is_exit_code_1_and_ctrl_c_130(folder, capsys, monkey
         (MemoryError(), 1, "not enough memory"),
         (OSError(5, "Input/output error", "run.nc"), 1, "run.nc: Input/output error"),
     ):
-        monkeypatch.setattr("gaspart.trajectory.run", lambda *_, error=error, **__: throw(error))
+        monkeypatch.setattr("gaspart.trajectory.run.run", lambda *_, error=error, **__: throw(error))
         assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY]) == code
         told = capsys.readouterr().err
         assert text in told and told.count("\n") == 1
@@ -268,7 +268,8 @@ def test_advice_names_engine_length_cost_and_reason(folder, capsys):
 
 def test_what_a_config_costs(folder, capsys):
     (folder / "config.yaml").write_text(
-        "seed: 1\nexperiments:\n  gas:\n    point: {dimension: 3, count: 500, radius: 0.5, "
+        "title: a gas\nseed: 1\npoints: results/points\nfigures: {gas_render: {experiments: [gas]}}\n"
+        "experiments:\n  gas:\n    point: {dimension: 3, count: 500, radius: 0.5, "
         "packing_fraction: 0.1, boundary: periodic, temperature: 1.0, engine: auto, accuracy: 0.01}\n"
     )
     assert main(["advise", "--config", "config.yaml"]) == 0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.engines.clock_epochs import QUIET, lap_length, quiet_lap
+from gaspart.engines.clock_epochs import QUIET, epoch_length, quiet_epoch
 
 
 def alone(side, restitution=None, radius=0.5, velocity=(1.0, 0.3), boundary="wall"):
@@ -62,12 +62,12 @@ def test_a_run_in_which_nothing_can_happen_is_given_up():
 def test_laps_follow_large_changes_only():
     scene = alone(5.0)
     velocities = np.array([[1.0, 0.3]])
-    first = lap_length(scene, velocities, 1.0)
+    first = epoch_length(scene, velocities, 1.0)
     assert np.frexp(first)[0] == 0.5
     for factor, kept in ((2.0**-9, True), (2.0**9, True), (2.0**-11, False), (2.0**11, False)):
-        assert (lap_length(scene, factor * velocities, 1.0, first) == first) == kept
-    assert lap_length(scene, 0.0 * velocities, 1.0) == lap_length(scene, 1e-300 * velocities, 1.0)
-    assert quiet_lap(scene, velocities, 1.0, first, 10_000) == first  # longer than a flight through it
+        assert (epoch_length(scene, factor * velocities, 1.0, first) == first) == kept
+    assert epoch_length(scene, 0.0 * velocities, 1.0) == epoch_length(scene, 1e-300 * velocities, 1.0)
+    assert quiet_epoch(scene, velocities, 1.0, first, 10_000) == first  # longer than a flight through it
     vast = alone(1e9)
-    found = [quiet_lap(vast, velocities, 1.0, first, quiet) for quiet in (0, QUIET, QUIET + 3, 10_000)]
+    found = [quiet_epoch(vast, velocities, 1.0, first, quiet) for quiet in (0, QUIET, QUIET + 3, 10_000)]
     assert found[:3] == [first, first, 8.0 * first] and 1e9 / 1.1 < found[3] < 4e9

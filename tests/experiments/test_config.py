@@ -15,8 +15,8 @@ from malformed import one_line
 
 from gaspart.errors import SceneError
 from gaspart.experiments.config import check, laid_over
+from gaspart.experiments.cost import predict
 from gaspart.inspection.written import judge_config
-from gaspart.planning.advised import predict
 from gaspart.yaml_text import dump_yaml, read_yaml
 
 ROOT = Path(__file__).parents[2]
@@ -200,7 +200,7 @@ def test_a_scene_without_bodies_has_no_points(tmp_path):
     config = copy.deepcopy(GOOD)
     point = {"scene": str(tmp_path / "empty.yaml"), "duration": 1.0, "boxes_per_body": 1.0}
     config["experiments"]["gas"] = {"point": point}
-    with pytest.raises(SceneError, match="needs at least one body"):
+    with pytest.raises(SceneError, match="needs at least one particle"):
         check(config)
 
 

@@ -7,7 +7,10 @@ import pytest
 from gaspart.experiments import cost
 
 GASES = """
+title: gases
 seed: 1
+points: results/points
+figures: {gas_render: {experiments: [gas]}}
 experiments:
   gas:
     point: &gas {dimension: 3, count: 1000000, radius: 0.5, boundary: periodic, speed: 1.0, duration: 100}

@@ -1,5 +1,6 @@
 """Scenes: what they refuse, in one line, and that a file gives back what was written."""
 
+import dataclasses
 import math
 import time
 
@@ -170,8 +171,8 @@ HOLED = {"x_low": gp.Well(1.0, 2.0), "x_high": gp.Well(1.0, 2.0)}
         (lambda: gp.Plate((1.0, 1.0, 1.0), ((1.0, 0.0, 0.0),)), "edges = .*: must be two lists of 3"),
         (lambda: gp.Plate((1.0, 1.0, 1.0), ((1, 0, 0), (0, 0, 0))), "must have a length and a width"),
         (lambda: gp.Plate((1.0, 1.0, 1.0), ((1, 0, 0), (1, 1, 0))), "must be at right angles"),
-        (lambda: gp.Body((1.0, 1.0), (1.0, 0.0), 0.5, fixed=True), "a fixed body has none"),
-        (lambda: gp.Body((1.0, 1.0), (0.0, 0.0), 0.5, vibration=1.0), "only a fixed body vibrates"),
+        (lambda: gp.Body((1.0, 1.0), (1.0, 0.0), 0.5, fixed=True), "a fixed particle has none"),
+        (lambda: gp.Body((1.0, 1.0), (0.0, 0.0), 0.5, vibration=1.0), "only a fixed particle vibrates"),
         (lambda: gp.Species(1, 1e70), "choose other units"),
         (lambda: gp.TimeStepped(0.1, skin=0.1, boxes_per_side=3), "skin = 0.1: excludes boxes_per_side"),
         (lambda: gp.TimeStepped(0.1, near_boxes=True), "needs boxes_per_side"),
@@ -186,3 +187,23 @@ def test_what_is_made_in_python_is_refused_in_one_line_too(make, complaint):
     with pytest.raises(gp.SceneError, match=complaint) as caught:
         make()
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        gp.Scene,
+        gp.Container,
+        gp.Species,
+        gp.Body,
+        gp.Restitution,
+        gp.Wall,
+        gp.Plate,
+        gp.Thermal,
+        gp.Well,
+        gp.Sticky,
+    ],
+)
+def test_every_field_of_a_scene_has_a_rule_and_a_meaning(kind):
+    for item in dataclasses.fields(kind):
+        assert item.metadata["rule"].kind and item.metadata["meaning"], item.name

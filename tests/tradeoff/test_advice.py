@@ -6,8 +6,10 @@ import pytest
 
 from gaspart import theory
 from gaspart.errors import SceneError
-from gaspart.scene.matter import Restitution
-from gaspart.scene.scene import Container, Scene, Species
+from gaspart.scene.container import Container
+from gaspart.scene.restitution import Restitution
+from gaspart.scene.scene import Scene
+from gaspart.scene.species import Species
 from gaspart.tradeoff import speed, table
 from gaspart.tradeoff.advice import QUANTILE, SETTLING, advise
 

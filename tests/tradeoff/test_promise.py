@@ -10,7 +10,9 @@ import pytest
 from gaspart import theory
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SceneError
-from gaspart.scene.scene import Container, Scene, Species
+from gaspart.scene.container import Container
+from gaspart.scene.scene import Scene
+from gaspart.scene.species import Species
 from gaspart.simulation.simulation import Simulation
 from gaspart.tradeoff import table
 from gaspart.tradeoff.advice import QUANTILE, SETTLING, advise

@@ -19,6 +19,8 @@ def workspace(tmp_path_factory):
     copy = copy_of_project(tmp_path_factory.mktemp("a new figure"))
     blocks = list(BLOCK.finditer((ROOT / "docs/adding-a-figure.md").read_text(encoding="utf-8")))
     assert len(blocks) == 8
+    places = {re.sub("/collisions/.*", "/collisions", block["path"]) for block in blocks}
+    assert len(places) == 4  # the family's folder, two configs and a caption
     for block in blocks:
         file = copy.path / block["path"]
         if block["after"] is None:

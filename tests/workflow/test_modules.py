@@ -18,6 +18,7 @@ LAYERS = [  # a module imports only from the packages above its own
     {"interruption"},
     {"files"},
     {"yaml_text"},
+    {"kinds"},
     {"scene"},
     {"kernels"},
     {"state"},

@@ -1,4 +1,4 @@
-# What the rules share: the checked config, the points of its grids, and which modules each stage is made of.
+# Shared by the rules: the validated config, the points of its grids, and the modules of each stage.
 
 import os
 import shlex
@@ -23,7 +23,7 @@ from gaspart.planning.points import points
 from gaspart.planning.variants import task, variant
 from gaspart.errors import SceneError
 
-# A job on a cluster reads this file again, but need not judge ten thousand points again.
+# A job on a cluster reads this file again, but need not validate ten thousand points again.
 if workflow.is_main_process:
     try:
         files = ["config/config.yaml", *workflow.overwrite_configfiles]
@@ -31,8 +31,8 @@ if workflow.is_main_process:
         for kept in ("results", ".snakemake"):
             folder = kept if os.path.exists(kept) else "."
             if not os.access(folder, os.W_OK):
-                told = f"this user may not write to it, where the workflow keeps {kept}"
-                raise SceneError("folder", os.path.abspath(folder), told)
+                rule = f"this user may not write to it, where the workflow keeps {kept}"
+                raise SceneError("folder", os.path.abspath(folder), rule)
     except SceneError as error:
         # A user's mistake: one line and exit code 2, instead of a WorkflowError with its place in this file.
         print(f"gaspart: {error}", file=sys.stderr)
@@ -47,7 +47,7 @@ POINTS = {
 
 
 def share(paths):
-    """What is this process's of them, where several share the work: GASPART_SHARE is k/n, k from 1; or all."""
+    """The part of this process where several share the work (GASPART_SHARE is k/n, k from 1); else all."""
     number, of = map(int, os.environ.get("GASPART_SHARE", "1/1").split("/"))
     return paths[number - 1 :: of]
 
@@ -94,7 +94,7 @@ def cores_of(wildcards):
 
 
 def memory_of(wildcards):
-    """MB for one simulation: the interpreter, and what each body costs."""
+    """MB for one simulation: the interpreter, and the memory of each particle."""
     return 800 + grid.extents(point_of(wildcards))[0] // 1000
 
 
@@ -113,7 +113,7 @@ def flagged(path, kind):
     )
 
 
-# A digest of the modules that a stage is made of, found from its imports, is a parameter of its rules.
+# A digest of the modules of a stage, found from its imports, is a parameter of its rules.
 PARTS = {"measure": "measure", "judge": "claims", "draw": "figure"}
 
 
@@ -138,7 +138,7 @@ def stamp_of(wildcards):
 
 
 def task_of(wildcards):
-    """What compiles a variant: a tiny run of the first point that needs it."""
+    """The task that compiles a variant: a tiny run of the first point that needs it."""
     of_all = (point for experiment in POINTS.values() for point in experiment.values())
     return next(
         task(point) for point in of_all if variant_of(point.experiment, point.name) == wildcards.variant

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.scene.faces import FACES, Sticky, Thermal, Well
-from gaspart.scene.matter import Restitution
+from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene
 from gaspart.state.insertion import per_body
 from gaspart.state.interior_walls import wall_rows, walls_near

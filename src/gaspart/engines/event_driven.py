@@ -20,6 +20,7 @@ from gaspart.engines.stalling import MANY, check_progress
 from gaspart.errors import SceneError, SimulationError
 from gaspart.kernels.memory import aligned
 from gaspart.scene.scene import Scene
+from gaspart.scene.validation import choice
 from gaspart.state.boxes import check_boxes_per_side
 from gaspart.state.oversized import boxes_and_largest
 from gaspart.state.state import State
@@ -60,8 +61,7 @@ class EventDriven:
     name: ClassVar[Literal["event"]] = "event"
 
     def __post_init__(self) -> None:
-        if self.search not in SEARCHES:
-            raise SceneError("search", self.search, f"must be one of {SEARCHES}")
+        choice("search", self.search, SEARCHES)
         if self.search != "boxes" and self.boxes_per_side is not None:
             raise SceneError("boxes_per_side", self.boxes_per_side, 'needs search "boxes"')
         if self.boxes_per_side is not None:

@@ -21,8 +21,8 @@ from gaspart.engines.step_limits import (
     rules_for,
 )
 from gaspart.errors import SceneError
-from gaspart.scene.scene import Scene, count_of, number
-from gaspart.scene.validation import choice
+from gaspart.scene.scene import Scene
+from gaspart.scene.validation import choice, count_of, number
 from gaspart.state.boxes import check_boxes_per_side
 from gaspart.state.state import State
 from gaspart.state.tally import Tally

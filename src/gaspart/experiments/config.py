@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from gaspart.errors import SceneError
-from gaspart.experiments.registry import families
-from gaspart.planning import grid
+from gaspart.experiments.schema import schema
+from gaspart.kinds import Kind
+from gaspart.planning import grid, keys
 from gaspart.planning.overlay import laid_over
-from gaspart.planning.point_scene import PREFIX
 from gaspart.planning.points import figure_points, points
 from gaspart.scene.validation import finite, size
 from gaspart.yaml_text import DEEPEST, MOST_VALUES, read_yaml
@@ -21,9 +21,9 @@ from gaspart.yaml_text import DEEPEST, MOST_VALUES, read_yaml
 
 @contextmanager
 def checked(path: str | Path) -> Iterator[dict[str, Any]]:
-    """The valid config of a file, in the folder where its scene files are looked for.
+    """The valid config of a file, with its scene folder as the working directory.
 
-    That folder is where the workflow runs, for a file in a folder named `config`; else that of the file.
+    The scene folder is the folder above a file in a folder named `config`; else the folder of the file.
     Raises SceneError.
     """
     merged, files = laid_over(Path(path))
@@ -31,11 +31,6 @@ def checked(path: str | Path) -> Iterator[dict[str, Any]]:
     with chdir(folder.parent if folder.name == "config" else folder):
         check(merged, files)
         yield merged
-
-
-@cache
-def _schema() -> dict[str, Any]:
-    return read_yaml(Path(__file__).with_name("config.schema.yaml"))
 
 
 def check(config: dict, files: Sequence[str | Path] = ()) -> None:
@@ -47,14 +42,10 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> None:
     contents = [(str(file), read_yaml(file)) for file in files]
     try:
         _check_values(config)
-        _against(_schema(), config, "")
+        _against(schema(), config, "")
         for experiment in config["experiments"]:
             _experiment(config, experiment)
         for figure in config["figures"]:
-            if figure not in families():
-                raise SceneError(
-                    f"figures.{figure}", figure, f"no such figure; known are {', '.join(sorted(families()))}"
-                )
             figure_points(config, figure)
         for animation, block in config.get("animations", {}).items():
             _animation(config, animation, block)
@@ -64,7 +55,7 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> None:
 
 def _check_values(config: object) -> None:
     """Raise SceneError unless a config is a tree of mappings, lists and plain values, not too deep and not
-    too large, whose numbers are finite and of a size that can be calculated with."""
+    too large, whose numbers are finite and neither too large nor too small to compute with."""
     left = [("", config, 0)]  # a stack, lest a deep config exhaust Python's own
     for count in range(MOST_VALUES):
         if not left:
@@ -91,7 +82,7 @@ def _check_values(config: object) -> None:
 
 
 def _animation(config: dict, animation: str, block: dict | None) -> None:
-    """A film is of trajectories, which an experiment of the config makes."""
+    """Refuse a film of an experiment that the config does not have, or that makes no trajectories."""
     experiment = block["experiment"] if block else None
     kinds = {name: made.get("job", "simulate") for name, made in config["experiments"].items()}
     if block and kinds.get(experiment) != "simulate":
@@ -100,27 +91,26 @@ def _animation(config: dict, animation: str, block: dict | None) -> None:
 
 
 def _experiment(config: dict, experiment: str) -> None:
-    """The values of the grid, one by one, then every point as the scene and the engine it makes."""
-    rules = _schema()["$defs"]["point"]["properties"]
+    """Validate the values of the grid, one by one, then the scene and the engine of every point."""
     where = f"experiments.{experiment}"
     for key, value in _grid_values(config["experiments"][experiment].get("grid")):
-        if key.startswith(PREFIX):  # a value of a scene file, which the scene judges
+        if key.startswith(keys.PREFIX):  # a value of a scene file, which the scene validates
             continue
-        if key not in rules:
-            raise SceneError(f"{where}.grid.{key}", value, f"unknown key; known are {', '.join(rules)}")
-        _against(rules[key], value, f"{where}.grid.{key}")
+        if key not in keys.POINT:
+            raise SceneError(f"{where}.grid.{key}", value, f"unknown key; known are {', '.join(keys.POINT)}")
+        _against(keys.POINT[key], value, f"{where}.grid.{key}")
     for point in points(config, experiment):
         grid.check(point)
         try:
             grid.recipe(point)
         except SceneError as error:
-            told = error.file or error.key.startswith(where)
-            raise error if told else error.inside(f"{where}[{point.name}]") from None
+            located = error.file or error.key.startswith(where)
+            raise error if located else error.inside(f"{where}[{point.name}]") from None
 
 
 @cache
 def _validator() -> Any:
-    """JSON schema's, with a test for uniqueness whose time does not grow with the square of a list."""
+    """The validator of JSON schemas, with a test for uniqueness in a time linear in the length of a list."""
     from jsonschema import Draft202012Validator, ValidationError
     from jsonschema.validators import extend
 
@@ -132,11 +122,11 @@ def _validator() -> Any:
     return extend(Draft202012Validator, {"uniqueItems": unique})
 
 
-def _against(rule: dict, value: object, where: str) -> None:
-    """Raise SceneError for the most telling way in which ``value`` breaks ``rule``, a part of the schema."""
+def _against(kind: Kind, value: object, where: str) -> None:
+    """Raise SceneError with the most relevant rule of a part of the schema that ``value`` breaks."""
     from jsonschema.exceptions import best_match
 
-    error = best_match(_validator()({**rule, "$defs": _schema()["$defs"]}).iter_errors(value))
+    error = best_match(_validator()(kind).iter_errors(value))
     if error is None:
         return
     key = ".".join(part for part in (where, *(str(part) for part in error.absolute_path)) if part)
@@ -173,12 +163,12 @@ def _rule(validator: str, wanted: Any) -> str:
         "maxLength": "must have this many characters at most:",
         "pattern": "must match",
     }
-    told = "" if validator == "uniqueItems" else f" {wanted}"
-    return words.get(validator, f"breaks the schema's {validator}:") + told
+    bound = "" if validator == "uniqueItems" else f" {wanted}"
+    return words.get(validator, f"breaks the schema's {validator}:") + bound
 
 
 def _grid_values(block: Any) -> Iterator[tuple[str, object]]:
-    """Every (key, value) that a grid holds; an empty list is left to gaspart.planning to refuse."""
+    """Every (key, value) that a grid holds; an empty list is refused by gaspart.planning."""
     if isinstance(block, list):
         for part in block:
             yield from _grid_values(part)

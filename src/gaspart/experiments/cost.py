@@ -18,7 +18,7 @@ from gaspart.tradeoff.advice import Gas, plain_gas
 def predict(path: str) -> list[str]:
     """Lines with the core-hours of each experiment of a config, and of all, on this machine.
 
-    A config beside `config.yaml` is laid over that, as the workflow does. Raises SceneError.
+    A config beside `config.yaml` is merged over that, as in the workflow. Raises SceneError.
     """
     lines, total, unknown = [], 0.0, []
     with checked(path) as config:
@@ -38,7 +38,8 @@ def predict(path: str) -> list[str]:
 
 
 def _seconds(point: Point) -> float | None:
-    """Processor time of a point's simulations, from theory's contacts; None where neither is known."""
+    """Processor time of a point's simulations, from the theoretical number of contacts; None where it is
+    unknown."""
     if point.job != "simulate":
         return None
     scene = grid.scene(point)
@@ -47,7 +48,7 @@ def _seconds(point: Point) -> float | None:
     except SceneError:
         return None
     engine = grid.engine(point)
-    # Where discs or spheres freeze, the pressure stays as it is: so nearly does the number of contacts.
+    # Where discs or spheres freeze, the pressure is constant, and the number of contacts nearly so.
     densest = theory.HIGHEST_PACKING_FRACTION[gas.dimension]
     fluid = replace(gas, packing_fraction=min(gas.packing_fraction, densest))
     contacts = 0.5 * gas.count * fluid.collision_rate * grid.schedule(point).duration * point.replicas
@@ -67,5 +68,5 @@ def _seconds(point: Point) -> float | None:
 
 
 def _speed(gas: Gas, engine: str, precision: str) -> float:
-    """By powers of ten of the number of bodies, so that few sizes are timed."""
+    """Relative speed at the nearest power of ten of the number of particles, so that few sizes are timed."""
     return speed.factor(gas.dimension, engine, precision, 10 ** round(math.log10(max(gas.count, 10))))

@@ -1,7 +1,8 @@
 """The figures, by family: found in the folders of this package.
 
 The folder of a family states its `TITLE` and its `FIGURES` in `__init__.py`, which imports nothing heavy, and
-holds a function of the name of each figure in `measure.py`, `claims.py` and `figure.py`.
+holds a function of the name of each figure in `measure.py`, `claims.py` and `figure.py`. `FIGURES` declares
+the settings of each figure: the kind of each key, with its meaning.
 """
 
 from __future__ import annotations
@@ -9,19 +10,29 @@ from __future__ import annotations
 from functools import cache
 from importlib import import_module
 from pathlib import Path
+from types import ModuleType
+
+from gaspart.kinds import Kind
 
 
 @cache
+def _packages() -> dict[str, ModuleType]:
+    """The package of each family, in alphabetical order."""
+    names = sorted(path.parent.name for path in Path(__file__).parent.glob("*/figure.py"))
+    return {name: import_module(f"gaspart.experiments.{name}") for name in names}
+
+
 def titles() -> dict[str, str]:
     """The title of each family, in alphabetical order of the families."""
-    folder = Path(__file__).parent
-    names = sorted(path.parent.name for path in folder.glob("*/figure.py"))
-    return {name: import_module(f"gaspart.experiments.{name}").TITLE for name in names}
+    return {name: package.TITLE for name, package in _packages().items()}
 
 
 @cache
 def families() -> dict[str, str]:
     """The family of each figure."""
-    return {
-        figure: name for name in titles() for figure in import_module(f"gaspart.experiments.{name}").FIGURES
-    }
+    return {figure: name for name, package in _packages().items() for figure in package.FIGURES}
+
+
+def settings() -> dict[str, dict[str, Kind]]:
+    """The settings of each figure's measurement."""
+    return {figure: keys for package in _packages().values() for figure, keys in package.FIGURES.items()}

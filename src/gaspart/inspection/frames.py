@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.scene.scene import Container
+from gaspart.scene.container import Container
 
 
 @dataclass(frozen=True)

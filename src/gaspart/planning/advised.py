@@ -6,13 +6,11 @@ import math
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
+from gaspart.planning import keys
 from gaspart.tradeoff import speed
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
-
-WANTED = ("accuracy", "observable")
-"""Keys of a point that go with `engine: auto`."""
 
 
 def chosen(settings: dict, scene: Scene, where: str) -> dict:
@@ -32,10 +30,12 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
     except SceneError as error:
         raise error.inside(where) from None
     engine = found.setting.engine
-    made = {key: value for key, value in settings.items() if key not in WANTED} | {"engine": engine.name}
+    made = {key: value for key, value in settings.items() if key not in keys.ENGINES["auto"]} | {
+        "engine": engine.name
+    }
     if engine.name == "step":
         made |= {"time_step": engine.time_step, "precision": engine.precision}
-    if not {"collisions_per_body", "duration", "steps"} & set(settings):
+    if not keys.LENGTHS.keys() & settings.keys():
         made["collisions_per_body"] = math.ceil(found.collisions_per_body)
         made.setdefault("replicas", found.replicas)
         made.setdefault("equilibration", SETTLING)

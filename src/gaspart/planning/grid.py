@@ -1,6 +1,6 @@
-"""From a point of a grid to what its job needs: engine, schedule, recipe.
+"""Engine, schedule and recipe of a point of a grid.
 
-Planning a workflow reads every point of every grid, so nothing heavy is imported here before it is needed.
+Planning a workflow reads every point of every grid, so slow imports are made inside functions.
 """
 
 from __future__ import annotations
@@ -10,32 +10,15 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
+from gaspart.planning.keys import ENGINES, LENGTHS, SCANS
 from gaspart.planning.point import Point
 from gaspart.planning.point_scene import check_scene, extents, scene
 from gaspart.scene.validation import LARGEST, SMALLEST
 
 if TYPE_CHECKING:
     from gaspart.engines import EventDriven, TimeStepped
-    from gaspart.scene.matter import Species
     from gaspart.scene.scene import Scene
-
-LENGTHS = ("collisions_per_body", "duration", "steps")
-ENGINE_KEYS = {
-    "event": ("search", "boxes_per_side", "boxes_per_body"),
-    "step": (
-        "time_step",
-        "boxes_per_side",
-        "boxes_per_body",
-        "near_boxes",
-        "precision",
-        "rewind",
-        "passes",
-        "skin",
-        "threads",
-    ),
-}
-SCANS = ("scan_boxes_per_side", "scan_boxes_per_body", "scan_time_steps")
-
+    from gaspart.scene.species import Species
 
 _MOST_INTERVALS = 2.0**53  # above, float64 does not distinguish their numbers
 
@@ -51,12 +34,12 @@ class Schedule:
 
     @property
     def equilibration(self) -> float:
-        """The time before the measured stretch."""
+        """The time before the measurement."""
         return self.equilibration_frames * self.sample_interval
 
 
 def check(point: Point) -> None:
-    """Refuse settings that contradict each other, with SceneError; the cheap part, needing no scene."""
+    """Refuse settings that contradict each other, with SceneError; the cheap part, without a scene."""
     settings, where = point.settings, f"experiments.{point.experiment}"
     check_scene(point)
     if point.job == "fill":
@@ -71,8 +54,8 @@ def check(point: Point) -> None:
     engine = settings.get("engine", "event")
     if engine == "step" and "time_step" not in settings:
         raise SceneError(f"{where}.time_step", None, "must be given with engine: step")
-    for key in set().union(*ENGINE_KEYS.values()) - set(ENGINE_KEYS[engine]):
-        if key in settings:
+    for key in (*ENGINES["event"], *ENGINES["step"]):
+        if key in settings and key not in ENGINES[engine]:
             raise SceneError(f"{where}.{key}", settings[key], f"has no meaning with engine: {engine}")
     if settings.get("record_events") and (point.job, engine) != ("measure_cost", "event"):
         rule = "has a meaning with job: measure_cost and engine: event only"
@@ -89,12 +72,12 @@ def check(point: Point) -> None:
 
 
 def engine(point: Point) -> EventDriven | TimeStepped:
-    """The point's engine: ``EventDriven`` or ``TimeStepped``. Raises SceneError."""
+    """The point's engine. Raises SceneError."""
     from gaspart.engines import EventDriven, TimeStepped
 
     check(point)
     name = point.settings.get("engine", "event")
-    chosen = {key: point.settings[key] for key in ENGINE_KEYS[name] if key in point.settings}
+    chosen = {key: point.settings[key] for key in ENGINES[name] if key in point.settings}
     if isinstance(chosen.get("boxes_per_side"), list):
         chosen["boxes_per_side"] = tuple(chosen["boxes_per_side"])
     count, radius, lengths = extents(point)
@@ -105,7 +88,7 @@ def engine(point: Point) -> EventDriven | TimeStepped:
     if len(sides) != len(lengths):
         raise SceneError("boxes_per_side", given, "must be one number, or one per axis")
     for length, boxes in zip(lengths, sides, strict=True):
-        if boxes > 1 and length / boxes < 2.0 * radius:  # told here already, before any job starts
+        if boxes > 1 and length / boxes < 2.0 * radius:  # found before any job starts
             rule = f"boxes must not be narrower than the largest diameter, {2.0 * radius:g}"
             raise SceneError("boxes_per_side", given, rule)
     return EventDriven(**chosen) if name == "event" else TimeStepped(**chosen)
@@ -138,16 +121,17 @@ def engines(point: Point) -> list:
 
 
 def boxes_per_side(per_body: float, count: int, radius: float, lengths: tuple[float, ...]) -> tuple[int, ...]:
-    """(d,) boxes per axis: nearly cubic ones, ``per_body`` for each body, none smaller than a diameter."""
+    """(d,) boxes per axis: nearly cubic ones, ``per_body`` for each particle, none smaller than a
+    diameter."""
     edge = (math.prod(lengths) / (per_body * count)) ** (1.0 / len(lengths))
     return tuple(max(1, min(round(length / edge), int(length / (2.0 * radius)))) for length in lengths)
 
 
 def schedule(point: Point) -> Schedule:
-    """Duration and sampling of a point's runs, whatever unit its length is given in.
+    """Duration and sampling of a point's runs, in the scene's time.
 
     The length is divided into ``samples`` intervals (whole time steps with the step engine); the
-    equilibration, rounded up to whole intervals, goes before it.
+    equilibration, rounded up to complete intervals, precedes it.
     """
     check(point)
     settings, where = point.settings, f"experiments.{point.experiment}"
@@ -170,7 +154,8 @@ def schedule(point: Point) -> Schedule:
 
 
 def recipe(point: Point) -> dict:
-    """All that the point's job needs, in plain values: what its result depends on, and nothing else."""
+    """The parameters of the point's job, in plain values: all that its result depends on, and nothing
+    else."""
     check(point)
     made = {
         "scene": scene(point).to_dict(),
@@ -185,7 +170,7 @@ def recipe(point: Point) -> dict:
     times = schedule(point)
     follow, count = point.settings.get("follow"), extents(point)[0]
     if follow is not None and follow > count:
-        raise SceneError(f"experiments.{point.experiment}.follow", follow, f"there are {count} bodies")
+        raise SceneError(f"experiments.{point.experiment}.follow", follow, f"there are {count} particles")
     if point.job in ("measure_cost", "compare"):
         recording = (
             {"record": point.settings.get("record_events", False)} if point.job == "measure_cost" else {}
@@ -227,7 +212,7 @@ def _unit_of_time(point: Point, unit: str) -> float:
     key, given = f"experiments.{point.experiment}.collisions_per_body", point.settings[unit]
     kind = _only_species(scene(point))
     if kind is None:
-        rule = "is known for one species of smooth bodies alone, without gravity or obstacles; give duration"
+        rule = "is known only for one species of smooth particles without gravity or obstacles; give duration"
         raise SceneError(key, given, rule)
     count, radius, lengths = extents(point)
     dimension = len(lengths)
@@ -248,7 +233,7 @@ def _unit_of_time(point: Point, unit: str) -> float:
 
 
 def _only_species(made: Scene) -> Species | None:
-    """The species of a scene that holds nothing else; None if there is more to it."""
+    """The species of a scene of one species and nothing else; None for any other scene."""
     from gaspart.scene.scene import Scene
 
     kinds = made.species

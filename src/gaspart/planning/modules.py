@@ -1,8 +1,8 @@
-"""Which modules each stage of the workflow is made of, found from their imports.
+"""Modules of each stage of the workflow, found from their imports.
 
-A digest of these modules is a parameter of the stage's rules: editing one reruns what it touches, and nothing
-else. As inputs they would be half a million files for ten thousand points. Imports are found by a search of
-the text, since parsing the whole package would take most of the time of a plan; a test compares the result
+A digest of these modules is a parameter of the stage's rules: editing one reruns the stages that use it, and
+no others. As inputs they would be half a million files for ten thousand points. Imports are found by a search
+of the text, since parsing the whole package would take most of the time of a plan; a test compares the result
 with that of a parser.
 """
 

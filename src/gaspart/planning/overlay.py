@@ -1,4 +1,4 @@
-"""A config as the workflow sees it: laid over the full one."""
+"""A config merged over the full one, as the workflow uses it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from gaspart.yaml_text import read_yaml
 
 
 def laid_over(path: Path) -> tuple[dict[str, Any], list[Path]]:
-    """A config as the workflow sees it, laid over the `config.yaml` beside it, and the files that it is of.
+    """A config merged over the `config.yaml` beside it, as the workflow does, and the files it consists of.
 
     Raises SceneError for a file that cannot be read.
     """

@@ -8,16 +8,6 @@ from dataclasses import asdict, dataclass
 
 from gaspart.errors import SceneError
 
-SUFFIX = {
-    "simulate": "",
-    "measure_cost": ".nc",
-    "compare": ".nc",
-    "echo": ".nc",
-    "fill": ".nc",
-    "pack": ".nc",
-}
-
-
 _LONGEST_NAME = 200  # of the 255 bytes of a file name, with which suffixes and names of logs are made
 
 
@@ -35,7 +25,8 @@ class Point:
     @property
     def path(self) -> str:
         """Where the result lies: a folder of trajectories (``simulate``) or one netCDF file."""
-        return f"{self.root}/{self.experiment}/{self.name}{SUFFIX[self.job]}"
+        suffix = "" if self.job == "simulate" else ".nc"
+        return f"{self.root}/{self.experiment}/{self.name}{suffix}"
 
     @property
     def replicas(self) -> int:
@@ -58,7 +49,7 @@ class Point:
         return tuple(int.from_bytes(digest[i : i + 4], "little") for i in range(0, 16, 4))
 
     def to_dict(self) -> dict:
-        """Plain values only: what a job is handed."""
+        """Plain values only: the parameters of a job."""
         return asdict(self)
 
     @classmethod

@@ -1,6 +1,6 @@
 """The scene of a point: made of its settings, or read from a scene file in which some values are replaced.
 
-Planning a workflow makes the scene of every point, so nothing heavy is imported here before it is needed.
+Planning a workflow makes the scene of every point, so slow imports are made inside functions.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gaspart.errors import SceneError, shown
+from gaspart.planning.keys import EXTENTS, GAS, PREFIX
 from gaspart.planning.point import Point
 from gaspart.scene.validation import MOST_BODIES
 from gaspart.yaml_text import read_yaml
@@ -19,18 +20,14 @@ from gaspart.yaml_text import read_yaml
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
 
-EXTENTS = ("count", "radius", "packing_fraction", "side")
-_OTHERS = ("dimension", "boundary", "mass", "temperature", "speed", "arrangement", "centres_to_walls")
-PREFIX = "scene."
-"""How a key begins that replaces a value of the scene file: ``scene.species.0.mass``."""
-
 
 def check_scene(point: Point) -> None:
-    """Refuse settings that describe no scene, or two, with SceneError; the cheap part, reading no file."""
+    """Refuse settings that describe no scene, or two, with SceneError; the cheap part, without reading a
+    file."""
     settings, where = point.settings, f"experiments.{point.experiment}"
     replaced = [key for key in settings if key.startswith(PREFIX)]
     if "scene" in settings:
-        for key in (*_OTHERS, *EXTENTS):
+        for key in (*GAS, *EXTENTS):
             if key in settings:
                 rule = f"has no meaning beside a scene file, of which {PREFIX}... replaces single values"
                 raise SceneError(f"{where}.{key}", settings[key], rule)
@@ -42,7 +39,7 @@ def check_scene(point: Point) -> None:
         raise SceneError(f"{where}.dimension", None, "is required, unless there is a scene file")
     given = [key for key in EXTENTS if key in settings]
     if len(given) != 3:
-        raise SceneError(where, given, "exactly three of count, radius, packing_fraction, side must be given")
+        raise SceneError(where, given, f"exactly three of {', '.join(EXTENTS)} must be given")
 
 
 def scene(point: Point) -> Scene:
@@ -52,17 +49,18 @@ def scene(point: Point) -> Scene:
 
 
 def extents(point: Point) -> tuple[int, float, tuple[float, ...]]:
-    """Number of bodies, largest radius and side lengths. Raises SceneError.
+    """Number of particles, largest radius and side lengths. Raises SceneError.
 
     Three of count, radius, packing fraction and side are given and the fourth follows: a count that follows
-    is rounded to a whole number; a side that follows is the same on every axis. A scene file says it itself.
+    is rounded to a whole number; a side that follows is the same on every axis. A scene file states all of
+    them.
     """
     check_scene(point)
     settings, where = point.settings, f"experiments.{point.experiment}"
     if "scene" in settings:
         read = scene(point)
         if read.count == 0:
-            raise SceneError(f"{where}.scene", settings["scene"], "a point needs at least one body")
+            raise SceneError(f"{where}.scene", settings["scene"], "a point needs at least one particle")
         return read.count, read.largest_radius, read.container.lengths
     dimension = settings["dimension"]
     unit = math.pi if dimension == 2 else 4.0 / 3.0 * math.pi
@@ -76,7 +74,7 @@ def extents(point: Point) -> tuple[int, float, tuple[float, ...]]:
         if count is None:
             found = fraction * volume / (unit * radius**dimension)
             if not 0.5 < found <= MOST_BODIES:
-                rule = f"makes {found:g} bodies, which must be from 1 to {MOST_BODIES}"
+                rule = f"makes {found:g} particles, which must be from 1 to {MOST_BODIES}"
                 raise SceneError(f"{where}.packing_fraction", fraction, rule)
             count = round(found)
         elif radius is None:
@@ -88,7 +86,9 @@ def extents(point: Point) -> tuple[int, float, tuple[float, ...]]:
 
 def _made(point: Point) -> Scene:
     """The scene of one species that the settings describe."""
-    from gaspart.scene.scene import Container, Scene, Species
+    from gaspart.scene.container import Container
+    from gaspart.scene.scene import Scene
+    from gaspart.scene.species import Species
 
     settings = point.settings
     count, radius, lengths = extents(point)

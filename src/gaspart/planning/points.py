@@ -2,9 +2,9 @@
 
 An *experiment* of the config holds ``point`` (defaults) and ``grid`` (a mapping from a key to the list of
 its values, whose product is taken, or a list of such mappings, which are concatenated). A key that is null
-counts as absent, so that a config merged over another can take a key back.
+counts as absent, so that a config merged over another can remove a key.
 
-What measures points does not import this module, so that no measurement depends on the trade-off's table.
+Measurements do not import this module, so that none depends on the trade-off's table.
 """
 
 from __future__ import annotations
@@ -15,11 +15,10 @@ from dataclasses import replace
 from typing import Any
 
 from gaspart.errors import SceneError
+from gaspart.planning import keys
 from gaspart.planning.point import Point, name_of
 from gaspart.planning.point_scene import scene
 
-WHOLE = ("dimension", "count", "samples", "steps", "attempts", "follow", "replicas", "passes", "threads")
-"""Keys of whole numbers, which may be written 1e3."""
 MOST_POINTS = 100_000
 
 
@@ -48,7 +47,7 @@ def points(config: dict, experiment: str) -> list[Point]:
 
 
 def _plain(key: str, value: Any) -> Any:
-    whole = key in WHOLE and isinstance(value, float) and value.is_integer()
+    whole = key in keys.WHOLE and isinstance(value, float) and value.is_integer()
     return int(value) if whole else value
 
 
@@ -59,7 +58,7 @@ def _chosen(point: Point) -> Point:
         from gaspart.planning.advised import chosen
 
         return replace(point, settings=chosen(point.settings, scene(point), where))
-    for key in ("accuracy", "observable"):
+    for key in keys.ENGINES["auto"]:
         if key in point.settings:
             raise SceneError(f"{where}.{key}", point.settings[key], "needs engine: auto")
     return point

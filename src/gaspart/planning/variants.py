@@ -1,4 +1,4 @@
-"""Which compiled kernels a point needs, as a name; and how to compile them, by a tiny run of its own."""
+"""The name of the compiled kernels that a point needs, and a tiny run that compiles them."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 from gaspart.errors import SimulationError
 from gaspart.planning import grid
 from gaspart.planning.point import Point
-from gaspart.scene.matter import LATTICES
+from gaspart.scene.species import LATTICES
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
 
-_FEW = 8  # bodies, walls and the like that a tiny run has of each kind
+_FEW = 8  # particles and walls that a tiny run has of each kind
 _MATTER = {"species.Species", "bodies.Body", "restitution.Restitution"}  # whose properties are features
 # in every kernel, or in none
 _NO_FEATURE = ("container", "count", "radius", "speed", "temperature", "centres_to_walls")
@@ -25,13 +25,16 @@ _NO_FEATURE = ("container", "count", "radius", "speed", "temperature", "centres_
 
 def variant(point: Point) -> str:
     """The kernels of a point: engine, search or precision, dimension, boundaries (`p`eriodic or `w`all), and
-    a digest of all features of its scene that a plain one is without.
+    a digest of the features of its scene.
 
-    Kernels are compiled for what is there at all, not for its numbers. Raises SceneError.
+    Kernels are compiled for features, not for numbers. Raises SceneError.
     """
     scene = grid.scene(point)
     engine = "fill" if point.job in ("fill", "pack") else point.settings.get("engine", "event")
-    boxes = any(key in point.settings for key in ("boxes_per_side", "boxes_per_body", *grid.SCANS[:2]))
+    boxes = any(
+        key in point.settings
+        for key in ("boxes_per_side", "boxes_per_body", "scan_boxes_per_side", "scan_boxes_per_body")
+    )
     choice = {
         "fill": "random",
         "event": point.settings.get("search", "boxes"),
@@ -53,7 +56,7 @@ def features(scene: Scene) -> set[str]:
     found = set(_differing(scene)) - _MATTER
     if len({kind.mass for kind in scene.kinds}) <= 1:
         found -= {"species.mass", "bodies.mass"}  # equal masses are left out of the kernels
-    if scene.vibrates:  # which a temperature alone may tell
+    if scene.vibrates:  # by a temperature too
         found.add("vibrates")
     if len({kind.radius for kind in scene.kinds}) > 1:
         from gaspart.state.oversized import largest_in_boxes
@@ -83,11 +86,11 @@ def _differing(thing: Any, prefix: str = "") -> Iterator[str]:
 
 
 def task(point: Point) -> str:
-    """What `warm` is to do for a point, as JSON: its scene, with only a few bodies if these have all of its
-    features, and its engine."""
+    """The task of `warm` for a point, as JSON: its engine, and its scene with only a few particles if these
+    have all of its features."""
     from gaspart.scene.scene import Scene
 
-    recipe, whole = grid.recipe(point), grid.scene(point)
+    recipe, full = grid.recipe(point), grid.scene(point)
     scene = {
         key: value[:_FEW] if isinstance(value, list) else value for key, value in recipe["scene"].items()
     }
@@ -95,14 +98,14 @@ def task(point: Point) -> str:
         kind["count"] = min(kind["count"], _FEW)
         if kind["arrangement"] in LATTICES:  # which need fewer kernels
             kind["arrangement"] = "random"
-    if features(Scene.from_dict(scene)) != features(whole):
-        scene = whole.to_dict()
+    if features(Scene.from_dict(scene)) != features(full):
+        scene = full.to_dict()
     engine = recipe.get("engine") or recipe.get("engines", [None])[0]
     return json.dumps({"scene": scene, "engine": engine})
 
 
 def warm(job: str) -> None:
-    """Run something tiny that needs all kernels of a `task`, so that they are compiled and cached."""
+    """Compile and cache all kernels of a `task` by a tiny run."""
     from gaspart.engines import engine_from_dict
     from gaspart.scene.scene import Scene
     from gaspart.simulation.simulation import Simulation
@@ -121,7 +124,7 @@ def warm(job: str) -> None:
         limits = {"duration": 4 * settings["time_step"]}
     else:
         limits = {"duration": 1.0, "max_events": 100}
-    with suppress(SimulationError):  # a collapse, before which all was compiled
+    with suppress(SimulationError):  # a collapse; everything has been compiled before
         simulation.advance(**limits)
         simulation.restore(simulation.checkpoint())
         simulation.advance(**limits)

@@ -1,4 +1,4 @@
-"""The one style sheet: legible in a journal's column, in colours that the colour-blind can tell apart."""
+"""The style sheet of all figures: sizes of a journal's column, colours that the colour-blind distinguish."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-if TYPE_CHECKING:  # the colours are wanted without it
+if TYPE_CHECKING:  # the colours are used without matplotlib
     from matplotlib.axes import Axes
     from matplotlib.container import ErrorbarContainer
     from matplotlib.figure import Figure
@@ -27,9 +27,9 @@ PAGE = 7.0
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"]
 MARKERS = ["o", "s", "^", "D", "v", "P", "X"]
 DATA = "#000000"
-"""The colour of what was measured, where only one kind of thing was."""
+"""Colour of measured points, where a panel has one series."""
 REFERENCE = "#0072b2"
-"""The colour of the curve that the measurement is compared with."""
+"""Colour of the curve that the measurement is compared with."""
 GREY = "#8c8c8c"
 """For guides: zero lines, bands, limits."""
 
@@ -145,13 +145,26 @@ def letter(axis: Axes, text: str, x: float = 0.02, y: float = 0.97) -> Text:
     """(a), (b) ... or a short title in a panel's upper left corner; x, y: in parts of the panel."""
     from matplotlib.patheffects import withStroke
 
-    halo = [withStroke(linewidth=2.0, foreground="white")]  # over points it is read as well
+    halo = [withStroke(linewidth=2.0, foreground="white")]  # legible over points too
     where: dict[str, Any] = {"transform": axis.transAxes, "ha": "left", "va": "top", "zorder": 10}
     return axis.text(x, y, text, fontweight="bold", path_effects=halo, **where)
 
 
+def letters(*axes: Axes) -> None:
+    """(a), (b) ... in the upper left corners of these panels."""
+    for axis, text in zip(axes, "abcdefgh", strict=False):
+        letter(axis, text)
+
+
+def share_x(*panels: Axes) -> None:
+    """One x axis for panels above each other, labelled below the last."""
+    for panel in panels[:-1]:
+        panel.sharex(panels[-1])
+        panel.tick_params(labelbottom=False)
+
+
 def save(figure: Figure, path: str | Path) -> None:
-    """Write a figure, whole or not at all, as its suffix says; the same figure gives the same bytes."""
+    """Write a figure atomically, in the format of its suffix; the same figure gives the same bytes."""
     from gaspart.files import whole_file
 
     kind = Path(path).suffix.lstrip(".")

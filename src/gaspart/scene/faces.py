@@ -1,15 +1,18 @@
-"""The kinds of faces that a container may have: what happens to a body that comes to a wall.
+"""The kinds of faces that a container may have: what happens to a particle that reaches it.
 
-A face without a kind is hard, and follows the scene's law of contacts.
+A face without a kind is hard and follows the scene's law of contacts.
 """
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 from gaspart.errors import SceneError
-from gaspart.scene.validation import choice, from_mapping, positive, settle
+from gaspart.kinds import described
+from gaspart.scene.keys import POSITIVE, declared, schema_of, validate
+from gaspart.scene.keys import choice as choice_of
+from gaspart.scene.validation import choice, from_mapping
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -20,63 +23,77 @@ COMPONENTS = ("all", "normal")
 
 @dataclass(frozen=True)
 class Thermal:
-    """A wall at a temperature, which a body leaves with a velocity drawn from it.
+    """A wall at a temperature, from whose distribution the velocity of a particle that leaves is drawn.
 
     The normal velocity is drawn weighted by the flux, v = sqrt(-2 kT/m ln U); with components "all" the
-    tangential ones and, in a scene of rough bodies, the spins are Maxwellian (a diffuse wall with full
+    tangential ones and, in a scene of rough particles, the spins are Maxwellian (a diffuse wall with full
     accommodation); with "normal" they are kept (the rule of Frederickx & Meerts 2010, section 4.4).
     """
 
-    temperature: float
-    components: str = "all"
+    temperature: float = field(metadata=declared(POSITIVE, "temperature of the wall"))
+    components: str = field(
+        default="all",
+        metadata=declared(choice_of(*COMPONENTS), "velocity components that are drawn"),
+    )
 
     kind: ClassVar[Literal["thermal"]] = "thermal"
 
     def __post_init__(self) -> None:
-        settle(self, temperature=positive("temperature", self.temperature))
-        choice("components", self.components, COMPONENTS)
+        validate(self)
 
 
 @dataclass(frozen=True)
 class Well:
-    """A wall behind a step of the potential: a body whose surface is within `width` of the face has the
-    energy -`depth`. Crossing outward needs m v_n^2 / 2 > depth, else the body is thrown back. The wall
-    itself is hard, or with a `temperature` as in `Thermal`."""
+    """A wall behind a step of the potential: a particle whose surface is within `width` of the face has the
+    energy -`depth`. It leaves if m v_n^2 / 2 > depth, and is reflected if not. The wall itself is hard, or
+    with a `temperature` as in `Thermal`."""
 
-    depth: float
-    width: float
-    temperature: float | None = None
+    depth: float = field(metadata=declared(POSITIVE, "depth of the well: an energy"))
+    width: float = field(
+        metadata=declared(POSITIVE, "distance of a particle's surface from the wall up to which it lies")
+    )
+    temperature: float | None = field(
+        default=None, metadata=declared(POSITIVE, "temperature of the wall; without it the wall is hard")
+    )
 
     kind: ClassVar[Literal["well"]] = "well"
 
     def __post_init__(self) -> None:
-        for key in ("depth", "width"):
-            settle(self, **{key: positive(key, getattr(self, key))})
-        if self.temperature is not None:
-            settle(self, temperature=positive("temperature", self.temperature))
+        validate(self)
 
 
 @dataclass(frozen=True)
 class Sticky:
-    """A wall to which slow bodies stick (Frederickx & Meerts 2010, section 4.5, made definite).
+    """A wall to which slow particles stick (Frederickx & Meerts 2010, section 4.5, made definite).
 
-    A body that comes with a normal momentum below `momentum` p stays: its normal energy becomes that of a
-    vibration, and it glides along the wall. If a contact with another body gives it a normal velocity, that
-    energy is added, and once the sum reaches p^2 / 2m it leaves the wall with all of it. Nothing binds it, so
-    bodies that stick are not balanced by bodies that leave: detailed balance is broken.
+    A particle that arrives with a normal momentum below `momentum` p stays: its normal energy becomes that of
+    a vibration, and it slides along the wall. If a contact with another particle gives it a normal velocity,
+    that energy is added, and once the sum reaches p^2 / 2m it leaves the wall with all of it. No potential
+    binds it, so that particles that stick are not balanced by those that leave: detailed balance is broken.
     """
 
-    momentum: float
+    momentum: float = field(metadata=declared(POSITIVE, "normal momentum below which a particle stays"))
 
     kind: ClassVar[Literal["sticky"]] = "sticky"
 
     def __post_init__(self) -> None:
-        settle(self, momentum=positive("momentum", self.momentum))
+        validate(self)
 
 
 KINDS: dict[str, type[Thermal | Well | Sticky]] = {
     surface.kind: surface for surface in (Thermal, Well, Sticky)
 }
+SCHEMA = {
+    "type": "object",
+    "propertyNames": {"enum": list(FACES)},
+    "additionalProperties": {
+        "anyOf": [
+            schema_of(face, kind=described({"const": name}, "the kind of face"))
+            for name, face in KINDS.items()
+        ]
+    },
+}
+"""The JSON schema of the faces of a scene, by name."""
 
 
 def surface_from_dict(mapping: object, where: str) -> Thermal | Well | Sticky:
@@ -89,7 +106,7 @@ def surface_from_dict(mapping: object, where: str) -> Thermal | Well | Sticky:
 
 
 def surface_to_dict(surface: Thermal | Well | Sticky) -> dict:
-    """What `surface_from_dict` takes."""
+    """The inverse of `surface_from_dict`."""
     return {"kind": surface.kind, **asdict(surface)}
 
 
@@ -102,7 +119,7 @@ def thermal_face(scene: Scene, name: str) -> Thermal:
 
 
 def check_faces(scene: Scene) -> None:
-    """Raise SceneError for faces that a scene cannot have."""
+    """Raise SceneError for faces that are impossible in this scene."""
     if not isinstance(scene.faces, dict):
         raise SceneError("faces", scene.faces, "must be a mapping of faces to their kinds")
     known = FACES[: 2 * scene.dimension]
@@ -120,5 +137,5 @@ def check_faces(scene: Scene) -> None:
             low, high = scene.reach(scene.largest_radius)
             both = (scene.faces.get(known[2 * axis + side]) for side in (0, 1))
             if sum(face.width for face in both if isinstance(face, Well)) >= high[axis] - low[axis]:
-                rule = "leaves no room outside the wells of this axis for the largest body"
+                rule = "leaves no room outside the wells of this axis for the largest particle"
                 raise SceneError(f"faces.{name}.width", surface.width, rule)

@@ -1,4 +1,4 @@
-"""Whether a container has room for a body: size limits, and which bodies are near a position."""
+"""Whether a particle fits into a container: size limits, and which particles are near a position."""
 
 from __future__ import annotations
 
@@ -8,33 +8,33 @@ from typing import TYPE_CHECKING
 from gaspart.errors import SceneError
 
 if TYPE_CHECKING:
-    from gaspart.scene.scene import Container
+    from gaspart.scene.container import Container
 
-_RESOLVED = 1e12  # diameters in the longest side, at most: contacts are then right to a thousandth
-_ROOM = 1e-6  # of a radius: what a body between two walls must have at least
+_RESOLVED = 1e12  # diameters in the longest side, at most: contacts are then accurate to a thousandth
+_ROOM = 1e-6  # of a radius: the least room of a particle between two walls
 
 
 def check_room(container: Container, centres_to_walls: bool, key: str, radius: float, fixed: bool) -> None:
-    """Raise SceneError, with `key`, if a body of this radius does not fit into the container, cannot move in
-    it though it is not `fixed`, or is so small that its contacts are lost in rounding."""
+    """Raise SceneError, with `key`, if a particle of this radius does not fit into the container, cannot move
+    in it though it is not `fixed`, or is so small that its contacts are lost in rounding."""
     shortest, longest = min(container.lengths), max(container.lengths)
     if not centres_to_walls:
         if 2 * radius > shortest:
-            rule = f"a body must fit into the container, whose shortest side is {shortest:g}"
+            rule = f"a particle must fit into the container, whose shortest side is {shortest:g}"
             raise SceneError(key, radius, rule)
         walled = zip(container.lengths, container.periodic, strict=True)
         narrow = any(2 * radius * (1.0 + _ROOM) > length for length, periodic in walled if not periodic)
         if narrow and not fixed:
-            rule = "leaves no room between two walls, which it would hit for ever in no time"
+            rule = "leaves no room between two walls, which it would hit infinitely often in no time"
             raise SceneError(key, radius, rule)
     if 2 * radius * _RESOLVED < longest:
-        rule = f"too small to tell where it touches, in a container whose longest side is {longest:g}"
+        rule = f"too small to resolve its contacts, in a container whose longest side is {longest:g}"
         raise SceneError(key, radius, rule)
 
 
 class Nearby:
     """Positions in cells at least `reach` wide, so that those within `reach` of a point are found without a
-    look at all of them."""
+    search of all."""
 
     def __init__(self, container: Container, reach: float) -> None:
         self._container = container

@@ -1,4 +1,4 @@
-"""What is simulated: a container, the bodies in it, and nothing that is computed.
+"""The simulated system: a container and what is in it, as given, without anything computed.
 
 A `Scene` is immutable and validated once, when it is made. Lengths and times are in the scene's own
 units; masses are relative to the reference species; k_B = 1.
@@ -14,108 +14,80 @@ from pathlib import Path
 from typing import Any
 
 from gaspart.errors import SceneError
+from gaspart.scene.container import Container
+from gaspart.scene.faces import SCHEMA as FACES_SCHEMA
 from gaspart.scene.faces import Sticky, Thermal, Well, check_faces, surface_from_dict, surface_to_dict
+from gaspart.scene.keys import FLAG, VECTOR, checked_by_class, declared, instance_of, list_of, validate
 from gaspart.scene.limits import Nearby, check_room
-from gaspart.scene.matter import SHARED, Body, Plate, Restitution, Species, Wall
-from gaspart.scene.validation import (
-    MOST_BODIES,
-    choice,
-    count_of,
-    flag,
-    from_mapping,
-    instances,
-    number,
-    positive,
-    settle,
-    size,
-    vector,
-)
+from gaspart.scene.restitution import Restitution
+from gaspart.scene.species import SHARED, Body, Species
+from gaspart.scene.validation import MOST_BODIES, from_mapping, instances, vector
+from gaspart.scene.walls import Plate, Wall
 from gaspart.yaml_text import read_yaml, write_yaml
 
-__all__ = ["Body", "Container", "Restitution", "Scene", "Species", "Wall"]
-__all__ += ["count_of", "from_mapping", "number"]
-
-BOUNDARIES = ("wall", "periodic")
-_TOUCH = 1e-12  # of a radius: by which a body that touches a wall may seem to overlap it
+_TOUCH = 1e-12  # of a radius: overlap with a wall that rounding may show for a particle that touches it
 _ABSENT = ("fixed", "walls", "faces")  # not written into a file unless there
-
-
-@dataclass(frozen=True)
-class Container:
-    """The simulated volume [0, L] on each axis.
-
-    lengths: (d,) side lengths, d = 2 or 3; boundary: "wall" or "periodic", or one of them per axis.
-    """
-
-    lengths: tuple[float, ...]
-    boundary: str | tuple[str, ...] = "wall"
-
-    def __post_init__(self) -> None:
-        lengths = vector("lengths", self.lengths)
-        for length in lengths:
-            positive("lengths", length)
-        given = self.boundary
-        boundary = (given,) * len(lengths) if isinstance(given, str) else given
-        if not isinstance(boundary, (tuple, list)) or len(boundary) != len(lengths):
-            raise SceneError("boundary", given, f"must be one of {BOUNDARIES}, or a list of one per axis")
-        for kind in boundary:
-            choice("boundary", kind, BOUNDARIES)
-        settle(self, lengths=lengths, boundary=tuple(boundary))
-
-    @property
-    def dimension(self) -> int:
-        """2 or 3."""
-        return len(self.lengths)
-
-    @property
-    def volume(self) -> float:
-        """The container's volume, in two dimensions its area."""
-        return math.prod(self.lengths)
-
-    @property
-    def periodic(self) -> tuple[bool, ...]:
-        """(d,) whether each axis is periodic."""
-        return tuple(kind == "periodic" for kind in self.boundary)
+_WALLS = "a Wall needs a container of two dimensions, a Plate one of three"
 
 
 def _wall_kind(container: Container) -> type[Wall] | type[Plate]:
-    """What stands in such a container as an interior wall."""
+    """The kind of interior wall that such a container may have."""
     return Wall if container.dimension == 2 else Plate
 
 
 @dataclass(frozen=True)
 class Scene:
-    """A container and its bodies: first `bodies` in their order, then each of `species` in turn.
+    """A container and its particles: first `bodies` in their order, then each of `species` in turn.
 
-    With `centres_to_walls` the walls stop the bodies' centres instead of their surfaces (the rule of
-    Frederickx & Meerts 2010, whose spheres stick out of the container). gravity: (d,) a uniform acceleration.
-    restitution: the law of all contacts; without it they are elastic and smooth. walls: inside the
-    container, each a Wall in two dimensions, a Plate in three. faces: kinds of the container's faces, by name
-    (x_low, ...).
+    With `centres_to_walls` the walls stop the particles' centres instead of their surfaces (the rule of
+    Frederickx & Meerts 2010, whose spheres stick out of the container). walls: each a Wall in two dimensions,
+    a Plate in three. faces: by name (x_low, ...).
 
-    Raises SceneError for a scene that cannot be.
+    Raises SceneError for an impossible scene.
     """
 
-    container: Container
-    species: Sequence[Species] = ()
-    bodies: Sequence[Body] = ()
-    centres_to_walls: bool = False
-    gravity: tuple[float, ...] | None = None
-    restitution: Restitution | None = None
-    walls: Sequence[Wall | Plate] = ()
-    faces: dict[str, Thermal | Well | Sticky] = field(default_factory=dict, hash=False)
+    container: Container = field(metadata=declared(instance_of(Container), "the simulated volume"))
+    species: Sequence[Species] = field(
+        default=(),
+        metadata=declared(list_of(Species, rule="must be a Species"), "particles placed by the program"),
+    )
+    bodies: Sequence[Body] = field(
+        default=(), metadata=declared(list_of(Body, rule="must be a Body"), "particles at given positions")
+    )
+    centres_to_walls: bool = field(
+        default=False,
+        metadata=declared(FLAG, "walls stop centres, not surfaces, of particles"),
+    )
+    gravity: tuple[float, ...] | None = field(
+        default=None, metadata=declared(VECTOR, "(d,) uniform acceleration, not along a periodic axis")
+    )
+    restitution: Restitution | None = field(
+        default=None,
+        metadata=declared(instance_of(Restitution), "the law of all contacts; without it elastic and smooth"),
+    )
+    walls: Sequence[Wall | Plate] = field(
+        default=(), metadata=declared(list_of(Wall, Plate, rule=_WALLS), "walls inside the container")
+    )
+    faces: dict[str, Thermal | Well | Sticky] = field(
+        default_factory=dict,
+        hash=False,
+        metadata=declared(checked_by_class(FACES_SCHEMA), "kinds of the container's faces; others are hard"),
+    )
 
     def __post_init__(self) -> None:
-        self._check_parts()
-        if self.gravity is not None:
-            self._check_gravity()
+        validate(self)
+        if self.walls:
+            instances("walls", self.walls, _wall_kind(self.container), _WALLS)
+        if self.count > MOST_BODIES:
+            raise SceneError("count", self.count, f"there may be {MOST_BODIES} particles")
+        self._check_gravity()
         if self.centres_to_walls and self.rough:
-            rule = "rough bodies (tangential above -1) touch walls with their surfaces"
+            rule = "rough particles (tangential above -1) touch walls with their surfaces"
             raise SceneError("centres_to_walls", True, rule)
         self._check_walls()
         check_faces(self)
         if self.vibrates and self.restitution is not None and self.restitution.normal != 1.0:
-            rule = "must be 1 where bodies vibrate, lest energy be lost twice"
+            rule = "must be 1 where particles vibrate: energy would be lost twice"
             raise SceneError("restitution.normal", self.restitution.normal, rule)
         for n, kind in enumerate(self.species):
             if kind.count:
@@ -123,7 +95,7 @@ class Scene:
         arrangements = {kind.arrangement for kind in self.species}
         for shared in arrangements & set(SHARED):
             if self.bodies or arrangements != {shared}:
-                raise SceneError("arrangement", shared, "is shared by all bodies of a scene")
+                raise SceneError("arrangement", shared, "is shared by all particles of a scene")
         earlier = Nearby(self.container, max((2.0 * body.radius for body in self.bodies), default=0.0))
         for n, body in enumerate(self.bodies):
             self._check_body(n, body, earlier)
@@ -132,36 +104,19 @@ class Scene:
             if not self.centres_to_walls:
                 raise SceneError("packing_fraction", self.packing_fraction, "exceeds close packing")
 
-    def _check_parts(self) -> None:
-        """Every part is of its class; no part is compared with another one."""
-        if not isinstance(self.container, Container):
-            raise SceneError("container", self.container, "must be a Container")
-        rule = "a Wall needs a container of two dimensions, a Plate one of three"
-        settle(
-            self,
-            species=instances("species", self.species, Species, "must be a Species"),
-            bodies=instances("bodies", self.bodies, Body, "must be a Body"),
-            walls=instances("walls", self.walls, _wall_kind(self.container), rule),
-        )
-        if self.count > MOST_BODIES:
-            raise SceneError("count", self.count, f"there may be {MOST_BODIES} bodies")
-        if self.restitution is not None and not isinstance(self.restitution, Restitution):
-            raise SceneError("restitution", self.restitution, "must be a Restitution")
-        flag("centres_to_walls", self.centres_to_walls)
-
     def _check_gravity(self) -> None:
-        pull = vector("gravity", self.gravity, self.dimension)
-        size("gravity", pull)
-        for component, periodic in zip(pull, self.container.periodic, strict=True):
+        if self.gravity is None:
+            return
+        vector("gravity", self.gravity, self.dimension)
+        for component, periodic in zip(self.gravity, self.container.periodic, strict=True):
             if component != 0.0 and periodic:
-                rule = "must not point along a periodic axis, where bodies would gain energy for ever"
+                rule = "must not point along a periodic axis, where particles would gain energy without limit"
                 raise SceneError("gravity", self.gravity, rule)
-        settle(self, gravity=pull)
 
     def _check_walls(self) -> None:
         for n, wall in enumerate(self.walls):
             if self.centres_to_walls:
-                raise SceneError("centres_to_walls", True, "interior walls stop the bodies' surfaces")
+                raise SceneError("centres_to_walls", True, "interior walls stop the surfaces of particles")
             for key, point in wall.corners.items():
                 if not all(
                     0.0 <= x <= length for x, length in zip(point, self.container.lengths, strict=True)
@@ -169,13 +124,14 @@ class Scene:
                     raise SceneError(f"walls[{n}].{key}", point, "must lie inside the container")
 
     def wall_at(self, position: tuple[float, ...], radius: float) -> str | None:
-        """The key of an interior wall that a body at this place overlaps, if any."""
-        laps = [(0, -1, 1) if periodic else (0,) for periodic in self.container.periodic]
+        """The key of an interior wall that a particle at this position overlaps, if any."""
+        shifts = [
+            (0.0, -length, length) if periodic else (0.0,)
+            for length, periodic in zip(self.container.lengths, self.container.periodic, strict=True)
+        ]
         for n, wall in enumerate(self.walls):
-            for lap in product(*laps):
-                image = tuple(
-                    x + k * length for x, k, length in zip(position, lap, self.container.lengths, strict=True)
-                )
+            for shift in product(*shifts):
+                image = tuple(x + distance for x, distance in zip(position, shift, strict=True))
                 if wall.distance(image) < radius * (1.0 - _TOUCH):
                     return f"walls[{n}]"
         return None
@@ -191,7 +147,9 @@ class Scene:
         lower, upper = self.reach(body.radius)
         for x, low, high in zip(body.position, lower, upper, strict=True):
             if not low <= x <= high:
-                raise SceneError(f"{where}.position", body.position, "must lie wholly inside the container")
+                raise SceneError(
+                    f"{where}.position", body.position, "must be completely inside the container"
+                )
         if wall := self.wall_at(body.position, body.radius):
             raise SceneError(f"{where}.position", body.position, f"overlaps {wall}")
         for m in earlier.around(body.position):
@@ -206,7 +164,7 @@ class Scene:
 
     @property
     def kinds(self) -> tuple[Species | Body, ...]:
-        """Whatever has a radius and a mass: all species, and all single bodies."""
+        """All that has a radius and a mass: species and single particles."""
         return (*self.species, *self.bodies)
 
     @property
@@ -216,23 +174,23 @@ class Scene:
 
     @property
     def count(self) -> int:
-        """The number of bodies."""
+        """The number of particles."""
         return len(self.bodies) + sum(kind.count for kind in self.species)
 
     @property
     def vibrates(self) -> bool:
-        """Whether any body may keep energy in a vibration: a fixed one, or one that sticks to a face."""
+        """Whether any particle may store energy in a vibration: a fixed one, or one that sticks to a face."""
         sticky = any(isinstance(face, Sticky) for face in self.faces.values())
         return sticky or any(thing.vibrates for thing in self.kinds)
 
     @property
     def number_density(self) -> float:
-        """Bodies per volume (area) of the container."""
+        """Particles per volume (area) of the container."""
         return self.count / self.container.volume
 
     @property
     def packing_fraction(self) -> float:
-        """Volume (3D) or area (2D) of all bodies over that of the container."""
+        """Volume (3D) or area (2D) of all particles over that of the container."""
         unit = math.pi if self.dimension == 2 else 4 / 3 * math.pi
         bodies = sum(body.radius**self.dimension for body in self.bodies)
         species = sum(kind.count * kind.radius**self.dimension for kind in self.species)
@@ -240,18 +198,18 @@ class Scene:
 
     @property
     def largest_radius(self) -> float:
-        """The largest radius of any body (0 in an empty scene)."""
+        """The largest radius of any particle (0 in an empty scene)."""
         sizes = [body.radius for body in self.bodies] + [kind.radius for kind in self.species if kind.count]
         return max(sizes, default=0.0)
 
     @property
     def smallest_radius(self) -> float:
-        """The smallest radius of any body (0 in an empty scene)."""
+        """The smallest radius of any particle (0 in an empty scene)."""
         sizes = [body.radius for body in self.bodies] + [kind.radius for kind in self.species if kind.count]
         return min(sizes, default=0.0)
 
     def reach(self, radius: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """(d,), (d,): the lowest and highest coordinates of the centre of a body of this radius."""
+        """(d,), (d,): the lowest and highest coordinates of the centre of a particle of this radius."""
         lower, upper = [], []
         for length, periodic in zip(self.container.lengths, self.container.periodic, strict=True):
             margin = 0.0 if periodic or self.centres_to_walls else radius
@@ -268,7 +226,7 @@ class Scene:
         return math.sqrt(square)
 
     def with_bodies(self, *bodies: Body) -> Scene:
-        """A new scene with these bodies added."""
+        """A new scene with these particles added."""
         return replace(self, bodies=(*self.bodies, *bodies))
 
     def with_species(self, *species: Species) -> Scene:
@@ -280,7 +238,7 @@ class Scene:
         return replace(self, walls=(*self.walls, *walls))
 
     def to_dict(self) -> dict:
-        """Plain lists and mappings, as they stand in a scene file."""
+        """Plain lists and mappings, as in a scene file."""
 
         def plain(value: Any) -> Any:
             if isinstance(value, dict):

@@ -20,15 +20,15 @@ if TYPE_CHECKING:
 T = TypeVar("T", bound="DataclassInstance")
 
 SMALLEST, LARGEST = 1e-60, 1e60
-"""Of quantities of which contacts multiply four, which must neither vanish nor become infinite."""
+"""Of quantities: contacts multiply four of them, and the product must neither vanish nor overflow."""
 MOST_BODIES = 2**31 - 1
-"""Of a scene or a species: indices of bodies have 32 bits."""
+"""Of a scene or a species: indices of particles have 32 bits."""
 MOST_LISTED = 50_000
-"""Species, single bodies or walls of a scene, each of which stands in the scene's text."""
+"""Species, single particles or walls of a scene, each of which is written in the scene's text."""
 
 
 def finite(value: object) -> float | None:
-    """`value` as a finite float; None for anything that is none. Booleans and text are not numbers."""
+    """`value` as a finite float; None for anything else. Booleans and text are not numbers."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         return None
     try:
@@ -134,7 +134,7 @@ def choice(key: str, value: Any, known: Iterable[str]) -> str:
 
 
 def settle(instance: object, **values: object) -> None:
-    """Write the validated `values` into a frozen dataclass that is being made."""
+    """Write validated `values` into a frozen dataclass that is being made."""
     for name, value in values.items():
         object.__setattr__(instance, name, value)
 

@@ -11,9 +11,10 @@ import numpy as np
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.engines.arrays import EventLog
 from gaspart.errors import SceneError, SimulationError
-from gaspart.scene.matter import Body, Plate, Species, Wall, box_of_walls
 from gaspart.scene.scene import Scene
+from gaspart.scene.species import Body, Species
 from gaspart.scene.validation import count_of, number
+from gaspart.scene.walls import Plate, Wall, box_of_walls
 from gaspart.state.initial import initial_state
 from gaspart.state.state import State
 from gaspart.state.tally import Tally

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.scene.scene import Scene, count_of
+from gaspart.scene.scene import Scene
+from gaspart.scene.validation import count_of
 
 NOWHERE = -1
 MOST_BOXES = 2**26

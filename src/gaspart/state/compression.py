@@ -17,7 +17,8 @@ import numpy as np
 
 from gaspart.errors import SceneError, SimulationError
 from gaspart.kernels.memory import aligned
-from gaspart.scene.scene import Scene, Species
+from gaspart.scene.scene import Scene
+from gaspart.scene.species import Species
 from gaspart.state.boxes import make_boxes, sides_for
 from gaspart.state.insertion import per_body, random_insertion
 from gaspart.state.random import normals, stream

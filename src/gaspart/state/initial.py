@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.scene.matter import LATTICES
 from gaspart.scene.scene import Scene
+from gaspart.scene.species import LATTICES
 from gaspart.state.compression import compressed
 from gaspart.state.insertion import per_body, random_insertion
 from gaspart.state.random import directions, natural_log, normals, stream

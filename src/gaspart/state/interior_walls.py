@@ -10,8 +10,8 @@ from itertools import product
 
 import numpy as np
 
-from gaspart.scene.matter import Plate, Wall
 from gaspart.scene.scene import Scene
+from gaspart.scene.walls import Plate, Wall
 from gaspart.state.boxes import Boxes
 
 _SLACK = 1e-9  # by which neighbourhoods are drawn wider, so that rounding leaves no wall out of a box's list

@@ -23,7 +23,9 @@ def factor(dimension: int, engine: str, precision: str, count: int) -> float:
     """
     from gaspart import theory
     from gaspart.engines import EventDriven, TimeStepped
-    from gaspart.scene.scene import Container, Scene, Species
+    from gaspart.scene.container import Container
+    from gaspart.scene.scene import Scene
+    from gaspart.scene.species import Species
     from gaspart.simulation.simulation import Simulation
 
     growth = max(1.0, count / _MOST) ** _GROWTH

@@ -15,7 +15,8 @@ import numpy as np
 
 from gaspart.engines import EventDriven, TimeStepped, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
-from gaspart.scene.scene import Scene, count_of, number
+from gaspart.scene.scene import Scene
+from gaspart.scene.validation import count_of, number
 from gaspart.state.random import stream
 from gaspart.trajectory import amber, provenance
 from gaspart.yaml_text import dump_yaml, parse_yaml

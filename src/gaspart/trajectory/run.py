@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, BinaryIO
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SceneError
 from gaspart.files import Kind, may_replace, output_path, place
-from gaspart.scene.scene import Scene, number
+from gaspart.scene.scene import Scene
+from gaspart.scene.validation import number
 from gaspart.simulation.simulation import Simulation
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.checkpoint import checkpoint_path, read_checkpoint, remove_checkpoint

@@ -1,10 +1,9 @@
 import numpy as np
-import pytest
 import xarray as xr
+from experiments.drawn import Points, column, draw, follows, lines, obeys, shows, varied
 
 from gaspart import theory
 from gaspart.experiments.brownian import figure as brownian
-from gaspart.rendering import style
 
 
 def rows(**values):
@@ -18,7 +17,7 @@ def rows(**values):
     })  # fmt: skip
 
 
-def test_curves_lie_on_theirs(tmp_path):
+def test_displacements_and_velocities_are_drawn_with_their_deviations(tmp_path):
     time = np.linspace(0.0, 8.0, 81) * np.array([[1.0], [0.9]])
     ds = rows(
         time=(("point", "lag"), time),
@@ -27,23 +26,42 @@ def test_curves_lie_on_theirs(tmp_path):
         vacf=(("point", "lag"), np.exp(-time)),
         vacf_error=(("point", "lag"), np.full(time.shape, 0.01)),
     )
-    with style.applied():
-        figure = brownian.brownian_msd(ds)
-        style.save(figure, tmp_path / "msd.png")
-    for axis in (figure.axes[1], figure.axes[3]):
-        for container in axis.containers:
-            assert container.lines[0].get_ydata() == pytest.approx(0.0, abs=1e-12)
+    ds = varied(ds, "time", "mass", "gas_mass")
+    msd, ratio, vacf, difference = draw(brownian.brownian_msd, ds, tmp_path).axes
+    first, second = (ds.isel(point=k) for k in (0, 1))
+    shows(
+        msd, "", "Delta r", column(first, "$M=100\\,m$", "time", "msd", some=True),
+        column(second, "equal speeds", "time", "msd", some=True),
+    )  # fmt: skip
+    shows(
+        vacf, "", "V(t)", column(first, "$M=100\\,m$", "time", "vacf", some=True),
+        column(second, "equal speeds", "time", "vacf", some=True),
+    )  # fmt: skip
+    relative, absolute = [], []
+    for row in (first, second):
+        curve = np.maximum(theory.langevin_msd(row["time"], 1 / 6, 1.0), 1e-300)
+        relative.append(
+            Points(None, row["time"], row["msd"] / curve - 1.0, row["msd_error"] / curve, some=True)
+        )
+        difference_of = row["vacf"] - np.exp(-row["time"])
+        absolute.append(Points(None, row["time"], difference_of, row["vacf_error"], some=True))
+    shows(ratio, "time", "ratio", *relative)
+    shows(difference, "time", "difference", *absolute)
+    obeys(lines(msd)[0], lambda t: theory.langevin_msd(t, 1 / 6, 1.0))
+    obeys(lines(vacf)[0], lambda t: np.exp(-t))
 
 
-def test_every_path_begins_in_the_middle(tmp_path):
+def test_paths_are_drawn_from_above_and_start_in_the_middle(tmp_path):
     way = np.cumsum(np.random.default_rng(1).standard_normal((2, 4, 50, 3)), axis=2)
     way -= way[:, :, :1]
     way[1, :, 40:] = np.nan
-    with style.applied():
-        figure = brownian.brownian_paths(rows(way=(("point", "path", "frame", "axis"), way)))
-        style.save(figure, tmp_path / "paths.svg")
+    ds = rows(way=(("point", "path", "frame", "axis"), way))
+    figure = draw(brownian.brownian_paths, ds, tmp_path)
     for index, axis in enumerate(figure.axes):
-        paths = [line for line in axis.lines if len(line.get_xdata()) > 1]
-        assert len(paths) == 4
-        for n, line in enumerate(paths):
-            assert line.get_xdata() == pytest.approx(way[index, n, :, 0], nan_ok=True)
+        paths = [one for one in lines(axis) if len(one.get_xdata()) > 1]
+        for path, one in zip(way[index], paths, strict=True):
+            follows(one, path[:, 0], path[:, 1])
+        (sphere,) = axis.patches
+        assert sphere.get_radius() == 10.0
+        assert (axis.get_xlabel(), axis.get_ylabel()) == ("$x$ (length)", "$y$ (length)")
+        assert ("M=100", "M=1\\")[index] in axis.texts[0].get_text()

@@ -1,18 +1,35 @@
 import numpy as np
-import pytest
 from experiments.buoyancy.data import measurement
+from experiments.drawn import Points, column, draw, follows, lines, obeys, shows, varied
 
-from gaspart.experiments.buoyancy import figure as buoyancy
-from gaspart.rendering import style
+from gaspart.experiments.buoyancy.figure import buoyancy
+from gaspart.theory.buoyancy import displaced_area
 
 
-def test_the_two_radii_and_theory_are_drawn(tmp_path):
-    ds = measurement()
-    with style.applied():
-        figure = buoyancy.buoyancy(ds)
-        style.save(figure, tmp_path / "buoyancy.png")
-    _, middle, bottom = figure.axes
-    own, margin, theory = (line.get_ydata() for line in middle.lines[:3])
-    assert np.all(own == 0.0) and margin == pytest.approx(np.ones(len(margin)))
-    assert theory[0] == pytest.approx(1.0) and np.all(np.diff(theory) < 0.0)
-    assert bottom.lines[0].get_xdata() == pytest.approx(ds["displaced"].values)
+def test_forces_radii_and_heights_are_drawn_with_theory(tmp_path):
+    ds = varied(measurement())
+    force, radius, height = draw(buoyancy, ds, tmp_path).axes
+    eta = "fixed_packing_fraction"
+    shows(
+        force, "", "mass displaced", column(ds, "from the force", eta, "fixed_force"),
+        column(ds, "small discs missing", eta, "fixed_missing"),
+    )  # fmt: skip
+    shows(
+        radius, "packing fraction", "R_\\mathrm{eff}", column(ds, None, eta, "fixed_force_radius"),
+        column(ds, None, eta, "fixed_count_radius"),
+    )  # fmt: skip
+    ratio = ds.attrs["size_ratio"]
+    own, margin, theory = lines(radius)
+    obeys(own, lambda x: 0.0 * x)
+    obeys(margin, np.ones_like)
+    obeys(theory, lambda x: np.sqrt(displaced_area(x, ratio)) - ratio)
+    shows(
+        height, "mass", "height", column(ds, "mean height", "free_mass", "free_height"),
+        Points("theory", ds["free_mass"], ds["free_expected"]),
+    )  # fmt: skip
+    displaced, *fluctuations = lines(height)
+    follows(displaced, ds["displaced"], ds["height"])
+    for n, one in enumerate(fluctuations):
+        mass, middle, spread = (float(ds[f"free_{name}"][n]) for name in ("mass", "height", "spread"))
+        follows(one, [mass, mass], [middle - spread, middle + spread])
+    assert len(fluctuations) == ds.sizes["free"]

@@ -1,15 +1,63 @@
+import numpy as np
 import pytest
+from experiments.drawn import Points, column, draw, follows, line, lines, obeys, shows, varied
 from experiments.granular.data import inelastic, rough
 
+from gaspart import theory
 from gaspart.experiments.granular import figure as granular
-from gaspart.rendering import style
 
 
-@pytest.mark.parametrize(
-    ("draw", "dataset", "panels"), [(granular.equipartition, rough(), 3), (granular.cooling, inelastic(), 4)]
-)
-def test_it_draws_all_its_panels(draw, dataset, panels, tmp_path):
-    with style.applied():
-        figure = draw(dataset)
-        style.save(figure, tmp_path / "figure.svg")
-    assert len(figure.axes) == panels and all(axis.get_ylabel() for axis in figure.axes)
+def test_temperatures_differences_and_steady_ratios(tmp_path):
+    ds = varied(rough(), "equilibrium_inertia", "cooling_inertia", "inertia")
+    both, difference, ratio = draw(granular.equipartition, ds, tmp_path).axes
+    temperatures, differences, ratios = [], [], []
+    for k in range(ds.sizes["start"]):
+        row = ds.isel(start=k)
+        q = float(row["inertia"])
+        temperatures += [
+            column(row, f"$q={q:g}$", "collisions", "translation"),
+            column(row, None, "collisions", "rotation"),
+        ]
+        decay = np.exp(-3.0 * q / (1.0 + q) ** 2 * row["collisions"])
+        deviation = 100.0 * (row["translation"] - row["rotation"] - decay)
+        differences.append(Points(None, row["collisions"], deviation, 150.0 * row["rotation_error"]))
+        cooled = ds.isel(cooling=(ds["cooling_inertia"] == q).values)
+        still = ds.isel(equilibrium=[k]).assign(elastic=("equilibrium", [1.0]))
+        ratios += [
+            column(cooled, None, "tangential", "steady_ratio"),
+            column(still, None, "elastic", "equilibrium_ratio"),
+        ]
+    shows(both, "", "T_\\mathrm{tr}", *temperatures)
+    shows(difference, "collisions per particle", "minus theory", *differences)
+    shows(ratio, "tangential restitution", "steady", *ratios)
+    obeys(lines(both)[1], lambda s: theory.rough_temperatures(s, 0.1, 1.0)[1])
+    obeys(line(ratio, "q=0.5"), lambda x: np.array([theory.rough_ratio(0.5, e) for e in x]))
+
+
+def test_cooling_rates_clusters_and_their_picture(tmp_path):
+    ds = varied(inelastic(), "cluster_restitution")
+    haff, rates, leaving, picture = draw(granular.cooling, ds, tmp_path).axes
+    gases = []
+    for dimension, name, factor in ((2, "discs", 1.0), (3, "spheres", 1.0 / 3.0)):
+        own = ds.isel(gas=(ds["dimension"] == dimension).values).sortby("restitution", ascending=False)
+        for k in range(own.sizes["gas"]):
+            row = own.isel(gas=k)
+            row = row.assign(since=1.0 + row["time"])
+            gases.append(column(row, name, "since", "temperature", factor))
+    shows(haff, "t_\\mathrm{H}", "T/T_0", *gases)
+    expected = []
+    for dimension, name in ((2, "discs"), (3, "spheres")):
+        own = ds.isel(gas=(ds["dimension"] == dimension).values)
+        unit = (1.0 - own["restitution"] ** 2) / dimension
+        expected.append(Points(name, own["restitution"], own["rate"] / unit, own["rate_error"] / unit))
+    shows(rates, "restitution", "ln T", *expected)
+    obeys(lines(rates)[1], lambda e: 1.0 + 0.25 * theory.fourth_cumulant(e, 3))
+    row, elastic = ds.isel(clusters=0), ds.isel(clusters=1)
+    lost = (1.0 - 0.8**2) * row["cluster_collisions"]
+    usual = float(elastic["variance"][1:].mean())
+    variance = Points("variance", lost, row["variance"] / usual, row["variance_error"] / usual, some=True)
+    shows(leaving, "epsilon^2", "homogeneous", variance)
+    follows(line(leaving, "Haff"), lost, row["cluster_excess"])
+    (discs,) = picture.collections
+    assert discs.get_offsets() == pytest.approx(np.stack([ds["x"], ds["y"]], axis=1))
+    assert picture.get_xlim() == picture.get_ylim() == (0.0, ds.attrs["side"])

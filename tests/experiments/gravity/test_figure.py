@@ -1,29 +1,84 @@
-import numpy as np
-import pytest
+from experiments.drawn import Points, draw, follows, line, lines, obeys, shows, varied
 from experiments.gravity.data import capacities, columns
 
 from gaspart.experiments.gravity import figure as gravity
-from gaspart.rendering import style
-from gaspart.theory.gravity import ideal_heat_capacity
+from gaspart.theory.gravity import ideal_heat_capacity, ideal_profile
+from gaspart.theory.state import compressibility_factor
 
 
-@pytest.mark.parametrize(
-    ("draw", "kinds", "panels"), [(gravity.barometric, 1, 5), (gravity.separation, 2, 4)]
-)
-def test_columns_are_drawn_with_theory(tmp_path, draw, kinds, panels):
-    ds = columns(kinds)
-    with style.applied():
-        figure = draw(ds)
-        style.save(figure, tmp_path / "columns.png")
-    assert len(figure.axes) == panels
-    lines = [line.get_ydata() for line in figure.axes[kinds - 1].lines]
-    expected = ds["hydrostatic"].isel(point=-1, species=-1).values / 0.2
-    assert any(len(line) == len(expected) and np.allclose(line, expected) for line in lines)
+def ideal(row, kind):
+    """(B,) density of an ideal gas with the mean density, the mass and the temperature of the column's."""
+    own = row.isel(species=kind)
+    top = float(own["top"])
+    weight = float(own["mass"] * own["strength"] / own["temperature"])
+    return float(own["density"].mean()) * top * ideal_profile(own["height"].values, top, weight)
 
 
-def test_heat_capacity_shows_the_formula(tmp_path):
-    with style.applied():
-        figure = gravity.heat_capacity(capacities())
-        style.save(figure, tmp_path / "capacity.svg")
-    curve = figure.axes[0].lines[0]
-    assert curve.get_ydata() == pytest.approx(ideal_heat_capacity(curve.get_xdata(), 2))
+def profile(row, kind, label):
+    """Density of a species over the column's mean."""
+    mean, own = float(row["mean_density"]), row.isel(species=kind)
+    return Points(label, row["height"], own["density"] / mean, own["density_error"] / mean, some=True)
+
+
+def percent(x, ratio, error):
+    """Deviation of a ratio from 1."""
+    return Points(None, x, 100.0 * (ratio - 1.0), 100.0 * error, some=True)
+
+
+def test_profiles_and_the_equation_of_state_of_a_column(tmp_path):
+    ds = varied(columns())
+    density, ratio, temperature, state, deviation = draw(gravity.barometric, ds, tmp_path).axes
+    dilute, dense = (ds.isel(point=n) for n in (0, 1))
+    shows(density, "", "density", profile(dilute, 0, "dilute"), profile(dense, 0, "dense"))
+    theory = (ideal(dilute, 0), dense["hydrostatic"].isel(species=0))
+    ratios, temperatures = [], []
+    for row, expected, label in zip((dilute, dense), theory, ("ideal gas", "hydrostatics"), strict=True):
+        follows(line(density, label), row["height"], expected / float(row["mean_density"]))
+        own = row.isel(species=0)
+        ratios.append(percent(row["height"], own["density"] / expected, own["density_error"] / expected))
+        temperatures.append(percent(row["height"], row["temperature_ratio"], row["temperature_ratio_error"]))
+    shows(ratio, "", "rho_", *ratios)
+    shows(temperature, "height", "T(z)", *temperatures)
+    eta, z = dense["packing_fraction"], dense["compressibility"]
+    shows(state, "", "P/", Points("weight above", eta, z, dense["compressibility_error"]))
+    obeys(line(state, "virial"), lambda x: compressibility_factor(x, 2))
+    shows(
+        deviation, "packing fraction", "ref",
+        percent(eta, dense["pressure_ratio"], dense["pressure_ratio_error"]),
+    )  # fmt: skip
+
+
+def test_densities_of_two_species_and_their_ratio(tmp_path):
+    ds = varied(columns(2))
+    *densities, ratio, residual = draw(gravity.separation, ds, tmp_path).axes
+    for n, axis in enumerate(densities):
+        row = ds.isel(point=n)
+        shows(axis, "", "density", profile(row, 0, "light"), profile(row, 1, "heavy"))
+        mean = float(row["mean_density"])
+        for kind in (0, 1):
+            expected = row["hydrostatic"].isel(species=kind) if n else ideal(row, kind)
+            follows(lines(axis)[kind * (1 + n)], row["height"], expected / mean)
+    follows(line(densities[1], "heavy if ideal"), row["height"], ideal(row, 1) / mean)
+    logarithms, residuals = [], []
+    for n, name in enumerate(("dilute", "dense")):
+        row = ds.isel(point=n)
+        logarithms.append(Points(name, row["height"], row["log_ratio"], row["log_ratio_error"]))
+        sigmas = (row["log_ratio"] - row["log_ratio_expected"]) / row["log_ratio_error"]
+        residuals.append(Points(None, row["height"], sigmas))
+        follows(lines(ratio)[n], row["height"], row["log_ratio_expected"])
+    shows(ratio, "", "ln", *logarithms)
+    shows(residual, "height", "residual", *residuals)
+
+
+def test_heat_capacities_from_slopes_and_from_fluctuations(tmp_path):
+    ds = varied(capacities())
+    capacity, deviation = draw(gravity.heat_capacity, ds, tmp_path).axes
+    values, deviations = [], []
+    for name, x, label in (("slope", "x", "dE/dT"), ("fluctuation", "run_x", "fluctuations")):
+        expected = ds[f"{name}_expected"]
+        values.append(Points(label, ds[x], ds[name], ds[f"{name}_error"]))
+        ratio, error = ds[name] / expected, ds[f"{name}_error"] / expected
+        deviations.append(Points(None, ds[x], 100.0 * (ratio - 1.0), 100.0 * error))
+    shows(capacity, "", "heat capacity", *values)
+    shows(deviation, "height of the box", "exact", *deviations)
+    obeys(line(capacity, "canonical"), lambda x: ideal_heat_capacity(x, 2))

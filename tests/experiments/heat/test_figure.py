@@ -1,31 +1,67 @@
 import numpy as np
+from experiments.drawn import Points, column, draw, follows, line, lines, obeys, shows, varied
 from experiments.heat.data import gases, metals
 
 from gaspart.experiments.heat import figure as heat
-from gaspart.rendering import style
+from gaspart.theory.heat import conducting_slab
 
 
-def test_the_flux_is_drawn_between_its_limits_and_profiles_with_theory(tmp_path):
-    ds = gases()
-    with style.applied():
-        figure = heat.heat_conduction_gas(ds)
-        style.save(figure, tmp_path / "heat.png")
-    flux, share, warm, off, dense = figure.axes
-    free, fourier = flux.lines[0].get_ydata(), flux.lines[1].get_ydata()
-    assert np.all(flux.lines[2].get_ydata() < np.minimum(free, fourier[0]))
-    for axis, name in ((warm, "slab_temperature"), (dense, "slab_density")):
-        theory = ds[name].values[0] / (0.04 if axis is dense else 1.0)
-        assert any(np.array_equal(line.get_ydata(), theory) for line in axis.lines)
-    assert len(share.containers) == 4
-    assert len(off.containers) == 1
+def test_fluxes_and_profiles_of_a_gas(tmp_path):
+    ds = varied(gases(), "knudsen", "number")
+    flux, share, warm, deviation, dense = draw(heat.heat_conduction_gas, ds, tmp_path).axes
+    row = ds.isel(point=0)
+    all_components = Points("all components", [row["number"]], [1e3 * row["flux"]], [1e3 * row["flux_error"]])
+    nothing = Points("normal only", [], [], [])
+    shows(flux, "number density", "heat flux", all_components, nothing)
+    full, number, fourier = (float(row[name]) for name in ("full", "number", "fourier"))
+    obeys(line(flux, "free flight"), lambda n: 1e3 * full * n / number)
+    obeys(line(flux, "guide"), lambda n: 1e3 / (number / (n * full) + 1.0 / fourier))
+    hot, cold, length = (float(row[name]) for name in ("hot", "cold", "length"))
+    obeys(
+        line(flux, "with jumps"),
+        lambda n: np.array([1e3 * conducting_slab(length, one, hot, cold).flux for one in n]),
+    )
+    infinity = {dimension: 20.0 * 1.15 ** (dimension - 2.5) for dimension in (2, 3)}
+    groups = (([0, 1], "all, spheres"), ([2], "normal, spheres"), ([3], "all, discs"), ([4], "normal, discs"))
+    shares = []
+    for points, label in groups:
+        own = ds.isel(point=points)
+        x = [
+            float(k) if k < 100.0 else infinity[int(d)]
+            for k, d in zip(own["knudsen"], own["dimension"], strict=True)
+        ]
+        shares.append(Points(label, x, own["flux"] / own["full"], own["flux_error"] / own["full"]))
+    shows(share, "Knudsen", "flux", *shares)
+    position = row["position"] / length
+    temperature, expected = row["temperature"], row["slab_temperature"]
+    shows(warm, "", "temperature", Points("0.03", position, temperature, row["temperature_error"]))
+    follows(line(warm, "Fourier"), position, expected)
+    off = Points(
+        None, position, 100.0 * (temperature / expected - 1.0), 100.0 * row["temperature_error"] / expected,
+        some=True,
+    )  # fmt: skip
+    shows(deviation, "", "T_", off)
+    assert deviation.containers[0].lines[0].get_xdata().size == int(row["used"].sum())
+    density = Points(None, position, row["density"] / number, row["density_error"] / number)
+    shows(dense, "position", "density", density)
+    follows(lines(dense)[0], position, row["slab_density"] / number)
 
 
-def test_the_metal_is_drawn_with_dulong_and_petit(tmp_path):
-    with style.applied():
-        figure = heat.heat_conduction_metal(metals())
-        style.save(figure, tmp_path / "metal.png")
-    top, bottom, _ = figure.axes
-    line, frozen = bottom.lines[0], bottom.lines[-1]
-    assert np.array_equal(line.get_xdata(), line.get_ydata())
-    assert np.allclose(frozen.get_ydata(), 5 / 9 * frozen.get_xdata())
-    assert len(top.containers) == 2
+def test_temperatures_and_energies_of_a_metal(tmp_path):
+    ds = varied(metals(), "hot", "cold")
+    profiles, energy, deviation = draw(heat.heat_conduction_metal, ds, tmp_path).axes
+    row = ds.isel(point=0)
+    shows(
+        profiles, "position", "electrons", column(row, "electrons", "position", "electrons"),
+        column(row, "modes", "position", "modes"),
+    )  # fmt: skip
+    still = ds.isel(point=[1, 2])
+    warm, level, error = still["hot"], still["energy_ratio"], still["energy_ratio_error"]
+    shows(energy, "", "energy", Points("electrons and modes", warm, level * warm, error * warm))
+    obeys(line(energy, "kT"), lambda x: x)
+    obeys(line(energy, "frozen"), lambda x: float(ds["electrons_part"][0]) * x)
+    modes, bars = still["mode_ratio"], still["mode_ratio_error"]
+    shows(
+        deviation, "temperature", "deviation", Points(None, warm, 100.0 * (level - 1.0), 100.0 * error),
+        Points(None, 1.02 * warm, 100.0 * (modes - 1.0), 100.0 * bars),
+    )  # fmt: skip

@@ -7,7 +7,9 @@ import pytest
 
 from gaspart.engines import TimeStepped
 from gaspart.experiments.jobs.compare import compare
-from gaspart.scene.scene import Container, Scene, Species
+from gaspart.scene.container import Container
+from gaspart.scene.scene import Scene
+from gaspart.scene.species import Species
 
 GAS = Scene(
     Container((11.0,) * 3, boundary="periodic"),

@@ -5,7 +5,9 @@ import pytest
 
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.experiments.jobs.echo import NUDGE, echo
-from gaspart.scene.scene import Container, Scene, Species
+from gaspart.scene.container import Container
+from gaspart.scene.scene import Scene
+from gaspart.scene.species import Species
 
 GAS = Scene(Container((8.0,) * 3), species=(Species(40, 0.5, temperature=1.0),))
 

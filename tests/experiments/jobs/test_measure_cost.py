@@ -6,7 +6,9 @@ from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SceneError, SimulationError
 from gaspart.experiments.jobs import measure_cost as cost
 from gaspart.experiments.jobs.measure_cost import measure_cost
-from gaspart.scene.scene import Container, Scene, Species
+from gaspart.scene.container import Container
+from gaspart.scene.scene import Scene
+from gaspart.scene.species import Species
 from gaspart.theory.partition import expected_box_visits, expected_pair_tests
 
 GAS = Scene(Container((20.0,) * 3), species=(Species(400, 0.1, speed=1.0),))

@@ -1,15 +1,35 @@
 """The pictures of the densest packings."""
 
+import numpy as np
+from experiments.drawn import draw, varied
 from experiments.packing.data import packings
 
 from gaspart.experiments.packing import figure as packing
-from gaspart.rendering import style
 
 
-def test_the_two_pictures_tell_their_packing_fractions():
-    with style.applied():
-        figure = packing.densest_fill(packings())
-    titles = [axis.get_title() for axis in figure.axes]
-    assert [len(axis.images) for axis in figure.axes] == [1, 1]
-    assert "0.376 ± 0.001" in titles[0]
-    assert "0.641 ± 0.001" in titles[1]
+def test_the_first_and_the_last_packing_are_drawn_with_their_packing_fractions(tmp_path, monkeypatch):
+    drawn = []
+
+    def picture(bodies, size, colours):
+        drawn.append(bodies)
+        return np.full((*size, 3), len(drawn), dtype=np.uint8)
+
+    monkeypatch.setattr(packing, "picture", picture)
+    ds = varied(packings(), "packing_fraction", "error")
+    axes = draw(packing.densest_fill, ds, tmp_path).axes
+    titles = [axis.get_title() for axis in axes]
+    assert "periodic" in titles[0] and "0.376 ± 0.001" in titles[0]
+    assert "jammed" in titles[1] and "0.641 ± 0.001" in titles[1]
+    for k, (axis, bodies) in enumerate(zip(axes, drawn, strict=True)):
+        one = ds.isel(packing=k)
+        assert np.all(axis.images[0].get_array() == k + 1)
+        assert np.array_equal(bodies.positions, one["position"])
+        assert np.all(bodies.radii == float(one["radius"]))
+        assert np.array_equal(bodies.lengths, one["length"])
+
+
+def test_packings_of_fewer_particles_are_drawn_without_the_missing_ones(tmp_path):
+    ds = packings()
+    ds["position"][0, 5:] = np.nan
+    image = draw(packing.densest_fill, ds, tmp_path).axes[0].images[0].get_array()
+    assert image.shape == (700, 700, 3) and np.ptp(image) > 100

@@ -1,26 +1,52 @@
 import numpy as np
 import pytest
 import xarray as xr
+from experiments.drawn import draw
 
 from gaspart.experiments.pictures import figure as pictures
-from gaspart.rendering import style
 
 
-@pytest.mark.parametrize("draw", [pictures.gas_render, pictures.brownian_render])
-def test_the_picture_fills_a_column(tmp_path, draw):
+@pytest.fixture
+def dataset():
     rng = np.random.default_rng(1)
-    ds = xr.Dataset({
+    return xr.Dataset({
         "position": (("body", "axis"), rng.uniform(1, 9, (20, 3))),
-        "radius": ("body", np.full(20, 0.5)),
+        "radius": ("body", rng.uniform(0.4, 0.6, 20)),
         "species": ("body", np.arange(20) // 19),
         "speed": ("body", rng.uniform(0, 2, 20)),
-        "length": ("axis", np.full(3, 10.0)),
+        "length": ("axis", np.array([10.0, 11.0, 12.0])),
     })  # fmt: skip
-    with style.applied():
-        figure = draw(ds)
-        style.save(figure, tmp_path / "picture.png")
+
+
+@pytest.mark.parametrize("function", [pictures.gas_render, pictures.brownian_render])
+def test_the_picture_fills_a_column(tmp_path, dataset, function):
+    figure = draw(function, dataset, tmp_path)
     image = figure.axes[0].images[0].get_array()
     assert image.shape == (765, 1020, 3)
-    assert len(figure.axes) == (2 if draw is pictures.gas_render else 1)
     saturated = np.ptp(image.astype(int), axis=-1) > 60
     assert 0.002 < saturated.mean() < 0.5
+
+
+@pytest.mark.parametrize(
+    ("function", "colour"), [(pictures.gas_render, "speed"), (pictures.brownian_render, "species")]
+)
+def test_the_particles_of_the_data_set_are_drawn(tmp_path, monkeypatch, dataset, function, colour):
+    drawn, coloured = [], []
+
+    def picture(bodies, size, colours):
+        drawn.append(bodies)
+        return np.zeros((*size[::-1], 3), dtype=np.uint8)
+
+    monkeypatch.setattr(pictures, "picture", picture)
+    monkeypatch.setattr(pictures, "colours_of", lambda bodies, by: coloured.append(by))
+    figure = draw(function, dataset, tmp_path)
+    (bodies,) = drawn
+    assert coloured == [colour]
+    columns = {"positions": "position", "radii": "radius", "species": "species", "speeds": "speed"}
+    for name, column in {**columns, "lengths": "length"}.items():
+        assert np.array_equal(getattr(bodies, name), dataset[column])
+    scales = figure.axes[1:]
+    assert len(scales) == (colour == "speed")
+    for scale in scales:
+        fastest = pictures.FASTEST * float(np.sqrt((dataset["speed"] ** 2).mean()))
+        assert "speed" in scale.get_xlabel() and scale.get_xlim() == pytest.approx((0.0, fastest))

@@ -1,5 +1,6 @@
-"""The price of features: what is divided by what, and that the stripper strips."""
+"""The price of features: ratios to the plain scene, and removal of absent features from the source."""
 
+import ast
 from pathlib import Path
 
 import numpy as np
@@ -8,11 +9,9 @@ import pytest
 from gaspart.claims import judge
 from gaspart.experiments.jobs.measure_cost import measure_cost
 from gaspart.experiments.price.claims import price_of_features as claims
-from gaspart.experiments.price.figure import price_of_features as draw
 from gaspart.experiments.price.measure import price_of_features
-from gaspart.experiments.price.stripped import instructions, stripped
+from gaspart.experiments.price.stripped import FEATURES, instructions, stripped
 from gaspart.planning import grid
-from gaspart.rendering import style
 
 ROOT = Path(__file__).parents[3]
 SETTINGS = {"count_instructions": False}
@@ -43,8 +42,6 @@ def test_costs_are_those_of_the_plain_scene_times_a_ratio(points):
     assert ds["ratio"].values == pytest.approx(ds["seconds"].values / ds["seconds"].values[0])
     assert ds["ratio_error"].values[0] == 0.0
     assert np.all(ds["pair_tests"] > 1.0)
-    with style.applied():
-        assert len(draw(ds).axes) == 2
 
 
 def test_there_must_be_a_plain_scene(points):
@@ -68,7 +65,7 @@ def test_branches_on_absent_features_are_cut_out():
 def move(body, gravity):
     if gravity is not None:
         body.fall(gravity)
-    if big is None:
+    if oversized is None:
         body.go()
     else:
         body.look()
@@ -79,6 +76,28 @@ def move(body, gravity):
         "    body.go()",
         "    return (1.0, other is None)",
     ]
+
+
+def test_what_follows_the_return_of_an_absent_feature_is_cut_out():
+    source = """
+def is_full(record):
+    if record is None:
+        return False
+    return record.filled == record.room
+"""
+    assert stripped(source).split("\n")[1:] == ["    return False"]
+
+
+def test_all_optional_arguments_of_the_kernels_are_features_or_choices_of_a_method():
+    methods = {"queue", "threads", "cells", "partition", "square"}
+    optional = {
+        test.left.id
+        for path in (ROOT / "src/gaspart/kernels").rglob("*.py")
+        for test in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(test, ast.Compare) and isinstance(test.ops[0], ast.Is | ast.IsNot)
+        if isinstance(test.left, ast.Name) and ast.unparse(test.comparators[0]) == "None"
+    }
+    assert optional == FEATURES | methods
 
 
 @pytest.mark.thorough

@@ -6,7 +6,6 @@ import pytest
 from gaspart import theory
 from gaspart.claims import judge
 from gaspart.experiments.radius.claims import radius_grid as claims
-from gaspart.experiments.radius.figure import radius_grid as draw
 from gaspart.experiments.radius.measure import (
     crossings_per_collision,
     expected_pair_tests,
@@ -14,7 +13,6 @@ from gaspart.experiments.radius.measure import (
     structure_factor,
 )
 from gaspart.planning import grid
-from gaspart.rendering import style
 from gaspart.trajectory.run import run
 
 
@@ -95,10 +93,3 @@ def test_claims_can_fail(dataset):
     wrong["pair_tests"] = wrong["pair_tests"] * wrong["radius"] ** 2
     changed = verdicts(wrong)
     assert set(changed.values()) == {"disagrees"} or list(changed.values()).count("disagrees") >= 4
-
-
-def test_it_draws(dataset, tmp_path):
-    with style.applied():
-        figure = draw(dataset)
-        style.save(figure, tmp_path / "figure.svg")
-    assert len(figure.axes) == 3

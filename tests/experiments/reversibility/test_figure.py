@@ -1,13 +1,31 @@
+from experiments.drawn import Points, column, draw, follows, lines, shows, varied
 from experiments.reversibility.data import measurement
 
-from gaspart.experiments.reversibility import figure as reversibility
-from gaspart.rendering import style
+from gaspart.experiments.reversibility.claims import EXPONENT
+from gaspart.experiments.reversibility.figure import reversibility
 
 
 def test_echoes_growth_and_memory(tmp_path):
-    with style.applied():
-        figure = reversibility.reversibility(measurement(tmp_path))
-        style.save(figure, tmp_path / "figure.png")
-    echoes, growth, memory = figure.axes
-    assert len(echoes.lines) == 2
-    assert "growth" in growth.get_ylabel() and "memory" in memory.get_ylabel()
+    ds = varied(measurement(tmp_path), "packing_fraction")
+    echoes, growth, memory = draw(reversibility, ds, tmp_path).axes
+    assert "collisions" in echoes.get_xlabel() and "echo" in echoes.get_ylabel()
+    for n, one in enumerate(lines(echoes)):
+        row = ds.isel(row=n)
+        follows(one, row["collisions"], row["echo"])
+        assert one.get_linestyle() == {"event": "-", "step": "--"}[row["engine"].item()]
+    exact, steps = ds.isel(row=[0]), ds.isel(row=[1])
+    shifted = exact.assign(place=1.12 * exact["packing_fraction"])
+    known = sorted((eta, *value) for (dimension, eta), value in EXPONENT.items() if dimension == 3)
+    shows(
+        growth, "packing fraction", "growth",
+        column(exact, "spheres, echo", "packing_fraction", "growth"),
+        column(shifted, "spheres, two runs", "place", "divergence"),
+        Points("known", *zip(*known, strict=True)),
+    )  # fmt: skip
+    nothing = Points(None, [], [], [])
+    shows(
+        memory, "packing fraction", "memory",
+        nothing, column(exact, "event-driven", "packing_fraction", "memory"),
+        nothing, column(steps, "time-stepped", "packing_fraction", "memory"),
+        nothing, Points("float32", [], [], []),
+    )  # fmt: skip

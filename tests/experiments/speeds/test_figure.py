@@ -1,11 +1,12 @@
 import numpy as np
 import pytest
 import xarray as xr
+from experiments.drawn import Points, column, draw, follows, line, lines, obeys, shows, varied
 from experiments.speeds.data import relaxation_measurement
+from matplotlib.patches import StepPatch
 
 from gaspart import theory
 from gaspart.experiments.speeds import figure as speeds
-from gaspart.rendering import style
 
 
 def distribution(dimension, points):
@@ -17,8 +18,8 @@ def distribution(dimension, points):
         {
             "density": (bins, np.tile(expected, (points, 1))),
             "density_error": (bins, np.full((points, 20), 0.01)),
-            "residual": (bins, np.zeros((points, 20))),
-            "difference": (columns, np.zeros((points, 51))),
+            "residual": (bins, np.ones((points, 20))),
+            "difference": (columns, np.full((points, 51), 0.01)),
             "samples": ("point", np.full(points, 1000)),
             "packing_fraction": ("point", 0.1 * np.arange(1, points + 1)),
             "engine": ("point", ["event"] * points),
@@ -28,24 +29,72 @@ def distribution(dimension, points):
     )
 
 
-def test_relaxation_shows_histograms_curves_and_residuals(tmp_path):
-    with style.applied():
-        figure = speeds.speed_relaxation(relaxation_measurement())
-        style.save(figure, tmp_path / "relaxation.png")
-    labels = [axis.get_ylabel() for axis in figure.axes]
-    assert len(labels) == 5 and sum("residual" in label for label in labels) == 2
-    theory_line = figure.axes[1].lines[0]
-    assert theory_line.get_ydata()[0] == pytest.approx(1.0)
+def test_histograms_kurtosis_and_the_fraction_never_hit(tmp_path):
+    ds = varied(relaxation_measurement())
+    histograms, kurtosis, kurtosis_residual, unhit, unhit_residual = draw(
+        speeds.speed_relaxation, ds, tmp_path
+    ).axes
+    middle = 0.5 * (ds["lower"] + ds["upper"])
+    event, step = (ds.sel(engine=name) for name in ("event", "step"))
+    shows(
+        histograms, "speed", "probability density",
+        *(Points(None, middle, event["density"][k], event["density_error"][k]) for k in range(3)),
+    )  # fmt: skip
+    outlines = [patch for patch in histograms.patches if isinstance(patch, StepPatch)]
+    for k, patch in enumerate(outlines):
+        values, edges, _ = patch.get_data()
+        assert values == pytest.approx(step["density"][k].values)
+        assert edges[:-1] == pytest.approx(ds["lower"].values)
+        assert f"t={float(ds['time'][ds['shown'][k]]):g}" in patch.get_label()
+    assert len(outlines) == 3
+    obeys(line(histograms, "Maxwell"), lambda u: theory.maxwell_pdf(u, 3, 1 / 3))
+    relaxation = theory.relaxation(3)
+    for top, bottom, name, curve, labels, y_label in (
+        (kurtosis, kurtosis_residual, "kurtosis", relaxation.kurtosis, ("stepped", "event"), "kurtosis"),
+        (unhit, unhit_residual, "never_hit", relaxation.never_hit, ("stepped", "event"), "never hit"),
+    ):
+        rows = [one.isel(frame=slice(1, None)) for one in (step, event)]
+        shows(
+            top, "", y_label,
+            *(column(row, label, "collisions", name) for row, label in zip(rows, labels, strict=True)),
+        )  # fmt: skip
+        obeys(lines(top)[0], curve)
+        sigmas = [
+            Points(None, row["collisions"], (row[name] - curve(row["collisions"])) / row[f"{name}_error"])
+            for row in rows
+        ]
+        shows(bottom, "", "residual", *sigmas)
+    assert "collisions per particle" in unhit_residual.get_xlabel()
 
 
 @pytest.mark.parametrize(
-    ("draw", "dimension", "points"),
+    ("function", "dimension", "points"),
     [(speeds.speed_distribution_spheres, 3, 3), (speeds.speed_distribution_discs, 2, 1)],
 )
-def test_distribution_shows_density_cumulative_and_residuals(tmp_path, draw, dimension, points):
-    with style.applied():
-        figure = draw(distribution(dimension, points))
-        style.save(figure, tmp_path / "distribution.svg")
-    assert len(figure.axes) == 4
-    curve = figure.axes[0].lines[0]
-    assert curve.get_ydata() == pytest.approx(theory.maxwell_pdf(curve.get_xdata(), dimension, 1 / dimension))
+def test_density_residuals_and_cumulative_distribution(tmp_path, function, dimension, points):
+    ds = varied(distribution(dimension, points), "packing_fraction")
+    density, residual, cumulative, difference = draw(function, ds, tmp_path).axes
+    middle, width = 0.5 * (ds["lower"] + ds["upper"]), 0.125
+    rows = [ds.isel(point=k) for k in range(points)]
+    shows(
+        density, "", "probability density",
+        *(
+            Points(f"$\\eta={0.1 * (k + 1):.2g}$, event", middle, row["density"], row["density_error"])
+            for k, row in enumerate(rows)
+        ),
+    )  # fmt: skip
+    shows(
+        residual, "", "residual",
+        *(
+            Points(None, middle + width * 0.25 * (k - 0.5 * (points - 1)), row["residual"])
+            for k, row in enumerate(rows)
+        ),
+    )  # fmt: skip
+    obeys(lines(density)[0], lambda u: theory.maxwell_pdf(u, dimension, 1 / dimension))
+    maxwell = theory.maxwell_cdf(ds["speed"].values, dimension, 1 / dimension)
+    follows(lines(cumulative)[0], ds["speed"], maxwell)
+    for k, row in enumerate(rows):
+        follows(lines(cumulative)[1 + k], ds["speed"], maxwell + row["difference"])
+        follows(lines(difference)[k], ds["speed"], 1000**0.5 * row["difference"])
+    assert "speed" in difference.get_xlabel() and "difference" in difference.get_ylabel()
+    assert "cumulative" in cumulative.get_ylabel()

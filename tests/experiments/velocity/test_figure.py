@@ -1,13 +1,45 @@
+import numpy as np
 import pytest
+from experiments.drawn import Points, column, draw, follows, lines, obeys, shows, varied
 from experiments.velocity.data import correlations
 
+from gaspart import theory
 from gaspart.experiments.velocity.figure import velocity_autocorrelation
-from gaspart.rendering import style
 
 
 @pytest.mark.parametrize("points", [[0, 1, 2, 3], [0], [3]])
-def test_it_draws_what_there_is(points, tmp_path):
-    with style.applied():
-        figure = velocity_autocorrelation(correlations().isel(point=points))
-        style.save(figure, tmp_path / "figure.svg")
-    assert len(figure.axes) == 3 and all(axis.get_ylabel() for axis in figure.axes)
+def test_the_tail_the_start_and_their_ratio_are_drawn(points, tmp_path):
+    ds = correlations().isel(point=points)
+    whole = varied(ds, "packing_fraction", "sound", "start_rate", "tail_ratio")
+    ds = whole.assign({name: ds[name] for name in ("tail_from", "tail_to")})
+    tails, starts, ratios = draw(velocity_autocorrelation, ds, tmp_path).axes
+    fine = [ds.isel(point=k) for k in range(len(points)) if np.isfinite(ds["start_rate"][k])]
+    long = [ds.isel(point=k) for k in range(len(points)) if np.isfinite(ds["tail_ratio"][k])]
+    names = {2: "discs", 3: "spheres"}
+    series = {
+        kind: [
+            column(
+                row, f"{names[row['dimension'].item()]}, $\\eta={row['packing_fraction'].item():g}",
+                "collisions", "correlation", some=True,
+            )
+            for row in rows
+        ]
+        for kind, rows in (("fine", fine), ("long", long))
+    }  # fmt: skip
+    shows(tails, "", "C=", *series["long"])
+    shows(starts, "collisions per particle", "C", *series["fine"])
+    expected = []
+    for n, row in enumerate(long):
+        time, eta, dimension = (row[name] for name in ("time", "packing_fraction", "dimension"))
+        tail = theory.velocity_autocorrelation_tail(np.maximum(time, 1e-9), float(eta), int(dimension))
+        expected.append(
+            Points(
+                None, row["collisions"], row["correlation"] / tail, row["correlation_error"] / tail, some=True
+            )
+        )
+        late = (row["collisions"] > 3.0).values
+        follows(lines(tails)[2 + n], row["collisions"][late], np.asarray(tail)[late])
+    shows(ratios, "collisions per particle", "tail", *expected)
+    for one, row in zip(lines(starts), fine, strict=True):
+        dimension = int(row["dimension"])
+        obeys(one, lambda s, d=dimension: np.exp(-2.0 / d * s))

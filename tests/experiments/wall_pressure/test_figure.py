@@ -1,16 +1,54 @@
+import numpy as np
+from experiments.drawn import Points, draw, lines, obeys, shows, varied
 from experiments.wall_pressure.data import pressures
 
+from gaspart import theory
 from gaspart.experiments.wall_pressure.figure import wall_pressure
-from gaspart.rendering import style
+
+NAMES = {2: "discs", 3: "spheres"}
 
 
-def test_it_draws_all_its_panels(tmp_path):
-    with style.applied():
-        figure = wall_pressure(pressures())
-        style.save(figure, tmp_path / "figure.svg")
-    assert len(figure.axes) == 3 and all(axis.get_ylabel() for axis in figure.axes)
+def deviation(ds, points, shift, label):
+    """100 (P / theory - 1) of some containers, with both uncertainties."""
+    own = ds.isel(point=points)
+    error = 100.0 * np.hypot(own["pressure_error"], own["expected_error"]) / own["expected"]
+    ratio = own["pressure"] / own["expected"]
+    return Points(label, own["packing_fraction"] + shift, 100.0 * (ratio - 1.0), error)
 
 
-def test_it_draws_one_dimension_without_temperatures(tmp_path):
-    with style.applied():
-        style.save(wall_pressure(pressures().isel(point=[0, 1, 6])), tmp_path / "figure.png")
+def test_pressures_against_temperature_and_density_and_their_deviation(tmp_path):
+    ds = varied(pressures(), "density", "temperature")
+    temperatures, densities, residuals = draw(wall_pressure, ds, tmp_path).axes
+    series = ds.isel(point=[2, 8, 9]).sortby("temperature")
+    t = series["temperature"]
+    shows(
+        temperatures, "temperature", "pressure",
+        Points(r"$\eta", t, series["pressure"] * t, series["pressure_error"] * t),
+    )  # fmt: skip
+    obeys(lines(temperatures)[0], lambda x: x * float(series["expected"][0]))
+    obeys(lines(temperatures)[1], lambda x: x * float(series["density"][0]))
+    expected = []
+    for dimension, name in NAMES.items():
+        own = ds.isel(point=(ds["dimension"] == dimension).values)
+        corrected = own["bulk_pressure"] / own["expected"] / own["density"]
+        expected += [
+            Points(f"{name}, $F/$wall", own["packing_fraction"], own["whole_pressure"] / own["density"]),
+            Points(
+                f"{name}, corrected", own["packing_fraction"], own["pressure"] * corrected,
+                own["pressure_error"] * corrected,
+            ),
+        ]  # fmt: skip
+    shows(densities, "packing fraction", "P/", *expected)
+    obeys(lines(densities)[0], lambda eta: theory.compressibility_factor(eta, 2))
+    obeys(lines(densities)[1], lambda eta: theory.compressibility_factor(eta, 3))
+    shows(
+        residuals, "packing fraction", "theory",
+        deviation(ds, [0, 1, 2, 8, 9], 0.0, "discs, slit"), deviation(ds, [6], 0.003, "discs, closed"),
+        deviation(ds, [3, 4, 5], 0.0, "spheres, slit"), deviation(ds, [7], 0.003, "spheres, closed"),
+    )  # fmt: skip
+
+
+def test_one_dimension_without_temperatures_leaves_their_panel_empty(tmp_path):
+    axes = draw(wall_pressure, pressures().isel(point=[0, 1, 6]), tmp_path).axes
+    shows(axes[0], "temperature", "pressure")
+    assert len(axes[1].containers) == 2

@@ -1,4 +1,15 @@
-"""Walls that hold bodies."""
+"""Walls that hold particles."""
 
-TITLE = "Walls that hold bodies"
-FIGURES = ("adsorption",)
+from gaspart.kinds import count, positive
+
+TITLE = "Walls that hold particles"
+FIGURES = {
+    "adsorption": {
+        "blocks": count("stretches of each replica"),
+        "near": positive(
+            "distance from the edge of the well, or from where particles stick, within which the "
+            "velocities of leaving particles are read"
+        ),
+        "bins": count("bins of their speeds"),
+    }
+}

@@ -1,4 +1,4 @@
-"""Picture of walls that hold bodies: wells, a hard layer, and the source's sticky wall."""
+"""Figure of adsorbing walls: wells, a hard layer, and the source's sticky wall."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from gaspart.theory.adsorption import (
 
 
 def adsorption(ds: xr.Dataset) -> Figure:
-    """Ratio and prefactor of ideal gases, isotherms of a layer and of a sticky wall, speeds of who leaves."""
+    """Ratio and prefactor of ideal gases, isotherms of a layer and of a sticky wall, speeds of desorption."""
     figure, axes = style.new(rows=6, height=10.2, height_ratios=(2.6, 1.2, 1.9, 2.6, 1.7, 2.2), share_x=False)
     ideal, layer, sticky = (
         ds.isel(point=np.flatnonzero(ds["kind"] == kind)) for kind in ("ideal", "layer", "sticky")
@@ -27,16 +27,15 @@ def adsorption(ds: xr.Dataset) -> Figure:
     _isotherm(axes[3], layer)
     _sticky_coverage(axes[4], sticky)
     _leaving(axes[5], ideal, sticky)
-    for axis, letter in zip((axes[0], *axes[2:]), "abcde", strict=True):
-        style.letter(axis, letter)
+    style.letters(axes[0], *axes[2:])
     return figure
 
 
 def _ratios(top: Axes, bottom: Axes, ds: xr.Dataset) -> None:
-    """Held over free bodies against 1 / kT, and how far they are off."""
+    """Adsorbed over free particles against 1 / kT, and the deviation from the exact ratio."""
     style.level(bottom, 0.0)
     inverse = np.linspace(0.0, 1.05 / float(ds["temperature"].min()), 50)
-    for kind, row in enumerate(_alike(ds, "depth", "width")):
+    for kind, row in enumerate(_groups(ds, "depth", "width")):
         depth, width, outside = (float(row[name][0]) for name in ("depth", "width", "outside"))
         label = f"$\\epsilon$ = {depth:g}, $w$ = {width:g}"
         where = 1.0 / row["temperature"].values
@@ -44,27 +43,31 @@ def _ratios(top: Axes, bottom: Axes, ds: xr.Dataset) -> None:
             top, where, row["ratio"].values, row["ratio_error"].values, kind=kind, hollow=True, label=label
         )
         top.plot(inverse, well_ratio(depth * inverse, width, outside), color=style.COLOURS[kind], lw=0.8)
-        off = row["log_ratio"].values - np.log(well_ratio(depth * where, width, outside))
+        deviation = row["log_ratio"].values - np.log(well_ratio(depth * where, width, outside))
         spread = 0.02 * (kind - 1)
         style.points(
-            bottom, where + spread, 100.0 * off, 100.0 * row["log_ratio_error"].values, kind=kind, hollow=True
+            bottom,
+            where + spread,
+            100.0 * deviation,
+            100.0 * row["log_ratio_error"].values,
+            kind=kind,
+            hollow=True,
         )
     top.set_yscale("log")
     top.set_ylabel(r"$N_\mathrm{ads}/N_\mathrm{gas}$")
     top.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
-    top.sharex(bottom)
-    top.tick_params(labelbottom=False)
+    style.share_x(top, bottom)
     bottom.set_xlim(inverse[0], inverse[-1])
-    bottom.set_ylabel("off exact (%)")
+    bottom.set_ylabel("deviation from\nexact (%)")
     bottom.set_xlabel(r"inverse temperature $1/kT$")
 
 
 def _lengths(axis: Axes, ds: xr.Dataset) -> None:
     """The length in Langmuir's formula, in widths of the well, against temperature."""
     temperatures = np.geomspace(0.8 * ds["temperature"].min(), 1.25 * ds["temperature"].max(), 50)
-    axis.plot(temperatures, temperatures**-0.5, color=style.DATA, ls=":", label=r"a thermal wavelength")
+    axis.plot(temperatures, temperatures**-0.5, color=style.DATA, ls=":", label="a thermal wavelength")
     axis.axhline(1.0, color=style.REFERENCE, label="the width of the well")
-    for kind, row in enumerate(_alike(ds, "depth", "width")):
+    for kind, row in enumerate(_groups(ds, "depth", "width")):
         scale = float(row["width"][0])
         value, error = row["length"].values / scale, row["length_error"].values / scale
         style.points(axis, row["temperature"].values, value, error, kind=kind, hollow=True)
@@ -77,12 +80,12 @@ def _lengths(axis: Axes, ds: xr.Dataset) -> None:
 
 
 def _isotherm(axis: Axes, ds: xr.Dataset) -> None:
-    """Coverage of a layer against the activity that fills it."""
+    """Coverage of a layer against the activity of the gas."""
     eta = np.linspace(1e-3, 0.52, 300)
     axis.plot(scaled_particle_activity(eta), eta, color=style.REFERENCE, label="hard discs (SPT)")
     activity = np.geomspace(0.01, 100.0, 200)
     axis.plot(activity, activity, color=style.GREY, ls=":", label="ideal: Henry")
-    axis.plot(activity, langmuir_coverage(activity), color=style.GREY, ls="--", label="places: Langmuir")
+    axis.plot(activity, langmuir_coverage(activity), color=style.GREY, ls="--", label="sites: Langmuir")
     axis.errorbar(
         ds["activity"].values,
         ds["coverage"].values,
@@ -123,7 +126,7 @@ def _sticky_coverage(axis: Axes, ds: xr.Dataset) -> None:
 
 
 def _leaving(axis: Axes, wells: xr.Dataset, ds: xr.Dataset) -> None:
-    """Normal speeds of the bodies that leave a well, and of those that leave a sticky wall."""
+    """Normal speeds of the particles that leave a well, and of those that leave a sticky wall."""
     speed = ds["speed"].values
     line = np.linspace(0.0, speed[-1], 200)
     axis.plot(line, flux_density(line), color=style.REFERENCE, label=r"$v\,e^{-v^2/2}$")
@@ -134,13 +137,13 @@ def _leaving(axis: Axes, wells: xr.Dataset, ds: xr.Dataset) -> None:
         style.points(axis, speed, value, error, kind=kind, hollow=not kind, label=label)
     axis.axvline(float(dense["slow_speed"]), color=style.GREY, ls=":")
     axis.set_ylim(bottom=0.0)
-    axis.set_ylabel("share of those who leave")
+    axis.set_ylabel("share of leaving particles")
     axis.set_xlabel(r"normal speed $v\sqrt{m/kT}$")
     axis.legend(loc="upper right")
 
 
-def _alike(ds: xr.Dataset, *names: str) -> list[xr.Dataset]:
-    """The points, in groups of like settings."""
+def _groups(ds: xr.Dataset, *names: str) -> list[xr.Dataset]:
+    """The points in groups of equal settings."""
     settings = list(zip(*(ds[name].values.tolist() for name in names), strict=True))
     return [
         ds.isel(point=[n for n, own in enumerate(settings) if own == setting])

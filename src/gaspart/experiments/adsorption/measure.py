@@ -74,6 +74,14 @@ class Holder:
         """
         return height < self.width if self.kind != "sticky" else velocity == 0.0
 
+    def coverage(self, count: np.ndarray) -> np.ndarray:
+        """The share of the wall's area that so many particles cover."""
+        return count * body_volume(2, 2.0 * self.radius) / self.area
+
+    def gas_density(self, count: np.ndarray) -> np.ndarray:
+        """The number density of so many particles at least a diameter from both walls and from the well."""
+        return count / ((self.outside - 4.0 * self.radius) * self.area)
+
     def activity(self, density: float | np.ndarray) -> float | np.ndarray:
         """The pressure of the gas in k_B T, in terms of what it would hold if bodies in the layer did not
         meet: beta P w e^{depth/kT} pi sigma^2 / 4, a packing fraction (0 without a well)."""
@@ -124,7 +132,7 @@ def adsorption(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 
 def _measured(point: grid.Point, settings: dict) -> dict:
-    """The numbers of one point."""
+    """The values of one point."""
     holder = Holder.of(point)
     slow = holder.momentum / np.sqrt(holder.mass * holder.temperature) or 1.0
     blocks = [
@@ -133,62 +141,58 @@ def _measured(point: grid.Point, settings: dict) -> dict:
         for part in _parts(holder, point, path, settings["blocks"])
     ]
     held, free, far, slowly, flux = (np.array(series) for series in zip(*blocks, strict=True))
-    empty = holder.outside - 4.0 * holder.radius  # where `far` bodies are counted
-    step = _REACH / settings["bins"]
-
-    def ratio(inside: np.ndarray, others: np.ndarray) -> np.ndarray:
-        return inside / others
-
-    def coverage(inside: np.ndarray) -> np.ndarray:
-        return inside * body_volume(2, 2.0 * holder.radius) / holder.area
-
-    def density(counted: np.ndarray) -> np.ndarray:
-        return counted / (empty * holder.area)
-
-    layer = holder.kind == "layer"
-    made = {
-        "held": jackknife(lambda inside: inside, held),
-        "ratio": jackknife(ratio, held, free),
-        "log_ratio": jackknife(lambda *counts: np.log(ratio(*counts)), held, free),
-        "length": jackknife(
-            lambda *counts: length_in_langmuirs_formula(
-                ratio(*counts), holder.depth / holder.temperature, holder.outside
-            ),
-            held,
-            free,
-        ),
-        "coverage": jackknife(coverage, held),
-        "gas_density": jackknife(density, far),
-    }
-    # From layers hardly any leave.
-    made |= {
-        "flux": (np.full(settings["bins"], np.nan),) * 2
-        if layer
-        else jackknife(lambda share: share / (share.sum() * step), flux),
-        "slow_share": (np.nan, np.nan)
-        if layer
-        else jackknife(lambda some, share: some / share.sum(), slowly, flux),
-    }
-    made["activity"] = (
-        jackknife(lambda counted: holder.activity(density(counted)), far) if layer else (np.nan, np.nan)
-    )
-    made["filling"] = (
-        jackknife(
-            lambda inside, counted: (
-                coverage(inside) / packing_fraction_at(holder.activity(density(counted)), 2)
-            ),
-            held,
-            far,
-        )
-        if layer
-        else (np.nan, np.nan)
-    )
-    row = {name: value for name, (value, _) in made.items()}
-    row |= {f"{name}_error": error for name, (_, error) in made.items()}
+    bins, layer, absent = settings["bins"], holder.kind == "layer", (np.nan, np.nan)
+    estimates = _amounts(holder, held, free, far)
+    if layer:  # hardly any particle leaves it
+        estimates |= {"flux": (np.full(bins, np.nan),) * 2, "slow_share": absent}
+        estimates |= _isotherm(holder, held, far)
+    else:
+        estimates |= _desorption(slowly, flux, _REACH / bins)
+        estimates |= {"activity": absent, "filling": absent}
+    row = {name: value for name, (value, _) in estimates.items()}
+    row |= {f"{name}_error": error for name, (_, error) in estimates.items()}
     for name in ("kind", "temperature", "depth", "width", "momentum", "mass", "outside"):
         row[name] = getattr(holder, name)
     row["layer_uncertainty"] = holder.uncertainty(row["gas_density"]) if layer else np.nan
     return row | {"slow_speed": slow}
+
+
+def _amounts(holder: Holder, held: np.ndarray, free: np.ndarray, far: np.ndarray) -> dict[str, tuple]:
+    """(value, error) of the adsorbed amount by name: the number, its ratio to the free particles and the
+    length that follows from it, the coverage; and of the density of the gas."""
+
+    def length(inside: np.ndarray, others: np.ndarray) -> np.ndarray:
+        return length_in_langmuirs_formula(inside / others, holder.depth / holder.temperature, holder.outside)
+
+    return {
+        "held": jackknife(lambda inside: inside, held),
+        "ratio": jackknife(lambda inside, others: inside / others, held, free),
+        "log_ratio": jackknife(lambda inside, others: np.log(inside / others), held, free),
+        "length": jackknife(length, held, free),
+        "coverage": jackknife(holder.coverage, held),
+        "gas_density": jackknife(holder.gas_density, far),
+    }
+
+
+def _desorption(slowly: np.ndarray, flux: np.ndarray, width: float) -> dict[str, tuple]:
+    """(value, error) of the density of the normal speeds in bins of a width, and of the share of slow ones."""
+    return {
+        "flux": jackknife(lambda share: share / (share.sum() * width), flux),
+        "slow_share": jackknife(lambda some, share: some / share.sum(), slowly, flux),
+    }
+
+
+def _isotherm(holder: Holder, held: np.ndarray, far: np.ndarray) -> dict[str, tuple]:
+    """(value, error) of the activity of the gas, and of the coverage over that of hard discs in equilibrium
+    with it."""
+
+    def activity(counted: np.ndarray) -> float | np.ndarray:
+        return holder.activity(holder.gas_density(counted))
+
+    def filling(inside: np.ndarray, counted: np.ndarray) -> np.ndarray:
+        return holder.coverage(inside) / packing_fraction_at(activity(counted), 2)
+
+    return {"activity": jackknife(activity, far), "filling": jackknife(filling, held, far)}
 
 
 def counts_of(holder: Holder, height: np.ndarray, velocity: np.ndarray, settings: dict, slow: float) -> tuple:

@@ -1,4 +1,9 @@
-"""A large body in a gas."""
+"""A large particle in a gas."""
 
-TITLE = "A large body in a gas"
-FIGURES = ("brownian_paths", "brownian_msd")
+from gaspart.kinds import count
+
+TITLE = "A large particle in a gas"
+FIGURES = {
+    "brownian_paths": {"paths": count("number of paths that are drawn of each point")},
+    "brownian_msd": {},
+}

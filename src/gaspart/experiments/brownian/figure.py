@@ -1,4 +1,4 @@
-"""A large body in a gas: its paths, its mean-squared displacement, its velocity autocorrelation."""
+"""A large sphere in a gas: its paths, its mean-squared displacement, its velocity autocorrelation."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from gaspart import theory
 from gaspart.rendering import style
 
 LONGEST = 3.2
-"""Friction times to which the velocity autocorrelation is shown: then noise takes over."""
+"""Friction times up to which the velocity autocorrelation is drawn: noise dominates beyond."""
 
 
 def brownian_paths(ds: xr.Dataset) -> Figure:
-    """Paths from above, a panel for each point; in the middle, the body in its size."""
+    """Paths from above, a panel for each point; in the middle, the sphere to scale."""
     from matplotlib.patches import Circle
 
     figure, axes = style.new(rows=ds.sizes["point"], height=3.1 * ds.sizes["point"], share_x=False)
@@ -22,11 +22,11 @@ def brownian_paths(ds: xr.Dataset) -> Figure:
         row = ds.isel(point=index)
         axis.add_patch(Circle((0.0, 0.0), float(row["radius"]), color=style.GREY, alpha=0.35, lw=0))
         for path in range(ds.sizes["path"]):
-            way = row["way"].isel(path=path).values
+            points = row["way"].isel(path=path).values
             colour = style.COLOURS[path % len(style.COLOURS)]
-            axis.plot(way[:, 0], way[:, 1], color=colour, lw=0.7)
-            ended = way[np.isfinite(way[:, 0])][-1]
-            axis.plot(*ended[:2], color=colour, marker=style.MARKERS[path % len(style.MARKERS)], zorder=4)
+            axis.plot(points[:, 0], points[:, 1], color=colour, lw=0.7)
+            end = points[np.isfinite(points[:, 0])][-1]
+            axis.plot(*end[:2], color=colour, marker=style.MARKERS[path % len(style.MARKERS)], zorder=4)
         axis.plot(0.0, 0.0, color=style.DATA, marker="o", ms=2.5, zorder=5)
         widest = 1.08 * np.nanmax(np.abs(row["way"].values[..., :2]))
         axis.set_xlim(-widest, widest)
@@ -41,7 +41,7 @@ def brownian_paths(ds: xr.Dataset) -> Figure:
 
 
 def brownian_msd(ds: xr.Dataset) -> Figure:
-    """Mean-squared displacement and velocity autocorrelation on those of the Langevin equation."""
+    """Mean-squared displacement and velocity autocorrelation, with those of the Langevin equation."""
     figure, axes = style.new(rows=4, height=6.4, height_ratios=(3, 1.2, 3, 1.2), share_x=False)
     t = np.geomspace(0.05, 1.05 * float(ds["time"].max()), 300)
     axes[0].loglog(t, theory.langevin_msd(t, 1.0 / 6.0, 1.0), color=style.DATA, label="Langevin", zorder=2)

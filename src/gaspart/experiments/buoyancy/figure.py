@@ -1,4 +1,4 @@
-"""The picture of buoyancy: what a large disc displaces, and where it floats."""
+"""Figure of buoyancy: what a large disc displaces, and where it floats."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from gaspart.rendering import style
 from gaspart.theory.buoyancy import displaced_area
 
-WAYS = (("force", "force", "from the force"), ("missing", "count", "small discs missing"))
+METHODS = (("force", "force", "from the force"), ("missing", "count", "small discs missing"))
 
 
 def buoyancy(ds: xr.Dataset) -> Figure:
@@ -32,7 +32,7 @@ def buoyancy(ds: xr.Dataset) -> Figure:
         colour = style.DATA if dashes == "-" else style.GREY
         top.plot(eta, area * eta, ls=dashes, color=colour, label=label, zorder=2)
         middle.plot(eta, np.sqrt(area) - ratio, ls=dashes, color=colour, zorder=2)
-    for kind, (mass, radius, label) in enumerate(WAYS):
+    for kind, (mass, radius, label) in enumerate(METHODS):
         look: dict[str, Any] = {"kind": kind, "hollow": bool(kind)}
         for axis, name in ((top, mass), (middle, f"{radius}_radius")):
             value, error = (ds[f"fixed_{key}"].values for key in (name, f"{name}_error"))
@@ -40,23 +40,21 @@ def buoyancy(ds: xr.Dataset) -> Figure:
             style.points(axis, packing, value, error, **look)
     top.set_ylabel(r"mass displaced $F/mg$")
     top.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
-    top.tick_params(labelbottom=False)
-    middle.sharex(top)
+    style.share_x(top, middle)
     middle.set_ylabel(r"$(R_\mathrm{eff} - R)/r$")
     middle.set_ylim(-0.15, 1.35)
-    middle.set_xlabel(r"packing fraction $\eta$ of the fluid beside")
+    middle.set_xlabel(r"packing fraction $\eta$ of the fluid at that height")
     _heights(bottom, ds)
-    for axis, letter in zip((top, middle, bottom), "abc", strict=True):
-        style.letter(axis, letter)
+    style.letters(top, middle, bottom)
     return figure
 
 
 def _heights(axis: Axes, ds: xr.Dataset) -> None:
-    """Free discs: mean heights, how far they wander, and what theory says of both."""
+    """Free discs: mean heights and their fluctuations, with theory."""
     axis.plot(ds["displaced"], ds["height"], color=style.DATA, label=r"displaces $M$", zorder=2)
     mass, height, spread = (ds[f"free_{name}"].values for name in ("mass", "height", "spread"))
     for at, low, high in zip(mass, height - spread, height + spread, strict=True):
-        label = "wanders" if at == mass[0] else None
+        label = "fluctuates" if at == mass[0] else None
         axis.plot([at, at], [low, high], color=style.COLOURS[0], lw=5, alpha=0.25, label=label, zorder=1)
     style.points(axis, mass, height, ds["free_height_error"].values, label="mean height")
     style.points(axis, mass, ds["free_expected"].values, kind=1, label="theory", marker="_", markersize=11)

@@ -1,4 +1,4 @@
 """Mean-squared displacement."""
 
 TITLE = "Mean-squared displacement"
-FIGURES = ("msd_spheres", "msd_discs")
+FIGURES: dict[str, dict] = {"msd_spheres": {}, "msd_discs": {}}

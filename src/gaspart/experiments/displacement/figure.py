@@ -1,4 +1,4 @@
-"""Pictures of the mean-squared displacement and of diffusion."""
+"""Figures of the mean-squared displacement and of diffusion."""
 
 from __future__ import annotations
 
@@ -20,20 +20,18 @@ def msd_spheres(ds: xr.Dataset) -> Figure:
     _running(axes[1], ds.isel(point=_shown(ds, ds["largest"].values)), 3)
     _density(axes[2], ds)
     _size(axes[3], ds)
-    for axis, letter in zip(axes, "abcd", strict=True):
-        style.letter(axis, letter)
+    style.letters(*axes)
     return figure
 
 
 def msd_discs(ds: xr.Dataset) -> Figure:
-    """The msd; D(t), which goes on growing; its slope against ln t, by packing fraction."""
+    """The msd; D(t), which does not converge; its slope against ln t, by packing fraction."""
     figure, axes = style.new(rows=3, height=7.0, share_x=False)
     long = np.isfinite(ds["logarithmic_slope"].values)
     _displacement(axes[0], ds, 2)
     _running(axes[1], ds, 2)
     _slopes(axes[2], ds.isel(point=long))
-    for axis, letter in zip(axes, "abc", strict=True):
-        style.letter(axis, letter)
+    style.letters(*axes)
     return figure
 
 
@@ -56,7 +54,7 @@ def _spread(first: int, last: int) -> np.ndarray:
 
 
 def _pieces(ds: xr.Dataset, eta: float) -> Iterator[tuple[xr.Dataset, np.ndarray]]:
-    """(row, lags) of one packing fraction: the finely sampled run up to where the long ones begin; those."""
+    """(row, lags) of one packing fraction: the finely sampled run, then the long ones."""
     chosen = ds.isel(point=np.flatnonzero(np.isclose(ds["packing_fraction"], eta, atol=1e-5)))
     rows = [chosen.isel(point=point) for point in np.argsort(chosen["interval"].values, kind="stable")]
     ends = [float(row["time"][1]) for row in rows[1:]] + [np.inf]
@@ -70,7 +68,7 @@ def _pieces(ds: xr.Dataset, eta: float) -> Iterator[tuple[xr.Dataset, np.ndarray
 
 
 def _displacement(axis: Axes, ds: xr.Dataset, dimension: int) -> None:
-    """The msd against time, both in reduced units, with Enskog's curves and the ballistic line they leave."""
+    """The msd against time, both in reduced units, with Enskog's curves and the ballistic limit."""
     longest = 0.0
     for kind, eta in enumerate(_fractions(ds)):
         for number, (row, lags) in enumerate(_pieces(ds, eta)):
@@ -121,13 +119,13 @@ def _running(axis: Axes, ds: xr.Dataset, dimension: int) -> None:
     if dimension == 2:
         axis.plot([], [], color=style.GREY, lw=1.6, alpha=0.5, label="mode coupling")
     axis.set_ylim(0.0)
-    axis.set_xlabel(r"collisions per body $\nu t$")
+    axis.set_xlabel(r"collisions per particle $\nu t$")
     axis.set_ylabel(r"$D(t)/D_\mathrm{Enskog}$")
     axis.legend(loc="lower right", ncols=1 + (len(fractions) > 3))
 
 
 def _predicted(axis: Axes, row: xr.Dataset, eta: float, rate: float, enskog: float, kind: int) -> None:
-    """The logarithm's predicted slope over the fitted stretch, through D(t) in its middle."""
+    """The logarithm's predicted slope over the fitted interval, through D(t) in its middle."""
     ends = np.array([float(row["fit_from"]), float(row["fit_to"])])
     middle = np.sqrt(ends.prod())
     height = np.interp(middle, row["time"].dropna("lag"), row["running"].dropna("lag"))

@@ -1,4 +1,11 @@
 """Speed, accuracy, stability."""
 
+from gaspart.kinds import TEXT, listed, names
+
 TITLE = "Speed, accuracy, stability"
-FIGURES = ("stability_extremes",)
+FIGURES = {
+    "stability_extremes": {
+        "experiments": listed(TEXT, "none: its scenes are a table of the library", least=0, most=0),
+        "groups": names("groups of the table's rows that are run; all by default", default=None),
+    }
+}

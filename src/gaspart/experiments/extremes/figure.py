@@ -1,4 +1,4 @@
-"""The table of extremes as a picture: rows against engines, the drift of the energy in each cell."""
+"""The table of extremes as a figure: rows against engines, the drift of the energy in each cell."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ HEADS = {
     "step, float32": "step\nf4",
 }
 FLOOR = 1e-17
-"""Drifts below this are drawn as 0: nothing at all."""
+"""Drifts below this are drawn as 0."""
 
 
 def stability_extremes(dataset: xr.Dataset) -> Figure:
-    """A line a row, a column an engine: how far the energy drifted, or that the row was refused or failed."""
+    """A line per row, a column per engine: the drift of the energy, or that the row was refused or failed."""
     rows, engines = dataset.sizes["row"], dataset.sizes["engine"]
     figure, axis = style.new(height=0.8 + 0.135 * rows)
     colours, norm = colormaps["YlGnBu"], Normalize(-18.0, 2.0)

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from gaspart.scene.matter import Body, Restitution, Species
-from gaspart.scene.scene import Container, Scene
+from gaspart.scene.container import Container
+from gaspart.scene.restitution import Restitution
+from gaspart.scene.scene import Scene
+from gaspart.scene.species import Body, Species
 
 GRAZE = 2.0**-50
 """Nearly 1e-15, and a number by which a distance of 1 can be changed exactly."""

@@ -1,4 +1,14 @@
 """Thin films."""
 
+from gaspart.kinds import POSITIVE, count, listed, positive
+
 TITLE = "Thin films"
-FIGURES = ("thin_film",)
+FIGURES = {
+    "thin_film": {
+        "bulk_packing_fraction": positive(
+            "packing fraction of the fluid with which all slits are (nearly) in equilibrium"
+        ),
+        "insertions": count("number of Widom's trial insertions for each width", minimum=1000),
+        "theory_widths": listed(POSITIVE, "first, last and number of the curve's widths", 3, 3),
+    }
+}

@@ -18,10 +18,8 @@ def thin_film(dataset: xr.Dataset) -> Figure:
     _profile(profile, dataset)
     _contact(contact, dataset)
     _solvation(pressure, dataset)
-    contact.sharex(pressure)
-    contact.tick_params(labelbottom=False)
-    for axis, text in zip((profile, contact, pressure), "abc", strict=True):
-        style.letter(axis, text)
+    style.share_x(contact, pressure)
+    style.letters(profile, contact, pressure)
     figure.align_ylabels()
     return figure
 
@@ -78,7 +76,7 @@ def _solvation(axis: Axes, dataset: xr.Dataset) -> None:
 
 
 def _shown(dataset: xr.Dataset) -> np.ndarray:
-    """The widest slit is far off: it is drawn at the end of the axis, and labelled with its width."""
+    """(width,) places on the axis: the widest slit is drawn at its end, and labelled with its width."""
     width = dataset["width"].values.copy()
     width[-1] = min(width[-1], float(dataset["theory_width"].max()) + 0.3)
     return width

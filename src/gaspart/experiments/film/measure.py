@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -56,42 +55,24 @@ def thin_film(points: list[grid.Point], settings: dict) -> xr.Dataset:
     points = sorted(points, key=lambda point: grid.extents(point)[2][2])
     bulk = theory.number_density(settings["bulk_packing_fraction"], 3)
     potential = math.log(bulk) + float(theory.excess_chemical_potential(settings["bulk_packing_fraction"], 3))
-    names = ("pressure", "contact", "chemical_potential")
-    columns: dict[str, Any] = {f"{name}{kind}": [] for name in names for kind in ("", "_error")}
-    truncation, functional, widths = [], [], []
+    rows, truncation, functional, widths = [], [], [], []
     for point in points:
         slits = [read_slit(point, path) for path in point.replica_paths]
-        width = slits[0].width
-        place, density = theory.white_bear_slit(bulk, width)
-        near = place <= NEAR
-        cubic = fit_polynomial(place[near], density[near], powers=range(4)).values[0]
-        found = {
-            "pressure": [_pressure(slit) for slit in slits],
-            "contact": [_contact(slit) for slit in slits],
-            "chemical_potential": [
-                _widom(slit, settings["insertions"] // len(slits), point.seed(k))
-                for k, slit in enumerate(slits)
-            ],
-        }
-        for name, values in found.items():
-            value, error = np.array(values).T
-            columns[name].append(value.mean())
-            columns[f"{name}_error"].append(np.sqrt(np.sum(error**2)) / error.size)
-        truncation.append(abs(cubic / density[0] - 1.0) * columns["contact"][-1])
+        widths.append(slits[0].width)
+        place, density = theory.white_bear_slit(bulk, slits[0].width)
         functional.append(density[0])
-        widths.append(width)
-    # The chemical potentials differ a little from the bulk's: dP = rho dmu (Gibbs and Duhem), rho the bulk's.
-    lacking = potential - np.array(columns["chemical_potential"])
-    columns["at_bulk"] = np.array(columns["pressure"]) + bulk * lacking
-    columns["at_bulk_error"] = np.hypot(
-        columns["pressure_error"], bulk * np.array(columns["chemical_potential_error"])
-    )
-    columns |= {"truncation": truncation, "functional_pressure": functional}
-    columns["count"] = [grid.extents(point)[0] for point in points]
+        rows.append(_estimates(slits, settings["insertions"] // len(slits), point))
+        truncation.append(_truncation(place, density) * rows[-1]["contact"])
+    columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    # The chemical potentials differ slightly from the bulk's: dP = rho dmu (Gibbs and Duhem), rho the bulk's.
+    lacking = potential - columns["chemical_potential"]
+    columns["at_bulk"] = columns["pressure"] + bulk * lacking
+    columns["at_bulk_error"] = np.hypot(columns["pressure_error"], bulk * columns["chemical_potential_error"])
+    columns |= {"truncation": np.array(truncation), "functional_pressure": np.array(functional)}
+    columns["count"] = np.array([grid.extents(point)[0] for point in points])
     dataset = xr.Dataset(
-        {name: ("width", np.array(values)) for name, values in columns.items()}, coords={"width": widths}
+        {name: ("width", values) for name, values in columns.items()}, coords={"width": widths}
     )
-    reference = theory.white_bear_pressure(bulk)
     first, last, number = settings["theory_widths"]
     curve = np.linspace(first, last, int(number))
     dataset["curve"] = "theory_width", np.array([theory.white_bear_slit(bulk, w, 0.02)[1][0] for w in curve])
@@ -100,10 +81,32 @@ def thin_film(points: list[grid.Point], settings: dict) -> xr.Dataset:
         "bulk_density": bulk,
         "bulk_pressure": bulk * float(theory.compressibility_factor(settings["bulk_packing_fraction"], 3)),
         "bulk_chemical_potential": potential,
-        "functional_bulk_pressure": reference,
+        "functional_bulk_pressure": theory.white_bear_pressure(bulk),
     }
     dataset.attrs["period"], dataset.attrs["period_error"] = _period(dataset)
     return dataset
+
+
+def _estimates(slits: list[Slit], insertions: int, point: grid.Point) -> dict[str, float]:
+    """Pressure, density at contact and chemical potential: means over the replicas, each with _error."""
+    found = {
+        "pressure": [_pressure(slit) for slit in slits],
+        "contact": [_contact(slit) for slit in slits],
+        "chemical_potential": [_widom(slit, insertions, point.seed(k)) for k, slit in enumerate(slits)],
+    }
+    row = {}
+    for name, values in found.items():
+        value, error = np.array(values).T
+        row[name] = value.mean()
+        row[f"{name}_error"] = np.sqrt(np.sum(error**2)) / error.size
+    return row
+
+
+def _truncation(place: np.ndarray, density: np.ndarray) -> float:
+    """Relative error of the extrapolation by a cubic, for the density functional's profile (B,)."""
+    near = place <= NEAR
+    cubic = fit_polynomial(place[near], density[near], powers=range(4)).values[0]
+    return abs(cubic / density[0] - 1.0)
 
 
 def read_slit(point: grid.Point, path: str) -> Slit:

@@ -1,4 +1,14 @@
 """Freezing and melting."""
 
+from gaspart.kinds import POSITIVE, count, listed, positive
+
 TITLE = "Freezing and melting"
-FIGURES = ("freezing_discs", "freezing_spheres")
+FIGURES = {
+    "freezing_discs": {
+        "shown": listed(POSITIVE, "packing fractions whose structure is kept"),
+        "furthest": positive("largest distance of g(r), in diameters"),
+        "bins": count("bins of g(r)"),
+        "highest": positive("largest wave number of S(k), times the diameter"),
+    },
+    "freezing_spheres": {},
+}

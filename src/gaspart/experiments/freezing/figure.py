@@ -1,4 +1,4 @@
-"""Freezing: pressure and order from both sides, structure, and crystal beside fluid."""
+"""Freezing: pressure and order of both starts, structure, and coexisting crystal and fluid."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from gaspart import theory
 from gaspart.rendering import style
 
 LOOKS = {"crystal": 1, "fluid": 0}
-"""Number of colour and marker of a start."""
-SETTLED = 3.0
+"""Index of the colour and marker of each start."""
+EQUILIBRATED = 3.0
 """Points whose starts or halves differ by more standard errors are drawn hollow: not in equilibrium."""
 
 
@@ -47,13 +47,12 @@ def freezing_discs(dataset: xr.Dataset) -> Figure:
     axes["e0"].set_ylabel("$k_y\\sigma$")
     for k in range(1, shown):
         axes[f"e{k}"].tick_params(labelleft=False)
-    for name, axis in zip("abc", (axes["a"], axes["b"], axes["c"]), strict=True):
-        style.letter(axis, name)
+    style.letters(axes["a"], axes["b"], axes["c"])
     return figure
 
 
 def freezing_spheres(dataset: xr.Dataset) -> Figure:
-    """Pressure of both branches, its residuals, Q_6, and the profiles of crystal beside fluid."""
+    """Pressure of both branches, its residuals, Q_6, and the profiles of coexisting crystal and fluid."""
     figure, axes = style.new(rows=4, height=7.6, height_ratios=(2.0, 1.2, 1.2, 1.4), share_x=False)
     upper, middle, order, slab = axes
     _branches(upper, dataset)
@@ -64,8 +63,7 @@ def freezing_spheres(dataset: xr.Dataset) -> Figure:
         axis.tick_params(labelbottom=False)
         axis.sharex(order)
     _profiles(slab, dataset)
-    for axis, text in zip(axes, "abcd", strict=True):
-        style.letter(axis, text)
+    style.letters(*axes)
     figure.align_ylabels()
     return figure
 
@@ -74,7 +72,7 @@ def _starts(dataset: xr.Dataset) -> Iterator:
     """Each start's name, points, colour, and which of them are in equilibrium."""
     for start in dataset["start"].values:
         side = dataset.sel(start=start).dropna("packing_fraction", subset=["pressure"])
-        yield str(start), side, LOOKS[str(start)], (side["disagreement"] <= SETTLED).values
+        yield str(start), side, LOOKS[str(start)], (side["disagreement"] <= EQUILIBRATED).values
 
 
 def _points(
@@ -82,18 +80,18 @@ def _points(
     side: xr.Dataset,
     what: str,
     kind: int,
-    settled: np.ndarray,
+    equilibrated: np.ndarray,
     label: str | None = None,
     scale: float = 1.0,
     shift: float = 0.0,
 ) -> None:
-    """Full symbols in equilibrium, hollow ones not."""
+    """Filled symbols in equilibrium, hollow ones not."""
     eta, value, error = (
         side["packing_fraction"].values,
         scale * side[what].values + shift,
         scale * side[f"{what}_error"].values,
     )
-    for chosen, hollow in ((settled, False), (~settled, True)):
+    for chosen, hollow in ((equilibrated, False), (~equilibrated, True)):
         if chosen.any():
             style.points(
                 axis,
@@ -102,7 +100,7 @@ def _points(
                 error[chosen],
                 kind=kind,
                 hollow=hollow,
-                label=None if hollow and settled.any() else label,
+                label=None if hollow and equilibrated.any() else label,
             )
 
 
@@ -114,24 +112,14 @@ def _loop(axis: Axes, dataset: xr.Dataset) -> None:
     for edge in theory.coexistence_packing_fractions(2):
         axis.axvline(edge, color=style.GREY, linewidth=0.6, linestyle=":")
     fluid = np.linspace(eta.min(), 0.70, 100)
-    area = np.pi / 4.0
-    axis.plot(
-        fluid,
-        fluid / area * theory.compressibility_factor(fluid, 2),
-        color=style.GREY,
-        linestyle="--",
-        label="virial series",
-    )
     crystal = np.linspace(theory.LOWEST_CRYSTAL[2], eta.max(), 100)
-    axis.plot(
-        crystal,
-        crystal / area * theory.alder_hoover_young_crystal(crystal, 2),
-        color=style.GREY,
-        linestyle="-.",
-        label="crystal (AHY)",
-    )
-    for start, side, kind, settled in _starts(dataset):
-        _points(axis, side, "pressure", kind, settled, f"from the {start}")
+    for at, z, label, dashes in (
+        (fluid, theory.compressibility_factor(fluid, 2), "virial series", "--"),
+        (crystal, theory.alder_hoover_young_crystal(crystal, 2), "crystal (AHY)", "-."),
+    ):
+        axis.plot(at, at / (np.pi / 4.0) * z, color=style.GREY, linestyle=dashes, label=label)
+    for start, side, kind, equilibrated in _starts(dataset):
+        _points(axis, side, "pressure", kind, equilibrated, f"from the {start}")
         if np.isfinite(side["plateau"]):
             ends = [float(side["plateau_low"]), float(side["plateau_high"])]
             axis.plot(ends, [float(side["plateau"])] * 2, color=style.COLOURS[kind], linewidth=0.8)
@@ -146,14 +134,14 @@ def _loop(axis: Axes, dataset: xr.Dataset) -> None:
 def _order(axis: Axes, dataset: xr.Dataset, label: str) -> None:
     for edge in theory.coexistence_packing_fractions(2 if "shown" in dataset.dims else 3):
         axis.axvline(edge, color=style.GREY, linewidth=0.6, linestyle=":")
-    for _, side, kind, settled in _starts(dataset):
-        _points(axis, side, "order", kind, settled)
+    for _, side, kind, equilibrated in _starts(dataset):
+        _points(axis, side, "order", kind, equilibrated)
     axis.set_xlabel("packing fraction $\\eta$")
     axis.set_ylabel(label)
 
 
 def _snapshot(axis: Axes, at: xr.Dataset, label: str) -> None:
-    """Discs coloured by the direction of their bonds, which has a period of 60 degrees."""
+    """Discs coloured by the orientation of their bonds, which has a period of 60 degrees."""
     from matplotlib.collections import EllipseCollection
 
     x, y = at["x"].values, at["y"].values
@@ -168,7 +156,7 @@ def _snapshot(axis: Axes, at: xr.Dataset, label: str) -> None:
 
 
 def _scattering(axis: Axes, at: xr.Dataset) -> None:
-    """S(k), black where it is large."""
+    """S(k) in grey levels, black where it is large."""
     from matplotlib.colors import LogNorm
 
     image = axis.pcolormesh(
@@ -185,7 +173,6 @@ def _scattering(axis: Axes, at: xr.Dataset) -> None:
 
 def _branches(axis: Axes, dataset: xr.Dataset) -> None:
     expected = theory.COEXISTENCE_PRESSURE[3]
-    volume = np.pi / 6.0
     style.level(axis, expected)
     axis.plot(
         theory.coexistence_packing_fractions(3), [expected] * 2, color=style.GREY, linewidth=2.5, alpha=0.6
@@ -193,23 +180,16 @@ def _branches(axis: Axes, dataset: xr.Dataset) -> None:
     low, high = dataset["packing_fraction"].values[[0, -1]]
     fluid = np.linspace(low, theory.HIGHEST_PACKING_FRACTION[3], 100)
     crystal = np.linspace(theory.LOWEST_CRYSTAL[3], high, 100)
-    axis.plot(
-        fluid,
-        fluid / volume * theory.compressibility_factor(fluid, 3),
-        color=style.COLOURS[2],
-        label="fluid (KLM)",
-    )
-    axis.plot(
-        crystal,
-        crystal / volume * theory.speedy_crystal(crystal),
-        color=style.COLOURS[3],
-        label="crystal (Speedy)",
-    )
-    for start, side, kind, settled in _starts(dataset):
-        _points(axis, side, "pressure", kind, settled, f"from the {start}")
+    for at, z, label, kind in (
+        (fluid, theory.compressibility_factor(fluid, 3), "fluid (KLM)", 2),
+        (crystal, theory.speedy_crystal(crystal), "crystal (Speedy)", 3),
+    ):
+        axis.plot(at, at / (np.pi / 6.0) * z, color=style.COLOURS[kind], label=label)
+    for start, side, kind, equilibrated in _starts(dataset):
+        _points(axis, side, "pressure", kind, equilibrated, f"from the {start}")
     mean = float(dataset.attrs["slab_packing_fraction"])
     style.points(
-        axis, [mean], [dataset["slab_pressure"]], [dataset["slab_error"]], kind=6, label="side by side"
+        axis, [mean], [dataset["slab_pressure"]], [dataset["slab_error"]], kind=6, label="coexistence"
     )
     axis.set_ylabel("pressure $P\\sigma^3/k_\\mathrm{B}T$")
     axis.legend(loc="upper left", bbox_to_anchor=(0.05, 1.0))
@@ -217,11 +197,17 @@ def _branches(axis: Axes, dataset: xr.Dataset) -> None:
 
 def _residuals(axis: Axes, dataset: xr.Dataset) -> None:
     style.level(axis, 0.0)
-    for _, side, kind, settled in _starts(dataset):
+    for _, side, kind, equilibrated in _starts(dataset):
         ratio = side.assign(r=side["Z"] / side["reference"], r_error=side["Z_error"] / side["reference"])
         known = np.isfinite(ratio["r"].values)
         _points(
-            axis, ratio.isel(packing_fraction=known), "r", kind, settled[known], scale=100.0, shift=-100.0
+            axis,
+            ratio.isel(packing_fraction=known),
+            "r",
+            kind,
+            equilibrated[known],
+            scale=100.0,
+            shift=-100.0,
         )
     axis.set_ylim(-0.5, 0.5)
     axis.set_ylabel("$Z/Z_\\mathrm{branch}-1$  (%)")

@@ -1,4 +1,16 @@
-"""Rough and inelastic bodies."""
+"""Rough and inelastic particles."""
 
-TITLE = "Rough and inelastic bodies"
-FIGURES = ("equipartition", "cooling")
+from gaspart.kinds import count, names, positive
+
+TITLE = "Rough and inelastic particles"
+FIGURES = {
+    "equipartition": {
+        "steady_from": positive(
+            "collisions per particle after which the ratio of temperatures of a cooling gas is steady"
+        )
+    },
+    "cooling": {
+        "clustering": names("the experiments of dense and large gases, which leave Haff's law"),
+        "cells_per_side": count("cells per side in which their particles are counted"),
+    },
+}

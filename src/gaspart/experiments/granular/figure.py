@@ -1,4 +1,4 @@
-"""Rough and inelastic bodies: the way to equal temperatures, steady ratios, Haff's law and clusters."""
+"""Rough and inelastic particles: relaxation to equal temperatures, steady ratios, Haff's law and clusters."""
 
 from __future__ import annotations
 
@@ -8,23 +8,20 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart import theory
+from gaspart.experiments.shared.claims import PARTICLES
 from gaspart.rendering import style
-
-NAMES = {2: "discs", 3: "spheres"}
 
 
 def equipartition(ds: xr.Dataset) -> Figure:
-    """Three panels: both temperatures against collisions, their difference less theory's, steady ratios."""
+    """Three panels: both temperatures against collisions, their difference minus theory's, steady ratios."""
     figure, (upper, middle, lower) = style.new(
         rows=3, height=6.6, height_ratios=(2.0, 1.0, 1.8), share_x=False
     )
     _temperatures(upper, ds)
     _differences(middle, ds)
-    middle.sharex(upper)
-    upper.tick_params(labelbottom=False)
+    style.share_x(upper, middle)
     _ratios(lower, ds)
-    for axis, text in zip((upper, middle, lower), "abc", strict=True):
-        style.letter(axis, text)
+    style.letters(upper, middle, lower)
     figure.align_ylabels()
     return figure
 
@@ -55,7 +52,7 @@ def _differences(axis: Axes, ds: xr.Dataset) -> None:
         row = ds.isel(start=kind)
         q = float(row["inertia"])
         expected = np.exp(-3.0 * q / (1.0 + q) ** 2 * row["collisions"])
-        # The energy is conserved, 2 T_tr + T_rot: both errors are of one fluctuation.
+        # 2 T_tr + T_rot is conserved, so both errors come from the same fluctuation.
         error = 1.5 * row["rotation_error"]
         style.points(
             axis,
@@ -64,12 +61,12 @@ def _differences(axis: Axes, ds: xr.Dataset) -> None:
             100.0 * error,
             kind=kind,
         )
-    axis.set_xlabel(r"collisions of a body $s$")
-    axis.set_ylabel("less theory (%)")
+    axis.set_xlabel("collisions per particle $s$")
+    axis.set_ylabel("minus theory (%)")
 
 
 def _ratios(axis: Axes, ds: xr.Dataset) -> None:
-    """T_rot / T_tr against the tangential restitution: theory, cooling discs, elastic rough ones."""
+    """T_rot / T_tr against the tangential restitution: theory, cooling discs, elastic rough discs."""
     curve = np.linspace(-0.99, 1.0, 200)
     for kind, q in enumerate(sorted(set(ds["equilibrium_inertia"].values))):
         theoretical = [theory.rough_ratio(q, tangential) for tangential in curve]
@@ -94,26 +91,25 @@ def _ratios(axis: Axes, ds: xr.Dataset) -> None:
 
 
 def cooling(ds: xr.Dataset) -> Figure:
-    """Four panels: Haff's law, its rate, how a large gas leaves it, and what that looks like."""
+    """Four panels: Haff's law, its rate, how a large gas leaves it, and the final state."""
     figure, axes = style.new(rows=2, columns=2, height=5.6, share_x=False)
     _haff(axes[0, 0], ds)
     _rates(axes[0, 1], ds)
     _leaving(axes[1, 0], ds)
     _picture(axes[1, 1], ds)
-    for axis, text in zip(axes.flat, "abcd", strict=True):
-        style.letter(axis, text)
+    style.letters(*axes.flat)
     return figure
 
 
 def _haff(axis: Axes, ds: xr.Dataset) -> None:
-    """T against 1 + t / t_H; discs and spheres are a factor 3 apart so that they do not hide each other."""
+    """T against 1 + t / t_H; spheres are shifted by a factor 3 for legibility."""
     line = np.array([1.0, 1.1 * (1.0 + float(ds["time"].max()))])
     for dimension, factor in ((2, 1.0), (3, 1.0 / 3.0)):
         gases = ds.isel(gas=(ds["dimension"] == dimension).values).sortby("restitution", ascending=False)
         axis.plot(line, factor * line**-2.0, color=style.GREY, zorder=1)
         for kind in range(gases.sizes["gas"]):
             row = gases.isel(gas=kind)
-            name = NAMES[dimension] + (r" $\div\,3$" if dimension == 3 else "")
+            name = PARTICLES[dimension] + (r" $\div\,3$" if dimension == 3 else "")
             style.points(
                 axis,
                 1.0 + row["time"],
@@ -135,7 +131,7 @@ def _haff(axis: Axes, ds: xr.Dataset) -> None:
 
 
 def _rates(axis: Axes, ds: xr.Dataset) -> None:
-    """-d ln T / ds over (1 - e^2)/d: 1 for Maxwell's distribution, 1 + a2/4 for the gas's own."""
+    """-d ln T / ds over (1 - e^2)/d: 1 for Maxwell's distribution, 1 + a2/4 for that of the cooling gas."""
     style.level(axis, 1.0)
     curve = np.linspace(0.55, 1.0, 100)
     for kind, dimension in enumerate(sorted(set(ds["dimension"].values))):
@@ -145,7 +141,7 @@ def _rates(axis: Axes, ds: xr.Dataset) -> None:
         correction = 1.0 + 0.25 * theory.fourth_cumulant(curve, int(dimension))
         axis.plot(curve, correction, color=style.COLOURS[kind], zorder=1)
         style.points(
-            axis, e, gases["rate"] / unit, gases["rate_error"] / unit, kind, label=NAMES[int(dimension)]
+            axis, e, gases["rate"] / unit, gases["rate_error"] / unit, kind, label=PARTICLES[int(dimension)]
         )
     axis.set_xlabel(r"restitution $\epsilon$")
     axis.set_ylabel(r"$-(\mathrm{d}\ln T/\mathrm{d}s)\; d/(1-\epsilon^2)$")
@@ -173,7 +169,7 @@ def _leaving(axis: Axes, ds: xr.Dataset) -> None:
             (row["variance"] / usual)[::4],
             (row["variance_error"] / usual)[::4],
             kind,
-            label=rf"crowding, $\epsilon={e:g}$",
+            label=rf"number variance, $\epsilon={e:g}$",
         )
     axis.axvline(10.0, color=style.GREY, linestyle=":", linewidth=0.8, zorder=1)
     axis.set_yscale("log")
@@ -185,7 +181,7 @@ def _leaving(axis: Axes, ds: xr.Dataset) -> None:
 
 
 def _picture(axis: Axes, ds: xr.Dataset) -> None:
-    """The discs of one run in the end, to scale."""
+    """The discs of one run at its end, to scale."""
     from matplotlib.collections import EllipseCollection
 
     side, diameter = float(ds.attrs["side"]), 2.0 * float(ds.attrs["radius"])

@@ -14,7 +14,7 @@ import xarray as xr
 from gaspart import theory
 from gaspart.analysis.statistics import block_average, bootstrap, fit_polynomial, mean_of
 from gaspart.planning import grid
-from gaspart.scene.matter import Restitution
+from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.run import open_trajectory
 

@@ -1,4 +1,4 @@
-"""Pictures of gases under gravity: profiles of height, and the heat capacity."""
+"""Figures of gases under gravity: profiles against height, and the heat capacity."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from gaspart.theory.gravity import ideal_heat_capacity, ideal_profile
 from gaspart.theory.state import compressibility_factor
 
 KNOWN = 0.1
-"""Relative errors up to which a bin of height is drawn: above, hardly anybody is there."""
+"""Relative errors up to which a bin of height is drawn: bins with larger ones hold hardly any particles."""
 
 
 def barometric(ds: xr.Dataset) -> Figure:
@@ -58,10 +58,9 @@ def barometric(ds: xr.Dataset) -> Figure:
     off.set_ylabel(r"$Z/Z_\mathrm{ref} - 1$ (%)")
     warm.set_xlabel("height $z$")
     off.set_xlabel(r"packing fraction $\eta$")
-    _share(top, ratio, warm)
-    _share(state, off)
-    for axis, letter in zip((top, ratio, warm, state), "abcd", strict=True):
-        style.letter(axis, letter)
+    style.share_x(top, ratio, warm)
+    style.share_x(state, off)
+    style.letters(top, ratio, warm, state)
     return figure
 
 
@@ -111,7 +110,7 @@ def separation(ds: xr.Dataset) -> Figure:
 
 
 def heat_capacity(ds: xr.Dataset) -> Figure:
-    """Heat capacity against x, from neighbouring energies and from fluctuations, and what is left over."""
+    """Heat capacity against x, from neighbouring energies and from fluctuations, and its deviation."""
     figure, (top, bottom) = style.new(rows=2, height=3.8, height_ratios=(3, 1.2))
     x = np.linspace(0.0, 6.0, 300)
     top.plot(x, ideal_heat_capacity(x, 2), color=style.DATA, label="canonical, ideal gas")
@@ -138,7 +137,7 @@ def heat_capacity(ds: xr.Dataset) -> Figure:
     top.set_ylabel(r"heat capacity $C_V/Nk$")
     top.set_ylim(0.9, 2.1)
     top.legend(loc="lower right", bbox_to_anchor=(1.0, 0.08))
-    bottom.set_ylabel("off exact (%)")
+    bottom.set_ylabel("deviation from\nexact (%)")
     bottom.set_xlim(-0.2, 6.0)
     bottom.set_ylim(-4.5, 4.5)
     bottom.set_xlabel(r"height of the box $x = mgH/kT$")
@@ -154,7 +153,7 @@ def _expected(row: xr.Dataset, kind: int) -> np.ndarray:
 
 
 def _ideal(row: xr.Dataset, kind: int) -> np.ndarray:
-    """(B,) density of an ideal gas of as many bodies at the column's temperature."""
+    """(B,) density of an ideal gas of as many particles at the column's temperature."""
     own = row.isel(species=kind)
     weight = float(own["mass"] * own["strength"] / own["temperature"])
     number = float(own["density"].mean()) * float(own["top"])
@@ -166,10 +165,3 @@ def _percent(axis: Axes, x: np.ndarray, ratio: np.ndarray, error: np.ndarray, ki
     style.level(axis, 0.0)
     style.points(axis, x, 100.0 * (ratio - 1.0), 100.0 * error, kind=kind, hollow=True, markersize=2.5)
     axis.set_ylim(-4.5, 4.5)
-
-
-def _share(*panels: Axes) -> None:
-    """One x axis for panels above each other."""
-    for panel in panels[:-1]:
-        panel.sharex(panels[-1])
-        panel.tick_params(labelbottom=False)

@@ -1,4 +1,4 @@
-"""Pictures of heat between a hot and a cold wall."""
+"""Figures of heat conduction between a hot and a cold wall."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from matplotlib.figure import Figure
 from gaspart.rendering import style
 from gaspart.theory.heat import conducting_slab
 
-ENDLESS = 100.0
-"""Knudsen number above which points are drawn at a place of their own, for infinity."""
+FREE_MOLECULAR = 100.0
+"""Knudsen number above which points are drawn at a separate place, as infinity."""
 
 
 def heat_conduction_gas(ds: xr.Dataset) -> Figure:
     """Flux against density, and over that of free flight; profiles of temperature and of density."""
     figure, axes = style.new(rows=5, height=8.4, height_ratios=(2.6, 2.4, 2.4, 1.1, 2.0), share_x=False)
     flux, share, warm, off, dense = axes
-    _fluxes(flux, ds.isel(point=np.flatnonzero(ds["knudsen"] < ENDLESS)))
+    _fluxes(flux, ds.isel(point=np.flatnonzero(ds["knudsen"] < FREE_MOLECULAR)))
     _shares(share, ds)
-    spheres = ds.isel(point=np.flatnonzero((ds["knudsen"] < ENDLESS) & ~ds["normal"].astype(bool)))
+    spheres = ds.isel(point=np.flatnonzero((ds["knudsen"] < FREE_MOLECULAR) & ~ds["normal"].astype(bool)))
     order = np.argsort(spheres["knudsen"].values)
     for kind, n in enumerate(dict.fromkeys((order[0], order[len(order) // 2], order[-1]))):
         _profiles(warm, off, dense, spheres.isel(point=n), kind)
@@ -35,11 +35,8 @@ def heat_conduction_gas(ds: xr.Dataset) -> Figure:
     off.set_ylim(-2.5, 2.5)
     dense.set_ylabel(r"density $n/\bar n$")
     dense.set_xlabel("position between the walls $x/L$")
-    for panel in (warm, off):
-        panel.sharex(dense)
-        panel.tick_params(labelbottom=False)
-    for axis, letter in zip((flux, share, warm, dense), "abcd", strict=True):
-        style.letter(axis, letter)
+    style.share_x(warm, off, dense)
+    style.letters(flux, share, warm, dense)
     return figure
 
 
@@ -81,7 +78,7 @@ def _shares(axis: Axes, ds: xr.Dataset) -> None:
         own = ds.isel(point=np.flatnonzero((ds["normal"] == normal) & (ds["dimension"] == dimension)))
         if not own.sizes["point"]:
             continue
-        knudsen = np.where(own["knudsen"] < ENDLESS, own["knudsen"], end * 1.15 ** (dimension - 2.5))
+        knudsen = np.where(own["knudsen"] < FREE_MOLECULAR, own["knudsen"], end * 1.15 ** (dimension - 2.5))
         values = (own["flux"] / own["full"], own["flux_error"] / own["full"])
         style.points(axis, knudsen, *values, kind=kind, hollow=bool(normal), label=name)
     axis.set_xscale("log")
@@ -90,12 +87,12 @@ def _shares(axis: Axes, ds: xr.Dataset) -> None:
     axis.set_yticks([0.0, 0.5, 2.0 / 3.0, 1.0], ["0", "1/2", "2/3", "1"])
     axis.set_ylim(0.0, 1.6)
     axis.set_xlabel(r"Knudsen number $l/L$")
-    axis.set_ylabel(r"flux over free flight's")
+    axis.set_ylabel("flux / that of free flight")
     axis.legend(loc="upper right", ncol=2, columnspacing=0.8)
 
 
 def _profiles(warm: Axes, off: Axes, dense: Axes, row: xr.Dataset, kind: int) -> None:
-    """One gas's temperature, its distance from theory, and its density."""
+    """One gas's temperature, its deviation from theory, and its density."""
     position = row["position"].values / float(row["length"])
     number = float(row["number"])
     temperature, error = row["temperature"].values, row["temperature_error"].values
@@ -142,10 +139,8 @@ def heat_conduction_metal(ds: xr.Dataset) -> Figure:
     modes = (100.0 * (still["mode_ratio"] - 1.0), 100.0 * still["mode_ratio_error"])
     style.points(off, 1.02 * warm, *modes, kind=0, hollow=True)
     off.set_ylim(-3.5, 3.5)
-    off.set_ylabel("off (%)")
+    off.set_ylabel("deviation (%)")
     off.set_xlabel("temperature of both walls $kT$")
-    off.sharex(bottom)
-    bottom.tick_params(labelbottom=False)
-    for axis, letter in zip((top, bottom), "ab", strict=True):
-        style.letter(axis, letter)
+    style.share_x(bottom, off)
+    style.letters(top, bottom)
     return figure

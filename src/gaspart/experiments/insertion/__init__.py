@@ -1,4 +1,18 @@
 """Random insertion."""
 
+from gaspart.kinds import count, listed, names, positive
+
 TITLE = "Random insertion"
-FIGURES = ("fill_failures",)
+FIGURES = {
+    "fill_failures": {
+        "saturated": names("the experiments that are filled until nothing more fits"),
+        "bins": count("bins of the packing fraction up to the densest fill"),
+        "windows": listed(
+            {"type": "number", "exclusiveMinimum": 1},
+            "ratios of the last time to the first one of the fitted window; the first is the one claimed",
+        ),
+        "dilute": positive(
+            "packing fraction up to which failures are compared with the low-density expansion", maximum=0.1
+        ),
+    }
+}

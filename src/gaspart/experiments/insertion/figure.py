@@ -1,4 +1,4 @@
-"""Random insertion: what a body costs to place, and where it ends."""
+"""Random insertion: failed attempts per particle, and saturation."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from gaspart.rendering import style
 SERIES = {
     (3, "centres_to_walls"): "spheres, centres up to walls",
     (3, "periodic"): "spheres, periodic",
-    (3, "wall"): "spheres wholly inside",
+    (3, "wall"): "spheres completely inside",
     (2, "periodic"): "discs, periodic",
 }
-"""What is drawn as one series, by dimension and rule, in the order of the legend."""
+"""Labels of the series by dimension and rule, in the order of the legend."""
 SOURCE = 0.52
 """The packing fraction that source A's program reached."""
 
 
 def fill_failures(dataset: xr.Dataset) -> Figure:
-    """Failures per body, to saturation and at low density; packing fraction against attempts^(-1/d)."""
+    """Failures per particle, to saturation and at low density; packing fraction against attempts^(-1/d)."""
     figure, (upper, middle, lower) = style.new(rows=3, height=7.4, height_ratios=(1.5, 0.7, 1), share_x=False)
     for kind, (key, label) in enumerate(SERIES.items()):
         for k in range(dataset.sizes["container"]):
@@ -41,8 +41,7 @@ def fill_failures(dataset: xr.Dataset) -> Figure:
     lower.set_ylim(0.2, 0.58)
     lower.set_xlabel("(attempts $\\times\\ v/V)^{-1/d}$")
     lower.set_ylabel("packing fraction $\\eta$")
-    for axis, text in ((upper, "a"), (middle, "b")):
-        style.letter(axis, text)
+    style.letters(upper, middle)
     style.letter(lower, "c", x=0.94)
     figure.align_ylabels()
     return figure
@@ -57,7 +56,7 @@ def _failures(axis: Axes, one: xr.Dataset, kind: int, label: str) -> None:
 
 
 def _limits(axis: Axes) -> None:
-    """Where insertion ends: in an infinite container, and in source A's."""
+    """Saturation in an infinite container, and source A's packing fraction."""
     marks = [
         (theory.RSA_SATURATION[3], "3D: 0.384", style.COLOURS[1], -0.006, "right"),
         (SOURCE, "source A: 52 %", style.COLOURS[0], -0.006, "right"),
@@ -70,11 +69,11 @@ def _limits(axis: Axes) -> None:
     axis.set_xlim(0.0, 0.59)
     axis.set_ylim(0.01, 6e6)
     axis.set_xlabel("packing fraction $\\eta$")
-    axis.set_ylabel("failed attempts per body")
+    axis.set_ylabel("failed attempts per particle")
 
 
 def _low_density(axis: Axes) -> None:
-    """The first bodies of a large container, and the expansion that is exact there."""
+    """The first particles of a large container, and the expansion that is exact there."""
     eta = np.linspace(0.0, 0.06, 60)
     for dimension in (2, 3):
         axis.plot(eta, theory.failures_per_body(eta, dimension), color="black", linewidth=0.8, zorder=4)
@@ -83,11 +82,11 @@ def _low_density(axis: Axes) -> None:
     axis.set_xlim(0.0, 0.06)
     axis.set_ylim(0.0, 0.85)
     axis.set_xlabel("packing fraction $\\eta$")
-    axis.set_ylabel("failures per body")
+    axis.set_ylabel("failures per particle")
 
 
 def _saturation(axis: Axes, one: xr.Dataset, kind: int) -> None:
-    """The growing packing fraction, its fitted line, and where the line should end."""
+    """The growing packing fraction, its fitted line, and the predicted saturation."""
     dimension = int(one["dimension"])
     colour = style.COLOURS[kind]
     axis.plot(

@@ -85,7 +85,7 @@ def fill_failures(points: list[grid.Point], settings: dict) -> xr.Dataset:
     saturated = [point.experiment in settings["saturated"] for point in points]
     periodic = [grid.scene(point).container.periodic[0] for point in points]
 
-    curves = np.array([failures_by_density(one, settings["bins"]) for one in fills])
+    curves = np.array([np.transpose(failures_by_density(one, settings["bins"])) for one in fills])
     ends = np.array([
         [saturation(one, window) if ends else (np.nan,) * 3 for window in windows]
         for one, ends in zip(fills, saturated, strict=True)
@@ -100,34 +100,42 @@ def fill_failures(points: list[grid.Point], settings: dict) -> xr.Dataset:
         dilute_failures(one, settings["dilute"]) if free else (np.nan, np.nan)
         for one, free in zip(fills, periodic, strict=True)
     ])  # fmt: skip
-    sides = [min(grid.extents(point)[2]) / (2.0 * grid.extents(point)[1]) for point in points]
-    final = [one.placed * one.body for one in fills]
+    containers, bins, ends_of = "container", ("container", "bin"), ("container", "window")
+    samples = ("container", "sample")
     return xr.Dataset(
         {
-            "packing_fraction": (("container", "bin"), curves[:, 0], {"units": "1"}),
-            "failures_per_body": (("container", "bin"), curves[:, 1], {"units": "1"}),
-            "failures_per_body_error": (("container", "bin"), curves[:, 2], {"units": "1"}),
-            "saturation": (("container", "window"), ends[..., 0], {"units": "1"}),
-            "saturation_error": (("container", "window"), ends[..., 1], {"units": "1"}),
-            "saturation_slope": (("container", "window"), ends[..., 2], {"units": "1"}),
-            "time": (("container", "sample"), times, {"units": "attempts v / V"}),
-            "filled": (("container", "sample"), filled, {"units": "1"}),
-            "approach": ("container", approach[:, 0], {"units": "1"}),
-            "approach_error": ("container", approach[:, 1], {"units": "1"}),
-            "dilute_failures": ("container", dilute[:, 0], {"units": "1"}),
-            "dilute_failures_error": ("container", dilute[:, 1], {"units": "1"}),
-            "dimension": ("container", [one.dimension for one in fills]),
-            "side_over_diameter": ("container", sides, {"units": "1"}),
-            "rule": ("container", [_rule(point) for point in points]),
-            "replicas": ("container", [len(one.attempts) for one in fills]),
-            "placed": ("container", [float(one.placed.mean()) for one in fills]),
-            "final": ("container", [float(end.mean()) for end in final], {"units": "1"}),
-            "final_spread": ("container", [float(end.std(ddof=1)) for end in final], {"units": "1"}),
-            "last_time": ("container", [one.last_time for one in fills], {"units": "attempts v / V"}),
+            **_columns(bins, curves, "packing_fraction", "failures_per_body", "failures_per_body_error"),
+            **_columns(ends_of, ends, "saturation", "saturation_error", "saturation_slope"),
+            "time": (samples, times, {"units": "attempts v / V"}),
+            "filled": (samples, filled, {"units": "1"}),
+            **_columns(containers, approach, "approach", "approach_error"),
+            **_columns(containers, dilute, "dilute_failures", "dilute_failures_error"),
+            **_properties(points, fills),
         },
         coords={"container": names, "window": np.array(windows, dtype=float)},
         attrs={"dilute_up_to": settings["dilute"]},
     )
+
+
+def _columns(dimensions: str | tuple[str, ...], table: np.ndarray, *names: str) -> dict[str, tuple]:
+    """Variables from the last axis of a table."""
+    return {name: (dimensions, table[..., k], {"units": "1"}) for k, name in enumerate(names)}
+
+
+def _properties(points: list[grid.Point], fills: list[Fill]) -> dict[str, tuple]:
+    """Variables of the containers and of their state at the end."""
+    sides = [min(grid.extents(point)[2]) / (2.0 * grid.extents(point)[1]) for point in points]
+    final = [one.placed * one.body for one in fills]
+    return {
+        "dimension": ("container", [one.dimension for one in fills]),
+        "side_over_diameter": ("container", sides, {"units": "1"}),
+        "rule": ("container", [_rule(point) for point in points]),
+        "replicas": ("container", [len(one.attempts) for one in fills]),
+        "placed": ("container", [float(one.placed.mean()) for one in fills]),
+        "final": ("container", [float(end.mean()) for end in final], {"units": "1"}),
+        "final_spread": ("container", [float(end.std(ddof=1)) for end in final], {"units": "1"}),
+        "last_time": ("container", [one.last_time for one in fills], {"units": "attempts v / V"}),
+    }
 
 
 def _read(point: grid.Point) -> Fill:

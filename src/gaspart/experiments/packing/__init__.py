@@ -1,4 +1,4 @@
 """Random insertion."""
 
 TITLE = "Random insertion"
-FIGURES = ("densest_fill",)
+FIGURES: dict[str, dict] = {"densest_fill": {}}

@@ -1,4 +1,4 @@
-"""Pictures of the densest random packings."""
+"""Figures of the densest random packings."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ DOTS = 300
 """Pixels per inch of the pictures, as those of a saved figure."""
 NAMES = {
     "centres_to_walls": "inserted,\ncentres up to the walls",
-    "wall": "inserted,\nwholly inside",
+    "wall": "inserted,\ncompletely inside",
     "periodic": "inserted,\nperiodic",
     "compressed": "grown until jammed,\nperiodic",
 }
 
 
 def densest_fill(ds: xr.Dataset) -> Figure:
-    """The source's fill and the compressed packing, with the packing fractions of all packings below."""
+    """The source's fill (first packing) and the compressed one (last), with their packing fractions."""
     figure, axes = style.new(1, 2, height=3.3)
     shown = [0, ds.sizes["packing"] - 1]
     for axis, k in zip(np.ravel(axes), shown, strict=True):

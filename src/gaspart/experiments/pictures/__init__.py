@@ -1,4 +1,4 @@
 """Pictures."""
 
 TITLE = "Pictures"
-FIGURES = ("gas_render", "brownian_render")
+FIGURES: dict[str, dict] = {"gas_render": {}, "brownian_render": {}}

@@ -33,12 +33,12 @@ def gas_render(ds: xr.Dataset) -> Figure:
 
 
 def brownian_render(ds: xr.Dataset) -> Figure:
-    """The large body and its gas, coloured by species."""
+    """The large sphere and its gas, coloured by species."""
     return _shown(ds, "species", height=style.COLUMN * HEIGHT)[0]
 
 
 def _shown(ds: xr.Dataset, colour: str, height: float) -> tuple[Figure, Axes]:
-    """A figure that is filled by the picture of the bodies of a dataset."""
+    """A figure filled by a picture of the particles of a dataset."""
     bodies = Bodies(
         positions=ds["position"].values,
         radii=ds["radius"].values,

@@ -1,4 +1,12 @@
 """Speed against accuracy."""
 
+from gaspart.kinds import flag
+
 TITLE = "Speed against accuracy"
-FIGURES = ("price_of_features",)
+FIGURES = {
+    "price_of_features": {
+        "count_instructions": flag(
+            "count instructions of compiled kernels against ones whose source never had the features"
+        )
+    }
+}

@@ -1,4 +1,4 @@
-"""What features cost, engine by engine."""
+"""The price of features, by engine."""
 
 from __future__ import annotations
 
@@ -44,6 +44,5 @@ def price_of_features(ds: xr.Dataset) -> Figure:
     left.set_xlabel("time per event over the plain scene's")
     right.set_xscale("log")
     right.set_xlabel("counted work per event")
-    for axis, text in ((left, "a"), (right, "b")):
-        style.letter(axis, text)
+    style.letters(left, right)
     return figure

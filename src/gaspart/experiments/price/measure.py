@@ -1,4 +1,4 @@
-"""What each feature of a scene costs beside the plain scene, and what an absent one does."""
+"""The cost of each feature of a scene relative to the plain scene, and that of absent features."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ WORK = ("pair_tests", "box_visits", "crossings")
 def price_of_features(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """Costs per event (a collision or a hit at a wall), and over those of the same engine's plain scene.
 
-    settings: `count_instructions`, of compiled kernels against ones whose source never had the features.
+    settings: `count_instructions`, whether to compare those of compiled kernels with those of kernels whose
+    source lacks the features.
 
-    Over point: engine, feature (that which the plain scene is without), seconds per event with
+    Over point: engine, feature (which the plain scene lacks), seconds per event with
     seconds_error, `ratio` over the plain one's and its error, counted `pair_tests`, `box_visits` and
     `crossings` per event. Over kernel, if counted: engine's name, `instructions`, and `stripped`.
 
@@ -57,7 +58,7 @@ def _row(point: grid.Point) -> dict:
 
 
 def _feature(scene: Scene, recorded: bool) -> str:
-    """What a scene has that a plain periodic gas of equal spheres has not."""
+    """The feature of a scene that a plain periodic gas of equal spheres lacks."""
     has = {
         "recording": recorded,
         "gravity": scene.gravity is not None,

@@ -1,7 +1,7 @@
-"""What an absent feature leaves in the machine code: kernels against kernels whose source never had it.
+"""What an absent feature leaves in the machine code of a kernel.
 
-Optional physics reaches a kernel as None, and branches on that are to vanish when it is compiled. Here they
-are taken out of the source instead, in a copy of the package, and the instructions of both are counted.
+Optional physics is passed to kernels as None, and numba removes the branches on it. Here they are removed
+from the source of the kernels instead, in a copy of the package, and the instructions of both are counted.
 """
 
 from __future__ import annotations
@@ -15,14 +15,17 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-FEATURES = {"gravity", "law", "masses", "record", "walls", "surfaces", "big", "watch", "vibrations", "rules"}
-"""Names by which kernels know what a plain gas is without."""
+FEATURES = {
+    "collapse", "faces", "gravity", "law", "masses", "oversized", "record", "rules", "support", "vibrations",
+    "walls",
+}  # fmt: skip
+"""Arguments of the kernels that are None for a plain gas."""
 ENGINES = ("event", "step")
 _PACKAGE = Path(__file__).parents[2]
 
 
 class Strip(ast.NodeTransformer):
-    """Folds every test of whether a feature is None, as if it were."""
+    """Resolves every test of whether a feature is None as if it is, and removes what follows a return."""
 
     def _known(self, test: ast.expr) -> bool | None:
         match test:
@@ -37,6 +40,14 @@ class Strip(ast.NodeTransformer):
         if known is None:
             return node
         return (node.body if known else node.orelse) or ast.Pass()
+
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.stmt:
+        """Drop the statements after a return that has become unconditional."""
+        self.generic_visit(node)
+        returns = [k for k, statement in enumerate(node.body) if isinstance(statement, ast.Return)]
+        if returns:
+            del node.body[returns[0] + 1 :]
+        return node
 
     def visit_IfExp(self, node: ast.IfExp) -> ast.AST:
         """Keep the value that is taken."""
@@ -53,7 +64,7 @@ def stripped(source: str) -> str:
 def instructions() -> dict[str, tuple[int, int]]:
     """Instructions of each engine's main kernel for a plain gas of spheres: {engine: (own, stripped)}.
 
-    Compiles everything twice, in processes and caches of its own.
+    Both are compiled in separate processes with separate caches.
     """
     found = []
     with tempfile.TemporaryDirectory() as folder:

@@ -1,4 +1,4 @@
-"""Radius, density and number of bodies."""
+"""Radius, density and number of particles."""
 
-TITLE = "Radius, density and number of bodies"
-FIGURES = ("radius_grid",)
+TITLE = "Radius, density and number of particles"
+FIGURES: dict[str, dict] = {"radius_grid": {}}

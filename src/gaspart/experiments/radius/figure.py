@@ -1,4 +1,4 @@
-"""One packing fraction at several radii, one number of bodies at several radii: Z and what it costs."""
+"""Z and its cost at several radii: for one packing fraction, and for one number of particles."""
 
 from __future__ import annotations
 
@@ -40,8 +40,7 @@ def radius_grid(dataset: xr.Dataset) -> Figure:
     lower.set_ylabel("counted work")
     lower.set_xlabel("radius (container: side 16)")
     _labels(lower, event, step)
-    for axis, text in zip((upper, middle, lower), "abc", strict=True):
-        style.letter(axis, text)
+    style.letters(upper, middle, lower)
     figure.align_ylabels()
     return figure
 
@@ -54,7 +53,7 @@ def _state(axis: Axes, one: xr.Dataset, kind: int, name: str) -> None:
     style.points(axis, one["radius"], one["Z"], one["Z_error"], kind=kind, label=label)
     radius, eta = one["radius"].values, one["packing_fraction"].values
     fine = np.linspace(radius[0], radius[-1], 200)
-    # In one container the packing fraction of a given number of bodies grows like the radius cubed.
+    # In one container the packing fraction of a given number of particles grows as the radius cubed.
     between = eta[0] * (fine / radius[0]) ** 3 if name == "count" else np.full(fine.size, eta[0])
     axis.plot(fine, theory.compressibility_factor(between, 3), color=style.COLOURS[kind])
 
@@ -77,10 +76,10 @@ def _step_costs(axis: Axes, one: xr.Dataset, kind: int) -> None:
 
 
 def _labels(axis: Axes, event: xr.Dataset, step: xr.Dataset) -> None:
-    """What is counted, above each group of points."""
+    """The counted quantity, above each group of points."""
     texts = (
         (1.2 * float(event["pair_tests"].max()), "event-driven: pair tests per collision"),
-        (1.25 * float(step["pair_tests"].max()), "time-stepped: pair tests per body and step"),
+        (1.25 * float(step["pair_tests"].max()), "time-stepped: pair tests per particle and step"),
         (0.23, "event-driven: boundaries crossed per collision"),
     )
     for height, text in texts:

@@ -1,4 +1,4 @@
 """Speed against accuracy."""
 
 TITLE = "Speed against accuracy"
-FIGURES = ("reversibility",)
+FIGURES: dict[str, dict] = {"reversibility": {}}

@@ -1,4 +1,4 @@
-"""The picture of how long a gas remembers its start."""
+"""Figure of how long a gas remembers its initial state."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart.experiments.reversibility.claims import EXPONENT
+from gaspart.experiments.shared.claims import PARTICLES
 from gaspart.rendering import style
 
 ENGINES = {
@@ -31,15 +32,14 @@ def reversibility(ds: xr.Dataset) -> Figure:
     axes[0].set(
         xscale="log",
         yscale="log",
-        xlabel="collisions of a body, one way",
+        xlabel="collisions per particle before the reversal",
         ylabel=r"echo: distance / $\sigma$",
     )
     axes[0].set_ylim(1e-20, 1e3)
     axes[0].legend(title=r"$\eta$", ncols=2, fontsize=6.5, loc="lower right")
     _growth(axes[1], ds)
     _memory(axes[2], ds)
-    for text, axis in zip("abc", axes, strict=True):
-        style.letter(axis, text)
+    style.letters(*axes)
     return figure
 
 
@@ -47,7 +47,7 @@ def _growth(axis: Axes, ds: xr.Dataset) -> None:
     exact = ds.isel(row=(ds.engine == "event").values)
     for kind, dimension in enumerate((2, 3)):
         of = exact.isel(row=(exact.dimension == dimension).values)
-        name = {2: "discs", 3: "spheres"}[dimension]
+        name = PARTICLES[dimension]
         if not of.sizes["row"]:
             continue
         eta = of.packing_fraction.values

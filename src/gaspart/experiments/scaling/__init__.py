@@ -1,4 +1,44 @@
-"""What space partitioning buys."""
+"""Gain from space partitioning."""
 
-TITLE = "What space partitioning buys"
-FIGURES = ("naive_scaling", "box_count", "ideal_boxes", "linear_scaling", "event_scaling")
+from gaspart.kinds import COUNT, count, listed, positive, record
+
+TITLE = "Gain from space partitioning"
+FIGURES = {
+    "naive_scaling": {},
+    "box_count": {
+        "round_per_side": listed(COUNT, "boxes per side that source A found quicker for their round width"),
+        "source_boxes_per_body": positive("the ideal number of boxes per particle in source A's figure 6"),
+    },
+    "ideal_boxes": {
+        "rule": positive("source A's boxes per particle"),
+        "source_numbers": listed(
+            record(
+                {
+                    "count": count("number of particles"),
+                    "radius": positive("radius"),
+                    "boxes_per_body": positive("ideal number of boxes per particle"),
+                }
+            ),
+            "what source A found for the largest gas of its figures 5, 6 and 7",
+        ),
+    },
+    "linear_scaling": {
+        "source_figures": listed(
+            record(
+                {
+                    "radius": positive("radius"),
+                    "counts": listed(COUNT, "least and largest number of particles", 2, 2),
+                }
+            ),
+            "source A's figures 8, 9 and 10",
+        ),
+        "naive_count": count("number of particles to which the naive method is extrapolated"),
+        "source_years": positive("years that source A states for it"),
+    },
+    "event_scaling": {
+        "fit_from": record(
+            {search: count(f"search `{search}`") for search in ("pairs", "direct", "boxes")},
+            "for each search the least number of particles in the fits",
+        )
+    },
+}

@@ -1,4 +1,4 @@
-"""Pictures of what space partitioning buys. Source A: Frederickx and Meerts 2010."""
+"""Figures of what space partitioning gains. Source A: Frederickx and Meerts 2010."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -31,7 +31,7 @@ def naive_scaling(ds: xr.Dataset) -> Figure:
     each = _NS / ds.pair_tests
     style.level(bottom, float(ds.test_seconds) * _NS)
     style.points(bottom, count, ds.seconds * each, ds.seconds_error * each, color=style.DATA)
-    bottom.set(xlabel="number of bodies $N$", ylabel="per test (ns)")
+    bottom.set(xlabel="number of particles $N$", ylabel="per test (ns)")
     bottom.set_ylim(0.0, 1.6 * float((ds.seconds * each).max()))
     return figure
 
@@ -65,14 +65,14 @@ def _scan_time(axis: Axes, ds: xr.Dataset, boxes: np.ndarray) -> None:
     axis.axvline(
         float(ds.source_boxes_per_body) * bodies, color=_SOURCE, linestyle="--", ymax=0.45, label="F & M"
     )
-    axis.set(xscale="log", yscale="log", ylabel="time per body and step (ns)")
+    axis.set(xscale="log", yscale="log", ylabel="time per particle and step (ns)")
     axis.legend(loc="upper right")
 
 
 def _scan_work(axis: Axes, ds: xr.Dataset, boxes: np.ndarray) -> None:
     axis.plot(boxes, ds.expected_tests, color=style.COLOURS[0])
     axis.plot(boxes, ds.expected_visits, color=style.COLOURS[1])
-    kinds = {"pair_tests": "pair tests", "box_visits": "boxes looked into", "boxes_emptied": "boxes emptied"}
+    kinds = {"pair_tests": "pair tests", "box_visits": "boxes searched", "boxes_emptied": "boxes emptied"}
     shown: list[Any] = [
         style.points(axis, boxes, ds[name], kind=kind, label=label)
         for kind, (name, label) in enumerate(kinds.items())
@@ -80,7 +80,7 @@ def _scan_work(axis: Axes, ds: xr.Dataset, boxes: np.ndarray) -> None:
     colour = style.COLOURS[1]
     shown += axis.plot(boxes, ds.in_reach, color=colour, linestyle="--", label="boxes within a diameter")
     shown += axis.plot(boxes, ds.touched, color=colour, linestyle=":", label="boxes touched (F & M)")
-    axis.set(yscale="log", ylabel="per body and step", ylim=(0.01, 1e8))
+    axis.set(yscale="log", ylabel="per particle and step", ylim=(0.01, 1e8))
     axis.legend(handles=shown, loc="upper right", fontsize=7)
 
 
@@ -109,7 +109,7 @@ def _round_widths(axis: Axes, ds: xr.Dataset) -> None:
 def _sectors(axis: Axes, ds: xr.Dataset) -> None:
     sectors = ds.sector_boxes_per_side.values.astype(float) ** 2
     style.points(axis, sectors, ds.sector_pair_tests, kind=0, linestyle="-", label="pair tests")
-    style.points(axis, sectors, ds.sector_box_visits, kind=1, linestyle="-", label="sectors looked into")
+    style.points(axis, sectors, ds.sector_box_visits, kind=1, linestyle="-", label="sectors searched")
     style.points(axis, sectors, ds.sector_crossings, kind=2, linestyle="-", label="crossings")
     style.points(
         axis, sectors, ds.sector_seconds * _US, ds.sector_seconds_error * _US,
@@ -121,12 +121,12 @@ def _sectors(axis: Axes, ds: xr.Dataset) -> None:
 
 
 def ideal_boxes(ds: xr.Dataset) -> Figure:
-    """The ideal number of boxes against N; and how flat the minimum is."""
+    """The ideal number of boxes against N; and the time around its minimum."""
     figure, (top, bottom) = style.new(rows=2, height=5.4, share_x=False)
     count = ds["count"].values.astype(float)
     line = np.geomspace(0.7 * count.min(), 1.5 * count.max(), 50)
     top.fill_between(
-        line, 7.0 * line, 10.0 * line, color=_SOURCE, alpha=0.4, lw=0, label="F & M: 7 to 10 a body"
+        line, 7.0 * line, 10.0 * line, color=_SOURCE, alpha=0.4, lw=0, label="F & M: 7 to 10 per particle"
     )
     for kind, radius in enumerate(ds.series_radius.values):
         of = ds.isel(gas=np.flatnonzero(ds.radius.values == radius))
@@ -138,7 +138,7 @@ def ideal_boxes(ds: xr.Dataset) -> Figure:
             xytext=(0, 2 if kind else -9), textcoords="offset points", ha="left" if kind else "right",
             fontsize=7, color=style.COLOURS[kind],
         )  # fmt: skip
-    top.set(xscale="log", yscale="log", xlabel="number of bodies $N$", ylabel="ideal number of boxes")
+    top.set(xscale="log", yscale="log", xlabel="number of particles $N$", ylabel="ideal number of boxes")
     top.set_ylim(2e3, 1e8)
     top.legend(loc="lower right")
     shown = [int(n) for n in ds.source_gas]
@@ -152,7 +152,7 @@ def ideal_boxes(ds: xr.Dataset) -> Figure:
             kind=kind, linestyle="-", label=label,
         )  # fmt: skip
     bottom.axvspan(7.0, 10.0, color=_SOURCE, alpha=0.4, lw=0)
-    bottom.set(xscale="log", xlabel="boxes per body", ylabel="time over the least", ylim=(0.9, 4.5))
+    bottom.set(xscale="log", xlabel="boxes per particle", ylabel="time over the least", ylim=(0.9, 4.5))
     bottom.legend(loc="upper center")
     return figure
 
@@ -163,8 +163,10 @@ def _thousands(number: float | xr.DataArray) -> str:
 
 
 def _ideal(axis: Axes, of: xr.Dataset, kind: int, label: str) -> None:
-    """Ideal numbers with 95 % intervals. Hollow: without an interval; with an arrow where the time still
-    falls at the finest partition timed."""
+    """Ideal numbers with 95 % intervals.
+
+    Hollow: without an interval; with an arrow where the time still falls at the finest partition timed.
+    """
     count, interior = of["count"].values, of.ideal_interior.values.astype(bool)
     ideal, low, high = (of[name].values * count for name in ("ideal", "ideal_low", "ideal_high"))
     found = interior & np.isfinite(high) & (low > 0.0)
@@ -177,7 +179,7 @@ def _ideal(axis: Axes, of: xr.Dataset, kind: int, label: str) -> None:
 
 
 def linear_scaling(ds: xr.Dataset) -> Figure:
-    """Time of a step with one box, the cheapest partition and a neighbour list; time and work per body."""
+    """Time of a step with one box, the cheapest partition and a neighbour list; time, work per particle."""
     figure, (top, middle, bottom) = style.new(rows=3, height=6.4, height_ratios=(2, 1.2, 1))
     count = ds["count"].values.astype(float)
     far = float(ds.extrapolated_count)
@@ -224,9 +226,9 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
         )
     top.set(xscale="log", yscale="log", ylabel="time per step (s)", ylim=(None, 3e10))
     top.legend(loc="upper left")
-    middle.set(yscale="log", ylabel="time per body (ns)", ylim=(1.0, None))
-    bottom.set(yscale="log", ylabel="per body", xlabel="number of bodies $N$", ylim=(0.02, 100.0))
-    bottom.text(0.02, 0.85, "boxes looked into", transform=bottom.transAxes, fontsize=7)
+    middle.set(yscale="log", ylabel="time per particle (ns)", ylim=(1.0, None))
+    bottom.set(yscale="log", ylabel="per particle", xlabel="number of particles $N$", ylim=(0.02, 100.0))
+    bottom.text(0.02, 0.85, "boxes searched", transform=bottom.transAxes, fontsize=7)
     bottom.text(0.02, 0.06, "pair tests (hollow)", transform=bottom.transAxes, fontsize=7)
     return figure
 
@@ -237,7 +239,7 @@ def _by_radius(ds: xr.Dataset) -> Iterator:
 
 
 def _duration(seconds: float) -> str:
-    """A time in the unit that reads best."""
+    """A time in hours, minutes, seconds or milliseconds."""
     for unit, length in (("h", 3600.0), ("min", 60.0), ("s", 1.0)):
         if seconds >= length:
             return f"{seconds / length:.2g} {unit} a step"
@@ -247,7 +249,7 @@ def _duration(seconds: float) -> str:
 def event_scaling(ds: xr.Dataset) -> Figure:
     """Pair tests and time of an event against N, by each search."""
     figure, (top, bottom) = style.new(rows=2, height=4.8)
-    names = {"pairs": "all pairs", "direct": "queue, all bodies", "boxes": "queue and sectors"}
+    names = {"pairs": "all pairs", "direct": "queue, all particles", "boxes": "queue and sectors"}
     methods = zip(ds.method_search.values, ds.method_dimension.values, strict=True)
     for kind, (search, dimension) in enumerate(methods):
         of = ds.isel(run=np.flatnonzero((ds.search.values == search) & (ds.dimension.values == dimension)))
@@ -262,7 +264,7 @@ def event_scaling(ds: xr.Dataset) -> Figure:
     top.set(xscale="log", yscale="log", ylabel="pair tests per event")
     top.set_ylim(top=3e6)
     top.legend(loc="upper right")
-    bottom.set(yscale="log", xlabel="number of bodies $N$", ylabel="time per event (µs)")
+    bottom.set(yscale="log", xlabel="number of particles $N$", ylabel="time per event (µs)")
     return figure
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaspart.planning import grid
-from gaspart.scene.matter import Body, Species
+from gaspart.scene.species import Body, Species
 from gaspart.trajectory.run import open_trajectory
 
 

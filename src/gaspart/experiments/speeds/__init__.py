@@ -1,4 +1,18 @@
 """Speed distributions."""
 
+from gaspart.kinds import POSITIVE, count, listed, positive
+
 TITLE = "Speed distributions"
-FIGURES = ("speed_relaxation", "speed_distribution_spheres", "speed_distribution_discs")
+_HISTOGRAM = {
+    "bins": count("bins of the histogram"),
+    "highest": positive("its largest speed, over the root-mean-square speed"),
+}
+_DISTRIBUTION = {**_HISTOGRAM, "classes": count("classes of equal probability for chi-square", minimum=3)}
+FIGURES = {
+    "speed_relaxation": {
+        "times": listed(POSITIVE, "times of the histograms, each a sampled one"),
+        **_HISTOGRAM,
+    },
+    "speed_distribution_spheres": _DISTRIBUTION,
+    "speed_distribution_discs": _DISTRIBUTION,
+}

@@ -1,4 +1,4 @@
-"""Pictures of the speeds: relaxation from equal speeds, and Maxwell's distribution."""
+"""Figures of the speeds: relaxation from equal speeds, and Maxwell's distribution."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ KOLMOGOROV_BAND = 1.36
 
 
 def speed_relaxation(ds: xr.Dataset) -> Figure:
-    """Histograms at the source's three times; kurtosis and never-hit fraction against collisions per body."""
+    """Histograms at the source's three times; kurtosis and fraction never hit against collisions."""
     figure, axes = style.new(rows=5, height=7.6, height_ratios=(3.2, 2.3, 1, 2.3, 1), share_x=False)
     _histograms(axes[0], ds)
     relaxation = theory.relaxation(ds.attrs["dimension"])
@@ -45,7 +45,7 @@ def speed_relaxation(ds: xr.Dataset) -> Figure:
         top.tick_params(labelbottom=False)
         bottom.set_ylabel(r"residual ($\sigma$)")
         bottom.set_yticks([-3, 0, 3])
-    axes[4].set_xlabel(r"collisions per body $s = 2N_\mathrm{coll}/N$")
+    axes[4].set_xlabel(r"collisions per particle $s = 2N_\mathrm{coll}/N$")
     axes[1].set_ylim(0.97, 1.76)
     axes[1].legend(loc="lower right")
     axes[3].legend(loc="lower left")
@@ -56,7 +56,7 @@ def speed_relaxation(ds: xr.Dataset) -> Figure:
 
 
 def _histograms(axis: Axes, ds: xr.Dataset) -> None:
-    """Densities at the three times: outlines from the time-stepped engine, points from the other."""
+    """Densities at the three times: outlines of the time-stepped engine, points of the event-driven."""
     edges = np.append(ds["lower"].values, ds["upper"].values[-1])
     middle = 0.5 * (edges[1:] + edges[:-1])
     for kind, frame in enumerate(ds["shown"].values):
@@ -131,7 +131,7 @@ def _distribution(ds: xr.Dataset) -> Figure:
         label = rf"$\eta={float(row['packing_fraction']):.2g}$, {ENGINES[str(row['engine'].values)]}"
         density, error = row["density"].values, row["density_error"].values
         style.points(axes[0], middle, density, error, kind=kind, hollow=True, label=label)
-        # The residuals of different packing fractions stand beside each other within their bin.
+        # The residuals of different packing fractions are drawn side by side within their bin.
         beside = middle + width * 0.25 * (kind - 0.5 * (ds.sizes["point"] - 1))
         style.points(axes[1], beside, row["residual"].values, kind=kind, markersize=2.5)
         dashes = (2.0 * kind, (2.0, 2.0 * ds.sizes["point"] - 2.0)) if ds.sizes["point"] > 1 else (0, (2, 2))
@@ -152,6 +152,5 @@ def _distribution(ds: xr.Dataset) -> Figure:
     axes[3].set_xlim(0.0, float(ds["upper"][-1]))
     axes[0].set_ylim(0.0, 1.5 * float(ds["density"].max()))
     axes[0].legend(loc="upper right")
-    for axis, letter in zip((axes[0], axes[2]), "ab", strict=True):
-        style.letter(axis, letter)
+    style.letters(axes[0], axes[2])
     return figure

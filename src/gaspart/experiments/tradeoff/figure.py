@@ -1,4 +1,4 @@
-"""Pictures of what accuracy costs."""
+"""Figures of the cost of accuracy."""
 
 from __future__ import annotations
 
@@ -33,8 +33,7 @@ def speed_accuracy(ds: xr.Dataset) -> Figure:
     handles, labels = axes[0, 0].get_legend_handles_labels()
     handles += axes[2, 0].get_legend_handles_labels()[0][-1:]
     figure.legend(handles, [*labels, "event-driven"], loc="outside upper center", ncols=3)
-    for text, axis in zip("abc", axes[:, 0], strict=True):
-        style.letter(axis, text)
+    style.letters(*axes[:, 0])
     return figure
 
 
@@ -91,7 +90,7 @@ def _kind(row: xr.Dataset) -> int:
 
 
 def time_to_accuracy(ds: xr.Dataset) -> Figure:
-    """Cost against accuracy by each engine, measured and foretold; and what the model's choice costs more."""
+    """Cost against accuracy by engine, measured and predicted; and the excess cost of the model's choice."""
     figure, axes = style.new(rows=3, columns=max(2, ds.sizes["gas"]), height=6.6, height_ratios=(2, 2, 1))
     for column, g in zip(axes.T, range(ds.sizes["gas"]), strict=False):
         gas = ds.isel(gas=g)

@@ -1,4 +1,11 @@
-"""Memory of velocities."""
+"""Velocity autocorrelation."""
 
-TITLE = "Memory of velocities"
-FIGURES = ("velocity_autocorrelation",)
+from gaspart.kinds import POSITIVE, listed, positive
+
+TITLE = "Velocity autocorrelation"
+FIGURES = {
+    "velocity_autocorrelation": {
+        "start_to": positive("collisions of a particle up to which the initial decay is fitted"),
+        "tail": listed(POSITIVE, "collisions of a particle from and to which the tail is fitted", 2, 2),
+    }
+}

@@ -1,4 +1,4 @@
-"""The velocity autocorrelation: its tail, its start, and the tail over theory's."""
+"""The velocity autocorrelation: its tail, its start, and the ratio of the tail to theory's."""
 
 from __future__ import annotations
 
@@ -8,13 +8,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart import theory
+from gaspart.experiments.shared.claims import PARTICLES
 from gaspart.rendering import style
-
-NAMES = {2: "discs", 3: "spheres"}
 
 
 def velocity_autocorrelation(ds: xr.Dataset) -> Figure:
-    """Three panels: C over the collisions of a body, log-log; its start; C over theory's tail."""
+    """Three panels: C against collisions per particle, log-log; its start; C over theory's tail."""
     figure, (upper, middle, lower) = style.new(
         rows=3, height=6.8, height_ratios=(2.2, 1.5, 1.5), share_x=False
     )
@@ -55,13 +54,13 @@ def _tails(axis: Axes, ds: xr.Dataset) -> None:
             at["correlation_error"].values[seen],
             kind,
             markersize=2.5,
-            label=rf"{NAMES[dimension]}, $\eta={eta:.2g}$",
+            label=rf"{PARTICLES[dimension]}, $\eta={eta:.2g}$",
         )
     axis.set_xscale("log")
     axis.set_yscale("log")
     axis.set_xlim(0.8, 40.0)
     axis.set_ylim(1e-3, 1.0)
-    _whole_ticks(axis)
+    _integer_ticks(axis)
     axis.set_ylabel(r"$C=\langle v(0)v(t)\rangle/\langle v^2\rangle$")
     axis.legend(loc="lower left")
 
@@ -74,20 +73,20 @@ def _starts(axis: Axes, ds: xr.Dataset) -> None:
         at = row.isel(lag=lags[row["collisions"].values[lags] <= 2.0])
         s = np.linspace(0.0, 2.0, 50)
         axis.plot(s, np.exp(-2.0 / dimension * s), color=style.COLOURS[kind], zorder=1)
-        label = rf"{NAMES[dimension]}, $\eta={eta:.2g}$"
+        label = rf"{PARTICLES[dimension]}, $\eta={eta:.2g}$"
         style.points(axis, at["collisions"], at["correlation"], at["correlation_error"], kind, label=label)
     axis.set_yscale("log")
     axis.set_yticks((0.2, 0.5, 1.0), ("0.2", "0.5", "1"))
     axis.minorticks_off()
     axis.set_xlim(0.0, 2.0)
     axis.set_ylabel("$C$")
-    axis.set_xlabel(r"collisions of a body $s=\nu t$")
+    axis.set_xlabel(r"collisions per particle $s=\nu t$")
     if ds.sizes["point"]:
         axis.legend(loc="upper right")
 
 
 def _ratios(axis: Axes, ds: xr.Dataset) -> None:
-    """C over theory's tail, to the time at which sound has crossed the container."""
+    """C over theory's tail, until sound has crossed the container."""
     style.level(axis, 1.0)
     for kind in range(ds.sizes["point"]):
         row = ds.isel(point=kind)
@@ -111,12 +110,12 @@ def _ratios(axis: Axes, ds: xr.Dataset) -> None:
     axis.set_xscale("log")
     axis.set_xlim(5.0, 40.0)
     axis.set_ylim(0.6, 1.6)
-    _whole_ticks(axis)
-    axis.set_xlabel(r"collisions of a body $s=\nu t$")
-    axis.set_ylabel("over theory's tail")
+    _integer_ticks(axis)
+    axis.set_xlabel(r"collisions per particle $s=\nu t$")
+    axis.set_ylabel("$C$ / theory's tail")
 
 
-def _whole_ticks(axis: Axes) -> None:
+def _integer_ticks(axis: Axes) -> None:
     low, high = axis.get_xlim()
     ticks = [tick for tick in (1, 2, 5, 10, 20, 40) if low <= tick <= high]
     axis.set_xticks(ticks, [str(tick) for tick in ticks])

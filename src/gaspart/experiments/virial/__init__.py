@@ -1,4 +1,16 @@
 """Equation of state."""
 
+from gaspart.kinds import count, flag, listed, positive, record
+
 TITLE = "Equation of state"
-FIGURES = ("virial_discs", "virial_spheres")
+_FITS = listed(
+    record(
+        {
+            "free": count("highest coefficient left free", minimum=4, maximum=9),
+            "up_to": positive("largest packing fraction used"),
+            "held": flag("hold the higher coefficients at their literature values"),
+        }
+    ),
+    "fits of the virial coefficients; the first one is claimed",
+)
+FIGURES = {"virial_discs": {"fits": _FITS}, "virial_spheres": {"fits": _FITS}}

@@ -12,8 +12,8 @@ from gaspart.rendering import style
 
 SERIES = (2, 3, 4, 6, 10)
 """Partial sums are drawn up to these coefficients."""
-WANTED = {2: 1e-3, 3: 1e-2, 4: 1e-1}
-"""Scale of the lowest panel: the relative accuracy wanted of each coefficient."""
+REQUIRED = {2: 1e-3, 3: 1e-2, 4: 1e-1}
+"""Scale of the lowest panel: the required relative accuracy of each coefficient."""
 
 
 def virial_discs(dataset: xr.Dataset) -> Figure:
@@ -41,12 +41,10 @@ def _draw(dataset: xr.Dataset, name: str, curves: dict, ceiling: float, percent:
     upper.plot(grid, reference, color=style.REFERENCE, label=name, zorder=2)
     _state(upper, dataset, grid, lines, dimension, ceiling)
     _residuals(middle, dataset, grid, reference, lines, dimension, percent)
-    middle.sharex(upper)
-    upper.tick_params(labelbottom=False)
+    style.share_x(upper, middle)
     upper.set_xlim(0.0, grid[-1])
     _coefficients(lower, dataset)
-    for axis, text in zip((upper, middle, lower), "abc", strict=True):
-        style.letter(axis, text)
+    style.letters(upper, middle, lower)
     figure.align_ylabels()
     return figure
 
@@ -120,18 +118,18 @@ def _residuals(
 
 
 def _coefficients(axis: Axes, dataset: xr.Dataset) -> None:
-    """Each fitted coefficient's distance from the exact one, in units of the accuracy wanted, by fit."""
+    """Each fitted coefficient's deviation from the exact one, in units of the accuracy required, by fit."""
     style.band(axis, -1.0, 1.0)
     style.level(axis, 0.0)
     fits = np.arange(dataset.sizes["fit"])
-    for k, (order, wanted) in enumerate(WANTED.items()):
+    for k, (order, required) in enumerate(REQUIRED.items()):
         at = dataset.sel(order=order)
-        scale = wanted * float(at["exact"])
+        scale = required * float(at["exact"])
         error = np.hypot(at["coefficient_error"], at["held_error"]) / scale
         deviation = (at["coefficient"] - at["exact"]) / scale
-        label = f"$B_{order}$ / {100 * wanted:g} %"
+        label = f"$B_{order}$ / {100 * required:g} %"
         style.points(axis, fits + 0.22 * (k - 1), deviation, error, kind=k, label=label)
-    # Fits that cut the series are far off: linear within the accuracy wanted, logarithmic beyond.
+    # Fits that cut the series deviate widely: linear within the accuracy required, logarithmic beyond.
     axis.set_yscale("symlog", linthresh=1.0, linscale=1.0)
     axis.set_ylim(-30.0, 30.0)
     axis.set_yticks([-10, -1, 0, 1, 10], ["$-10$", "$-1$", "0", "1", "10"])
@@ -139,7 +137,7 @@ def _coefficients(axis: Axes, dataset: xr.Dataset) -> None:
     axis.set_xlim(-0.6, max(fits.size, 1) - 0.4)
     axis.set_xticks(fits, [_name(dataset.isel(fit=k)) for k in fits])
     axis.tick_params(axis="x", length=0)
-    axis.set_ylabel("deviation / wanted")
+    axis.set_ylabel("deviation / required")
     axis.set_xlabel("free coefficients, largest $\\eta$, higher coefficients")
     axis.legend(ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.0), columnspacing=1.0, handletextpad=0.1)
 

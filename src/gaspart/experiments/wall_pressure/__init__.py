@@ -1,4 +1,4 @@
 """Pressure on walls."""
 
 TITLE = "Pressure on walls"
-FIGURES = ("wall_pressure",)
+FIGURES: dict[str, dict] = {"wall_pressure": {}}

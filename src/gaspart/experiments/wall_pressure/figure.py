@@ -1,4 +1,4 @@
-"""Pressure on walls: against temperature, against density, and what is left when theory is taken off."""
+"""Pressure on walls: against temperature, against density, and its deviation from theory."""
 
 from __future__ import annotations
 
@@ -8,9 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart import theory
+from gaspart.experiments.shared.claims import PARTICLES
 from gaspart.rendering import style
-
-NAMES = {2: "discs", 3: "spheres"}
 
 
 def wall_pressure(ds: xr.Dataset) -> Figure:
@@ -21,8 +20,7 @@ def wall_pressure(ds: xr.Dataset) -> Figure:
     _temperatures(upper, ds)
     _densities(middle, ds)
     _residuals(lower, ds)
-    for axis, text in zip((upper, middle, lower), "abc", strict=True):
-        style.letter(axis, text)
+    style.letters(upper, middle, lower)
     figure.align_ylabels()
     return figure
 
@@ -61,7 +59,7 @@ def _densities(axis: Axes, ds: xr.Dataset) -> None:
         part = ds.isel(point=(ds["dimension"] == dimension).values)
         eta = part["packing_fraction"].values
         curve = np.linspace(1e-3, 1.05 * eta.max(), 200)
-        name = NAMES[int(dimension)]
+        name = PARTICLES[int(dimension)]
         z = theory.compressibility_factor(curve, int(dimension))
         axis.plot(curve, z, color=style.COLOURS[kind], zorder=1, label=f"{name}, bulk")
         raw = part["whole_pressure"] / part["density"]
@@ -85,9 +83,9 @@ def _residuals(axis: Axes, ds: xr.Dataset) -> None:
         for slit in (True, False):
             chosen = ((ds["dimension"] == dimension) & ((ds["axes"] < dimension) == slit)).values
             if chosen.any():
-                # Moved apart a little: many containers share a packing fraction.
+                # Shifted slightly: many containers have the same packing fraction.
                 eta = ds["packing_fraction"].values[chosen] + 0.003 * (0 if slit else 1)
-                label = f"{NAMES[int(dimension)]}, {'slit' if slit else 'closed'}"
+                label = f"{PARTICLES[int(dimension)]}, {'slit' if slit else 'closed'}"
                 style.points(
                     axis, eta, excess[chosen], error[chosen], kind=kind, hollow=not slit, label=label
                 )

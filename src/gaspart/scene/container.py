@@ -1,0 +1,59 @@
+"""The simulated volume."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+from gaspart.errors import SceneError
+from gaspart.scene.keys import POSITIVE, Rule, checked_by_class, declared, validate
+from gaspart.scene.validation import choice, positive, settle, vector
+
+BOUNDARIES = ("wall", "periodic")
+_PER_AXIS = {"type": "array", "minItems": 2, "maxItems": 3}
+_BOUNDARY: dict[str, Any] = {
+    "anyOf": [{"enum": list(BOUNDARIES)}, {**_PER_AXIS, "items": {"enum": list(BOUNDARIES)}}]
+}
+
+
+def _lengths(name: str, value: Any) -> tuple[float, ...]:
+    return tuple(positive(name, length) for length in vector(name, value))
+
+
+@dataclass(frozen=True)
+class Container:
+    """The simulated volume [0, L] on each axis, in two or three dimensions."""
+
+    lengths: tuple[float, ...] = field(
+        metadata=declared(Rule(_lengths, {**_PER_AXIS, "items": POSITIVE.kind}), "(d,) side lengths")
+    )
+    boundary: str | tuple[str, ...] = field(
+        default="wall",
+        metadata=declared(checked_by_class(_BOUNDARY), "of all axes, or one per axis"),
+    )
+
+    def __post_init__(self) -> None:
+        validate(self)
+        given = self.boundary
+        boundary = (given,) * self.dimension if isinstance(given, str) else given
+        if not isinstance(boundary, (tuple, list)) or len(boundary) != self.dimension:
+            raise SceneError("boundary", given, f"must be one of {BOUNDARIES}, or a list of one per axis")
+        for kind in boundary:
+            choice("boundary", kind, BOUNDARIES)
+        settle(self, boundary=tuple(boundary))
+
+    @property
+    def dimension(self) -> int:
+        """2 or 3."""
+        return len(self.lengths)
+
+    @property
+    def volume(self) -> float:
+        """The container's volume, in two dimensions its area."""
+        return math.prod(self.lengths)
+
+    @property
+    def periodic(self) -> tuple[bool, ...]:
+        """(d,) whether each axis is periodic."""
+        return tuple(kind == "periodic" for kind in self.boundary)

@@ -1,0 +1,40 @@
+"""The law of contacts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from gaspart.scene.keys import between, declared, validate
+
+
+@dataclass(frozen=True)
+class Restitution:
+    """Effect of a contact on the relative velocity of the two surfaces (Spencer 2022, Eq. 22)."""
+
+    normal: float = field(
+        default=1.0,
+        metadata=declared(
+            between(0.0, 1.0),
+            "the normal part is multiplied by minus this: from 0 (they stick) to 1 (elastic)",
+        ),
+    )
+    tangential: float = field(
+        default=-1.0,
+        metadata=declared(
+            between(-1.0, 1.0),
+            "likewise the tangential part: from -1 (perfectly smooth) to 1 (perfectly rough)",
+        ),
+    )
+
+    def __post_init__(self) -> None:
+        validate(self)
+
+    @property
+    def smooth_and_elastic(self) -> bool:
+        """Whether contacts are those of a scene without a Restitution."""
+        return self.normal == 1.0 and self.tangential == -1.0
+
+    @property
+    def rough(self) -> bool:
+        """Whether contacts change spins."""
+        return self.tangential > -1.0

@@ -1,0 +1,135 @@
+"""What moves in a container: species and single particles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from gaspart.errors import SceneError
+from gaspart.scene.keys import (
+    FLAG,
+    NOT_NEGATIVE,
+    POSITION,
+    POSITIVE,
+    VECTOR,
+    Rule,
+    checked_by_class,
+    choice,
+    count,
+    declared,
+    validate,
+)
+from gaspart.scene.validation import LARGEST, MOST_BODIES, SMALLEST, number, settle, size, vector
+
+LATTICES = ("lattice", "slab")
+SHARED = (*LATTICES, "compressed")
+"""Arrangements that all particles of a scene share."""
+ARRANGEMENTS = ("random", *SHARED)
+
+_RADIUS = declared(POSITIVE, "radius")
+_MASS = declared(POSITIVE, "mass")
+_MOMENT = declared(
+    Rule(lambda name, value: number(name, value, "must be positive", above=0.0), POSITIVE.kind),
+    "moment of inertia; by default that of a uniform disc or sphere",
+)
+_FIXED = declared(FLAG, "the particle never moves: it has infinite mass")
+_SPIN: dict = {"type": ["number", "array"], "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
+
+
+def _check_matter(thing: Species | Body) -> None:
+    """The rules for several keys that species and single particles have in common."""
+    if thing.moment_of_inertia is not None:
+        if not SMALLEST <= thing.moment_of_inertia / thing.mass / thing.radius**2 <= LARGEST:
+            rule = f"must be from {SMALLEST:g} to {LARGEST:g} times the mass times the radius squared"
+            raise SceneError("moment_of_inertia", thing.moment_of_inertia, rule)
+    if thing.vibration is not None and not thing.fixed:
+        raise SceneError("vibration", thing.vibration, "only a fixed particle vibrates")
+
+
+@dataclass(frozen=True)
+class Species:
+    """`count` like particles, placed by the program.
+
+    Velocities are isotropic: of one fixed `speed`, or Maxwellian at `temperature`; with neither the particles
+    start at rest. `arrangement` is "random" (sequential insertion), "lattice", "slab": a lattice whose empty
+    sites all lie in one half, so that this half melts, or "compressed": grown to a density beyond that of
+    insertion (see `compression`). A `fixed` particle with a `vibration` or a `temperature` has one mode of
+    vibration: a contact exchanges its energy with the normal energy of the other particle.
+    """
+
+    count: int = field(metadata=declared(count(MOST_BODIES), "number of particles"))
+    radius: float = field(metadata=_RADIUS)
+    mass: float = field(default=1.0, metadata=_MASS)
+    speed: float | None = field(default=None, metadata=declared(NOT_NEGATIVE, "one initial speed for all"))
+    temperature: float | None = field(
+        default=None,
+        metadata=declared(
+            NOT_NEGATIVE, "instead of `speed`: of the initial Maxwellian velocities; of vibrations if fixed"
+        ),
+    )
+    arrangement: str = field(default="random", metadata=declared(choice(*ARRANGEMENTS), "initial positions"))
+    moment_of_inertia: float | None = field(default=None, metadata=_MOMENT)
+    fixed: bool = field(default=False, metadata=_FIXED)
+    vibration: float | None = field(
+        default=None,
+        metadata=declared(
+            NOT_NEGATIVE, "of fixed particles, instead of `temperature`: initial energy of vibration"
+        ),
+    )
+
+    def __post_init__(self) -> None:
+        validate(self)
+        _check_matter(self)
+        if self.speed is not None and self.temperature is not None:
+            raise SceneError("temperature", self.temperature, "give speed or temperature, not both")
+        if self.fixed and self.speed:
+            raise SceneError("speed", self.speed, "a fixed species has none")
+        if self.vibration is not None and self.temperature is not None:
+            raise SceneError("temperature", self.temperature, "give vibration or temperature, not both")
+
+    @property
+    def vibrates(self) -> bool:
+        """Whether its particles have a mode of vibration."""
+        return self.fixed and (self.vibration is not None or self.temperature is not None)
+
+
+@dataclass(frozen=True)
+class Body:
+    """One particle at a given position. In 2D its spin, the angular velocity, is a number, in 3D (3,)."""
+
+    position: tuple[float, ...] = field(metadata=declared(POSITION, "initial position of its centre"))
+    velocity: tuple[float, ...] = field(metadata=declared(VECTOR, "initial velocity"))
+    radius: float = field(metadata=_RADIUS)
+    mass: float = field(default=1.0, metadata=_MASS)
+    spin: float | tuple[float, ...] | None = field(
+        default=None,
+        metadata=declared(checked_by_class(_SPIN), "angular velocity: a number in 2D, a vector in 3D"),
+    )
+    moment_of_inertia: float | None = field(default=None, metadata=_MOMENT)
+    fixed: bool = field(default=False, metadata=_FIXED)
+    vibration: float | None = field(
+        default=None, metadata=declared(NOT_NEGATIVE, "of a fixed particle: initial energy of vibration")
+    )
+
+    def __post_init__(self) -> None:
+        validate(self)
+        _check_matter(self)
+        if self.spin is not None:
+            flat = len(self.position) == 2
+            spin = number("spin", self.spin, "must be a number") if flat else vector("spin", self.spin, 3)
+            size("spin", spin)
+            settle(self, spin=spin)
+        for key, value in (("velocity", self.velocity), ("spin", self.spin_vector)):
+            if self.fixed and any(value):
+                raise SceneError(key, value, "a fixed particle has none")
+
+    @property
+    def vibrates(self) -> bool:
+        """Whether it has a mode of vibration."""
+        return self.vibration is not None
+
+    @property
+    def spin_vector(self) -> tuple[float, ...]:
+        """(3,) the spin as a vector, which in 2D is normal to the plane."""
+        if self.spin is None:
+            return 0.0, 0.0, 0.0
+        return self.spin if isinstance(self.spin, tuple) else (0.0, 0.0, self.spin)

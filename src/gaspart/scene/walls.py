@@ -1,0 +1,103 @@
+"""Walls inside a container."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+from gaspart.errors import SceneError
+from gaspart.kinds import listed
+from gaspart.scene.keys import Rule, declared, validate
+from gaspart.scene.keys import vector as vector_of
+from gaspart.scene.validation import positive, vector
+
+
+def _edges(name: str, value: Any) -> tuple[tuple[float, ...], ...]:
+    if not isinstance(value, (tuple, list)) or len(value) != 2:
+        raise SceneError(name, value, "must be two lists of 3 numbers")
+    return tuple(vector(f"{name}[{n}]", edge, 3) for n, edge in enumerate(value))
+
+
+_EDGES = Rule(_edges, listed(vector_of(3).kind, least=2, most=2))
+
+
+@dataclass(frozen=True)
+class Wall:
+    """A straight wall inside a container of two dimensions, from `start` (2,) to `end` (2,): hit from both
+    sides, and at its ends, which are solid."""
+
+    start: tuple[float, ...] = field(metadata=declared(vector_of(2), "one end"))
+    end: tuple[float, ...] = field(metadata=declared(vector_of(2), "the other end"))
+
+    def __post_init__(self) -> None:
+        validate(self)
+        if self.start == self.end:
+            raise SceneError("end", self.end, "a wall must have a length; for a post use a fixed particle")
+        positive("length", math.dist(self.start, self.end))
+
+    @property
+    def corners(self) -> dict[str, tuple[float, ...]]:
+        """Both ends, by their keys."""
+        return {"start": self.start, "end": self.end}
+
+    def distance(self, point: tuple[float, ...]) -> float:
+        """Distance of a point from the wall, its ends included."""
+        (ax, ay), (bx, by), (x, y) = self.start, self.end, point
+        s = ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / ((bx - ax) ** 2 + (by - ay) ** 2)
+        s = min(max(s, 0.0), 1.0)
+        return math.hypot(x - ax - s * (bx - ax), y - ay - s * (by - ay))
+
+
+@dataclass(frozen=True)
+class Plate:
+    """A flat rectangular wall inside a container of three dimensions: a `corner` (3,), and the `edges` (2, 3)
+    that lead from it, at right angles. Hit from both sides, at its edges and its corners, which are solid."""
+
+    corner: tuple[float, ...] = field(metadata=declared(vector_of(3), "one corner"))
+    edges: tuple[tuple[float, ...], ...] = field(
+        metadata=declared(_EDGES, "the vectors from it to the two neighbouring corners")
+    )
+
+    def __post_init__(self) -> None:
+        validate(self)
+        one, other = self.edges
+        sizes = math.hypot(*one), math.hypot(*other)
+        if not min(sizes) > 0.0:
+            raise SceneError("edges", self.edges, "a plate must have a length and a width")
+        for length in sizes:
+            positive("edges", length)
+        if abs(sum(x * y for x, y in zip(one, other, strict=True))) > 1e-9 * sizes[0] * sizes[1]:
+            raise SceneError("edges", self.edges, "must be at right angles")
+
+    @property
+    def corners(self) -> dict[str, tuple[float, ...]]:
+        """The four corners, by the key that determines each."""
+        one, other = self.edges
+        ends = {"edges[0]": (one,), "edges[1]": (other,), "edges": (one, other)}
+        far = {key: tuple(map(sum, zip(self.corner, *edges, strict=True))) for key, edges in ends.items()}
+        return {"corner": self.corner, **far}
+
+    def distance(self, point: tuple[float, ...]) -> float:
+        """Distance of a point from the plate, its rim included."""
+        away = [x - y for x, y in zip(point, self.corner, strict=True)]
+        for edge in self.edges:
+            along = sum(x * y for x, y in zip(away, edge, strict=True)) / sum(x * x for x in edge)
+            share = min(max(along, 0.0), 1.0)
+            away = [x - share * y for x, y in zip(away, edge, strict=True)]
+        return math.hypot(*away)
+
+
+def box_of_walls(lower: tuple[float, ...], upper: tuple[float, ...]) -> tuple[Wall | Plate, ...]:
+    """The four walls of a rectangle, or the six of a cuboid, given two opposite corners."""
+    low = vector("lower", lower)
+    high = vector("upper", upper, len(low))
+    if len(low) == 2:
+        (x, y), (u, v) = low, high
+        corners = ((x, y), (u, y), (u, v), (x, v))
+        return tuple(Wall(corners[n], corners[(n + 1) % 4]) for n in range(4))
+    plates = []
+    for corner, opposite in ((low, high), (high, low)):
+        edges = [tuple(opposite[k] - corner[k] if k == n else 0.0 for k in range(3)) for n in range(3)]
+        plates += [Plate(corner, (edges[n], edges[(n + 1) % 3])) for n in range(3)]
+    return tuple(plates)
