@@ -6,6 +6,7 @@ What has to be in place before anything large is imported: signals, and three st
 import os
 import signal
 import sys
+from io import TextIOWrapper
 
 
 def main() -> int:
@@ -42,8 +43,6 @@ def _open_closed_streams() -> None:
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w"))  # noqa: SIM115
     # names of files that are no UTF-8 are printed as the bytes that they are
-    from io import TextIOWrapper
-
     if isinstance(sys.stdout, TextIOWrapper) and sys.stdout.encoding.lower() == "utf-8":
         sys.stdout.reconfigure(errors="surrogateescape")
 

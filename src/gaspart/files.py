@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import errno
 import hashlib
 import os
@@ -78,8 +79,6 @@ def place(scratch: Path, path: Path, kind: Kind | None, overwrite: bool) -> None
 
 def _rename_to_new(old: Path, new: Path) -> None:
     """Rename a file without replacing one. Raises FileExistsError where there is one."""
-    import ctypes
-
     rename = getattr(ctypes.CDLL(None, use_errno=True), "renameat2", None)
     if rename and rename(_HERE, os.fsencode(old), _HERE, os.fsencode(new), _NO_REPLACE) == 0:
         return

@@ -77,7 +77,7 @@ def test_resume_and_info_of_an_unfinished_run(folder, capsys):
     assert main(["resume", "run.nc"]) == 0
     assert (folder / "run.nc").read_bytes() == whole
     assert main(["resume", "run.nc"]) == 2
-    assert "already whole" in capsys.readouterr().err
+    assert "already complete" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -101,7 +101,9 @@ def test_resume_and_info_of_an_unfinished_run(folder, capsys):
             GAS, ["--boxes-per-side", "13"], "boxes_per_side = 13: boxes must not", id="narrow boxes"
         ),
         pytest.param(GAS.replace("20", "110"), [], "count = 110: does not fit by random", id="saturation"),
-        pytest.param("container: {lengths: [9, 9]}\n", [], "a run needs at least one body", id="no bodies"),
+        pytest.param(
+            "container: {lengths: [9, 9]}\n", [], "a run needs at least one particle", id="no bodies"
+        ),
         pytest.param("", [], "scene = None: must be a mapping", id="empty file"),
         pytest.param("a: [1\n", [], "line 2, column 1 = 'the end': is not valid YAML", id="not YAML"),
         pytest.param(b"\xff\xfe\x00", [], "cannot be read", id="not text"),

@@ -76,7 +76,7 @@ def test_the_command_line_makes_pictures_and_films(runs, capsys):
         (["discs.nc", "-o", "new.png", "--frame", "5"], "frame = 5: the trajectory has 5, counted from 0"),
         (["discs.nc", "-o", "new.gif", "--frame", "1"], "frame = 1: has no meaning for a film"),
         (["discs.nc", "-o", "new.png", "--trail", "1"], "trail = 1: has no meaning for a picture"),
-        (["discs.nc", "-o", "new.gif", "--trail", "21"], "trail = 21: the trajectory has 21 bodies"),
+        (["discs.nc", "-o", "new.gif", "--trail", "21"], "trail = 21: the trajectory has 21 particles"),
         (["spheres.nc", "-o", "new.gif", "--trail", "0"], "trail = 0: is drawn among discs only"),
         (["discs.nc", "-o", "new.png", "--size", "9"], "argument --size: '9' must be as 1000x750"),
         (["discs.nc", "-o", "a.mp4", "--size", "9x9"], "size = 9: must be a whole number of at least 16"),

@@ -2,15 +2,15 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.rendering.bodies import bodies_of, colours_of
 from gaspart.rendering.discs import Canvas
+from gaspart.rendering.particles import colours_of, particles_of
 from gaspart.rendering.pictures import render
 
 BLACK = np.zeros((1, 3))
 
 
 def state(positions, radii, lengths, velocities=None):
-    """A state of bodies at rest, or not."""
+    """A state of particles at rest, or not."""
     bodies = [
         gp.Body(tuple(x), tuple(v), r)
         for x, r, v in zip(positions, radii, velocities or np.zeros_like(positions), strict=True)
@@ -56,7 +56,7 @@ def test_a_picture_is_the_same_pixels_each_time(dimension):
 
 
 def test_colours():
-    found = bodies_of(state([[2.0, 2.0], [5.0, 5.0]], [1.0, 1.0], [8.0, 8.0], [(0.0, 0.0), (3.0, 4.0)]))
+    found = particles_of(state([[2.0, 2.0], [5.0, 5.0]], [1.0, 1.0], [8.0, 8.0], [(0.0, 0.0), (3.0, 4.0)]))
     assert found.speeds.tolist() == [0.0, 5.0]
     slow, fast = colours_of(found, "speed", fastest=5.0)
     assert slow.mean() < 0.3 < 0.5 < fast.mean()

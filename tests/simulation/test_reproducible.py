@@ -78,7 +78,7 @@ def test_checkpoints_change_no_bit(tmp_path, engine):
 
 @pytest.mark.parametrize("engine", [ENGINES["event"], ENGINES["step"]], ids=["event", "step"])
 def test_restored_again_and_again_to_the_same_counts(engine):
-    """Large enough for both bodies of a pair to plan one contact at one time, one of them out of date."""
+    """Large enough for both particles of a pair to plan one contact at one time, one of them out of date."""
     scene = gas(3, 1000, 0.2)
     undisturbed, simulation = (gp.Simulation(scene, engine, 3) for _ in range(2))
     for n in range(1, 41):

@@ -1,4 +1,4 @@
-"""Compression: denser than insertion, without overlap, by exact contacts of growing bodies."""
+"""Compression: denser than insertion, without overlap, by exact contacts of growing particles."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Initial states: bodies placed where they may be, moving as they should."""
+"""Initial states: particles placed where they may be, moving as they should."""
 
 import math
 

@@ -20,7 +20,8 @@ def test_friction_of_a_heavy_body_is_the_drag_of_free_molecular_flow():
 
 
 def test_collisions_carry_the_friction():
-    """Random kicks: <(V(0)/V^2).dV> per collision of a heavy body, drawn from a Maxwellian flux, give g."""
+    """Random kicks: <(V(0)/V^2).dV> per collision of a heavy particle, drawn from a Maxwellian flux, give
+    g."""
     rng = np.random.default_rng(1)
     body, drift = 50.0, 0.02
     gas = rng.standard_normal((400_000, 3))

@@ -102,7 +102,8 @@ def test_dilute_limits():
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_finite_collision_rate_in_the_dilute_limit(dimension):
-    # Two bodies, total momentum zero, 2 E = d N T: |v_12| is fixed, and there is one pair instead of N^2/2.
+    # Two particles, total momentum zero, 2 E = d N T: |v_12| is fixed, and there is one pair instead of
+    # N^2/2.
     fixed_speed = np.sqrt(2.0 * 2.0 * dimension)
     shape = {2: 2.0 / np.pi, 3: 0.5}[dimension]
     maxwell = np.sqrt(4.0 / np.pi)  # <|v_n|> at T = m = 1

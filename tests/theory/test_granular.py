@@ -12,7 +12,7 @@ def drawn_matrix(q, tangential, normal, pairs=400_000):
     rng = np.random.default_rng(3)
     columns = []
     for spin in (0.0, 1.0):  # linear in T_rot at T_tr = 1
-        v = rng.standard_normal((2, pairs, 2))  # normal, tangential component of both bodies
+        v = rng.standard_normal((2, pairs, 2))  # normal, tangential component of both particles
         w = np.sqrt(spin / q) * rng.standard_normal((2, pairs))
         gn, gt = v[0, :, 0] - v[1, :, 0], v[0, :, 1] - v[1, :, 1] + w[0] + w[1]
         weight = np.where(gn > 0.0, gn, 0.0)
@@ -20,7 +20,7 @@ def drawn_matrix(q, tangential, normal, pairs=400_000):
         jt = -(1.0 + tangential) * gt / (2.0 + 2.0 / q)
         translation = jn * gn + jn**2 + jt * (v[0, :, 1] - v[1, :, 1]) + jt**2
         rotation = 0.5 * q * ((w[0] + jt / q) ** 2 - w[0] ** 2 + (w[1] + jt / q) ** 2 - w[1] ** 2)
-        # a contact is one collision of two bodies: per ds, N/2 ds contacts; T_tr = E / N, T_rot = 2 E / N
+        # a contact is one collision of two particles: per ds, N/2 ds contacts; T_tr = E / N, T_rot = 2 E / N
         columns.append([0.5 * np.average(translation, weights=weight), np.average(rotation, weights=weight)])
     smooth, both = np.array(columns)
     return np.stack([smooth, both - smooth], axis=1)

@@ -8,7 +8,7 @@ from gaspart.theory.geometry import packing_fraction
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_free_flight_is_the_sum_of_what_bodies_carry(dimension):
-    """Flux-weighted energies drawn from both walls, times how often a body goes there and back."""
+    """Flux-weighted energies drawn from both walls, times how often a particle goes there and back."""
     rng = np.random.default_rng(1)
     energies, times = {}, 0.0
     for temperature in (2.0, 1.0):

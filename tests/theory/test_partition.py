@@ -7,7 +7,7 @@ from gaspart.theory import partition
 
 
 def neighbours(positions, per_side, side):
-    """(N, N) whether two bodies are in the same box or in neighbouring ones."""
+    """(N, N) whether two particles are in the same box or in neighbouring ones."""
     at = np.floor(positions / side * per_side).astype(int)
     return np.abs(at[:, None] - at[None]).max(axis=-1) <= 1
 

@@ -63,7 +63,7 @@ def test_initial_slope_of_spheres_by_direct_averaging():
     total = 2.0 + 2.0 * c  # |v1 + v2|^2
     # v1' = V/2 + u/2, |V| = sqrt(total): |v1'|^2 = 1 + x sqrt(total) relative / 2, x uniform in [-1, 1].
     gain = 2.0 * (total * relative**2 / 4.0) / 3.0
-    # s = 1 is half a collision event per body, so the change per body is half the pair's.
+    # s = 1 is half a collision event per particle, so the change per particle is half the pair's.
     slope = 0.5 * np.trapezoid(gain * relative, c) / np.trapezoid(relative, c)
     assert slope == pytest.approx(theory.initial_kurtosis_slope(3), rel=1e-6)
 

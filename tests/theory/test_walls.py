@@ -19,7 +19,7 @@ def test_the_tension_starts_with_its_exact_second_order_and_meets_the_table(dime
 
 
 def second_order(length, density, dimension, axes):
-    """Z of one container to second order in the density, exact, from its free energy per body
+    """Z of one container to second order in the density, exact, from its free energy per particle
 
     -ln V + (N / 2 V^2) times the volume of pairs of centres closer than sigma, N large.
     """

@@ -11,7 +11,7 @@ from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
 from gaspart.tradeoff import speed, table
-from gaspart.tradeoff.advice import QUANTILE, SETTLING, advise
+from gaspart.tradeoff.advice import EQUILIBRATION, QUANTILE, advise
 
 
 def gas(fraction, count=1000, dimension=3, **more):
@@ -71,7 +71,7 @@ def test_time_steps_scale_with_the_scene():
 def test_settling_and_finite_size_are_told():
     found = advice(0.3, 1e-3, count=100)
     assert found.finite_size < 0.0 and found.bulk_count > 100
-    assert found.setting.seconds > 0.5 * 100 * SETTLING * table.seconds(3, 0.3, "event")
+    assert found.setting.seconds > 0.5 * 100 * EQUILIBRATION * table.seconds(3, 0.3, "event")
 
 
 @pytest.mark.parametrize(

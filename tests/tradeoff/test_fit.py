@@ -62,6 +62,7 @@ def test_the_table_holds_what_was_measured(folder, capsys):
     assert float(found["step", "0.02", "seconds", "3"]["value"]) == 4e-6
     assert float(found["step", "0.02", "bias_Z", "3"]["error"]) == 0.001
     assert ("step", "0.02", "bias_collision_rate", "3") not in found
-    # (0.01 / 2)^2 of 1e6 contacts; D: (0.01)^2 of 100 / 2 bodies x 4 replicas, each of 2 x 10 x 2 collisions
+    # (0.01 / 2)^2 of 1e6 contacts; D: (0.01)^2 of 100 / 2 particles x 4 replicas, each of 2 x 10 x 2
+    # collisions
     assert float(found["event", "0", "noise_Z", "2"]["value"]) == pytest.approx(25.0)
     assert float(found["event", "0", "noise_D", "3"]["value"]) == pytest.approx(1e-4 * 50 * 4 * 40, rel=1e-3)

@@ -15,7 +15,7 @@ from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
 from gaspart.simulation.simulation import Simulation
 from gaspart.tradeoff import table
-from gaspart.tradeoff.advice import QUANTILE, SETTLING, advise
+from gaspart.tradeoff.advice import EQUILIBRATION, QUANTILE, advise
 
 SCENES = 60
 ALLOWED = 7
@@ -40,7 +40,7 @@ def scene(number):
 
 
 def truth(gas, observable):
-    """Of so many bodies, to first order in 1/N: Z, or collisions of a body in units of the scene."""
+    """Of so many particles, to first order in 1/N: Z, or collisions of a particle in units of the scene."""
     eta, d, n = gas.packing_fraction, gas.dimension, gas.count
     if observable == "Z":
         z = theory.compressibility_factor(eta, d)
@@ -83,7 +83,7 @@ def searched(gas, observable, accuracy, unit, rate):
             _, taken = run(gas, engine, observable, 5.0 / rate, 2.0 / rate, seed=3)
         except SceneError:  # the step is too long
             continue
-        contacts = max(noise / room**2, 10.0 * gas.count) + 0.5 * gas.count * SETTLING
+        contacts = max(noise / room**2, 10.0 * gas.count) + 0.5 * gas.count * EQUILIBRATION
         best = min(best, taken * contacts / (0.5 * gas.count * rate))
     return best
 
@@ -97,12 +97,14 @@ def test_the_promise_is_kept():
         found = advise(gas, observable, accuracy)
         rate = found.gas.collision_rate
         values = [
-            run(gas, found.setting.engine, observable, found.duration, 2.0 * SETTLING / rate, (number, k))
+            run(
+                gas, found.setting.engine, observable, found.duration, 2.0 * EQUILIBRATION / rate, (number, k)
+            )
             for k in range(found.replicas)
         ]
         error = np.mean([value for value, _ in values]) / truth(gas, observable) - 1.0
         cost = np.mean([taken for _, taken in values]) * (
-            found.setting.contacts / (0.5 * gas.count) + SETTLING
+            found.setting.contacts / (0.5 * gas.count) + EQUILIBRATION
         )
         least = searched(gas, observable, accuracy, found.gas.diameter / found.gas.thermal_speed, rate)
         missed += [number] if abs(error) > accuracy else []

@@ -20,7 +20,7 @@ ENGINES = {"event": gp.EventDriven(), "step": gp.TimeStepped(time_step=0.0625)}
 
 
 def mixture(dimension):
-    """Two species and an explicit body between walls along y, periodic along the other axes."""
+    """Two species and an explicit particle between walls along y, periodic along the other axes."""
     container = gp.Container((9.0, 8.0, 7.0)[:dimension], ("periodic", "wall", "periodic")[:dimension])
     species = [gp.Species(12, 0.5, temperature=1.0), gp.Species(8, 0.25, mass=2.0, temperature=1.0)]
     body = gp.Body((4.0, 4.0, 4.0)[:dimension], (0.5, 0.25, 1.0)[:dimension], radius=0.75, mass=3.0)
@@ -182,10 +182,10 @@ def test_no_frame_is_lost_to_rounding(tmp_path):
             {"engine": gp.TimeStepped(0.2)},
             "sample_interval = 0.5: must be a whole multiple of time_step, 0.2",
         ),
-        ({"follow": 5}, "follow = 5: there are 4 bodies"),
+        ({"follow": 5}, "follow = 5: there are 4 particles"),
         ({"follow": 0}, "follow = 0: must be a whole number of at least 1"),
         ({"seed": -1}, "seed = -1: must be a whole number"),
-        ({"scene": gp.Scene(gp.Container((5.0, 5.0)))}, "a run needs at least one body"),
+        ({"scene": gp.Scene(gp.Container((5.0, 5.0)))}, "a run needs at least one particle"),
         ({"checkpoint_seconds": -1.0}, "checkpoint_seconds = -1.0: must not be negative"),
     ],
 )
@@ -230,7 +230,7 @@ def test_a_run_under_way_belongs_to_one_process_and_is_not_replaced_by_another_r
         with pytest.raises(gp.SceneError, match="another process"):
             gp.resume(path)
     assert gp.resume(path) == path
-    with pytest.raises(gp.SceneError, match="already whole"):
+    with pytest.raises(gp.SceneError, match="already complete"):
         gp.resume(path)
     with pytest.raises(gp.SceneError, match=r"there is no other\.nc\.partial"):
         gp.resume(tmp_path / "other.nc")

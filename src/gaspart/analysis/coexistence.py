@@ -17,13 +17,12 @@ def plateau(
     """Pressure of the horizontal line that cuts off equal areas of the loop, its error, and the volumes at
     its ends.
 
-    volume (per body, any order), pressure and its standard errors: (P,). A finite system in the coexistence
-    region has a loop (Mayer and Wood, J. Chem. Phys. 42, 4268 (1965)) because its interface costs free
-    energy; the area between the ends is the difference in free energy, so the line is where both phases
+    volume (per particle, any order), pressure and its standard errors: (P,). A finite system in the
+    coexistence region has a loop (Mayer and Wood, J. Chem. Phys. 42, 4268 (1965)) because its interface costs
+    free energy; the area between the ends is the difference in free energy, so the line is where both phases
     have the same chemical potential. The loop is interpolated monotonically between points (Fritsch and
-    Carlson). The error is half of the width of the middle 68 % of loops redrawn from
-    the points' errors. Without a loop, or if
-    less than half of those redrawn have one: NaN, NaN, (NaN, NaN).
+    Carlson). The error is half of the width of the middle 68 % of loops redrawn from the points' errors.
+    Without a loop, or if less than half of those redrawn have one: NaN, NaN, (NaN, NaN).
     """
     order = np.argsort(volume)
     volume, pressure, error = (np.asarray(values, dtype=float)[order] for values in (volume, pressure, error))

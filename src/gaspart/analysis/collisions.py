@@ -1,7 +1,8 @@
 """A data set of collisions: who met whom, how squarely, and after how long a flight.
 
-What kinetic theory averages over, one row per collision of two bodies: free times and free paths since each
-body's last event, the normal at contact, the speeds of approach. Hits of walls end flights but are no rows.
+What kinetic theory averages over, one row per collision of two particles: free times and free paths since
+each particle's last event, the normal at contact, the speeds of approach. Hits of walls end flights but are
+no rows.
 """
 
 from __future__ import annotations
@@ -15,17 +16,19 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.statistics import Estimate, mean_of
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.statistics import mean_of
 from gaspart.engines import EventDriven
 from gaspart.errors import SceneError, SimulationError
 from gaspart.files import Kind, begins_with, writing
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of, number
 from gaspart.simulation.simulation import Simulation
+from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.trajectory.provenance import git_revision, versions
 
 _CHUNK = 20_000  # events that are kept at once
-_PATIENCE = 1_000_000  # events without a collision of two bodies
+_PATIENCE = 1_000_000  # events without a collision of two particles
 _ABOUT = {
     "time": ("time of the collision", "time"),
     "bodies": ("the two bodies, the lower index first", "1"),
@@ -43,11 +46,12 @@ def collision_data(
     """At least `collisions` collisions of a scene under the event-driven engine, after a time `equilibration`
     that is not recorded.
 
-    Dimensions collision, of (the two bodies), axis; `free_time` and `free_path` are NaN for a body that had
-    no event before. Memory is bounded by the data themselves. Attributes: scene, seed, versions, revision.
+    Dimensions collision, of (the two particles), axis; `free_time` and `free_path` are NaN for a particle
+    that had no event before. Memory is bounded by the data themselves. Attributes: scene, seed, versions,
+    revision.
 
-    Raises SceneError for gravity, under which paths are no lines, for fewer than two bodies, and for a count
-    below 1 or beyond this machine's memory; SimulationError where nothing ever happens.
+    Raises SceneError for gravity, under which paths are no lines, for fewer than two particles, and for a
+    count below 1 or beyond this machine's memory; SimulationError where nothing ever happens.
     """
     _check_memory(count_of("collisions", collisions, least=1), scene)
     number("equilibration", equilibration, "must not be negative", least=0.0)
@@ -58,7 +62,10 @@ def collision_data(
     simulation = Simulation(scene, EventDriven(), seed)
     simulation.advance(duration=equilibration)
     state = simulation.state
-    last = np.full(state.count, np.nan), state.velocities  # time and velocity after each body's last event
+    last = (
+        np.full(state.count, np.nan),
+        state.velocities,
+    )  # time and velocity after each particle's last event
     parts, found, alone = [], 0, 0
     while found < collisions:
         simulation.record_events = True  # a new, empty list
@@ -127,18 +134,18 @@ def _check_memory(collisions: int, scene: Scene) -> None:
 
 
 def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
-    """g at contact of equal bodies, from how often they collide: chi = 2 M / (N t S rho sigma^(d-1)
+    """g at contact of equal particles, from how often they collide: chi = 2 M / (N t S rho sigma^(d-1)
     sqrt(kT / (pi m))), S = 2 pi (2D), 4 pi (3D), exact in equilibrium (Chapman & Cowling 1970). The
     temperature is that of the mean approach, sqrt(pi kT / m); the error that of `blocks` stretches.
 
-    Raises SceneError for a scene of several kinds of bodies.
+    Raises SceneError for a scene of several kinds of particles.
     """
     scene = Scene.from_dict(json.loads(data.attrs["scene"]))
     kinds = {(thing.radius, thing.mass) for thing in scene.kinds}
     if len(kinds) != 1:
         raise SceneError("species", len(kinds), "the contact value is told of equal bodies only")
     diameter = 2.0 * kinds.pop()[0]
-    surface = {2: 2.0, 3: 4.0}[scene.dimension] * math.pi
+    surface = unit_sphere_surface(scene.dimension)
     times, approach = data["time"].values, data["approach"].values
     ends = np.linspace(0, len(times), blocks + 1).astype(int)
     start = data.attrs["equilibration"]
@@ -149,10 +156,11 @@ def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
 
 
 def _pairs(events: dict, last: tuple, scene: Scene) -> tuple[xr.Dataset, tuple]:
-    """The collisions of two bodies among `events`, and each body's time and velocity after its last one."""
+    """The collisions of two particles among `events`, and each particle's time and velocity after its last
+    one."""
     bodies, times, after = events["bodies"], events["time"], events["velocities"]
     number_of_bodies = len(last[0])
-    # what each body did, in order: first what it did before, then its part in every event
+    # what each particle did, in order: first what it did before, then its part in every event
     rows = np.arange(len(times))
     inside = bodies >= 0
     who = np.concatenate([np.arange(number_of_bodies), bodies[inside]])
@@ -162,7 +170,7 @@ def _pairs(events: dict, last: tuple, scene: Scene) -> tuple[xr.Dataset, tuple]:
     slot[inside] = number_of_bodies + np.arange(inside.sum())
     order = np.argsort(who, kind="stable")
     before = np.empty(len(who), dtype=int)
-    before[order[1:]] = order[:-1]  # wrong only for what a body did first, which nobody asks for
+    before[order[1:]] = order[:-1]  # wrong only for what a particle did first, which nobody asks for
     final = order[np.append(np.flatnonzero(np.diff(who[order])), len(who) - 1)]
 
     met = rows[inside[:, 1]]

@@ -1,4 +1,4 @@
-"""Time correlations of one run's displacements and velocities, averaged over bodies and time origins."""
+"""Time correlations of one run's displacements and velocities, averaged over particles and time origins."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Curves:
 
 
 def correlate(displacements: np.ndarray, velocities: np.ndarray, interval: float, lags: int) -> Curves:
-    """Averages over bodies and all time origins at lags 0 ... `lags` - 1 of `interval`.
+    """Averages over particles and all time origins at lags 0 ... `lags` - 1 of `interval`.
 
     displacements, velocities: (T, N, d), evenly sampled. In double precision throughout: freud's windowed
     mean-squared displacement is the same average, but rounds positions to single precision first.
@@ -34,7 +34,8 @@ def correlate(displacements: np.ndarray, velocities: np.ndarray, interval: float
         raise ValueError(f"lags: {lags} (must be between 1 and the {frames} frames)")
     r = np.asarray(displacements, dtype=float).reshape(frames, -1)
     v = np.asarray(velocities, dtype=float).reshape(frames, -1)
-    # Sums over bodies and axes for every pair of frames at once; a lag is a diagonal of these T x T matrices.
+    # Sums over particles and axes for every pair of frames at once; a lag is a diagonal of these T x T
+    # matrices.
     rr, rv = r @ r.T, r @ v.T
     square, product = np.diag(rr), np.diag(rv)
     msd, running = np.empty(lags), np.empty(lags)
@@ -48,7 +49,7 @@ def correlate(displacements: np.ndarray, velocities: np.ndarray, interval: float
 
 
 def autocorrelation(values: np.ndarray, lags: int) -> np.ndarray:
-    """(lags,) mean over bodies, axes and all time origins of values(0) values(t); values: (T, N, d)."""
+    """(lags,) mean over particles, axes and all time origins of values(0) values(t); values: (T, N, d)."""
     frames = len(values)
     flat = np.asarray(values, dtype=float).reshape(frames, -1)
     products = flat @ flat.T
@@ -56,7 +57,7 @@ def autocorrelation(values: np.ndarray, lags: int) -> np.ndarray:
 
 
 def centred(values: np.ndarray) -> np.ndarray:
-    """(T, N, d) about the mean over the N bodies of each frame."""
+    """(T, N, d) about the mean over the N particles of each frame."""
     return values - values.mean(axis=1, keepdims=True)
 
 

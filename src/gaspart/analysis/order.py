@@ -1,4 +1,4 @@
-"""How bodies are ordered: bond order, distances and Fourier modes, by freud.
+"""How particles are ordered: bond order, distances and Fourier modes, by freud.
 
 Ramasubramani and others, Comput. Phys. Commun. 254, 107275 (2020). Everywhere: positions (N, d) in [0, L]
 of a periodic container of lengths (d,). freud works in single precision and on one thread here, which is

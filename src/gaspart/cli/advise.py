@@ -57,7 +57,7 @@ def _advise(given: argparse.Namespace) -> None:
 
 def _told(advice: Advice) -> list[str]:
     """The advice in words."""
-    from gaspart.tradeoff.advice import SETTLING
+    from gaspart.tradeoff.advice import EQUILIBRATION
 
     best, gas = advice.setting, advice.gas
     length = f"{advice.collisions_per_body:.3g} collisions per body, duration {advice.duration:.4g}"
@@ -67,7 +67,7 @@ def _told(advice: Advice) -> list[str]:
         f"boxes             {boxes}",
         f"bodies            {gas.count}{_bulk(advice)}",
         f"replicas          {advice.replicas}",
-        f"run length        {length}, in each replica; {SETTLING:g} collisions before",
+        f"run length        {length}, in each replica; {EQUILIBRATION:g} collisions before",
         f"predicted cost    {best.seconds:.3g} s of processor time",
         f"95 % half-width   {best.half_width:.2g} of {advice.observable} (steps: at most {best.bias:.1g})",
     ]

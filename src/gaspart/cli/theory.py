@@ -18,7 +18,7 @@ _FLUID = {2: "the fluid of discs", 3: "the fluid of spheres (metastable from 0.4
 
 @dataclass(frozen=True)
 class _Quantity:
-    """A function of gaspart.theory, the body's properties it takes, what it is, and where it is from."""
+    """A function of gaspart.theory, the particle's properties it takes, what it is, and where it is from."""
 
     function: str
     takes: tuple[str, ...]

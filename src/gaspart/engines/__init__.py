@@ -1,7 +1,7 @@
-"""Two ways from a state to a later state, one contract.
+"""Two engines that advance a state, with one interface.
 
 An engine's settings are a frozen dataclass with a `name`; `start(scene, state)` gives its dynamics, which
-can `advance`, tell `time`, `state` and `tally`, and make and `restore` a `checkpoint`.
+can `advance`, has `time`, `state` and `tally`, and can write and `restore` a `checkpoint`.
 """
 
 from __future__ import annotations
@@ -30,5 +30,5 @@ def engine_from_dict(mapping: dict) -> EventDriven | TimeStepped:
 
 
 def engine_to_dict(engine: EventDriven | TimeStepped) -> dict:
-    """What `engine_from_dict` takes."""
+    """The mapping that `engine_from_dict` accepts."""
     return {"name": engine.name, **{key: value for key, value in asdict(engine).items() if value is not None}}

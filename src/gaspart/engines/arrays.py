@@ -1,4 +1,4 @@
-"""What both engines need around their kernels."""
+"""Arrays of the kernels' model, made from a scene and a state for both engines."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaspart.kernels.model import HARD, STICKY, THERMAL, THERMAL_NORMAL, ContactLaw, Faces, InteriorWalls
 from gaspart.scene.faces import FACES, Sticky, Thermal, Well
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene
@@ -16,24 +17,21 @@ from gaspart.state.state import State
 from gaspart.state.wells import places_in_wells, well_energies, wells_of
 
 if TYPE_CHECKING:
-    from gaspart.kernels.model import ContactLaw, Faces, InteriorWalls
     from gaspart.state.boxes import Boxes
 
-_ROOM = 4096  # events that the record holds before it is emptied
+_ROOM = 4096  # capacity of the record, in events
 _WALL_DRAWS = 2  # the purpose of the random numbers of thermal walls, after those of the initial state
 
 
 def scaled_masses(masses: np.ndarray) -> tuple[float, np.ndarray | None]:
-    """(unit, array): equal masses are left out of the kernel altogether, and their sums scaled by `unit`."""
+    """(unit, array): equal masses are not part of the kernel's model, and their sums scaled by `unit`."""
     if len(masses) == 0:
         return 1.0, None
     return (float(masses[0]), None) if (masses == masses[0]).all() else (1.0, masses)
 
 
 def contact_law(scene: Scene, state: State) -> ContactLaw | None:
-    """The law of contacts, or None if all are elastic, smooth and between bodies that can move."""
-    from gaspart.kernels.model import ContactLaw
-
+    """The law of contacts, or None if all are elastic, smooth and between particles that can move."""
     rule = scene.restitution or Restitution()
     if rule.smooth_and_elastic and not np.isinf(state.masses).any():
         return None
@@ -52,8 +50,6 @@ def contact_law(scene: Scene, state: State) -> ContactLaw | None:
 
 def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float) -> Faces:
     """The kinds of the container's faces as the kernels' `Faces`, in units of `unit_mass`."""
-    from gaspart.kernels.model import HARD, STICKY, THERMAL, THERMAL_NORMAL, Faces
-
     kinds, levels = [], []
     for name in FACES[: 2 * scene.dimension]:
         match scene.faces.get(name):
@@ -83,14 +79,12 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
 def interior_walls(scene: Scene, boxes: Boxes, largest_radius: float) -> InteriorWalls:
     """The interior walls as the kernels' `InteriorWalls`, with those near each box for radii up to
     `largest_radius`."""
-    from gaspart.kernels.model import InteriorWalls
-
     rows, wall = wall_rows(scene)
     return InteriorWalls(rows, wall, *walls_near(rows, boxes, largest_radius), largest_radius)
 
 
 def face_energy(scene: Scene) -> float:
-    """The energy that a face with a kind may be expected to give a body, at most."""
+    """Upper estimate of the energy that a thermal face or a well gives a particle."""
     hottest = max((getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()), default=0.0)
     deepest = max((getattr(face, "depth", 0.0) for face in scene.faces.values()), default=0.0)
     return scene.dimension * hottest + 2.0 * deepest
@@ -99,7 +93,7 @@ def face_energy(scene: Scene) -> float:
 def write_internal(
     state: State, scene: Scene, law: ContactLaw | None, faces: Faces | None, unit_mass: float
 ) -> None:
-    """Write into a state what a law and faces (or None) keep beside the flights: spins, and the energies in
+    """Write the internal variables of a law and of faces (or None) into a state: spins, and the energies in
     wells and in the vibrations of fixed particles and of those stuck to a face."""
     if law:
         state.spins = (law.spins[:, 2] if state.dimension == 2 else law.spins).copy()
@@ -114,7 +108,8 @@ def write_internal(
 
 
 class EventLog:
-    """Events as they happened: bodies, and their positions, velocities and, if wanted, spins just after."""
+    """Events as they happened: particles, and their positions, velocities and, if wanted, spins just
+    after."""
 
     def __init__(self, dimension: int, spins: bool = False) -> None:
         from gaspart.kernels.event.monitors import Record
@@ -132,7 +127,7 @@ class EventLog:
         )
 
     def _copy(self, count: int) -> tuple[np.ndarray, ...]:
-        """The first events in the kernel's record; of spins in two dimensions what stands on the plane."""
+        """The first events in the kernel's record; of spins in two dimensions the component normal to the plane."""
         found = {key: getattr(self.room, key)[:count] for key in self._keys}
         if "spins" in found and self._dimension == 2:
             found["spins"] = found["spins"][..., 2]
@@ -150,7 +145,7 @@ class EventLog:
     def events(self) -> dict[str, np.ndarray]:
         """time (M,), bodies (M, 2), positions and velocities (M, 2, d), and spins (M, 2) or (M, 2, 3).
 
-        The second of `bodies` is -1 - face for a hit at a wall, and what the second has is NaN.
+        The second of `bodies` is -1 - face for a hit at a wall, and the values of the second are NaN.
         """
         parts = zip(*(self._parts or [self._copy(0)]), strict=True)
         return dict(zip(self._keys, map(np.concatenate, parts), strict=True))

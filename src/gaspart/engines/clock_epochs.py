@@ -1,4 +1,4 @@
-"""How often the event-driven engine's clocks start again from zero, so that they lose no precision."""
+"""Epochs of the event-driven engine's clocks, which restart from zero so that they lose no precision."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from gaspart.engines.arrays import face_energy
 from gaspart.scene.scene import Scene
 
 _LENGTH = 10  # an epoch of the clocks is some 2^10 times of flight over a diameter
-_STILL = 2.0**960  # the epoch of a scene in which nothing moves
+_AT_REST = 2.0**960  # the epoch of a scene in which nothing moves
 _OTHER = 2.0**10  # by which speeds must have changed for epochs of another length
 QUIET = 64
 """Epochs without an event after which epochs are doubled."""
 
 
 def _speed(scene: Scene, velocities: np.ndarray, lightest: float) -> float:
-    """The speed that times of flight are measured with: the rms speed, and what may be added to it."""
+    """The speed for times of flight: the rms speed, with the largest gain by gravity and thermal walls."""
     square = float((velocities**2).sum(axis=1).mean()) if len(velocities) else 0.0
-    if scene.gravity is not None:  # the square of the speed that a fall can add
+    if scene.gravity is not None:  # the square of the speed gained in a fall
         lengths = scene.container.lengths
         square += 2.0 * sum(abs(g) * length for g, length in zip(scene.gravity, lengths, strict=True))
-    if scene.faces and len(velocities):  # and of those that a wall can give
+    if scene.faces and len(velocities):  # and of the speed gained at a wall
         square += face_energy(scene) / lightest
     return math.sqrt(square)
 
@@ -35,14 +35,14 @@ def epoch_length(scene: Scene, velocities: np.ndarray, lightest: float, present:
     epochs, since the work of an epoch does not depend on its length.
     """
     speed = _speed(scene, velocities, lightest)
-    length = _STILL
+    length = _AT_REST
     if speed > 0.0:
         length = _power_of_two(2 * scene.smallest_radius / speed, _LENGTH)
     return present if present / _OTHER < length < present * _OTHER else length
 
 
 def quiet_epoch(scene: Scene, velocities: np.ndarray, lightest: float, epoch: float, quiet: int) -> float:
-    """The length of an epoch after so many `quiet` ones, in which nothing happened: twice the last one, until
+    """The length of an epoch after so many `quiet` ones, without an event: twice the last one, until
     it is a time of flight through the container. The clocks are then as precise as the positions."""
     speed = _speed(scene, velocities, lightest)
     most = _power_of_two(max(scene.container.lengths) / speed, 0) if speed > 0.0 else epoch
@@ -51,6 +51,6 @@ def quiet_epoch(scene: Scene, velocities: np.ndarray, lightest: float, epoch: fl
 
 
 def _power_of_two(time: float, more: int) -> float:
-    """The next power of two above a time, times 2^more; at most `_STILL`."""
+    """The next power of two above a time, times 2^more; at most `_AT_REST`."""
     _, exponent = math.frexp(time)
-    return min(math.ldexp(1.0, exponent + more), _STILL) if time < _STILL else _STILL
+    return min(math.ldexp(1.0, exponent + more), _AT_REST) if time < _AT_REST else _AT_REST

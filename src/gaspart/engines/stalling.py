@@ -1,11 +1,11 @@
-"""Whether time advances: particles that touch all around meet for ever in no time."""
+"""Detection of stalled time: particles in contact on all sides collide without end at one time."""
 
 from __future__ import annotations
 
 from gaspart.errors import SimulationError
 
 MANY = 1 << 18
-"""Events after which time must have gone on, each by more than a clock can resolve."""
+"""Number of events in which time must advance, by more than a clock resolves for each."""
 _RESOLVED = 2.0**-52  # of an epoch
 
 
@@ -15,5 +15,5 @@ def check_progress(time: float, spent: float, epoch: float) -> None:
     if spent < MANY * _RESOLVED * epoch:
         raise SimulationError(
             f"at time {time:g} there were {MANY} events within a time of {spent:g}: "
-            "bodies have no room to move"
+            "particles have no room to move"
         )

@@ -10,6 +10,7 @@ import numpy as np
 
 from gaspart.engines.arrays import contact_law, face_energy, special_faces
 from gaspart.errors import SceneError, SimulationError
+from gaspart.scene.geometry import ball_volume
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
@@ -207,11 +208,11 @@ def contacts_per_step(time_step: float, state: State) -> float:
     """How often a body meets another in a step: Enskog's rate for equal bodies of the same packing fraction,
     with the contact value of Carnahan & Starling (1969), of Henderson (1975) for discs."""
     spheres = state.dimension == 3
-    ball = (4.0 / 3.0 * math.pi if spheres else math.pi) * float((state.radii**state.dimension).mean())
+    ball = ball_volume(state.dimension) * float((state.radii**state.dimension).mean())
     density = state.count / float(state.lengths.prod())
     eta = min(density * ball, 0.7)  # higher only where a face stops centres
     contact = (1.0 - 0.5 * eta) / (1.0 - eta) ** 3 if spheres else (1.0 - 0.4375 * eta) / (1.0 - eta) ** 2
-    diameter = 2.0 * (ball / (4.0 / 3.0 * math.pi if spheres else math.pi)) ** (1.0 / state.dimension)
+    diameter = 2.0 * (ball / ball_volume(state.dimension)) ** (1.0 / state.dimension)
     thermal = math.sqrt(math.pi * float((state.velocities**2).mean()))
     around = 4.0 * diameter**2 if spheres else 2.0 * diameter
     return density * around * contact * thermal * time_step

@@ -9,6 +9,7 @@ import numpy as np
 from gaspart.engines.arrays import face_energy
 from gaspart.kernels.step.box_search import Partition
 from gaspart.kernels.step.cells import Cells
+from gaspart.scene.geometry import ball_volume
 from gaspart.scene.scene import Scene
 from gaspart.state.boxes import cube_side, make_boxes
 from gaspart.state.state import State
@@ -88,8 +89,7 @@ def _skin(engine: TimeStepped, scene: Scene, state: State, contact: float) -> fl
     way = 2.0 * (fastest * engine.time_step + gravity * engine.time_step**2)
     skins = contact * np.geomspace(0.02, 30.0, 60)
     steps = np.maximum(skins / way, 1.0) if way > 0.0 else np.full(60, np.inf)
-    ball = np.pi if dimension == 2 else 4.0 / 3.0 * np.pi
-    pairs = 0.5 * ball * density * (contact + skins) ** dimension
+    pairs = 0.5 * ball_volume(dimension) * density * (contact + skins) ** dimension
     stretches = 4.5 if dimension == 2 else 13.5  # cells in which partners are looked for
     tests = stretches * density * np.maximum(contact + skins, _width(scene, state.count)) ** dimension
     cost = (_REBUILD + _TEST * tests) / steps + _PAIR * pairs

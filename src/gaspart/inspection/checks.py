@@ -1,4 +1,5 @@
-"""What can be wrong with a trajectory of hard bodies: a check each, which says what it found in one line."""
+"""What can be wrong with a trajectory of hard particles: a check each, which says what it found in one
+line."""
 
 from __future__ import annotations
 
@@ -6,6 +7,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from gaspart import theory
 from gaspart.analysis.statistics import block_average, histogram_chi_square
@@ -46,7 +48,7 @@ def judge(frames: Frames, tolerance: float | None = None) -> list[Check]:
 
 
 def judge_places(frames: Frames, tolerance: float | None = None) -> list[Check]:
-    """Do bodies overlap, or stick out of the container?"""
+    """Do particles overlap, or stick out of the container?"""
     seen = np.unique(np.linspace(0, len(frames.positions) - 1, MOST_FRAMES).astype(int))
     return [_overlaps(frames, seen, tolerance), _inside(frames, tolerance)]
 
@@ -58,9 +60,7 @@ def _tolerated(frames: Frames, tolerance: float | None) -> float:
 
 
 def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Check:
-    """The deepest overlap of two bodies, as a part of their contact distance."""
-    from scipy.spatial import cKDTree
-
+    """The deepest overlap of two particles, as a part of their contact distance."""
     sides, most = np.where(frames.periodic, frames.lengths, 0.0), 2.0 * float(frames.radii.max())
     if np.any((sides > 0.0) & (sides <= 2.0 * most)):
         return Check("overlaps", None, "the container is too small to look for them by nearest images")
@@ -138,7 +138,7 @@ def _kurtosis(frames: Frames) -> Check:
 
 
 def _pressure(frames: Frames, seen: np.ndarray) -> Check:
-    """Z by the pair distribution at contact against the equation of state of so many bodies."""
+    """Z by the pair distribution at contact against the equation of state of so many particles."""
     name = "pressure Z"
     if not all(frames.periodic) or frames.diameter is None or not frames.plain:
         return Check(

@@ -7,9 +7,10 @@ of the shells' counts with fixed coefficients; so each frame gives one number, a
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from gaspart.inspection.frames import Frames
-from gaspart.theory.geometry import unit_sphere_surface
+from gaspart.scene.geometry import ball_volume
 
 _WIDTH, _SHELLS, _DEGREE = 0.3, 15, 3
 FIT_ERROR = 0.005
@@ -18,13 +19,11 @@ steepest (measured against the equation of state), less elsewhere."""
 
 
 def contact_values(frames: Frames) -> np.ndarray:
-    """(T,) g(sigma) of each frame of equal bodies in a periodic container. Dimensionless."""
-    from scipy.spatial import cKDTree
-
+    """(T,) g(sigma) of each frame of equal particles in a periodic container. Dimensionless."""
     n, d, sigma = frames.count, frames.dimension, frames.diameter
     assert sigma is not None, "judged of equal bodies only"
     edges = 1.0 + _WIDTH * np.linspace(0.0, 1.0, _SHELLS + 1)
-    volumes = unit_sphere_surface(d) / d * np.diff(edges**d)
+    volumes = ball_volume(d) * np.diff(edges**d)
     coefficients = _at_contact(edges, volumes, d)
     pairs = n * (n / np.prod(frames.lengths / sigma)) * volumes
     reach = sigma * edges

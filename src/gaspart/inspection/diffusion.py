@@ -10,12 +10,12 @@ from gaspart import theory
 from gaspart.analysis.statistics import mean_of
 from gaspart.inspection.frames import Frames
 
-_SETTLED = 12.0  # collisions per body, from which on the displacement's square grows evenly
+_SETTLED = 12.0  # collisions per particle, from which on the displacement's square grows evenly
 _DENSEST = 0.4915  # where spheres freeze, and the range of Erpenbeck and Wood ends
 
 
 def why_not(frames: Frames) -> str | None:
-    """Why no D can be taken from a trajectory of equal bodies with velocities; None if it can."""
+    """Why no D can be taken from a trajectory of equal particles with velocities; None if it can."""
     if frames.dimension == 2:
         return "discs have none: the displacement's square grows like t ln t"
     if frames.time is None or not all(frames.periodic):
@@ -35,10 +35,11 @@ def why_not(frames: Frames) -> str | None:
 
 
 def diffusion(frames: Frames) -> tuple[float, float]:
-    """D and its standard error, by the rise of the mean-squared displacement from 12 to 24 collisions a body.
+    """D and its standard error, by the rise of the mean-squared displacement from 12 to 24 collisions a
+    particle.
 
-    Of N bodies whose total momentum is zero D is (N - 1) / N of what it is without this condition; that is
-    made up for. The error is the scatter of groups of bodies.
+    Of N particles whose total momentum is zero D is (N - 1) / N of what it is without this condition; that is
+    made up for. The error is the scatter of groups of particles.
     """
     steps, n = _steps(frames), frames.count
     way = np.concatenate([np.zeros_like(steps[:1]), np.cumsum(steps, axis=0)])
@@ -76,7 +77,7 @@ def _interval(frames: Frames) -> float:
 
 
 def _diameter(frames: Frames) -> float:
-    """That of all bodies."""
+    """That of all particles."""
     assert frames.diameter is not None, "judged of equal bodies only"
     return frames.diameter
 

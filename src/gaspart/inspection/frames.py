@@ -8,11 +8,12 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.scene.container import Container
+from gaspart.scene.geometry import ball_volume
 
 
 @dataclass(frozen=True)
 class Frames:
-    """What can be judged of a trajectory of T frames of N bodies.
+    """What can be judged of a trajectory of T frames of N particles.
 
     positions (T, N, d), on periodic axes inside the container [0, L]; velocities (T, N, d) and time (T,), or
     None where the file does not tell; radii (N,); periodic (d,) whether each axis is; plain: whether
@@ -41,14 +42,13 @@ class Frames:
 
     @property
     def diameter(self) -> float | None:
-        """That of all bodies, or None if they differ."""
+        """That of all particles, or None if they differ."""
         return float(2.0 * self.radii[0]) if np.ptp(self.radii) == 0.0 else None
 
     @property
     def packing_fraction(self) -> float:
-        """Volume (area) of all bodies over that of the container."""
-        unit = np.pi if self.dimension == 2 else 4.0 / 3.0 * np.pi
-        return float(unit * (self.radii**self.dimension).sum() / np.prod(self.lengths))
+        """Volume (area) of all particles over that of the container."""
+        return float(ball_volume(self.dimension) * (self.radii**self.dimension).sum() / np.prod(self.lengths))
 
 
 def settled(

@@ -27,7 +27,7 @@ def read_frames(
 ) -> Frames:
     """The frames of a trajectory; what the arguments say goes before what the file says.
 
-    radius: of all bodies; lengths: (d,) sides; boundary: "periodic" (what foreign files are taken for) or
+    radius: of all particles; lengths: (d,) sides; boundary: "periodic" (what foreign files are taken for) or
     "wall"; time_step: simulated time of one step, where a file counts steps (GSD) or frames (XYZ). Raises
     SceneError for a file that cannot be read, or from which something is missing.
     """
@@ -135,7 +135,8 @@ def _gsd(path: Path) -> dict:
 
 
 def _xyz(path: Path) -> dict:
-    """Count, comment, and a line per body; the extended form names the columns and the box in the comment."""
+    """Count, comment, and a line per particle; the extended form names the columns and the box in the
+    comment."""
     lines = path.read_text(encoding="utf-8").splitlines()
     frames: list[list[list[str]]] = []
     comments, at = [], 0

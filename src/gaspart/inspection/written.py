@@ -12,12 +12,11 @@ from gaspart.inspection.frames import Frames
 from gaspart.planning import grid
 from gaspart.planning.points import points
 from gaspart.scene.scene import Scene
+from gaspart.state.initial import initial_state
 
 
 def judge_scene(path: Path, tolerance: float | None = None) -> list[Check]:
-    """Can it be, and can its bodies be placed? Raises SceneError where it cannot."""
-    from gaspart.state.initial import initial_state
-
+    """Can it be, and can its particles be placed? Raises SceneError where it cannot."""
     scene = Scene.from_file(path)
     facts = f"{scene.count} bodies, packing fraction {scene.packing_fraction:.6g}"
     checks = [Check("scene", True, f"{facts}, number density {scene.number_density:.6g}")]

@@ -19,7 +19,7 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
     The choice is that of the table's machine, so that a config means the same everywhere. A length is set
     only if none is given. Raises SceneError.
     """
-    from gaspart.tradeoff.advice import SETTLING, advise
+    from gaspart.tradeoff.advice import EQUILIBRATION, advise
 
     if "accuracy" not in settings:
         raise SceneError(f"{where}.accuracy", None, "is required with engine: auto")
@@ -38,5 +38,5 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
     if not keys.LENGTHS.keys() & settings.keys():
         made["collisions_per_body"] = math.ceil(found.collisions_per_body)
         made.setdefault("replicas", found.replicas)
-        made.setdefault("equilibration", SETTLING)
+        made.setdefault("equilibration", EQUILIBRATION)
     return made

@@ -13,6 +13,7 @@ from gaspart.errors import SceneError
 from gaspart.planning.keys import ENGINES, LENGTHS, SCANS
 from gaspart.planning.point import Point
 from gaspart.planning.point_scene import check_scene, extents, scene
+from gaspart.scene.geometry import ball_volume
 from gaspart.scene.validation import LARGEST, SMALLEST
 
 if TYPE_CHECKING:
@@ -221,8 +222,7 @@ def _unit_of_time(point: Point, unit: str) -> float:
         temperature = kind.mass * (kind.speed or 0.0) ** 2 / dimension
     if not temperature > 0.0:
         raise SceneError(key, given, "needs a temperature or a speed above zero")
-    ball = (math.pi if dimension == 2 else 4.0 / 3.0 * math.pi) * radius**dimension
-    fraction = count * ball / math.prod(lengths)
+    fraction = count * ball_volume(dimension, radius) / math.prod(lengths)
     try:
         rate = theory.collision_rate(fraction, dimension, 2.0 * radius, temperature, kind.mass)
     except ValueError as error:

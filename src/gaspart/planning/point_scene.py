@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from gaspart.errors import SceneError, shown
 from gaspart.planning.keys import EXTENTS, GAS, PREFIX
 from gaspart.planning.point import Point
+from gaspart.scene.geometry import ball_volume
 from gaspart.scene.validation import MOST_BODIES
 from gaspart.yaml_text import read_yaml
 
@@ -63,7 +64,7 @@ def extents(point: Point) -> tuple[int, float, tuple[float, ...]]:
             raise SceneError(f"{where}.scene", settings["scene"], "a point needs at least one particle")
         return read.count, read.largest_radius, read.container.lengths
     dimension = settings["dimension"]
-    unit = math.pi if dimension == 2 else 4.0 / 3.0 * math.pi
+    unit = ball_volume(dimension)
     given: list[Any] = [settings.get(key) for key in EXTENTS]
     count, radius, fraction, side = given
     if side is not None:

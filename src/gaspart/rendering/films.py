@@ -12,7 +12,7 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.files import Kind, begins_with, output_path, writing
-from gaspart.rendering.bodies import FASTEST, bodies_of, colours_of
+from gaspart.rendering.particles import FASTEST, colours_of, particles_of
 from gaspart.rendering.pictures import SIZE, checked_size, picture
 from gaspart.scene.validation import count_of, number
 from gaspart.trajectory.run import open_trajectory
@@ -78,11 +78,11 @@ def _pictures(
     frames = trajectory.sizes["frame"]
     if frames == 0:
         raise SceneError("frame", 0, "the trajectory has no frame yet")
-    first = bodies_of(trajectory, 0)
+    first = particles_of(trajectory, 0)
     colours_of(first, colour)
     if trail is not None:
         if count_of("trail", trail) >= len(first.radii):
-            raise SceneError("trail", trail, f"the trajectory has {len(first.radii)} bodies")
+            raise SceneError("trail", trail, f"the trajectory has {len(first.radii)} particles")
         if first.dimension != 2:
             raise SceneError("trail", trail, "is drawn among discs only")
     return _shown(trajectory, frames, size, colour, trail)
@@ -96,14 +96,14 @@ def _shown(
     trail: int | None,
 ) -> Iterator[np.ndarray]:
     """The pictures, one after the other."""
-    fastest = FASTEST * max(bodies_of(trajectory, n).root_mean_square_speed for n in range(frames))
+    fastest = FASTEST * max(particles_of(trajectory, n).root_mean_square_speed for n in range(frames))
     way = []
     for n in range(frames):
-        bodies = bodies_of(trajectory, n)
+        particles = particles_of(trajectory, n)
         if trail is not None:
-            way.append(bodies.positions[trail])
-        lines = _pieces(way, bodies.lengths)
-        yield picture(bodies, size, colours_of(bodies, colour, fastest), lines)
+            way.append(particles.positions[trail])
+        lines = _pieces(way, particles.lengths)
+        yield picture(particles, size, colours_of(particles, colour, fastest), lines)
 
 
 def _pieces(way: list[np.ndarray], lengths: np.ndarray) -> list[np.ndarray]:

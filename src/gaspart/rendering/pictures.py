@@ -1,4 +1,4 @@
-"""One picture of bodies, as an array of pixels."""
+"""One picture of particles, as an array of pixels."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.files import Kind, begins_with
-from gaspart.rendering.bodies import Bodies, bodies_of, colours_of
+from gaspart.rendering.camera import camera_for
+from gaspart.rendering.particles import DrawnParticles, colours_of, particles_of
 from gaspart.scene.validation import count_of
 
 if TYPE_CHECKING:
@@ -34,12 +35,12 @@ def render(
     Spheres are seen in perspective, with light and shadow, over the container's floor (z = 0); discs from
     above, with all walls. size: (W, H) pixels. colour: "speed", from dark at rest to bright at the speed
     `fastest` (twice the root-mean-square one) and above; "species"; or an array (N, 3) of red, green and
-    blue from 0 to 1. The same bodies give the same pixels.
+    blue from 0 to 1. The same particles give the same pixels.
 
     Raises SceneError for a frame that is not there, an impossible size or an unknown colouring.
     """
-    bodies = bodies_of(source, frame)
-    return picture(bodies, checked_size(size), colours_of(bodies, colour, fastest))
+    particles = particles_of(source, frame)
+    return picture(particles, checked_size(size), colours_of(particles, colour, fastest))
 
 
 def checked_size(size: tuple[int, int]) -> tuple[int, int]:
@@ -53,29 +54,29 @@ def checked_size(size: tuple[int, int]) -> tuple[int, int]:
 
 
 def picture(
-    bodies: Bodies, size: tuple[int, int], colours: np.ndarray, lines: Sequence[np.ndarray] = ()
+    particles: DrawnParticles, size: tuple[int, int], colours: np.ndarray, lines: Sequence[np.ndarray] = ()
 ) -> np.ndarray:
-    """The pixels, uint8 (H, W, 3), of bodies in these colours (N, 3); lines, (M, 2) each, lie over discs."""
-    if bodies.dimension == 3:
-        from gaspart.rendering.camera import camera_for
+    """The pixels, uint8 (H, W, 3), of particles in these colours (N, 3); lines, (M, 2) each, lie over
+    discs."""
+    if particles.dimension == 3:
         from gaspart.rendering.tracer import trace
 
-        camera = camera_for(bodies.lengths, *size)
-        image, _ = trace(bodies.positions, bodies.radii, colours, bodies.lengths, camera, size)
+        camera = camera_for(particles.lengths, *size)
+        image, _ = trace(particles.positions, particles.radii, colours, particles.lengths, camera, size)
     else:
-        image = _plane(bodies, size, colours, lines)
+        image = _plane(particles, size, colours, lines)
     return np.rint(255.0 * image).astype(np.uint8)
 
 
 def _plane(
-    bodies: Bodies, size: tuple[int, int], colours: np.ndarray, lines: Sequence[np.ndarray]
+    particles: DrawnParticles, size: tuple[int, int], colours: np.ndarray, lines: Sequence[np.ndarray]
 ) -> np.ndarray:
     from gaspart.rendering.discs import Canvas
 
-    canvas = Canvas(bodies.lengths, size)
-    canvas.discs(bodies.positions, bodies.radii, colours)
-    x, y = bodies.lengths
+    canvas = Canvas(particles.lengths, size)
+    canvas.discs(particles.positions, particles.radii, colours)
+    x, y = particles.lengths
     canvas.line(np.array([[0.0, 0.0], [x, 0.0], [x, y], [0.0, y], [0.0, 0.0]]))
-    for line in (*bodies.walls, *lines):
+    for line in (*particles.walls, *lines):
         canvas.line(line)
     return canvas.image

@@ -17,6 +17,7 @@ from gaspart.errors import SceneError
 from gaspart.scene.container import Container
 from gaspart.scene.faces import SCHEMA as FACES_SCHEMA
 from gaspart.scene.faces import Sticky, Thermal, Well, check_faces, surface_from_dict, surface_to_dict
+from gaspart.scene.geometry import CLOSE_PACKING, ball_volume
 from gaspart.scene.keys import FLAG, VECTOR, checked_by_class, declared, instance_of, list_of, validate
 from gaspart.scene.limits import Nearby, check_room
 from gaspart.scene.restitution import Restitution
@@ -100,7 +101,7 @@ class Scene:
         for n, body in enumerate(self.bodies):
             self._check_body(n, body, earlier)
             earlier.add(n, body.position)
-        if self.packing_fraction > math.pi / math.sqrt(12 if self.dimension == 2 else 18):
+        if self.packing_fraction > CLOSE_PACKING[self.dimension]:
             if not self.centres_to_walls:
                 raise SceneError("packing_fraction", self.packing_fraction, "exceeds close packing")
 
@@ -191,10 +192,9 @@ class Scene:
     @property
     def packing_fraction(self) -> float:
         """Volume (3D) or area (2D) of all particles over that of the container."""
-        unit = math.pi if self.dimension == 2 else 4 / 3 * math.pi
         bodies = sum(body.radius**self.dimension for body in self.bodies)
         species = sum(kind.count * kind.radius**self.dimension for kind in self.species)
-        return unit * (bodies + species) / self.container.volume
+        return ball_volume(self.dimension) * (bodies + species) / self.container.volume
 
     @property
     def largest_radius(self) -> float:

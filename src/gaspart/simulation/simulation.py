@@ -1,4 +1,4 @@
-"""The face that everything above is used through: a scene, an engine and a seed, under way."""
+"""Simulation: a scene, an engine and a seed, and the state and counters that they have reached."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from gaspart.state.tally import Tally
 ENERGY_DRIFT = {"float64": 1e-9, "float32": 1e-3}
 """Drift of the energy at which a run is stopped, relative to that of the gas, by the engine's precision."""
 EXCHANGE_ERROR = {"float64": 2.0**-52, "float32": 2.0**-23}
-"""The same, relative to the energy that contacts and thermal walls have taken or given: its rounding."""
+"""The same, relative to the energy exchanged with contacts and thermal walls: its rounding."""
 PROPERTIES = (
     "positions",
     "unwrapped",
@@ -36,12 +36,12 @@ PROPERTIES = (
     "moments_of_inertia",
     "species",
 )
-"""What `Simulation.properties` can tell of each body; explained in `State`."""
+"""Properties of each particle that `Simulation.properties` returns; defined in `State`."""
 
 
 class Simulation:
-    """One run. `seed`: a whole number, or a tuple of them, that fixes the initial state and what thermal
-    walls draw.
+    """One run. `seed`: a whole number, or a tuple of them, that fixes the initial state and the random
+    numbers of thermal walls.
 
     Raises SceneError if the scene cannot be set up, or the engine cannot model it.
     """
@@ -73,14 +73,14 @@ class Simulation:
         mass: float = 1.0,
         **properties: Any,
     ) -> None:
-        """Add one body (properties as in `Body`): `scene` becomes a new, validated scene. Refused once the
-        simulation has advanced."""
+        """Add one particle (properties as in `Body`): `scene` becomes a new, validated scene. Refused once
+        the simulation has advanced."""
         self._change(
             self.scene.with_bodies(Body(tuple(position), tuple(velocity), radius, mass, **properties))
         )
 
     def add_random(self, count: int, radius: float, **properties: Any) -> None:
-        """Add `count` bodies at random places (properties as in `Species`), before the first advance."""
+        """Add `count` particles at random places (properties as in `Species`), before the first advance."""
         self._change(self.scene.with_species(Species(count, radius, **properties)))
 
     def add_wall(self, start: Iterable[float], end: Iterable[float]) -> None:
@@ -99,7 +99,7 @@ class Simulation:
     def _change(self, scene: Scene) -> None:
         if self._advanced:
             raise SceneError(
-                "scene", "under way", "bodies and walls can only be added before the first advance"
+                "scene", "under way", "particles and walls can only be added before the first advance"
             )
         before = self.scene
         self.scene = scene
@@ -114,7 +114,7 @@ class Simulation:
         self, duration: float | None = None, max_events: int | None = None, until: float | None = None
     ) -> None:
         """Advance by `duration`, to the time `until`, or by `max_events` collisions and wall hits, whichever
-        comes first. The time-stepped engine stops at the last whole step not after the target.
+        comes first. The time-stepped engine stops at the last complete step not after the target.
 
         Raises SceneError, with nothing changed, for no target, one in the past, or one that is not a number;
         `until` may be infinite together with max_events.
@@ -122,9 +122,9 @@ class Simulation:
         if max_events is not None:
             max_events = count_of("max_events", max_events)
         if until is not None and not (until == math.inf and max_events is not None):
-            until = number("until", until, "must be a finite number, or come with max_events")
+            until = number("until", until, "must be a finite number, or be given with max_events")
             if until < self.time:
-                raise SceneError("until", until, f"lies in the past of the present time {self.time:g}")
+                raise SceneError("until", until, f"is before the present time {self.time:g}")
         if duration is not None:
             duration = number("duration", duration, "must be a finite number that is not negative", least=0.0)
             until = min(math.inf if until is None else until, self.time + duration)
@@ -146,32 +146,32 @@ class Simulation:
 
     @property
     def state(self) -> State:
-        """All bodies now; a copy."""
+        """All particles now; a copy."""
         return self._dynamics.state
 
     @property
     def initial_state(self) -> State:
-        """All bodies at the start; a copy."""
+        """All particles at the start; a copy."""
         return self._initial.copy()
 
     @property
     def tally(self) -> Tally:
-        """What was counted since the start, or the last `reset_tally`; a copy."""
+        """Counters and sums since the start, or since the last `reset_tally`; a copy."""
         return self._dynamics.tally
 
     def reset_tally(self) -> None:
-        """Begin to count anew."""
+        """Set all counters and sums to zero."""
         self._dynamics.reset_tally()
 
     @property
     def record_events(self) -> bool:
-        """Whether events are written down as they happen (event-driven engine only)."""
+        """Whether events are recorded (event-driven engine only)."""
         return self._log is not None
 
     @record_events.setter
     def record_events(self, wanted: bool) -> None:
         if wanted and not isinstance(self.engine, EventDriven):
-            raise SceneError("record_events", wanted, 'needs the "event" engine; steps know no events')
+            raise SceneError("record_events", wanted, 'needs the "event" engine')
         self._log = EventLog(self.scene.dimension, self.scene.rough) if wanted else None
 
     @property
@@ -213,12 +213,12 @@ class Simulation:
             yield again.state
 
     def properties(self, *names: str, at: Iterable[float] | None = None) -> dict[str, np.ndarray]:
-        """Chosen properties of all bodies as arrays, by their names in `PROPERTIES`.
+        """Chosen properties of all particles as arrays, by their names in `PROPERTIES`.
 
         Now: (N, ...) each. Or at the times `at`, from the start to the present one and in any order, by
         running it again: (T, N, ...) each, and `time` (T,) with them.
 
-        Raises SceneError for an unknown name, and for a time that lies outside.
+        Raises SceneError for an unknown name, and for a time outside this range.
         """
         for name in names:
             if name not in PROPERTIES:
@@ -228,7 +228,7 @@ class Simulation:
             return {name: getattr(state, name) for name in names}
         times = [number("at", time, "must be from 0 to the present time", least=0.0) for time in at]
         if max(times, default=0.0) > self.time:
-            raise SceneError("at", max(times), f"lies after the present time {self.time:g}")
+            raise SceneError("at", max(times), f"is after the present time {self.time:g}")
         rising = sorted(set(times))
         found = {
             time: [getattr(state, name) for name in names]
@@ -238,8 +238,8 @@ class Simulation:
         return {"time": np.array(times), **arrays}
 
     def check_invariants(self, state: State | None = None) -> None:
-        """Raise SimulationError if energy has drifted from what it was less what contacts and walls took, or
-        a body is not where it can be. state: the present one, if it is at hand."""
+        """Raise SimulationError if the energy has drifted, exchange with contacts and walls accounted for,
+        or if a position or velocity is not finite. state: the present one, if the caller has it."""
         state = self.state if state is None else state
         if not (np.isfinite(state.positions).all() and np.isfinite(state.velocities).all()):
             raise SimulationError(f"at time {self.time:g} a position or velocity is not finite")
@@ -257,10 +257,10 @@ class Simulation:
             )
 
     def checkpoint(self) -> dict[str, np.ndarray]:
-        """Arrays from which `restore` goes on to the same bits, as if nothing had happened."""
+        """Arrays from which `restore` continues to the same bits."""
         return self._dynamics.checkpoint()
 
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Go on from a checkpoint of a simulation of the same scene, engine and seed."""
+        """Continue from a checkpoint of a simulation of the same scene, engine and seed."""
         self._advanced = True
         self._dynamics.restore(checkpoint)

@@ -18,7 +18,7 @@ from gaspart.scene.validation import count_of
 
 NOWHERE = -1
 MOST_BOXES = 2**26
-"""More do not fit into the memory of a common machine."""
+"""Limit on the number of boxes: more exceed the memory of a common machine."""
 
 
 @dataclass(frozen=True)
@@ -64,16 +64,18 @@ def check_boxes_per_side(given: object) -> None:
         raise SceneError("boxes_per_side", given, rule)
 
 
-def widest(scene: Scene) -> float:
-    """The smallest side a box may have: one largest diameter, lest a contact be overlooked."""
+def narrowest_box(scene: Scene) -> float:
+    """The smallest side a box may have: the largest diameter, so that no contact is missed."""
     return 2.0 * scene.largest_radius
 
 
 def sides_for(scene: Scene, per_body: float, narrowest: float | None = None) -> tuple[int, ...]:
-    """Boxes per side (d,) for about `per_body` boxes per body, none narrower than the largest diameter, or
-    than `narrowest` if bigger bodies are kept beside the boxes."""
+    """Boxes per side (d,) for about `per_body` boxes per particle, none narrower than the largest diameter,
+    or than `narrowest` if larger particles are kept outside the boxes."""
     lengths = scene.container.lengths
-    width = max(cube_side(lengths, per_body * scene.count), widest(scene) if narrowest is None else narrowest)
+    width = max(
+        cube_side(lengths, per_body * scene.count), narrowest_box(scene) if narrowest is None else narrowest
+    )
     return tuple(max(1, int(length / width)) for length in lengths)
 
 
@@ -93,10 +95,10 @@ def make_boxes(
     scene: Scene, boxes_per_side: int | tuple[int, ...], images: bool, narrowest: float | None = None
 ) -> Boxes:
     """The grid of `boxes_per_side` (one number, or one per axis) for a scene. narrowest: the smallest side a
-    box may have, the largest diameter unless some bodies are kept beside the boxes.
+    box may have, the largest diameter unless some particles are kept outside the boxes.
 
     On a periodic axis of fewer than three boxes the same box is a neighbour on both sides: with `images`
-    both stand in the table, each with its own shift; without, each box stands in it once.
+    the table has both, each with its own shift; without, it has each box once.
 
     Raises SceneError if a box would be narrower than the largest diameter.
     """
@@ -108,7 +110,7 @@ def make_boxes(
     if len(given) != len(lengths):
         raise SceneError("boxes_per_side", boxes_per_side, "must be one number, or one per axis")
     sides = [int(n) for n in given]
-    narrowest = widest(scene) if narrowest is None else narrowest
+    narrowest = narrowest_box(scene) if narrowest is None else narrowest
     for length, n in zip(lengths, sides, strict=True):
         if n > 1 and length / n < narrowest:
             rule = f"boxes must not be narrower than the largest diameter, {narrowest:g}"
@@ -125,8 +127,8 @@ def make_boxes(
     for axis in range(3):
         n = int(per_side[axis])
         for step in (0, 1, -1)[: 3 if images else n]:
-            laps, target = np.divmod(np.arange(n) + step, n)
-            there = (laps == 0) | periodic[axis]
+            images_crossed, target = np.divmod(np.arange(n) + step, n)
+            there = (images_crossed == 0) | periodic[axis]
             neighbour[axis, :n, step + 1][there] = target[there] * strides[axis]
-            shift[axis, :n, step + 1][there] = laps[there]
+            shift[axis, :n, step + 1][there] = images_crossed[there]
     return Boxes(per_side, widths, strides, neighbour, shift)

@@ -1,14 +1,13 @@
-"""Random packings denser than insertion can make: bodies that move, collide and grow until they are as large
-as wanted, or jam (Lubachevsky & Stillinger, J. Stat. Phys. 60, 561 (1990)).
+"""Random packings denser than insertion can make: particles that move, collide and grow until they are as
+large as wanted, or jam (Lubachevsky & Stillinger, J. Stat. Phys. 60, 561 (1990)).
 
-All bodies grow in proportion, at a constant rate of their diameters; they move as bodies of mass 1 whose
-temperature is brought back to 1 every few collisions. How dense they become is a matter of how slowly they
-grow: fast, spheres jam at a packing fraction of about 0.64 and discs at 0.84; slowly, they crystallise.
+All particles grow in proportion, at a constant rate of their diameters; they move as particles of mass 1
+whose temperature is brought back to 1 every few collisions. How dense they become depends on how slowly
+they grow: fast, spheres jam at a packing fraction of about 0.64 and discs at 0.84; slowly, they crystallise.
 """
 
 from __future__ import annotations
 
-import math
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -17,6 +16,7 @@ import numpy as np
 
 from gaspart.errors import SceneError, SimulationError
 from gaspart.kernels.memory import aligned
+from gaspart.scene.geometry import CLOSE_PACKING
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
 from gaspart.state.boxes import make_boxes, sides_for
@@ -24,13 +24,13 @@ from gaspart.state.insertion import per_body, random_insertion
 from gaspart.state.random import normals, stream
 
 JAMMED = 1e6
-"""Reduced pressure PV/(N k_B T) at which bodies count as jammed."""
+"""Reduced pressure PV/(N k_B T) at which particles count as jammed."""
 RATES = (2.0**-4, 2.0**-7, 2.0**-10)
-"""Growth of the largest diameter per thermal speed: what `compressed` tries in turn."""
+"""Growth of the largest diameter per thermal speed: the rates that `compressed` tries, in this order."""
 
 _START = {2: 0.3, 3: 0.2}  # packing fraction at which growth begins, within easy reach of insertion
-_SPARE = 2.0**-36  # by which bodies are grown larger than wanted, so that rounding leaves no overlap
-_COLLISIONS = 8  # per body between two resettings of the temperature
+_SPARE = 2.0**-36  # by which particles are grown larger than wanted, so that rounding leaves no overlap
+_COLLISIONS = 8  # per particle between two resettings of the temperature
 _POSITIONS, _MOTION = 0, 4
 
 
@@ -56,20 +56,20 @@ def compress(
     """Grow the species of a scene from a random start until their packing fraction is `until` (by default the
     scene's), or, with "jammed", until the reduced pressure exceeds `jammed`, which always ends it.
 
-    The diameter of the largest bodies grows by `growth_rate` times the thermal speed of a body.
+    The diameter of the largest particles grows by `growth_rate` times the thermal speed of a particle.
 
-    Raises SceneError for scenes with bodies or walls of their own, and if bodies jam before they are as dense
-    as wanted.
+    Raises SceneError for scenes with particles or walls of their own, and if particles jam before they are as
+    dense as wanted.
     """
     if scene.bodies or scene.walls or any(kind.fixed for kind in scene.species):
-        raise SceneError("arrangement", "compressed", "all bodies must be free to move, with no walls inside")
+        raise SceneError(
+            "arrangement", "compressed", "all particles must be free to move, without interior walls"
+        )
     if scene.count == 0:
         return Packing(np.empty((0, scene.dimension)), 1.0, 0.0, 1.0, 0)
     d = scene.dimension
     unit = scene.packing_fraction
-    wanted = (
-        unit if until is None else math.pi / math.sqrt(12 if d == 2 else 18) if until == "jammed" else until
-    )
+    wanted = unit if until is None else CLOSE_PACKING[d] if until == "jammed" else until
     end = _root(wanted / unit, d)
     growing = _Growing(scene, seed, min(end, _root(_START[d] / unit, d)), end)
     while growing.scale < end * (1.0 + _SPARE) and growing.pressure < jammed:
@@ -78,7 +78,7 @@ def compress(
         raise SceneError(
             "packing_fraction",
             wanted,
-            f"bodies that grow by {growth_rate:g} jam at {unit * growing.scale**d:.4f} already",
+            f"particles that grow by {growth_rate:g} jam already at {unit * growing.scale**d:.4f}",
         )
     scale = min(end, growing.scale * (1.0 - _SPARE))
     fraction = replace(scene, species=_scaled(scene, scale)).packing_fraction
@@ -161,7 +161,7 @@ class _Growing:
         """(N, d) positions at this scale. Raises SimulationError if any two particles would overlap."""
         self.flights["radius"] = self._radii * scale
         if self._growth.closest(self.particles, self.boxes, self._space) < 1.0:
-            raise SimulationError("particles that were to grow without overlap do overlap")
+            raise SimulationError("growth has left an overlap")
         positions, lengths = self.flights["position"], np.array(self._space.lengths)
         periodic = np.array(self._space.periodic)
         margin = np.outer(self._radii * scale, self._space.margin * ~periodic)

@@ -1,4 +1,4 @@
-"""How a scene starts: where the bodies are, and how they move."""
+"""Initial states: positions and velocities of the particles at time 0."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _POSITIONS, _VELOCITIES, _VIBRATIONS = 0, 1, 3  # 2 is that of draws at walls
 def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
     """The state at time 0. Positions and velocities have streams of their own under the one seed.
 
-    Raises SceneError if the bodies cannot be placed.
+    Raises SceneError if the particles cannot be placed.
     """
     explicit = len(scene.bodies)
     counts = [explicit, *(kind.count for kind in scene.species)]
@@ -42,7 +42,9 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
         positions = lattice(scene, rng, slab="slab" in ordered)
         hit = (scene.wall_at(place, radius) for place, radius in zip(positions, radii, strict=True))
         if scene.walls and any(hit):
-            raise SceneError("arrangement", min(ordered), "a body would overlap an interior wall; use random")
+            raise SceneError(
+                "arrangement", min(ordered), "a particle would overlap an interior wall; use random"
+            )
     elif "compressed" in arrangements:
         positions = compressed(scene, seed)
     else:
@@ -92,10 +94,10 @@ def _velocities(scene: Scene, rng: np.random.Generator) -> np.ndarray:
 def lattice(scene: Scene, rng: np.random.Generator, slab: bool = False) -> np.ndarray:
     """(N, d) positions on a triangular (2D) or face-centred cubic (3D) lattice stretched to the container.
 
-    If there are more sites than bodies, the sites left empty are random, as is who sits where in a
-    mixture. With `slab` they all lie in the upper half of the longest side, which melts where a whole
-    crystal would not: the start of a crystal beside its fluid. Raises SceneError if the lattice would have
-    to be denser than the bodies allow, or the upper half to hold fewer than no bodies.
+    If there are more sites than particles, the sites left empty are random, as is the order of the
+    species in a mixture. With `slab` they are all in the upper half of the longest side, which melts where a
+    complete crystal would not: the start of a crystal that coexists with its fluid. Raises SceneError if the lattice would have
+    to be denser than the particles allow, or if the particles are too few for the slab.
     """
     margin = np.array(scene.reach(scene.largest_radius)[0])
     walled = ~np.array(scene.container.periodic)
@@ -110,7 +112,7 @@ def lattice(scene: Scene, rng: np.random.Generator, slab: bool = False) -> np.nd
     if spacing < 2 * scene.largest_radius:
         raise SceneError(
             "arrangement", "lattice",
-            f"a spacing of {spacing:g} is too small for {scene.count} bodies of this radius",
+            f"a spacing of {spacing:g} is too small for {scene.count} particles of this radius",
         )  # fmt: skip
     cells = np.stack(np.meshgrid(*(np.arange(n) for n in best), indexing="ij"), axis=-1)
     sites = (cells.reshape(-1, 1, scene.dimension) + basis).reshape(-1, scene.dimension)
@@ -120,7 +122,7 @@ def lattice(scene: Scene, rng: np.random.Generator, slab: bool = False) -> np.nd
         longest = int(np.argmax(scene.container.lengths))
         spare = np.flatnonzero(sites[:, longest] >= 0.5 * scene.container.lengths[longest])
         if len(spare) < len(sites) - scene.count:
-            raise SceneError("arrangement", "slab", f"{scene.count} bodies do not fill the crystal's half")
+            raise SceneError("arrangement", "slab", f"{scene.count} particles do not fill the crystal's half")
     empty = rng.permutation(spare)[: len(sites) - scene.count]
     chosen = np.setdiff1d(np.arange(len(sites)), empty, assume_unique=True)
     if len(scene.species) > 1:

@@ -1,4 +1,4 @@
-"""Random sequential insertion: one body after another at random places that are free."""
+"""Random sequential insertion: one particle after another at random places that are free."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ if TYPE_CHECKING:
     from gaspart.kernels.insertion import Block, Space, Standing
 
 PATIENCE = 2_000_000
-"""Failed attempts at placing one body after which a container counts as full."""
+"""Failed attempts at placing one particle after which a container counts as full."""
 
 
 def per_body(scene: Scene, attribute: str) -> np.ndarray:
-    """(N,) an attribute of all bodies, of which species share theirs."""
+    """(N,) an attribute of all particles; all of one species have the same."""
     alone = [getattr(body, attribute) for body in scene.bodies]
     return np.concatenate([alone, *(np.full(kind.count, getattr(kind, attribute)) for kind in scene.species)])
 
 
 def empty_arrays(scene: Scene, boxes: Boxes, radii: np.ndarray) -> tuple[Standing, Space, Block]:
-    """The arrays of an empty container for bodies of these radii (N,)."""
+    """The arrays of an empty container for particles of these radii (N,)."""
     from gaspart.kernels.insertion import BLOCK, PLACES, Block, Space, Standing
 
     near = aligned((boxes.count, 4, PLACES), float)
@@ -38,24 +38,24 @@ def empty_arrays(scene: Scene, boxes: Boxes, radii: np.ndarray) -> tuple[Standin
     sides = zip(scene.container.lengths, scene.container.periodic, strict=True)
     periods = tuple(length if periodic else 4.0 * length for length, periodic in sides)
     space = Space(periods, boxes.per_side, boxes.widths, boxes.strides, boxes.neighbour)
-    at, own, beside = np.zeros((3, BLOCK, 3), dtype=np.int64)
+    at, own, near_oversized = np.zeros((3, BLOCK, 3), dtype=np.int64)
     left, box = np.zeros((2, BLOCK), dtype=np.int64)
-    return standing, space, Block(np.zeros((BLOCK, 3)), at, own, beside, left, box)
+    return standing, space, Block(np.zeros((BLOCK, 3)), at, own, near_oversized, left, box)
 
 
 def random_insertion(
     scene: Scene, rng: np.random.Generator, patience: int = PATIENCE
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Place the species one body after another at random places that are free, larger radii first.
+    """Place the species one particle after another at random places that are free, larger radii first.
 
-    Returns positions (N, d) and failures (N,), the failed attempts before each body found its place.
-    Raises SceneError when one body has failed `patience` times: the container is as good as full.
+    Returns positions (N, d) and failures (N,), the failed attempts before each particle found its place.
+    Raises SceneError when one particle has failed `patience` times: the container is practically full.
     """
     from gaspart.kernels.insertion import place, put
 
     dimension, explicit = scene.dimension, len(scene.bodies)
     species = sorted(range(len(scene.species)), key=lambda n: -scene.species[n].radius)
-    order = [np.arange(explicit)]  # bodies in the order in which they are placed
+    order = [np.arange(explicit)]  # particles in the order in which they are placed
     first = explicit + np.cumsum([0, *(kind.count for kind in scene.species)])
     order += [np.arange(first[n], first[n + 1]) for n in species]
     radii = np.concatenate(
@@ -81,23 +81,23 @@ def random_insertion(
         lower, upper = scene.reach(kind.radius)
         failures = 0
         numbers = np.empty((max(256, min(1_000_000, 2 * kind.count)), dimension))
-        big = kind.radius > largest
-        beside = np.flatnonzero(radii[:placed] > largest)
+        is_oversized = kind.radius > largest
+        oversized = np.flatnonzero(radii[:placed] > largest)
         while placed < stop:
             draws = rng.random(out=numbers[: max(256, min(1_000_000, 2 * (stop - placed)))])
-            if big:  # too big for the boxes: it is tried against all that stand already, and alone
-                beside = np.arange(placed)
+            if is_oversized:  # too large for the boxes: tested against all placed particles, one at a time
+                oversized = np.arange(placed)
             placed, failures, _ = place(
-                draws, standing, space, block, placed, placed + 1 if big else stop, lower, upper, failures,
-                patience, failed, walls, beside,
+                draws, standing, space, block, placed, placed + 1 if is_oversized else stop, lower, upper, failures,
+                patience, failed, walls, oversized,
             )  # fmt: skip
             if failures >= patience:
                 eta = scene.packing_fraction * placed / scene.count
                 raise SceneError(
                     f"species[{n}].count",
                     kind.count,
-                    f"does not fit by random insertion: full after {placed} bodies, packing fraction about "
-                    f"{eta:.4f}, {patience} attempts in vain; use arrangement: lattice",
+                    f"does not fit by random insertion: full after {placed} particles, packing fraction about "
+                    f"{eta:.4f}, {patience} failed attempts; use arrangement: lattice",
                 )
     back = np.argsort(np.concatenate(order), kind="stable") if scene.count else np.empty(0, dtype=int)
     return positions[back], failed[back]

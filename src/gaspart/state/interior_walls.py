@@ -1,7 +1,8 @@
 """Interior walls as arrays: one row per wall, and per image of it that comes near a periodic face.
 
-Rows of segments and plates are described in `kernels.obstacles.segment` and `.plate`. A wall near a periodic
-face is met across it too, so it has an image wherever one comes within a radius of the container.
+Rows of segments and plates are described in `kernels.obstacles.segment` and `.plate`. Particles meet
+a wall near a periodic face across it too, so a wall has an image wherever one is within a radius of the
+container.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ _SLACK = 1e-9  # by which neighbourhoods are drawn wider, so that rounding leave
 
 
 def wall_rows(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """(M,) segments or plates, and (M,) the number of the wall that each stands for."""
+    """(M,) segments or plates, and (M,) the index of the wall that each row represents."""
     from gaspart.kernels.obstacles.plate import PLATE
     from gaspart.kernels.obstacles.segment import SEGMENT
 
@@ -68,7 +69,7 @@ def _normal(row: np.ndarray) -> np.ndarray:
 
 def walls_near(rows: np.ndarray, boxes: Boxes, reach: float) -> tuple[np.ndarray, np.ndarray]:
     """The walls within `reach` of each box: those of box b are listed[first[b] : first[b + 1]]. All of them
-    follow the last box, for bodies that reach further."""
+    follow the last box, for particles that reach further."""
     reach *= 1 + _SLACK
     numbers = rows.view(float).reshape(len(rows), -1)
     d = 2 if numbers.shape[1] == 5 else 3

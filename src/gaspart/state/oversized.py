@@ -1,8 +1,8 @@
-"""Which bodies are too big for the partition, and stand beside it.
+"""Oversized particles: those that are too large for the boxes of the partition.
 
-A box may not be narrower than the diameter of any body that is found by its box alone. So a few big bodies
-would make the boxes of all the small ones huge; beside the partition, they cost a look at each of them in
-every search, and a look at all the boxes around one in a search of its own.
+A box may not be narrower than the diameter of any particle that is found by its box alone. So a few big
+particles would make the boxes of all the small ones huge; beside the partition, they cost a look at each of
+them in every search, and a look at all the boxes around one in a search of its own.
 """
 
 from __future__ import annotations
@@ -14,27 +14,27 @@ import numpy as np
 from gaspart.scene.scene import Scene
 from gaspart.state.boxes import Boxes, make_boxes, sides_for
 
-MOST = 256  # bodies beside the partition, at most, where the program chooses
-_GAIN = 0.75  # of the work that is left, at most, for bodies to be taken out of the partition
+MOST = 256  # oversized particles, at most, where the program chooses
+_GAIN = 0.75  # largest share of the work that may remain if particles are taken out of the partition
 
 
 def largest_in_boxes(scene: Scene) -> float:
-    """The largest radius that the boxes are made for: of the radii that leave at most `MOST` bodies beside
+    """The largest radius that the boxes are made for: of the radii that leave at most `MOST` particles beside
     them, that with which a search looks at least, but the largest of all unless that saves a quarter."""
     radii, counts = sizes(scene)
     if len(radii) < 2:
         return scene.largest_radius
-    beside = counts.sum() - counts.cumsum()
-    works = {radius: work(scene, radius) for radius in radii[beside <= MOST]}
+    oversized = counts.sum() - counts.cumsum()
+    works = {radius: work(scene, radius) for radius in radii[oversized <= MOST]}
     best = min(works, key=works.__getitem__)
     return float(best if works[best] <= _GAIN * works[radii[-1]] else radii[-1])
 
 
 def boxes_and_largest(scene: Scene, boxes_per_side: int | tuple[int, ...] | None) -> tuple[Boxes, float]:
-    """The partition, and the largest radius of the bodies in it: of so many boxes, or as `largest_in_boxes`
-    chooses.
+    """The partition, and the largest radius of the particles in it: of so many boxes, or as
+    `largest_in_boxes` chooses.
 
-    Raises SceneError for boxes that are narrower than most of the bodies.
+    Raises SceneError for boxes that are narrower than most of the particles.
     """
     if boxes_per_side is None:
         largest = largest_in_boxes(scene)
@@ -50,7 +50,7 @@ def boxes_and_largest(scene: Scene, boxes_per_side: int | tuple[int, ...] | None
 
 
 def sizes(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """The different radii (K,) in rising order, and (K,) how many bodies have each."""
+    """The different radii (K,) in rising order, and (K,) how many particles have each."""
     radii = [body.radius for body in scene.bodies] + [kind.radius for kind in scene.species if kind.count]
     counts = [1] * len(scene.bodies) + [kind.count for kind in scene.species if kind.count]
     different, which = np.unique(np.array(radii, dtype=float), return_inverse=True)
@@ -58,10 +58,10 @@ def sizes(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 def work(scene: Scene, largest: float) -> float:
-    """Boxes and bodies looked at while each body goes a unit of length, if the boxes are for radii up to
-    `largest`: in a search after every contact, and a third of one at every face of a box.
+    """Boxes and particles looked at while each particle goes a unit of length, if the boxes are for radii up
+    to `largest`: in a search after every contact, and a third of one at every face of a box.
 
-    Bodies are taken to be spread evenly and to be equally fast.
+    Particles are taken to be spread evenly and to be equally fast.
     """
     dimension, volume = scene.dimension, scene.container.volume
     radii, counts = sizes(scene)
@@ -72,7 +72,7 @@ def work(scene: Scene, largest: float) -> float:
     reach = np.where(listed, 0.0, radii + largest)
     boxes = np.minimum(2 * np.ceil(reach[:, None] / widths) + 3, per_side).prod(axis=1)
     looked_at = boxes * (1.0 + crowd) + counts[~listed].sum()
-    # the section that a body and any other show one another, summed over the others
+    # the section that a particle and any other show one another, summed over the others
     total, first, second = counts.sum(), counts @ radii, counts @ radii**2
     if dimension == 2:
         sections = 2.0 * (total * radii + first)

@@ -15,7 +15,7 @@ from gaspart.kernels.logarithm import LN2, LOG_SERIES
 def stream(seed: int | tuple[int, ...], *purpose: int) -> np.random.Generator:
     """An independent generator for one purpose (a tuple of small numbers) of one seed.
 
-    Raises SceneError unless the seed is made of non-negative whole numbers.
+    Raises SceneError unless the seed is a non-negative integer or a sequence of them.
     """
     return np.random.Generator(np.random.PCG64(_sequence(seed, purpose)))
 

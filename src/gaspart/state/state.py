@@ -1,4 +1,4 @@
-"""All bodies at one time: what engines take, and give back."""
+"""All particles at one time: the input and the output of engines."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ import numpy as np
 
 @dataclass
 class State:
-    """All bodies at one time.
+    """All particles at one time.
 
-    time; positions (N, d), inside the container on periodic axes; velocities (N, d); images (N, d), how
-    often each body has crossed the container on periodic axes; radii, masses (N,); species (N,), the index
-    of the body's species, explicit bodies counting as one species after the others; lengths (d,);
-    spins, angular velocities, (N,) in 2D and (N, 3) in 3D; moments_of_inertia (N,); gravity (d,) or None;
+    time; positions (N, d), inside the container on periodic axes; velocities (N, d); images (N, d), how often
+    each particle has crossed the container on periodic axes; radii, masses (N,); species (N,), the index of
+    the particle's species, explicit particles being one more species after the others; lengths (d,); spins,
+    angular velocities, (N,) in 2D and (N, 3) in 3D; moments_of_inertia (N,); gravity (d,) or None;
     well_energies (N,), the potential energy in the wells of the faces, and vibrations (N,), the energy of
-    each body's vibration, or None. The mass and moment of inertia of a fixed body are infinite; they count
-    in no sum.
+    each particle's vibration, or None. The mass and moment of inertia of a fixed particle are infinite; they
+    count in no sum.
     """
 
     time: float
@@ -37,7 +37,7 @@ class State:
 
     @property
     def count(self) -> int:
-        """N, the number of bodies."""
+        """N, the number of particles."""
         return len(self.positions)
 
     @property
@@ -47,7 +47,7 @@ class State:
 
     @property
     def unwrapped(self) -> np.ndarray:
-        """(N, d) positions as if periodic axes went on for ever."""
+        """(N, d) positions continued across periodic faces."""
         return self.positions + self.images * self.lengths
 
     @property
@@ -57,7 +57,7 @@ class State:
 
     @property
     def kinetic_energies(self) -> np.ndarray:
-        """(N,) kinetic energies, of flight and spin together; 0 for a fixed body."""
+        """(N,) kinetic energies, of flight and spin together; 0 for a fixed particle."""
         flight = _finite(self.masses) * (self.velocities**2).sum(axis=1)
         turning = _finite(self.moments_of_inertia) * self.spins.T**2
         return 0.5 * (flight + (turning if turning.ndim == 1 else turning.sum(axis=0)))
@@ -77,12 +77,12 @@ class State:
 
     @property
     def translational_energy(self) -> float:
-        """Kinetic energy of flight, of all bodies."""
+        """Kinetic energy of flight, of all particles."""
         return 0.5 * float((_finite(self.masses)[:, None] * self.velocities**2).sum())
 
     @property
     def rotational_energy(self) -> float:
-        """Kinetic energy of spin, of all bodies."""
+        """Kinetic energy of spin, of all particles."""
         return 0.5 * float((_finite(self.moments_of_inertia) * (self.spins**2).T).sum())
 
     @property
@@ -92,7 +92,8 @@ class State:
 
     @property
     def potential_energy(self) -> float:
-        """Of all bodies under gravity, 0 where their centres are at the container's origin, and in wells."""
+        """Of all particles under gravity, 0 where their centres are at the container's origin, and in
+        wells."""
         energy = 0.0 if self.well_energies is None else float(self.well_energies.sum())
         if self.gravity is not None:
             energy -= float((_finite(self.masses)[:, None] * self.positions * self.gravity).sum())
@@ -100,7 +101,7 @@ class State:
 
     @property
     def vibrational_energy(self) -> float:
-        """Of all bodies; 0 where none vibrates."""
+        """Of all particles; 0 where none vibrates."""
         return 0.0 if self.vibrations is None else float(self.vibrations.sum())
 
     @property
@@ -117,7 +118,7 @@ class State:
 
 
 def _finite(values: np.ndarray) -> np.ndarray:
-    """Values with 0 in the place of infinity."""
+    """Values with infinity replaced by 0."""
     return np.where(np.isinf(values), 0.0, values)
 
 

@@ -1,4 +1,4 @@
-"""What an engine counts while it runs."""
+"""Counters and sums of an engine."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ class Tally:
 
     time: simulated time covered; collisions of pairs; wall_hits and wall_impulse (2d + interior walls,), the
     momentum given to each face (x low, x high, y low ...) and then to each interior wall; wall_energy, the
-    heat given to each of them by bodies that left it at its temperature; virial_sum: sum of
-    |dr.dp| over collisions; pair_tests: pairs examined; box_visits: boxes looked into; crossings of box
-    boundaries; worst_contact: largest |r^2/sigma^2 - 1| at a contact; dissipated_energy: what inelastic
-    contacts took.
+    heat given to each of them by particles that it re-emitted thermally; virial_sum: sum of
+    |dr.dp| over collisions; pair_tests: pairs examined; box_visits: boxes searched; crossings of box
+    boundaries; worst_contact: largest |r^2/sigma^2 - 1| at a contact; dissipated_energy: energy lost in
+    inelastic contacts.
 
-    The time-stepped engine also tells what it got wrong: steps; overlaps_left, pairs that still overlap and
+    The time-stepped engine also reports its errors: steps; overlaps_left, pairs that still overlap and
     approach when a step ends; deepest_overlap met, as a fraction of the contact distance;
-    multiple_contacts, bodies that met more than one other in a step; rebuilds of its neighbour list.
+    multiple_contacts, particles that met more than one other in a step; rebuilds of its neighbour list.
     """
 
     time: float

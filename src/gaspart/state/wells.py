@@ -1,4 +1,4 @@
-"""Which bodies are in the wells at the faces of a container, and how deep."""
+"""Potential wells at the faces of a container: depths, and which particles are inside."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def wells_of(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 def places_in_wells(scene: Scene, positions: np.ndarray, radii: np.ndarray) -> np.ndarray:
-    """(N, d) -1 where a body is in the well of an axis' low face, 1 in that of the high face, else 0."""
+    """(N, d) -1 where a particle is in the well of an axis' low face, 1 in that of the high face, else 0."""
     margins = 0.0 if scene.centres_to_walls else radii[:, None]
     _, widths = wells_of(scene)
     low = positions - margins < widths[::2]
@@ -26,6 +26,6 @@ def places_in_wells(scene: Scene, positions: np.ndarray, radii: np.ndarray) -> n
 
 
 def well_energies(scene: Scene, places: np.ndarray) -> np.ndarray:
-    """(N,) the potential energy of bodies in these places."""
+    """(N,) the potential energy of particles in these places."""
     depths, _ = wells_of(scene)
     return -(np.where(places < 0, depths[::2], 0.0) + np.where(places > 0, depths[1::2], 0.0)).sum(axis=1)

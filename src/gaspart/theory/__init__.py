@@ -1,21 +1,22 @@
-"""What theory and the literature say about hard discs and spheres: formulas, provenance, range of validity.
+"""Theory of hard discs and spheres: formulas, provenance, range of validity.
 
-Imports nothing of the engines, and only numpy. Every docstring says where its formula is from: exact (closed
+Independent of the engines; imports only numpy. Every docstring states the source of its formula: exact (closed
 form), literature (read in the source), recalled (from memory of the source), computed (this project's own
 numerics). Arguments that are out of range raise SceneError, which is a ValueError.
 """
 
-from .brownian import (
+from gaspart.scene.geometry import CLOSE_PACKING
+from gaspart.theory.brownian import (
     friction_rate,
     langevin_msd,
     langevin_msd_from_rest,
     tagged_diffusion,
 )
-from .buoyancy import (
+from gaspart.theory.buoyancy import (
     displaced_area,
     insertion_work,
 )
-from .diffusion import (
+from gaspart.theory.diffusion import (
     ERPENBECK_WOOD_UNCERTAINTY,
     YEH_HUMMER_CONSTANT,
     enskog_mean_squared_displacement,
@@ -26,7 +27,7 @@ from .diffusion import (
     velocity_decay_rate,
     yeh_hummer,
 )
-from .enskog import (
+from gaspart.theory.enskog import (
     collision_rate,
     collision_rate_finite_size_factor,
     enskog_bulk_viscosity,
@@ -35,7 +36,7 @@ from .enskog import (
     enskog_viscosity,
     mean_free_path,
 )
-from .equations import (
+from gaspart.theory.equations import (
     carnahan_starling,
     henderson,
     kolafa_1986,
@@ -47,8 +48,8 @@ from .equations import (
     scaled_particle,
     van_der_waals,
 )
-from .film import white_bear_pressure, white_bear_slit
-from .freezing import (
+from gaspart.theory.film import white_bear_pressure, white_bear_slit
+from gaspart.theory.freezing import (
     COEXISTENCE_DENSITY,
     COEXISTENCE_PRESSURE,
     DENSE_LIQUID_DISCS,
@@ -59,13 +60,12 @@ from .freezing import (
     crystal_finite_size_correction,
     speedy_crystal,
 )
-from .geometry import (
-    CLOSE_PACKING,
+from gaspart.theory.geometry import (
     body_volume,
     number_density,
     packing_fraction,
 )
-from .granular import (
+from gaspart.theory.granular import (
     cooling_rate,
     fourth_cumulant,
     haff_time,
@@ -73,7 +73,7 @@ from .granular import (
     rough_ratio,
     rough_temperatures,
 )
-from .gravity import (
+from gaspart.theory.gravity import (
     hydrostatic_profiles,
     ideal_energy_moments,
     ideal_heat_capacity,
@@ -81,13 +81,13 @@ from .gravity import (
     ideal_profile,
     lebowitz_percus_verlet,
 )
-from .heat import (
+from gaspart.theory.heat import (
     TEMPERATURE_JUMP,
     conducting_slab,
     dilute_fourier_flux,
     free_molecular_flux,
 )
-from .insertion import (
+from gaspart.theory.insertion import (
     RSA_SATURATION,
     RSA_SATURATION_UNCERTAINTY,
     available_fraction,
@@ -95,8 +95,8 @@ from .insertion import (
     insertion_saturation,
     insertion_saturation_uncertainty,
 )
-from .potential import excess_chemical_potential, packing_fraction_at
-from .speeds import (
+from gaspart.theory.potential import excess_chemical_potential, packing_fraction_at
+from gaspart.theory.speeds import (
     KURTOSIS_RELAXATION_RATE,
     RELAXATION_UNCERTAINTY,
     Relaxation,
@@ -108,7 +108,7 @@ from .speeds import (
     mean_speed,
     relaxation,
 )
-from .state import (
+from gaspart.theory.state import (
     HIGHEST_PACKING_FRACTION,
     compressibility_factor,
     compressibility_uncertainty,
@@ -117,14 +117,14 @@ from .state import (
     speed_of_sound,
     virial_with_tail,
 )
-from .virial import (
+from gaspart.theory.virial import (
     HIGHEST_ORDER,
     linear_tail,
     partial_sum,
     partial_sum_uncertainty,
     virial_coefficients,
 )
-from .walls import (
+from gaspart.theory.walls import (
     surface_tension,
     surface_tension_uncertainty,
     wall_pressure,

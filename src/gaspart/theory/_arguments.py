@@ -13,7 +13,7 @@ from gaspart.errors import SceneError
 Numbers: TypeAlias = float | np.ndarray
 """A number, or an array of them."""
 Values: TypeAlias = Any
-"""What follows from `Numbers`: a number from numbers, an array of their shape from arrays."""
+"""A result of `Numbers`: a number from numbers, an array of their shape from arrays."""
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -32,7 +32,7 @@ _RANGES = {
     "side_over_diameter": (1.0, math.inf, "must be finite and at least 1"),
     "count": (1.0, math.inf, "must be finite and at least 1"),
 }
-"""The least and the largest value of arguments, by name, and the rule in words."""
+"""The smallest and the largest value of arguments, by name, and the rule in words."""
 
 
 def checked(function: Callable[P, R]) -> Callable[P, R]:

@@ -1,13 +1,13 @@
-"""Gases at walls that hold bodies: a step well, a hard layer in it, and what a wall sends back.
+"""Gases at walls that hold particles: a step well, a hard layer in it, and the flux from a wall.
 
-Energies are in k_B T unless a temperature is among the arguments. A well of width w holds a body whose
-centre is within w of the lowest place that it can reach.
+Energies are in k_B T unless a temperature is among the arguments. A well of width w holds a particle whose
+centre is within w of the lowest position that it can reach.
 """
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked, checked_packing_fraction
-from .equations import STABLE_DISCS
+from gaspart.theory._arguments import Numbers, Values, checked, checked_packing_fraction
+from gaspart.theory.equations import STABLE_DISCS
 
 
 @checked
@@ -23,7 +23,7 @@ def well_ratio(depth: Numbers, width: Numbers, outside: Numbers) -> Values:
 
 @checked
 def length_in_langmuirs_formula(ratio: Numbers, depth: Numbers, outside: Numbers) -> Values:
-    """What stands in the place of lambda in N_ads / N_gas = (A lambda / V) e^{depth / k_B T} (identity)."""
+    """The length in the place of lambda in N_ads / N_gas = (A lambda / V) e^{depth / k_B T} (identity)."""
     return ratio * outside * np.exp(-np.asarray(depth, dtype=float))
 
 
@@ -45,14 +45,15 @@ def scaled_particle_activity(packing_fraction: Numbers) -> Values:
 
 @checked
 def langmuir_coverage(activity: Numbers) -> Values:
-    """K / (1 + K): places that each hold one body (Langmuir, J. Am. Chem. Soc. 40, 1361 (1918); recalled)."""
+    """K / (1 + K): places that each hold one particle (Langmuir, J. Am. Chem. Soc. 40, 1361 (1918);
+    recalled)."""
     activity = np.asarray(activity, dtype=float)
     return activity / (1.0 + activity)
 
 
 @checked
 def flux_density(speed: Numbers) -> Values:
-    """Density of the normal speeds, in units of sqrt(k_B T / m), with which bodies leave a wall in
+    """Density of the normal speeds, in units of sqrt(k_B T / m), with which particles leave a wall in
     equilibrium: v e^{-v^2 / 2} (exact)."""
     speed = np.asarray(speed, dtype=float)
     return speed * np.exp(-0.5 * speed**2)
@@ -60,5 +61,5 @@ def flux_density(speed: Numbers) -> Values:
 
 @checked
 def slow_flux_share(speed: Numbers) -> Values:
-    """Share of those bodies that leave more slowly than this: 1 - e^{-v^2 / 2} (exact)."""
+    """Share of those particles that leave more slowly than this: 1 - e^{-v^2 / 2} (exact)."""
     return -np.expm1(-0.5 * np.asarray(speed, dtype=float) ** 2)

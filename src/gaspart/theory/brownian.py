@@ -1,4 +1,5 @@
-"""A large body in a dilute gas: friction, diffusion, and the Langevin equation's mean-squared displacement.
+"""A large particle in a dilute gas: friction, diffusion, and the Langevin equation's mean-squared
+displacement.
 
 k_B = 1. Times, lengths and masses in any units that agree.
 """
@@ -7,11 +8,11 @@ import math
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked
+from gaspart.theory._arguments import Numbers, Values, checked
 
 SONINE_EQUAL_MASSES = 1.01895
-"""D of a body as heavy as the gas's, over the first Sonine approximation k_B T / (M rate) (recalled, as in
-`enskog`)."""
+"""D of a particle as heavy as the gas's, over the first Sonine approximation k_B T / (M rate) (recalled, as
+in `enskog`)."""
 
 
 @checked
@@ -25,8 +26,8 @@ def friction_rate(
     """Initial decay rate of a sphere's velocity autocorrelation: (8/3) n a^2 sqrt(2 pi mu k_B T) / M.
 
     Unit 1 / time. Exact for a dilute gas in equilibrium whose mean free path is much longer than the contact
-    distance a (sum of the two radii); mu is the reduced mass of body (`mass`, M) and gas body. Chapman and
-    Cowling.
+    distance a (sum of the two radii); mu is the reduced mass of particle (`mass`, M) and gas particle.
+    Chapman and Cowling.
     """
     reduced = mass * gas_mass / (mass + gas_mass)
     momentum = np.sqrt(2.0 * math.pi * reduced * np.asarray(temperature))
@@ -35,9 +36,9 @@ def friction_rate(
 
 @checked
 def tagged_diffusion(rate: Numbers, mass: float, gas_mass: float = 1.0, temperature: float = 1.0) -> Values:
-    """D = k_B T / (M rate), the Langevin equation's; times 1.01895 for a body as heavy as the gas's.
+    """D = k_B T / (M rate), the Langevin equation's; times 1.01895 for a particle as heavy as the gas's.
 
-    For other masses the correction lies below this one, and vanishes as the body becomes heavy. Unit
+    For other masses the correction lies below this one, and vanishes as the particle becomes heavy. Unit
     length^2 / time.
     """
     factor = SONINE_EQUAL_MASSES if mass == gas_mass else 1.0
@@ -46,7 +47,7 @@ def tagged_diffusion(rate: Numbers, mass: float, gas_mass: float = 1.0, temperat
 
 @checked
 def langevin_msd(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: int = 3) -> Values:
-    """2 d D [t - (1 - exp(-g t)) / g], of a body in equilibrium (Ornstein and Fuerth; length^2).
+    """2 d D [t - (1 - exp(-g t)) / g], of a particle in equilibrium (Ornstein and Fuerth; length^2).
 
     From an exponential velocity autocorrelation of rate g: ballistic at short times, 2 d D t at long ones.
     """
@@ -59,7 +60,8 @@ def langevin_msd(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: in
 
 @checked
 def langevin_msd_from_rest(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: int = 3) -> Values:
-    """2 d D [t - 2 (1 - exp(-g t)) / g + (1 - exp(-2 g t)) / (2 g)]: the same of a body that starts at rest.
+    """2 d D [t - 2 (1 - exp(-g t)) / g + (1 - exp(-2 g t)) / (2 g)]: the same of a particle that starts at
+    rest.
 
     Begins as 2 d D g^2 t^3 / 3 (length^2).
     """

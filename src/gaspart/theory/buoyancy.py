@@ -7,7 +7,7 @@ displaced). That is Archimedes's principle: nothing but the fluid that is missin
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked, checked_packing_fraction
+from gaspart.theory._arguments import Numbers, Values, checked, checked_packing_fraction
 
 _HIGHEST = 0.7
 

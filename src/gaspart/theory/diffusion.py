@@ -7,10 +7,10 @@ import math
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked, checked_packing_fraction
-from .brownian import langevin_msd
-from .enskog import collision_rate, enskog_diffusion, enskog_viscosity
-from .geometry import number_density
+from gaspart.theory._arguments import Numbers, Values, checked, checked_packing_fraction
+from gaspart.theory.brownian import langevin_msd
+from gaspart.theory.enskog import collision_rate, enskog_diffusion, enskog_viscosity
+from gaspart.theory.geometry import number_density
 
 ERPENBECK_WOOD_UNCERTAINTY = 0.03
 """Relative uncertainty of `erpenbeck_wood_ratio`: the band to draw around it."""

@@ -1,20 +1,20 @@
 """Enskog theory of the dense gas: collision rate, mean free path and transport coefficients.
 
-All take `packing_fraction` (number or array), dimension 2 or 3, and the bodies' diameter, temperature (k_B =
-1) and mass; time is in units of diameter sqrt(mass / temperature). chi is `state.contact_value`. Literature:
-Chapman and Cowling (1970) for spheres; Gass, J. Chem. Phys. 54, 1898 (1971) for discs. Range: that of the
-reference equation of state; the collision rate is exact, the transport coefficients neglect correlated
-collisions (see `diffusion`).
+All take `packing_fraction` (number or array), dimension 2 or 3, and the particles' diameter, temperature (k_B
+= 1) and mass; time is in units of diameter sqrt(mass / temperature). chi is `state.contact_value`.
+Literature: Chapman and Cowling (1970) for spheres; Gass, J. Chem. Phys. 54, 1898 (1971) for discs. Range:
+that of the reference equation of state; the collision rate is exact, the transport coefficients neglect
+correlated collisions (see `diffusion`).
 """
 
 import math
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked, checked_dimension
-from .geometry import number_density, unit_sphere_surface
-from .speeds import mean_speed
-from .state import compressibility_factor, contact_value, finite_size_correction
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
+from gaspart.theory.geometry import number_density, unit_sphere_surface
+from gaspart.theory.speeds import mean_speed
+from gaspart.theory.state import compressibility_factor, contact_value, finite_size_correction
 
 # Exact solutions of the linear Boltzmann equation over the first Sonine approximation, at zero density:
 # diffusion (recalled); and viscosity and conductivity in units of diameter = mass = k_B T = 1 (recalled).
@@ -28,6 +28,13 @@ def _density_and_contact(packing_fraction: Numbers, dimension: int, diameter: fl
     return density, contact_value(packing_fraction, dimension)
 
 
+def _kinetic(dilute: float, factor: float, packing_fraction: Numbers, dimension: int) -> Values:
+    """(dilute / chi) [1 + factor b chi / (d+2)]^2, b = 2^(d-1) times the packing fraction."""
+    contact = contact_value(packing_fraction, dimension)
+    excess = 2.0 ** (dimension - 1) * np.asarray(packing_fraction) * contact
+    return dilute / contact * (1.0 + factor * excess / (dimension + 2)) ** 2
+
+
 @checked
 def collision_rate(
     packing_fraction: Numbers,
@@ -36,10 +43,10 @@ def collision_rate(
     temperature: float = 1.0,
     mass: float = 1.0,
 ) -> Values:
-    """Collisions of one body per time, nu = S rho sigma^(d-1) chi sqrt(k_B T / (pi m)).
+    """Collisions of one particle per time, nu = S rho sigma^(d-1) chi sqrt(k_B T / (pi m)).
 
     S = 2 pi (2D), 4 pi (3D), so 2 rho sigma chi sqrt(pi k_B T / m) and 4 rho sigma^2 chi sqrt(pi k_B T / m).
-    Exact in equilibrium (velocities independent of positions), as good as chi. In a run: 2 N_coll / (N t).
+    Exact in equilibrium (velocities independent of positions), with the accuracy of chi. In a run: 2 N_coll / (N t).
     Unit 1 / time.
     """
     density, contact = _density_and_contact(packing_fraction, dimension, diameter)
@@ -49,7 +56,7 @@ def collision_rate(
 
 @checked
 def collision_rate_finite_size_factor(packing_fraction: Numbers, dimension: int, count: int) -> Values:
-    """nu_N / nu of `count` bodies in a periodic container, fixed energy, total momentum zero.
+    """nu_N / nu of `count` particles in a periodic container, fixed energy, total momentum zero.
 
     Contacts: the canonical Z_N - 1 over Z - 1 (to O(1/N), see `state.finite_size_correction`).
     Speeds: <|v_12 . n|> of velocities uniform on the sphere in D = d (N-1) dimensions over Maxwell's,
@@ -68,7 +75,7 @@ def mean_free_path(packing_fraction: Numbers, dimension: int, diameter: float = 
     """Mean path between collisions, <v> / nu.
 
     1 / (sqrt 2 pi rho sigma^2 chi) in 3D, 1 / (2 sqrt 2 rho sigma chi) in 2D.
-    Exact in equilibrium, as good as chi; infinite at zero density. Unit length.
+    Exact in equilibrium, with the accuracy of chi; infinite at zero density. Unit length.
     """
     with np.errstate(divide="ignore"):
         return mean_speed(dimension) / collision_rate(packing_fraction, dimension, diameter)
@@ -131,11 +138,9 @@ def enskog_viscosity(
     b^2 chi] (Gass). Good to a few per cent to eta = 0.3 (3D), too low beyond. Unit mass length^(2-d) / time.
     """
     checked_dimension(dimension)
-    contact = contact_value(packing_fraction, dimension)
     dilute = _DILUTE_VISCOSITY[dimension] * math.sqrt(mass * temperature) / diameter ** (dimension - 1)
-    excess = 2.0 ** (dimension - 1) * np.asarray(packing_fraction) * contact
+    kinetic = _kinetic(dilute, 2.0, packing_fraction, dimension)
     bulk = enskog_bulk_viscosity(packing_fraction, dimension, diameter, temperature, mass)
-    kinetic = dilute / contact * (1.0 + 2.0 * excess / (dimension + 2)) ** 2
     return kinetic + dimension / (dimension + 2) * bulk
 
 
@@ -154,9 +159,7 @@ def enskog_conductivity(
     0.8716 b^2 chi]. Unit 1 / (length^(d-2) time), with k_B = 1.
     """
     checked_dimension(dimension)
-    contact = contact_value(packing_fraction, dimension)
     dilute = _DILUTE_CONDUCTIVITY[dimension] * math.sqrt(temperature / mass) / diameter ** (dimension - 1)
-    excess = 2.0 ** (dimension - 1) * np.asarray(packing_fraction) * contact
+    kinetic = _kinetic(dilute, 3.0, packing_fraction, dimension)
     bulk = enskog_bulk_viscosity(packing_fraction, dimension, diameter, temperature, mass)
-    kinetic = dilute / contact * (1.0 + 3.0 * excess / (dimension + 2)) ** 2
     return kinetic + 0.5 * dimension / mass * bulk

@@ -1,13 +1,13 @@
 """Equations of state by name: compressibility factor Z = P / (rho k_B T) against packing fraction.
 
 All take `packing_fraction` (number or array) and return Z of the same shape, dimensionless.
-All raise ValueError outside the stated range. `state` says which of them is the reference.
+All raise ValueError outside the stated range. `state` defines which of them is the reference.
 """
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked_dimension, checked_packing_fraction
-from .geometry import CLOSE_PACKING
+from gaspart.scene.geometry import CLOSE_PACKING
+from gaspart.theory._arguments import Numbers, Values, checked_dimension, checked_packing_fraction
 
 STABLE_DISCS = 0.70
 """Highest packing fraction of the disc fluid (Bernard and Krauth 2011; recalled)."""

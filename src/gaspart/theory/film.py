@@ -6,9 +6,9 @@ surfaces, so that centres have H - 1.
 
 import numpy as np
 
-from ._arguments import checked, checked_packing_fraction
-from .equations import METASTABLE_SPHERES, carnahan_starling
-from .geometry import packing_fraction
+from gaspart.theory._arguments import checked, checked_packing_fraction
+from gaspart.theory.equations import METASTABLE_SPHERES, carnahan_starling
+from gaspart.theory.geometry import packing_fraction
 
 _RADIUS = 0.5
 

@@ -5,8 +5,9 @@ Diameter 1 and k_B T = 1: number densities in 1 / sigma^d, pressures in k_B T / 
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked, checked_dimension
-from .geometry import CLOSE_PACKING, packing_fraction
+from gaspart.scene.geometry import CLOSE_PACKING
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
+from gaspart.theory.geometry import packing_fraction
 
 COEXISTENCE_PRESSURE = {2: 9.185, 3: 11.573}
 """Pressure P sigma^d / k_B T at which fluid and ordered phase coexist, infinite system.
@@ -67,9 +68,9 @@ def alder_hoover_young_crystal(packing_fraction: Numbers, dimension: int) -> Val
 
 @checked
 def crystal_finite_size_correction(compressibility_factor: Values, count: Values) -> Values:
-    """Z_N - Z_infinity = -(Z - 1) / N of a periodic crystal of N bodies, its centre of mass free.
+    """Z_N - Z_infinity = -(Z - 1) / N of a periodic crystal of N particles, its centre of mass free.
 
-    The centre of mass explores the whole volume V, the other N - 1 bodies their free volumes: Q_N ~ V
+    The centre of mass explores the complete volume V, the other N - 1 particles their free volumes: Q_N ~ V
     v_f^(N-1), so Z_N = 1/N + (1 - 1/N) Z (exact towards close packing; further terms of order 1/N elsewhere
     are small).
     """

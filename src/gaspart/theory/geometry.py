@@ -1,11 +1,9 @@
-"""Volume of a body, number density and packing fraction: one definition for discs and spheres."""
+"""Volume of a particle, number density and packing fraction: one definition for discs and spheres."""
 
 import math
 
-from ._arguments import Numbers, Values, checked, checked_dimension
-
-CLOSE_PACKING = {2: math.pi / math.sqrt(12.0), 3: math.pi / math.sqrt(18.0)}
-"""Packing fraction of the densest arrangement: triangular lattice (2D), face-centred cubic (3D); exact."""
+from gaspart.scene.geometry import ball_volume
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
 
 
 def unit_sphere_surface(dimension: int) -> float:
@@ -16,16 +14,16 @@ def unit_sphere_surface(dimension: int) -> float:
 @checked
 def body_volume(dimension: int, diameter: float = 1.0) -> float:
     """Area of a disc, pi sigma^2 / 4, or volume of a sphere, pi sigma^3 / 6 (exact; length^dimension)."""
-    return unit_sphere_surface(dimension) / dimension * (0.5 * diameter) ** dimension
+    return ball_volume(checked_dimension(dimension), 0.5 * diameter)
 
 
 @checked
 def number_density(packing_fraction: Numbers, dimension: int, diameter: float = 1.0) -> Values:
-    """Bodies per volume, rho = eta / v (exact; 1 / length^dimension)."""
+    """Particles per volume, rho = eta / v (exact; 1 / length^dimension)."""
     return packing_fraction / body_volume(dimension, diameter)
 
 
 @checked
 def packing_fraction(number_density: Numbers, dimension: int, diameter: float = 1.0) -> Values:
-    """Fraction of the container's volume that bodies fill, eta = rho v (exact; dimensionless)."""
+    """Fraction of the container's volume that particles fill, eta = rho v (exact; dimensionless)."""
     return number_density * body_volume(dimension, diameter)

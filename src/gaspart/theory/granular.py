@@ -1,13 +1,13 @@
-"""Inelastic and rough bodies: Haff's law of cooling, and how rotation and translation share energy.
+"""Inelastic and rough particles: Haff's law of cooling, and how rotation and translation share energy.
 
-Time is counted in collisions per body, s = 2 N_coll / N, in which the collision rate, and with it the
-density, has no part. Homogeneous gases, velocities nearly Maxwellian and bodies uncorrelated: dilute, and
+Time is counted in collisions per particle, s = 2 N_coll / N, in which the collision rate, and with it the
+density, has no part. Homogeneous gases, velocities nearly Maxwellian and particles uncorrelated: dilute, and
 before clustering.
 """
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked, checked_dimension
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
 
 
 def fourth_cumulant(restitution: Numbers, dimension: int) -> Values:
@@ -37,7 +37,7 @@ def cooling_rate(restitution: Numbers, dimension: int) -> Values:
 
 @checked
 def haff_time(restitution: Numbers, dimension: int, collision_rate: Numbers) -> Values:
-    """t_H of Haff's law T = T_0 / (1 + t / t_H)^2; `collision_rate`: per body, of the elastic gas at T_0.
+    """t_H of Haff's law T = T_0 / (1 + t / t_H)^2; `collision_rate`: per particle, of the elastic gas at T_0.
 
     T falls by d ln T = -`cooling_rate` ds, and collisions become as rare as sqrt(T): 1 / t_H is half of
     `cooling_rate` times the rate, itself 1 - a2 / 16 of the elastic one. Haff, J. Fluid Mech. 134, 401
@@ -76,7 +76,7 @@ def rough_temperatures(
     normal: float = 1.0,
     start: tuple[float, float] = (1.0, 0.0),
 ) -> np.ndarray:
-    """T_tr and T_rot (2, ...) after s collisions per body, from `start`; `rough_matrix` integrated."""
+    """T_tr and T_rot (2, ...) after s collisions per particle, from `start`; `rough_matrix` integrated."""
     values, vectors = np.linalg.eig(rough_matrix(inertia, tangential, normal))
     weights = np.linalg.solve(vectors, np.asarray(start, dtype=float))
     s = np.asarray(collisions, dtype=float)

@@ -1,7 +1,7 @@
 """Gases under gravity: the ideal gas in a box of finite height, and hydrostatics of dense discs and spheres.
 
-Heights z are those of the bodies' centres, from the lowest place that a centre can reach; `height` is the
-highest. A field is given by w = m g / (k_B T) of a body, one over its scale height (1 / length).
+Heights z are those of the particles' centres, from the lowest place that a centre can reach; `height` is the
+highest. A field is given by w = m g / (k_B T) of a particle, one over its scale height (1 / length).
 """
 
 import math
@@ -9,14 +9,14 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._arguments import Numbers, Values, checked, checked_dimension
-from .geometry import body_volume
-from .potential import packing_fraction_at
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
+from gaspart.theory.geometry import body_volume
+from gaspart.theory.potential import packing_fraction_at
 
 
 @checked
 def ideal_profile(z: Numbers, height: float, weight: float) -> Values:
-    """Chance per length of finding a body at z: w e^{-w z} / (1 - e^{-w height}) (exact; canonical)."""
+    """Chance per length of finding a particle at z: w e^{-w z} / (1 - e^{-w height}) (exact; canonical)."""
     z = np.asarray(z, dtype=float)
     if weight == 0.0:
         return np.full_like(z, 1.0 / height)
@@ -49,14 +49,14 @@ def ideal_energy_moments(
 ) -> tuple[float, float]:
     """<K> and the variance of the kinetic energy K of an ideal gas at fixed total energy (exact).
 
-    energy: kinetic and potential, of `count` bodies that weigh `force` = m g each, floor at 0. The number of
-    states with potential energy U is proportional to p(U) (E - U)^{dN/2 - 1}, p the density of a sum of N
+    energy: kinetic and potential, of `count` particles that weigh `force` = m g each, floor at 0. The number
+    of states with potential energy U is proportional to p(U) (E - U)^{dN/2 - 1}, p the density of a sum of N
     independent potential energies, each uniform between 0 and force * height (walls all around: no momentum
     is conserved). p is found as the N-fold convolution, by Fourier transform, of one e^{-bU}, which puts its
     peak where it is wanted; the factor e^{bU} is put back afterwards.
 
-    Returns (mean, variance). From them follow T = 2 <K> / (dN) and, in the limit of many bodies, the heat
-    capacity `lebowitz_percus_verlet`. Raises ValueError unless 0 < energy <= d/2 N force height, say.
+    Returns (mean, variance). From them follow T = 2 <K> / (dN) and, in the limit of many particles, the heat
+    capacity `lebowitz_percus_verlet`. Raises ValueError unless 0 < energy <= d/2 N force height.
     """
     top = force * height
     freedom = 0.5 * checked_dimension(dimension) * count
@@ -85,7 +85,7 @@ def ideal_energy_moments(
 
 
 def _canonical_temperature(energy: float, top: float, dimension: int) -> float:
-    """T at which a body of an ideal gas has this mean energy, by bisection; `top`: m g height."""
+    """T at which a particle of an ideal gas has this mean energy, by bisection; `top`: m g height."""
     half = 0.5 * dimension
     low, high = 0.5 * energy / (half + 1.0), energy / half
     for _ in range(60):
@@ -116,10 +116,10 @@ def hydrostatic_profiles(
     """Densities of species of one size at heights z, hydrostatics with the reference equation of state.
 
     Every species' chemical potential is uniform, ln eta_i + mu_excess(eta) + w_i z = c_i, where eta is the
-    packing fraction of all bodies; summed, that is dP/dz = -sum of m_i g rho_i. A local approximation: good
-    where the density changes little over a diameter (error of order (w diameter)^2).
+    packing fraction of all particles; summed, that is dP/dz = -sum of m_i g rho_i. A local approximation:
+    good where the density changes little over a diameter (error of order (w diameter)^2).
 
-    z: (Z,) evenly spaced heights; numbers: (S,) bodies of each species per area (length in 2D) of the
+    z: (Z,) evenly spaced heights; numbers: (S,) particles of each species per area (length in 2D) of the
     column between the first and the last; weights: (S,) m_i g / (k_B T). Returns (S, Z) number densities, of
     which each integrates (trapezoids) to its number.
     """

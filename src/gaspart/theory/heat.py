@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked, checked_dimension
-from .enskog import enskog_conductivity, mean_free_path
-from .geometry import number_density, packing_fraction
-from .state import compressibility_factor
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
+from gaspart.theory.enskog import enskog_conductivity, mean_free_path
+from gaspart.theory.geometry import number_density, packing_fraction
+from gaspart.theory.state import compressibility_factor
 
 TEMPERATURE_JUMP = 2.127
 """T_gas - T_wall over l_0 dT/dn at a diffuse wall, hard spheres, l_0 = 1 / (sqrt 2 pi n sigma^2): 2.4001
@@ -22,10 +22,10 @@ sqrt(pi) / 2, Sone, Ohwada and Aoki, Phys. Fluids A 1, 363 (1989) (recalled)."""
 def free_molecular_flux(
     density: Numbers, hot: float, cold: float, dimension: int, mass: float = 1.0, components: str = "all"
 ) -> Values:
-    """Flux through a gas whose bodies meet nothing but the walls, (d + 1) n sqrt(T_1 T_2 / (2 pi m))
+    """Flux through a gas whose particles collide with the walls only, (d + 1) n sqrt(T_1 T_2 / (2 pi m))
     (sqrt T_1 - sqrt T_2).
 
-    A body brings (d + 1) T / 2 from a wall; where a wall changes the normal component alone ("normal",
+    A particle brings (d + 1) T / 2 from a wall; where a wall changes the normal component alone ("normal",
     Frederickx & Meerts 2010), T: 2 / (d + 1) of the flux, 1/2 in 3D and 2/3 in 2D. Exact (closed form).
     """
     carried = {"all": checked_dimension(dimension) + 1, "normal": 2}[components]
@@ -37,7 +37,7 @@ def free_molecular_flux(
 def dilute_fourier_flux(length: float, hot: float, cold: float, diameter: float = 1.0) -> float:
     """(2/3) lambda_0 (T_1^(3/2) - T_2^(3/2)) / length of spheres of mass 1: Fourier's law with lambda_0
     proportional to sqrt T, in the limit of a wide gap and a dilute gas. It does not depend on the density
-    (Maxwell 1860). Exact in that limit, as good as lambda_0.
+    (Maxwell 1860). Exact in that limit, with the accuracy of lambda_0.
     """
     conductivity = enskog_conductivity(0.0, 3, diameter, 1.0)
     return 2.0 / 3.0 * conductivity * (hot**1.5 - cold**1.5) / length

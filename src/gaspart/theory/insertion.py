@@ -1,17 +1,18 @@
 """Random sequential insertion: where it ends, and how often an attempt fails.
 
-Bodies of diameter sigma are placed one after another at uniformly random points, and stay if they overlap no
-other.
+Particles of diameter sigma are placed one after another at uniformly random points, and stay if they overlap
+no other.
 """
 
 import math
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
 
 RSA_SATURATION = {2: 0.547074, 3: 0.384131}
-"""Packing fraction at which no further body fits, infinite container (Zhang, Torquato 2013; literature)."""
+"""Packing fraction at which no further particle fits, infinite container (Zhang, Torquato 2013;
+literature)."""
 RSA_SATURATION_UNCERTAINTY = {2: 3e-6, 3: 3e-6}
 """Standard uncertainty of RSA_SATURATION (recalled: a few units of the last digit)."""
 
@@ -30,7 +31,7 @@ def _shape_factor(excess: float, dimension: int, side_over_diameter: float, boun
     if boundary == "centres_to_walls":
         return (1.0 + excess / side_over_diameter) ** dimension
     if boundary == "wall":
-        # Centres have L - sigma; the bodies are counted in the volume L^d.
+        # Centres have L - sigma; the particles are counted in the volume L^d.
         return ((side_over_diameter - 1.0 + excess) / side_over_diameter) ** dimension
     raise ValueError(f"boundary: {boundary!r} (must be 'periodic', 'wall' or 'centres_to_walls')")
 
@@ -41,11 +42,11 @@ def insertion_saturation(
 ) -> float:
     """Packing fraction at saturation of a square or cubic container of side L (dimensionless).
 
-    `boundary`: "periodic": the infinite value at every L (fluctuations only); "centres_to_walls": source A's
-    rule, centres in [0, L]^d, whole bodies counted: eta_s (1 + c sigma/L)^d, c = 0.64 (3D, computed, L/sigma
-    >= 4) or 0.75 (2D, computed, L/sigma about 100); "wall": bodies wholly inside, the same with centres in L
-    - sigma, so that the packing fraction stays below the infinite value. `side_over_diameter` None: infinite
-    container.
+    boundary: "periodic": the infinite value at every L (fluctuations only); "centres_to_walls": source A's
+    rule, centres in [0, L]^d, particles counted completely: eta_s (1 + c sigma/L)^d, c = 0.64 (3D, computed,
+    L/sigma >= 4) or 0.75 (2D, computed, L/sigma about 100); "wall": particles completely inside, the same
+    with centres in L - sigma, so that the packing fraction stays below the infinite value.
+    side_over_diameter: None for an infinite container.
     """
     infinite = RSA_SATURATION[checked_dimension(dimension)]
     if side_over_diameter is None or boundary == "periodic":
@@ -82,7 +83,7 @@ def available_fraction(packing_fraction: Numbers, dimension: int) -> Values:
 
 
 def failures_per_body(packing_fraction: Numbers, dimension: int) -> Values:
-    """Mean number of failed attempts before a body is placed at this packing fraction: 1 / available - 1.
+    """Mean number of failed attempts before a particle is placed at this packing fraction: 1 / available - 1.
 
     2^d eta at low density (exact); range that of `available_fraction`.
     """

@@ -7,8 +7,8 @@ from functools import cache
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
-from .state import HIGHEST_PACKING_FRACTION, compressibility_factor, contact_value
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
+from gaspart.theory.state import HIGHEST_PACKING_FRACTION, compressibility_factor, contact_value
 
 _LOWEST = 1e-9
 """Packing fraction below which the fluid is an ideal gas to nine digits."""

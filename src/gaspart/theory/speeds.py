@@ -10,12 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked, checked_dimension
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
 
 _TABLES = Path(__file__).parent / "data"
 
 KURTOSIS_RELAXATION_RATE = {2: 0.4360, 3: 0.4748}
-"""Final decay rate of K - K_eq, per collision per body (computed; homogeneous Boltzmann equation)."""
+"""Final decay rate of K - K_eq, per collision per particle (computed; homogeneous Boltzmann equation)."""
 RELAXATION_UNCERTAINTY = 3e-4
 """Standard uncertainty of the tabulated kurtosis and never-hit fraction (computed, Monte Carlo)."""
 
@@ -42,7 +42,8 @@ def maxwell_pdf(speed: Numbers, dimension: int, temperature: float = 1.0, mass: 
 
 @checked
 def maxwell_cdf(speed: Numbers, dimension: int, temperature: float = 1.0, mass: float = 1.0) -> Values:
-    """Fraction of bodies slower than `speed` (exact): incomplete gamma function P(d/2, m v^2 / 2 k_B T)."""
+    """Fraction of particles slower than `speed` (exact): incomplete gamma function P(d/2, m v^2 / 2 k_B
+    T)."""
     from scipy.special import gammainc
 
     checked_dimension(dimension)
@@ -52,7 +53,8 @@ def maxwell_cdf(speed: Numbers, dimension: int, temperature: float = 1.0, mass: 
 
 @checked
 def maxwell_ppf(probability: Numbers, dimension: int, temperature: float = 1.0, mass: float = 1.0) -> Values:
-    """Speed below which the fraction `probability` of the bodies lies: inverse of `maxwell_cdf` (exact)."""
+    """Speed below which the fraction `probability` of the particles lies: inverse of `maxwell_cdf`
+    (exact)."""
     from scipy.special import gammaincinv
 
     checked_dimension(dimension)
@@ -64,8 +66,8 @@ def maxwell_ppf(probability: Numbers, dimension: int, temperature: float = 1.0, 
 def kurtosis(dimension: int, count: int | None = None, zero_momentum: bool = False) -> float:
     """<v^4> / <v^2>^2 in equilibrium: (d+2)/d, that is 2 in 2D and 5/3 in 3D (exact).
 
-    With `count` bodies at fixed energy the velocities are uniform on a sphere in D = d N dimensions (d (N-1)
-    if the total momentum is held at zero), and a body's kurtosis is (d+2)/d times D/(D+2) (exact).
+    With `count` particles at fixed energy the velocities are uniform on a sphere in D = d N dimensions (d
+    (N-1) if the total momentum is held at zero), and a particle's kurtosis is (d+2)/d times D/(D+2) (exact).
     """
     infinite = (checked_dimension(dimension) + 2.0) / dimension
     if count is None:
@@ -75,7 +77,7 @@ def kurtosis(dimension: int, count: int | None = None, zero_momentum: bool = Fal
 
 
 def initial_kurtosis_slope(dimension: int) -> float:
-    """dK/ds at s = 0 from equal speeds, s collisions per body: 64/225 in 2D, 8/35 in 3D (exact)."""
+    """dK/ds at s = 0 from equal speeds, s collisions per particle: 64/225 in 2D, 8/35 in 3D (exact)."""
     return {2: 64.0 / 225.0, 3: 8.0 / 35.0}[checked_dimension(dimension)]
 
 
@@ -83,10 +85,10 @@ def initial_kurtosis_slope(dimension: int) -> float:
 class Relaxation:
     """Relaxation of a gas in which all speeds are equal at first, from the homogeneous Boltzmann equation.
 
-    `s` is the number of collisions per body so far, 2 N_collisions / N: on that clock the curves do not
+    `s` is the number of collisions per particle so far, 2 N_collisions / N: on that clock the curves do not
     depend on diameter, speed or density (Enskog theory). Computed by Monte Carlo, good to
     RELAXATION_UNCERTAINTY up to `longest`; beyond it the last decay is continued, which stays within that
-    error. Infinite number of bodies: a finite gas at fixed energy ends at `kurtosis(dimension, count)`
+    error. Infinite number of particles: a finite gas at fixed energy ends at `kurtosis(dimension, count)`
     instead.
     """
 
@@ -105,11 +107,12 @@ class Relaxation:
     def _checked(self, s: Numbers) -> np.ndarray:
         s = np.asarray(s, dtype=float)
         if not np.all(s >= 0.0):
-            raise ValueError(f"collisions per body: {s} (must not be negative)")
+            raise ValueError(f"collisions per particle: {s} (must not be negative)")
         return s
 
     def kurtosis(self, s: Numbers) -> Values:
-        """<v^4> / <v^2>^2 after `s` collisions per body: 1 at first, (d+2)/d in the end (dimensionless)."""
+        """<v^4> / <v^2>^2 after `s` collisions per particle: 1 at first, (d+2)/d in the end
+        (dimensionless)."""
         s = self._checked(s)
         beyond = np.maximum(s - self.longest, 0.0) * KURTOSIS_RELAXATION_RATE[self.dimension]
         log_excess = np.interp(s, self.collisions_table, self.log_excess_table) - beyond
@@ -117,7 +120,7 @@ class Relaxation:
         return end - (end - 1.0) * np.exp(log_excess)
 
     def never_hit(self, s: Numbers) -> Values:
-        """Fraction of the bodies that have had no collision (dimensionless); slightly below exp(-s)."""
+        """Fraction of the particles that have had no collision (dimensionless); slightly below exp(-s)."""
         s = self._checked(s)
         last_rate = -self.log_never_hit_table[-1] / self.longest
         log_fraction = np.interp(s, self.collisions_table, self.log_never_hit_table)
@@ -131,10 +134,10 @@ class Relaxation:
         return end + (np.interp(s, self.collisions_table, self.mean_speed_table) - end) * decay
 
     def collisions(self, equilibrium_collisions: Numbers) -> Values:
-        """s at the time when a gas in equilibrium would have had `equilibrium_collisions` per body.
+        """s at the time when a gas in equilibrium would have had `equilibrium_collisions` per particle.
 
         The argument is nu t at the same energy, with nu = `enskog.collision_rate`. s is the larger:
-        bodies of equal speeds collide more often, by 2.3 % in 3D and 1.6 % in 2D at first. Good to 0.5 %.
+        particles of equal speeds collide more often, by 2.3 % in 3D and 1.6 % in 2D at first. Good to 0.5 %.
         """
         tau = self._checked(equilibrium_collisions)
         beyond = np.maximum(tau - self.equilibrium_table[-1], 0.0)
@@ -148,7 +151,8 @@ def relaxation(dimension: int) -> Relaxation:
         _TABLES / f"relaxation_{checked_dimension(dimension)}d.csv", delimiter=",", skiprows=1, unpack=True
     )
     end = kurtosis(dimension)
-    # In one tick of the table's clock a body collides <v_12> / v_rms times, <v_12> the mean relative speed.
+    # In one tick of the table's clock a particle collides <v_12> / v_rms times, <v_12> the mean relative
+    # speed.
     ticks = math.sqrt(2.0) * mean_speed(dimension) / math.sqrt(dimension)
     return Relaxation(
         dimension=dimension,

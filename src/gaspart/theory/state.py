@@ -6,9 +6,9 @@ Everything here is dimensionless and depends on the packing fraction alone.
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
-from .equations import METASTABLE_SPHERES, STABLE_DISCS, kolafa_labik_malijevsky, liu
-from .virial import (
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
+from gaspart.theory.equations import METASTABLE_SPHERES, STABLE_DISCS, kolafa_labik_malijevsky, liu
+from gaspart.theory.virial import (
     HIGHEST_ORDER,
     linear_tail,
     linear_tail_uncertainty,
@@ -43,7 +43,7 @@ def compressibility_factor(packing_fraction: Numbers, dimension: int) -> Values:
     """Z = P / (rho k_B T) of the infinite fluid, best reference at hand (same shape as `packing_fraction`).
 
     2D: `virial_with_tail`, 0 <= eta <= 0.70. 3D: `kolafa_labik_malijevsky`, 0 <= eta <= 0.539.
-    Raises ValueError outside. `compressibility_uncertainty` says how good it is.
+    Raises ValueError outside. See `compressibility_uncertainty`.
     """
     if checked_dimension(dimension) == 2:
         return virial_with_tail(packing_fraction, 2)
@@ -54,7 +54,7 @@ def compressibility_uncertainty(packing_fraction: Numbers, dimension: int) -> Va
     """Standard uncertainty of `compressibility_factor` (computed estimate; same shape).
 
     2D, in quadrature: the coefficients' uncertainties; the tail's slope; the difference to Liu's independent
-    equation, but no more than the whole tail, because at low density the series is the better of the two; and
+    equation, but no more than the complete tail, because at low density the series is the better of the two; and
     what both are found to lack near freezing, 0.4 % at eta = 0.65 and 10 % at 0.70. 3D: the sharper of two
     bounds: the data's own error (2e-5 of Z), or the difference to the virial series to B10 plus its tail and
     the coefficients' uncertainties (below 1e-6 for eta < 0.1).
@@ -104,7 +104,7 @@ def speed_of_sound(packing_fraction: Numbers, dimension: int) -> Values:
 def finite_size_correction(
     packing_fraction: Numbers, dimension: int, count: int, ensemble: str = "dynamics"
 ) -> Values:
-    """Z_N - Z_infinity of `count` bodies in a periodic container, to first order in 1/N.
+    """Z_N - Z_infinity of `count` particles in a periodic container, to first order in 1/N.
 
     `ensemble="canonical"`. In a periodic container the grand partition function is exp(P V / k_B T) up to
     terms that fall exponentially with the side. Taking N out of it by the saddle point gives
@@ -120,10 +120,10 @@ def finite_size_correction(
 
     `ensemble="dynamics"` (default): what Z = 1 + sum |dr . dp| / (2 E t) measures, E the kinetic energy and
     the total momentum zero, as in a periodic run. Configurations are those of the canonical ensemble, but two
-    bodies of a set with zero total momentum have <v_12^2> = 2 <v^2> N / (N-1), and the collisional virial is
-    proportional to it (contacts at rate |v_n|, each giving |v_n|). So Z_N - 1 is the canonical one times N /
-    (N-1), and the first order in eta has no correction at all. (If the total momentum is not zero, E is that
-    of the motion about it.)
+    particles of a set with zero total momentum have <v_12^2> = 2 <v^2> N / (N-1), and the collisional virial
+    is proportional to it (contacts at rate |v_n|, each giving |v_n|). So Z_N - 1 is the canonical one times N
+    / (N-1), and the first order in eta has no correction at all. (If the total momentum is not zero, E is
+    that of the motion about it.)
 
     Arguments: eta (number or array) within the reference's range, dimension 2 or 3, count >= 2.
     Dimensionless. Neglected: 1/N^2, and exponentially small terms, which matter when the side is only a few

@@ -1,6 +1,6 @@
 """Virial coefficients of hard discs and hard spheres, and the partial sums of the series.
 
-Z(eta) = 1 + sum over n >= 2 of b_n eta^(n-1), with b_n = B_n / v^(n-1) and v the volume of a body.
+Z(eta) = 1 + sum over n >= 2 of b_n eta^(n-1), with b_n = B_n / v^(n-1) and v the volume of a particle.
 """
 
 import math
@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked_dimension, checked_packing_fraction
-from .geometry import CLOSE_PACKING
+from gaspart.scene.geometry import CLOSE_PACKING
+from gaspart.theory._arguments import Numbers, Values, checked_dimension, checked_packing_fraction
 
 HIGHEST_ORDER = 10
 _TABLES = Path(__file__).parent / "data"
@@ -82,10 +82,10 @@ def partial_sum_uncertainty(packing_fraction: Numbers, order: int, dimension: in
 
 
 def linear_tail(packing_fraction: Numbers, dimension: int) -> Values:
-    """Terms beyond B10 if b_n goes on linearly with the last known difference (computed; an extrapolation).
+    """Terms beyond B10 if b_n continues linearly with the last known difference (computed; an extrapolation).
 
     b_(10+k) = b_10 + k (b_10 - b_9), so the tail is eta^10 [b_10 / (1-eta) + (b_10 - b_9) / (1-eta)^2].
-    In 2D the differences settle (0.989, 0.967, 0.953, 0.944), which makes this a good guess to eta = 0.65;
+    In 2D the differences converge (0.989, 0.967, 0.953, 0.944), which makes this a good estimate up to eta = 0.65;
     in 3D they still grow by about 2 each time, which makes it a lower bound.
     """
     coefficients, _ = virial_coefficients(dimension)

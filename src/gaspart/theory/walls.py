@@ -1,4 +1,4 @@
-r"""Hard bodies between hard walls: what a container shifts in the pressure that its walls feel.
+r"""Hard particles between hard walls: what a container shifts in the pressure that its walls feel.
 
 Centres can touch a container that has walls on w of its d axes only within l = L - sigma on each of these,
 so that is the volume V to which the fluid's thermodynamics applies. With the surface tension gamma of the
@@ -7,7 +7,8 @@ is, all walled sides being alike,
 
 .. math:: \Omega / V = -P + 2 w \gamma / l + 2 w (w-1) \tau / l^2 .
 
-Its derivative by the chemical potential is the number of bodies, by one of the lengths the force on a wall:
+Its derivative by the chemical potential is the number of particles, by one of the lengths the force on a
+wall:
 
 .. math:: N / V = \rho + 2 w \Gamma / l + 2 w (w-1) \Gamma_\tau / l^2, \qquad
           F / A = P - 2 (w-1) \gamma / l - 2 (w-1)(w-2) \tau / l^2 ,
@@ -24,9 +25,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
-from .geometry import number_density
-from .state import compressibility_factor, compressibility_uncertainty, finite_size_correction
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
+from gaspart.theory.geometry import number_density
+from gaspart.theory.state import compressibility_factor, compressibility_uncertainty, finite_size_correction
 
 _TABLES = Path(__file__).parent / "data"
 _DENSEST = 0.49
@@ -78,16 +79,17 @@ def surface_tension_uncertainty(packing_fraction: Numbers, dimension: int) -> Va
 def wall_pressure(
     length: float, density: float, count: int, dimension: int, axes: int
 ) -> tuple[float, float]:
-    """Mean pressure of `count` bodies on the walls of a container, and its uncertainty.
+    """Mean pressure of `count` particles on the walls of a container, and its uncertainty.
 
     The force on a wall over the area that centres can touch, of the canonical ensemble: the module's
     equations, and the canonical correction of first order in 1/N (`finite_size_correction`). The uncertainty
     is that of the equation of state, of the surface tension, and of the edges, whose second order is
     uncertain by as much as gamma exceeds its own.
 
-    length: the side of the container along each of its walled `axes`, in diameters; density: bodies per
+    length: the side of the container along each of its walled `axes`, in diameters; density: particles per
     volume that centres can touch. Returns two numbers in k_B T / sigma^d. Raises ValueError for a container
-    no larger than a body, a number of axes it does not have, or a fluid that would be denser than eta = 0.49.
+    no larger than a particle, a number of axes it does not have, or a fluid that would be denser than eta =
+    0.49.
     """
     if not length > 1.0:
         raise ValueError(f"length: {length} (must be above 1, the diameter)")
@@ -125,7 +127,7 @@ def _in_container(
         return edge * _EDGE[dimension] * number_density(eta, dimension) ** 2
 
     def excess(eta: float) -> float:
-        """By how much the bodies at this density of the bulk are too many."""
+        """By how much the particles at this density of the bulk are too many."""
         slope = _slope(lambda x: x * compressibility_factor(x, dimension), eta)
         adsorbed = -eta / slope * (surfaces * _slope(gamma, eta) + edges * _slope(tau, eta))
         return float(number_density(eta, dimension) + adsorbed - density)

@@ -1,5 +1,5 @@
-"""What accuracy costs, as a model: errors of time steps, noise of run lengths, and the price of both.
+"""A model of the cost of accuracy: errors of time steps, noise of run lengths, and processor time.
 
-`data/tradeoff.csv` holds what was measured (`gaspart.tradeoff.fit` makes it); `table` reads it, `speed`
-carries its times over to this machine, `advice` chooses engine and settings, `grids` for whole configs.
+`data/tradeoff.csv` holds the measurements (written by `gaspart.tradeoff.fit`); `table` reads it, `speed` measures
+this machine against it, `advice` chooses engine and settings.
 """

@@ -1,6 +1,6 @@
-"""Which engine, with which settings and for how long, gives a wanted accuracy at the least cost.
+"""The engine, settings and run length that give a required accuracy at the lowest cost.
 
-The result of a run of n contacts of two bodies is off by at most |bias| + 1.96 sqrt(noise / n) in 95 % of
+The result of a run of n contacts of two particles is off by at most |bias| + 1.96 sqrt(noise / n) in 95 % of
 all runs, bias being that of the time step. For each setting the n follows that makes this the wanted
 accuracy, and from it the cost; the cheapest setting is advised.
 """
@@ -11,6 +11,7 @@ import math
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from gaspart import theory
 from gaspart.engines import EventDriven, TimeStepped
@@ -18,17 +19,19 @@ from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
 from gaspart.tradeoff import speed, table
-from gaspart.tradeoff.table import LEAST, QUANTILE, SETTLING
+from gaspart.tradeoff.table import EQUILIBRATION, LEAST, QUANTILE
 
 ACCURACIES = 1e-8, 1.0
-"""The sharpest relative accuracy that float64 sums and the table can stand for, and the coarsest."""
-_PER_SETTLING = 10.0  # a replica is to be so many times longer than its start
+"""The best relative accuracy that float64 sums and the table support, and the worst."""
+SpeedOf: TypeAlias = Callable[[int, str, str, int], float]
+"""A function as `gaspart.tradeoff.speed.factor`."""
+_PER_EQUILIBRATION = 10.0  # smallest ratio of a replica's length to its equilibration
 _BULK = 4.0  # the finite size of a gas should cost no more than this part of the accuracy
 
 
 @dataclass(frozen=True)
 class Gas:
-    """What the advice depends on: one species of equal smooth bodies."""
+    """The gas that is advised on: one species of equal smooth particles."""
 
     dimension: int
     packing_fraction: float
@@ -38,15 +41,16 @@ class Gas:
 
     @property
     def collision_rate(self) -> float:
-        """Of one body."""
+        """Collisions of one particle per time."""
         temperature = self.thermal_speed**2
         return float(theory.collision_rate(self.packing_fraction, self.dimension, self.diameter, temperature))
 
 
 @dataclass(frozen=True)
 class Setting:
-    """One way of doing it. bias: bound on the error of its steps; contacts: to be measured, in all replicas;
-    seconds: of processor time, settling included; half_width: of the 95 % interval, relative."""
+    """One engine with its settings. bias: bound on the error of its time steps; contacts: to be measured, in
+    all replicas; seconds: of processor time, equilibration included; half_width: of the 95 % interval,
+    relative."""
 
     engine: EventDriven | TimeStepped
     bias: float
@@ -59,9 +63,8 @@ class Setting:
 class Advice:
     """The setting to take, the best one of each other kind, and what follows for the run.
 
-    collisions_per_body: measured, in each replica; duration: the same in the scene's time; settling: before
-    it, in collisions per body. finite_size: relative difference from the infinite gas; bulk_count: bodies for
-    which that is a quarter of the accuracy. Both NaN where no theory says.
+    collisions_per_body: measured, in each replica; duration: the same in the scene's time; finite_size: relative difference from the infinite gas; bulk_count:
+    particles for which that is a quarter of the accuracy. Both NaN where there is no theory.
     """
 
     gas: Gas
@@ -76,13 +79,24 @@ class Advice:
 
     @property
     def duration(self) -> float:
-        """What is measured of each replica, in the scene's time."""
+        """Measured length of each replica, in the scene's time."""
         return self.collisions_per_body / self.gas.collision_rate
 
     @property
     def within_budget(self) -> bool:
-        """Whether the setting reaches the accuracy, which a budget may forbid."""
+        """Whether the setting reaches the accuracy within the budget."""
         return self.setting.half_width <= self.accuracy * (1.0 + 1e-9)
+
+
+@dataclass(frozen=True)
+class _Wish:
+    """What is to be reached: the arguments of `advise`, and the noise of the observable."""
+
+    observable: str
+    accuracy: float
+    noise: float
+    budget: float | None
+    speed_of: SpeedOf
 
 
 def plain_gas(scene: Scene) -> Gas:
@@ -90,7 +104,7 @@ def plain_gas(scene: Scene) -> Gas:
     kinds = scene.species
     plain = Scene(scene.container, kinds, centres_to_walls=scene.centres_to_walls)
     if len(kinds) != 1 or kinds[0].fixed or scene != plain:
-        rule = "advice is known for one species of smooth bodies alone, without gravity or obstacles"
+        rule = "advice is known for one species of smooth particles alone, without gravity or obstacles"
         raise SceneError("species", len(kinds), rule)
     if not kinds[0].count:
         raise SceneError("count", 0, "advice is for a gas: the scene is empty")
@@ -99,13 +113,13 @@ def plain_gas(scene: Scene) -> Gas:
     if temperature is None:
         temperature = kind.mass * (kind.speed or 0.0) ** 2 / dimension
     if not temperature > 0.0:
-        raise SceneError("temperature", temperature, "advice is for bodies that move")
+        raise SceneError("temperature", temperature, "advice is for moving particles")
     speed = math.sqrt(temperature / kind.mass)
     return Gas(dimension, scene.packing_fraction, kind.count, 2.0 * kind.radius, speed)
 
 
 def gas_of(scene: Scene) -> Gas:
-    """The same for a fluid. Raises SceneError for a scene whose errors nobody has measured."""
+    """The same for a fluid. Raises SceneError for a scene whose errors were not measured."""
     gas = plain_gas(scene)
     highest = theory.HIGHEST_PACKING_FRACTION[gas.dimension]
     if gas.packing_fraction > highest:
@@ -119,14 +133,14 @@ def advise(
     observable: str,
     accuracy: float,
     budget: float | None = None,
-    speed_of: Callable[[int, str, str, int], float] = speed.factor,
+    speed_of: SpeedOf = speed.factor,
 ) -> Advice:
-    """The cheapest way to a relative `accuracy` (95 % half-width) of an observable: Z, collision_rate or D.
+    """The cheapest setting for a relative `accuracy` (95 % half-width) of an observable: Z, collision_rate or D.
 
-    budget: processor time in seconds; if it does not suffice, the most accurate way within it is advised.
+    budget: processor time in seconds; if it does not suffice, the most accurate setting within it is advised.
     speed_of: this machine's time over the table's (see `gaspart.tradeoff.speed`).
 
-    Raises SceneError for what the table does not know.
+    Raises SceneError for anything that the table does not cover.
     """
     if observable not in table.OBSERVABLES:
         raise SceneError("observable", observable, f"must be one of {', '.join(table.OBSERVABLES)}")
@@ -141,10 +155,11 @@ def advise(
         raise SceneError(
             "observable", observable, "discs have no diffusion coefficient: it grows with the size"
         )
+    wish = _Wish(observable, accuracy, noise, budget, speed_of)
     settings = [
         made
         for engine, precision, step in _engines(gas)
-        if (made := _setting(gas, engine, precision, step, observable, accuracy, noise, budget, speed_of))
+        if (made := _setting(gas, wish, engine, precision, step))
     ]
     best = min(settings, key=lambda made: (max(made.half_width, accuracy), made.seconds))
     others = tuple(
@@ -156,7 +171,7 @@ def advise(
         if kind
     )
     per_body = 2.0 * best.contacts / gas.count
-    replicas = max(1, min(os.cpu_count() or 1, int(per_body / (_PER_SETTLING * SETTLING))))
+    replicas = max(1, min(os.cpu_count() or 1, int(per_body / (_PER_EQUILIBRATION * EQUILIBRATION))))
     finite_size = _finite_size(gas, observable)
     return Advice(
         gas,
@@ -172,7 +187,7 @@ def advise(
 
 
 def _engines(gas: Gas) -> Iterator[tuple[EventDriven | TimeStepped, str, float]]:
-    """(engine, precision, its time step in the table's unit) of all settings that might do."""
+    """(engine, precision, its time step in the table's unit) of all settings to compare."""
     yield EventDriven(), "float64", 0.0
     unit = gas.diameter / gas.thermal_speed
     for precision, step in table.steps(gas.dimension):
@@ -180,31 +195,23 @@ def _engines(gas: Gas) -> Iterator[tuple[EventDriven | TimeStepped, str, float]]
 
 
 def _setting(
-    gas: Gas,
-    engine: EventDriven | TimeStepped,
-    precision: str,
-    step: float,
-    observable: str,
-    accuracy: float,
-    noise: float,
-    budget: float | None,
-    speed_of: Callable[[int, str, str, int], float],
+    gas: Gas, wish: _Wish, engine: EventDriven | TimeStepped, precision: str, step: float
 ) -> Setting | None:
-    """None if the error of its steps leaves no room, or nothing is known of it."""
+    """Cost and error of one setting; None if its time step is too inaccurate or was not measured."""
     bias = 0.0
     if engine.name == "step":
-        bias = table.bias(gas.dimension, gas.packing_fraction, precision, step, observable)
-    room = (accuracy - bias) / QUANTILE
+        bias = table.bias(gas.dimension, gas.packing_fraction, precision, step, wish.observable)
+    room = (wish.accuracy - bias) / QUANTILE
     each = table.seconds(gas.dimension, gas.packing_fraction, engine.name, precision, step)
     if room <= 0.0 or not math.isfinite(each):
         return None
-    each *= speed_of(gas.dimension, engine.name, precision, gas.count)
-    settling = 0.5 * gas.count * SETTLING
-    contacts = max(noise / room**2, 0.5 * gas.count * LEAST)
-    if budget is not None:
-        contacts = min(contacts, max(budget / each - settling, 1.0))
-    half_width = bias + QUANTILE * math.sqrt(noise / contacts)
-    return Setting(engine, bias, contacts, (contacts + settling) * each, half_width)
+    each *= wish.speed_of(gas.dimension, engine.name, precision, gas.count)
+    equilibration = 0.5 * gas.count * EQUILIBRATION
+    contacts = max(wish.noise / room**2, 0.5 * gas.count * LEAST)
+    if wish.budget is not None:
+        contacts = min(contacts, max(wish.budget / each - equilibration, 1.0))
+    half_width = bias + QUANTILE * math.sqrt(wish.noise / contacts)
+    return Setting(engine, bias, contacts, (contacts + equilibration) * each, half_width)
 
 
 def _finite_size(gas: Gas, observable: str) -> float:

@@ -17,6 +17,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.tradeoff.table import COLUMNS, PRECISIONS
+from gaspart.trajectory import provenance
 
 
 def rows(folder: Path) -> list[dict]:
@@ -89,8 +90,6 @@ def _diffusion(msd: xr.Dataset) -> Iterator[dict]:
 
 def main(folder: str) -> None:
     """Write the table to the standard output."""
-    from gaspart.trajectory import provenance
-
     revision = provenance.git_revision()
     print(
         "# What accuracy costs; columns in gaspart/tradeoff/table.py. Made by python -m gaspart.tradeoff.fit"

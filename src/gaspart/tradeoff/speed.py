@@ -1,4 +1,4 @@
-"""How fast this machine is: the table's times, carried over by a run of a tenth of a second."""
+"""Speed of this machine relative to that of the table, measured by a run of a tenth of a second."""
 
 from __future__ import annotations
 
@@ -7,32 +7,31 @@ import statistics
 import time
 from functools import cache
 
+from gaspart import theory
+from gaspart.engines import EventDriven, TimeStepped
+from gaspart.scene.container import Container
+from gaspart.scene.scene import Scene
+from gaspart.scene.species import Species
+from gaspart.simulation.simulation import Simulation
 from gaspart.tradeoff import table
 from gaspart.tradeoff.table import REFERENCE, STEP
 
-_LEAST, _MOST = 500, 100_000  # bodies that are timed
-_GROWTH = 0.15  # a contact of ten times as many bodies beyond takes 1.4 times as long: they lie in memory
+_LEAST, _MOST = 500, 100_000  # particles in a timed run
+_GROWTH = 0.15  # exponent of the time per contact with the number of particles beyond, which exceed the cache
 _CONTACTS = 2e4
 
 
 @cache
 def factor(dimension: int, engine: str, precision: str, count: int) -> float:
-    """Processor time of a contact here over that of the table, at this number of bodies.
+    """Processor time of a contact here over that of the table, for `count` particles.
 
-    Timed is the reference gas, from a lattice that has forgotten itself a little, three times.
+    The reference gas is timed three times, after a short run from a lattice.
     """
-    from gaspart import theory
-    from gaspart.engines import EventDriven, TimeStepped
-    from gaspart.scene.container import Container
-    from gaspart.scene.scene import Scene
-    from gaspart.scene.species import Species
-    from gaspart.simulation.simulation import Simulation
-
     growth = max(1.0, count / _MOST) ** _GROWTH
     count = min(max(count, _LEAST), _MOST)
     side = (count * theory.body_volume(dimension) / REFERENCE) ** (1.0 / dimension)
-    bodies = Species(count, 0.5, temperature=1.0, arrangement="lattice")
-    gas = Scene(Container((side,) * dimension, boundary="periodic"), species=(bodies,))
+    particles = Species(count, 0.5, temperature=1.0, arrangement="lattice")
+    gas = Scene(Container((side,) * dimension, boundary="periodic"), species=(particles,))
     chosen = EventDriven() if engine == "event" else TimeStepped(STEP, precision=precision)
     rate = float(theory.collision_rate(REFERENCE, dimension))
     run = Simulation(gas, chosen, seed=1)
@@ -49,5 +48,5 @@ def factor(dimension: int, engine: str, precision: str, count: int) -> float:
 
 
 def as_measured(dimension: int, engine: str, precision: str, count: int) -> float:
-    """The machine of the table: for choices that must be the same everywhere."""
+    """Factor 1, the machine of the table: for choices that must be the same on every machine."""
     return 1.0

@@ -1,10 +1,10 @@
-"""The table of what was measured, and what lies between its points.
+"""The table of measured costs and errors, and interpolation between its points.
 
 Columns: ``dimension``, ``packing_fraction``; ``engine`` (event or step, the latter with its standard four
 passes and rewinding), ``precision``, ``time_step`` in diameters over the thermal speed (kT / m)^(1/2);
 ``quantity``, its ``value`` and standard ``error``. Quantities: ``seconds`` of processor time for one exact
-contact of two bodies; ``bias_<observable>``, relative error; ``noise_<observable>``, the relative variance of
-an estimate times the contacts that it is made of. Observables: Z, collision_rate, D.
+contact of two particles; ``bias_<observable>``, relative error; ``noise_<observable>``, the relative variance
+of an estimate times the contacts that it is made of. Observables: Z, collision_rate, D.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ PATH = Path(__file__).parent / "data" / "tradeoff.csv"
 PRECISIONS = {"4 passes": "float64", "4 passes, float32": "float32"}
 """The settings of the time-stepped engine that are worth advising, by their names in figures."""
 QUANTILE = 1.96
-SETTLING = 30.0
-"""Collisions per body before anything is measured."""
+EQUILIBRATION = 30.0
+"""Collisions per particle before anything is measured."""
 LEAST = 20.0
-"""Collisions per body that are measured at least: a shorter run is no average over time."""
+"""Collisions per particle that are measured at least: a shorter run is no average over time."""
 REFERENCE, STEP = 0.1, 0.08
 """Packing fraction of the gas by which times are carried over, and the time step with which it is timed."""
 _SAFE = 2.0  # standard errors added to a bias

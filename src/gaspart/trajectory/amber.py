@@ -39,7 +39,7 @@ MOST_FRAMES = 2**31 - 1
 
 
 def face_names(dimension: int, walls: int = 0) -> list[str]:
-    """(2d + walls,) what faces and interior walls are called, in the order of the counters."""
+    """(2d + walls,) names of faces and interior walls, in the order of the counters."""
     faces = [f"{axis} {end}" for axis in "xyz"[:dimension] for end in ("low", "high")]
     return faces + [f"wall {n}" for n in range(walls)]
 
@@ -47,8 +47,8 @@ def face_names(dimension: int, walls: int = 0) -> list[str]:
 class Layout:
     """The variables of one frame, in their order in the file: name -> (type, dimensions, attributes).
 
-    count: bodies in the file; displacements, spins, vibrations: whether these are there; walls: interior
-    ones.
+    count: particles in the file; displacements, spins, vibrations: whether the file has these; walls: the
+    number of interior walls.
     """
 
     def __init__(
@@ -101,7 +101,7 @@ class Layout:
 
     @property
     def frame(self) -> np.dtype:
-        """One frame as it is in the file; every variable fills whole words, so there is no padding."""
+        """One frame as it is in the file; every variable fills complete words, so there is no padding."""
         return np.dtype([(name, kind, self.shape(name)) for name, (kind, _, _) in self.variables.items()])
 
     def header(self, attributes: dict, radii: np.ndarray, types: np.ndarray) -> bytes:
@@ -129,7 +129,7 @@ class Layout:
             "type": ("i4", ("atom",), types),
         }
         for name, (kind, dimensions, _) in fixed.items():
-            file.createVariable(name, kind, dimensions)  # filled, lest the padding be what memory held
+            file.createVariable(name, kind, dimensions)  # filled, so that the padding is defined
         file["radius"].units = "angstrom"
         for name, (kind, dimensions, extra) in self.variables.items():
             file.createVariable(name, kind[1:], ("frame", *dimensions), fill_value=False).setncatts(extra)
@@ -139,7 +139,7 @@ class Layout:
 
 
 def _value_at(header: bytes | bytearray, name: str) -> int:
-    """Where the value of a numerical attribute stands: after its name, in whole words, type and count."""
+    """Offset of the value of a numerical attribute: after its name, padded to words, its type and count."""
     return header.index(name.encode()) + -(-len(name) // _WORD) * _WORD + 2 * _WORD
 
 
@@ -191,7 +191,7 @@ def is_blank(file: BinaryIO) -> bool:
 
 
 def frame_count(file: BinaryIO) -> int:
-    """The number of complete frames that a file's header tells of."""
+    """The number of complete frames that a file's header states."""
     file.seek(_FRAME_COUNT_AT)
     return struct.unpack(">I", file.read(_WORD))[0]
 
@@ -203,7 +203,7 @@ def _frame_checksum(frame: bytes | memoryview, number: int, header_checksum: int
 
 
 def damaged_frame(file: BinaryIO, header: bytes, frames: int) -> int | None:
-    """The first of so many frames that is not as it was written, or cut short; None if all are correct."""
+    """The first of `frames` frames that is damaged or cut short; None if all are correct."""
     size, header_checksum = frame_bytes(header), zlib.crc32(header)
     at_once = max(1, _CHUNK // size)
     file.seek(len(header))
@@ -218,7 +218,7 @@ def damaged_frame(file: BinaryIO, header: bytes, frames: int) -> int | None:
 
 
 class Frames:
-    """The frames of an unbuffered open file, of which the first `kept` stay and the others are cut off.
+    """The frames of an unbuffered open file, of which the first `kept` are kept and the others removed.
 
     With `kept` = 0 the header is written too. Every method may raise OSError.
     """
@@ -235,7 +235,7 @@ class Frames:
         file.seek(0, os.SEEK_END)
 
     def _begin(self, header: bytes) -> None:
-        """Write the header, its first word last: where that stands, the header is whole."""
+        """Write the header, its first word last: if that is present, the header is complete."""
         self._file.truncate(0)
         self._file.seek(0)
         try:
@@ -267,5 +267,5 @@ class Frames:
         os.pwrite(self._file.fileno(), struct.pack(">I", self.count), _FRAME_COUNT_AT)
 
     def sync(self) -> None:
-        """Return when all is on the disk."""
+        """Return when all data are on the disk."""
         os.fsync(self._file.fileno())

@@ -1,4 +1,4 @@
-"""The float64 state of an unfinished run, in a file that appears whole or not at all."""
+"""The float64 state of an unfinished run, in a file that is written completely or not at all."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ def _new(path: Path) -> Path:
 
 
 def remove_checkpoint(path: Path) -> None:
-    """Remove a checkpoint that has served, and what a kill may have left of its successor."""
+    """Remove a checkpoint that is not needed any more, and the rest of an unfinished one."""
     path.unlink(missing_ok=True)
     _new(path).unlink(missing_ok=True)
 
 
 def write_checkpoint(path: Path, header: bytes, frames: int, arrays: dict[str, Any]) -> None:
-    """Write the checkpoint of a run, which the header of its trajectory stands for. May raise OSError.
+    """Write the checkpoint of a run, identified by the header of its trajectory. May raise OSError.
 
     It is a zip file of arrays (.npz) whose comment, at the end, is a checksum of all before it.
     """
@@ -66,12 +66,12 @@ def write_checkpoint(path: Path, header: bytes, frames: int, arrays: dict[str, A
 
 
 def read_checkpoint(path: Path, header: bytes) -> Checkpoint | None:
-    """The checkpoint of the run that this header stands for, or None if there is none, or a damaged one."""
+    """The checkpoint of the run with this header, or None if there is none, or a damaged one."""
     try:
         if not path.is_file():
             return None
         with path.open("rb") as file:
-            if not _is_intact(file):  # which zipfile and numpy would find out in many ways
+            if not _is_intact(file):  # checked here, because zipfile and numpy raise many kinds of errors
                 return None
             file.seek(0)
             with np.load(file, allow_pickle=False) as parts:

@@ -1,7 +1,7 @@
 """One frame of a trajectory as a state for other programs: GSD (HOOMD) and LAMMPS data.
 
-Positions and velocities are those of the trajectory's frame, in single precision: bodies that touched may
-overlap by 1e-7 of a diameter. What those programs do not know (walls, faces, gravity) stays behind.
+Positions and velocities are those of the trajectory's frame, in single precision: particles that touched may
+overlap by 1e-7 of a diameter. Walls, faces and gravity are not part of these formats.
 """
 
 from __future__ import annotations
@@ -14,6 +14,8 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.files import Kind, begins_with, output_path, writing
+from gaspart.state.insertion import per_body
+from gaspart.trajectory.recipe import opened, read_recipe
 
 KINDS = {
     ".gsd": Kind("a GSD file", begins_with(b"\xdf\x65" * 4)),
@@ -39,7 +41,7 @@ def export(trajectory: str | Path, path: str | Path, frame: int = -1, overwrite:
     """Write a frame of a trajectory as .gsd or LAMMPS .data; returns the path.
 
     frame: counted from 0, or from the end if negative. A file of the same kind at `path` is replaced only
-    with `overwrite`, any other never. Raises SceneError for another suffix, a frame that is not there, and a
+    with `overwrite`, any other never. Raises SceneError for another suffix, a missing frame, and a
     file that cannot be read or written.
     """
     path = output_path(path)
@@ -52,15 +54,12 @@ def export(trajectory: str | Path, path: str | Path, frame: int = -1, overwrite:
 
 
 def _snapshot(path: Path, frame: int) -> Snapshot:
-    from gaspart.state.insertion import per_body
-    from gaspart.trajectory.recipe import opened, read_recipe
-
     scene = read_recipe(path).scene
     with opened(path) as file:
         there = len(file.dimensions["frame"])
         if not -there <= frame < there:
             raise SceneError("frame", frame, f"the trajectory has {there}")
-        frame %= there  # the last frame of a file under way is not what -1 means to netCDF
+        frame %= there  # netCDF counts -1 from the allocated frames of an unfinished file
         radii = np.asarray(file["radius"][:])
         return Snapshot(
             positions=np.asarray(file["coordinates"][frame], dtype=float),
@@ -95,7 +94,7 @@ def _write_gsd(path: Path, snapshot: Snapshot) -> None:
 
 
 def _write_data(path: Path, snapshot: Snapshot) -> None:
-    """LAMMPS data of atom_style sphere: its density is that of a ball of the body's mass and diameter."""
+    """LAMMPS data of atom_style sphere: its density is that of a ball of the particle's mass and diameter."""
     count = len(snapshot.positions)
     density = snapshot.masses / (math.pi / 6.0 * snapshot.diameters**3)
     low = np.array([0.0, 0.0, -0.5 * snapshot.lengths[2] if snapshot.dimension == 2 else 0.0])

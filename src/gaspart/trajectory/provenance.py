@@ -1,4 +1,4 @@
-"""What a file has to say about the program that made it."""
+"""Provenance of a file: versions, and the revision of the program that wrote it."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ _PACKAGES = ("numpy", "numba", "netCDF4")
 
 
 def _git(*arguments: str) -> str | None:
-    """What git says about the folder of this package; None where there is no git, or it refuses.
+    """Output of git about the folder of this package; None if git is missing or fails.
 
-    Raises OSError if it could not be asked, for want of file descriptors or memory: what is stored in a
+    Raises OSError if git could not be started for lack of file descriptors or memory: the contents of a
     trajectory must not depend on that.
     """
     command = ["git", "-C", str(Path(__file__).parent), *arguments]
@@ -38,7 +38,7 @@ def _git(*arguments: str) -> str | None:
 def git_revision() -> str:
     """The commit of the checkout that the package runs from, `-modified` if edited since; "" outside of one.
 
-    A package that is merely installed below somebody's repository is not tracked there, and has none.
+    A package that is installed inside a repository but not tracked by it has none.
     """
     if _git("ls-files", "--error-unmatch", Path(__file__).with_name("__init__.py").name) is None:
         return ""

@@ -1,4 +1,4 @@
-"""All that a trajectory follows from, and how its file says so."""
+"""The recipe of a trajectory: everything that determines it, and its form in the file."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 PARTIAL = ".partial"
 """The suffix of a trajectory that is being written."""
 ROUNDING = 1e-9
-"""Relative deviation from a whole multiple that is put down to rounding."""
+"""Relative deviation from an integer multiple that is attributed to rounding."""
 
 
 def multiple(key: str, value: float, unit_key: str, unit: float) -> int:
-    """`value` / `unit`, which must be a whole number of at least 1 to within rounding, or a SceneError."""
+    """`value` / `unit`, which must be an integer of at least 1 up to rounding. Raises SceneError."""
     ratio = round(value / unit) if value / unit < 2**53 else 0
     if ratio < 1 or abs(value - ratio * unit) > ROUNDING * value:
         raise SceneError(key, value, f"must be a whole multiple of {unit_key}, {unit:g}")
@@ -40,10 +40,10 @@ def multiple(key: str, value: float, unit_key: str, unit: float) -> int:
 
 @dataclass(frozen=True)
 class Recipe:
-    """All that a trajectory follows from. Raises SceneError for what cannot be run.
+    """Everything that determines a trajectory. Raises SceneError for settings that cannot be run.
 
-    duration and sample_interval are in the scene's time; duration is a whole multiple of sample_interval,
-    and that, for the time-stepped engine, of time_step. follow: how many bodies, from the first on, are in
+    duration and sample_interval are in the scene's time; duration is an integer multiple of sample_interval,
+    and that, for the time-stepped engine, of time_step. follow: how many particles, from the first on, are in
     the file; None: all.
     """
 
@@ -56,15 +56,15 @@ class Recipe:
     follow: int | None = None
 
     def __post_init__(self) -> None:
-        stream(self.seed)  # complains of a seed that is none
+        stream(self.seed)  # raises SceneError for an invalid seed
         for key in ("duration", "sample_interval"):
             value = number(key, getattr(self, key), "must be positive", above=0.0)
             object.__setattr__(self, key, value)
         if self.scene.count == 0:
-            raise SceneError("scene", "no bodies", "a run needs at least one body")
+            raise SceneError("scene", "no particles", "a run needs at least one particle")
         if self.follow is not None:
             if count_of("follow", self.follow, least=1) > self.scene.count:
-                raise SceneError("follow", self.follow, f"there are {self.scene.count} bodies")
+                raise SceneError("follow", self.follow, f"there are {self.scene.count} particles")
         if isinstance(self.engine, TimeStepped):
             multiple("sample_interval", self.sample_interval, "time_step", self.engine.time_step)
         if self.frames > amber.MOST_FRAMES:
@@ -73,23 +73,23 @@ class Recipe:
 
     @property
     def frames(self) -> int:
-        """Frames of the whole trajectory, the one at time 0 among them."""
+        """Frames of the complete trajectory, including the one at time 0."""
         return multiple("duration", self.duration, "sample_interval", self.sample_interval) + 1
 
     @property
-    def bodies(self) -> int:
-        """How many bodies are in the file."""
+    def stored_count(self) -> int:
+        """Number of particles in the file."""
         return self.scene.count if self.follow is None else self.follow
 
     @property
     def layout(self) -> amber.Layout:
-        """What a frame consists of."""
+        """The variables of a frame."""
         scene, walls = self.scene, len(self.scene.walls)
         kept = self.displacements, walls, scene.rough, scene.vibrates
-        return amber.Layout(self.bodies, scene.dimension, *kept)
+        return amber.Layout(self.stored_count, scene.dimension, *kept)
 
     def attributes(self) -> dict:
-        """The recipe as the file's attributes, from which `read_recipe` makes it again."""
+        """The recipe as the file's attributes, from which `read_recipe` restores it."""
         seed = [int(part) for part in self.seed] if isinstance(self.seed, (tuple, list)) else int(self.seed)
         return {
             "scene": dump_yaml(self.scene.to_dict()),
@@ -109,7 +109,10 @@ class Recipe:
         groups = [(len(scene.species), body.radius, 1) for body in scene.bodies]
         groups += [(n, kind.radius, kind.count) for n, kind in enumerate(scene.species)]
         types, radii, counts = (np.array(column) for column in zip(*groups, strict=True))
-        radii, types = np.repeat(radii, counts)[: self.bodies], np.repeat(types, counts)[: self.bodies]
+        radii, types = (
+            np.repeat(radii, counts)[: self.stored_count],
+            np.repeat(types, counts)[: self.stored_count],
+        )
         attributes = {
             "Conventions": "AMBER",
             "ConventionVersion": "1.0",
@@ -127,9 +130,9 @@ class Recipe:
 
 @contextmanager
 def _checked(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
-    """A trajectory of ours: the file, its header and its number of frames, which are checked against it.
+    """A trajectory of gaspart: the file, its header and its number of frames, which are checked against it.
 
-    Raises SceneError for a file that is none, truncated, or damaged in its header.
+    Raises SceneError for a file of another kind, truncated, or damaged in its header.
     """
     try:
         with open(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as file:  # a pipe must not block
@@ -156,16 +159,16 @@ def _checked(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
 
 
 def open_netcdf(path: Path) -> netCDF4.Dataset:
-    """A trajectory of ours as a netCDF4.Dataset, to be closed by the caller.
+    """A trajectory of gaspart as a netCDF4.Dataset, to be closed by the caller.
 
-    Raises SceneError for a file that is none, truncated, or damaged in its header.
+    Raises SceneError for a file of another kind, truncated, or damaged in its header.
     """
     with _checked(path) as (file, _, _):
         return open_descriptor(file)
 
 
 def open_descriptor(file: BinaryIO) -> netCDF4.Dataset:
-    """An open file as a netCDF4.Dataset, whose library takes no names that are not UTF-8."""
+    """An open file as a netCDF4.Dataset, by its descriptor, because the library accepts UTF-8 names only."""
     import netCDF4
 
     return netCDF4.Dataset(f"/proc/self/fd/{file.fileno()}")
@@ -187,7 +190,7 @@ def check_frames(path: Path, first: int | None = None) -> None:
 
 
 def read_recipe(path: str | Path) -> Recipe:
-    """How a trajectory, finished or not, was made. Raises SceneError if the file does not say."""
+    """The recipe of a trajectory, finished or not. Raises SceneError if the file has none."""
     path = Path(path)
     with opened(path) as file:
         stored = file.__dict__
@@ -210,7 +213,7 @@ def read_recipe(path: str | Path) -> Recipe:
 
 
 def stored_revision(path: Path) -> str:
-    """The git revision that a trajectory was begun at; "" if it was not in a checkout."""
+    """The git revision at which a trajectory was begun; "" if it was not in a checkout."""
     with opened(path) as file:
         return getattr(file, "git_revision", "")
 

@@ -48,14 +48,14 @@ class Recording:
         self._header, self._path, self._every, self._progress = header, path, every, progress
         self._origin = simulation.initial_state.unwrapped
         self._stretch = _FIRST_STRETCH[recipe.engine.name]
-        self._saved = self._told = time.monotonic()
+        self._saved = self._reported = time.monotonic()
         if simulation.time > 0.0:  # restored
             self._note()
 
     def finish(self) -> None:
         """Write all frames that are missing. Raises SimulationError if an invariant breaks, and OSError.
 
-        In the first case the state is kept beside the trajectory, in `.failed.npz`. A signal takes effect
+        In the first case the state is kept next to the trajectory, in `.failed.npz`. A signal takes effect
         after a checkpoint was written.
         """
         try:
@@ -76,12 +76,12 @@ class Recording:
         set_note("")
 
     def _between_stretches(self, signals: Deferral) -> None:
-        """Report progress, write a checkpoint and let a signal take effect, if it is time to."""
+        """Report progress, write a checkpoint and let a signal take effect, if one of these is due."""
         now = time.monotonic()
-        if self._progress and now - self._told >= _PROGRESS:
+        if self._progress and now - self._reported >= _PROGRESS:
             collisions = self._simulation.tally.collisions
             self._progress(self._simulation.time, self._recipe.duration, collisions)
-            self._told = now
+            self._reported = now
         if signals.pending is not None:
             self._save()
             signals.deliver()
@@ -91,7 +91,7 @@ class Recording:
     def _save(self) -> None:
         """Write a checkpoint, from which the run can continue to the same bits."""
         self._simulation.check_invariants()
-        self._frames.sync()  # before the checkpoint, which says that they are there
+        self._frames.sync()  # before the checkpoint, which counts them
         arrays = self._simulation.checkpoint()
         write_checkpoint(checkpoint_path(self._path), self._header, self._frames.count, arrays)
         self._note()
@@ -108,7 +108,7 @@ class Recording:
             step = recipe.engine.time_step
             goal = frame * multiple("sample_interval", recipe.sample_interval, "time_step", step)
             while (done := simulation.tally.steps) < goal:
-                # half a step more than wanted, lest rounding cost a step
+                # half a step more than required, so that rounding does not cost a step
                 self._advance(goal * step, until=(min(goal, done + self._stretch) + 0.5) * step)
                 yield
             return
@@ -116,7 +116,7 @@ class Recording:
         while simulation.time < until:
             self._advance(until, until=until, max_events=self._stretch)
             yield
-        simulation.advance(until=until)  # events at this very time that a stretch may have left
+        simulation.advance(until=until)  # remaining events at exactly this time
 
     def _advance(self, goal: float, **limits: Any) -> None:
         """One stretch towards the time `goal`; the next one is fitted to take about `_STRETCH` seconds."""
@@ -130,7 +130,7 @@ class Recording:
 
     def _frame(self, state: State) -> dict[str, np.ndarray | float]:
         """The present state and counters, as the variables of a frame."""
-        tally, followed = self._simulation.tally, slice(self._recipe.bodies)
+        tally, followed = self._simulation.tally, slice(self._recipe.stored_count)
         inner: dict[str, np.ndarray] = {}
         if self._recipe.scene.rough:
             flat = state.dimension == 2

@@ -1,7 +1,7 @@
-"""Trajectories: written while the run goes on, continued after a kill, read by everybody's tools.
+"""Trajectories: written during the run, continued after a kill, readable by common tools.
 
-A run writes `path.partial`, and now and then `path.checkpoint.npz`, from which it can go on to the same bits.
-When whole the file is renamed to `path`. Nothing in it depends on when or where it was made.
+A run writes `path.partial`, and regularly `path.checkpoint.npz`, from which it can continue to the same bits.
+When it is complete, the file is renamed to `path`. Nothing in it depends on when or where it was made.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
 
     Dimensions frame, atom, spatial (d) and face (2d); time (frame), radius and type (atom) are coordinates.
     Of discs that spin, `spins` is (frame, atom); of spheres (frame, atom, spatial).
-    Lengths and times are in the scene's units, counters cumulative since time 0. Attributes tell the scene
+    Lengths and times are in the scene's units, counters cumulative since time 0. Attributes state the scene
     (YAML), engine and seed (JSON), and what follows from the scene: count, dimension, packing_fraction,
     number_density. Close it, or use it in a `with` statement.
 
@@ -80,9 +80,9 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     data = data.assign_coords(spatial=list("xyz"[: scene.dimension]), face=faces)
     for key, variable in data.variables.items():
         name = str(key)
-        told = variable.attrs.get("units", "1")
+        unit = variable.attrs.get("units", "1")
         if variable.dtype.kind in "fi":  # what is no length, time or energy is a number of things, or a ratio
-            variable.attrs["units"] = _UNITS.get(name, _REDUCED.get(told, told))
+            variable.attrs["units"] = _UNITS.get(name, _REDUCED.get(unit, unit))
     data.attrs = {key: value for key, value in attributes.items() if key not in amber.BOOKKEEPING}
     data.set_close(opened.close)
     return data
@@ -95,6 +95,7 @@ def run(
     duration: float,
     sample_interval: float,
     path: str | Path,
+    *,
     displacements: bool = False,
     follow: int | None = None,
     checkpoint_seconds: float = 30.0,
@@ -103,11 +104,11 @@ def run(
 ) -> Path:
     """Run a scene and write its trajectory to `path`; returns `path`.
 
-    A frame at time 0 and at every sample_interval to the duration, which must be a whole multiple of it;
-    with `displacements` also each body's float64 way since time 0, unwrapped; with rough contacts also the
-    spins; with `follow` only so many bodies, from the first on (counters are still those of all). A run of
-    the same recipe and program that was cut short is continued, and one that is whole is left as it is.
-    Another trajectory at `path`, or half-finished beside it, is replaced only with `overwrite`; a file of
+    A frame at time 0 and at every sample_interval to the duration, which must be an integer multiple of it; with
+    `displacements` also each particle's float64 way since time 0, unwrapped; with rough contacts also the
+    spins; with `follow` only so many particles, from the first on (counters are still those of all). A run of
+    the same recipe and program that was cut short is continued, and a complete one is not changed.
+    Another trajectory at `path`, or unfinished next to it, is replaced only with `overwrite`; a file of
     another kind never.
 
     `progress(time, duration, collisions)` is called about twice a second.
@@ -115,7 +116,7 @@ def run(
     SIGINT and SIGTERM take effect after a checkpoint was written: the handlers of the program that calls
     this are then called, of which Python's own raises KeyboardInterrupt.
 
-    Raises SceneError for settings that cannot be, and for a file that cannot be written; SimulationError
+    Raises SceneError for invalid settings, and for a file that cannot be written; SimulationError
     if the run breaks an invariant, with its state kept in `path.failed.npz`.
     """
     wanted = Recipe(scene, engine, seed, duration, sample_interval, displacements, follow)
@@ -123,14 +124,14 @@ def run(
 
 
 def resume(path: str | Path, checkpoint_seconds: float = 30.0, progress: Progress | None = None) -> Path:
-    """Finish the run that left `path.partial`, from what it left alone; returns `path`.
+    """Finish the run that left `path.partial`, from its files only; returns `path`.
 
-    Raises SceneError if there is nothing to resume, or if another version of the program has begun it.
+    Raises SceneError if there is nothing to resume, or if another version of the program began it.
     """
     path = Path(path)
     partial = partial_path(path)
     if not partial.exists():
-        rule = "is already whole" if path.exists() else f"there is no {partial.name} to go on from"
+        rule = "is already complete" if path.exists() else f"there is no {partial.name} to continue"
         raise SceneError("path", str(path), rule)
     wanted = read_recipe(partial)
     if not begun_as(partial, wanted):
@@ -140,7 +141,7 @@ def resume(path: str | Path, checkpoint_seconds: float = 30.0, progress: Progres
 
 
 def _carry_out(wanted: Recipe, path: Path, every: float, progress: Progress | None, overwrite: bool) -> Path:
-    """Finish a trajectory, from wherever it is."""
+    """Finish a trajectory from its present state."""
     number("checkpoint_seconds", every, "must not be negative", least=0.0)
     partial, checkpoint = partial_path(path), checkpoint_path(path)
     with _writing(path):
@@ -152,7 +153,7 @@ def _carry_out(wanted: Recipe, path: Path, every: float, progress: Progress | No
             return path
         simulation = Simulation(wanted.scene, wanted.engine, wanted.seed)
         with _locked(partial) as file:
-            # once more: another process may have finished or begun a run before the lock
+            # again: another process may have finished or begun a run before the lock
             if not _is_finished(wanted, path, overwrite):
                 _record(wanted, simulation, file, path, every, progress, overwrite)
                 place(partial, path, TRAJECTORY, overwrite)
@@ -175,7 +176,7 @@ def _is_finished(wanted: Recipe, path: Path, overwrite: bool) -> bool:
 
 
 def _holds(path: Path, wanted: Recipe, frames: int) -> bool:
-    """Whether a file is of this run, of so many frames, and undamaged."""
+    """Whether a file is of this run, has `frames` frames, and is undamaged."""
     if not begun_as(path, wanted):
         return False
     with suppress(SceneError), path.open("rb") as file:
@@ -185,7 +186,7 @@ def _holds(path: Path, wanted: Recipe, frames: int) -> bool:
 
 
 def _can_keep(partial: Path, frames: int, overwrite: bool) -> bool:
-    """Whether the first frames are as they were written. SceneError if not, unless they may be replaced."""
+    """Whether the first frames are undamaged. Raises SceneError if not, unless they may be replaced."""
     try:
         check_frames(partial, frames)
     except SceneError as error:
@@ -220,7 +221,7 @@ def _record(
     progress: Progress | None,
     overwrite: bool,
 ) -> None:
-    """Write all frames that the open partial file is still without."""
+    """Write all missing frames to the open partial file."""
     partial = partial_path(path)
     continued = begun_as(partial, wanted)
     header = wanted.header(stored_revision(partial) if continued else provenance.git_revision())
@@ -235,7 +236,7 @@ def _record(
 
 @contextmanager
 def _writing(path: Path) -> Iterator[None]:
-    """One line for a full disk, a folder that is read-only, and the like."""
+    """Raise SceneError for OSError: a full disk, a read-only folder, and the like."""
     try:
         yield
     except OSError as error:
@@ -245,7 +246,7 @@ def _writing(path: Path) -> Iterator[None]:
 
 @contextmanager
 def _locked(partial: Path) -> Iterator[BinaryIO]:
-    """The partial file, open to read and write, without a buffer, and to this process alone."""
+    """The partial file, open to read and write, without a buffer, locked by this process."""
     with open(os.open(partial, os.O_RDWR | os.O_CREAT, 0o666), "r+b", buffering=0) as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from gaspart.scene.container import Container
+from gaspart.scene.geometry import CLOSE_PACKING
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Body, Species
@@ -85,8 +86,7 @@ def one_fast() -> Scene:
 def crystal(packing_fraction: float, dimension: int) -> Scene:
     """Discs in a triangular lattice, spheres in a face-centred cubic one, wider than close packing."""
     shape = (10.0, 10.0 * math.sqrt(0.75)) if dimension == 2 else (3.0 * math.sqrt(2.0),) * 3
-    close = math.pi / math.sqrt(12.0 if dimension == 2 else 18.0)
-    stretch = (close / packing_fraction) ** (1.0 / dimension)
+    stretch = (CLOSE_PACKING[dimension] / packing_fraction) ** (1.0 / dimension)
     kind = Species(100 if dimension == 2 else 108, 0.5, temperature=1.0, arrangement="lattice")
     return Scene(Container(tuple(stretch * length for length in shape), "periodic"), [kind])
 

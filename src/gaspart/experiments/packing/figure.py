@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from gaspart.rendering import style
-from gaspart.rendering.bodies import Bodies, colours_of
+from gaspart.rendering.particles import DrawnParticles, colours_of
 from gaspart.rendering.pictures import picture
 
 DOTS = 300
@@ -29,7 +29,7 @@ def densest_fill(ds: xr.Dataset) -> Figure:
         places = one["position"].values
         places = places[np.isfinite(places).all(axis=1)]
         count = len(places)
-        bodies = Bodies(
+        bodies = DrawnParticles(
             positions=places,
             radii=np.full(count, float(one["radius"])),
             species=np.zeros(count, dtype=int),

@@ -8,6 +8,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.claims import Claim, Estimate
+from gaspart.scene.geometry import ball_volume
 
 
 def gas_render(ds: xr.Dataset) -> list[Claim]:
@@ -84,5 +85,5 @@ def _number(ds: xr.Dataset) -> Claim:
 
 
 def _drawn_fraction(ds: xr.Dataset) -> float:
-    volume = 4.0 / 3.0 * math.pi * float((ds["radius"] ** 3).sum())
+    volume = ball_volume(3) * float((ds["radius"] ** 3).sum())
     return volume / float(ds["length"].prod())

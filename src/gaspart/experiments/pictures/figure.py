@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart.rendering import style
-from gaspart.rendering.bodies import FASTEST, Bodies, colours_of
+from gaspart.rendering.particles import FASTEST, DrawnParticles, colours_of
 from gaspart.rendering.pictures import picture
 
 DOTS = 300
@@ -39,7 +39,7 @@ def brownian_render(ds: xr.Dataset) -> Figure:
 
 def _shown(ds: xr.Dataset, colour: str, height: float) -> tuple[Figure, Axes]:
     """A figure filled by a picture of the particles of a dataset."""
-    bodies = Bodies(
+    bodies = DrawnParticles(
         positions=ds["position"].values,
         radii=ds["radius"].values,
         species=ds["species"].values,

@@ -15,7 +15,7 @@ from gaspart.experiments.shared.accuracy import add_costs, costs, errors, settin
 from gaspart.experiments.shared.pressure import pressure
 from gaspart.planning import grid
 from gaspart.tradeoff import table
-from gaspart.tradeoff.table import LEAST, PRECISIONS, QUANTILE, REFERENCE, SETTLING, STEP
+from gaspart.tradeoff.table import EQUILIBRATION, LEAST, PRECISIONS, QUANTILE, REFERENCE, STEP
 
 OBSERVABLES = ("collision_rate", "Z", "D")
 SEEN = 3.5
@@ -203,7 +203,7 @@ def _total_costs(rows: list[dict], observable: int, count: int, accuracy: float,
         room = (accuracy - bias) / QUANTILE
         if room <= 0.0 or not np.isfinite(each):
             return np.inf
-        return (max(noise / room**2, 0.5 * count * LEAST) + 0.5 * count * SETTLING) * each
+        return (max(noise / room**2, 0.5 * count * LEAST) + 0.5 * count * EQUILIBRATION) * each
 
     known = table.seconds(dimension, fraction, "event") * speeds["event", "float64"]
     event = rows[0]["event_seconds"]

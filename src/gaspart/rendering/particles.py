@@ -1,4 +1,4 @@
-"""What a picture shows: bodies at one time, from a state or a frame of a trajectory, and their colours."""
+"""What a picture shows: particles at one time, from a state or a frame of a trajectory, and their colours."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FASTEST = 2.0
 
 
 @dataclass(frozen=True)
-class Bodies:
+class DrawnParticles:
     """positions (N, d), radii (N,), species (N,), speeds (N,); lengths (d,) of the container; walls
     (M, 2, 2), the ends of the interior ones."""
 
@@ -40,19 +40,19 @@ class Bodies:
 
     @property
     def root_mean_square_speed(self) -> float:
-        """Of all bodies; 0 if there are none."""
+        """Of all particles; 0 if there are none."""
         return float(np.sqrt((self.speeds**2).mean())) if len(self.speeds) else 0.0
 
 
-def bodies_of(source: State | xr.Dataset, frame: int = -1) -> Bodies:
-    """The bodies of a `State`, or of a frame (counted from the end if negative) of an open trajectory.
+def particles_of(source: State | xr.Dataset, frame: int = -1) -> DrawnParticles:
+    """The particles of a `State`, or of a frame (counted from the end if negative) of an open trajectory.
 
     Raises SceneError for a frame that is not there. A state knows of no interior walls.
     """
     if isinstance(source, State):
         speeds = np.sqrt((source.velocities**2).sum(axis=1))
         walls = np.zeros((0, 2, 2))
-        return Bodies(source.positions, source.radii, source.species, speeds, source.lengths, walls)
+        return DrawnParticles(source.positions, source.radii, source.species, speeds, source.lengths, walls)
     frames = source.sizes["frame"]
     if not -frames <= count_of("frame", frame, least=-frames) < frames:
         raise SceneError("frame", frame, f"the trajectory has {frames}, counted from 0")
@@ -60,7 +60,7 @@ def bodies_of(source: State | xr.Dataset, frame: int = -1) -> Bodies:
     positions = shown["coordinates"].values.astype(float)
     velocities = shown["velocities"].values.astype(float)
     walls = parse_yaml(source.attrs["scene"]).get("walls", ())
-    return Bodies(
+    return DrawnParticles(
         positions=positions,
         radii=source["radius"].values,
         species=source["type"].values,
@@ -70,7 +70,9 @@ def bodies_of(source: State | xr.Dataset, frame: int = -1) -> Bodies:
     )
 
 
-def colours_of(bodies: Bodies, colour: str | np.ndarray, fastest: float | None = None) -> np.ndarray:
+def colours_of(
+    particles: DrawnParticles, colour: str | np.ndarray, fastest: float | None = None
+) -> np.ndarray:
     """(N, 3) red, green and blue from 0 to 1.
 
     colour: "speed", dark at rest and bright from `fastest` on (without it, from `FASTEST` root-mean-square
@@ -83,13 +85,13 @@ def colours_of(bodies: Bodies, colour: str | np.ndarray, fastest: float | None =
             from matplotlib.colors import to_rgb
 
             palette = np.array([to_rgb(name) for name in COLOURS])
-            return palette[bodies.species % len(palette)]
+            return palette[particles.species % len(palette)]
         import matplotlib
 
-        end = FASTEST * bodies.root_mean_square_speed if fastest is None else fastest
-        return matplotlib.colormaps["viridis"](bodies.speeds / (end or 1.0))[:, :3]
+        end = FASTEST * particles.root_mean_square_speed if fastest is None else fastest
+        return matplotlib.colormaps["viridis"](particles.speeds / (end or 1.0))[:, :3]
     given = np.asarray(colour, dtype=float)
-    if given.shape != (len(bodies.radii), 3):
+    if given.shape != (len(particles.radii), 3):
         raise SceneError(
             "colour", f"an array of shape {given.shape}", "must have three columns, a row a body"
         )

@@ -1,0 +1,33 @@
+"""Statistics of simulations: errors of correlated series, fits with covariance, tests of distributions.
+
+Everywhere: `error` is one standard deviation of the estimate; errors given to a fit are standard deviations
+of independent Gaussian scatter; arrays are one-dimensional and of equal length unless stated. Probabilities
+`p_value` are those of a chi-square at least as large if the model holds. Inputs that are too short, of
+unequal length or not finite raise ValueError.
+"""
+
+from gaspart.analysis.statistics.blocks import BlockAverage, autocorrelation_time, block_average
+from gaspart.analysis.statistics.distributions import Histogram, histogram_chi_square
+from gaspart.analysis.statistics.fits import Fit, PowerLaw, fit_linear, fit_polynomial, fit_power_law
+from gaspart.analysis.statistics.means import Combination, bootstrap, combine, jackknife, mean_of
+from gaspart.analysis.statistics.minimum import Optimum, optimum
+
+__all__ = [
+    "BlockAverage",
+    "Combination",
+    "Fit",
+    "Histogram",
+    "Optimum",
+    "PowerLaw",
+    "autocorrelation_time",
+    "block_average",
+    "bootstrap",
+    "combine",
+    "fit_linear",
+    "fit_polynomial",
+    "fit_power_law",
+    "histogram_chi_square",
+    "jackknife",
+    "mean_of",
+    "optimum",
+]
