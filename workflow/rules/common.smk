@@ -31,8 +31,8 @@ if workflow.is_main_process:
         for kept in ("results", ".snakemake"):
             folder = kept if os.path.exists(kept) else "."
             if not os.access(folder, os.W_OK):
-                rule = f"this user may not write to it, where the workflow keeps {kept}"
-                raise SceneError("folder", os.path.abspath(folder), rule)
+                reason = f"this user may not write to it, where the workflow keeps {kept}"
+                raise SceneError("folder", os.path.abspath(folder), reason)
     except SceneError as error:
         # A user's mistake: one line and exit code 2, instead of a WorkflowError with its place in this file.
         print(f"gaspart: {error}", file=sys.stderr)
