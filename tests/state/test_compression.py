@@ -13,7 +13,9 @@ from scenes import closest, gas
 import gaspart as gp
 from gaspart import compress
 from gaspart.kernels.contact import time_to_growing_contact
+from gaspart.kernels.event.box_lists import empty_lists
 from gaspart.state import compression
+from gaspart.state.boxes import make_boxes
 from gaspart.state.initial import initial_state
 
 number = st.floats(-3.0, 3.0).map(lambda x: round(x, 6))
@@ -77,14 +79,9 @@ def growing(scene, per_side=None):
     """A compression under way; its partition of so many boxes per side."""
     under_way = compression._Growing(scene, 3, 0.5, 1.0)
     if per_side:
-        from gaspart.state.boxes import make_boxes
-
         boxes = make_boxes(scene, per_side, images=True)
-        under_way._partition = under_way._partition._replace(
-            per_side=boxes.per_side, widths=boxes.widths, strides=boxes.strides,
-            neighbour=boxes.neighbour, shift=boxes.shift, head=np.full(boxes.count, -1, dtype=np.int32),
-        )  # fmt: skip
-        under_way._plans["at"] = boxes.coordinates(under_way.rows[:, : scene.dimension])
+        under_way.boxes = empty_lists(boxes, scene.count)
+        under_way.particles.predictions["box"] = boxes.coordinates(under_way.flights["position"])
     return under_way
 
 
@@ -96,7 +93,8 @@ def test_boxes_change_no_bit_of_a_compression(boundary):
     for _ in range(4):
         for under_way in (one, other):
             under_way.grow(2.0**-4, 1.0)
-        assert np.array_equal(one.rows, other.rows)
+        for key in ("position", "velocity", "radius"):
+            assert np.array_equal(one.flights[key], other.flights[key])
     assert one.collisions > 1500
     velocities = one.rows[:, 3:6]
     assert (velocities**2).sum() > 3 * 60
@@ -105,7 +103,7 @@ def test_boxes_change_no_bit_of_a_compression(boundary):
 
 
 def test_what_cannot_be_compressed_is_refused():
-    with pytest.raises(gp.SceneError, match="jam at 0.6") as caught:
+    with pytest.raises(gp.SceneError, match="jam already at 0.6") as caught:
         compress(gas(3, 200, 0.72), 1)
     assert "\n" not in str(caught.value)
     with pytest.raises(gp.SceneError, match="shared by all bodies"):
