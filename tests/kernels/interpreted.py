@@ -1,8 +1,8 @@
-"""Short runs of every feature, so that kernels can be held against their own source, run as plain Python.
+"""Short runs of every feature, to compare compiled kernels with their own source, run as plain Python.
 
-    NUMBA_DISABLE_JIT=1 python tests/interpreted.py ends.npz
+    NUMBA_DISABLE_JIT=1 python tests/kernels/interpreted.py ends.npz
 
-writes how they end. Python looks at every index, and tells a coverage tool which lines have run.
+writes how they end. Python tests every index, and a coverage tool can record which lines have run.
 """
 
 import sys
@@ -24,11 +24,14 @@ from gaspart.kernels.step import resolve as step_contacts
 
 PYTHON = bool(numba.config.DISABLE_JIT)
 ROUGH, METAL = gp.Restitution(0.95, 0.4), gp.Restitution(1.0, 0.5)
-FINE = {"big": (6, 6, 5), "big and rough": (12, 10)}  # boxes narrower than the big bodies, which stand beside
+FINE = {
+    "big": (6, 6, 5),
+    "big and rough": (12, 10),
+}  # boxes narrower than the big particles, which are oversized
 
 
 def event_scenes():
-    """Scenes of the event-driven engine, by name; each of another kind than the others."""
+    """Scenes of the event-driven engine, by name; each with features of its own."""
     box, room = gp.Container((6.0, 5.0)), gp.Container((6.0, 6.0, 5.0), ("wall", "periodic", "wall"))
     two = [gp.Species(6, 0.3, temperature=1.0), gp.Species(3, 0.4, 3.0, temperature=1.0)]
     fixed = gp.Species(2, 0.3, fixed=True)
@@ -107,7 +110,7 @@ def ends():
             searches |= {"/one box": {"boxes_per_side": 1}, "/threads": {"threads": 2}}
         for how, settings in searches.items():
             found[name + how] = end_of(scene, gp.TimeStepped(step, **settings), duration=0.8)
-    if PYTHON:  # among themselves alone, which compiles nothing
+    if PYTHON:  # compared with one another alone, so that nothing is compiled
         for name in ("rough", "holding", "metal"):
             for how, settings in {"": {}, "/boxes": {"boxes_per_side": 2}}.items():
                 engine = gp.TimeStepped(0.01, **settings)
@@ -123,7 +126,7 @@ def ends():
 
 
 def order_of_contacts():
-    """300 contacts of a step in their order: by numpy, and in Python by the kernel, which knows ties too."""
+    """300 contacts of a step in their order: by numpy, and in Python by the kernel."""
     rng = np.random.default_rng(1)
     pairs = np.sort(rng.integers(0, 50, (300, 2)), axis=1).astype(np.uint32)
     times = rng.integers(0, 40, 300) / 40.0
@@ -159,7 +162,7 @@ def list_box(candidates, count, places, box, image):
 
 
 def fetch(array, index):
-    """`fetch.fetch`: nothing that shows."""
+    """`prefetch.fetch`, which has no effect on results."""
 
 
 def nearer(positions, radii, space, slot, skin, first):
@@ -185,7 +188,7 @@ def compact_eight(words, first, least, kept, number):
 
 
 def do_without_vectors():
-    """Let plain loops stand for what is written in vector instructions."""
+    """Replace what is written in vector instructions by plain loops."""
     search.earliest, search.list_box = earliest, list_box
     event_kernels.fetch = ahead.fetch = insertion.fetch = fetch
     step_contacts.fetch = step_list.fetch = fetch
@@ -197,5 +200,5 @@ def do_without_vectors():
 if __name__ == "__main__":
     read_fields()
     do_without_vectors()
-    warnings.simplefilter("ignore", RuntimeWarning)  # words of random numbers are meant to overflow
+    warnings.simplefilter("ignore", RuntimeWarning)  # words of random numbers overflow by design
     np.savez(sys.argv[1], **ends())
