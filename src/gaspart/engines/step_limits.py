@@ -8,15 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.arrays import contact_law, face_energy, special_faces
 from gaspart.errors import SceneError, SimulationError
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
 if TYPE_CHECKING:
     from gaspart.engines.time_stepped import TimeStepped
-    from gaspart.kernels.model import ContactLaw, Space
-    from gaspart.kernels.step.boundaries import Rules
 
 _OVERSIZED = 16  # at most so many particles are tested against all others
 _LARGER = 2.0  # radii of the next smaller particle: larger ones are among them
@@ -71,64 +68,6 @@ def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
         if periodic and length < reach:
             rule = "the time-stepped engine needs periodic sides of two largest diameters"
             raise SceneError("lengths", scene.container.lengths, rule)
-
-
-def rules_for(
-    engine: TimeStepped,
-    scene: Scene,
-    state: State,
-    seed: int | tuple[int, ...],
-    space: Space,
-    masses: np.ndarray,
-) -> Rules | None:
-    """The kernels' `Rules` of a scene with faces or contacts that change more than momenta; None for any
-    other. space, masses (N,): what the step engine's kernels work on, masses in the scene's units."""
-    if not needs_rules(scene):
-        return None
-    from gaspart.kernels.model import Gravity, Model, empty_tally, flight_dtype
-    from gaspart.kernels.step.boundaries import Rules
-
-    fixed = np.isinf(state.masses)
-    faces = special_faces(scene, state, seed, unit_mass=1.0)
-    model = Model(
-        space=space,
-        masses=masses,
-        gravity=None if scene.gravity is None else Gravity(scene.gravity, fixed, 0.0, None),
-        law=contact_law(scene, state),
-        faces=faces,
-        walls=None,
-        oversized=None,
-    )
-    radius = 0.0 if scene.centres_to_walls else state.radii.max(initial=0.0)
-    inset = np.where(np.repeat(scene.container.periodic, 2), 0.0, radius + faces.width).reshape(-1, 2)
-    free = np.stack([inset[:, 0], np.array(scene.container.lengths) - inset[:, 1]], axis=1)
-    walls = 2 * scene.dimension
-    return Rules(
-        np.zeros(state.count, flight_dtype(scene.dimension)),
-        model,
-        empty_tally(walls),
-        free.astype(engine.precision),
-        holds=any(face.kind != "thermal" for face in scene.faces.values()),
-        heat=np.zeros((walls, 2), dtype=np.int64),
-    )
-
-
-def changing(rules: Rules | None, law: ContactLaw | None) -> dict[str, np.ndarray]:
-    """The arrays of rules and law that a run changes, by name."""
-    arrays = {}
-    if rules:
-        arrays = {key: getattr(rules.model.faces, key) for key in ("place", "held", "draws")}
-        arrays["heat"] = rules.heat
-    if law:
-        arrays["spins"] = law.spins
-        if law.vibrations is not None:
-            arrays["vibrations"] = law.vibrations
-    return arrays
-
-
-def needs_rules(scene: Scene) -> bool:
-    """Whether faces or contacts of a scene change more than momenta."""
-    return bool(scene.faces) or scene.rough or scene.vibrates
 
 
 def check_precision(engine: TimeStepped, scene: Scene, state: State) -> None:
@@ -222,21 +161,3 @@ def contacts_per_step(time_step: float, state: State) -> float:
     thermal = math.sqrt(math.pi * float((state.velocities**2).mean()))
     around = 4.0 * diameter**2 if spheres else 2.0 * diameter
     return density * around * contact * thermal * time_step
-
-
-def largest_terms(scene: Scene, state: State, unit_mass: float) -> tuple[float, float]:
-    """The momentum and the energy that few particles will exceed, each a power of two in units of
-    `unit_mass`: what walls take is summed in parts of these."""
-    moving = np.isfinite(state.masses)
-    if not moving.any():
-        return 1.0, 1.0
-    masses = state.masses[moving] / unit_mass
-    given = face_energy(scene) + state.vibrational_energy
-    energies = (state.kinetic_energies[moving] + given) / unit_mass
-    if scene.gravity is not None:
-        energies += masses * sum(
-            abs(g) * length for g, length in zip(scene.gravity, state.lengths, strict=True)
-        )
-    momentum = float(np.sqrt(2.0 * masses * energies).max())
-    energy = float(energies.max())
-    return 2.0 ** math.frexp(momentum or 1.0)[1], 2.0 ** math.frexp(energy or 1.0)[1]

@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import DTypeLike
 
-from gaspart.engines.arrays import EventLog, scaled_masses, write_internal
+from gaspart.engines.arrays import EventLog, write_internal
 from gaspart.engines.step_limits import (
-    changing,
     check_late,
     check_precision,
     check_scene,
     check_step,
-    largest_terms,
-    needs_rules,
     oversized_particles,
-    rules_for,
 )
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene, count_of, number
@@ -26,9 +22,6 @@ from gaspart.scene.validation import choice
 from gaspart.state.boxes import check_boxes_per_side
 from gaspart.state.state import State
 from gaspart.state.tally import Tally
-
-if TYPE_CHECKING:
-    from gaspart.kernels.step.model import StepModel, StepParticles
 
 PRECISIONS = ("float64", "float32")
 _MOST_STEPS = 2.0**53  # above, float64 does not distinguish their numbers
@@ -89,7 +82,7 @@ class StepDynamics:
     """A scene under way; its time is a whole number of steps."""
 
     def __init__(self, engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...]) -> None:
-        from gaspart.engines import step_search
+        from gaspart.engines import step_arrays, step_search
         from gaspart.kernels import running_sum
         from gaspart.kernels.step import loop
         from gaspart.kernels.step import model as layout
@@ -98,61 +91,21 @@ class StepDynamics:
         check_scene(scene, state, oversized)
         check_precision(engine, scene, state)
         check_step(engine, state)
-        self._loop, self._layout, self._sums = loop, layout, running_sum
+        self._arrays, self._loop, self._layout, self._sums = step_arrays, loop, layout, running_sum
         self._engine, self._scene, self._reference = engine, scene, state
         self._real = np.dtype(engine.precision).type
-        self._particles = self._empty_particles(int(state.count - oversized.sum()))
+        self._unit_mass, _ = step_arrays.masses_of(scene, state)
+        ordinary = state.radii[~oversized]
+        self._particles = step_arrays.empty_particles(engine, scene, state, len(ordinary))
         slots = np.argsort(oversized, kind="stable")  # oversized particles last
         self._place(slots, state.positions, state.velocities, state.images)
-        ordinary = state.radii[~oversized]
         self._search = step_search.search_for(engine, scene, state, ordinary)
-        self._model = self._make_model(self._real(ordinary.max(initial=0.0)), seed)
+        self._model = step_arrays.model_for(engine, scene, state, seed, ordinary)
         self._threads = engine.threads if engine.threads > 1 else None
-        self._largest = largest_terms(scene, state, self._unit_mass)
+        self._largest = step_arrays.largest_terms(scene, state, self._unit_mass)
         self._lost = np.zeros(2)  # net and gross, before the tally began
         self._start, self._steps = state.time, 0
         self._count()
-
-    def _empty_particles(self, ordinary: int) -> StepParticles:
-        """Room for the particles, and their masses; with no list made yet."""
-        from gaspart.kernels.step.simd import roomy
-
-        state, real = self._reference, self._real
-        self._unit_mass, masses = scaled_masses(state.masses)
-        if needs_rules(self._scene):
-            self._unit_mass, masses = 1.0, state.masses
-        masses = np.ones(state.count) if masses is None else masses
-        shape = (state.dimension, state.count)
-        return self._layout.StepParticles(
-            positions=roomy(shape, real),
-            velocities=np.empty(shape, real),
-            images=np.empty(shape, np.int32),
-            radii=roomy((state.count,), real),
-            index=np.empty(state.count, np.uint32),
-            masses=masses.astype(real),
-            last_pass=roomy((state.count,), np.uint32),
-            bounds=np.array([0.0, np.inf]),
-            ordinary=ordinary,
-        )
-
-    def _make_model(self, largest_radius: np.floating, seed: int | tuple[int, ...]) -> StepModel:
-        """What is simulated; largest_radius: of the ordinary particles."""
-        from gaspart.kernels.model import Space
-
-        scene, real = self._scene, self._real
-        lengths, margin = scene.container.lengths, real(not scene.centres_to_walls)
-        space = Space(tuple(real(length) for length in lengths), scene.container.periodic, margin)
-        normal = 1.0 if scene.restitution is None else scene.restitution.normal
-        rules = rules_for(self._engine, scene, self._reference, seed, space, self._particles.masses)
-        return self._layout.StepModel(
-            space,
-            normal=real(normal),
-            impulse_share=real(0.5 * (1.0 + normal)),
-            inset=real(margin * largest_radius),
-            gravity=None if scene.gravity is None else tuple(real(g) for g in scene.gravity),
-            rules=rules,
-            law=rules.model.law if rules else None,
-        )
 
     def _place(
         self, slots: np.ndarray, positions: np.ndarray, velocities: np.ndarray, images: np.ndarray
@@ -178,19 +131,10 @@ class StepDynamics:
 
     def _count(self) -> None:
         """Set the tally to zero."""
-        faces = (self._engine.threads, 2 * self._scene.dimension)
         if self._model.rules:
             self._model.rules.heat[:] = 0
-        self._tally = self._layout.StepTally(
-            counts=np.zeros(8, dtype=np.int64),
-            sums=np.zeros((2, 2)),
-            extremes=np.zeros(2),
-            wall_hits=np.zeros(faces, dtype=np.int64),
-            wall_impulse=np.zeros((*faces, 2), dtype=np.int64),
-            wall_loss=np.zeros((self._engine.threads, 2), dtype=np.int64),
-            momentum=self._largest[0],
-            energy=self._largest[1],
-        )
+        faces = 2 * self._scene.dimension
+        self._tally = self._arrays.step_tally(faces, self._engine.threads, self._largest)
         self._since = self._steps
 
     @property
@@ -308,7 +252,7 @@ class StepDynamics:
             "images": particles.images.T.copy(),
             "slots": particles.index.copy(),
             **({} if self._search.cells is None else {"origin": self._search.cells.origin.copy()}),
-            **{key: array.copy() for key, array in changing(self._model.rules, self._model.law).items()},
+            **{key: array.copy() for key, array in self._arrays.changing(self._model).items()},
             "reach": self._particles.bounds.copy(),
             **{key: np.array(value) for key, value in self._tally._asdict().items()},
         }
@@ -321,7 +265,7 @@ class StepDynamics:
         self._particles.bounds[...] = parts["reach"]
         for key in ("counts", "sums", "extremes", "wall_hits", "wall_impulse", "wall_loss"):
             getattr(self._tally, key)[...] = parts[key]
-        for key, array in changing(self._model.rules, self._model.law).items():
+        for key, array in self._arrays.changing(self._model).items():
             array[...] = parts[key]
         self._steps, self._since = int(parts["steps"]), int(parts["since"])
         self._lost = parts["lost"].copy()
