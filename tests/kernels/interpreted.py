@@ -24,10 +24,7 @@ from gaspart.kernels.step import resolve as step_contacts
 
 PYTHON = bool(numba.config.DISABLE_JIT)
 ROUGH, METAL = gp.Restitution(0.95, 0.4), gp.Restitution(1.0, 0.5)
-FINE = {
-    "big": (6, 6, 5),
-    "big and rough": (12, 10),
-}  # boxes narrower than the big particles, which are oversized
+FINE = {"big": (6, 6, 5), "big and rough": (12, 10)}  # boxes too narrow for the big particles
 
 
 def event_scenes():
