@@ -1,8 +1,8 @@
-"""Short runs of every feature, so that kernels can be held against their own source, run as plain Python.
+"""Short runs of every feature, to compare compiled kernels with their own source, run as plain Python.
 
-    NUMBA_DISABLE_JIT=1 python tests/interpreted.py ends.npz
+    NUMBA_DISABLE_JIT=1 python tests/kernels/interpreted.py ends.npz
 
-writes how they end. Python looks at every index, and tells a coverage tool which lines have run.
+writes how they end. Python tests every index, and a coverage tool can record which lines have run.
 """
 
 import sys
@@ -14,22 +14,21 @@ import numpy as np
 from scenes import gas
 
 import gaspart as gp
-from gaspart.engines import event_driven
-from gaspart.kernels import flight, insertion, memory
+from gaspart.kernels import flight, insertion, model
 from gaspart.kernels.event import box_search as search
 from gaspart.kernels.event import loop as event_kernels
 from gaspart.kernels.event import prefetch as ahead
+from gaspart.kernels.obstacles import plate, segment
 from gaspart.kernels.step import neighbour_list as step_list
 from gaspart.kernels.step import resolve as step_contacts
-from gaspart.state import compression
 
 PYTHON = bool(numba.config.DISABLE_JIT)
 ROUGH, METAL = gp.Restitution(0.95, 0.4), gp.Restitution(1.0, 0.5)
-FINE = {"big": (6, 6, 5), "big and rough": (12, 10)}  # boxes narrower than the big bodies, which stand beside
+FINE = {"big": (6, 6, 5), "big and rough": (12, 10)}  # boxes too narrow for the big particles
 
 
 def event_scenes():
-    """Scenes of the event-driven engine, by name; each of another kind than the others."""
+    """Scenes of the event-driven engine, by name; each with features of its own."""
     box, room = gp.Container((6.0, 5.0)), gp.Container((6.0, 6.0, 5.0), ("wall", "periodic", "wall"))
     two = [gp.Species(6, 0.3, temperature=1.0), gp.Species(3, 0.4, 3.0, temperature=1.0)]
     fixed = gp.Species(2, 0.3, fixed=True)
@@ -108,7 +107,7 @@ def ends():
             searches |= {"/one box": {"boxes_per_side": 1}, "/threads": {"threads": 2}}
         for how, settings in searches.items():
             found[name + how] = end_of(scene, gp.TimeStepped(step, **settings), duration=0.8)
-    if PYTHON:  # among themselves alone, which compiles nothing
+    if PYTHON:  # compared with one another alone, so that nothing is compiled
         for name in ("rough", "holding", "metal"):
             for how, settings in {"": {}, "/boxes": {"boxes_per_side": 2}}.items():
                 engine = gp.TimeStepped(0.01, **settings)
@@ -124,7 +123,7 @@ def ends():
 
 
 def order_of_contacts():
-    """300 contacts of a step in their order: by numpy, and in Python by the kernel, which knows ties too."""
+    """300 contacts of a step in their order: by numpy, and in Python by the kernel."""
     rng = np.random.default_rng(1)
     pairs = np.sort(rng.integers(0, 50, (300, 2)), axis=1).astype(np.uint32)
     times = rng.integers(0, 40, 300) / 40.0
@@ -136,58 +135,61 @@ def order_of_contacts():
 
 
 def read_fields():
-    """Let Python read the fields of plans as the compiled kernels do: plans[body].partner."""
-    for module in (event_driven, compression):
-        module.aligned = lambda shape, dtype: memory.aligned(shape, dtype).view(np.recarray)
+    """Let Python read the fields of records as the compiled kernels do: flights[i].position."""
+    plain = model.flight_dtype
+    model.flight_dtype = lambda dimension: np.dtype((np.record, plain(dimension)))
+    for module, name in ((model, "PREDICTION"), (segment, "SEGMENT"), (plate, "PLATE")):
+        setattr(module, name, np.dtype((np.record, getattr(module, name))))
 
 
-def earliest(rows, near, met, body, soon, partner, space, gravity, still):
-    """`eight.earliest`, one candidate after the other; of all of them something is known."""
-    for candidate in near[: int(met)]:
-        other, offset = int(candidate & np.uint64(0xFFFFFFFF)), search.offset_of(candidate, space)
-        time = flight.pair_time(rows, body, other, offset, space, gravity)
-        if time < soon or (time == soon and time < np.inf and other < partner):
-            soon, partner = time, other
-    return soon, partner, np.uint64(0)
+def earliest(flights, i, count, present, boxes, space, gravity):
+    """`simd.earliest`, one candidate after the other; none remains unknown."""
+    best, partner = present
+    for candidate in boxes.candidates[: int(count)]:
+        other, offset = int(candidate & search._NUMBER), search.offset_of(candidate, space)
+        time = flight.time_of_contact(flights, int(i), other, offset, space, gravity)
+        if time < best or (time == best and time < np.inf and other < partner):
+            best, partner = time, other
+    return best, partner, np.uint64(0)
 
 
-def write_down(near, met, places, box, lap):
-    """`eight.write_down`."""
-    near[int(met) : int(met) + places.shape[1]] = places[box].astype(np.uint64) | lap
+def list_box(candidates, count, places, box, image):
+    """`simd.list_box`."""
+    candidates[int(count) : int(count) + places.shape[1]] = places[box].astype(np.uint64) | image
 
 
 def fetch(array, index):
-    """`fetch.fetch`: nothing that shows."""
+    """`prefetch.fetch`, which has no effect on results."""
 
 
 def nearer(positions, radii, space, slot, skin, first):
-    """`step_eight.nearer`, one slot after the other."""
-    bodies, marks = SimpleNamespace(positions=positions), 0
+    """`simd.nearer`, one slot after the other."""
+    particles, marks = SimpleNamespace(positions=positions), 0
     for other in range(int(first), min(int(first) + 8, len(radii))):
         reach = radii[slot] + radii[other] + skin
-        near = step_contacts.distance_squared(bodies, space, slot, other) < reach * reach
+        near = step_contacts.distance_squared(particles, slot, other, space) < reach * reach
         marks |= int(near) << (other - int(first))
     return np.uint64(marks)
 
 
 def equals(values, first, value):
-    """`step_eight.equals`."""
+    """`simd.equals`."""
     return np.uint64(sum(int(there == value) << n for n, there in enumerate(values[int(first) :][:8])))
 
 
-def keep_eight(words, first, least, kept, number):
-    """`step_eight.keep_eight`."""
+def compact_eight(words, first, least, kept, number):
+    """`simd.compact_eight`."""
     chosen = [word for word in words[int(first) :][:8] if word >= least]
     kept[int(number) : int(number) + len(chosen)] = chosen
     return np.uint64(len(chosen))
 
 
 def do_without_vectors():
-    """Let plain loops stand for what is written in vector instructions."""
-    search.earliest, search.write_down = earliest, write_down
+    """Replace what is written in vector instructions by plain loops."""
+    search.earliest, search.list_box = earliest, list_box
     event_kernels.fetch = ahead.fetch = insertion.fetch = fetch
     step_contacts.fetch = step_list.fetch = fetch
-    step_list.nearer, step_list.equals, step_list.keep_eight = nearer, equals, keep_eight
+    step_list.nearer, step_list.equals, step_list.compact_eight = nearer, equals, compact_eight
     step_list.bits = lambda word: np.uint64(int(word).bit_count())
     step_list.lowest = lambda word: np.uint64((int(word) & -int(word)).bit_length() - 1)
 
@@ -195,5 +197,5 @@ def do_without_vectors():
 if __name__ == "__main__":
     read_fields()
     do_without_vectors()
-    warnings.simplefilter("ignore", RuntimeWarning)  # words of random numbers are meant to overflow
+    warnings.simplefilter("ignore", RuntimeWarning)  # words of random numbers overflow by design
     np.savez(sys.argv[1], **ends())

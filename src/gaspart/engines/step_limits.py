@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.arrays import contact_law, face_energy, special_faces
 from gaspart.errors import SceneError, SimulationError
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.scene import Scene
@@ -16,124 +15,70 @@ from gaspart.state.state import State
 
 if TYPE_CHECKING:
     from gaspart.engines.time_stepped import TimeStepped
-    from gaspart.kernels.model import ContactLaw
-    from gaspart.kernels.step.boundaries import Rules
-    from gaspart.kernels.step.model import Bodies, Space
 
-_GIANTS = 16  # at most so many bodies are tested against all others
-_GIANT = 2.0  # radii of the next smaller body that make one of them
+_OVERSIZED = 16  # at most so many particles are tested against all others
+_LARGER = 2.0  # radii of the next smaller particle: larger ones are among them
 _SINGLE = 1e9  # the largest length or speed in float32, whose squares are multiplied with each other
-_RESOLVED = 1e5  # diameters in the longest side, at most: float32 then tells contacts to a hundredth
+_RESOLVED = 1e5  # diameters in the longest side, at most: float32 then resolves contacts to a hundredth
 MOST_BODIES = 2**28
-"""An entry of the neighbour list tells two slots and eight marks in 64 bits (`step_list`)."""
+"""An entry of the neighbour list holds two slots and eight marks in 64 bits
+(`kernels.step.neighbour_list`)."""
 
 MISSED, MISSED_MOST = 0.01, 0.1
-"""The part of all contacts that a step may overlook before the engine warns, and refuses."""
+"""The part of all contacts that a step may miss before the engine warns, and refuses."""
 CROWDED, CROWDED_MOST = {True: 2.5, False: 0.5}, {True: 5.0, False: 1.0}
-"""Contacts of a body in a step, with several passes or with one, before the engine warns, and refuses. Up to
-the first the pressure is right to about 1 % (measured: docs/time-stepped.md)."""
+"""Contacts of a particle in a step, with several passes or with one, before the engine warns, and refuses. Up
+to the first the pressure is correct to about 1 % (measured: docs/time-stepped.md)."""
 
 LATE_MOST, PASSED_MOST, FEW = 0.25, 0.01, 2
-"""The part of all contacts that may be found a step too late; and with bodies half-way through each other by
-then; so few are not judged. In gases, up to a step of which the engine warns, they are 0.05 and 0.004."""
+"""The part of all contacts that may be found a step too late; and with particles half-way through each other
+by then; FEW are allowed in any case. In gases, up to a step of which the engine warns, they are 0.05 and
+0.004."""
 
 
-def giants_of(state: State) -> np.ndarray:
-    """(N,) which bodies are too large for the partition: a few, much larger than all the others."""
+def oversized_particles(state: State) -> np.ndarray:
+    """(N,) which particles are too large for boxes and cells: a few, much larger than all the others."""
     order = np.argsort(state.radii, kind="stable")
     sizes = state.radii[order]
-    giants = np.zeros(state.count, dtype=bool)
-    for few in range(1, min(_GIANTS, state.count - 1) + 1):
-        if sizes[-few] > _GIANT * sizes[-few - 1]:
-            giants[order[-few:]] = True
-    return giants
+    oversized = np.zeros(state.count, dtype=bool)
+    for few in range(1, min(_OVERSIZED, state.count - 1) + 1):
+        if sizes[-few] > _LARGER * sizes[-few - 1]:
+            oversized[order[-few:]] = True
+    return oversized
 
 
-def check_scene(scene: Scene, state: State, giants: np.ndarray) -> None:
+def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
     """Raise SceneError for what this engine does not model."""
     if state.count >= MOST_BODIES:
         raise SceneError(
-            "count", state.count, f"the time-stepped engine knows {MOST_BODIES - 1} bodies at most"
+            "count", state.count, f"the time-stepped engine takes {MOST_BODIES - 1} particles at most"
         )
     law, fixed = scene.restitution, np.isinf(state.masses).any()
-    falls, none = scene.gravity is not None, "this one knows none"
+    falls, none = scene.gravity is not None, "this one has none"
     for key, value, what in (
         ("restitution", law if law and law.normal < 1.0 and falls else None, "with gravity, " + none),
         ("walls", scene.walls or None, none),
-        ("fixed", True if fixed and falls else None, "this one knows no fixed bodies under gravity"),
+        ("fixed", True if fixed and falls else None, "this one has no fixed particles under gravity"),
     ):
         if value is not None:
             raise SceneError(key, value, f'needs the "event" engine; {what}')
     reach = 2.0 * state.radii.max(initial=0.0)
-    if giants.any():
-        reach = state.radii[giants].min() + state.radii.max()
+    if oversized.any():
+        reach = state.radii[oversized].min() + state.radii.max()
     for length, periodic in zip(scene.container.lengths, scene.container.periodic, strict=True):
         if periodic and length < reach:
             rule = "the time-stepped engine needs periodic sides of two largest diameters"
             raise SceneError("lengths", scene.container.lengths, rule)
 
 
-def rules_for(
-    engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...], space: Space, bodies: Bodies
-) -> Rules | None:
-    """The kernels' `Rules` of a scene with faces or contacts that change more than momenta; None for any
-    other. space, bodies: what the step engine's kernels work on, with masses in the scene's units."""
-    if not needs_rules(scene):
-        return None
-    from gaspart.kernels.model import Gravity, Model, empty_tally, flight_dtype
-    from gaspart.kernels.step.boundaries import Rules
-
-    fixed = np.isinf(state.masses)
-    faces = special_faces(scene, state, seed, unit_mass=1.0)
-    model = Model(
-        space=space,
-        masses=bodies.masses,
-        gravity=None if scene.gravity is None else Gravity(scene.gravity, fixed, 0.0, None),
-        law=contact_law(scene, state),
-        faces=faces,
-        walls=None,
-        oversized=None,
-    )
-    radius = 0.0 if scene.centres_to_walls else state.radii.max(initial=0.0)
-    inset = np.where(np.repeat(scene.container.periodic, 2), 0.0, radius + faces.width).reshape(-1, 2)
-    free = np.stack([inset[:, 0], np.array(scene.container.lengths) - inset[:, 1]], axis=1)
-    walls = 2 * scene.dimension
-    return Rules(
-        np.zeros(state.count, flight_dtype(scene.dimension)),
-        model,
-        empty_tally(walls),
-        free.astype(engine.precision),
-        holds=any(face.kind != "thermal" for face in scene.faces.values()),
-        heat=np.zeros((walls, 2), dtype=np.int64),
-    )
-
-
-def changing(rules: Rules | None, law: ContactLaw | None) -> dict[str, np.ndarray]:
-    """The arrays of rules and law that a run changes, by name."""
-    arrays = {}
-    if rules:
-        arrays = {key: getattr(rules.model.faces, key) for key in ("place", "held", "draws")}
-        arrays["heat"] = rules.heat
-    if law:
-        arrays["spins"] = law.spins
-        if law.vibrations is not None:
-            arrays["vibrations"] = law.vibrations
-    return arrays
-
-
-def needs_rules(scene: Scene) -> bool:
-    """Whether faces or bodies of a scene know more than momenta."""
-    return bool(scene.faces) or scene.rough or scene.vibrates
-
-
 def check_precision(engine: TimeStepped, scene: Scene, state: State) -> None:
-    """Raise SceneError for steps in which bodies move by less than their places are rounded by; and, in
-    float32, for lengths and speeds whose squares it cannot hold, and bodies so small in their container that
-    it cannot tell where they touch."""
+    """Raise SceneError for steps in which particles move by less than their positions are rounded by; and, in
+    float32, for lengths and speeds whose squares it cannot hold, and particles so small in their container
+    that it cannot resolve where they touch."""
     longest, speeds = max(scene.container.lengths), np.sqrt((state.velocities**2).sum(axis=1))
     typical, fastest = math.sqrt(float((speeds**2).mean())) if state.count else 0.0, speeds.max(initial=0.0)
     if 0.0 < typical * engine.time_step < 0.5 * np.finfo(engine.precision).eps * longest:
-        rule = f"moves bodies by less than {engine.precision} can tell in a length of {longest:g}"
+        rule = f"moves particles by less than {engine.precision} resolves in a length of {longest:g}"
         raise SceneError("time_step", engine.time_step, rule)
     if engine.precision != "float32" or not state.count:
         return
@@ -143,17 +88,17 @@ def check_precision(engine: TimeStepped, scene: Scene, state: State) -> None:
             rule = f"float32 needs lengths and speeds of {1 / _SINGLE:g} to {_SINGLE:g}; take float64"
             raise SceneError(key, float(value), rule)
     if 2.0 * scene.smallest_radius * _RESOLVED < longest:
-        rule = f"float32 cannot tell where bodies of this size touch in a length of {longest:g}; take float64"
+        rule = f"float32 does not resolve contacts of this size in a length of {longest:g}; take float64"
         raise SceneError("radius", scene.smallest_radius, rule)
 
 
 def missed_contacts(time_step: float, several: bool, state: State) -> float:
-    """The part of all contacts that a step overlooks: pairs that touch and part again within it.
+    """The part of all contacts that a step misses: pairs that touch and part again within it.
 
     (2/3) (v_th dt / sigma)^2 of a dilute gas of spheres, 1/4 instead of 2/3 for discs, v_th = sqrt(kT/m);
-    four times that if only growing overlaps are resolved (not `several` passes). From the flux of pairs
-    through chords that they cross within a step. v_th is that of each species now; the mean over the pairs
-    that collide.
+    four times that if only growing overlaps are resolved (with one pass, not `several`). From the flux of
+    pairs through chords that they cross within a step. v_th is that of each species now; the mean over the
+    pairs that collide.
     """
     square, radius, number = [], [], []
     for kind in np.unique(state.species):
@@ -174,7 +119,7 @@ def missed_contacts(time_step: float, several: bool, state: State) -> float:
 
 
 def check_step(engine: TimeStepped, state: State) -> None:
-    """Raise SceneError for a step with which the engine would be wrong by much, warn of one that costs
+    """Raise SceneError for a step with which the engine would be far off, warn of one with errors of
     percents, and name the step that would do."""
     if state.count < 2:
         return
@@ -185,8 +130,9 @@ def check_step(engine: TimeStepped, state: State) -> None:
     if worst <= 1.0:
         return
     rule = (
-        f"misses {100 * missed:.2g} % of all contacts (fit is {100 * MISSED:g} %), and a body has {met:.2g} "
-        f"in a step (fit is {CROWDED[several]:g}); a step of {engine.time_step / worst:.2g} would do"
+        f"misses {100 * missed:.2g} % of all contacts (fit is {100 * MISSED:g} %), and a particle has "
+        f"{met:.2g} in a step (fit is {CROWDED[several]:g}); "
+        f"a step of {engine.time_step / worst:.2g} would do"
     )
     if missed > MISSED_MOST or met > CROWDED_MOST[several]:
         raise SceneError("time_step", engine.time_step, rule)
@@ -194,19 +140,19 @@ def check_step(engine: TimeStepped, state: State) -> None:
 
 
 def check_late(engine: TimeStepped, time: float, met: int, late: int, passed: int) -> None:
-    """Raise SimulationError if contacts are found a step too late, or bodies pass through each other: speeds
-    have come up, or gaps are so narrow, that the step is too long."""
+    """Raise SimulationError if contacts are found a step too late, or particles pass through each other:
+    speeds have become so high, or gaps are so narrow, that the step is too long."""
     most = [max(FEW, part * met) for part in (LATE_MOST, PASSED_MOST)]
     if engine.passes > 1 and (late > most[0] or passed > most[1]):
         raise SimulationError(
             f"at time {time:g} {late} of {met} contacts were found a step too late, {passed} of them"
-            f" with bodies half-way through each other: a step of {engine.time_step:g} is too long"
+            f" with particles half-way through each other: a step of {engine.time_step:g} is too long"
         )
 
 
 def contacts_per_step(time_step: float, state: State) -> float:
-    """How often a body meets another in a step: Enskog's rate for equal bodies of the same packing fraction,
-    with the contact value of Carnahan & Starling (1969), of Henderson (1975) for discs."""
+    """How often a particle meets another in a step: Enskog's rate for equal particles of the same packing
+    fraction, with the contact value of Carnahan & Starling (1969), of Henderson (1975) for discs."""
     spheres = state.dimension == 3
     ball = ball_volume(state.dimension) * float((state.radii**state.dimension).mean())
     density = state.count / float(state.lengths.prod())
@@ -216,21 +162,3 @@ def contacts_per_step(time_step: float, state: State) -> float:
     thermal = math.sqrt(math.pi * float((state.velocities**2).mean()))
     around = 4.0 * diameter**2 if spheres else 2.0 * diameter
     return density * around * contact * thermal * time_step
-
-
-def largest_terms(scene: Scene, state: State, unit_mass: float) -> tuple[float, float]:
-    """The momentum and the energy that few bodies will exceed, each a power of two in units of
-    `unit_mass`: what walls take is summed in parts of these."""
-    moving = np.isfinite(state.masses)
-    if not moving.any():
-        return 1.0, 1.0
-    masses = state.masses[moving] / unit_mass
-    given = face_energy(scene) + state.vibrational_energy
-    energies = (state.kinetic_energies[moving] + given) / unit_mass
-    if scene.gravity is not None:
-        energies += masses * sum(
-            abs(g) * length for g, length in zip(scene.gravity, state.lengths, strict=True)
-        )
-    momentum = float(np.sqrt(2.0 * masses * energies).max())
-    energy = float(energies.max())
-    return 2.0 ** math.frexp(momentum or 1.0)[1], 2.0 ** math.frexp(energy or 1.0)[1]

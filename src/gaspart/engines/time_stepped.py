@@ -1,4 +1,4 @@
-"""The time-stepped engine (Frederickx & Meerts 2010), with the contact put right."""
+"""The time-stepped engine (Frederickx & Meerts 2010), with the contact corrected."""
 
 from __future__ import annotations
 
@@ -8,17 +8,13 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import DTypeLike
 
-from gaspart.engines.arrays import EventLog, scaled_masses, write_internal
+from gaspart.engines.arrays import EventLog, write_internal
 from gaspart.engines.step_limits import (
-    changing,
     check_late,
     check_precision,
     check_scene,
     check_step,
-    giants_of,
-    largest_terms,
-    needs_rules,
-    rules_for,
+    oversized_particles,
 )
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
@@ -33,7 +29,7 @@ _MOST_STEPS = 2.0**53  # above, float64 does not distinguish their numbers
 
 @dataclass(frozen=True)
 class TimeStepped:
-    """Small steps; pairs that overlap after a step are put right.
+    """Small steps; pairs that overlap after a step collide as they were at their contact.
 
     time_step: in the scene's time unit. boxes_per_side: search the boxes of a grid, a number of them or one
     per axis, down to 1 (all pairs); by default a neighbour list is used instead, with a `skin` (a length)
@@ -41,9 +37,9 @@ class TimeStepped:
     precision: "float64" or "float32". rewind: collide pairs as they were at their contact (off: as they lie
     after the step, to measure what rewinding buys). passes: how often a step may look for overlaps; it ends
     with the first pass that finds none. With more than one, overlaps that grew and shrank within the step
-    count too; one is the rule of Frederickx & Meerts. docs/time-stepped.md tells what each of these buys.
+    count too; one is the rule of Frederickx & Meerts. See docs/time-stepped.md for what each of these buys.
 
-    threads: how many share the work of a list; not worth it below some 5e4 bodies (docs/performance.md).
+    threads: how many share the work of a list; not worth it below some 5e4 particles (docs/performance.md).
 
     The result is the same, bit for bit, for any boxes_per_side, near_boxes, skin and threads.
     """
@@ -86,74 +82,46 @@ class StepDynamics:
     """A scene under way; its time is a whole number of steps."""
 
     def __init__(self, engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...]) -> None:
-        from gaspart.engines import step_search as search
+        from gaspart.engines import step_arrays, step_search
         from gaspart.kernels import running_sum
-        from gaspart.kernels.step import loop as kernels
+        from gaspart.kernels.step import loop
         from gaspart.kernels.step import model as layout
-        from gaspart.kernels.step import simd as step_eight
 
-        giants = giants_of(state)
-        check_scene(scene, state, giants)
+        oversized = oversized_particles(state)
+        check_scene(scene, state, oversized)
         check_precision(engine, scene, state)
         check_step(engine, state)
-        self._kernels, self._layout, self._sums = kernels, layout, running_sum
+        self._arrays, self._loop, self._layout, self._sums = step_arrays, loop, layout, running_sum
         self._engine, self._scene, self._reference = engine, scene, state
-        self._real = real = np.dtype(engine.precision).type
-        normal = 1.0 if scene.restitution is None else scene.restitution.normal
-        self._space = layout.Space(
-            tuple(real(length) for length in scene.container.lengths),
-            scene.container.periodic,
-            real(not scene.centres_to_walls),
-            *(real(number) for number in (normal, 0.5 * (1.0 + normal))),
-        )
-        self._unit_mass, masses = scaled_masses(state.masses)
-        if needs_rules(scene):
-            self._unit_mass, masses = 1.0, state.masses
-        masses = np.ones(state.count) if masses is None else masses
-        shape = (scene.dimension, state.count)
-        self._bodies = layout.Bodies(
-            step_eight.roomy(shape, real),
-            np.empty(shape, real),
-            np.empty(shape, np.int32),
-            radii=step_eight.roomy((state.count,), real),
-            index=np.empty(state.count, np.uint32),
-            masses=masses.astype(real),
-            ordinary=int(state.count - giants.sum()),
-        )
-        slots = np.argsort(giants, kind="stable")  # giants last
+        self._real = np.dtype(engine.precision).type
+        self._unit_mass, _ = step_arrays.masses_of(scene, state)
+        ordinary = state.radii[~oversized]
+        self._particles = step_arrays.empty_particles(engine, scene, state, len(ordinary))
+        slots = np.argsort(oversized, kind="stable")  # oversized particles last
         self._place(slots, state.positions, state.velocities, state.images)
-        ordinary = state.radii[~giants]
-        self._inset = real(self._space.margin * real(ordinary.max(initial=0.0)))
-        self._partition = search.partition_for(engine, scene, state, ordinary)
-        self._cells = search.cells_for(engine, scene, state, ordinary)
-        self._rules = rules_for(engine, scene, state, seed, self._space, self._bodies)
-        self._law = self._rules.model.law if self._rules else None
-        self._gravity = None if scene.gravity is None else tuple(real(g) for g in scene.gravity)
-        self._watch = layout.Watch(step_eight.roomy((state.count,), np.uint32), np.zeros(2))
-        self._watch.reach[layout.SPENT] = np.inf  # no list is made yet
-        self._pairs = np.empty((engine.threads, state.count // engine.threads + 16), np.uint64)
+        self._search = step_search.search_for(engine, scene, state, ordinary)
+        self._model = step_arrays.model_for(engine, scene, state, seed, ordinary)
         self._threads = engine.threads if engine.threads > 1 else None
-        self._largest = largest_terms(scene, state, self._unit_mass)
+        self._largest = step_arrays.largest_terms(scene, state, self._unit_mass)
         self._lost = np.zeros(2)  # net and gross, before the tally began
-        self._step = real(engine.time_step)
         self._start, self._steps = state.time, 0
         self._count()
 
     def _place(
         self, slots: np.ndarray, positions: np.ndarray, velocities: np.ndarray, images: np.ndarray
     ) -> None:
-        """Put the bodies into their slots: (N,) which body is in each."""
-        bodies = self._bodies
-        bodies.positions[...] = positions[slots].T
-        bodies.velocities[...] = velocities[slots].T
-        bodies.images[...] = images.T
-        bodies.radii[...] = self._reference.radii[slots]
-        bodies.index[...] = slots
+        """Put the particles into their slots: (N,) which particle is in each."""
+        particles = self._particles
+        particles.positions[...] = positions[slots].T
+        particles.velocities[...] = velocities[slots].T
+        particles.images[...] = images.T
+        particles.radii[...] = self._reference.radii[slots]
+        particles.index[...] = slots
 
-    def _by_body(self, values: np.ndarray, dtype: DTypeLike) -> np.ndarray:
-        """(N, d) of the bodies in their own order, from (d, N) by slot."""
+    def _by_particle(self, values: np.ndarray, dtype: DTypeLike) -> np.ndarray:
+        """(N, d) of the particles in their own order, from (d, N) by slot."""
         found = np.empty(values.shape[::-1], dtype)
-        found[self._bodies.index] = values.T
+        found[self._particles.index] = values.T
         return found
 
     def reset_tally(self) -> None:
@@ -162,20 +130,11 @@ class StepDynamics:
         self._count()
 
     def _count(self) -> None:
-        """Counters that stand at nothing."""
-        faces = (self._engine.threads, 2 * self._scene.dimension)
-        if self._rules:
-            self._rules.heat[:] = 0
-        self._counters = self._layout.Counters(
-            counts=np.zeros(8, dtype=np.int64),
-            sums=np.zeros((2, 2)),
-            extremes=np.zeros(2),
-            wall_hits=np.zeros(faces, dtype=np.int64),
-            wall_impulse=np.zeros((*faces, 2), dtype=np.int64),
-            wall_loss=np.zeros((self._engine.threads, 2), dtype=np.int64),
-            momentum=self._largest[0],
-            energy=self._largest[1],
-        )
+        """Set the tally to zero."""
+        if self._model.rules:
+            self._model.rules.heat[:] = 0
+        faces = 2 * self._scene.dimension
+        self._tally = self._arrays.step_tally(faces, self._engine.threads, self._largest)
         self._since = self._steps
 
     @property
@@ -191,17 +150,17 @@ class StepDynamics:
 
     @property
     def _heat(self) -> np.ndarray:
-        """(2d, 2) what each face was given by bodies that left it at its temperature, since the tally began,
-        in two parts, in units of the unit mass."""
-        if self._rules is None:
+        """(2d, 2) what each face was given by particles that left it at its temperature, since the tally
+        began, in two parts, in units of the unit mass."""
+        if self._model.rules is None:
             return np.zeros((2 * self._scene.dimension, 2))
-        return self._sums.whole_parts(self._rules.heat, self._largest[1])
+        return self._sums.whole_parts(self._model.rules.heat, self._largest[1])
 
     @property
     def _loss(self) -> tuple[np.ndarray, np.ndarray]:
-        """The energy that contacts of bodies (2,) and with walls (threads, 2) have taken, likewise."""
-        counters = self._counters
-        return counters.sums[self._layout.LOSS], self._sums.whole_parts(counters.wall_loss, self._largest[1])
+        """The energy that contacts of particles (2,) and with walls (threads, 2) have taken, likewise."""
+        tally = self._tally
+        return tally.sums[self._layout.LOSS], self._sums.whole_parts(tally.wall_loss, self._largest[1])
 
     @property
     def time(self) -> float:
@@ -215,9 +174,11 @@ class StepDynamics:
         that is not within 2^53 steps.
         """
         if most is not None:
-            raise SceneError("max_events", most, 'needs the "event" engine; this one knows steps only')
+            raise SceneError("max_events", most, 'needs the "event" engine; this one makes whole steps only')
         if log is not None:
-            raise SceneError("record_events", True, 'needs the "event" engine; this one knows steps only')
+            raise SceneError(
+                "record_events", True, 'needs the "event" engine; this one makes whole steps only'
+            )
         steps = (until - self._start) / self._engine.time_step
         if not steps < _MOST_STEPS:
             rule = f"must be within {_MOST_STEPS:g} steps of {self._engine.time_step:g}"
@@ -228,40 +189,43 @@ class StepDynamics:
                 from numba import config, set_num_threads
 
                 set_num_threads(min(self._threads, config.NUMBA_NUM_THREADS))
-            self._pairs = self._kernels.run_steps(
-                self._bodies, self._space, self._partition, self._cells, self._pairs, self._gravity,
-                self._inset, self._rules, self._law, self._step, target - self._steps, self._engine.rewind,
-                self._engine.passes, self._watch, self._counters, self._threads,
+            settings = self._real(self._engine.time_step), self._engine.rewind, self._engine.passes
+            pairs = self._loop.run_steps(
+                self._particles, self._search, self._model, settings, target - self._steps, self._tally,
+                self._threads,
             )  # fmt: skip
+            self._search = self._search._replace(pairs=pairs)
             self._steps = target
-            layout, counts = self._layout, self._counters.counts
+            layout, counts = self._layout, self._tally.counts
             found = (int(counts[n]) for n in (layout.COLLISIONS, layout.LATE, layout.PASSED))
             check_late(self._engine, self.time, *found)
 
     @property
     def state(self) -> State:
-        """All bodies at the present time, in float64 whatever the precision."""
+        """All particles at the present time, in float64 whatever the precision."""
         state = replace(
             self._reference,
             time=self.time,
-            positions=self._by_body(self._bodies.positions, float),
-            velocities=self._by_body(self._bodies.velocities, float),
-            images=self._bodies.images.T.astype(self._reference.images.dtype),
+            positions=self._by_particle(self._particles.positions, float),
+            velocities=self._by_particle(self._particles.velocities, float),
+            images=self._particles.images.T.astype(self._reference.images.dtype),
         )
-        if self._rules:
-            write_internal(state, self._scene, self._law, self._rules.model.faces, self._unit_mass)
+        if self._model.rules:
+            write_internal(
+                state, self._scene, self._model.law, self._model.rules.model.faces, self._unit_mass
+            )
         return state
 
     @property
     def tally(self) -> Tally:
         """What was counted since the last `reset_tally`."""
-        layout, counts, sums = self._layout, self._counters.counts, self._counters.sums
-        extremes = self._counters.extremes
-        impulse = self._sums.whole_parts(self._counters.wall_impulse.sum(axis=0), self._largest[0])
+        layout, counts, sums = self._layout, self._tally.counts, self._tally.sums
+        extremes = self._tally.extremes
+        impulse = self._sums.whole_parts(self._tally.wall_impulse.sum(axis=0), self._largest[0])
         return Tally(
             time=(self._steps - self._since) * self._engine.time_step,
             collisions=int(counts[layout.COLLISIONS]),
-            wall_hits=self._counters.wall_hits.sum(axis=0),
+            wall_hits=self._tally.wall_hits.sum(axis=0),
             wall_impulse=impulse.sum(axis=-1) * self._unit_mass,
             wall_energy=self._heat.sum(axis=1) * self._unit_mass,
             virial_sum=self._sums.net(sums[layout.VIRIAL]) * self._unit_mass,
@@ -278,39 +242,41 @@ class StepDynamics:
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         """Everything that a continuation to the same bits needs."""
-        bodies = self._bodies
+        particles = self._particles
         return {
             "steps": np.array(self._steps),
             "since": np.array(self._since),
             "lost": self._lost.copy(),
-            "positions": self._by_body(bodies.positions, self._real),
-            "velocities": self._by_body(bodies.velocities, self._real),
-            "images": bodies.images.T.copy(),
-            "slots": bodies.index.copy(),
-            **({} if self._cells is None else {"origin": self._cells.origin.copy()}),
-            **{key: array.copy() for key, array in changing(self._rules, self._law).items()},
-            "reach": self._watch.reach.copy(),
-            **{key: np.array(value) for key, value in self._counters._asdict().items()},
+            "positions": self._by_particle(particles.positions, self._real),
+            "velocities": self._by_particle(particles.velocities, self._real),
+            "images": particles.images.T.copy(),
+            "slots": particles.index.copy(),
+            **({} if self._search.cells is None else {"origin": self._search.cells.origin.copy()}),
+            **{key: array.copy() for key, array in self._arrays.changing(self._model).items()},
+            "reach": self._particles.bounds.copy(),
+            **{key: np.array(value) for key, value in self._tally._asdict().items()},
         }
 
     def restore(self, parts: dict[str, np.ndarray]) -> None:
         """Go on from a checkpoint of the same scene and engine."""
         self._place(*(parts[key] for key in ("slots", "positions", "velocities", "images")))
-        if self._cells is not None and parts["reach"][self._layout.SPENT] < np.inf:
+        if self._search.cells is not None and parts["reach"][self._layout.DISPLACEMENT] < np.inf:
             self._list_from(parts["origin"])
-        self._watch.reach[...] = parts["reach"]
+        self._particles.bounds[...] = parts["reach"]
         for key in ("counts", "sums", "extremes", "wall_hits", "wall_impulse", "wall_loss"):
-            getattr(self._counters, key)[...] = parts[key]
-        for key, array in changing(self._rules, self._law).items():
+            getattr(self._tally, key)[...] = parts[key]
+        for key, array in self._arrays.changing(self._model).items():
             array[...] = parts[key]
         self._steps, self._since = int(parts["steps"]), int(parts["since"])
         self._lost = parts["lost"].copy()
 
     def _list_from(self, origin: np.ndarray) -> None:
-        """Make the list again that was made when bodies were at `origin` (d, N), by slot."""
-        now = self._bodies.positions.copy()
-        self._bodies.positions[...] = origin
-        self._pairs = self._kernels.make_list(
-            self._bodies, self._space, self._cells, self._pairs, self._watch, self._counters, self._threads
+        """Make the list again that was made when particles were at `origin` (d, N), by slot."""
+        particles, search = self._particles, self._search
+        now = particles.positions.copy()
+        particles.positions[...] = origin
+        pairs = self._loop.make_list(
+            particles, search.cells, search.pairs, self._model.space, self._tally, self._threads
         )
-        self._bodies.positions[...] = now
+        self._search = search._replace(pairs=pairs)
+        particles.positions[...] = now

@@ -14,7 +14,7 @@ from gaspart.state.interior_walls import wall_rows
 from gaspart.state.oversized import largest_in_boxes
 
 if TYPE_CHECKING:
-    from gaspart.kernels.insertion import Block, Space, Standing
+    from gaspart.kernels.insertion import Block, PeriodicBoxes, Placed
 
 PATIENCE = 2_000_000
 """Failed attempts at placing one particle after which a container counts as full."""
@@ -26,21 +26,22 @@ def per_body(scene: Scene, attribute: str) -> np.ndarray:
     return np.concatenate([alone, *(np.full(kind.count, getattr(kind, attribute)) for kind in scene.species)])
 
 
-def empty_arrays(scene: Scene, boxes: Boxes, radii: np.ndarray) -> tuple[Standing, Space, Block]:
-    """The arrays of an empty container for particles of these radii (N,)."""
-    from gaspart.kernels.insertion import BLOCK, PLACES, Block, Space, Standing
+def empty_arrays(scene: Scene, boxes: Boxes, radii: np.ndarray) -> tuple[Placed, PeriodicBoxes, Block]:
+    """The arrays of an empty container for particles of these radii (N,), none of which has a place."""
+    from gaspart.kernels.insertion import BLOCK, PLACES, Block, PeriodicBoxes, Placed
 
     near = aligned((boxes.count, 4, PLACES), float)
     near[:] = np.inf
     filled = np.zeros(boxes.count, dtype=np.uint8)
     lists = np.full(boxes.count, -1), np.full(len(radii), -1)
-    standing = Standing(np.empty((len(radii), scene.dimension)), radii, near, filled, *lists)
+    failures = np.full(len(radii), -1)
+    placed = Placed(np.empty((len(radii), scene.dimension)), radii, failures, near, filled, *lists)
     sides = zip(scene.container.lengths, scene.container.periodic, strict=True)
     periods = tuple(length if periodic else 4.0 * length for length, periodic in sides)
-    space = Space(periods, boxes.per_side, boxes.widths, boxes.strides, boxes.neighbour)
-    at, own, near_oversized = np.zeros((3, BLOCK, 3), dtype=np.int64)
-    left, box = np.zeros((2, BLOCK), dtype=np.int64)
-    return standing, space, Block(np.zeros((BLOCK, 3)), at, own, near_oversized, left, box)
+    grid = PeriodicBoxes(periods, boxes.per_side, boxes.widths, boxes.strides, boxes.neighbour)
+    at, own, beside = np.zeros((3, BLOCK, 3), dtype=np.int64)
+    remaining, box = np.zeros((2, BLOCK), dtype=np.int64)
+    return placed, grid, Block(np.zeros((BLOCK, 3)), at, own, beside, remaining, box)
 
 
 def random_insertion(
@@ -51,7 +52,7 @@ def random_insertion(
     Returns positions (N, d) and failures (N,), the failed attempts before each particle found its place.
     Raises SceneError when one particle has failed `patience` times: the container is practically full.
     """
-    from gaspart.kernels.insertion import place, put
+    from gaspart.kernels.insertion import Task, place, put
 
     dimension, explicit = scene.dimension, len(scene.bodies)
     species = sorted(range(len(scene.species)), key=lambda n: -scene.species[n].radius)
@@ -67,37 +68,34 @@ def random_insertion(
     walls = None
     if scene.walls:
         walls, _ = wall_rows(scene)
-    standing, space, block = empty_arrays(scene, boxes, radii)
-    positions = standing.positions
-    failed = np.zeros(scene.count, dtype=np.int64)
+    placed, grid, block = empty_arrays(scene, boxes, radii)
+    placed.failures[:explicit] = 0
 
     for n, body in enumerate(scene.bodies):  # their places are given, and the scene has checked them
-        positions[n] = body.position
-        put(standing, boxes.index_of(np.array(body.position)), n)
-    placed = explicit
+        placed.positions[n] = body.position
+        put(placed, boxes.index_of(np.array(body.position)), n)
+    done = explicit
     for n in species:
         kind = scene.species[n]
-        stop = placed + kind.count
+        stop = done + kind.count
         lower, upper = scene.reach(kind.radius)
         failures = 0
         numbers = np.empty((max(256, min(1_000_000, 2 * kind.count)), dimension))
         alone = kind.radius > largest
-        oversized = np.flatnonzero(radii[:placed] > largest)
-        while placed < stop:
-            draws = rng.random(out=numbers[: max(256, min(1_000_000, 2 * (stop - placed)))])
-            if alone:  # too large for the boxes: tested against all placed particles, one at a time
-                oversized = np.arange(placed)
-            placed, failures, _ = place(
-                draws, standing, space, block, placed, placed + 1 if alone else stop, lower, upper, failures,
-                patience, failed, walls, oversized,
-            )  # fmt: skip
+        oversized = np.flatnonzero(radii[:done] > largest)
+        while done < stop:
+            draws = rng.random(out=numbers[: max(256, min(1_000_000, 2 * (stop - done)))])
+            if alone:  # too big for the boxes: it is tested against all that are placed already, and alone
+                oversized = np.arange(done)
+            task = Task(done, done + 1 if alone else stop, failures, patience, lower, upper)
+            done, failures, _ = place(draws, placed, grid, block, task, oversized, walls)
             if failures >= patience:
-                eta = scene.packing_fraction * placed / scene.count
+                eta = scene.packing_fraction * done / scene.count
                 raise SceneError(
                     f"species[{n}].count",
                     kind.count,
-                    f"does not fit by random insertion: full after {placed} particles, packing fraction "
+                    f"does not fit by random insertion: full after {done} particles, packing fraction "
                     f"about {eta:.4f}, {patience} failed attempts; use arrangement: lattice",
                 )
     back = np.argsort(np.concatenate(order), kind="stable") if scene.count else np.empty(0, dtype=int)
-    return positions[back], failed[back]
+    return placed.positions[back], placed.failures[back]

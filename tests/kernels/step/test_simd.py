@@ -5,20 +5,21 @@ import pytest
 from numpy import uint32, uint64
 
 from gaspart.kernels.compilation import kernel
-from gaspart.kernels.step.model import Bodies, Space
+from gaspart.kernels.model import Space
+from gaspart.kernels.step.model import StepParticles
 from gaspart.kernels.step.resolve import distance_squared
-from gaspart.kernels.step.simd import bits, equals, keep_eight, nearer, roomy
+from gaspart.kernels.step.simd import bits, compact_eight, equals, nearer, roomy
 
 
 @kernel
-def near_eight(bodies, space, slot, skin, first):
-    return nearer(bodies.positions, bodies.radii, space, uint64(slot), skin, uint64(first))
+def near_eight(particles, slot, space, skin, first):
+    return nearer(particles.positions, particles.radii, space, uint64(slot), skin, uint64(first))
 
 
 @kernel
-def near_one(bodies, space, slot, skin, other):
-    reach = bodies.radii[slot] + bodies.radii[other] + skin
-    return distance_squared(bodies, space, slot, other) < reach * reach
+def near_one(particles, slot, space, skin, other):
+    reach = particles.radii[slot] + particles.radii[other] + skin
+    return distance_squared(particles, slot, other, space) < reach * reach
 
 
 @kernel
@@ -27,8 +28,8 @@ def same_eight(values, first, value):
 
 
 @kernel
-def kept_of(words, first, least, kept, number):
-    return keep_eight(words, uint64(first), uint64(least), kept, uint64(number))
+def compacted(words, first, least, kept, number):
+    return compact_eight(words, uint64(first), uint64(least), kept, uint64(number))
 
 
 @kernel
@@ -41,22 +42,32 @@ def marked(word):
 
 
 @pytest.mark.parametrize(("d", "real"), [(2, np.float32), (3, np.float64)])
-def test_who_is_near_is_told_to_the_bit(d, real):
+def test_which_particles_are_near_is_exact_to_the_bit(d, real):
     rng = np.random.default_rng(d)
     positions, radii = roomy((d, 40), real), roomy((40,), real)
     positions[...] = rng.integers(0, 9, (d, 40)) / 8  # on a grid: many are just as far as a contact
     radii[...] = rng.integers(1, 3, 40) / 16
     none = np.empty(0, np.uint32)
-    bodies = Bodies(positions, positions, none, radii=radii, index=none, masses=radii, ordinary=40)
-    space = Space((real(1.25),) * d, (True, False, True)[:d], real(1.0), real(1.0), real(1.0))
+    particles = StepParticles(
+        positions,
+        positions,
+        none,
+        radii,
+        index=none,
+        masses=radii,
+        last_pass=none,
+        bounds=np.zeros(2),
+        ordinary=40,
+    )
+    space = Space((real(1.25),) * d, (True, False, True)[:d], real(1.0))
     total = 0
     for skin in (real(0.0), real(0.125)):
         for slot in range(40):
             for first in range(40):
-                found = marked(near_eight(bodies, space, slot, skin, first))
+                found = marked(near_eight(particles, slot, space, skin, first))
                 there = range(min(8, 40 - first))
                 assert [n for n in found if n in there] == [
-                    n for n in there if near_one(bodies, space, slot, skin, first + n)
+                    n for n in there if near_one(particles, slot, space, skin, first + n)
                 ]
                 total += len(found)
     assert 1000 < total < 15000
@@ -69,11 +80,11 @@ def test_which_places_hold_a_value():
         assert marked(same_eight(values, first, 1)) == [n for n in range(8) if (first + n) % 3 == 1]
 
 
-def test_words_that_are_kept_stand_one_behind_the_other():
+def test_words_that_are_kept_follow_one_another():
     rng = np.random.default_rng(5)
     words, kept = rng.integers(0, 2**63, 64, dtype=np.uint64), np.zeros(80, np.uint64)
     number = 0
     for first in range(0, 64, 8):
-        number += int(kept_of(words, first, 2**62, kept, number))
+        number += int(compacted(words, first, 2**62, kept, number))
     assert kept[:number].tolist() == [word for word in words.tolist() if word >= 2**62]
     assert count_bits(2**63 + 5) == 3

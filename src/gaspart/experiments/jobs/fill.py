@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from gaspart.kernels.insertion import place
+from gaspart.kernels.insertion import Task, place
 from gaspart.scene.scene import Scene
 from gaspart.state.boxes import make_boxes, sides_for
 from gaspart.state.insertion import empty_arrays
@@ -51,17 +51,15 @@ def insert(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarr
     (M, d) of those placed."""
     boxes = make_boxes(scene, sides_for(scene, per_body=1.0), images=False)
     lower, upper = scene.reach(scene.largest_radius)
-    standing, space, block = empty_arrays(scene, boxes, np.full(scene.count, scene.largest_radius))
-    before = np.full(scene.count, -1, dtype=np.int64)
-    rng, placed, failures, used = stream(seed), 0, 0, 0
-    while placed < scene.count and used < attempts:
+    placed, grid, block = empty_arrays(scene, boxes, np.full(scene.count, scene.largest_radius))
+    rng, number, failures, used = stream(seed), 0, 0, 0
+    none = np.empty(0, dtype=np.int64)
+    while number < scene.count and used < attempts:
         draws = rng.random((min(CHUNK, attempts - used), scene.dimension))
-        placed, failures, tried = place(
-            draws, standing, space, block, placed, scene.count, lower, upper, failures, attempts + 1, before,
-            None, np.empty(0, dtype=np.int64),
-        )  # fmt: skip
+        task = Task(number, scene.count, failures, attempts + 1, lower, upper)
+        number, failures, tried = place(draws, placed, grid, block, task, none, None)
         used += tried
-    return before, used, standing.positions[:placed]
+    return placed.failures, used, placed.positions[:number]
 
 
 def run(recipe: dict) -> xr.Dataset:

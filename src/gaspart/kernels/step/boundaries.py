@@ -1,8 +1,9 @@
-"""Contacts that know more than momenta: faces with a kind, rough bodies, bodies that vibrate.
+"""Contacts by rules of the event-driven engine: faces with a kind, rough particles, particles that vibrate.
 
-Their physics is the event-driven engine's own, on rows as it lays bodies out: what is here only puts a body
-into its row, its clock at 0, the end of the step, finds out when in the past it came to a face, and takes it
-back. Only one thread does this; the sums are whole numbers all the same, since slots know no fixed order.
+Their physics is the event-driven engine's own, on its flights: what is here writes a particle into its
+flight, with the clock at 0, the end of the step, finds when in the past it came to a face, and writes it
+back. Only one thread does this; the sums are whole numbers all the same, since the order of slots is not
+fixed.
 """
 
 from math import inf, sqrt
@@ -27,7 +28,7 @@ _SHORT = 2.0**-12  # of a step: bounces on a floor in less time are not distingu
 class Rules(NamedTuple):
     """What the event-driven engine's kernels work on. flights (N,): room for particles; model: the law and
     the faces; tally: room for what one event adds to it. free (d, 2): between which coordinates a particle
-    that is held nowhere meets no face and no edge; holds: whether any face may hold particles. heat (2d, 2):
+    that no face holds meets no face and no edge; holds: whether any face may hold particles. heat (2d, 2):
     given to each face, by `running_sum.add_whole`."""
 
     flights: np.ndarray
@@ -39,37 +40,37 @@ class Rules(NamedTuple):
 
 
 @helper
-def is_free(bodies, rules, slot):
-    """Whether an ordinary body cannot have met a face, nor the edge of a well."""
+def is_free(particles, slot, rules):
+    """Whether an ordinary particle cannot have met a face, nor the edge of a well."""
     free = True
-    for k in range(bodies.positions.shape[0]):
-        x = bodies.positions[k, slot]
+    for k in range(particles.positions.shape[0]):
+        x = particles.positions[k, slot]
         free &= (x >= rules.free[k, 0]) & (x < rules.free[k, 1])
         if rules.holds:
-            free &= rules.model.faces.place[bodies.index[slot], k] == 0
+            free &= rules.model.faces.place[particles.index[slot], k] == 0
     return free
 
 
 @kernel
-def gather(bodies, rules, slot):
+def gather(particles, slot, rules):
     """Write the particle in a slot into its flight, with the clock at 0; returns its number."""
-    flights, i = rules.flights, np.int64(bodies.index[slot])
-    for k in range(bodies.positions.shape[0]):
-        flights[i].position[k] = bodies.positions[k, slot]
-        flights[i].velocity[k] = bodies.velocities[k, slot]
+    flights, i = rules.flights, np.int64(particles.index[slot])
+    for k in range(particles.positions.shape[0]):
+        flights[i].position[k] = particles.positions[k, slot]
+        flights[i].velocity[k] = particles.velocities[k, slot]
     flights[i].clock = 0.0
-    flights[i].radius = bodies.radii[slot]
+    flights[i].radius = particles.radii[slot]
     return i
 
 
 @kernel
-def scatter(bodies, rules, slot):
+def scatter(particles, slot, rules):
     """Write a flight back into its slot; returns the square of the particle's speed."""
-    flights, i = rules.flights, bodies.index[slot]
+    flights, i = rules.flights, particles.index[slot]
     square = 0.0
-    for k in range(bodies.positions.shape[0]):
-        bodies.positions[k, slot] = flights[i].position[k]
-        bodies.velocities[k, slot] = flights[i].velocity[k]
+    for k in range(particles.positions.shape[0]):
+        particles.positions[k, slot] = flights[i].position[k]
+        particles.velocities[k, slot] = flights[i].velocity[k]
         square += flights[i].velocity[k] * flights[i].velocity[k]
     return square
 
@@ -79,8 +80,8 @@ def crossing_time(flights, i, axis, space, faces):
     """When a particle on its present flight came through a face across an axis, or the edge of a well there:
     (time, face code), a time up to the end of the step, or (inf, NONE).
 
-    A particle that is stuck to a face and moves all the same was set free, to be judged, when it left its
-    plane.
+    A particle that is stuck to a face and moves all the same left its plane then; whether it is set free is
+    decided there.
     """
     v = flights[i].velocity[axis]
     if v == 0.0:
@@ -138,28 +139,28 @@ def first_crossing(flights, i, space, dt, faces, gravity):
 
 @helper
 def taken(sums, n):
-    """What one of some sums (K, 2) holds, which is zero afterwards."""
+    """Reset one of some sums (K, 2) to zero; returns what it held."""
     x = sums[n, 0] + sums[n, 1]
     sums[n, 0] = sums[n, 1] = 0.0
     return x
 
 
 @kernel
-def record(face, rules, counters):
-    """Add what an event at a face has added to the rules' tally to the counters of the step engine."""
-    tally = rules.tally
-    counters.wall_hits[0, face] += tally.wall_hits[face]
-    add_whole(counters.wall_impulse[0, face], taken(tally.wall_impulse, face), counters.momentum)
-    add_whole(counters.wall_loss[0], taken(tally.sums, LOST), counters.energy)
-    add_whole(rules.heat[face], taken(tally.wall_energy, face), counters.energy)
-    tally.wall_hits[face] = 0
+def record_face(face, rules, tally):
+    """Move what an event at a face has added to the rules' tally into that of the step engine."""
+    event = rules.tally
+    tally.wall_hits[0, face] += event.wall_hits[face]
+    add_whole(tally.wall_impulse[0, face], taken(event.wall_impulse, face), tally.momentum)
+    add_whole(tally.wall_loss[0], taken(event.sums, LOST), tally.energy)
+    add_whole(rules.heat[face], taken(event.wall_energy, face), tally.energy)
+    event.wall_hits[face] = 0
 
 
 @kernel
-def meet_faces(bodies, rules, law, slot, dt, counters):
-    """Let a particle meet all that it has come through, one after another. Returns whether there was
-    anything."""
-    i = gather(bodies, rules, slot)
+def meet_faces(particles, slot, rules, dt, tally, law):
+    """Let a particle meet all faces that it has come through, one after another. Returns whether there was
+    any."""
+    i = gather(particles, slot, rules)
     flights, model, met = rules.flights, rules.model, False
     space, gravity, faces = model.space, model.gravity, model.faces
     while True:
@@ -176,14 +177,14 @@ def meet_faces(bodies, rules, law, slot, dt, counters):
                 flights[i].position[face // 2] = face_plane(flights, i, face // 2, face % 2 == 1, space)
             collide_face(flights, i, face, model, rules.tally, law, faces)
         advance(flights, i, 0.0, space, gravity)
-        record(face, rules, counters)
+        record_face(face, rules, tally)
     if met:
-        scatter(bodies, rules, slot)
+        scatter(particles, slot, rules)
     return met
 
 
 @kernel
-def collide_flights(bodies, i, j, contact, rules, law, counters):
+def collide_flights(particles, i, j, contact, rules, tally, law):
     """A contact under a law of the particles in two slots. contact: how long ago (a negative time), and the
     invariants rr, rv then. Returns the squares of the two speeds.
 
@@ -191,11 +192,11 @@ def collide_flights(bodies, i, j, contact, rules, law, counters):
     """
     ago, rr, rv = contact
     flights, space = rules.flights, rules.model.space
-    one, other = gather(bodies, rules, i), gather(bodies, rules, j)
+    one, other = gather(particles, i, rules), gather(particles, j, rules)
     advance(flights, one, ago, space, None)
     advance(flights, other, ago, space, None)
-    add(counters.sums, VIRIAL, collide_by_law(flights, one, other, rr, rv, space, rules.tally, law))
-    add(counters.sums, LOSS, taken(rules.tally.sums, LOST))
+    add(tally.sums, VIRIAL, collide_by_law(flights, one, other, rr, rv, space, rules.tally, law))
+    add(tally.sums, LOSS, taken(rules.tally.sums, LOST))
     advance(flights, one, 0.0, space, None)
     advance(flights, other, 0.0, space, None)
-    return scatter(bodies, rules, i), scatter(bodies, rules, j)
+    return scatter(particles, i, rules), scatter(particles, j, rules)

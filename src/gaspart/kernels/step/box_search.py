@@ -1,6 +1,7 @@
 """Overlapping pairs by the boxes of Frederickx & Meerts (2010): any number of them, down to one.
 
-Each pair is tested once: the rest of the body's own box first, then the neighbouring boxes of higher index.
+Each pair is tested once: the rest of the particle's own box first, then the neighbouring boxes of higher
+index.
 """
 
 from typing import NamedTuple
@@ -13,10 +14,11 @@ from gaspart.kernels.step.model import BOX_VISITS, PAIR_TESTS
 from gaspart.kernels.step.resolve import distance_squared, examine
 
 
-class Partition(NamedTuple):
-    """The grid of boxes (see `boxes.Boxes`); each slot's box coordinates at (N, 3), and the boxes' lists.
-
-    near: leave out neighbouring boxes that are farther from a body's centre than `reach`, a contact."""
+class StepBoxes(NamedTuple):
+    """The grid of boxes (see `state.boxes.Boxes`): per_side, widths, strides (3,), neighbour. at (N, 3), the
+    coordinates of each slot's box; of each box the first slot, head (boxes,), and the next after each slot,
+    following (N,). near: leave out neighbouring boxes that are farther from a particle's centre than `reach`,
+    a contact."""
 
     per_side: np.ndarray
     widths: np.ndarray
@@ -30,105 +32,108 @@ class Partition(NamedTuple):
 
 
 @kernel
-def sort_in(bodies, partition):
-    """Put all ordinary bodies into the lists of their boxes."""
-    partition.head[:] = -1
-    for slot in range(bodies.ordinary):
+def sort_in(particles, boxes):
+    """Put all ordinary particles into the lists of their boxes."""
+    boxes.head[:] = -1
+    for slot in range(particles.ordinary):
         box = 0
-        for k in range(bodies.positions.shape[0]):
-            c = box_coordinate(bodies.positions[k, slot], partition.widths[k], partition.per_side[k])
-            partition.at[slot, k] = c
-            box += c * partition.strides[k]
-        partition.following[slot] = partition.head[box]
-        partition.head[box] = slot
+        for k in range(particles.positions.shape[0]):
+            c = box_coordinate(particles.positions[k, slot], boxes.widths[k], boxes.per_side[k])
+            boxes.at[slot, k] = c
+            box += c * boxes.strides[k]
+        boxes.following[slot] = boxes.head[box]
+        boxes.head[box] = slot
 
 
 @helper
-def gap_squared(bodies, partition, slot, axis, step):
-    """The square of the distance of a body from a box's slab, `step` boxes along an axis (-1, 0, 1)."""
-    x = bodies.positions[axis, slot]
-    width = partition.widths[axis]
-    low = partition.at[slot, axis] * width
-    away = x - x
-    if step == 1:
-        away = max(away, low + width - x)
-    elif step == -1:
-        away = max(away, x - low)
-    return away * away
+def gap_squared(particles, slot, boxes, axis, offset):
+    """The square of the distance of a particle from a box's slab, `offset` boxes along an axis (-1, 0, 1)."""
+    x = particles.positions[axis, slot]
+    width = boxes.widths[axis]
+    low = boxes.at[slot, axis] * width
+    gap = x - x
+    if offset == 1:
+        gap = max(gap, low + width - x)
+    elif offset == -1:
+        gap = max(gap, x - low)
+    return gap * gap
 
 
 @kernel
-def beyond(bodies, partition, slot, dx, dy, dz):
-    """Whether a neighbouring box is too far from a body to hold a partner's centre."""
-    square = gap_squared(bodies, partition, slot, 0, dx - 1)
-    square += gap_squared(bodies, partition, slot, 1, dy - 1)
-    if bodies.positions.shape[0] == 3:
-        square += gap_squared(bodies, partition, slot, 2, dz - 1)
-    return square > partition.reach * partition.reach
+def is_out_of_reach(particles, slot, boxes, dx, dy, dz):
+    """Whether a neighbouring box is too far from a particle to hold a partner's centre."""
+    square = gap_squared(particles, slot, boxes, 0, dx - 1)
+    square += gap_squared(particles, slot, boxes, 1, dy - 1)
+    if particles.positions.shape[0] == 3:
+        square += gap_squared(particles, slot, boxes, 2, dz - 1)
+    return square > boxes.reach * boxes.reach
 
 
 @kernel
-def search_all(bodies, space, i, dt, parting, found, thread):
-    """Test a body against all before it, a loop without branches for each block of them; the tests."""
-    size = bodies.radii[i]
+def search_all(particles, i, space, step, found):
+    """Test a particle against all before it, a loop without branches for each block of them; the number of
+    tests."""
+    size = particles.radii[i]
     start = 0
     while start < i:
         stop = min(start + 256, i)
         overlaps = 0
         for j in range(start, stop):
-            sigma = size + bodies.radii[j]
-            overlaps += distance_squared(bodies, space, i, j) < sigma * sigma
+            sigma = size + particles.radii[j]
+            overlaps += distance_squared(particles, i, j, space) < sigma * sigma
         if overlaps:
             for j in range(start, stop):
-                sigma = size + bodies.radii[j]
-                if distance_squared(bodies, space, i, j) < sigma * sigma:
-                    examine(bodies, space, i, j, dt, parting, found, thread)
+                sigma = size + particles.radii[j]
+                if distance_squared(particles, i, j, space) < sigma * sigma:
+                    examine(particles, i, j, space, step, found, 0)
         start = stop
     return i
 
 
+@helper
+def search_list_of_box(particles, i, j, boxes, space, step, found):
+    """Test a particle against that in slot j and all that follow it in its box; the number of tests."""
+    tests = 0
+    size = particles.radii[i]
+    while j >= 0:
+        tests += 1
+        sigma = size + particles.radii[j]
+        if distance_squared(particles, i, j, space) < sigma * sigma:
+            examine(particles, i, j, space, step, found, 0)
+        j = boxes.following[j]
+    return tests
+
+
 @kernel
-def search_boxes(bodies, space, partition, dt, parting, found, counters):
-    """Write down all pairs to be resolved of ordinary bodies."""
-    if len(partition.head) == 1:
-        counters.counts[BOX_VISITS] += bodies.ordinary
-        for i in range(bodies.ordinary):
-            counters.counts[PAIR_TESTS] += search_all(bodies, space, i, dt, parting, found, 0)
+def search_boxes(particles, boxes, space, step, found, tally):
+    """Record all pairs to be resolved of ordinary particles."""
+    if len(boxes.head) == 1:
+        tally.counts[BOX_VISITS] += particles.ordinary
+        for i in range(particles.ordinary):
+            tally.counts[PAIR_TESTS] += search_all(particles, i, space, step, found)
         return
     tests = visits = 0
-    for i in range(bodies.ordinary):
-        ax, ay, az = partition.at[i, 0], partition.at[i, 1], partition.at[i, 2]
-        own = ax * partition.strides[0] + ay * partition.strides[1] + az * partition.strides[2]
-        size = bodies.radii[i]
+    for i in range(particles.ordinary):
+        ax, ay, az = boxes.at[i, 0], boxes.at[i, 1], boxes.at[i, 2]
+        own = ax * boxes.strides[0] + ay * boxes.strides[1] + az * boxes.strides[2]
         visits += 1
-        j = partition.following[i]
-        while j >= 0:
-            tests += 1
-            sigma = size + bodies.radii[j]
-            if distance_squared(bodies, space, i, j) < sigma * sigma:
-                examine(bodies, space, i, j, dt, parting, found, 0)
-            j = partition.following[j]
+        tests += search_list_of_box(particles, i, boxes.following[i], boxes, space, step, found)
         for dz in range(3):
-            z = partition.neighbour[2, az, dz]
+            z = boxes.neighbour[2, az, dz]
             if z < 0:
                 continue
             for dy in range(3):
-                y = partition.neighbour[1, ay, dy]
+                y = boxes.neighbour[1, ay, dy]
                 if y < 0:
                     continue
                 for dx in range(3):
-                    x = partition.neighbour[0, ax, dx]
+                    x = boxes.neighbour[0, ax, dx]
                     if x < 0 or x + y + z <= own:
                         continue
-                    if partition.near and beyond(bodies, partition, i, dx, dy, dz):
+                    if boxes.near and is_out_of_reach(particles, i, boxes, dx, dy, dz):
                         continue
                     visits += 1
-                    j = partition.head[x + y + z]
-                    while j >= 0:
-                        tests += 1
-                        sigma = size + bodies.radii[j]
-                        if distance_squared(bodies, space, i, j) < sigma * sigma:
-                            examine(bodies, space, i, j, dt, parting, found, 0)
-                        j = partition.following[j]
-    counters.counts[PAIR_TESTS] += tests
-    counters.counts[BOX_VISITS] += visits
+                    j = boxes.head[x + y + z]
+                    tests += search_list_of_box(particles, i, j, boxes, space, step, found)
+    tally.counts[PAIR_TESTS] += tests
+    tally.counts[BOX_VISITS] += visits

@@ -1,7 +1,8 @@
-"""The cells of a neighbour list: rows of them along the first axis, and the bodies in memory in their order.
+"""The cells of a neighbour list: rows of them along the first axis, and the particles in memory in their
+order.
 
-So the bodies in three cells of a row, one after another, are one stretch of slots. Around the cells lies a
-layer of empty ones; behind a periodic face a row of it tells the slots of the row across the container.
+So the particles in three cells of a row, one after another, are one stretch of slots. Around the cells lies a
+layer of empty ones; behind a periodic face a row of it holds the slots of the row across the container.
 """
 
 from typing import NamedTuple
@@ -9,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gaspart.kernels.compilation import helper, kernel
-from gaspart.kernels.step.model import share
+from gaspart.kernels.step.model import part_of
 
 ONE = np.uint32(1)  # whole numbers of this type index arrays without a test for negative ones
 
@@ -18,9 +19,9 @@ class Cells(NamedTuple):
     """per_side (3,) cells along each axis, without the layer around them; inverse (3,) of their widths;
     strides (3,) of the index with that layer, which is two cells deep where a row begins; wraps (3,), whether
     the first and the last cell along an axis are neighbours; ends (threads, cells), of which the last row
-    tells behind which slot each cell's bodies end; cell, order (N,): room for the sort; skin, the distance
-    that bodies may spend; origin (d, N), where the bodies in each slot were when the list was made; listed
-    (threads,), how long each thread's list is."""
+    holds behind which slot each cell's particles end; cell, order (N,): room for the sort; skin, the distance
+    beyond a contact up to which pairs are listed; origin (d, N), where the particle in each slot was when the
+    list was made; listed (threads,), how long each thread's list is."""
 
     per_side: np.ndarray
     inverse: np.ndarray
@@ -42,28 +43,26 @@ def coordinate(x, inverse, per_side):
 
 @kernel
 def locate(x, inverse, per_side, stride, cell):
-    """Add to the cells (n,) of bodies what their coordinates x (n,) along one axis make."""
+    """Add to the cells (n,) of particles the term of their coordinates x (n,) along one axis."""
     for n in range(len(x)):
         cell[n] += np.uint32((coordinate(x[n], inverse, per_side) + 1) * stride)
 
 
 @kernel
-def find_part(bodies, cells, part):
+def locate_part(particles, part, cells):
     """Find the cells of one thread's slots."""
-    parts = len(cells.ends)
-    low, high = share(part, parts, bodies.ordinary), share(part + 1, parts, bodies.ordinary)
+    low, high = part_of(part, len(cells.ends), particles.ordinary)
     cell = cells.cell[low:high]
     cell[:] = 1
-    for k in range(len(bodies.positions)):
-        x = bodies.positions[k, low:high]
+    for k in range(len(particles.positions)):
+        x = particles.positions[k, low:high]
         locate(x, cells.inverse[k], cells.per_side[k], cells.strides[k], cell)
 
 
 @kernel
-def count_part(bodies, cells, part):
-    """Count into ends[part] how many bodies of one thread's slots are in each cell."""
-    parts = len(cells.ends)
-    low, high = share(part, parts, bodies.ordinary), share(part + 1, parts, bodies.ordinary)
+def count_part(particles, part, cells):
+    """Count into ends[part] how many particles of one thread's slots are in each cell."""
+    low, high = part_of(part, len(cells.ends), particles.ordinary)
     number = cells.ends[part]
     number[:] = 0
     for c in cells.cell[low:high]:
@@ -72,7 +71,7 @@ def count_part(bodies, cells, part):
 
 @kernel
 def begin_cells(ends):
-    """From how many each thread puts into each cell to where it begins."""
+    """Replace how many slots each thread has in each cell by where these begin."""
     place = np.uint32(0)
     if len(ends) == 1:
         only = ends[0]
@@ -89,10 +88,9 @@ def begin_cells(ends):
 
 
 @kernel
-def order_part(bodies, cells, part):
+def order_part(particles, part, cells):
     """Put one thread's slots into the order of their cells."""
-    parts = len(cells.ends)
-    low, high = share(part, parts, bodies.ordinary), share(part + 1, parts, bodies.ordinary)
+    low, high = part_of(part, len(cells.ends), particles.ordinary)
     ends, order = cells.ends[part], cells.order
     for slot in range(low, high):
         cell = cells.cell[slot]
@@ -101,8 +99,8 @@ def order_part(bodies, cells, part):
 
 
 @kernel
-def mirror(cells):
-    """Let the rows behind periodic faces tell the slots of those across the container."""
+def copy_periodic_rows(cells):
+    """Give the rows behind periodic faces the slots of those across the container."""
     ends = cells.ends[len(cells.ends) - 1]
     for k in range(1, 3):
         if cells.wraps[k]:
@@ -114,16 +112,16 @@ def mirror(cells):
 
 
 @kernel
-def take(values, order, low, high, taken):
-    """taken[n] becomes values[order[n]] from `low` to `high`."""
-    of, taken = order[low:high], taken[low:high]
-    for n in range(len(of)):
-        taken[n] = values[of[n]]
+def permute(values, order, slots, permuted):
+    """permuted[n] becomes values[order[n]] for n from slots[0] to slots[1]."""
+    source, permuted = order[slots[0] : slots[1]], permuted[slots[0] : slots[1]]
+    for n in range(len(source)):
+        permuted[n] = values[source[n]]
 
 
 @kernel
-def copy(taken, low, high, values):
-    """values[n] becomes taken[n] from `low` to `high`."""
-    values, taken = values[low:high], taken[low:high]
-    for n in range(len(taken)):
-        values[n] = taken[n]
+def copy(permuted, slots, values):
+    """values[n] becomes permuted[n] for n from slots[0] to slots[1]."""
+    values, permuted = values[slots[0] : slots[1]], permuted[slots[0] : slots[1]]
+    for n in range(len(permuted)):
+        values[n] = permuted[n]

@@ -1,82 +1,91 @@
 """One small step after another: the canonical step of the time-stepped engine.
 
-A step moves all bodies, reflects those that left through a wall, finds all pairs that overlap and approach,
-and resolves them in the order of their contact time and indices, testing each again; further passes look for
-what the first has left or made. Which search finds the pairs changes no bit of the result. All arithmetic
-keeps the precision of the positions (float32 or float64): hence dt - dt for 0 and x + x for 2x.
+A step moves all particles, reflects those that left through a wall, finds all pairs that overlap and
+approach, and resolves them in the order of their contact time and indices, testing each again; further passes
+find what the first has left or made. Which search finds the pairs changes no bit of the result. All
+arithmetic keeps the precision of the positions (float32 or float64): hence dt - dt for 0 and x + x for 2x.
 """
 
-from gaspart.kernels.compilation import allocating_kernel
+from gaspart.kernels.compilation import allocating_kernel, helper
 from gaspart.kernels.step.box_search import search_all, search_boxes, sort_in
-from gaspart.kernels.step.model import FASTEST, PAIR_TESTS, SPENT, Turn
-from gaspart.kernels.step.motion import move, move_by_rules
-from gaspart.kernels.step.neighbour_list import is_stale
+from gaspart.kernels.step.model import DISPLACEMENT, FASTEST, PAIR_TESTS, Search, Step
+from gaspart.kernels.step.neighbour_list import is_outdated
 from gaspart.kernels.step.resolve import count_left, in_order, resolve_all
-from gaspart.kernels.step.threads import gathered, make_list, move_shared, numbers_of, room_for, search_list
+from gaspart.kernels.step.threads import gathered, make_list, move_all, room_for, search_list
 
 
-@allocating_kernel
-def run_steps(
-    bodies, space, partition, cells, pairs, gravity, inset, rules, law, dt, steps, rewind, passes, watch,
-    counters, threads,
-):  # fmt: skip
-    """Make `steps` steps of length `dt`.
-
-    partition: the boxes to search, or cells: those of a list; the other is None. pairs (threads, room):
-    the list as it stands. gravity: (d,) or None; inset: the largest radius that a wall stops; rules, law: of
-    faces and contacts that know more than momenta (see `step_rules`), or None; threads: their number, or None
-    for one. Returns the list as it stands then.
-    """
-    count = bodies.positions.shape[1]
-    parts = 1 if threads is None else threads
-    found = room_for(parts, count // parts + 16, bodies.positions)
-    parting = passes > 1
-    watch.met[:] = 0
+@helper
+def total_pull(gravity):
+    """The sum of the components of gravity, each counted positive."""
     pull = 0.0
     if gravity is not None:
         for component in gravity:
             pull += abs(component)
-    for step in range(steps):
-        watch.reach[FASTEST] += pull * dt
-        watch.reach[SPENT] += watch.reach[FASTEST] * dt
-        if rules is not None:
-            move_by_rules(bodies, space, gravity, dt, rules, law, cells, watch, counters)
-        elif threads is None:
-            move(bodies, space, gravity, inset, dt, 0, count, counters, 0)
-        else:
-            apart = space.lengths, space.periodic, numbers_of(space)
-            move_shared(bodies, *apart, gravity, inset, dt, counters, threads)
-        number, before = 0, 0
-        for again in range(passes):
-            turn = Turn(step * passes + again + 1, step * passes + 1)
-            if cells is not None:
-                if is_stale(bodies, space, cells, watch):
-                    pairs = make_list(bodies, space, cells, pairs, watch, counters, threads)
-                    before = 0
-            if partition is not None:
-                sort_in(bodies, partition)
-            while True:
-                found.number[:] = 0
-                found.tests[:] = 0
-                if cells is not None:
-                    search_list(bodies, space, cells, pairs, watch, before, dt, parting, found, threads)
-                if partition is not None:
-                    search_boxes(bodies, space, partition, dt, parting, found, counters)
-                for slot in range(bodies.ordinary, count):
-                    found.tests[0] += search_all(bodies, space, slot, dt, parting, found, 0)
-                if found.number.max() <= found.times.shape[1]:
-                    break
-                found = room_for(parts, 2 * found.number.max(), bodies.positions)
-            counters.counts[PAIR_TESTS] += found.tests.sum()
+    return pull
+
+
+@allocating_kernel
+def update_list(particles, pairs, space, tally, before, threads, cells):
+    """Make the list anew if it is outdated. Returns its pairs, and `before`, see `Step`."""
+    if cells is not None:
+        if is_outdated(particles, cells, space):
+            return make_list(particles, cells, pairs, space, tally, threads), 0
+    return pairs, before
+
+
+@helper
+def search_grid(particles, space, step, found, tally, boxes):
+    """Search the boxes, if there are any."""
+    if boxes is not None:
+        sort_in(particles, boxes)
+        search_boxes(particles, boxes, space, step, found, tally)
+
+
+@allocating_kernel
+def find_contacts(particles, search, space, step, found, tally, threads):
+    """Find all pairs to be resolved. Returns them in `found`, or in more room."""
+    parts, count = len(found.number), particles.positions.shape[1]
+    while True:
+        found.number[:] = 0
+        found.tests[:] = 0
+        search_list(particles, search.pairs, space, step, found, threads, search.cells)
+        search_grid(particles, space, step, found, tally, search.boxes)
+        for slot in range(particles.ordinary, count):
+            found.tests[0] += search_all(particles, slot, space, step, found)
+        if found.number.max() <= found.times.shape[1]:
+            break
+        found = room_for(parts, 2 * found.number.max(), particles.positions)
+    tally.counts[PAIR_TESTS] += found.tests.sum()
+    return found
+
+
+@allocating_kernel
+def run_steps(particles, search, model, settings, steps, tally, threads):
+    """Make so many steps. settings: their length, whether contacts are rewound, and the number of passes at
+    most; threads: their number, or None for one. Returns the pairs of the list as it stands then."""
+    boxes, cells, pairs = search
+    space, rules, law = model.space, model.rules, model.law
+    dt, rewind, passes = settings
+    parts = 1 if threads is None else threads
+    found = room_for(parts, particles.positions.shape[1] // parts + 16, particles.positions)
+    particles.last_pass[:] = 0
+    pull = total_pull(model.gravity)
+    for n in range(steps):
+        particles.bounds[FASTEST] += pull * dt
+        particles.bounds[DISPLACEMENT] += particles.bounds[FASTEST] * dt
+        move_all(particles, model, dt, tally, threads, rules, cells)
+        number, before, first = 0, 0, n * passes + 1
+        for now in range(first, first + passes):
+            pairs, before = update_list(particles, pairs, space, tally, before, threads, cells)
+            step = Step(dt, rewind, passes > 1, now, first, before)
+            found = find_contacts(particles, Search(boxes, cells, pairs), space, step, found, tally, threads)
             number = found.number.sum()
             if number == 0:
                 break
             contacts, times = gathered(found)
-            order = in_order(bodies.index, contacts, times)
-            resolve_all(
-                bodies, space, contacts, order, dt, turn, rewind, parting, rules, law, cells, watch, counters
-            )
-            before = turn.now
+            order = in_order(particles.index, contacts, times)
+            resolve_all(particles, contacts, order, model, step, tally, law, cells)
+            before = now
         if number > 0:
-            count_left(bodies, space, contacts, counters)
+            count_left(particles, contacts, space, tally)
     return pairs

@@ -1,37 +1,31 @@
-"""What the time-stepped engine's kernels work on: arrays by axis, in the order of their slots.
+"""What the time-stepped engine's kernels pass to one another: particles, search, model, step, tally.
 
-A *slot* is a body's present place in memory; `index` tells which body that is. All real numbers have the
-precision of the positions (float32 or float64). Sums that several threads make are whole numbers, so that
-no order of adding shows in them.
+A *slot* is a particle's present place in memory; `index` gives the particle's number. Arrays are by axis, in
+the order of slots. Arguments come in one order: the particles and which of them, the structures of the
+search, the model, the step, the tally, the thread, and last whatever may be absent, as in `kernels.model`.
+All real numbers have the precision of the positions (float32 or float64). Sums that several threads make are
+whole numbers, so that they do not depend on the order of adding.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from gaspart.kernels.compilation import helper
+from gaspart.kernels.model import ContactLaw, Space
 
 COLLISIONS, PAIR_TESTS, BOX_VISITS, OVERLAPS_LEFT, MULTIPLE, REBUILDS, LATE, PASSED = range(8)
 VIRIAL, LOSS = range(2)
 DEEPEST, WORST = range(2)
-FASTEST, SPENT = range(2)
+FASTEST, DISPLACEMENT = range(2)
 
 
-class Space(NamedTuple):
-    """lengths (d,), periodic (d,); margin: 1 if walls stop surfaces, 0 if they stop centres; normal: what a
-    contact leaves of the approach; push: what it passes of the elastic impulse, (1 + normal) / 2."""
+class StepParticles(NamedTuple):
+    """By slot: positions, velocities (d, N), radii (N,), index (N,), last_pass (N,), the number of the pass
+    of the last contact. By particle: images (d, N), masses (N,). bounds (2,): the speed of the FASTEST
+    particle and the largest DISPLACEMENT since the list was made, or more.
 
-    lengths: tuple
-    periodic: tuple
-    margin: float
-    normal: float
-    push: float
-
-
-class Bodies(NamedTuple):
-    """By slot: positions, velocities (d, N), radii, index (N,). By body: images (d, N), masses (N,).
-
-    ordinary: how many slots the partition holds; the bodies beyond, too large for it, are the last ones.
+    ordinary: how many slots boxes and cells hold; the particles beyond, too large for them, come last.
     """
 
     positions: np.ndarray
@@ -40,10 +34,49 @@ class Bodies(NamedTuple):
     radii: np.ndarray
     index: np.ndarray  # type: ignore[assignment]  # tuples have a method of this name
     masses: np.ndarray
+    last_pass: np.ndarray
+    bounds: np.ndarray
     ordinary: int
 
 
-class Counters(NamedTuple):
+class StepModel(NamedTuple):
+    """What is simulated. normal: the restitution of smooth contacts; impulse_share: what such a contact
+    passes of the elastic impulse, (1 + normal) / 2; inset: the largest radius, of an ordinary particle, that
+    a wall stops; gravity (d,), rules (see `boundaries.Rules`) and law may be None."""
+
+    space: Space
+    normal: float
+    impulse_share: float
+    inset: float
+    gravity: tuple | None
+    rules: Any
+    law: ContactLaw | None
+
+
+class Search(NamedTuple):
+    """The boxes (see `box_search.StepBoxes`), or the cells and pairs (threads, room) of a neighbour list;
+    boxes or cells are None."""
+
+    boxes: Any
+    cells: Any
+    pairs: np.ndarray
+
+
+class Step(NamedTuple):
+    """One pass of a step of length dt. rewind: whether pairs collide as they were at their contact; parting:
+    whether overlaps count that began in this step and shrink; number: that of this pass, among those of all
+    steps, counted from 1; first: that of the step's first pass; before: that of the pass before if only its
+    contacts have changed what a search finds, otherwise 0."""
+
+    dt: float
+    rewind: bool
+    parting: bool
+    number: int
+    first: int
+    before: int
+
+
+class StepTally(NamedTuple):
     """counts (8,), sums (2, 2) by `running_sum.add` and extremes (2,), see the names at the module's top; by
     thread: wall_hits (threads, 2d); wall_impulse (threads, 2d, 2) and wall_loss (threads, 2), an energy, both
     by `running_sum.add_whole`; momentum and energy: the powers of two that few terms of these exceed."""
@@ -70,22 +103,7 @@ class Found(NamedTuple):
     touching: np.ndarray
 
 
-class Watch(NamedTuple):
-    """met (N,), by slot: the turn of the last contact. reach (2,): the FASTEST speed of any body, or more;
-    the most that any may have SPENT of the skin since the list was made."""
-
-    met: np.ndarray
-    reach: np.ndarray
-
-
-class Turn(NamedTuple):
-    """The number of this pass, among those of all steps, and of the first pass of this step."""
-
-    now: int
-    first: int
-
-
 @helper
-def share(part, parts, count):
-    """Where part `part` of `count` things divided among `parts` begins."""
-    return part * count // parts
+def part_of(part, parts, count):
+    """Where part `part` of `count` things divided among `parts` begins, and where it ends."""
+    return part * count // parts, (part + 1) * count // parts

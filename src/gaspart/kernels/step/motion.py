@@ -1,7 +1,7 @@
-"""How bodies move in one step: freely, then back into the container through its periodic faces or walls.
+"""How particles move in one step: freely, then back into the container through its periodic faces or walls.
 
-The free flight is a loop without branches; a block of bodies is looked at again only if somebody left the
-container in it.
+The free flight is a loop without branches; the particles of a block are tested one by one only if any of them
+has left the container.
 """
 
 import numpy as np
@@ -10,59 +10,61 @@ from gaspart.kernels.compilation import allocating_kernel, helper, kernel
 from gaspart.kernels.periodic import nearest
 from gaspart.kernels.running_sum import add_whole
 from gaspart.kernels.step.boundaries import is_free, meet_faces
-from gaspart.kernels.step.model import FASTEST, SPENT
+from gaspart.kernels.step.model import DISPLACEMENT, FASTEST
 
 _BLOCK = 128
 
 
 @helper
-def wrap(bodies, slot, axis, length):
-    """Bring a body back into the container on a periodic axis."""
-    x = bodies.positions[axis, slot]
+def wrap(particles, slot, axis, length):
+    """Bring a particle back into the container on a periodic axis."""
+    x = particles.positions[axis, slot]
     if 0.0 <= x < length:
         return
-    laps = np.floor(x / length)
-    if laps != 0.0:
-        x -= laps * length
+    images = np.floor(x / length)
+    if images != 0.0:
+        x -= images * length
         if x >= length:  # a tiny negative x rounds up to the length itself
             x -= length
-            laps += 1
-        bodies.positions[axis, slot] = x
-        bodies.images[axis, bodies.index[slot]] += int(laps)
+            images += 1
+        particles.positions[axis, slot] = x
+        particles.images[axis, particles.index[slot]] += int(images)
 
 
 @helper
-def reflect(bodies, space, slot, axis, lower, upper, counters, thread):
-    """Mirror a body that left through a wall, as long as it moves outward."""
-    x = bodies.positions[axis, slot]
-    v = bodies.velocities[axis, slot]
+def reflect(particles, slot, axis, planes, model, tally, thread):
+    """Reflect a particle that left through a wall, as long as it moves outward. planes: (lower, upper)."""
+    lower, upper = planes
+    x = particles.positions[axis, slot]
+    v = particles.velocities[axis, slot]
     while (x < lower and v < 0.0) or (x > upper and v > 0.0):
         side = 0 if x < lower else 1
         plane = upper if side else lower
-        impulse = 2.0 * space.push * bodies.masses[bodies.index[slot]] * abs(v)
-        counters.wall_hits[thread, 2 * axis + side] += 1
-        add_whole(counters.wall_impulse[thread, 2 * axis + side], impulse, counters.momentum)
-        if space.normal == 1.0:
+        impulse = 2.0 * model.impulse_share * particles.masses[particles.index[slot]] * abs(v)
+        tally.wall_hits[thread, 2 * axis + side] += 1
+        add_whole(tally.wall_impulse[thread, 2 * axis + side], impulse, tally.momentum)
+        if model.normal == 1.0:
             x = plane + plane - x
         else:  # it came through |x - plane| / |v| ago
-            x = plane + space.normal * (plane - x)
-            lost = 0.5 * impulse * abs(v) * (1.0 - space.normal)
-            add_whole(counters.wall_loss[thread], lost, counters.energy)
-        v = -v * space.normal
-    bodies.positions[axis, slot] = x
-    bodies.velocities[axis, slot] = v
+            x = plane + model.normal * (plane - x)
+            lost = 0.5 * impulse * abs(v) * (1.0 - model.normal)
+            add_whole(tally.wall_loss[thread], lost, tally.energy)
+        v = -v * model.normal
+    particles.positions[axis, slot] = x
+    particles.velocities[axis, slot] = v
 
 
 @kernel
-def reflect_falling(bodies, slot, axis, lower, upper, pull, dt, counters, thread):
+def reflect_falling(particles, slot, axis, planes, pull, dt, tally, thread):
     """The same under a pull: back along the parabola to the plane, and on from there with the speed it had.
 
-    y is the height over the plane, u its rate and a the pull, all counted inward. y = u s + a s^2/2 tells
-    how long ago, s, the body crossed the plane (Spencer 2022, Eq. 14, in the form that does not cancel), and
-    w^2 = u^2 - 2 a y how fast. Bounces that fit into what is left of the step are made at once.
+    y is the height over the plane, u its rate and a the pull, all counted inward. y = u s + a s^2/2 gives how
+    long ago, s, the particle crossed the plane (Spencer 2022, Eq. 14, in the form that does not cancel), and
+    w^2 = u^2 - 2 a y how fast. Bounces that fit into the rest of the step are made at once.
     """
-    x = bodies.positions[axis, slot]
-    v = bodies.velocities[axis, slot]
+    lower, upper = planes
+    x = particles.positions[axis, slot]
+    v = particles.velocities[axis, slot]
     half = dt / (dt + dt)
     while x < lower or x > upper:
         side = 0 if x < lower else 1
@@ -81,70 +83,73 @@ def reflect_falling(bodies, slot, axis, lower, upper, pull, dt, counters, thread
             bounces = np.floor(s * -a / (w + w))
             s -= bounces * (w + w) / -a
             hits += int(bounces)
-        impulse = 2.0 * hits * bodies.masses[bodies.index[slot]] * w
-        counters.wall_hits[thread, 2 * axis + side] += hits
-        add_whole(counters.wall_impulse[thread, 2 * axis + side], impulse, counters.momentum)
+        impulse = 2.0 * hits * particles.masses[particles.index[slot]] * w
+        tally.wall_hits[thread, 2 * axis + side] += hits
+        add_whole(tally.wall_impulse[thread, 2 * axis + side], impulse, tally.momentum)
         u = w + a * s
         y = max(y - y, half * (w + u) * s)
         x, v = (upper - y, -u) if side else (lower + y, u)
-    bodies.positions[axis, slot] = x
-    bodies.velocities[axis, slot] = v
+    particles.positions[axis, slot] = x
+    particles.velocities[axis, slot] = v
 
 
 @helper
-def strayed(bodies, space, cells, slot):
-    """How far a body is from where it was when the list was made."""
+def displacement_since_rebuild(particles, slot, cells, space):
+    """How far a particle is from where it was when the list was made."""
     square = space.margin - space.margin
     for k in range(len(space.lengths)):
-        gap = bodies.positions[k, slot] - cells.origin[k, slot]
+        gap = particles.positions[k, slot] - cells.origin[k, slot]
         gap = nearest(gap, space.lengths[k], space.periodic[k])
         square += gap * gap
     return np.sqrt(square)
 
 
 @helper
-def note_change(bodies, space, slot, speed_squared, cells, watch):
-    """Remember how fast a body is now, and how far from where it was when the list was made."""
-    watch.reach[FASTEST] = max(watch.reach[FASTEST], np.sqrt(speed_squared))
+def raise_bounds(particles, slot, speed_squared, space, cells):
+    """Let the bounds of all particles hold for one that has changed."""
+    bounds = particles.bounds
+    bounds[FASTEST] = max(bounds[FASTEST], np.sqrt(speed_squared))
     if cells is not None:
-        if slot < bodies.ordinary:
-            watch.reach[SPENT] = max(watch.reach[SPENT], strayed(bodies, space, cells, slot))
+        if slot < particles.ordinary:
+            gap = displacement_since_rebuild(particles, slot, cells, space)
+            bounds[DISPLACEMENT] = max(bounds[DISPLACEMENT], gap)
 
 
 @kernel
-def mend_by_rules(bodies, space, slot, dt, rules, law, cells, watch, counters):
-    """Bring one body back into the container whose walls have rules of their own."""
-    met = meet_faces(bodies, rules, law, slot, dt, counters)
+def apply_rules(particles, slot, model, dt, tally, rules, law, cells):
+    """Bring one particle back into the container whose walls have rules of their own."""
+    met = meet_faces(particles, slot, rules, dt, tally, law)
+    space = model.space
     square = dt - dt
     for k in range(len(space.lengths)):
         if space.periodic[k]:
-            wrap(bodies, slot, k, space.lengths[k])
-        square += bodies.velocities[k, slot] * bodies.velocities[k, slot]
+            wrap(particles, slot, k, space.lengths[k])
+        square += particles.velocities[k, slot] * particles.velocities[k, slot]
     if met:
-        note_change(bodies, space, slot, square, cells, watch)
+        raise_bounds(particles, slot, square, space, cells)
 
 
 @kernel
-def mend(bodies, space, gravity, slot, dt, counters, thread):
-    """Bring one body back into the container."""
-    inset = space.margin * bodies.radii[slot]
+def apply_boundaries(particles, slot, model, dt, tally, thread, gravity):
+    """Bring one particle back into the container."""
+    space = model.space
+    inset = space.margin * particles.radii[slot]
     for k in range(len(space.lengths)):
+        planes = inset, space.lengths[k] - inset
         if space.periodic[k]:
-            wrap(bodies, slot, k, space.lengths[k])
+            wrap(particles, slot, k, space.lengths[k])
+        elif gravity is None:
+            reflect(particles, slot, k, planes, model, tally, thread)
         else:
-            upper = space.lengths[k] - inset
-            if gravity is None:
-                reflect(bodies, space, slot, k, inset, upper, counters, thread)
-            else:
-                reflect_falling(bodies, slot, k, inset, upper, gravity[k], dt, counters, thread)
+            reflect_falling(particles, slot, k, planes, gravity[k], dt, tally, thread)
 
 
 @helper
-def is_outside(bodies, space, inset, slot):
-    """Whether an ordinary body may need to be mended."""
+def is_outside(particles, slot, space, inset):
+    """Whether an ordinary particle may have left the container."""
     outside = False
     for k in range(len(space.lengths)):
-        x = bodies.positions[k, slot]
+        x = particles.positions[k, slot]
         lower = inset - inset if space.periodic[k] else inset
         outside |= (x < lower) | (x >= space.lengths[k] - lower)
     return outside
@@ -152,7 +157,7 @@ def is_outside(bodies, space, inset, slot):
 
 @kernel
 def fly(x, v, lower, upper, dt):
-    """Move bodies along one axis; the number that are not in [lower, upper) then."""
+    """Move particles along one axis; the number that are not in [lower, upper) then."""
     outside = 0
     for n in range(len(x)):
         moved = x[n] + v[n] * dt
@@ -175,47 +180,49 @@ def fall(x, v, pull, lower, upper, dt):
     return outside
 
 
+@helper
+def advance_axis(particles, slots, axis, limits, dt, gravity):
+    """Move the particles in `slots` (2,) along one axis; the number that are not within the limits (2,)
+    then."""
+    x = particles.positions[axis, slots[0] : slots[1]]
+    v = particles.velocities[axis, slots[0] : slots[1]]
+    if gravity is None:
+        return fly(x, v, limits[0], limits[1], dt)
+    return fall(x, v, gravity[axis], limits[0], limits[1], dt)
+
+
 @kernel
-def move_by_rules(bodies, space, gravity, dt, rules, law, cells, watch, counters):
+def move_by_rules(particles, model, dt, tally, rules, law, cells, gravity):
     """Make the motion of one step where walls have rules of their own."""
-    count = bodies.positions.shape[1]
+    count = particles.positions.shape[1]
     for start in range(0, count, _BLOCK):
         stop = min(start + _BLOCK, count)
         outside = 0
-        for k in range(len(space.lengths)):
-            x = bodies.positions[k, start:stop]
-            v = bodies.velocities[k, start:stop]
-            if gravity is None:
-                outside += fly(x, v, rules.free[k, 0], rules.free[k, 1], dt)
-            else:
-                outside += fall(x, v, gravity[k], rules.free[k, 0], rules.free[k, 1], dt)
-        if outside > 0 or rules.holds or stop > bodies.ordinary:
+        for k in range(len(model.space.lengths)):
+            limits = rules.free[k, 0], rules.free[k, 1]
+            outside += advance_axis(particles, (start, stop), k, limits, dt, gravity)
+        if outside > 0 or rules.holds or stop > particles.ordinary:
             for slot in range(start, stop):
-                if slot >= bodies.ordinary or not is_free(bodies, rules, slot):
-                    mend_by_rules(bodies, space, slot, dt, rules, law, cells, watch, counters)
+                if slot >= particles.ordinary or not is_free(particles, slot, rules):
+                    apply_rules(particles, slot, model, dt, tally, rules, law, cells)
 
 
 @kernel
-def move(bodies, space, gravity, inset, dt, low, high, counters, thread):
-    """Make the motion of one step for the slots from `low` to `high`. inset: the largest distance from a
-    wall at which an ordinary body may need to be mended."""
-    start = low
-    while start < high:
-        stop = min(start + _BLOCK, high)
+def move(particles, slots, model, dt, tally, thread, gravity):
+    """Make the motion of one step for the slots from slots[0] to slots[1]."""
+    space, inset = model.space, model.inset
+    start, end = slots
+    while start < end:
+        stop = min(start + _BLOCK, end)
         outside = 0
         for k in range(len(space.lengths)):
-            x = bodies.positions[k, start:stop]
-            v = bodies.velocities[k, start:stop]
             lower = dt - dt if space.periodic[k] else inset
-            upper = space.lengths[k] - lower
-            if gravity is None:
-                outside += fly(x, v, lower, upper, dt)
-            else:
-                outside += fall(x, v, gravity[k], lower, upper, dt)
-        if outside > 0 or stop > bodies.ordinary:
+            limits = lower, space.lengths[k] - lower
+            outside += advance_axis(particles, (start, stop), k, limits, dt, gravity)
+        if outside > 0 or stop > particles.ordinary:
             for slot in range(start, stop):
-                if slot >= bodies.ordinary or is_outside(bodies, space, inset, slot):
-                    mend(bodies, space, gravity, slot, dt, counters, thread)
+                if slot >= particles.ordinary or is_outside(particles, slot, space, inset):
+                    apply_boundaries(particles, slot, model, dt, tally, thread, gravity)
         start = stop
 
 
@@ -249,32 +256,32 @@ def highest(squares, most):
 
 
 @allocating_kernel
-def note_fastest(bodies, watch):
-    """Measure the highest speed of any body."""
-    count = bodies.velocities.shape[1]
-    room = np.empty(_BLOCK, bodies.velocities.dtype)
-    most = bodies.velocities[0, 0] - bodies.velocities[0, 0]
+def measure_fastest(particles):
+    """Measure the highest speed of any particle."""
+    count = particles.velocities.shape[1]
+    room = np.empty(_BLOCK, particles.velocities.dtype)
+    most = particles.velocities[0, 0] - particles.velocities[0, 0]
     for low in range(0, count, _BLOCK):
         high = min(low + _BLOCK, count)
         squares = room[: high - low]
         squares[:] = 0
-        for k in range(len(bodies.velocities)):
-            add_squares(bodies.velocities[k, low:high], squares)
+        for k in range(len(particles.velocities)):
+            add_squares(particles.velocities[k, low:high], squares)
         most = highest(squares, most)
-    watch.reach[FASTEST] = np.sqrt(most)
+    particles.bounds[FASTEST] = np.sqrt(most)
 
 
 @allocating_kernel
-def note_spent(bodies, space, cells, watch):
-    """Measure how far any ordinary body is from where it was when the list was made."""
-    room = np.empty(_BLOCK, bodies.positions.dtype)
+def measure_displacement(particles, cells, space):
+    """Measure how far any ordinary particle is from where it was when the list was made."""
+    room = np.empty(_BLOCK, particles.positions.dtype)
     most = space.margin - space.margin
-    for low in range(0, bodies.ordinary, _BLOCK):
-        high = min(low + _BLOCK, bodies.ordinary)
+    for low in range(0, particles.ordinary, _BLOCK):
+        high = min(low + _BLOCK, particles.ordinary)
         squares = room[: high - low]
         squares[:] = 0
         for k in range(len(space.lengths)):
             length = space.lengths[k] if space.periodic[k] else np.inf
-            add_gaps(bodies.positions[k, low:high], cells.origin[k, low:high], length, squares)
+            add_gaps(particles.positions[k, low:high], cells.origin[k, low:high], length, squares)
         most = highest(squares, most)
-    watch.reach[SPENT] = np.sqrt(most)
+    particles.bounds[DISPLACEMENT] = np.sqrt(most)

@@ -1,10 +1,10 @@
-"""Overlapping pairs by a neighbour list: all pairs nearer than a contact and a `skin`, made anew when bodies
-may have crossed the skin.
+"""Overlapping pairs by a neighbour list: all pairs nearer than a contact and a `skin`, made anew when
+particles may have crossed the skin.
 
 An entry of the list is one word: a slot, the first of eight others in a row, and a mark for each of these
-that is near. So it is made, and searched, by loading eight bodies at once. What is made is written down in
-any case, and only then are entries without a mark left out: a place that depends on the entry before would
-have to wait for it.
+that is near. So it is made, and searched, by loading eight particles at once. Entries are written in any
+case, and only then are those without a mark left out: a place that depends on the entry before would have to
+wait for it.
 """
 
 import numpy as np
@@ -12,13 +12,13 @@ import numpy as np
 from gaspart.kernels.compilation import allocating_kernel, helper, kernel
 from gaspart.kernels.prefetch import fetch
 from gaspart.kernels.simd import lowest
-from gaspart.kernels.step.model import SPENT, share
-from gaspart.kernels.step.motion import note_spent
+from gaspart.kernels.step.model import DISPLACEMENT, part_of
+from gaspart.kernels.step.motion import measure_displacement
 from gaspart.kernels.step.resolve import examine
-from gaspart.kernels.step.simd import WIDTH, bits, equals, keep_eight, nearer
+from gaspart.kernels.step.simd import WIDTH, bits, compact_eight, equals, nearer
 
-_SAFE = 0.99  # of the skin, so that rounding spends none of it
-_ROOM = np.uint64(1024)  # entries gathered before those that mark nobody are left out
+_SAFE = 0.99  # of the skin, so that rounding uses none of it
+_ROOM = np.uint64(1024)  # entries written before those without a mark are left out
 _BLOCK = 64  # slots whose partners in one row are looked for before those in the next
 ONE, _TWO, _EIGHT = np.uint64(1), np.uint64(2), np.uint64(WIDTH)
 _PLACE, _MARKS = np.uint64(28), np.uint64(56)  # of an entry: where its slot begins, and its marks
@@ -26,39 +26,40 @@ _SLOTS = (ONE << _PLACE) - ONE
 
 
 @kernel
-def keep(entries, number, pairs, found):
-    """Write those of the first entries that mark anybody into pairs (room,), behind those `found` before, as
+def compact(entries, number, pairs, listed):
+    """Write those of the first entries that have a mark into pairs (room,), behind those `listed` before, as
     long as there is room; how many there are then."""
     most = np.uint64(len(pairs)) - _EIGHT
     for n in range(WIDTH):
         entries[number + np.uint64(n)] = 0
     for n in range(np.uint64(0), number, _EIGHT):
-        found += keep_eight(entries, n, ONE << _MARKS, pairs, min(found, most))
-    return found
+        listed += compact_eight(entries, n, ONE << _MARKS, pairs, min(listed, most))
+    return listed
 
 
 @helper
-def note_near(bodies, space, skin, slot, begin, end, entries, number, pairs, found):
-    """Note which slots from `begin` to `end` are nearer to one than a contact and the skin, eight an entry.
-    The number of entries then, and of those in the list."""
-    first, last = np.uint64(begin), np.uint64(end)
+def record_near(particles, slot, others, cells, space, entries, pairs, filled):
+    """Record which of the slots from others[0] to others[1] are nearer to one than a contact and the skin,
+    eight an entry. filled: the numbers of entries, and of those in the list; these numbers then."""
+    number, listed = filled
+    first, last = np.uint64(others[0]), np.uint64(others[1])
     while True:
-        marks = nearer(bodies.positions, bodies.radii, space, slot, skin, first)
+        marks = nearer(particles.positions, particles.radii, space, slot, cells.skin, first)
         marks &= (ONE << min(last - first, _EIGHT)) - ONE
         entries[number] = (marks << _MARKS) | (slot << _PLACE) | first
         number += ONE
         if number == _ROOM:
-            found = keep(entries, number, pairs, found)
+            listed = compact(entries, number, pairs, listed)
             number = np.uint64(0)
         first += _EIGHT
         if first >= last:
-            return number, found
+            return number, listed
 
 
 @helper
 def rows_ahead(dimension):
-    """How many rows of cells hold partners of a body that its row is to be listed with: its own, and those
-    that come next to it along the other axes."""
+    """How many rows of cells hold partners of a particle that its row is to be listed with: its own, and
+    those that come next to it along the other axes."""
     return 5 if dimension == 3 else 2
 
 
@@ -71,115 +72,111 @@ def ahead(cells, n):
 
 
 @helper
-def note_row(bodies, space, cells, ends, low, high, n, entries, number, pairs, found):
-    """`note_near` of the slots from `low` to `high` with those of row n in their columns and in the columns
-    beside these; the numbers of entries then, and of tests."""
+def record_row(particles, slots, n, cells, space, entries, pairs, filled):
+    """`record_near` of the slots from slots[0] to slots[1] with those of row n in their columns and in the
+    columns beside these; the numbers of entries then, and of tests."""
+    ends = cells.ends[len(cells.ends) - 1]
     tests = np.uint64(0)
     on = np.uint64(ahead(cells, n))
-    for slot in range(np.uint64(low), np.uint64(high)):
+    for slot in range(np.uint64(slots[0]), np.uint64(slots[1])):
         at = np.uint64(cells.cell[slot]) + on
-        first = slot + ONE if n == 0 else np.uint64(ends[at - _TWO])
-        last = np.uint64(ends[at + ONE])
-        tests += last - first
-        number, found = note_near(bodies, space, cells.skin, slot, first, last, entries, number, pairs, found)
-    return number, found, tests
+        others = slot + ONE if n == 0 else np.uint64(ends[at - _TWO]), np.uint64(ends[at + ONE])
+        tests += others[1] - others[0]
+        filled = record_near(particles, slot, others, cells, space, entries, pairs, filled)
+    return filled, tests
 
 
 @helper
-def note_across(bodies, space, cells, ends, at, across, rows, entries, number, pairs, found):
-    """`note_near` of the slots in cell `at` with those in the cell `across` the container and in the same
+def record_across(particles, at, across, cells, space, entries, pairs, filled):
+    """`record_near` of the slots in cell `at` with those in the cell `across` the container and in the same
     column of the rows ahead; the numbers of entries then, and of tests."""
+    ends = cells.ends[len(cells.ends) - 1]
     tests = np.uint64(0)
     for slot in range(np.uint64(ends[at - 1]), np.uint64(ends[at])):
-        for n in range(0 if across > at else 1, rows):
+        for n in range(0 if across > at else 1, rows_ahead(len(space.lengths))):
             other = across + ahead(cells, n)
-            first, last = np.uint64(ends[other - 1]), np.uint64(ends[other])
-            tests += last - first
-            number, found = note_near(
-                bodies, space, cells.skin, slot, first, last, entries, number, pairs, found
-            )
-    return number, found, tests
+            others = np.uint64(ends[other - 1]), np.uint64(ends[other])
+            tests += others[1] - others[0]
+            filled = record_near(particles, slot, others, cells, space, entries, pairs, filled)
+    return filled, tests
 
 
 @allocating_kernel
-def list_part(bodies, space, cells, part, pairs, tests):
-    """Write down all pairs of slots nearer than a contact and the skin that one thread is to find, as entries
-    in pairs[part] (room,), and how many these are into cells.listed (if there is no room for all, the last
-    are missing); the number of tests into tests (threads,)."""
-    parts, rows = len(pairs), rows_ahead(len(space.lengths))
-    start, stop = share(part, parts, bodies.ordinary), share(part + 1, parts, bodies.ordinary)
-    ends, mine = cells.ends[parts - 1], pairs[part]
+def list_part(particles, part, cells, pairs, space, tests):
+    """Write all pairs of slots nearer than a contact and the skin that one thread is to find, as entries into
+    pairs[part] (room,), and how many these are into cells.listed (if there is no room for all, the last are
+    missing); the number of tests into tests (threads,)."""
+    parts, rows, mine = len(pairs), rows_ahead(len(space.lengths)), pairs[part]
+    start, stop = part_of(part, parts, particles.ordinary)
     entries = np.empty(_ROOM + _EIGHT, np.uint64)
-    found = number = total = np.uint64(0)
+    total = np.uint64(0)
+    filled = np.uint64(0), np.uint64(0)
     for low in range(start, stop, _BLOCK):
-        high = min(low + _BLOCK, stop)
+        slots = low, min(low + _BLOCK, stop)
         for n in range(rows):
-            number, found, tested = note_row(
-                bodies, space, cells, ends, low, high, n, entries, number, mine, found
-            )
+            filled, tested = record_row(particles, slots, n, cells, space, entries, mine, filled)
             total += tested
     if cells.wraps[0]:
         lines = cells.per_side[1] * cells.per_side[2]
-        for line in range(share(part, parts, lines), share(part + 1, parts, lines)):
+        start, stop = part_of(part, parts, lines)
+        for line in range(start, stop):
             plane = line // cells.per_side[1]
             left = 2 + (line - plane * cells.per_side[1] + 1) * cells.strides[1]
             if rows == 5:
                 left += (plane + 1) * cells.strides[2]
             right = left + cells.per_side[0] - 1
             for at, across in ((left, right), (right, left)):
-                number, found, tested = note_across(
-                    bodies, space, cells, ends, at, across, rows, entries, number, mine, found
-                )
+                filled, tested = record_across(particles, at, across, cells, space, entries, mine, filled)
                 total += tested
-    cells.listed[part] = keep(entries, number, mine, found)
+    cells.listed[part] = compact(entries, filled[0], mine, filled[1])
     tests[part] = total
 
 
 @kernel
-def has_room(cells, watch):
-    """Whether no two bodies may have come nearer by more than the skin since the list was made."""
-    return 2.0 * watch.reach[SPENT] < _SAFE * cells.skin
+def is_complete(particles, cells):
+    """Whether no two particles may have come nearer by more than the skin since the list was made."""
+    return 2.0 * particles.bounds[DISPLACEMENT] < _SAFE * cells.skin
 
 
 @allocating_kernel
-def is_stale(bodies, space, cells, watch):
-    """Whether the list is to be made anew. By what the fastest body may have come, first; and if that is too
-    much, by how far all have really come."""
-    if has_room(cells, watch):
+def is_outdated(particles, cells, space):
+    """Whether the list is to be made anew. By how far the fastest particle may have come, first; and if that
+    is too much, by how far all have come."""
+    if is_complete(particles, cells):
         return False
-    if watch.reach[SPENT] < np.inf:
-        note_spent(bodies, space, cells, watch)
-    return not has_room(cells, watch)
+    if particles.bounds[DISPLACEMENT] < np.inf:
+        measure_displacement(particles, cells, space)
+    return not is_complete(particles, cells)
 
 
 @kernel
-def search_pairs(bodies, space, pairs, met, before, dt, parting, found, thread):
-    """Write down the pairs, among those of some entries (n,), that are to be resolved; with a turn `before`,
-    only those of which one body at least had a contact in that turn: for all others nothing has changed since
-    they were searched."""
-    touching = found.touching[thread]
-    for low in range(0, len(pairs), len(touching)):
+def search_pairs(particles, entries, space, step, found, thread):
+    """Record the pairs, among those of some entries (n,), that are to be resolved; with a pass `step.before`,
+    only those of which one particle at least had a contact in that pass: for all others nothing has changed
+    since they were searched."""
+    touching, before, last_pass = found.touching[thread], step.before, particles.last_pass
+    for low in range(0, len(entries), len(touching)):
         number = np.uint64(0)
-        for entry in pairs[low : low + len(touching)]:
+        for entry in entries[low : low + len(touching)]:
             slot, first, marks = (entry >> _PLACE) & _SLOTS, entry & _SLOTS, entry >> _MARKS
-            if before != 0 and met[slot] != before:
-                marks &= equals(met, first, np.uint32(before))
+            if before != 0 and last_pass[slot] != before:
+                marks &= equals(last_pass, first, np.uint32(before))
                 if marks == 0:
                     continue
             found.tests[thread] += np.int64(bits(marks))
-            marks &= nearer(bodies.positions, bodies.radii, space, slot, dt - dt, first)
+            marks &= nearer(particles.positions, particles.radii, space, slot, step.dt - step.dt, first)
             if marks != 0:
                 touching[number] = (marks << _MARKS) | (entry & ~(~np.uint64(0) << _MARKS))
                 number += ONE
         for entry in touching[:number]:
             slot, other = (entry >> _PLACE) & _SLOTS, entry & _SLOTS
             for k in range(len(space.lengths)):
-                fetch(bodies.velocities[k], slot)
-                fetch(bodies.velocities[k], other)
-            fetch(bodies.index, slot)
-            fetch(bodies.index, other)
+                fetch(particles.velocities[k], slot)
+                fetch(particles.velocities[k], other)
+            fetch(particles.index, slot)
+            fetch(particles.index, other)
         for entry in touching[:number]:
             slot, first, marks = (entry >> _PLACE) & _SLOTS, entry & _SLOTS, entry >> _MARKS
             while marks != 0:
-                examine(bodies, space, slot, first + lowest(marks), dt, parting, found, thread)
+                examine(particles, slot, first + lowest(marks), space, step, found, thread)
                 marks &= marks - ONE

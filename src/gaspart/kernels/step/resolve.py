@@ -1,13 +1,17 @@
 """The contacts of one step: which overlaps count, in what order they are resolved, and how.
 
-The order - time of contact, lower index, higher index - knows nothing of slots, boxes or threads, so neither
-does any bit of the result.
+The order - time of contact, lower index, higher index - does not depend on slots, boxes or threads, so
+neither does any bit of the result.
+
+A contact is that of `kernels.contact`. Its form here keeps float32, collides particles as they were at the
+time of the contact without moving them there, and passes only a part of the elastic impulse where there is
+restitution: tests/kernels/step/test_resolve.py compares it bit for bit with `collision.collide_smooth`.
 """
 
 import numpy as np
 
 from gaspart.kernels.compilation import allocating_kernel, helper, kernel
-from gaspart.kernels.contact import exchange
+from gaspart.kernels.contact import contact_root, exchange
 from gaspart.kernels.periodic import nearest
 from gaspart.kernels.prefetch import fetch
 from gaspart.kernels.running_sum import add
@@ -23,7 +27,7 @@ from gaspart.kernels.step.model import (
     VIRIAL,
     WORST,
 )
-from gaspart.kernels.step.motion import note_change, wrap
+from gaspart.kernels.step.motion import raise_bounds, wrap
 
 _ONE = np.uint32(1)
 _RUN = 16
@@ -32,25 +36,25 @@ _LATE = 1.125  # steps ago: contacts before these belong to an earlier step, how
 
 
 @helper
-def distance_squared(bodies, space, i, j):
-    """Of two slots, by the nearest image: the same bits as `invariants` finds, without a branch."""
+def distance_squared(particles, i, j, space):
+    """Of two slots, by the nearest image: the same bits as in `invariants`, without a branch."""
     rr = space.margin - space.margin
     for k in range(len(space.lengths)):
         length = space.lengths[k] if space.periodic[k] else np.inf
-        r = abs(bodies.positions[k, j] - bodies.positions[k, i])
+        r = abs(particles.positions[k, j] - particles.positions[k, i])
         r = min(r, abs(length - r))
         rr += r * r
     return rr
 
 
 @helper
-def invariants(bodies, space, i, j):
+def invariants(particles, i, j, space):
     """rr, rv, vv of a pair (see `contact`), j by its nearest image."""
     rr = rv = vv = space.margin - space.margin
     for k in range(len(space.lengths)):
-        gap = bodies.positions[k, j] - bodies.positions[k, i]
+        gap = particles.positions[k, j] - particles.positions[k, i]
         r = nearest(gap, space.lengths[k], space.periodic[k])
-        v = bodies.velocities[k, j] - bodies.velocities[k, i]
+        v = particles.velocities[k, j] - particles.velocities[k, i]
         rr += r * r
         rv += r * v
         vv += v * v
@@ -58,39 +62,35 @@ def invariants(bodies, space, i, j):
 
 
 @helper
-def entered(rr, rv, vv, ss):
-    """When an overlapping pair touched first, if it has always moved as it does now: a time in the past.
-
-    The earlier root of vv t^2 + 2 rv t + (rr - ss) = 0, as in `contact.contact_root`, in the form that does
-    not cancel for a pair that is parting already.
-    """
-    root = np.sqrt(rv * rv - vv * (rr - ss))
+def entry_time(rr, rv, vv, ss):
+    """When an overlapping pair touched first, if it has always moved as it does now: a time in the past. The
+    root of `contact_root`, for a pair that is parting already in the form that does not cancel for it."""
     if rv < 0.0:
-        return (rr - ss) / (root - rv)
-    return -(root + rv) / vv
+        return contact_root(rr, rv, vv, ss)
+    return -(np.sqrt(rv * rv - vv * (rr - ss)) + rv) / vv
 
 
 @helper
-def counts(rr, rv, vv, ss, dt, parting):
-    """Whether an overlap is to be resolved: it grows, or (if `parting` is on) it began in this step."""
+def must_resolve(rr, rv, vv, ss, step):
+    """Whether an overlap is to be resolved: it grows, or (if `step.parting`) it began in this step."""
     if not rr < ss:
         return False
-    return rv < 0.0 or (parting and rv > 0.0 and -entered(rr, rv, vv, ss) < dt)
+    return rv < 0.0 or (step.parting and rv > 0.0 and -entry_time(rr, rv, vv, ss) < step.dt)
 
 
 @helper
-def examine(bodies, space, i, j, dt, parting, found, thread):
-    """Write a pair of overlapping slots down if it is to be resolved."""
-    if bodies.index[i] > bodies.index[j]:
+def examine(particles, i, j, space, step, found, thread):
+    """Record a pair of overlapping slots if it is to be resolved."""
+    if particles.index[i] > particles.index[j]:
         i, j = j, i
-    rr, rv, vv = invariants(bodies, space, i, j)
-    sigma = bodies.radii[i] + bodies.radii[j]
-    if counts(rr, rv, vv, sigma * sigma, dt, parting):
+    rr, rv, vv = invariants(particles, i, j, space)
+    sigma = particles.radii[i] + particles.radii[j]
+    if must_resolve(rr, rv, vv, sigma * sigma, step):
         n = found.number[thread]
         if n < found.times.shape[1]:
             found.pairs[thread, n, 0] = i
             found.pairs[thread, n, 1] = j
-            found.times[thread, n] = entered(rr, rv, vv, sigma * sigma)
+            found.times[thread, n] = entry_time(rr, rv, vv, sigma * sigma)
         found.number[thread] = n + 1
 
 
@@ -177,9 +177,9 @@ def in_order(index, pairs, times):
 
 
 @helper
-def kicks(rr, rv, mass1, mass2):
+def impulse_factors(rr, rv, mass1, mass2):
     """The factors k1, k2 of an elastic contact (v1 += k1 r, v2 -= k2 r), and |r.p| of the momentum p passed.
-    A body of infinite mass takes none."""
+    The velocity of a particle of infinite mass does not change, where `exchange` has no value."""
     if mass1 == np.inf:
         return rr - rr, (rv + rv) / rr, (mass2 + mass2) * abs(rv)
     if mass2 == np.inf:
@@ -189,103 +189,108 @@ def kicks(rr, rv, mass1, mass2):
 
 
 @helper
-def note(bodies, space, slot, speed_squared, turn, cells, watch, counters):
-    """Remember a contact of a body: how many it has in this step, how fast it is now, and how far from where
-    it was when the list was made."""
-    counters.counts[MULTIPLE] += watch.met[slot] >= turn.first
-    watch.met[slot] = turn.now
-    note_change(bodies, space, slot, speed_squared, cells, watch)
+def record_contact(particles, slot, speed_squared, space, step, tally, cells):
+    """Count a contact of a particle if it is not its first in this step, and let all bounds hold for it."""
+    tally.counts[MULTIPLE] += particles.last_pass[slot] >= step.first
+    particles.last_pass[slot] = step.number
+    raise_bounds(particles, slot, speed_squared, space, cells)
 
 
 @helper
-def bump(bodies, space, i, j, ago, rr, rv, counters):
-    """A contact of smooth bodies, at the time `ago` with the invariants rr, rv; the squares of the two speeds
-    then."""
-    one, other = bodies.index[i], bodies.index[j]
-    to_i, to_j, passed = kicks(rr, rv, bodies.masses[one], bodies.masses[other])
-    add(counters.sums, LOSS, 0.25 * (1.0 - space.normal * space.normal) * passed * abs(rv) / rr)
-    to_i, to_j, passed = to_i * space.push, to_j * space.push, passed * space.push
-    add(counters.sums, VIRIAL, passed)
+def collide_smooth(particles, i, j, contact, model, tally):
+    """A contact of smooth particles. contact: how long ago (a negative time), and the invariants rr, rv then.
+    Returns the squares of the two speeds."""
+    ago, rr, rv = contact
+    space = model.space
+    one, other = particles.index[i], particles.index[j]
+    to_i, to_j, passed = impulse_factors(rr, rv, particles.masses[one], particles.masses[other])
+    add(tally.sums, LOSS, 0.25 * (1.0 - model.normal * model.normal) * passed * abs(rv) / rr)
+    to_i, to_j = to_i * model.impulse_share, to_j * model.impulse_share
+    add(tally.sums, VIRIAL, passed * model.impulse_share)
     speed_i = speed_j = ago - ago
     for k in range(len(space.lengths)):
-        gap = bodies.positions[k, j] - bodies.positions[k, i]
+        gap = particles.positions[k, j] - particles.positions[k, i]
         r = nearest(gap, space.lengths[k], space.periodic[k])
-        r += ago * (bodies.velocities[k, j] - bodies.velocities[k, i])
-        bodies.velocities[k, i] += to_i * r
-        bodies.velocities[k, j] -= to_j * r
-        bodies.positions[k, i] -= ago * (to_i * r)
-        bodies.positions[k, j] += ago * (to_j * r)
-        speed_i += bodies.velocities[k, i] * bodies.velocities[k, i]
-        speed_j += bodies.velocities[k, j] * bodies.velocities[k, j]
+        r += ago * (particles.velocities[k, j] - particles.velocities[k, i])
+        particles.velocities[k, i] += to_i * r
+        particles.velocities[k, j] -= to_j * r
+        particles.positions[k, i] -= ago * (to_i * r)
+        particles.positions[k, j] += ago * (to_j * r)
+        speed_i += particles.velocities[k, i] * particles.velocities[k, i]
+        speed_j += particles.velocities[k, j] * particles.velocities[k, j]
     return speed_i, speed_j
 
 
 @helper
-def resolve(bodies, space, i, j, dt, turn, rewind, parting, rules, law, cells, watch, counters):
-    """Collide a pair, if it is still to be resolved: rewind it to its contact, pass the momentum along the
-    normal at contact, and play the rest of the step with the new velocities."""
-    rr, rv, vv = invariants(bodies, space, i, j)
-    sigma = bodies.radii[i] + bodies.radii[j]
-    ss = sigma * sigma
-    if not counts(rr, rv, vv, ss, dt, parting):
-        return
-    counters.extremes[DEEPEST] = max(counters.extremes[DEEPEST], 1.0 - np.sqrt(rr) / sigma)
-    ago = rr - rr
-    if rewind:
-        ago = entered(rr, rv, vv, ss)
-        if ago < -_LATE * dt:
-            counters.counts[LATE] += 1
-            if rr + rr + rr + rr < ss:
-                counters.counts[PASSED] += 1
-        rr += ago * (rv + rv + vv * ago)  # the invariants as they were at the contact
-        rv += ago * vv
-        counters.extremes[WORST] = max(counters.extremes[WORST], abs(rr / ss - 1.0))
-    counters.counts[COLLISIONS] += 1
-    if law is not None:
-        speed_i, speed_j = collide_flights(bodies, i, j, (ago, rr, rv), rules, law, counters)
-    else:
-        speed_i, speed_j = bump(bodies, space, i, j, ago, rr, rv, counters)
-    for k in range(len(space.lengths)):
-        if rewind and space.periodic[k]:
-            wrap(bodies, i, k, space.lengths[k])
-            wrap(bodies, j, k, space.lengths[k])
-    note(bodies, space, i, speed_i, turn, cells, watch, counters)
-    note(bodies, space, j, speed_j, turn, cells, watch, counters)
+def collide(particles, i, j, contact, model, tally, law):
+    """A contact, by the law if there is one; see `collide_smooth`."""
+    if law is None:
+        return collide_smooth(particles, i, j, contact, model, tally)
+    return collide_flights(particles, i, j, contact, model.rules, tally, law)
 
 
 @helper
-def fetch_body(bodies, slot, cells, watch):
-    """Begin to load what a contact of a body reads."""
-    for k in range(len(bodies.positions)):
-        fetch(bodies.positions[k], slot)
-        fetch(bodies.velocities[k], slot)
+def resolve(particles, i, j, model, step, tally, law, cells):
+    """Collide a pair, if it is still to be resolved: rewind it to its contact, pass the momentum along the
+    normal at contact, and play the rest of the step with the new velocities."""
+    space = model.space
+    rr, rv, vv = invariants(particles, i, j, space)
+    sigma = particles.radii[i] + particles.radii[j]
+    ss = sigma * sigma
+    if not must_resolve(rr, rv, vv, ss, step):
+        return
+    tally.extremes[DEEPEST] = max(tally.extremes[DEEPEST], 1.0 - np.sqrt(rr) / sigma)
+    ago = rr - rr
+    if step.rewind:
+        ago = entry_time(rr, rv, vv, ss)
+        if ago < -_LATE * step.dt:
+            tally.counts[LATE] += 1
+            if rr + rr + rr + rr < ss:
+                tally.counts[PASSED] += 1
+        rr += ago * (rv + rv + vv * ago)  # the invariants as they were at the contact
+        rv += ago * vv
+        tally.extremes[WORST] = max(tally.extremes[WORST], abs(rr / ss - 1.0))
+    tally.counts[COLLISIONS] += 1
+    speed_i, speed_j = collide(particles, i, j, (ago, rr, rv), model, tally, law)
+    for k in range(len(space.lengths)):
+        if step.rewind and space.periodic[k]:
+            wrap(particles, i, k, space.lengths[k])
+            wrap(particles, j, k, space.lengths[k])
+    record_contact(particles, i, speed_i, space, step, tally, cells)
+    record_contact(particles, j, speed_j, space, step, tally, cells)
+
+
+@helper
+def fetch_particle(particles, slot, cells):
+    """Begin to load what a contact of a particle reads."""
+    for k in range(len(particles.positions)):
+        fetch(particles.positions[k], slot)
+        fetch(particles.velocities[k], slot)
         if cells is not None:
             fetch(cells.origin[k], slot)
-    fetch(bodies.radii, slot)
-    fetch(bodies.index, slot)
-    fetch(watch.met, slot)
+    fetch(particles.radii, slot)
+    fetch(particles.index, slot)
+    fetch(particles.last_pass, slot)
 
 
 @kernel
-def resolve_all(
-    bodies, space, pairs, order, dt, turn, rewind, parting, rules, law, cells, watch, counters
-):  # fmt: skip
+def resolve_all(particles, pairs, order, model, step, tally, law, cells):
     """Resolve what one search has found, in order."""
     last = len(order) - 1
     for n in range(len(order)):
-        for side in range(2):  # what the next contacts read is on its way while this one is resolved
-            fetch_body(bodies, pairs[order[min(n + 2 * _AHEAD, last)], side], cells, watch)
-            fetch(bodies.masses, bodies.index[pairs[order[min(n + _AHEAD, last)], side]])
+        for side in range(2):  # what the next contacts read is loaded while this one is resolved
+            fetch_particle(particles, pairs[order[min(n + 2 * _AHEAD, last)], side], cells)
+            fetch(particles.masses, particles.index[pairs[order[min(n + _AHEAD, last)], side]])
         i, j = pairs[order[n], 0], pairs[order[n], 1]
-        resolve(bodies, space, i, j, dt, turn, rewind, parting, rules, law, cells, watch, counters)
+        resolve(particles, i, j, model, step, tally, law, cells)
 
 
 @kernel
-def count_left(bodies, space, pairs, counters):
+def count_left(particles, pairs, space, tally):
     """Count the pairs found that overlap and approach even now."""
     for n in range(len(pairs)):
         i, j = pairs[n, 0], pairs[n, 1]
-        rr, rv, _ = invariants(bodies, space, i, j)
-        sigma = bodies.radii[i] + bodies.radii[j]
+        rr, rv, _ = invariants(particles, i, j, space)
+        sigma = particles.radii[i] + particles.radii[j]
         if rr < sigma * sigma and rv < 0.0:
-            counters.counts[OVERLAPS_LEFT] += 1
+            tally.counts[OVERLAPS_LEFT] += 1

@@ -1,8 +1,8 @@
-"""Eight slots at once: which bodies lie near another, in vector instructions.
+"""Eight slots at once: which particles lie near another, in vector instructions.
 
-Bodies are in memory in the order of their cells, so those that may be near one fill a few unbroken stretches
-of slots. Eight of these are eight numbers in a row, of which a vector is loaded at once; and those that count
-are written down one after another, without a branch. All arithmetic is that of `step_contacts`, to the same
+Particles are in memory in the order of their cells, so those that may be near one fill a few unbroken
+stretches of slots. Eight of these are eight numbers in a row, of which a vector is loaded at once; and those
+that count are written one after another, without a branch. All arithmetic is that of `resolve`, to the same
 bits. What is loaded beyond the end of a stretch, or of an array (see `roomy`), is never used.
 """
 
@@ -43,8 +43,8 @@ def _size(lanes: Lanes) -> Lanes:
 
 @intrinsic
 def nearer(typingctx, positions, radii, space, slot, skin, first):
-    """A bit for each of the eight slots from `first` on, lowest first: whether its body is nearer to that in
-    `slot` than a contact and the skin. See `step_contacts.distance_squared`."""
+    """A bit for each of the eight slots from `first` on, lowest first: whether its particle is nearer to that
+    in `slot` than a contact and the skin. See `resolve.distance_squared`."""
 
     def generate(context, builder, signature, arguments):
         positions, radii, space, slot, skin, first = arguments
@@ -95,7 +95,7 @@ def equals(typingctx, values, first, value):
 
 
 @intrinsic
-def keep_eight(typingctx, words, first, least, kept, number):
+def compact_eight(typingctx, words, first, least, kept, number):
     """Write those of eight words, from place `first` on, that are not less than `least` into `kept`, from
     place `number` on; how many these are. There must be room for eight."""
 

@@ -1,16 +1,26 @@
-"""The parts of a step that threads share: the motion, and the search of a list and for it.
+"""The parts of a step that threads share: the motion, and making and searching a list.
 
 With `threads` None there is one thread, and machine code in which others do not exist. Each part writes to
-rows of its own, and which contacts are found does not depend on who finds them.
+rows of its own, and which contacts are found does not depend on which thread finds them. numba passes no
+tuples in tuples to threads: a `StepModel` or a `Space` is taken apart before and put together again there.
 """
 
 import numpy as np
 from numba import prange
 
 from gaspart.kernels.compilation import allocating_kernel, helper, kernel, parallel_kernel
-from gaspart.kernels.step.cells import begin_cells, copy, count_part, find_part, mirror, order_part, take
-from gaspart.kernels.step.model import PAIR_TESTS, REBUILDS, SPENT, Found, Space, share
-from gaspart.kernels.step.motion import move, note_fastest
+from gaspart.kernels.model import Space
+from gaspart.kernels.step.cells import (
+    begin_cells,
+    copy,
+    copy_periodic_rows,
+    count_part,
+    locate_part,
+    order_part,
+    permute,
+)
+from gaspart.kernels.step.model import DISPLACEMENT, PAIR_TESTS, REBUILDS, Found, StepModel, part_of
+from gaspart.kernels.step.motion import measure_fastest, move, move_by_rules
 from gaspart.kernels.step.neighbour_list import list_part, search_pairs
 from gaspart.kernels.step.simd import WIDTH
 
@@ -29,152 +39,151 @@ def room_for(threads, room, like):
     )
 
 
-@helper
-def numbers_of(space):
-    """What a space is made of beside its tuples: numba passes no tuples in tuples to threads."""
-    return space.margin, space.normal, space.push
-
-
-@helper
-def space_of(lengths, periodic, numbers):
-    """The space that these are parts of."""
-    return Space(lengths, periodic, numbers[0], numbers[1], numbers[2])
-
-
 @parallel_kernel
-def move_shared(bodies, lengths, periodic, numbers, gravity, inset, dt, counters, threads):
-    """`move` for all slots."""
-    count = bodies.positions.shape[1]
+def move_shared(particles, lengths, periodic, numbers, dt, tally, threads, gravity):
+    """`move` for all slots. numbers: those of the model, and the margin of its space."""
+    count = particles.positions.shape[1]
     for part in prange(threads):
-        low, high = share(part, threads, count), share(part + 1, threads, count)
-        space = space_of(lengths, periodic, numbers)
-        move(bodies, space, gravity, inset, dt, low, high, counters, part)
+        normal, impulse_share, inset, margin = numbers
+        space = Space(lengths, periodic, margin)
+        model = StepModel(space, normal, impulse_share, inset, gravity, None, None)
+        move(particles, part_of(part, threads, count), model, dt, tally, part, gravity)
+
+
+@helper
+def move_all(particles, model, dt, tally, threads, rules, cells):
+    """Make the motion of one step."""
+    gravity, space = model.gravity, model.space
+    if rules is not None:
+        move_by_rules(particles, model, dt, tally, rules, model.law, cells, gravity)
+    elif threads is None:
+        move(particles, (0, particles.positions.shape[1]), model, dt, tally, 0, gravity)
+    else:
+        numbers = model.normal, model.impulse_share, model.inset, space.margin
+        move_shared(particles, space.lengths, space.periodic, numbers, dt, tally, threads, gravity)
 
 
 @parallel_kernel
-def find_shared(bodies, cells):
-    """`find_part` for all parts."""
+def locate_shared(particles, cells):
+    """`locate_part` for all parts."""
     for part in prange(len(cells.ends)):
-        find_part(bodies, cells, part)
+        locate_part(particles, part, cells)
 
 
 @parallel_kernel
-def count_shared(bodies, cells):
-    """`find_part` and `count_part` for all parts."""
+def count_shared(particles, cells):
+    """`locate_part` and `count_part` for all parts."""
     for part in prange(len(cells.ends)):
-        find_part(bodies, cells, part)
-        count_part(bodies, cells, part)
+        locate_part(particles, part, cells)
+        count_part(particles, part, cells)
 
 
 @parallel_kernel
-def order_shared(bodies, cells):
+def order_shared(particles, cells):
     """`order_part` for all parts."""
     for part in prange(len(cells.ends)):
-        order_part(bodies, cells, part)
+        order_part(particles, part, cells)
 
 
 @parallel_kernel
-def take_shared(values, order, taken, threads):
-    """`take` for all slots."""
+def permute_shared(values, order, permuted, threads):
+    """`permute` for all slots."""
     for part in prange(threads):
-        take(values, order, share(part, threads, len(order)), share(part + 1, threads, len(order)), taken)
+        permute(values, order, part_of(part, threads, len(order)), permuted)
 
 
 @parallel_kernel
-def copy_shared(taken, values, threads):
+def copy_shared(permuted, values, threads):
     """`copy` for all slots."""
     for part in prange(threads):
-        copy(taken, share(part, threads, len(taken)), share(part + 1, threads, len(taken)), values)
+        copy(permuted, part_of(part, threads, len(permuted)), values)
 
 
 @parallel_kernel
-def list_shared(bodies, lengths, periodic, numbers, cells, pairs, tests):
+def list_shared(particles, cells, pairs, lengths, periodic, margin, tests):
     """`list_part` for all parts."""
     for part in prange(len(pairs)):
-        list_part(bodies, space_of(lengths, periodic, numbers), cells, part, pairs, tests)
+        list_part(particles, part, cells, pairs, Space(lengths, periodic, margin), tests)
 
 
 @helper
-def search_part(bodies, space, cells, pairs, watch, before, dt, parting, found, part):
-    """Search one thread's list: all of it or, with a turn `before`, what was stirred then."""
-    listed = pairs[part, : cells.listed[part]]
-    search_pairs(bodies, space, listed, watch.met, before, dt, parting, found, part)
+def search_part(particles, cells, pairs, space, step, found, part):
+    """Search one thread's list; see `search_pairs`."""
+    search_pairs(particles, pairs[part, : cells.listed[part]], space, step, found, part)
 
 
 @parallel_kernel
-def search_shared(bodies, lengths, periodic, numbers, cells, pairs, watch, before, dt, parting, found):
+def search_shared(particles, cells, pairs, lengths, periodic, margin, step, found):
     """`search_part` for the whole list."""
     for part in prange(len(pairs)):
-        space = space_of(lengths, periodic, numbers)
-        search_part(bodies, space, cells, pairs, watch, before, dt, parting, found, part)
+        search_part(particles, cells, pairs, Space(lengths, periodic, margin), step, found, part)
 
 
 @allocating_kernel
-def search_list(bodies, space, cells, pairs, watch, before, dt, parting, found, threads):
-    """Search the whole list."""
-    if threads is None:
-        search_part(bodies, space, cells, pairs, watch, before, dt, parting, found, 0)
-    else:
-        apart = space.lengths, space.periodic, numbers_of(space)
-        search_shared(bodies, *apart, cells, pairs, watch, before, dt, parting, found)
+def search_list(particles, pairs, space, step, found, threads, cells):
+    """Search the whole list, if there is one."""
+    if cells is not None:
+        if threads is None:
+            search_part(particles, cells, pairs, space, step, found, 0)
+        else:
+            search_shared(particles, cells, pairs, space.lengths, space.periodic, space.margin, step, found)
 
 
 @kernel
-def arrange(values, order, room, threads):
+def reorder(values, order, room, threads):
     """values[n] becomes values[order[n]], by way of `room`; what lies beyond the order stays."""
-    taken = room[: len(order)]
+    permuted = room[: len(order)]
     if threads is None:
-        take(values, order, 0, len(order), taken)
-        copy(taken, 0, len(order), values)
+        permute(values, order, (0, len(order)), permuted)
+        copy(permuted, (0, len(order)), values)
     else:
-        take_shared(values, order, taken, threads)
-        copy_shared(taken, values, threads)
+        permute_shared(values, order, permuted, threads)
+        copy_shared(permuted, values, threads)
 
 
 @kernel
-def settle(bodies, cells, watch, threads):
-    """Bring the ordinary bodies into the order of their cells."""
+def sort_into_cells(particles, cells, threads):
+    """Bring the ordinary particles into the order of their cells."""
     if threads is None:
-        find_part(bodies, cells, 0)
-        count_part(bodies, cells, 0)
+        locate_part(particles, 0, cells)
+        count_part(particles, 0, cells)
     else:
-        count_shared(bodies, cells)
+        count_shared(particles, cells)
     begin_cells(cells.ends)
     if threads is None:
-        order_part(bodies, cells, 0)
+        order_part(particles, 0, cells)
     else:
-        order_shared(bodies, cells)
-    mirror(cells)
-    arrange(bodies.radii, cells.order, cells.origin[0], threads)
-    for k in range(len(bodies.positions)):
-        arrange(bodies.velocities[k], cells.order, cells.origin[k], threads)
-        arrange(bodies.positions[k], cells.order, cells.origin[k], threads)
-    arrange(bodies.index, cells.order, cells.cell, threads)
-    arrange(watch.met, cells.order, cells.cell, threads)
+        order_shared(particles, cells)
+    copy_periodic_rows(cells)
+    reorder(particles.radii, cells.order, cells.origin[0], threads)
+    for k in range(len(particles.positions)):
+        reorder(particles.velocities[k], cells.order, cells.origin[k], threads)
+        reorder(particles.positions[k], cells.order, cells.origin[k], threads)
+    reorder(particles.index, cells.order, cells.cell, threads)
+    reorder(particles.last_pass, cells.order, cells.cell, threads)
     if threads is None:
-        find_part(bodies, cells, 0)
+        locate_part(particles, 0, cells)
     else:
-        find_shared(bodies, cells)
+        locate_shared(particles, cells)
 
 
 @allocating_kernel
-def make_list(bodies, space, cells, pairs, watch, counters, threads):
+def make_list(particles, cells, pairs, space, tally, threads):
     """Make the list anew: its pairs (threads, room), in the old room or in more."""
-    settle(bodies, cells, watch, threads)
+    sort_into_cells(particles, cells, threads)
     tests = np.zeros(len(pairs), np.int64)
     while True:
         if threads is None:
-            list_part(bodies, space, cells, 0, pairs, tests)
+            list_part(particles, 0, cells, pairs, space, tests)
         else:
-            apart = space.lengths, space.periodic, numbers_of(space)
-            list_shared(bodies, *apart, cells, pairs, tests)
+            list_shared(particles, cells, pairs, space.lengths, space.periodic, space.margin, tests)
         if cells.listed.max() + WIDTH <= pairs.shape[1]:
             break
         pairs = np.empty((len(pairs), cells.listed.max() * 5 // 4 + WIDTH), np.uint64)
-    note_fastest(bodies, watch)
-    watch.reach[SPENT] = 0.0
-    counters.counts[REBUILDS] += 1
-    counters.counts[PAIR_TESTS] += tests.sum()
+    measure_fastest(particles)
+    particles.bounds[DISPLACEMENT] = 0.0
+    tally.counts[REBUILDS] += 1
+    tally.counts[PAIR_TESTS] += tests.sum()
     return pairs
 
 
