@@ -106,9 +106,9 @@ def test_a_disc_that_is_slow_goes_round_the_end():
     sim = gp.Simulation(discs([((14.9, 10.5), (speed, 0.0))]), gp.EventDriven())
     end = np.array([15.0, 10.0])
     while sim.state.positions[0, 1] > 10.0:
-        sim.advance(duration=0.005)
+        sim.advance(duration=0.001)
         gap = sim.state.positions[0] - end
-        if math.hypot(*gap) > 0.5 * (1.0 + 1e-4) and gap[0] > 0.0:
+        if math.hypot(*gap) > 0.5 * (1.0 + 1e-6) and gap[0] > 0.0:
             break
     assert gap[1] / math.hypot(*gap) == pytest.approx(2.0 / 3.0 + speed**2 / 1.5, abs=0.03)
     sim.check_invariants()
@@ -137,7 +137,10 @@ def test_a_sphere_slides_down_a_tilted_plate():
 
 
 @given(
-    st.floats(-1.4, 1.4), st.floats(-3.0, 3.0), st.sampled_from([1.0, 0.9, 0.5]), st.sampled_from([-1.0, 0.5])
+    st.floats(-1.4, 1.4).map(lambda x: round(x, 6)),
+    st.floats(-3.0, 3.0).map(lambda x: round(x, 6)),
+    st.sampled_from([1.0, 0.9, 0.5]),
+    st.sampled_from([-1.0, 0.5]),
 )
 def test_one_disc_never_collapses(angle, speed, normal, tangential):
     """On a wall of any slope, thrown or at rest, down to the floor, into corners, and round the end."""
