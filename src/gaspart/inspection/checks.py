@@ -15,6 +15,8 @@ from gaspart.statistics import block_average, histogram_chi_square
 
 TOUCH = 1e-5
 """Of a diameter: overlaps up to here are put down to rounding; more where the file itself is coarser."""
+COARSEST = 0.1
+"""Of a diameter: overlaps beyond are not put down to rounding, however coarse the file is."""
 LIMIT = 4.0
 """Standard errors from theory beyond which a number is called wrong: by chance once in 16 000."""
 MOST_FRAMES = 200
@@ -52,7 +54,7 @@ def judge_places(frames: Frames, tolerance: float | None = None) -> list[Check]:
 def _tolerated(frames: Frames, tolerance: float | None) -> float:
     """As a part of the smallest diameter."""
     coarse = 4.0 * frames.resolution / (2.0 * float(frames.radii.min()))
-    return max(TOUCH, coarse) if tolerance is None else tolerance
+    return min(max(TOUCH, coarse), COARSEST) if tolerance is None else tolerance
 
 
 def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Check:
