@@ -7,6 +7,7 @@ axes of one or two boxes need no code of their own.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +16,8 @@ from gaspart.errors import SceneError
 from gaspart.scene import Scene, count_of
 
 NOWHERE = -1
+MOST_BOXES = 2**26
+"""More do not fit into the memory of a common machine."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +53,16 @@ class Boxes:
         return int(self.coordinates(position[None])[0] @ self.strides)
 
 
+def check_boxes_per_side(given: object) -> None:
+    """Raise SceneError unless this is a number of boxes, or a list of one per axis, of at most `MOST_BOXES`
+    boxes."""
+    sides = given if isinstance(given, (tuple, list)) else (given,)
+    total = math.prod(count_of("boxes_per_side", n, least=1) for n in sides)
+    if total > MOST_BOXES or len(sides) > 3:
+        rule = f"must be one number, or one per axis, of at most {MOST_BOXES} boxes"
+        raise SceneError("boxes_per_side", given, rule)
+
+
 def widest(scene: Scene) -> float:
     """The smallest side a box may have: one largest diameter, lest a contact be overlooked."""
     return 2.0 * scene.largest_radius
@@ -59,9 +72,20 @@ def sides_for(scene: Scene, per_body: float, narrowest: float | None = None) -> 
     """Boxes per side (d,) for about `per_body` boxes per body, none narrower than the largest diameter, or
     than `narrowest` if bigger bodies are kept beside the boxes."""
     lengths = scene.container.lengths
-    width = (scene.container.volume / max(1.0, per_body * scene.count)) ** (1.0 / scene.dimension)
-    width = max(width, widest(scene) if narrowest is None else narrowest)
+    width = max(cube_side(lengths, per_body * scene.count), widest(scene) if narrowest is None else narrowest)
     return tuple(max(1, int(length / width)) for length in lengths)
+
+
+def cube_side(lengths: tuple[float, ...], number: float) -> float:
+    """The side of cubes of which about `number`, but at least one, fill a container with sides `lengths`
+    (d,). An axis shorter than that side has one cube, and the others share the number."""
+    sides = lengths
+    while True:
+        width = (math.prod(sides) / max(1.0, number)) ** (1.0 / len(sides))
+        longer = tuple(side for side in sides if side >= width)
+        if not longer or len(longer) == len(sides):
+            return width
+        sides = longer
 
 
 def make_boxes(
@@ -76,12 +100,13 @@ def make_boxes(
     Raises SceneError if a box would be narrower than the largest diameter.
     """
     lengths = scene.container.lengths
+    check_boxes_per_side(boxes_per_side)
     given = boxes_per_side
     if not isinstance(given, (tuple, list)):
         given = (given,) * len(lengths)
     if len(given) != len(lengths):
         raise SceneError("boxes_per_side", boxes_per_side, "must be one number, or one per axis")
-    sides = [count_of("boxes_per_side", n, least=1) for n in given]
+    sides = [int(n) for n in given]
     narrowest = widest(scene) if narrowest is None else narrowest
     for length, n in zip(lengths, sides, strict=True):
         if n > 1 and length / n < narrowest:
@@ -98,15 +123,9 @@ def make_boxes(
     shift = np.zeros((3, most, 3), dtype=np.int64)
     for axis in range(3):
         n = int(per_side[axis])
-        for c in range(n):
-            seen = set()
-            for step in (0, 1, -1):
-                laps, target = divmod(c + step, n)
-                if laps and not periodic[axis]:
-                    continue
-                if target in seen and not images:
-                    continue
-                seen.add(target)
-                neighbour[axis, c, step + 1] = target * strides[axis]
-                shift[axis, c, step + 1] = laps
+        for step in (0, 1, -1)[: 3 if images else n]:
+            laps, target = np.divmod(np.arange(n) + step, n)
+            there = (laps == 0) | periodic[axis]
+            neighbour[axis, :n, step + 1][there] = target[there] * strides[axis]
+            shift[axis, :n, step + 1][there] = laps[there]
     return Boxes(per_side, widths, strides, neighbour, shift)

@@ -142,7 +142,7 @@ class _Growing:
         d, n = self._scene.dimension, self._scene.count
         rate /= 2.0 * self._scene.largest_radius * self.scale
         left = (end / self.scale - 1.0) / rate
-        counters = self._layout.Counters(np.zeros(5, dtype=np.int64), np.zeros(3), *[np.zeros(1)] * 3)
+        counters = self._layout.zero_counters(2 * d)
         self._kernels.start(self.rows, self._plans, self._calendar, self._space, self._partition, rate)
         time = self._kernels.run_growing(
             self.rows, self._plans, self._calendar, self._space, self._partition, rate, counters,
@@ -153,7 +153,7 @@ class _Growing:
         self.rows[:, 2 * d + 1] = self._radii * self.scale
         self.collisions += int(counters.counts[self._layout.COLLISIONS])
         if time > 0.0:
-            self.pressure = 1.0 + float(counters.sums[self._layout.VIRIAL]) / (d * n * time)
+            self.pressure = 1.0 + float(counters.sums[self._layout.VIRIAL].sum()) / (d * n * time)
 
     def settled(self, scale: float) -> np.ndarray:
         """(N, d) where the bodies are, at this scale. Raises SimulationError if any two would overlap."""

@@ -31,6 +31,7 @@ KERNEL_MODULES = (
     "insertion.py",
     "engines/calendar.py",
     "engines/layout.py",
+    "engines/running_sum.py",
     "engines/flight.py",
     "engines/eight.py",
     "engines/search.py",

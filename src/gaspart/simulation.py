@@ -19,7 +19,9 @@ from gaspart.tally import Tally
 from gaspart.validation import count_of, number
 
 ENERGY_DRIFT = {"float64": 1e-9, "float32": 1e-3}
-"""Relative drift of the energy at which a run is stopped, by the engine's precision."""
+"""Drift of the energy at which a run is stopped, relative to that of the gas, by the engine's precision."""
+EXCHANGE_ERROR = {"float64": 2.0**-52, "float32": 2.0**-23}
+"""The same, relative to the energy that contacts and thermal walls have taken or given: its rounding."""
 PROPERTIES = (
     "positions",
     "unwrapped",
@@ -113,21 +115,28 @@ class Simulation:
         """Advance by `duration`, to the time `until`, or by `max_events` collisions and wall hits, whichever
         comes first. The time-stepped engine stops at the last whole step not after the target.
 
-        Raises SceneError for a target in the past, or no target at all.
+        Raises SceneError, with nothing changed, for no target, one in the past, or one that is not a number;
+        `until` may be infinite together with max_events.
         """
+        if max_events is not None:
+            max_events = count_of("max_events", max_events)
+        if until is not None and not (until == math.inf and max_events is not None):
+            until = number("until", until, "must be a finite number, or come with max_events")
+            if until < self.time:
+                raise SceneError("until", until, f"lies in the past of the present time {self.time:g}")
         if duration is not None:
-            until_ = self.time + number("duration", duration, "must not be negative", least=0.0)
-            until = until_ if until is None else min(until, until_)
+            duration = number("duration", duration, "must be a finite number that is not negative", least=0.0)
+            until = min(math.inf if until is None else until, self.time + duration)
         if until is None:
             if max_events is None:
                 raise SceneError("duration", None, "give duration, until or max_events")
             until = math.inf
-        elif until < self.time:
-            raise SceneError("until", until, f"lies in the past of the present time {self.time:g}")
-        if max_events is not None:
-            count_of("max_events", max_events)
-        self._advanced = True
-        self._dynamics.advance(until, max_events, self._log)
+        before, self._advanced = self._advanced, True
+        try:
+            self._dynamics.advance(until, max_events, self._log)
+        except SceneError:  # the engine refused the target
+            self._advanced = before
+            raise
 
     @property
     def time(self) -> float:
@@ -239,7 +248,8 @@ class Simulation:
         if state.gravity is not None:  # what a fall through the container can change
             masses = state.masses[np.isfinite(state.masses)]
             scale += float(masses.sum() * (abs(state.gravity) @ state.lengths))
-        allowed = ENERGY_DRIFT[getattr(self.engine, "precision", "float64")] * scale
+        precision = getattr(self.engine, "precision", "float64")
+        allowed = ENERGY_DRIFT[precision] * scale + EXCHANGE_ERROR[precision] * self._dynamics.exchanged
         if drift > allowed:
             raise SimulationError(
                 f"at time {self.time:g} the energy has drifted by {drift:g} from {self._energy:g}"

@@ -183,3 +183,42 @@ def test_files(tmp_path):
     scene.to_file(tmp_path / "scene.yaml")
     assert gp.Scene.from_file(tmp_path / "scene.yaml") == scene
     assert "faces" not in replace(scene, faces={}).to_dict()
+
+
+def box_of_discs(count):
+    """A few discs between thermal walls of two temperatures."""
+    faces = {"x_low": gp.Thermal(1.0), "x_high": gp.Thermal(4.0)}
+    return gp.Scene(gp.Container((10.0, 10.0)), [gp.Species(count, 0.5, temperature=1.0)], faces=faces)
+
+
+def drift(sim):
+    """By how much the energy is off, when all that the walls have given is counted."""
+    return sim.state.energy + sim.tally.wall_energy.sum() - sim.initial_state.energy
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_a_correct_run_between_thermal_walls_is_not_aborted(count):
+    """The heat that goes through grows for ever, and with it the rounding of a plain sum of it."""
+    sim = gp.Simulation(box_of_discs(count), gp.EventDriven(), seed=1)
+    for _ in range(15):
+        sim.advance(max_events=100_000)
+        sim.check_invariants()
+    assert sim.tally.wall_energy[1] < -1e5
+
+
+@pytest.mark.thorough
+def test_thirty_million_events_between_thermal_walls():
+    sim = gp.Simulation(box_of_discs(3), gp.EventDriven(), seed=1)
+    for _ in range(30):
+        sim.advance(max_events=1_000_000)
+        sim.check_invariants()
+    assert abs(drift(sim)) < 2.0**-52 * abs(sim.tally.wall_energy).sum() + 1e-9 * sim.state.energy
+
+
+def test_an_error_of_the_energy_is_still_found():
+    sim = gp.Simulation(box_of_discs(3), gp.EventDriven(), seed=1)
+    sim.advance(max_events=100_000)
+    state = sim.state
+    state.velocities *= 1.0 + 1e-8
+    with pytest.raises(gp.SimulationError, match="energy has drifted"):
+        sim.check_invariants(state)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
+from gaspart.boxes import check_boxes_per_side
 from gaspart.engines.common import (
     EventLog,
     law_for_kernel,
@@ -14,7 +15,7 @@ from gaspart.engines.common import (
     surfaces_for_kernel,
     tell_inner,
 )
-from gaspart.engines.laps import lap_length
+from gaspart.engines.laps import QUIET, lap_length, quiet_lap
 from gaspart.engines.progress import MANY, check_progress
 from gaspart.errors import SceneError, SimulationError
 from gaspart.memory import aligned
@@ -26,7 +27,8 @@ if TYPE_CHECKING:
     from gaspart.engines.layout import Record
 
 SEARCHES = ("boxes", "direct", "pairs")
-_QUIET = 1000  # laps without an event after which a run without an end is given up
+_QUIET = QUIET + 2000  # laps without an event after which a run without an end is given up
+_NUMBERS = ("start", "lap", "base", "quiet", "clock", "since")  # of a checkpoint
 _BLINK = 2.0**-44  # of a lap: the longest bounce on a floor that is taken for rest
 # More contacts of one body than these, within so much of a lap, are taken for a collapse. Intervals between
 # inelastic contacts shrink geometrically until rounding lets the bodies part, so few of them are left to see.
@@ -58,6 +60,8 @@ class EventDriven:
             raise SceneError("search", self.search, f"must be one of {SEARCHES}")
         if self.search != "boxes" and self.boxes_per_side is not None:
             raise SceneError("boxes_per_side", self.boxes_per_side, 'needs search "boxes"')
+        if self.boxes_per_side is not None:
+            check_boxes_per_side(self.boxes_per_side)
 
     def start(self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0) -> EventDynamics:
         """Set the engine up for a scene in a given state; `seed` is that of thermal walls."""
@@ -69,11 +73,11 @@ class EventDynamics:
 
     def __init__(self, engine: EventDriven, scene: Scene, state: State, seed: int | tuple[int, ...]) -> None:
         from gaspart.beside import boxes_and_largest
-        from gaspart.engines import all_pairs, event_kernels, flight, layout, lists
+        from gaspart.engines import all_pairs, event_kernels, flight, layout, lists, running_sum
         from gaspart.engines.calendar import PLAN, TURN, empty_calendar
 
         self._kernels, self._all_pairs = event_kernels, all_pairs
-        self._flight, self._layout = flight, layout
+        self._flight, self._layout, self._sums = flight, layout, running_sum
         self._scene = scene
         self._reference = state
         d, n = scene.dimension, state.count
@@ -107,34 +111,32 @@ class EventDynamics:
         self._law = law_for_kernel(scene, state)
         self._unit_mass, self._masses = (1.0, None) if self._law else masses_for_kernel(state.masses)
         self._surfaces = surfaces_for_kernel(scene, state, seed, self._unit_mass) if scene.faces else None
-        self._lap = lap_length(scene, state)
-        self._gravity = None
+        self._lightest = float(state.masses.min(initial=np.inf))
+        self._gravity = self._watch = None
         if scene.gravity is not None and any(scene.gravity):
-            self._gravity = layout.Gravity(scene.gravity, np.isinf(state.masses), _BLINK * self._lap)
-        self._watch = None
+            self._gravity = layout.Gravity(scene.gravity, np.isinf(state.masses), 0.0)
         if self._law or self._gravity:
             inelastic = self._law and self._law.normal < 1.0
-            most, within = (_INELASTIC_CROWD, _INELASTIC_CROWDED) if inelastic else (_CROWD, _CROWDED)
-            start = np.full(n, -np.inf)
-            self._watch = layout.Watch(start, np.zeros(n, dtype=np.int64), within * self._lap, most)
-        self._lost = 0.0
-        self._laps, self._clock = divmod(state.time, self._lap)
+            most, self._crowded = (_INELASTIC_CROWD, _INELASTIC_CROWDED) if inelastic else (_CROWD, _CROWDED)
+            self._watch = layout.Watch(np.full(n, -np.inf), np.zeros(n, dtype=np.int64), 0.0, most)
+        self._lost = np.zeros(2)  # net and gross, before the tally began
+        self._base, self._quiet = lap_length(scene, state.velocities, self._lightest), 0
+        self._begin_lap(self._base)
+        laps, self._clock = divmod(state.time, self._lap)
+        self._start = laps * self._lap
         self._rows[:, 2 * d] = self._clock
         self._count()
         self._foresee()
 
     def reset_tally(self) -> None:
         """Begin to count anew."""
-        self._lost = self.dissipated
+        self._lost = np.array([self.dissipated, self.exchanged])
         self._count()
 
     def _count(self) -> None:
         """Counters that stand at nothing."""
         faces = 2 * self._scene.dimension + len(self._scene.walls)
-        hits, impulse, energy = np.zeros(faces, dtype=np.int64), np.zeros(faces), np.zeros(faces)
-        self._counters = self._layout.Counters(
-            np.zeros(5, dtype=np.int64), np.zeros(3), hits, impulse, energy
-        )
+        self._counters = self._layout.zero_counters(faces)
         self._since = self.time
 
     def _foresee(self) -> None:
@@ -156,15 +158,14 @@ class EventDynamics:
     @property
     def time(self) -> float:
         """The time reached."""
-        return self._laps * self._lap + self._clock
+        return self._start + self._clock
 
     def advance(self, until: float, most: int | None = None, log: EventLog | None = None) -> None:
         """Process events up to time `until`, at most `most` of them (collisions and wall hits).
 
         Raises SimulationError, with the state kept, if bodies collapse: they would meet for ever in no time;
-        and if nothing happens in a thousand laps of a run that only events would end.
+        and if nothing happens in a thousand flights through the container, where only events end the run.
         """
-        quiet = 0
         left = np.iinfo(np.int64).max if most is None else most
         room = None if log is None else log.room
         many, begun = MANY, self._clock
@@ -172,23 +173,24 @@ class EventDynamics:
             if many == 0:
                 check_progress(self.time, self._clock - begun, self._lap)
                 many, begun = MANY, self._clock
-            stop = until - self._laps * self._lap
+            stop = until - self._start
             ends_lap = stop > self._lap
             reason, done, last = self._run(room, min(stop, self._lap), min(left, many))
             left -= done
             many -= done
+            self._quiet = 0 if done else self._quiet
             if log is not None:
-                log.take(self._laps * self._lap)
+                log.take(self._start)
             if reason == self._layout.STOP:
                 if not ends_lap:
                     self._clock = stop
                     return
-                self._turn_lap()
                 begun -= self._lap
-                quiet = 0 if done else quiet + 1
-                if until == np.inf and quiet > _QUIET:
+                self._turn_lap()
+                if until == np.inf and self._quiet > _QUIET:
                     raise SimulationError(
-                        f"no event from time {self.time - quiet * self._lap:g} on: bodies miss one another"
+                        f"no event up to time {self.time:g} in {self._quiet} laps of the clocks: "
+                        "bodies miss one another"
                     )
             elif done:
                 self._clock = max(self._clock, last)
@@ -212,11 +214,23 @@ class EventDynamics:
     def _turn_lap(self) -> None:
         """Start the clocks again from zero, and plan anew."""
         self._flight.synchronise(self._rows, self._lap, self._space, self._gravity)
-        self._laps += 1
+        self._start += self._lap
         self._clock = 0.0
         if self._watch:
             self._watch.since[:] -= self._lap
+        self._quiet += 1
+        velocities = self._rows[:, self._scene.dimension : 2 * self._scene.dimension]
+        self._base = lap_length(self._scene, velocities, self._lightest, self._base)
+        self._begin_lap(quiet_lap(self._scene, velocities, self._lightest, self._base, self._quiet))
         self._foresee()
+
+    def _begin_lap(self, length: float) -> None:
+        """Let the present lap have this length, and with it all times that are too short for the clocks."""
+        self._lap = length
+        if self._gravity:
+            self._gravity = self._gravity._replace(blink=_BLINK * length)
+        if self._watch:
+            self._watch = self._watch._replace(blink=self._crowded * length)
 
     @property
     def tally(self) -> Tally:
@@ -226,21 +240,28 @@ class EventDynamics:
             time=self.time - self._since,
             collisions=int(counters.counts[layout.COLLISIONS]),
             wall_hits=counters.wall_hits.copy(),
-            wall_impulse=counters.wall_impulse * self._unit_mass,
-            wall_energy=counters.wall_energy * self._unit_mass,
-            virial_sum=float(counters.sums[layout.VIRIAL]) * self._unit_mass,
+            wall_impulse=self._sums.values(counters.wall_impulse) * self._unit_mass,
+            wall_energy=self._sums.values(counters.wall_energy) * self._unit_mass,
+            virial_sum=self._sums.net(counters.sums[layout.VIRIAL]) * self._unit_mass,
             pair_tests=int(counters.counts[layout.PAIR_TESTS]),
             box_visits=int(counters.counts[layout.BOX_VISITS]),
             crossings=int(counters.counts[layout.CROSSINGS]),
-            worst_contact=float(counters.sums[layout.WORST]),
-            dissipated_energy=float(counters.sums[layout.LOSS]),
+            worst_contact=float(counters.worst[0]),
+            dissipated_energy=self._sums.net(counters.sums[layout.LOSS]),
         )
 
     @property
     def dissipated(self) -> float:
         """The energy that contacts and thermal walls have taken since time 0."""
-        walls = float(self._counters.wall_energy.sum()) * self._unit_mass
-        return self._lost + float(self._counters.sums[self._layout.LOSS]) + walls
+        taken = self._counters.sums[self._layout.LOSS], self._counters.wall_energy
+        return float(self._lost[0]) + self._sums.net(*taken) * self._unit_mass
+
+    @property
+    def exchanged(self) -> float:
+        """The sum of what contacts and each face have taken or given since time 0, each counted positive."""
+        loss, walls = self._counters.sums[self._layout.LOSS], self._sums.values(self._counters.wall_energy)
+        gross = self._sums.net(loss) + float(np.abs(walls).sum())
+        return float(self._lost[1]) + gross * self._unit_mass
 
     @property
     def state(self) -> State:
@@ -283,15 +304,17 @@ class EventDynamics:
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         """All that a continuation to the same bits needs: bodies at their own clocks, plans, counts."""
-        parts = {"laps": self._laps, "clock": self._clock, "since": self._since, "lost": self._lost}
+        parts = {**{key: getattr(self, f"_{key}") for key in _NUMBERS}, "lost": self._lost}
         return {key: np.array(value) for key, value in {**parts, **self._arrays()}.items()}
 
     def restore(self, parts: dict[str, np.ndarray]) -> None:
         """Go on from a checkpoint of the same scene and engine."""
         for key, array in self._arrays().items():
             array[...] = parts[key]
-        times = (float(parts[key]) for key in ("laps", "clock", "since", "lost"))
-        self._laps, self._clock, self._since, self._lost = times
+        for key in _NUMBERS:
+            setattr(self, f"_{key}", parts[key].item())
+        self._lost = parts["lost"].copy()
+        self._begin_lap(self._lap)
         if not self._by_pairs:
             self._kernels.refill(
                 self._rows,

@@ -6,6 +6,7 @@ from gaspart.contact import time_to_plane
 from gaspart.engines.flight import acceleration, advance_row, face_plane
 from gaspart.engines.impact import strike_wall
 from gaspart.engines.layout import INNER, NOTHING
+from gaspart.engines.running_sum import add
 from gaspart.engines.surfaces import find_edge, touch_surface
 from gaspart.falling import time_against, time_along
 from gaspart.kernel import inner_helper, inner_kernel
@@ -126,12 +127,12 @@ def bounce(rows, body, face, space, masses, counters, law, surfaces):
             return False
     if law is None:
         mass = 1.0 if masses is None else masses[body]
-        counters.wall_impulse[face] += 2.0 * mass * abs(rows[body, d + axis])
+        add(counters.wall_impulse, face, 2.0 * mass * abs(rows[body, d + axis]))
         rows[body, d + axis] = -rows[body, d + axis]
     else:
         side = 1.0 if face % 2 else -1.0
         x = side if axis == 0 else 0.0
         y = side if axis == 1 else 0.0
         z = side if axis == 2 else 0.0
-        counters.wall_impulse[face] += strike_wall(rows, body, x, y, z, 0.0, space, counters, law)
+        add(counters.wall_impulse, face, strike_wall(rows, body, x, y, z, 0.0, space, counters, law))
     return True

@@ -13,6 +13,7 @@ from gaspart.engines.calendar import TURN, fill, is_stale, next_turn, reschedule
 from gaspart.engines.flight import advance_row, synchronise
 from gaspart.engines.layout import COLLISIONS, NOTHING, VIRIAL
 from gaspart.engines.lists import member, move, sort_in
+from gaspart.engines.running_sum import add
 from gaspart.kernel import inner_helper, inner_kernel, kernel
 
 _PART = 2.0**-30  # of the rate of growth: bodies part at least so fast
@@ -166,7 +167,7 @@ def collide(rows, i, j, time, space, rate, counters):
         rows[i, d + k] -= push
         rows[j, d + k] += push
     counters.counts[COLLISIONS] += 1
-    counters.sums[VIRIAL] += approach * length
+    add(counters.sums, VIRIAL, approach * length)
 
 
 @kernel

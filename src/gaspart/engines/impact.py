@@ -9,7 +9,8 @@ from math import sqrt
 from gaspart.contact import exchange, exchange_equal, normal_change, tangential_impulse
 from gaspart.coordinates import nearest
 from gaspart.engines.flight import advance_row
-from gaspart.engines.layout import COLLISIONS, LOSS, VIRIAL, WORST
+from gaspart.engines.layout import COLLISIONS, LOSS, VIRIAL
+from gaspart.engines.running_sum import add
 from gaspart.kernel import inner_helper, inner_kernel
 
 LEAST = 2.0**-48  # of the bodies' speed: they part at least so fast, or rounding would let them meet for ever
@@ -128,14 +129,14 @@ def strike(rows, i, j, rr, rv, space, counters, law):
         impulse = (approach + max(parting, LEAST * fastest)) / mobility
     else:
         impulse = normal_change(approach, law.normal, LEAST * fastest) / mobility
-    counters.sums[LOSS] += 0.5 * (1.0 - law.normal * law.normal) * approach * approach / mobility
+    add(counters.sums, LOSS, 0.5 * (1.0 - law.normal * law.normal) * approach * approach / mobility)
     if law.tangential > -1.0:
         gx, gy, gz = sliding(rows, i, j, x, y, z, space, law)
         radius_i, radius_j = rows[i, 2 * d + 1], rows[j, 2 * d + 1]
         lever = radius_i * radius_i * law.inverse_inertia[i] + radius_j * radius_j * law.inverse_inertia[j]
         factor = tangential_impulse(mobility, lever, law.tangential)
         square = gx * gx + gy * gy + gz * gz
-        counters.sums[LOSS] += 0.5 * (1.0 - law.tangential) * factor * square
+        add(counters.sums, LOSS, 0.5 * (1.0 - law.tangential) * factor * square)
         qx, qy, qz = -factor * gx, -factor * gy, -factor * gz
         push(rows, i, mobility_i * qx, mobility_i * qy, mobility_i * qz, space)
         push(rows, j, -mobility_j * qx, -mobility_j * qy, -mobility_j * qz, space)
@@ -159,14 +160,14 @@ def strike_wall(rows, body, x, y, z, least, space, counters, law):
         + z * speed_along(rows, body, 2, space)
     )
     change = normal_change(approach, law.normal, least)
-    counters.sums[LOSS] += 0.5 * (1.0 - law.normal * law.normal) * approach * approach / mobility
+    add(counters.sums, LOSS, 0.5 * (1.0 - law.normal * law.normal) * approach * approach / mobility)
     if law.tangential > -1.0:
         gx, gy, gz = sliding(rows, body, -1, x, y, z, space, law)
         radius = rows[body, 2 * d + 1]
         lever = radius * radius * law.inverse_inertia[body]
         factor = tangential_impulse(mobility, lever, law.tangential)
         square = gx * gx + gy * gy + gz * gz
-        counters.sums[LOSS] += 0.5 * (1.0 - law.tangential) * factor * square
+        add(counters.sums, LOSS, 0.5 * (1.0 - law.tangential) * factor * square)
         qx, qy, qz = -factor * gx, -factor * gy, -factor * gz
         push(rows, body, mobility * qx, mobility * qy, mobility * qz, space)
         turn(rows, body, x, y, z, qx, qy, qz, space, law)
@@ -197,9 +198,9 @@ def collide(rows, i, j, time, space, masses, counters, gravity, law):
         rr += gap * gap
         rv += gap * (rows[j, d + k] - rows[i, d + k])
     if law is not None:
-        counters.sums[VIRIAL] += strike(rows, i, j, rr, rv, space, counters, law)
+        add(counters.sums, VIRIAL, strike(rows, i, j, rr, rv, space, counters, law))
     else:
-        counters.sums[VIRIAL] += pass_momentum(rows, i, j, rr, rv, space, masses)
+        add(counters.sums, VIRIAL, pass_momentum(rows, i, j, rr, rv, space, masses))
     sigma = rows[i, 2 * d + 1] + rows[j, 2 * d + 1]
-    counters.sums[WORST] = max(counters.sums[WORST], abs(rr / (sigma * sigma) - 1.0))
+    counters.worst[0] = max(counters.worst[0], abs(rr / (sigma * sigma) - 1.0))
     counters.counts[COLLISIONS] += 1

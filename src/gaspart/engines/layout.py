@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 COLLISIONS, CROSSINGS, STALE, PAIR_TESTS, BOX_VISITS = range(5)
-VIRIAL, WORST, LOSS = range(3)
+VIRIAL, LOSS = range(2)
 NOTHING = -1
 INNER = 6  # face codes: 2 axis + side for the container's faces, INNER more for those between boxes
 EDGES = 12  # EDGES more for the edges of the wells at the container's faces
@@ -108,13 +108,23 @@ class Partition(NamedTuple):
 
 
 class Counters(NamedTuple):
-    """counts (5,), sums (3,), wall_hits, wall_impulse, wall_energy (2d + interior walls,); see the top."""
+    """counts (5,), sums (2, 2), see the top; worst (1,), the largest |r^2/sigma^2 - 1| at a contact; of the
+    faces and interior walls (F,) wall_hits, wall_impulse (F, 2), wall_energy (F, 2). Those with a last axis
+    of 2 are sums with their rounding errors (`running_sum.add`)."""
 
     counts: np.ndarray
     sums: np.ndarray
+    worst: np.ndarray
     wall_hits: np.ndarray
     wall_impulse: np.ndarray
     wall_energy: np.ndarray
+
+
+def zero_counters(faces: int) -> Counters:
+    """Counters of a container with this number of faces and interior walls."""
+    hits = np.zeros(faces, dtype=np.int64)
+    impulse, energy = np.zeros((faces, 2)), np.zeros((faces, 2))
+    return Counters(np.zeros(5, dtype=np.int64), np.zeros((2, 2)), np.zeros(1), hits, impulse, energy)
 
 
 class Record(NamedTuple):

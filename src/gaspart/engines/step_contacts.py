@@ -8,6 +8,7 @@ import numpy as np
 
 from gaspart.contact import exchange
 from gaspart.coordinates import nearest
+from gaspart.engines.running_sum import add
 from gaspart.engines.step_layout import (
     COLLISIONS,
     DEEPEST,
@@ -202,9 +203,9 @@ def bump(bodies, space, i, j, ago, rr, rv, counters):
     then."""
     one, other = bodies.index[i], bodies.index[j]
     to_i, to_j, passed = kicks(rr, rv, bodies.masses[one], bodies.masses[other])
-    counters.sums[LOSS] += 0.25 * (1.0 - space.normal * space.normal) * passed * abs(rv) / rr
+    add(counters.sums, LOSS, 0.25 * (1.0 - space.normal * space.normal) * passed * abs(rv) / rr)
     to_i, to_j, passed = to_i * space.push, to_j * space.push, passed * space.push
-    counters.sums[VIRIAL] += passed
+    add(counters.sums, VIRIAL, passed)
     speed_i = speed_j = ago - ago
     for k in range(len(space.lengths)):
         gap = bodies.positions[k, j] - bodies.positions[k, i]
@@ -228,7 +229,7 @@ def resolve(bodies, space, i, j, dt, turn, rewind, parting, rules, law, cells, w
     ss = sigma * sigma
     if not counts(rr, rv, vv, ss, dt, parting):
         return
-    counters.sums[DEEPEST] = max(counters.sums[DEEPEST], 1.0 - np.sqrt(rr) / sigma)
+    counters.extremes[DEEPEST] = max(counters.extremes[DEEPEST], 1.0 - np.sqrt(rr) / sigma)
     ago = rr - rr
     if rewind:
         ago = entered(rr, rv, vv, ss)
@@ -238,7 +239,7 @@ def resolve(bodies, space, i, j, dt, turn, rewind, parting, rules, law, cells, w
                 counters.counts[PASSED] += 1
         rr += ago * (rv + rv + vv * ago)  # the invariants as they were at the contact
         rv += ago * vv
-        counters.sums[WORST] = max(counters.sums[WORST], abs(rr / ss - 1.0))
+        counters.extremes[WORST] = max(counters.extremes[WORST], abs(rr / ss - 1.0))
     counters.counts[COLLISIONS] += 1
     if law is not None:
         speed_i, speed_j = strike_in_rows(bodies, space, i, j, ago, rr, rv, rules, law, counters)

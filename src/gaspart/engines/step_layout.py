@@ -12,7 +12,8 @@ import numpy as np
 from gaspart.kernel import helper
 
 COLLISIONS, PAIR_TESTS, BOX_VISITS, OVERLAPS_LEFT, MULTIPLE, REBUILDS, LATE, PASSED = range(8)
-VIRIAL, DEEPEST, WORST, LOSS = range(4)
+VIRIAL, LOSS = range(2)
+DEEPEST, WORST = range(2)
 FASTEST, SPENT = range(2)
 
 
@@ -43,17 +44,18 @@ class Bodies(NamedTuple):
 
 
 class Counters(NamedTuple):
-    """counts (8,) and sums (4,), see the names at the module's top; by thread: wall_hits and wall_impulse
-    (threads, 2d), the impulse in whole numbers of `quantum`; wall_loss (threads,), energy in those of
-    `grain`."""
+    """counts (8,), sums (2, 2) by `running_sum.add` and extremes (2,), see the names at the module's top; by
+    thread: wall_hits (threads, 2d); wall_impulse (threads, 2d, 2) and wall_loss (threads, 2), an energy, both
+    by `running_sum.add_whole`; momentum and energy: the powers of two that few terms of these exceed."""
 
     counts: np.ndarray
     sums: np.ndarray
+    extremes: np.ndarray
     wall_hits: np.ndarray
     wall_impulse: np.ndarray
     wall_loss: np.ndarray
-    quantum: float
-    grain: float
+    momentum: float
+    energy: float
 
 
 class Found(NamedTuple):

@@ -7,6 +7,7 @@ container in it.
 import numpy as np
 
 from gaspart.coordinates import nearest
+from gaspart.engines.running_sum import add_whole
 from gaspart.engines.step_layout import FASTEST, SPENT
 from gaspart.engines.step_rules import is_free, meet_faces
 from gaspart.kernel import allocating_kernel, helper, kernel
@@ -40,13 +41,13 @@ def reflect(bodies, space, slot, axis, lower, upper, counters, thread):
         plane = upper if side else lower
         impulse = 2.0 * space.push * bodies.masses[bodies.index[slot]] * abs(v)
         counters.wall_hits[thread, 2 * axis + side] += 1
-        counters.wall_impulse[thread, 2 * axis + side] += np.int64(np.rint(impulse / counters.quantum))
+        add_whole(counters.wall_impulse[thread, 2 * axis + side], impulse, counters.momentum)
         if space.normal == 1.0:
             x = plane + plane - x
         else:  # it came through |x - plane| / |v| ago
             x = plane + space.normal * (plane - x)
             lost = 0.5 * impulse * abs(v) * (1.0 - space.normal)
-            counters.wall_loss[thread] += np.int64(np.rint(lost / counters.grain))
+            add_whole(counters.wall_loss[thread], lost, counters.energy)
         v = -v * space.normal
     bodies.positions[axis, slot] = x
     bodies.velocities[axis, slot] = v
@@ -82,7 +83,7 @@ def reflect_falling(bodies, slot, axis, lower, upper, pull, dt, counters, thread
             hits += int(bounces)
         impulse = 2.0 * hits * bodies.masses[bodies.index[slot]] * w
         counters.wall_hits[thread, 2 * axis + side] += hits
-        counters.wall_impulse[thread, 2 * axis + side] += np.int64(np.rint(impulse / counters.quantum))
+        add_whole(counters.wall_impulse[thread, 2 * axis + side], impulse, counters.momentum)
         u = w + a * s
         y = max(y - y, half * (w + u) * s)
         x, v = (upper - y, -u) if side else (lower + y, u)

@@ -16,19 +16,19 @@ from gaspart.engines.faces import bounce
 from gaspart.engines.flight import advance_row, face_plane
 from gaspart.engines.impact import strike
 from gaspart.engines.layout import EDGES, NOTHING, STICKY
+from gaspart.engines.running_sum import add, add_whole
 from gaspart.engines.step_layout import LOSS, VIRIAL
 from gaspart.engines.surfaces import cross_edge, find_edge
 from gaspart.kernel import helper, kernel
 
 _SHORT = 2.0**-12  # of a step: bounces on a floor in less time are not told apart
-_COARSE, _FINE = 2.0**10, 2.0**-22  # grains in the two units of heat
 
 
 class Rules(NamedTuple):
     """rows (N, 8): room for bodies; surfaces, gravity (None if there is none): as the event-driven engine
     has them; gains: its counters, room for what one event adds to them. free (d, 2): between which
     coordinates a body that is held nowhere meets no face and no edge; holds: whether any face may hold
-    bodies. heat (2d, 2): given to each face, in whole numbers of two units, see `add_heat`."""
+    bodies. heat (2d, 2): given to each face, by `running_sum.add_whole`."""
 
     rows: np.ndarray
     surfaces: layout.Surfaces
@@ -37,10 +37,6 @@ class Rules(NamedTuple):
     free: np.ndarray
     holds: bool
     heat: np.ndarray
-
-    def heat_given(self, grain: float) -> np.ndarray:
-        """(2d,) the energies that `heat` tells."""
-        return self.heat[:, 0] * (_COARSE * grain) + self.heat[:, 1] * (_FINE * grain)
 
 
 @helper
@@ -140,12 +136,11 @@ def last_came(rows, body, space, dt, surfaces, gravity):
 
 
 @helper
-def add_heat(heat, energy, grain):
-    """Add an energy to heat (2,), whole numbers of a coarse unit and of a fine one for the rest: so that
-    neither many large sums overflow nor small ones are lost."""
-    whole = np.rint(energy / (_COARSE * grain))
-    heat[0] += np.int64(whole)
-    heat[1] += np.int64(np.rint((energy - whole * (_COARSE * grain)) / (_FINE * grain)))
+def taken(sums, n):
+    """What one of some sums (K, 2) holds, which is zero afterwards."""
+    x = sums[n, 0] + sums[n, 1]
+    sums[n, 0] = sums[n, 1] = 0.0
+    return x
 
 
 @kernel
@@ -153,11 +148,10 @@ def book(face, rules, counters):
     """Enter what an event at a face has added to the counters of its own."""
     gains = rules.gains
     counters.wall_hits[0, face] += gains.wall_hits[face]
-    counters.wall_impulse[0, face] += np.int64(np.rint(gains.wall_impulse[face] / counters.quantum))
-    counters.wall_loss[0] += np.int64(np.rint(gains.sums[layout.LOSS] / counters.grain))
-    add_heat(rules.heat[face], gains.wall_energy[face], counters.grain)
+    add_whole(counters.wall_impulse[0, face], taken(gains.wall_impulse, face), counters.momentum)
+    add_whole(counters.wall_loss[0], taken(gains.sums, layout.LOSS), counters.energy)
+    add_whole(rules.heat[face], taken(gains.wall_energy, face), counters.energy)
     gains.wall_hits[face] = 0
-    gains.wall_impulse[face] = gains.wall_energy[face] = gains.sums[layout.LOSS] = 0.0
 
 
 @kernel
@@ -195,9 +189,8 @@ def strike_in_rows(bodies, space, i, j, ago, rr, rv, rules, law, counters):
     one, other = take_up(bodies, rules, i), take_up(bodies, rules, j)
     advance_row(rules.rows, one, ago, space, None)
     advance_row(rules.rows, other, ago, space, None)
-    counters.sums[VIRIAL] += strike(rules.rows, one, other, rr, rv, space, rules.gains, law)
-    counters.sums[LOSS] += rules.gains.sums[layout.LOSS]
-    rules.gains.sums[layout.LOSS] = 0.0
+    add(counters.sums, VIRIAL, strike(rules.rows, one, other, rr, rv, space, rules.gains, law))
+    add(counters.sums, LOSS, taken(rules.gains.sums, layout.LOSS))
     advance_row(rules.rows, one, 0.0, space, None)
     advance_row(rules.rows, other, 0.0, space, None)
     return put_back(bodies, rules, i), put_back(bodies, rules, j)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.boxes import make_boxes
+from gaspart.boxes import cube_side, make_boxes
 from gaspart.engines.common import face_energy
 from gaspart.engines.step_boxes import Partition
 from gaspart.engines.step_cells import Cells
@@ -73,7 +73,7 @@ def cells_for(engine: TimeStepped, scene: Scene, state: State, radii: np.ndarray
 
 
 def _width(scene: Scene, count: int) -> float:
-    return (scene.container.volume / max(1.0, _CELLS_PER_BODY * count)) ** (1.0 / scene.dimension)
+    return cube_side(scene.container.lengths, _CELLS_PER_BODY * count)
 
 
 def _skin(engine: TimeStepped, scene: Scene, state: State, contact: float) -> float:

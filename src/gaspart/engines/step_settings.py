@@ -88,10 +88,9 @@ def rules_for(
     if scene.gravity is not None:
         gravity = layout.Gravity(scene.gravity, np.isinf(state.masses), 0.0)
     faces = 2 * scene.dimension
-    gains = np.zeros(faces, dtype=np.int64), np.zeros(faces), np.zeros(faces)
     rules = step_rules.Rules(
         np.zeros((state.count, 8)), surfaces, gravity,
-        layout.Counters(np.zeros(5, dtype=np.int64), np.zeros(3), *gains),
+        layout.zero_counters(faces),
         free.astype(engine.precision),
         holds=any(face.kind != "thermal" for face in scene.faces.values()),
         heat=np.zeros((faces, 2), dtype=np.int64),
@@ -209,18 +208,19 @@ def contacts_per_step(time_step: float, state: State) -> float:
     return density * around * contact * thermal * time_step
 
 
-def quantum_for(scene: Scene, state: State, masses: np.ndarray) -> float:
-    """The unit in which momenta given to walls are summed: a power of two, 2^-28 of the largest momentum."""
-    speeds = np.sqrt((state.velocities**2).sum(axis=1))
-    speeds = speeds + np.sqrt(face_energy(scene) / state.masses)
+def largest_terms(scene: Scene, state: State, unit_mass: float) -> tuple[float, float]:
+    """The momentum and the energy that few bodies will exceed, each a power of two in units of
+    `unit_mass`: what walls take is summed in parts of these."""
+    moving = np.isfinite(state.masses)
+    if not moving.any():
+        return 1.0, 1.0
+    masses = state.masses[moving] / unit_mass
+    given = face_energy(scene) + state.vibrational_energy
+    energies = (state.kinetic_energies[moving] + given) / unit_mass
     if scene.gravity is not None:
-        speeds = speeds + math.sqrt(2.0 * float(np.abs(scene.gravity) @ np.array(scene.container.lengths)))
-    most = float((np.where(np.isinf(masses), 0.0, masses) * speeds).max(initial=0.0))
-    return 2.0 ** (math.frexp(most or 1.0)[1] - 28)
-
-
-def grain_for(scene: Scene, state: State, unit_mass: float) -> float:
-    """The unit in which energies that walls take are summed: a power of two, 2^-40 of the largest energy of a
-    body, so that even all that 8e6 bodies have can be counted."""
-    most = (float(np.max(state.kinetic_energies, initial=0.0)) + face_energy(scene)) / unit_mass
-    return 2.0 ** (math.frexp(most or 1.0)[1] - 40)
+        energies += masses * sum(
+            abs(g) * length for g, length in zip(scene.gravity, state.lengths, strict=True)
+        )
+    momentum = float(np.sqrt(2.0 * masses * energies).max())
+    energy = float(energies.max())
+    return 2.0 ** math.frexp(momentum or 1.0)[1], 2.0 ** math.frexp(energy or 1.0)[1]

@@ -5,6 +5,7 @@ from math import inf, sqrt
 from gaspart.draws import flux_speed, normal_pair
 from gaspart.engines.flight import advance_row, face_plane
 from gaspart.engines.layout import EDGES, NOTHING, STICKY, THERMAL, THERMAL_NORMAL
+from gaspart.engines.running_sum import add
 from gaspart.kernel import inner_helper, inner_kernel
 
 
@@ -70,7 +71,7 @@ def cross_edge(rows, body, face, space, masses, counters, law, surfaces):
     else:
         after = -before
     rows[body, column] = side * after
-    counters.wall_impulse[face] += mass * (before - after)
+    add(counters.wall_impulse, face, mass * (before - after))
 
 
 @inner_kernel
@@ -89,7 +90,7 @@ def leave_at_temperature(rows, body, face, space, masses, counters, law, surface
     approach = side * rows[body, d + axis]
     away = width * flux_speed(surfaces.key, body, number)
     rows[body, d + axis] = -side * away
-    counters.wall_impulse[face] += mass * (approach + away)
+    add(counters.wall_impulse, face, mass * (approach + away))
     if surfaces.kind[face] == THERMAL:
         one, other, block = normal_pair(surfaces.key, body, number, 1)
         rows[body, d + (axis + 1) % d] = width * one
@@ -98,7 +99,7 @@ def leave_at_temperature(rows, body, face, space, masses, counters, law, surface
         turn_at_temperature(body, face, number, block, counters, law, surfaces, d)
     for k in range(d):
         square -= rows[body, d + k] * rows[body, d + k]
-    counters.wall_energy[face] += 0.5 * mass * square
+    add(counters.wall_energy, face, 0.5 * mass * square)
 
 
 @inner_kernel
@@ -113,7 +114,7 @@ def turn_at_temperature(body, face, number, block, counters, law, surfaces, d):
             one, _, block = normal_pair(surfaces.key, body, number, block)
             spin = width * one
             before = law.spins[body, k]
-            counters.wall_energy[face] += 0.5 * inertia * (before * before - spin * spin)
+            add(counters.wall_energy, face, 0.5 * inertia * (before * before - spin * spin))
             law.spins[body, k] = spin
 
 
@@ -136,7 +137,7 @@ def stick_or_leave(rows, body, face, space, masses, counters, law, surfaces):
         surfaces.place[body, axis] = 0
         after = -abs(before) if held == 0.0 else -sqrt(2.0 * energy / mass)
     rows[body, column] = side * after
-    counters.wall_impulse[face] += mass * (before - after)
+    add(counters.wall_impulse, face, mass * (before - after))
 
 
 @inner_kernel

@@ -8,6 +8,7 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import DTypeLike
 
+from gaspart.boxes import check_boxes_per_side
 from gaspart.engines.common import EventLog, masses_for_kernel, tell_inner
 from gaspart.engines.step_settings import (
     changing,
@@ -16,9 +17,8 @@ from gaspart.engines.step_settings import (
     check_scene,
     check_step,
     giants_of,
-    grain_for,
+    largest_terms,
     needs_rules,
-    quantum_for,
     rules_for,
 )
 from gaspart.errors import SceneError
@@ -27,6 +27,7 @@ from gaspart.state import State
 from gaspart.tally import Tally
 
 PRECISIONS = ("float64", "float32")
+_MOST_STEPS = 2.0**53  # above, float64 does not distinguish their numbers
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,8 @@ class TimeStepped:
                 raise SceneError(key, getattr(self, key), "must be true or false")
         for key in ("passes", "threads"):
             count_of(key, getattr(self, key), least=1)
+        if self.boxes_per_side is not None:
+            check_boxes_per_side(self.boxes_per_side)
         if self.skin is not None:
             if self.boxes_per_side is not None:
                 raise SceneError("skin", self.skin, "excludes boxes_per_side")
@@ -83,7 +86,7 @@ class StepDynamics:
     """A scene under way; its time is a whole number of steps."""
 
     def __init__(self, engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...]) -> None:
-        from gaspart.engines import step_eight
+        from gaspart.engines import running_sum, step_eight
         from gaspart.engines import step_kernels as kernels
         from gaspart.engines import step_layout as layout
         from gaspart.engines import step_search as search
@@ -92,7 +95,7 @@ class StepDynamics:
         check_scene(scene, state, giants)
         check_precision(engine, scene, state)
         check_step(engine, state)
-        self._kernels, self._layout = kernels, layout
+        self._kernels, self._layout, self._sums = kernels, layout, running_sum
         self._engine, self._scene, self._reference = engine, scene, state
         self._real = real = np.dtype(engine.precision).type
         normal = 1.0 if scene.restitution is None else scene.restitution.normal
@@ -128,9 +131,8 @@ class StepDynamics:
         self._watch.reach[layout.SPENT] = np.inf  # no list is made yet
         self._pairs = np.empty((engine.threads, state.count // engine.threads + 16), np.uint64)
         self._threads = engine.threads if engine.threads > 1 else None
-        self._quantum = quantum_for(scene, state, masses)
-        self._grain = grain_for(scene, state, self._unit_mass)
-        self._lost = 0.0
+        self._largest = largest_terms(scene, state, self._unit_mass)
+        self._lost = np.zeros(2)  # net and gross, before the tally began
         self._step = real(engine.time_step)
         self._start, self._steps = state.time, 0
         self._count()
@@ -154,7 +156,7 @@ class StepDynamics:
 
     def reset_tally(self) -> None:
         """Begin to count anew."""
-        self._lost = self.dissipated
+        self._lost = np.array([self.dissipated, self.exchanged])
         self._count()
 
     def _count(self) -> None:
@@ -164,33 +166,40 @@ class StepDynamics:
             self._rules.heat[:] = 0
         self._counters = self._layout.Counters(
             counts=np.zeros(8, dtype=np.int64),
-            sums=np.zeros(4),
+            sums=np.zeros((2, 2)),
+            extremes=np.zeros(2),
             wall_hits=np.zeros(faces, dtype=np.int64),
-            wall_impulse=np.zeros(faces, dtype=np.int64),
-            wall_loss=np.zeros(self._engine.threads, dtype=np.int64),
-            quantum=self._quantum,
-            grain=self._grain,
+            wall_impulse=np.zeros((*faces, 2), dtype=np.int64),
+            wall_loss=np.zeros((self._engine.threads, 2), dtype=np.int64),
+            momentum=self._largest[0],
+            energy=self._largest[1],
         )
         self._since = self._steps
 
     @property
     def dissipated(self) -> float:
         """The energy that contacts and thermal walls have taken since time 0."""
-        return self._lost + self._loss + float(self._heat.sum())
+        return float(self._lost[0]) + self._sums.net(*self._loss, self._heat) * self._unit_mass
+
+    @property
+    def exchanged(self) -> float:
+        """The sum of what contacts and each face have taken or given since time 0, each counted positive."""
+        gross = self._sums.net(*self._loss) + float(np.abs(self._heat.sum(axis=1)).sum())
+        return float(self._lost[1]) + gross * self._unit_mass
 
     @property
     def _heat(self) -> np.ndarray:
-        """(2d,) what each face was given by bodies that left it at its temperature, since the tally began."""
+        """(2d, 2) what each face was given by bodies that left it at its temperature, since the tally began,
+        in two parts, in units of the unit mass."""
         if self._rules is None:
-            return np.zeros(2 * self._scene.dimension)
-        return self._rules.heat_given(self._grain) * self._unit_mass
+            return np.zeros((2 * self._scene.dimension, 2))
+        return self._sums.whole_parts(self._rules.heat, self._largest[1])
 
     @property
-    def _loss(self) -> float:
-        """The energy that contacts have taken since the tally began."""
+    def _loss(self) -> tuple[np.ndarray, np.ndarray]:
+        """The energy that contacts of bodies (2,) and with walls (threads, 2) have taken, likewise."""
         counters = self._counters
-        walls = float(counters.wall_loss.sum()) * counters.grain
-        return (float(counters.sums[self._layout.LOSS]) + walls) * self._unit_mass
+        return counters.sums[self._layout.LOSS], self._sums.whole_parts(counters.wall_loss, self._largest[1])
 
     @property
     def time(self) -> float:
@@ -200,13 +209,17 @@ class StepDynamics:
     def advance(self, until: float, most: int | None = None, log: EventLog | None = None) -> None:
         """Step to the last whole step not after `until` (to within 1e-9 of a step).
 
-        Raises SceneError for what only the event-driven engine can do: count or record events.
+        Raises SceneError for what only the event-driven engine can do, count or record events, and for a time
+        that is not within 2^53 steps.
         """
         if most is not None:
             raise SceneError("max_events", most, 'needs the "event" engine; this one knows steps only')
         if log is not None:
             raise SceneError("record_events", True, 'needs the "event" engine; this one knows steps only')
         steps = (until - self._start) / self._engine.time_step
+        if not steps < _MOST_STEPS:
+            rule = f"must be within {_MOST_STEPS:g} steps of {self._engine.time_step:g}"
+            raise SceneError("until", until, rule)
         target = int(np.floor(steps * (1.0 + 4e-16) + 1e-9))
         if target > self._steps:
             if self._threads is not None:
@@ -241,22 +254,24 @@ class StepDynamics:
     def tally(self) -> Tally:
         """What was counted since the last `reset_tally`."""
         layout, counts, sums = self._layout, self._counters.counts, self._counters.sums
+        extremes = self._counters.extremes
+        impulse = self._sums.whole_parts(self._counters.wall_impulse.sum(axis=0), self._largest[0])
         return Tally(
             time=(self._steps - self._since) * self._engine.time_step,
             collisions=int(counts[layout.COLLISIONS]),
             wall_hits=self._counters.wall_hits.sum(axis=0),
-            wall_impulse=self._counters.wall_impulse.sum(axis=0) * (self._quantum * self._unit_mass),
-            wall_energy=self._heat,
-            virial_sum=float(sums[layout.VIRIAL]) * self._unit_mass,
+            wall_impulse=impulse.sum(axis=-1) * self._unit_mass,
+            wall_energy=self._heat.sum(axis=1) * self._unit_mass,
+            virial_sum=self._sums.net(sums[layout.VIRIAL]) * self._unit_mass,
             pair_tests=int(counts[layout.PAIR_TESTS]),
             box_visits=int(counts[layout.BOX_VISITS]),
-            worst_contact=float(sums[layout.WORST]),
+            worst_contact=float(extremes[layout.WORST]),
             steps=self._steps - self._since,
             overlaps_left=int(counts[layout.OVERLAPS_LEFT]),
-            deepest_overlap=float(sums[layout.DEEPEST]),
+            deepest_overlap=float(extremes[layout.DEEPEST]),
             multiple_contacts=int(counts[layout.MULTIPLE]),
             rebuilds=int(counts[layout.REBUILDS]),
-            dissipated_energy=self._loss,
+            dissipated_energy=self._sums.net(*self._loss) * self._unit_mass,
         )
 
     def checkpoint(self) -> dict[str, np.ndarray]:
@@ -265,7 +280,7 @@ class StepDynamics:
         return {
             "steps": np.array(self._steps),
             "since": np.array(self._since),
-            "lost": np.array(self._lost),
+            "lost": self._lost.copy(),
             "positions": self._by_body(bodies.positions, self._real),
             "velocities": self._by_body(bodies.velocities, self._real),
             "images": bodies.images.T.copy(),
@@ -282,12 +297,12 @@ class StepDynamics:
         if self._cells is not None and parts["reach"][self._layout.SPENT] < np.inf:
             self._list_from(parts["origin"])
         self._watch.reach[...] = parts["reach"]
-        for key in ("counts", "sums", "wall_hits", "wall_impulse", "wall_loss"):
+        for key in ("counts", "sums", "extremes", "wall_hits", "wall_impulse", "wall_loss"):
             getattr(self._counters, key)[...] = parts[key]
         for key, array in changing(self._rules, self._law).items():
             array[...] = parts[key]
         self._steps, self._since = int(parts["steps"]), int(parts["since"])
-        self._lost = float(parts["lost"])
+        self._lost = parts["lost"].copy()
 
     def _list_from(self, origin: np.ndarray) -> None:
         """Make the list again that was made when bodies were at `origin` (d, N), by slot."""

@@ -5,9 +5,10 @@ from math import inf, sqrt
 from gaspart.contact import normal_change, time_to_contact
 from gaspart.engines.flight import acceleration, advance_row
 from gaspart.engines.impact import LEAST, push, strike_wall
-from gaspart.engines.layout import WALLS, WORST
+from gaspart.engines.layout import WALLS
 from gaspart.engines.lists import box_of
 from gaspart.engines.plates import time_to_plate
+from gaspart.engines.running_sum import add
 from gaspart.falling import time_to_contact_pulled, time_to_far_side, time_to_side
 from gaspart.kernel import inner_kernel
 from gaspart.plates import gap_to_plate
@@ -111,7 +112,7 @@ def meet_wall(rows, body, m, time, space, masses, counters, gravity, law, walls)
         impulse = strike_wall(rows, body, x, y, z, least, space, counters, law)
     wall = 2 * d + walls.wall[m]
     counters.wall_hits[wall] += 1
-    counters.wall_impulse[wall] += impulse
+    add(counters.wall_impulse, wall, impulse)
     square = distance / rows[body, 2 * d + 1]
-    counters.sums[WORST] = max(counters.sums[WORST], abs(square * square - 1.0))
+    counters.worst[0] = max(counters.worst[0], abs(square * square - 1.0))
     return wall
