@@ -1,6 +1,7 @@
 """The partition: every close pair is in boxes that the table calls neighbours."""
 
 import itertools
+import math
 
 import numpy as np
 import pytest
@@ -60,3 +61,12 @@ def test_the_number_of_boxes_follows_the_number_of_bodies():
     assert np.prod(sides_for(gas(3, 1000, 0.01), per_body=1.0)) == 1000
     dense = gas(3, 1000, 0.4)
     assert dense.container.lengths[0] / sides_for(dense, per_body=10.0)[0] >= 1.0
+
+
+@pytest.mark.parametrize("lengths", [(1e30, 1.0), (1e-30, 1e30), (1e20, 1.0, 1.0), (1e12, 1e12, 1.0)])
+def test_a_long_container_has_about_one_box_a_body(lengths):
+    scene = gp.Scene(gp.Container(lengths), [gp.Species(10, 1e-6 * min(lengths), temperature=1.0)])
+    sides = sides_for(scene, 1.0)
+    assert math.prod(sides) <= 10
+    for other in (gp.EventDriven(), gp.TimeStepped(1e-9 * min(lengths))):
+        gp.Simulation(scene, other)

@@ -1,5 +1,6 @@
 """The face of the library."""
 
+import math
 import os
 import subprocess
 import sys
@@ -21,6 +22,61 @@ def test_same_seed_same_bits_and_another_seed_another_gas():
     assert np.array_equal(ends[0], ends[1])
     assert not np.array_equal(ends[0], ends[2])
     assert not np.array_equal(ends[0], ends[3])
+
+
+@pytest.mark.parametrize("engine", [gp.EventDriven(), gp.TimeStepped(0.01)])
+@pytest.mark.parametrize(
+    ("target", "key"),
+    [
+        ({"until": math.nan}, "until"),
+        ({"until": math.inf}, "until"),
+        ({"until": -1.0}, "until"),
+        ({"until": "1"}, "until"),
+        ({"until": True}, "until"),
+        ({"duration": math.nan}, "duration"),
+        ({"duration": math.inf}, "duration"),
+        ({"duration": -1.0}, "duration"),
+        ({"duration": "1"}, "duration"),
+        ({"duration": 1e308, "until": math.nan}, "until"),
+        ({"max_events": -1}, "max_events"),
+        ({"max_events": 1.5}, "max_events"),
+        ({"max_events": "7"}, "max_events"),
+        ({"max_events": True}, "max_events"),
+        ({"max_events": math.nan}, "max_events"),
+        ({}, "duration"),
+    ],
+)
+def test_a_target_that_cannot_be_is_refused_and_changes_nothing(engine, target, key):
+    sim = gp.Simulation(gas(2, 20, 0.1, "wall"), engine, seed=1)
+    before = sim.state
+    with pytest.raises(gp.SceneError) as caught:
+        sim.advance(**target)
+    assert caught.value.key == key and "\n" not in str(caught.value)
+    assert sim.time == 0.0 and np.array_equal(sim.state.positions, before.positions)
+    sim.add_random(1, 0.1)  # which is refused after the first advance
+
+
+def test_steps_refuse_what_they_cannot_reach():
+    sim = gp.Simulation(gas(2, 20, 0.1, "wall"), gp.TimeStepped(0.01), seed=1)
+    for target, key in (
+        ({"until": math.inf, "max_events": 3}, "max_events"),
+        ({"until": 1e300}, "until"),
+        ({"duration": 1e308}, "until"),
+    ):
+        with pytest.raises(gp.SceneError) as caught:
+            sim.advance(**target)
+        assert caught.value.key == key and sim.time == 0.0
+    sim.add_random(1, 0.1)
+
+
+@pytest.mark.parametrize("make", [gp.EventDriven, lambda **given: gp.TimeStepped(0.1, **given)])
+@pytest.mark.parametrize(
+    "given", [10**9, (10**5, 10**5), (1,) * 4, 0, -1, 1.5, "9", math.nan, (3, None), True]
+)
+def test_a_partition_that_cannot_be_is_refused_before_anything_is_allocated(make, given):
+    with pytest.raises(gp.SceneError, match="boxes_per_side = ") as caught:
+        make(boxes_per_side=given)
+    assert caught.value.key == "boxes_per_side"
 
 
 def test_recording_changes_no_bit():

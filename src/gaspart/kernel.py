@@ -33,6 +33,7 @@ KERNEL_MODULES = (
     "engines/layout.py",
     "engines/running_sum.py",
     "engines/flight.py",
+    "engines/resting.py",
     "engines/eight.py",
     "engines/search.py",
     "engines/ahead.py",

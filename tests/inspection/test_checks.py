@@ -53,6 +53,15 @@ def test_wrong_positions(runs):
     assert verdicts(replace(good, positions=near % good.lengths), tolerance=1.0)["overlaps"] is True
 
 
+@pytest.mark.parametrize("resolution", [0.3, 1.0, 1e6])
+def test_a_coarse_file_does_not_excuse_spheres_at_one_place(runs, resolution):
+    good = runs["spheres"]
+    near = good.positions.copy()
+    near[3, 5] = near[3, 6]
+    found = judge(replace(good, positions=near, resolution=resolution))[0]
+    assert found.name == "overlaps" and found.passed is False and "1 of a contact distance" in found.text
+
+
 def test_bodies_behind_walls(runs):
     good = replace(runs["discs"], periodic=(False, False))
     assert verdicts(good)["container"] is True

@@ -6,6 +6,7 @@ import pytest
 from scenes import gas
 
 import gaspart as gp
+from gaspart.cli import main
 from gaspart.inspection.readers import read_frames
 
 SIDES = np.array([6.0, 7.0, 8.0])
@@ -95,6 +96,13 @@ def test_xyz_extended_and_plain(tmp_path):
     plain = read_frames(xyz(tmp_path / "b.xyz", False), 0.1, (6.0, 7.0, 8.0), "wall", time_step=0.5)
     assert same(plain, velocities=False) and plain.velocities is None and not any(plain.periodic)
     assert list(plain.time) == [0.0, 0.5, 1.0]
+
+
+def test_two_spheres_at_one_place_are_found_in_an_xyz_file(tmp_path, capsys):
+    path = tmp_path / "a.xyz"
+    path.write_text("3\n\nA 1 1 1\nA 1 1 1\nA 5 5 5\n")
+    assert main(["check", str(path), "--radius", "0.5", "--lengths", "10,10,10"]) == 1
+    assert "WRONG overlaps: the deepest is 1 of a contact distance" in capsys.readouterr().out
 
 
 def test_a_trajectory_of_ours_tells_what_moves_its_bodies(tmp_path):

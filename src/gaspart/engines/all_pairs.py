@@ -84,9 +84,10 @@ def run_pairs(
             if face >= WALLS:
                 if walls is not None:
                     m = face - WALLS
-                    second = -1 - meet_wall(
-                        rows, first, m, soon, space, masses, counters, gravity, law, walls
-                    )
+                    wall = meet_wall(rows, first, m, soon, space, masses, counters, gravity, law, walls)
+                    if wall == NOTHING:
+                        continue
+                    second = -1 - wall
             elif face >= EDGES:
                 if surfaces is not None:
                     m = face - EDGES

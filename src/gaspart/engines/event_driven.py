@@ -30,6 +30,7 @@ SEARCHES = ("boxes", "direct", "pairs")
 _QUIET = QUIET + 2000  # laps without an event after which a run without an end is given up
 _NUMBERS = ("start", "lap", "base", "quiet", "clock", "since")  # of a checkpoint
 _BLINK = 2.0**-44  # of a lap: the longest bounce on a floor that is taken for rest
+_LOW = 2.0**-44  # of the container: the highest bounce on an interior wall that is taken for rest
 # More contacts of one body than these, within so much of a lap, are taken for a collapse. Intervals between
 # inelastic contacts shrink geometrically until rounding lets the bodies part, so few of them are left to see.
 _CROWD, _CROWDED = 1000, _BLINK
@@ -114,7 +115,8 @@ class EventDynamics:
         self._lightest = float(state.masses.min(initial=np.inf))
         self._gravity = self._watch = None
         if scene.gravity is not None and any(scene.gravity):
-            self._gravity = layout.Gravity(scene.gravity, np.isinf(state.masses), 0.0)
+            support = layout.no_support(n, _LOW * max(scene.container.lengths)) if scene.walls else None
+            self._gravity = layout.Gravity(scene.gravity, np.isinf(state.masses), 0.0, support)
         if self._law or self._gravity:
             inelastic = self._law and self._law.normal < 1.0
             most, self._crowded = (_INELASTIC_CROWD, _INELASTIC_CROWDED) if inelastic else (_CROWD, _CROWDED)
@@ -298,6 +300,9 @@ class EventDynamics:
                 arrays["vibrations"] = self._law.vibrations
         if self._watch:
             arrays.update(crowd_since=self._watch.since, crowd=self._watch.contacts)
+        if self._gravity and self._gravity.support:
+            support = self._gravity.support._asdict()
+            arrays.update({f"support_{key}": support[key] for key in support if key != "height"})
         if self._surfaces:
             arrays.update({key: getattr(self._surfaces, key) for key in ("place", "held", "draws")})
         return arrays

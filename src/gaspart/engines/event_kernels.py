@@ -177,9 +177,9 @@ def run_boxes(
             if face >= WALLS:
                 if walls is not None:
                     m = face - WALLS
-                    partner = -1 - meet_wall(
-                        rows, body, m, time, space, masses, counters, gravity, law, walls
-                    )
+                    wall = meet_wall(rows, body, m, time, space, masses, counters, gravity, law, walls)
+                    happens = wall != NOTHING
+                    partner = -1 - wall
             elif face >= EDGES:
                 if surfaces is not None:
                     m = face - EDGES

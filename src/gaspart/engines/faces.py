@@ -6,8 +6,9 @@ from gaspart.contact import time_to_plane
 from gaspart.engines.flight import acceleration, advance_row, face_plane
 from gaspart.engines.impact import strike_wall
 from gaspart.engines.layout import INNER, NOTHING
+from gaspart.engines.resting import come_to_rest, release
 from gaspart.engines.running_sum import add
-from gaspart.engines.surfaces import find_edge, touch_surface
+from gaspart.engines.surfaces import find_edge, mass_of, touch_surface
 from gaspart.falling import time_against, time_along
 from gaspart.kernel import inner_helper, inner_kernel
 
@@ -103,6 +104,9 @@ def meet_face(rows, images, body, face, time, space, masses, counters, gravity, 
     axis = face // 2
     upper = face % 2 == 1
     advance_row(rows, body, time, space, gravity)
+    if gravity is not None:
+        if space.periodic[axis]:  # it comes to rest anew, on another image of the wall
+            release(rows, body, space, gravity.support)
     if space.periodic[axis]:
         rows[body, axis] = 0.0 if upper else space.lengths[axis]
         images[body, axis] += 1 if upper else -1
@@ -113,7 +117,23 @@ def meet_face(rows, images, body, face, time, space, masses, counters, gravity, 
         # a bounce too short for the clocks to tell is rest; otherwise it would be repeated for ever
         if hard and abs(rows[body, d + axis]) < abs(gravity.pull[axis]) * gravity.blink:
             rows[body, d + axis] = 0.0
+        rest_on_face(rows, body, face, hard, space, masses, counters, gravity, law, gravity.support)
     return True
+
+
+@inner_kernel
+def rest_on_face(rows, body, face, hard, space, masses, counters, gravity, law, support):
+    """Let a body that slides along an interior wall down to a face rest on both, or release it."""
+    if support is None:
+        return
+    if support.number[body] > 0:
+        if not hard:
+            release(rows, body, space, support)
+            return
+        axis, side = face // 2, 1.0 if face % 2 else -1.0
+        x, y, z = side if axis == 0 else 0.0, side if axis == 1 else 0.0, side if axis == 2 else 0.0
+        mass = mass_of(body, masses, law)
+        come_to_rest(rows, body, x, y, z, NOTHING, False, mass, space, counters, gravity)
 
 
 @inner_helper

@@ -17,8 +17,27 @@ def face_plane(rows, body, axis, upper, space):
 
 
 @inner_helper
+def is_supported(support, body):
+    """Whether a body rests on or slides along walls."""
+    if support is None:
+        return False
+    return support.number[body] > 0
+
+
+@inner_helper
+def remaining_pull(support, body, axis):
+    """The acceleration along an axis of a body that is supported."""
+    if support is None:
+        return 0.0
+    return support.pull[body, axis]
+
+
+@inner_helper
 def acceleration(rows, body, axis, space, gravity):
-    """What pulls a body along an axis: nothing if it is fixed, or lies still on the face below."""
+    """What pulls a body along an axis: nothing if it is fixed, or lies still on the face below; what the
+    walls leave that it rests on."""
+    if is_supported(gravity.support, body):
+        return remaining_pull(gravity.support, body, axis)
     pull = gravity.pull[axis]
     if pull == 0.0 or gravity.fixed[body]:
         return 0.0
@@ -36,7 +55,7 @@ def note_still(rows, body, space, gravity, still):
     """Note whether a body may be one that is not pulled (see `acceleration`): it is fixed, or does not move
     along an axis with a pull."""
     d = len(space.lengths)
-    found = gravity.fixed[body]
+    found = gravity.fixed[body] | is_supported(gravity.support, body)
     for k in range(d):
         found |= (gravity.pull[k] != 0.0) & (rows[body, d + k] == 0.0)
     still[body] = found

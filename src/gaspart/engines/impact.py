@@ -10,6 +10,7 @@ from gaspart.contact import exchange, exchange_equal, normal_change, tangential_
 from gaspart.coordinates import nearest
 from gaspart.engines.flight import advance_row
 from gaspart.engines.layout import COLLISIONS, LOSS, VIRIAL
+from gaspart.engines.resting import release
 from gaspart.engines.running_sum import add
 from gaspart.kernel import inner_helper, inner_kernel
 
@@ -201,6 +202,9 @@ def collide(rows, i, j, time, space, masses, counters, gravity, law):
         add(counters.sums, VIRIAL, strike(rows, i, j, rr, rv, space, counters, law))
     else:
         add(counters.sums, VIRIAL, pass_momentum(rows, i, j, rr, rv, space, masses))
+    if gravity is not None:
+        release(rows, i, space, gravity.support)
+        release(rows, j, space, gravity.support)
     sigma = rows[i, 2 * d + 1] + rows[j, 2 * d + 1]
     counters.worst[0] = max(counters.worst[0], abs(rr / (sigma * sigma) - 1.0))
     counters.counts[COLLISIONS] += 1

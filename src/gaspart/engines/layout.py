@@ -23,13 +23,34 @@ class Space(NamedTuple):
     margin: float
 
 
+class Support(NamedTuple):
+    """What bodies rest on or slide along, up to 3 planes each: number (N,) of these; normal (N, 3, 3), the
+    unit vectors towards the body; plane (N, 3), where its centre is along them; piece (N, 3), the piece of an
+    interior wall, or NOTHING for a face; pull (N, 3), the acceleration that remains. height: the highest
+    bounce on an interior wall that is taken for rest."""
+
+    number: np.ndarray
+    normal: np.ndarray
+    plane: np.ndarray
+    piece: np.ndarray
+    pull: np.ndarray
+    height: float
+
+
+def no_support(count: int, height: float) -> Support:
+    """No body rests on any wall."""
+    normal, plane, pull = np.zeros((count, 3, 3)), np.zeros((count, 3)), np.zeros((count, 3))
+    return Support(np.zeros(count, np.int64), normal, plane, np.zeros((count, 3), np.int64), pull, height)
+
+
 class Gravity(NamedTuple):
     """pull (d,), the acceleration; fixed (N,), which bodies it does not move; blink, the longest bounce on a
-    floor that is taken for rest."""
+    floor that is taken for rest; support, None without interior walls."""
 
     pull: tuple
     fixed: np.ndarray
     blink: float
+    support: Support | None
 
 
 class Law(NamedTuple):

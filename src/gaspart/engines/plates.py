@@ -7,6 +7,7 @@ from math import inf
 
 from gaspart.contact import time_to_contact
 from gaspart.engines.flight import acceleration
+from gaspart.engines.resting import is_resting_on, time_to_leave
 from gaspart.falling import flown, time_of_summit, time_to_contact_pulled, time_to_far_side, time_to_side
 from gaspart.kernel import inner_helper, inner_kernel
 
@@ -72,6 +73,9 @@ def time_to_plate(rows, body, plates, m, space, gravity):
     u, v, w = _along(plates, m, 3, vx, vy, vz), _along(plates, m, 7, vx, vy, vz), nx * vx + ny * vy + nz * vz
     a, b, c = _along(plates, m, 3, gx, gy, gz), _along(plates, m, 7, gx, gy, gz), nx * gx + ny * gy + nz * gz
     length, width = plates[m, 6], plates[m, 10]
+    if gravity is not None:
+        if is_resting_on(gravity.support, body, m):
+            return rows[body, 6] + min(time_to_leave(x, u, a, length), time_to_leave(y, v, b, width))
     side = 1.0 if z >= 0.0 else -1.0
     best = inf
     for far in range(2):

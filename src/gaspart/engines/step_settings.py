@@ -86,7 +86,7 @@ def rules_for(
     free = np.stack([inset[:, 0], np.array(scene.container.lengths) - inset[:, 1]], axis=1)
     gravity = None
     if scene.gravity is not None:
-        gravity = layout.Gravity(scene.gravity, np.isinf(state.masses), 0.0)
+        gravity = layout.Gravity(scene.gravity, np.isinf(state.masses), 0.0, None)
     faces = 2 * scene.dimension
     rules = step_rules.Rules(
         np.zeros((state.count, 8)), surfaces, gravity,

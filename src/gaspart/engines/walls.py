@@ -5,12 +5,14 @@ from math import inf, sqrt
 from gaspart.contact import normal_change, time_to_contact
 from gaspart.engines.flight import acceleration, advance_row
 from gaspart.engines.impact import LEAST, push, strike_wall
-from gaspart.engines.layout import WALLS
+from gaspart.engines.layout import NOTHING, WALLS
 from gaspart.engines.lists import box_of
 from gaspart.engines.plates import time_to_plate
+from gaspart.engines.resting import come_to_rest, is_resting_on, leave, release, time_to_leave
 from gaspart.engines.running_sum import add
+from gaspart.engines.surfaces import mass_of
 from gaspart.falling import time_to_contact_pulled, time_to_far_side, time_to_side
-from gaspart.kernel import inner_kernel
+from gaspart.kernel import inner_helper, inner_kernel
 from gaspart.plates import gap_to_plate
 
 
@@ -26,9 +28,12 @@ def time_to_wall(rows, body, segments, m, space, gravity):
     if gravity is not None:
         gx = acceleration(rows, body, 0, space, gravity)
         gy = acceleration(rows, body, 1, space, gravity)
+    along, speed, pull = ux * dx + uy * dy, ux * vx + uy * vy, ux * gx + uy * gy
+    if gravity is not None:
+        if is_resting_on(gravity.support, body, m):
+            return rows[body, 4] + time_to_leave(along, speed, pull, length)
     height = ux * dy - uy * dx
     side = 1.0 if height >= 0.0 else -1.0
-    along, speed, pull = ux * dx + uy * dy, ux * vx + uy * vy, ux * gx + uy * gy
     closing, drawn = -side * (ux * vy - uy * vx), -side * (ux * gy - uy * gx)
     best = inf
     for far in range(2):
@@ -86,11 +91,52 @@ def gap_to_wall(rows, body, m, space, walls):
     return s * ux - dx, s * uy - dy, 0.0
 
 
+@inner_helper
+def coordinate_along(rows, body, m, edge, space, walls):
+    """Where the centre of a body is along an edge of a wall: (coordinate, length, the edge's unit vector)."""
+    pieces = walls.pieces
+    if len(space.lengths) == 2:
+        ux, uy, uz, length = pieces[m, 2], pieces[m, 3], 0.0, pieces[m, 4]
+        return ux * (rows[body, 0] - pieces[m, 0]) + uy * (rows[body, 1] - pieces[m, 1]), length, ux, uy, uz
+    first = 7 if edge else 3
+    ux, uy, uz, length = pieces[m, first], pieces[m, first + 1], pieces[m, first + 2], pieces[m, first + 3]
+    at = (
+        ux * (rows[body, 0] - pieces[m, 0])
+        + uy * (rows[body, 1] - pieces[m, 1])
+        + uz * (rows[body, 2] - pieces[m, 2])
+    )
+    return at, length, ux, uy, uz
+
+
+@inner_kernel
+def is_at_end(rows, body, m, space, walls):
+    """Whether a body touches a wall at an end, an edge or a corner."""
+    outside = False
+    for edge in range(len(space.lengths) - 1):
+        at, length, _, _, _ = coordinate_along(rows, body, m, edge, space, walls)
+        outside |= not 0.0 <= at <= length
+    return outside
+
+
+@inner_kernel
+def leave_wall(rows, body, m, space, walls):
+    """Move a body that has come to the end of a wall beyond it."""
+    for edge in range(len(space.lengths) - 1):
+        at, length, ux, uy, uz = coordinate_along(rows, body, m, edge, space, walls)
+        leave(rows, body, ux, uy, uz, at, length, space)
+
+
 @inner_kernel
 def meet_wall(rows, body, m, time, space, masses, counters, gravity, law, walls):
-    """Reflect a body at a wall, from its side or its rim. Returns the number of the wall."""
+    """Reflect a body at a wall, from its side or its rim. Returns the number of the wall, or NOTHING if the
+    body has slid along the wall and leaves it."""
     d = len(space.lengths)
     advance_row(rows, body, time, space, gravity)
+    if gravity is not None:
+        if is_resting_on(gravity.support, body, m):
+            release(rows, body, space, gravity.support)
+            leave_wall(rows, body, m, space, walls)
+            return NOTHING
     x, y, z = gap_to_wall(rows, body, m, space, walls)
     distance = sqrt(x * x + y * y + z * z)
     x /= distance
@@ -110,6 +156,10 @@ def meet_wall(rows, body, m, time, space, masses, counters, gravity, law, walls)
         impulse = mass * change
     else:
         impulse = strike_wall(rows, body, x, y, z, least, space, counters, law)
+    if gravity is not None:
+        mass = mass_of(body, masses, law)
+        at_end = is_at_end(rows, body, m, space, walls)
+        come_to_rest(rows, body, x, y, z, m, at_end, mass, space, counters, gravity)
     wall = 2 * d + walls.wall[m]
     counters.wall_hits[wall] += 1
     add(counters.wall_impulse, wall, impulse)

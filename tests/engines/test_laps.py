@@ -1,0 +1,73 @@
+"""How long the laps of the clocks are: with the present speeds, and while nothing happens."""
+
+import numpy as np
+import pytest
+
+import gaspart as gp
+from gaspart.engines.laps import QUIET, lap_length, quiet_lap
+
+
+def alone(side, restitution=None, radius=0.5, velocity=(1.0, 0.3), boundary="wall"):
+    body = gp.Body((0.4 * side, 0.5 * side), velocity, radius)
+    law = None if restitution is None else gp.Restitution(restitution)
+    return gp.Scene(gp.Container((side, side), boundary), bodies=[body], restitution=law)
+
+
+def test_a_disc_that_has_slowed_down_still_meets_walls():
+    """After 237 hits with restitution 0.9 its speed is some 1e-6, and after 3000 some 1e-80."""
+    sim = gp.Simulation(alone(5.0, 0.9), gp.EventDriven(), seed=1)
+    sim.advance(max_events=3000)
+    assert sim.tally.wall_hits.sum() == 3000
+    sim.check_invariants()
+    assert abs(sim.state.velocities).max() < 1e-60
+    assert sim.tally.dissipated_energy == pytest.approx(sim.initial_state.kinetic_energy, rel=1e-12)
+
+
+@pytest.mark.parametrize("side", [1e7, 1e9, 1e11])
+def test_a_disc_in_a_vast_container_meets_its_walls(side):
+    sim = gp.Simulation(alone(side), gp.EventDriven(), seed=1)
+    sim.record_events = True
+    sim.advance(max_events=10)
+    expected = np.sort(
+        [
+            ((side - 1.0) * n + (side - 0.5 - start)) / speed
+            for start, speed in ((0.4 * side, 1.0), (0.5 * side, 0.3))
+            for n in range(10)
+        ]
+    )[:10]
+    assert sim.events["time"] == pytest.approx(expected, rel=1e-12)
+
+
+def test_splits_and_checkpoints_change_no_bit_of_a_long_flight():
+    whole, parts = (gp.Simulation(alone(1e7, 0.9), gp.EventDriven(), seed=1) for _ in range(2))
+    whole.advance(until=3e9)
+    for until in np.linspace(0.0, 3e9, 50)[1:]:
+        parts.advance(until=until)
+        again = gp.Simulation(alone(1e7, 0.9), gp.EventDriven(), seed=1)
+        again.restore(parts.checkpoint())
+        parts = again
+    assert np.array_equal(whole.state.positions, parts.state.positions)
+    assert np.array_equal(whole.state.velocities, parts.state.velocities)
+    assert whole.time == parts.time
+
+
+def test_a_run_in_which_nothing_can_happen_is_given_up():
+    bodies = [gp.Body((x, 5.0), (1.0, 0.0), 0.5) for x in (2.0, 6.0)]
+    scene = gp.Scene(gp.Container((10.0, 10.0), "periodic"), bodies=bodies)
+    sim = gp.Simulation(scene, gp.EventDriven(), seed=1)
+    with pytest.raises(gp.SimulationError, match="bodies miss one another"):
+        sim.advance(max_events=1)
+
+
+def test_laps_follow_large_changes_only():
+    scene = alone(5.0)
+    velocities = np.array([[1.0, 0.3]])
+    first = lap_length(scene, velocities, 1.0)
+    assert np.frexp(first)[0] == 0.5
+    for factor, kept in ((2.0**-9, True), (2.0**9, True), (2.0**-11, False), (2.0**11, False)):
+        assert (lap_length(scene, factor * velocities, 1.0, first) == first) == kept
+    assert lap_length(scene, 0.0 * velocities, 1.0) == lap_length(scene, 1e-300 * velocities, 1.0)
+    assert quiet_lap(scene, velocities, 1.0, first, 10_000) == first  # longer than a flight through it
+    vast = alone(1e9)
+    found = [quiet_lap(vast, velocities, 1.0, first, quiet) for quiet in (0, QUIET, QUIET + 3, 10_000)]
+    assert found[:3] == [first, first, 8.0 * first] and 1e9 / 1.1 < found[3] < 4e9
