@@ -101,7 +101,7 @@ def test_a_disc_at_rest_is_pushed_and_hit_from_above():
 
 
 def test_a_disc_that_is_slow_goes_round_the_end():
-    """It stays at the end until the angle at which gravity no longer holds it there, cos a = 2/3 + v^2/3gR."""
+    """Until the angle a at which gravity no longer holds it there, cos a = 2/3 + v^2/3gR."""
     speed = 0.2
     sim = gp.Simulation(discs([((14.9, 10.5), (speed, 0.0))]), gp.EventDriven())
     end = np.array([15.0, 10.0])

@@ -19,6 +19,12 @@ _HOP = 2.0**20  # times `blink`: the shortest bounce where a body cannot rest, a
 
 
 @inner_kernel
+def pull_along(gravity, axis):
+    """Gravity along an axis, 0 along a third one that does not exist."""
+    return gravity.pull[axis] if axis < len(gravity.pull) else 0.0
+
+
+@inner_kernel
 def release(rows, body, space, support):
     """Let gravity act on a body in full, which is exactly at the walls that it rested on until now."""
     if support is None:
@@ -73,9 +79,7 @@ def find_pull(gravity, body, d):
     or two of them that leads into none; zero if there is no such one. Forget planes that it leads away from.
     """
     support = gravity.support
-    gx, gy, gz = gravity.pull[0], gravity.pull[1], 0.0
-    if d == 3:
-        gz = gravity.pull[2]
+    gx, gy, gz = pull_along(gravity, 0), pull_along(gravity, 1), pull_along(gravity, 2)
     least = _INTO * sqrt(gx * gx + gy * gy + gz * gz)
     best, pull = 0.0, support.pull[body]
     pull[:] = 0.0
@@ -132,10 +136,7 @@ def pressing(body, x, y, z, gravity):
     if gravity.support.number[body] > 0:
         pull = gravity.support.pull[body]
         return x * pull[0] + y * pull[1] + z * pull[2]
-    press = x * gravity.pull[0] + y * gravity.pull[1]
-    if len(gravity.pull) == 3:
-        press += z * gravity.pull[2]
-    return press
+    return x * pull_along(gravity, 0) + y * pull_along(gravity, 1) + z * pull_along(gravity, 2)
 
 
 @inner_kernel
