@@ -103,7 +103,7 @@ def test_resume_and_info_of_an_unfinished_run(folder, capsys):
         pytest.param(GAS.replace("20", "110"), [], "count = 110: does not fit by random", id="saturation"),
         pytest.param("container: {lengths: [9, 9]}\n", [], "a run needs at least one body", id="no bodies"),
         pytest.param("", [], "scene = None: must be a mapping", id="empty file"),
-        pytest.param("a: [1\n", [], "YAML = .*: is not valid", id="not YAML"),
+        pytest.param("a: [1\n", [], "line 2, column 1 = 'the end': is not valid YAML", id="not YAML"),
         pytest.param(b"\xff\xfe\x00", [], "cannot be read", id="not text"),
         pytest.param(None, [], "cannot be read: .*No such file", id="no file"),
         pytest.param(GAS, ["--engine", "magic"], "engine.name = 'magic': must be one of", id="engine"),
