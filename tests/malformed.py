@@ -6,6 +6,7 @@ import time
 from datetime import date
 from decimal import Decimal
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -137,6 +138,7 @@ def mutated_texts(draw):
     return text
 
 
+@cache
 def configs():
     """The smoke config's experiments, one of each kind, each as a config of its own with a figure."""
     from gaspart.config import laid_over

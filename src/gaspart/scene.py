@@ -15,7 +15,7 @@ from typing import Any
 
 from gaspart.errors import SceneError
 from gaspart.matter import SHARED, Body, Plate, Restitution, Species, Wall
-from gaspart.room import check_room
+from gaspart.room import Nearby, check_room
 from gaspart.surfaces import Sticky, Thermal, Well, check_faces, surface_from_dict, surface_to_dict
 from gaspart.validation import (
     MOST_BODIES,
@@ -124,8 +124,10 @@ class Scene:
         for shared in arrangements & set(SHARED):
             if self.bodies or arrangements != {shared}:
                 raise SceneError("arrangement", shared, "is shared by all bodies of a scene")
+        earlier = Nearby(self.container, max((2.0 * body.radius for body in self.bodies), default=0.0))
         for n, body in enumerate(self.bodies):
-            self._check_body(n, body)
+            self._check_body(n, body, earlier)
+            earlier.add(n, body.position)
         if self.packing_fraction > math.pi / math.sqrt(12 if self.dimension == 2 else 18):
             if not self.centres_to_walls:
                 raise SceneError("packing_fraction", self.packing_fraction, "exceeds close packing")
@@ -181,7 +183,7 @@ class Scene:
     def _fits(self, key: str, thing: Body | Species) -> None:
         check_room(self.container, self.centres_to_walls, key, thing.radius, thing.fixed)
 
-    def _check_body(self, n: int, body: Body) -> None:
+    def _check_body(self, n: int, body: Body, earlier: Nearby) -> None:
         where = f"bodies[{n}]"
         vector(f"{where}.position", body.position, self.dimension)
         vector(f"{where}.velocity", body.velocity, self.dimension)
@@ -192,7 +194,8 @@ class Scene:
                 raise SceneError(f"{where}.position", body.position, "must lie wholly inside the container")
         if wall := self.wall_at(body.position, body.radius):
             raise SceneError(f"{where}.position", body.position, f"overlaps {wall}")
-        for m, other in enumerate(self.bodies[:n]):
+        for m in earlier.around(body.position):
+            other = self.bodies[m]
             if self.separation(body.position, other.position) < body.radius + other.radius:
                 raise SceneError(f"{where}.position", body.position, f"overlaps bodies[{m}]")
 

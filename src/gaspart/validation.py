@@ -23,8 +23,8 @@ SMALLEST, LARGEST = 1e-60, 1e60
 """Of quantities of which contacts multiply four, which must neither vanish nor become infinite."""
 MOST_BODIES = 2**31 - 1
 """Of a scene or a species: indices of bodies have 32 bits."""
-MOST_LISTED = 1_000_000
-"""Species, single bodies or walls of a scene, which are Python objects."""
+MOST_LISTED = 50_000
+"""Species, single bodies or walls of a scene, each of which stands in the scene's text."""
 
 
 def finite(value: object) -> float | None:

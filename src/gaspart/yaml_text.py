@@ -18,8 +18,9 @@ from gaspart.files import whole_file
 if TYPE_CHECKING:
     import yaml
 
-MOST_BYTES, MOST_VALUES, DEEPEST = 2**24, 1_000_000, 64
-"""Limits of a text: its size, its values with all aliases replaced by copies, and their nesting."""
+MOST_BYTES, MOST_VALUES, MOST_COPIES, DEEPEST = 2**26, 2_500_000, 100_000, 64
+"""Limits of a text: its size, its values, those of them that stand for aliases, and their nesting. The text
+of every valid scene is within them (`validation.MOST_LISTED`)."""
 _LONGEST_NUMBER = 1000  # characters
 _NUMBERS = re.compile(r"[-+]?(\d[\d_]*(\.[\d_]*)?|\.\d[\d_]*)[eE][-+]?\d+\Z")
 _SCALARS = tuple(f"tag:yaml.org,2002:{kind}" for kind in ("null", "bool", "int", "float"))
@@ -121,7 +122,8 @@ class _Document:
 
         self._yaml, self._loader = yaml, _loader()(text)
         self._anchors: dict[str, Any] = {}
-        self._values, self._result, self._documents = 0, None, 0
+        self._values, self._copies, self._documents = 0, 0, 0
+        self._result: Any = None
         self._open: list[_Open] = []
 
     def read(self) -> Any:
@@ -214,6 +216,9 @@ class _Document:
     def _copy(self, value: Any, depth: int, mark: yaml.Mark) -> Any:
         """What an alias stands for; its values count as if they were written there."""
         self._count(depth, mark)
+        self._copies += 1
+        if self._copies > MOST_COPIES:
+            raise _error(mark, self._copies, f"aliases may stand for {MOST_COPIES} values")
         if isinstance(value, dict):
             return {key: self._copy(item, depth + 1, mark) for key, item in value.items()}
         if isinstance(value, list):
@@ -223,6 +228,6 @@ class _Document:
     def _count(self, depth: int, mark: yaml.Mark) -> None:
         self._values += 1
         if self._values > MOST_VALUES:
-            raise _error(mark, self._values, f"there may be {MOST_VALUES} values, those of aliases included")
+            raise _error(mark, self._values, f"there may be {MOST_VALUES} values")
         if depth > DEEPEST:
             raise _error(mark, depth, f"values may be nested {DEEPEST} deep")
