@@ -95,7 +95,7 @@ def mutated(draw, trees, values, most=3):
             )
         )
         if kind == "replace":
-            block[key] = copy.copy(draw(st.sampled_from(values)))
+            block[key] = copy.deepcopy(draw(st.sampled_from(values)))
         elif kind == "delete":
             del block[key]
         elif kind == "exchange":
