@@ -13,7 +13,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from gaspart.errors import SceneError
-from gaspart.yaml_text import dump_yaml
+from gaspart.yaml_text import dump_yaml, read_yaml
 
 ROOT = Path(__file__).parents[1]
 LIMIT = 2.0
@@ -152,6 +152,46 @@ def configs():
         one = {"experiments": {name: block}, "figures": {"radius_grid": {"experiments": [name]}}}
         found[kind] = whole | one | {"animations": {} if "job" in block else film}
     return list(found.values())
+
+
+SIZES = [1, 2, 3, 7, 100, 10_000, 10**9, 2**31, 2**53, 10**18, 0.5, 0.1, 0.9, 0.3, 1e-3, 1e-9, 1e9]
+SIZES += [1e-60, 1e60, 1e-30, 1e30, 1e-20, 1e20, 2.0, 5.0]
+
+
+@st.composite
+def extreme_configs(draw):
+    """Configs whose points hold any keys, with values that the schema allows: planning has to refuse them."""
+    config = copy.deepcopy(draw(st.sampled_from(configs())))
+    schema = _rules()
+    (block,) = config["experiments"].values()
+    for _ in range(draw(st.integers(1, 4))):
+        key = draw(st.sampled_from([*schema, "count", "radius", "side", "packing_fraction"]))
+        values = [draw(_allowed(schema[key])) for _ in range(2)]
+        grid = block.get("grid")
+        if isinstance(grid, dict) and draw(st.booleans()):
+            grid[key] = values
+        else:
+            block["point"][key] = values[0]
+    return config
+
+
+@cache
+def _rules():
+    return read_yaml(ROOT / "src/gaspart/config.schema.yaml")["$defs"]["point"]["properties"]
+
+
+def _allowed(rule):
+    """Values of the types that a rule names."""
+    if "enum" in rule:
+        return st.sampled_from(rule["enum"])
+    numbers = {"number": SIZES, "integer": [n for n in SIZES if n == int(n)]}
+    lists = [st.lists(st.sampled_from(numbers["integer"]), min_size=2, max_size=3)]
+    lists += [st.lists(st.sampled_from(SIZES), min_size=2, max_size=3)]
+    lists += [st.lists(st.sampled_from(["wall", "periodic"]), min_size=2, max_size=3)]
+    kinds = {"boolean": st.booleans(), "null": st.none(), "array": st.one_of(lists)}
+    kinds |= {"string": st.sampled_from(["wall", "periodic", "config/scenes/price.yaml"])}
+    kinds |= {name: st.sampled_from(values) for name, values in numbers.items()}
+    return st.one_of([kinds[name] for name in rule["type"]])
 
 
 def one_line(work, *arguments):

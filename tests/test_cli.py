@@ -229,7 +229,7 @@ def test_check_of_a_config_is_that_of_the_workflow(folder, capsys):
     assert re.search(r"ok +config: \d+ experiments of \d+ points", capsys.readouterr().out)
     (folder / "alone.yaml").write_text("experiments: {}\n")
     assert main(["check", "alone.yaml"]) == 2
-    assert "must lie in a folder beside workflow/schemas" in capsys.readouterr().err
+    assert "alone.yaml: title = None: is required" in capsys.readouterr().err
 
 
 def test_export_says_where(folder, capsys):
