@@ -175,6 +175,53 @@ def extreme_configs(draw):
     return config
 
 
+@st.composite
+def planned_configs(draw):
+    """Configs with a coherent point of extreme values: only arithmetic can show that it cannot be run."""
+    size, whole = st.sampled_from(SIZES), st.sampled_from([n for n in SIZES if n == int(n)])
+    fraction = st.sampled_from([0.5, 0.1, 0.3, 0.9, 1e-3, 1e-9, 1e-30, 1e-60])
+    extents = {"count": whole, "radius": size, "packing_fraction": fraction, "side": size}
+    extents.pop(draw(st.sampled_from(list(extents))))
+    point = {key: draw(values) for key, values in extents.items()} | {
+        "dimension": draw(st.sampled_from([2, 3]))
+    }
+    engine = draw(st.sampled_from(["event", "step", "auto"]))
+    length = draw(
+        st.sampled_from(["collisions_per_body", "duration", *(["steps"] if engine == "step" else [])])
+    )
+    point |= {"engine": engine, length: draw(whole if length == "steps" else size)}
+    point[draw(st.sampled_from(["temperature", "speed"]))] = draw(size)
+    if engine == "step":
+        point["time_step"] = draw(size)
+    if engine == "auto":
+        point |= {
+            "accuracy": draw(fraction),
+            "observable": draw(st.sampled_from(["Z", "collision_rate", "D"])),
+        }
+    elif draw(st.booleans()):
+        point[draw(st.sampled_from(["boxes_per_side", "boxes_per_body"]))] = draw(whole)
+    others = {
+        "mass": size,
+        "equilibration": size,
+        "samples": whole,
+        "replicas": st.integers(1, 3),
+        "follow": whole,
+    }
+    others |= {"boundary": st.sampled_from(["wall", "periodic"]), "centres_to_walls": st.booleans()}
+    for key in draw(st.lists(st.sampled_from(list(others)), max_size=3)):
+        point[key] = draw(others[key])
+    job = draw(st.sampled_from(["simulate", "measure_cost", "echo", "compare"]))
+    figures = {"radius_grid": {"experiments": ["gas"]}}
+    experiment = {"job": job, "point": point}
+    return {
+        "title": "t",
+        "seed": 1,
+        "points": "results/p",
+        "experiments": {"gas": experiment},
+        "figures": figures,
+    }
+
+
 @cache
 def _rules():
     return read_yaml(ROOT / "src/gaspart/config.schema.yaml")["$defs"]["point"]["properties"]

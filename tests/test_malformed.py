@@ -6,7 +6,7 @@ import inspect
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from malformed import NASTY, OBJECTS, SCENES, configs, extreme_configs, mutated, one_line
+from malformed import NASTY, OBJECTS, SCENES, configs, extreme_configs, mutated, one_line, planned_configs
 
 import gaspart as gp
 from gaspart.config import check
@@ -113,6 +113,11 @@ def test_a_malformed_scene_from_python_is_one_line(content):
 @given(st.data())
 def test_a_malformed_config_is_one_line(data):
     one_line(check, data.draw(mutated(configs(), [*NASTY, OBJECTS[-1]])))
+
+
+@given(planned_configs())
+def test_a_point_that_cannot_be_planned_is_one_line(config):
+    one_line(check, config)
 
 
 @given(extreme_configs())
