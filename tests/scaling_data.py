@@ -7,8 +7,8 @@ import numpy as np
 import xarray as xr
 
 from gaspart import grid
-from gaspart.files import read_yaml
 from gaspart.theory import partition
+from gaspart.yaml_text import read_yaml
 
 ROOT = Path(__file__).parents[1]
 BODY, TEST, BOX, LIST = 30e-9, 12e-9, 0.3e-9, 2e-9  # s per body and step (with a list), pair test, box

@@ -1,9 +1,11 @@
 """Scenes: what they refuse, in one line, and that a file gives back what was written."""
 
 import math
+import time
 
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 from scenes import mixtures
 
 import gaspart as gp
@@ -71,6 +73,45 @@ def test_overlap_is_seen_across_a_periodic_face():
     bodies = [gp.Body((0.2, 5.0), (0, 0), 0.5), gp.Body((9.8, 5.0), (0, 0), 0.5)]
     with pytest.raises(gp.SceneError, match="overlaps"):
         gp.Scene(gp.Container((10.0, 10.0), "periodic"), bodies=bodies)
+
+
+@given(st.data())
+def test_overlaps_are_those_that_a_look_at_all_pairs_finds(data):
+    dimension = data.draw(st.sampled_from([2, 3]))
+    lengths = data.draw(st.lists(st.floats(2.0, 9.0), min_size=dimension, max_size=dimension))
+    boundary = data.draw(
+        st.lists(st.sampled_from(["wall", "periodic"]), min_size=dimension, max_size=dimension)
+    )
+    container, bodies = gp.Container(lengths, boundary), []
+    for _ in range(data.draw(st.integers(2, 12))):
+        radius = data.draw(st.floats(0.05, 0.6))
+        at = tuple(radius + data.draw(st.floats(0.001, 0.999)) * (length - 2 * radius) for length in lengths)
+        bodies.append(gp.Body(at, (0.0,) * dimension, radius))
+    alone = gp.Scene(container)
+    pairs = [
+        (n, m)
+        for n, one in enumerate(bodies)
+        for m, other in enumerate(bodies[:n])
+        if alone.separation(one.position, other.position) < one.radius + other.radius
+    ]
+    if pairs:
+        with pytest.raises(gp.SceneError) as caught:
+            gp.Scene(container, bodies=bodies)
+        assert (caught.value.key, caught.value.rule) == (
+            f"bodies[{pairs[0][0]}].position",
+            f"overlaps bodies[{pairs[0][1]}]",
+        )
+    elif alone.container.volume > 60.0:
+        assert gp.Scene(container, bodies=bodies).count == len(bodies)
+
+
+def test_many_single_bodies_are_compared_with_their_neighbours_only():
+    side = 100
+    places = [(x + 0.5, y + 0.5) for x in range(side) for y in range(side)]
+    bodies = [gp.Body(place, (0.0, 0.0), 0.4) for place in places]
+    begun = time.process_time()
+    gp.Scene(gp.Container((side, side)), bodies=bodies)
+    assert time.process_time() - begun < 5.0  # all pairs take ten times as long
 
 
 @given(mixtures())

@@ -1,17 +1,34 @@
-"""Is this config one that can be run? Refused before any job starts, in one line: file, key, value, rule."""
+"""Validation of a config before any job starts: an error is one line with file, key, value and rule."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import chdir, contextmanager
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 from gaspart import grid
 from gaspart.errors import SceneError
 from gaspart.families import FAMILIES
-from gaspart.files import read_yaml
 from gaspart.point_scene import PREFIX
+from gaspart.validation import finite, size
+from gaspart.yaml_text import DEEPEST, MOST_VALUES, read_yaml
+
+
+@contextmanager
+def checked(path: str | Path) -> Iterator[dict[str, Any]]:
+    """The valid config of a file, in the folder where its scene files are looked for.
+
+    That folder is where the workflow runs, for a file in a folder named `config`; else that of the file.
+    Raises SceneError.
+    """
+    merged, files = laid_over(Path(path))
+    folder = files[-1].parent
+    with chdir(folder.parent if folder.name == "config" else folder):
+        check(merged, files)
+        yield merged
 
 
 def laid_over(path: Path) -> tuple[dict[str, Any], list[Path]]:
@@ -24,31 +41,37 @@ def laid_over(path: Path) -> tuple[dict[str, Any], list[Path]]:
     files = [base, path] if base.exists() and base != path else [path]
     merged: dict[str, Any] = {}
     for file in files:
-        _lay_over(merged, read_yaml(file))
+        content = read_yaml(file)
+        if not isinstance(content, dict):
+            raise SceneError("config", content, "must be a mapping of keys to values", str(file))
+        merged = _merged(merged, content)
     return merged, files
 
 
-def _lay_over(below: dict[str, Any], above: dict[str, Any]) -> None:
+def _merged(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
     """Mappings are merged, key by key; anything else is replaced."""
-    for key, value in above.items():
-        if isinstance(value, dict) and isinstance(below.get(key), dict):
-            _lay_over(below[key], value)
-        else:
-            below[key] = value
+    both = {key: value for key, value in above.items() if isinstance(value, dict)}
+    both = {key: value for key, value in both.items() if isinstance(below.get(key), dict)}
+    return {**below, **above, **{key: _merged(below[key], value) for key, value in both.items()}}
 
 
-def check(config: dict, schema_path: str, files: list[str]) -> None:
+@cache
+def _schema() -> dict[str, Any]:
+    return read_yaml(Path(__file__).with_name("config.schema.yaml"))
+
+
+def check(config: dict, files: Sequence[str | Path] = ()) -> None:
     """Validate a merged config against the schema, then every point's scene and engine.
 
     files: the YAML files that were merged, in that order; an error names the last one that holds the key.
     Raises SceneError.
     """
+    contents = [(str(file), read_yaml(file)) for file in files]
     try:
-        _finite(config)
-        schema = read_yaml(schema_path)
-        _against(schema, config, schema, "")
+        _check_values(config)
+        _against(_schema(), config, "")
         for experiment in config["experiments"]:
-            _experiment(config, experiment, schema)
+            _experiment(config, experiment)
         for figure in config["figures"]:
             if figure not in FAMILIES:
                 raise SceneError(f"figures.{figure}", figure, "has no line in gaspart.families")
@@ -56,7 +79,35 @@ def check(config: dict, schema_path: str, files: list[str]) -> None:
         for animation, block in config.get("animations", {}).items():
             _animation(config, animation, block)
     except SceneError as error:
-        raise error.inside("", error.file or _file_of(error.key, files)) from None
+        raise error.inside("", error.file or _file_of(error.key, contents)) from None
+
+
+def _check_values(config: object) -> None:
+    """Raise SceneError unless a config is a tree of mappings, lists and plain values, not too deep and not
+    too large, whose numbers are finite and of a size that can be calculated with."""
+    left = [("", config, 0)]  # a stack, lest a deep config exhaust Python's own
+    for count in range(MOST_VALUES):
+        if not left:
+            return
+        where, value, depth = left.pop()
+        if depth > DEEPEST:
+            raise SceneError(where, count, f"values may be nested {DEEPEST} deep")
+        if isinstance(value, dict):
+            for key in value:
+                if not isinstance(key, str):
+                    rule = "a key must be text: write it in quotes"
+                    raise SceneError(f"{where}.{key!s:.100}".lstrip("."), key, rule)
+            left += [(f"{where}.{key}".lstrip("."), item, depth + 1) for key, item in value.items()]
+        elif isinstance(value, list):
+            left += [(where, item, depth + 1) for item in value]
+        elif isinstance(value, int | float) and not isinstance(value, bool):
+            number = finite(value)
+            if number is None:
+                raise SceneError(where, value, "must be a finite number")
+            size(where, number)
+        elif value is not None and not isinstance(value, str | bool):
+            raise SceneError(where, value, "must be text, a number, a list or a mapping: quotes make it text")
+    raise SceneError("config", len(left), f"there may be {MOST_VALUES} values")
 
 
 def _animation(config: dict, animation: str, block: dict | None) -> None:
@@ -68,16 +119,16 @@ def _animation(config: dict, animation: str, block: dict | None) -> None:
         raise SceneError(f"animations.{animation}.experiment", experiment, rule)
 
 
-def _experiment(config: dict, experiment: str, schema: dict) -> None:
+def _experiment(config: dict, experiment: str) -> None:
     """The values of the grid, one by one, then every point as the scene and the engine it makes."""
-    rules = schema["$defs"]["point"]["properties"]
+    rules = _schema()["$defs"]["point"]["properties"]
     where = f"experiments.{experiment}"
     for key, value in _grid_values(config["experiments"][experiment].get("grid")):
         if key.startswith(PREFIX):  # a value of a scene file, which the scene judges
             continue
         if key not in rules:
             raise SceneError(f"{where}.grid.{key}", value, f"unknown key; known are {', '.join(rules)}")
-        _against(rules[key], value, schema, f"{where}.grid.{key}")
+        _against(rules[key], value, f"{where}.grid.{key}")
     for point in grid.points(config, experiment):
         grid.check(point)
         try:
@@ -87,18 +138,35 @@ def _experiment(config: dict, experiment: str, schema: dict) -> None:
             raise error if told else error.inside(f"{where}[{point.name}]") from None
 
 
-def _against(rule: dict, value: object, schema: dict, where: str) -> None:
-    """Raise SceneError for the most telling way in which ``value`` breaks ``rule``."""
-    from jsonschema import Draft202012Validator
+@cache
+def _validator() -> Any:
+    """JSON schema's, with a test for uniqueness whose time does not grow with the square of a list."""
+    from jsonschema import Draft202012Validator, ValidationError
+    from jsonschema.validators import extend
+
+    def unique(validator: object, wanted: bool, items: object, schema: dict) -> Iterable[ValidationError]:
+        words = [item for item in items if isinstance(item, str)] if isinstance(items, list) else []
+        if wanted and len(set(words)) < len(words):
+            yield ValidationError("not unique")
+
+    return extend(Draft202012Validator, {"uniqueItems": unique})
+
+
+def _against(rule: dict, value: object, where: str) -> None:
+    """Raise SceneError for the most telling way in which ``value`` breaks ``rule``, a part of the schema."""
     from jsonschema.exceptions import best_match
 
-    error = best_match(Draft202012Validator({**rule, "$defs": schema["$defs"]}).iter_errors(value))
+    error = best_match(_validator()({**rule, "$defs": _schema()["$defs"]}).iter_errors(value))
     if error is None:
         return
     key = ".".join(part for part in (where, *(str(part) for part in error.absolute_path)) if part)
     if error.validator == "additionalProperties":
-        known = error.schema.get("properties", {})
-        unknown = next(name for name in error.instance if name not in known)
+        known, patterns = error.schema.get("properties", {}), error.schema.get("patternProperties", {})
+        unknown = next(
+            name
+            for name in error.instance
+            if name not in known and not any(re.search(pattern, name) for pattern in patterns)
+        )
         rule_text = f"unknown key; known are {', '.join(known)}"
         raise SceneError(f"{key}.{unknown}".lstrip("."), error.instance[unknown], rule_text)
     if error.validator == "required":
@@ -122,6 +190,7 @@ def _rule(validator: str, wanted: Any) -> str:
         "maxItems": "must have this many items at most:",
         "minProperties": "must have this many entries at least:",
         "uniqueItems": "must not name anything twice",
+        "maxLength": "must have this many characters at most:",
         "pattern": "must match",
     }
     told = "" if validator == "uniqueItems" else f" {wanted}"
@@ -139,30 +208,18 @@ def _grid_values(block: Any) -> Iterator[tuple[str, object]]:
             yield key, value
 
 
-def _finite(value: object, where: str = "") -> None:
-    """JSON schema lets a NaN pass every comparison, so it is refused here."""
-    if isinstance(value, dict):
-        for key, item in value.items():
-            _finite(item, f"{where}.{key}".lstrip("."))
-    elif isinstance(value, list):
-        for item in value:
-            _finite(item, where)
-    elif isinstance(value, float) and not math.isfinite(value):
-        raise SceneError(where, value, "must be a finite number")
-
-
-def _file_of(key: str, files: list[str]) -> str | None:
-    """The last of the files that holds the longest part of ``key``."""
+def _file_of(key: str, contents: list[tuple[str, Any]]) -> str | None:
+    """The last of the files, given with their contents, that holds the longest part of ``key``."""
     parts = key.replace("[", ".").split(".")
     dotted = parts.index("scene") if "scene" in parts else len(parts)  # `scene.` and what follows is one key
     parts[dotted:] = [".".join(parts[dotted:])]
 
-    def depth(path: str) -> int:
-        block, reached = read_yaml(path), 0
+    def depth(content: tuple[str, Any]) -> int:
+        block, reached = content[1], 0
         for part in parts:
             if not isinstance(block, dict) or part not in block:
                 break
             block, reached = block[part], reached + 1
         return reached
 
-    return max(reversed(files), key=depth) if files else None
+    return max(reversed(contents), key=depth)[0] if contents else None

@@ -1,22 +1,82 @@
-"""The two ways in which gaspart says no."""
+"""The two kinds of errors that gaspart raises for its user, and how they print values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import islice
+
+_LONGEST = {"value": 120, "key": 200, "rule": 2000, "file": 1000}
+_ITEMS, _DEPTH, _BITS = 12, 4, 256  # shown of a collection; of nested ones; of an integer
 
 
 class SceneError(ValueError):
-    """What was asked for cannot be: one line that names the key, the value and the rule it breaks."""
+    """An input that cannot be used: one line that names the key, the value and the rule it breaks.
+
+    The line is printable and of bounded length, whatever the value is.
+    """
 
     def __init__(self, key: str, value: object, rule: str, file: str | None = None) -> None:
         self.key, self.value, self.rule, self.file = key, value, rule, file
-        where = f"{file}: " if file else ""
-        super().__init__(f"{where}{key} = {value!r}: {rule}")
+        where = f"{_one_line(file, _LONGEST['file'])}: " if file else ""
+        text = f"{_one_line(key, _LONGEST['key'])} = {shown(value)}: {_one_line(rule, _LONGEST['rule'])}"
+        super().__init__(where + text)
 
     def __reduce__(self) -> tuple:
         return (type(self), (self.key, self.value, self.rule, self.file))
 
-    def inside(self, prefix: str, file: str | None = None) -> "SceneError":
-        """The same complaint seen from the enclosing mapping (`species[1].radius`) or file."""
+    def inside(self, prefix: str, file: str | None = None) -> SceneError:
+        """The same error with the key of the enclosing mapping (`species[1].radius`), or with its file."""
         key = f"{prefix}.{self.key}" if prefix else self.key
         return SceneError(key, self.value, self.rule, file or self.file)
 
 
 class SimulationError(RuntimeError):
     """A run broke one of its invariants, or cannot go on; the last good state is kept by the caller."""
+
+
+def shown(value: object) -> str:
+    """`value` as one printable line of at most 120 characters. The time does not grow with its size."""
+    return _one_line(_repr(value, _DEPTH), _LONGEST["value"])
+
+
+def _repr(value: object, depth: int) -> str:
+    """Like repr(), but of the first items only, and without an error for any value."""
+    kind = type(value)
+    if kind is str or kind is bytes:
+        assert isinstance(value, str | bytes)
+        return repr(value) if len(value) <= _LONGEST["value"] else f"{value[: _LONGEST['value']]!r}..."
+    if kind is int:
+        assert isinstance(value, int)
+        bits = value.bit_length()
+        return repr(value) if bits <= _BITS else f"<an integer of {int(bits * 0.30103) + 1} digits>"
+    if kind is dict:
+        assert isinstance(value, dict)
+        pairs = (f"{_repr(key, 0)}: {_repr(item, depth - 1)}" for key, item in value.items())
+        return "{" + _joined(pairs, len(value), depth) + "}"
+    if kind is list or kind is tuple:
+        assert isinstance(value, list | tuple)
+        inner = _joined((_repr(item, depth - 1) for item in value), len(value), depth)
+        if kind is list:
+            return f"[{inner}]"
+        return f"({inner},)" if len(value) == 1 else f"({inner})"
+    try:
+        return repr(value)
+    except Exception:  # an object of the user's own, whose repr may raise anything
+        return f"<{kind.__name__}>"
+
+
+def _joined(items: Iterable[str], count: int, depth: int) -> str:
+    if count and depth <= 0:
+        return "..."
+    return ", ".join(islice(items, _ITEMS)) + (", ..." if count > _ITEMS else "")
+
+
+def _one_line(text: object, longest: int) -> str:
+    """`text` without line breaks and other unprintable characters; the middle of a long one is left out."""
+    line = str(text)
+    if len(line) > longest:
+        tail = longest // 4
+        line = f"{line[: longest - tail - 3]}...{line[-tail:]}"
+    if line.isprintable():
+        return line
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in line)

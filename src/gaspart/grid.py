@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 from gaspart.errors import SceneError
 from gaspart.point import Point, name_of
 from gaspart.point_scene import check_scene, extents, scene
+from gaspart.validation import LARGEST, SMALLEST
 
 if TYPE_CHECKING:
     from gaspart.engines import EventDriven, TimeStepped
@@ -39,7 +40,13 @@ ENGINE_KEYS = {
         "threads",
     ),
 }
+WHOLE = ("dimension", "count", "samples", "steps", "attempts", "follow", "replicas", "passes", "threads")
+"""Keys of whole numbers, which may be written 1e3."""
+MOST_POINTS = 100_000
 SCANS = ("scan_boxes_per_side", "scan_boxes_per_body", "scan_time_steps")
+
+
+_MOST_INTERVALS = 2.0**53  # above, float64 does not distinguish their numbers
 
 
 @dataclass(frozen=True)
@@ -70,7 +77,7 @@ def points(config: dict, experiment: str) -> list[Point]:
                 experiment=experiment,
                 name=name_of(varying, f"{where}.grid"),
                 job=block.get("job", "simulate"),
-                settings={key: value for key, value in settings.items() if value is not None},
+                settings={key: _plain(key, value) for key, value in settings.items() if value is not None},
                 root=config.get("points", "results/points"),
                 config_seed=config["seed"],
             )
@@ -79,6 +86,11 @@ def points(config: dict, experiment: str) -> list[Point]:
             raise SceneError(f"{where}.grid", point.name, "every point of a grid must be different")
         found[point.name] = point
     return list(found.values())
+
+
+def _plain(key: str, value: Any) -> Any:
+    whole = key in WHOLE and isinstance(value, float) and value.is_integer()
+    return int(value) if whole else value
 
 
 def _chosen(point: Point) -> Point:
@@ -151,9 +163,10 @@ def engine(point: Point) -> EventDriven | TimeStepped:
     if "boxes_per_body" in chosen:
         chosen["boxes_per_side"] = boxes_per_side(chosen.pop("boxes_per_body"), count, radius, lengths)
     given = chosen.get("boxes_per_side", 1)
-    for length, boxes in zip(
-        lengths, given if isinstance(given, tuple) else (given,) * len(lengths), strict=True
-    ):
+    sides = given if isinstance(given, tuple) else (given,) * len(lengths)
+    if len(sides) != len(lengths):
+        raise SceneError("boxes_per_side", given, "must be one number, or one per axis")
+    for length, boxes in zip(lengths, sides, strict=True):
         if boxes > 1 and length / boxes < 2.0 * radius:  # told here already, before any job starts
             rule = f"boxes must not be narrower than the largest diameter, {2.0 * radius:g}"
             raise SceneError("boxes_per_side", given, rule)
@@ -199,15 +212,22 @@ def schedule(point: Point) -> Schedule:
     equilibration, rounded up to whole intervals, goes before it.
     """
     check(point)
-    settings = point.settings
+    settings, where = point.settings, f"experiments.{point.experiment}"
     unit = next(key for key in LENGTHS if key in settings)
     scale = _unit_of_time(point, unit)
     samples = settings.get("samples", 1)
     interval = settings[unit] * scale / samples
+    if not SMALLEST <= interval <= LARGEST:
+        rule = f"makes a sample interval of {interval:g}, which must be from {SMALLEST:g} to {LARGEST:g}"
+        raise SceneError(f"{where}.{unit}", settings[unit], rule)
     if settings.get("engine") == "step":
         step = settings["time_step"]
         interval = step * max(1, round(interval / step))
-    dropped = math.ceil(settings.get("equilibration", 0) * scale / interval * (1.0 - 1e-12))
+    before = settings.get("equilibration", 0) * scale / interval
+    if not before < _MOST_INTERVALS:
+        rule = f"makes {before:g} sample intervals, which must be less than {_MOST_INTERVALS:g}"
+        raise SceneError(f"{where}.equilibration", settings["equilibration"], rule)
+    dropped = math.ceil(before * (1.0 - 1e-12))
     return Schedule(interval * (dropped + samples), interval, dropped, samples)
 
 
@@ -284,6 +304,8 @@ def _unit_of_time(point: Point, unit: str) -> float:
         rate = theory.collision_rate(fraction, dimension, 2.0 * radius, temperature, kind.mass)
     except ValueError as error:
         raise SceneError(key, given, f"cannot be turned into a time: {error}") from None
+    if not 0.0 < rate < math.inf:
+        raise SceneError(key, given, f"cannot be turned into a time: the collision rate is {rate:g}")
     return 1.0 / float(rate)
 
 
@@ -306,4 +328,7 @@ def _combinations(grid: Any, where: str) -> list[dict]:
     for key, values in axes.items():
         if not values:
             raise SceneError(f"{where}.{key}", values, "must not be empty")
+    count = math.prod(map(len, axes.values()))
+    if count > MOST_POINTS:
+        raise SceneError(where, count, f"a grid may have {MOST_POINTS} points")
     return [dict(zip(axes, chosen, strict=True)) for chosen in itertools.product(*axes.values())]

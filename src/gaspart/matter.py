@@ -6,7 +6,20 @@ import math
 from dataclasses import dataclass
 
 from gaspart.errors import SceneError
-from gaspart.validation import count_of, number, settle, size, vector
+from gaspart.validation import (
+    LARGEST,
+    MOST_BODIES,
+    SMALLEST,
+    choice,
+    count_of,
+    flag,
+    not_negative,
+    number,
+    positive,
+    settle,
+    size,
+    vector,
+)
 
 LATTICES = ("lattice", "slab")
 SHARED = (*LATTICES, "compressed")
@@ -16,20 +29,16 @@ ARRANGEMENTS = ("random", *SHARED)
 
 def _check_matter(thing: Species | Body) -> None:
     """What species and bodies have in common: radius, mass, moment of inertia, fixed, vibration."""
-    settle(
-        thing,
-        radius=number("radius", thing.radius, "must be positive", above=0.0),
-        mass=number("mass", thing.mass, "must be positive", above=0.0),
-    )
-    for key in ("radius", "mass"):
-        size(key, getattr(thing, key))
+    settle(thing, radius=positive("radius", thing.radius), mass=positive("mass", thing.mass))
     if thing.moment_of_inertia is not None:
         value = number("moment_of_inertia", thing.moment_of_inertia, "must be positive", above=0.0)
+        if not SMALLEST <= value / thing.mass / thing.radius**2 <= LARGEST:
+            rule = f"must be from {SMALLEST:g} to {LARGEST:g} times the mass times the radius squared"
+            raise SceneError("moment_of_inertia", value, rule)
         settle(thing, moment_of_inertia=value)
-    if not isinstance(thing.fixed, bool):
-        raise SceneError("fixed", thing.fixed, "must be true or false")
+    flag("fixed", thing.fixed)
     if thing.vibration is not None:
-        settle(thing, vibration=number("vibration", thing.vibration, "must not be negative", least=0.0))
+        settle(thing, vibration=not_negative("vibration", thing.vibration))
         if not thing.fixed:
             raise SceneError("vibration", thing.vibration, "only a fixed body vibrates")
 
@@ -58,21 +67,18 @@ class Species:
     vibration: float | None = None
 
     def __post_init__(self) -> None:
-        settle(self, count=count_of("count", self.count))
+        settle(self, count=count_of("count", self.count, most=MOST_BODIES))
         _check_matter(self)
         for key in ("speed", "temperature"):
             if getattr(self, key) is not None:
-                value = number(key, getattr(self, key), "must not be negative", least=0.0)
-                size(key, value)
-                settle(self, **{key: value})
+                settle(self, **{key: not_negative(key, getattr(self, key))})
         if self.speed is not None and self.temperature is not None:
             raise SceneError("temperature", self.temperature, "give speed or temperature, not both")
         if self.fixed and self.speed:
             raise SceneError("speed", self.speed, "a fixed species has none")
         if self.vibration is not None and self.temperature is not None:
             raise SceneError("temperature", self.temperature, "give vibration or temperature, not both")
-        if self.arrangement not in ARRANGEMENTS:
-            raise SceneError("arrangement", self.arrangement, f"must be one of {ARRANGEMENTS}")
+        choice("arrangement", self.arrangement, ARRANGEMENTS)
 
     @property
     def vibrates(self) -> bool:
@@ -105,6 +111,7 @@ class Body:
         if self.spin is not None:
             flat = len(self.position) == 2
             spin = number("spin", self.spin, "must be a number") if flat else vector("spin", self.spin, 3)
+            size("spin", spin)
             settle(self, spin=spin)
         for key, value in (("velocity", self.velocity), ("spin", self.spin_vector)):
             if self.fixed and any(value):
@@ -135,10 +142,7 @@ class Restitution:
     def __post_init__(self) -> None:
         for key, least in (("normal", 0.0), ("tangential", -1.0)):
             rule = f"must be from {least:g} to 1"
-            value = number(key, getattr(self, key), rule, least=least)
-            if value > 1.0:
-                raise SceneError(key, value, rule)
-            settle(self, **{key: value})
+            settle(self, **{key: number(key, getattr(self, key), rule, least=least, most=1.0)})
 
     @property
     def smooth_and_elastic(self) -> bool:
@@ -163,6 +167,7 @@ class Wall:
         settle(self, start=vector("start", self.start, 2), end=vector("end", self.end, 2))
         if self.start == self.end:
             raise SceneError("end", self.end, "a wall must have a length; for a post take a fixed body")
+        positive("length", math.dist(self.start, self.end))
 
     @property
     def corners(self) -> dict[str, tuple[float, ...]]:
@@ -189,11 +194,13 @@ class Plate:
         rule = "must be two lists of 3 numbers"
         if not isinstance(self.edges, (tuple, list)) or len(self.edges) != 2:
             raise SceneError("edges", self.edges, rule)
-        one, other = (vector("edges", edge, 3) for edge in self.edges)
+        one, other = (vector(f"edges[{n}]", edge, 3) for n, edge in enumerate(self.edges))
         settle(self, corner=vector("corner", self.corner, 3), edges=(one, other))
         sizes = math.hypot(*one), math.hypot(*other)
         if not min(sizes) > 0.0:
             raise SceneError("edges", self.edges, "a plate must have a length and a width")
+        for length in sizes:
+            positive("edges", length)
         if abs(sum(x * y for x, y in zip(one, other, strict=True))) > 1e-9 * sizes[0] * sizes[1]:
             raise SceneError("edges", self.edges, "must be at right angles")
 

@@ -18,6 +18,9 @@ SUFFIX = {
 }
 
 
+_LONGEST_NAME = 200  # of the 255 bytes of a file name, with which suffixes and names of logs are made
+
+
 @dataclass(frozen=True)
 class Point:
     """One point of a grid: one job of the workflow, with one output at ``path``."""
@@ -67,9 +70,14 @@ class Point:
 def name_of(varying: dict, where: str) -> str:
     """The name of a point, fit for a file system: its varying keys and their values.
 
-    Raises SceneError, naming the key below ``where``, for a value that no file name can hold.
+    Raises SceneError, naming the key below ``where``, for a value that no file name can hold, and a name that
+    is too long.
     """
-    return ",".join(f"{key}={_text(value, f'{where}.{key}')}" for key, value in varying.items()) or "single"
+    parts = [f"{_text(key, where)}={_text(value, f'{where}.{key}')}" for key, value in varying.items()]
+    name = ",".join(parts) or "single"
+    if len(name) > _LONGEST_NAME:
+        raise SceneError(where, name, f"the name of a point may have {_LONGEST_NAME} characters")
+    return name
 
 
 def _text(value: object, where: str) -> str:

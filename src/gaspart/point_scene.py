@@ -11,9 +11,10 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gaspart.errors import SceneError
-from gaspart.files import read_yaml
+from gaspart.errors import SceneError, shown
 from gaspart.point import Point
+from gaspart.validation import MOST_BODIES
+from gaspart.yaml_text import read_yaml
 
 if TYPE_CHECKING:
     from gaspart.scene import Scene
@@ -37,6 +38,8 @@ def check_scene(point: Point) -> None:
     if replaced:
         rule = "replaces a value of a scene file, but there is no scene"
         raise SceneError(f"{where}.{replaced[0]}", settings[replaced[0]], rule)
+    if "dimension" not in settings:
+        raise SceneError(f"{where}.dimension", None, "is required, unless there is a scene file")
     given = [key for key in EXTENTS if key in settings]
     if len(given) != 3:
         raise SceneError(where, given, "exactly three of count, radius, packing_fraction, side must be given")
@@ -55,9 +58,11 @@ def extents(point: Point) -> tuple[int, float, tuple[float, ...]]:
     is rounded to a whole number; a side that follows is the same on every axis. A scene file says it itself.
     """
     check_scene(point)
-    settings = point.settings
+    settings, where = point.settings, f"experiments.{point.experiment}"
     if "scene" in settings:
         read = scene(point)
+        if read.count == 0:
+            raise SceneError(f"{where}.scene", settings["scene"], "a point needs at least one body")
         return read.count, read.largest_radius, read.container.lengths
     dimension = settings["dimension"]
     unit = math.pi if dimension == 2 else 4.0 / 3.0 * math.pi
@@ -66,10 +71,14 @@ def extents(point: Point) -> tuple[int, float, tuple[float, ...]]:
     if side is not None:
         lengths = tuple(map(float, side)) if isinstance(side, (list, tuple)) else (float(side),) * dimension
         if len(lengths) != dimension:
-            raise SceneError(f"experiments.{point.experiment}.side", side, f"must have {dimension} lengths")
+            raise SceneError(f"{where}.side", side, f"must have {dimension} lengths")
         volume = math.prod(lengths)
         if count is None:
-            count = round(fraction * volume / (unit * radius**dimension))
+            found = fraction * volume / (unit * radius**dimension)
+            if not 0.5 < found <= MOST_BODIES:
+                rule = f"makes {found:g} bodies, which must be from 1 to {MOST_BODIES}"
+                raise SceneError(f"{where}.packing_fraction", fraction, rule)
+            count = round(found)
         elif radius is None:
             radius = (fraction * volume / (unit * count)) ** (1.0 / dimension)
     else:
@@ -109,6 +118,8 @@ def _read(point: Point) -> Scene:
         changed = Path(path).stat().st_mtime_ns
     except OSError as error:
         raise SceneError(f"{where}.scene", path, f"cannot be read: {error.strerror}") from None
+    except ValueError:  # a NUL, or a character that no file name can hold
+        raise SceneError(f"{where}.scene", path, "is not a file name") from None
     content, alone = _file(path, changed)
     replaced = [key for key in point.settings if key.startswith(PREFIX)]
     if not replaced:
@@ -147,8 +158,9 @@ def _place(block: object, part: str, key: str, value: object, where: str) -> str
         block.setdefault(part, None)
         return part
     if not isinstance(block, list):
-        raise SceneError(f"{where}.{key}", value, f"the scene file has {block!r} where this looks for {part}")
-    if not part.isdecimal() or int(part) >= len(block):
+        rule = f"the scene file has {shown(block)} where this looks for {part}"
+        raise SceneError(f"{where}.{key}", value, rule)
+    if not part.isdecimal() or len(part) > 9 or int(part) >= len(block):
         rule = f"{part} must be the number of an item, of which the scene file has {len(block)}, from 0"
         raise SceneError(f"{where}.{key}", value, rule)
     return int(part)

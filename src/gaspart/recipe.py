@@ -14,9 +14,9 @@ import numpy as np
 from gaspart import amber, provenance
 from gaspart.engines import EventDriven, TimeStepped, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
-from gaspart.files import dump_yaml, parse_yaml
 from gaspart.random import stream
 from gaspart.scene import Scene, count_of, number
+from gaspart.yaml_text import dump_yaml, parse_yaml
 
 if TYPE_CHECKING:
     import netCDF4

@@ -14,11 +14,23 @@ from pathlib import Path
 from typing import Any
 
 from gaspart.errors import SceneError
-from gaspart.files import read_yaml, write_yaml
 from gaspart.matter import SHARED, Body, Plate, Restitution, Species, Wall
-from gaspart.room import check_room
+from gaspart.room import Nearby, check_room
 from gaspart.surfaces import Sticky, Thermal, Well, check_faces, surface_from_dict, surface_to_dict
-from gaspart.validation import count_of, from_mapping, number, settle, size, vector
+from gaspart.validation import (
+    MOST_BODIES,
+    choice,
+    count_of,
+    flag,
+    from_mapping,
+    instances,
+    number,
+    positive,
+    settle,
+    size,
+    vector,
+)
+from gaspart.yaml_text import read_yaml, write_yaml
 
 __all__ = ["Body", "Container", "Restitution", "Scene", "Species", "Wall"]
 __all__ += ["count_of", "from_mapping", "number"]
@@ -40,18 +52,14 @@ class Container:
 
     def __post_init__(self) -> None:
         lengths = vector("lengths", self.lengths)
-        if len(lengths) not in (2, 3):
-            raise SceneError("lengths", self.lengths, "a container has 2 or 3 sides")
         for length in lengths:
-            number("lengths", length, "every side must be positive", above=0.0)
-            size("lengths", length)
+            positive("lengths", length)
         given = self.boundary
         boundary = (given,) * len(lengths) if isinstance(given, str) else given
         if not isinstance(boundary, (tuple, list)) or len(boundary) != len(lengths):
             raise SceneError("boundary", given, f"must be one of {BOUNDARIES}, or a list of one per axis")
         for kind in boundary:
-            if kind not in BOUNDARIES:
-                raise SceneError("boundary", given, f"must be one of {BOUNDARIES}, or a list of one per axis")
+            choice("boundary", kind, BOUNDARIES)
         settle(self, lengths=lengths, boundary=tuple(boundary))
 
     @property
@@ -98,16 +106,12 @@ class Scene:
     faces: dict[str, Thermal | Well | Sticky] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
-        settle(self, species=tuple(self.species), bodies=tuple(self.bodies), walls=tuple(self.walls))
+        self._check_parts()
         if self.gravity is not None:
             self._check_gravity()
-        if self.restitution is not None and not isinstance(self.restitution, Restitution):
-            raise SceneError("restitution", self.restitution, "must be a Restitution")
         if self.centres_to_walls and self.rough:
             rule = "rough bodies (tangential above -1) touch walls with their surfaces"
             raise SceneError("centres_to_walls", True, rule)
-        if not isinstance(self.centres_to_walls, bool):
-            raise SceneError("centres_to_walls", self.centres_to_walls, "must be true or false")
         self._check_walls()
         check_faces(self)
         if self.vibrates and self.restitution is not None and self.restitution.normal != 1.0:
@@ -120,14 +124,34 @@ class Scene:
         for shared in arrangements & set(SHARED):
             if self.bodies or arrangements != {shared}:
                 raise SceneError("arrangement", shared, "is shared by all bodies of a scene")
+        earlier = Nearby(self.container, max((2.0 * body.radius for body in self.bodies), default=0.0))
         for n, body in enumerate(self.bodies):
-            self._check_body(n, body)
+            self._check_body(n, body, earlier)
+            earlier.add(n, body.position)
         if self.packing_fraction > math.pi / math.sqrt(12 if self.dimension == 2 else 18):
             if not self.centres_to_walls:
                 raise SceneError("packing_fraction", self.packing_fraction, "exceeds close packing")
 
+    def _check_parts(self) -> None:
+        """Every part is of its class; no part is compared with another one."""
+        if not isinstance(self.container, Container):
+            raise SceneError("container", self.container, "must be a Container")
+        rule = "a Wall needs a container of two dimensions, a Plate one of three"
+        settle(
+            self,
+            species=instances("species", self.species, Species, "must be a Species"),
+            bodies=instances("bodies", self.bodies, Body, "must be a Body"),
+            walls=instances("walls", self.walls, _wall_kind(self.container), rule),
+        )
+        if self.count > MOST_BODIES:
+            raise SceneError("count", self.count, f"there may be {MOST_BODIES} bodies")
+        if self.restitution is not None and not isinstance(self.restitution, Restitution):
+            raise SceneError("restitution", self.restitution, "must be a Restitution")
+        flag("centres_to_walls", self.centres_to_walls)
+
     def _check_gravity(self) -> None:
         pull = vector("gravity", self.gravity, self.dimension)
+        size("gravity", pull)
         for component, periodic in zip(pull, self.container.periodic, strict=True):
             if component != 0.0 and periodic:
                 rule = "must not point along a periodic axis, where bodies would gain energy for ever"
@@ -136,9 +160,6 @@ class Scene:
 
     def _check_walls(self) -> None:
         for n, wall in enumerate(self.walls):
-            if not isinstance(wall, _wall_kind(self.container)):
-                rule = "a Wall needs a container of two dimensions, a Plate one of three"
-                raise SceneError("walls", self.walls, rule)
             if self.centres_to_walls:
                 raise SceneError("centres_to_walls", True, "interior walls stop the bodies' surfaces")
             for key, point in wall.corners.items():
@@ -162,7 +183,7 @@ class Scene:
     def _fits(self, key: str, thing: Body | Species) -> None:
         check_room(self.container, self.centres_to_walls, key, thing.radius, thing.fixed)
 
-    def _check_body(self, n: int, body: Body) -> None:
+    def _check_body(self, n: int, body: Body, earlier: Nearby) -> None:
         where = f"bodies[{n}]"
         vector(f"{where}.position", body.position, self.dimension)
         vector(f"{where}.velocity", body.velocity, self.dimension)
@@ -173,7 +194,8 @@ class Scene:
                 raise SceneError(f"{where}.position", body.position, "must lie wholly inside the container")
         if wall := self.wall_at(body.position, body.radius):
             raise SceneError(f"{where}.position", body.position, f"overlaps {wall}")
-        for m, other in enumerate(self.bodies[:n]):
+        for m in earlier.around(body.position):
+            other = self.bodies[m]
             if self.separation(body.position, other.position) < body.radius + other.radius:
                 raise SceneError(f"{where}.position", body.position, f"overlaps bodies[{m}]")
 

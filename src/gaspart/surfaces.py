@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 from gaspart.errors import SceneError
-from gaspart.validation import from_mapping, number, settle
+from gaspart.validation import choice, from_mapping, positive, settle
 
 if TYPE_CHECKING:
     from gaspart.scene import Scene
@@ -33,9 +33,8 @@ class Thermal:
     kind: ClassVar[Literal["thermal"]] = "thermal"
 
     def __post_init__(self) -> None:
-        settle(self, temperature=number("temperature", self.temperature, "must be positive", above=0.0))
-        if self.components not in COMPONENTS:
-            raise SceneError("components", self.components, f"must be one of {COMPONENTS}")
+        settle(self, temperature=positive("temperature", self.temperature))
+        choice("components", self.components, COMPONENTS)
 
 
 @dataclass(frozen=True)
@@ -52,9 +51,9 @@ class Well:
 
     def __post_init__(self) -> None:
         for key in ("depth", "width"):
-            settle(self, **{key: number(key, getattr(self, key), "must be positive", above=0.0)})
+            settle(self, **{key: positive(key, getattr(self, key))})
         if self.temperature is not None:
-            settle(self, temperature=number("temperature", self.temperature, "must be positive", above=0.0))
+            settle(self, temperature=positive("temperature", self.temperature))
 
 
 @dataclass(frozen=True)
@@ -72,7 +71,7 @@ class Sticky:
     kind: ClassVar[Literal["sticky"]] = "sticky"
 
     def __post_init__(self) -> None:
-        settle(self, momentum=number("momentum", self.momentum, "must be positive", above=0.0))
+        settle(self, momentum=positive("momentum", self.momentum))
 
 
 KINDS: dict[str, type[Thermal | Well | Sticky]] = {
@@ -81,13 +80,11 @@ KINDS: dict[str, type[Thermal | Well | Sticky]] = {
 
 
 def surface_from_dict(mapping: object, where: str) -> Thermal | Well | Sticky:
-    """The kind of face that {"kind": "thermal" | "well" | "sticky", setting: value, ...} tells."""
+    """The face that {"kind": "thermal" | "well" | "sticky", setting: value, ...} describes."""
     if not isinstance(mapping, dict):
         raise SceneError(where, mapping, "must be a mapping with a kind")
     settings = dict(mapping)
-    kind = settings.pop("kind", None)
-    if kind not in KINDS:
-        raise SceneError(f"{where}.kind", kind, f"must be one of {tuple(KINDS)}")
+    kind = choice(f"{where}.kind", settings.pop("kind", None), KINDS)
     return from_mapping(KINDS[kind], settings, where)
 
 

@@ -1,10 +1,15 @@
-"""Values that users give, checked: each function returns what is meant, or says in one line what is wrong."""
+"""Validation of values given by a user: each function returns a value of its type, or raises SceneError.
+
+Every function takes any object at all: None, text, nan, an integer that no float can hold, an array.
+"""
 
 from __future__ import annotations
 
 import math
 import numbers
+from collections.abc import Iterable, Mapping, Set
 from dataclasses import fields
+from itertools import islice
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from gaspart.errors import SceneError
@@ -15,16 +20,38 @@ if TYPE_CHECKING:
 T = TypeVar("T", bound="DataclassInstance")
 
 SMALLEST, LARGEST = 1e-60, 1e60
-"""Sizes of what contacts multiply four of, which must be neither lost nor infinite."""
+"""Of quantities of which contacts multiply four, which must neither vanish nor become infinite."""
+MOST_BODIES = 2**31 - 1
+"""Of a scene or a species: indices of bodies have 32 bits."""
+MOST_LISTED = 50_000
+"""Species, single bodies or walls of a scene, each of which stands in the scene's text."""
 
 
-def number(key: str, value: Any, rule: str, *, above: float = -math.inf, least: float = -math.inf) -> float:
-    """`value` as a finite float greater than `above` and at least `least`, or a SceneError with `rule`."""
-    if isinstance(value, bool) or not isinstance(value, numbers.Real) or not math.isfinite(value):
+def finite(value: object) -> float | None:
+    """`value` as a finite float; None for anything that is none. Booleans and text are not numbers."""
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        return None
+    try:
+        found = float(value)
+    except (ArithmeticError, TypeError, ValueError):  # an integer or a fraction beyond the range of floats
+        return None
+    return found if math.isfinite(found) else None
+
+
+def number(
+    key: str,
+    value: Any,
+    rule: str,
+    *,
+    above: float = -math.inf,
+    least: float = -math.inf,
+    most: float = math.inf,
+) -> float:
+    """`value` as a finite float above `above` and from `least` to `most`, or a SceneError with `rule`."""
+    found = finite(value)
+    if found is None or not (found > above and least <= found <= most):
         raise SceneError(key, value, rule)
-    if not (float(value) > above and float(value) >= least):
-        raise SceneError(key, value, rule)
-    return float(value)
+    return found
 
 
 def size(key: str, value: float | tuple[float, ...]) -> None:
@@ -36,24 +63,74 @@ def size(key: str, value: float | tuple[float, ...]) -> None:
         raise SceneError(key, value, rule)
 
 
-def count_of(key: str, value: Any, least: int = 0) -> int:
-    """`value` as an integer of at least `least`."""
+def positive(key: str, value: Any) -> float:
+    """`value` as a float above 0 of an acceptable `size`."""
+    found = number(key, value, "must be positive", above=0.0)
+    if not SMALLEST <= found <= LARGEST:
+        raise SceneError(key, value, f"must be from {SMALLEST:g} to {LARGEST:g}: choose other units")
+    return found
+
+
+def not_negative(key: str, value: Any) -> float:
+    """`value` as a float of at least 0 of an acceptable `size`."""
+    found = number(key, value, "must not be negative", least=0.0)
+    size(key, found)
+    return found
+
+
+def count_of(key: str, value: Any, least: int = 0, most: int = 2**63 - 1) -> int:
+    """`value` as an integer from `least` to `most`."""
     rule = f"must be a whole number of at least {least}"
     if number(key, value, rule, least=least) != int(value):
         raise SceneError(key, value, rule)
+    if int(value) > most:
+        raise SceneError(key, value, f"must be at most {most}")
     return int(value)
 
 
 def vector(key: str, value: Any, dimension: int | None = None) -> tuple[float, ...]:
-    """`value` as a tuple of finite floats, of length `dimension` where that is known."""
-    size = f"{dimension} " if dimension else ""
-    rule = f"must be a list of {size}finite numbers"
-    if isinstance(value, str) or not hasattr(value, "__iter__"):
+    """`value` as a tuple of finite floats, of length `dimension`, or 2 or 3 where that is not known."""
+    rule = f"must be a list of {dimension or '2 or 3'} finite numbers"
+    found = tuple(number(key, item, rule) for item in _items(key, value, rule, 4))
+    if len(found) not in ((2, 3) if dimension is None else (dimension,)):
         raise SceneError(key, value, rule)
-    numbers_ = tuple(number(key, x, rule) for x in value)
-    if dimension is not None and len(numbers_) != dimension:
+    return found
+
+
+def _items(key: str, value: Any, rule: str, most: int) -> Iterable[Any]:
+    """The first `most` items of a list, a tuple, an array or an iterator."""
+    if isinstance(value, str | bytes | Mapping | Set):
         raise SceneError(key, value, rule)
-    return numbers_
+    try:
+        return tuple(islice(value, most))
+    except Exception:  # not iterable, or an iterator of the user's own that fails
+        raise SceneError(key, value, rule) from None
+
+
+def instances(key: str, value: Any, kinds: type | tuple[type, ...], rule: str) -> tuple:
+    """`value`, a list or another iterable, as a tuple of instances of `kinds`."""
+    found: list[Any] = []
+    for item in _items(key, value, rule, MOST_LISTED + 1):
+        if not isinstance(item, kinds):
+            raise SceneError(f"{key}[{len(found)}]", item, rule)
+        found.append(item)
+    if len(found) > MOST_LISTED:
+        raise SceneError(key, len(found), f"there may be {MOST_LISTED} at most")
+    return tuple(found)
+
+
+def flag(key: str, value: Any) -> bool:
+    """`value`, which must be true or false."""
+    if not isinstance(value, bool):
+        raise SceneError(key, value, "must be true or false")
+    return value
+
+
+def choice(key: str, value: Any, known: Iterable[str]) -> str:
+    """`value`, which must be one of the words `known`."""
+    if not isinstance(value, str) or value not in known:
+        raise SceneError(key, value, f"must be one of {tuple(known)}")
+    return value
 
 
 def settle(instance: object, **values: object) -> None:

@@ -9,7 +9,7 @@ from workspace import ROOT, SMOKE
 
 from gaspart import grid
 from gaspart.config import laid_over
-from gaspart.files import dump_yaml, read_yaml
+from gaspart.yaml_text import dump_yaml, read_yaml
 
 pytestmark = pytest.mark.workflow
 

@@ -9,7 +9,7 @@ from browser import CHROMIUM, found_by
 from digests import digests
 
 from gaspart.families import FAMILIES
-from gaspart.files import read_yaml
+from gaspart.yaml_text import read_yaml
 
 pytestmark = pytest.mark.workflow
 

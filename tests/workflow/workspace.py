@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from gaspart.config import laid_over
-from gaspart.files import write_yaml
+from gaspart.yaml_text import write_yaml
 
 ROOT = Path(__file__).parents[2]
 PARTS = ["Snakefile", "config", "profiles", "src", "workflow"]

@@ -23,7 +23,7 @@ from gaspart.variants import task, variant
 if workflow.is_main_process:
     try:
         files = ["config/config.yaml", *workflow.overwrite_configfiles]
-        check(config, str(ROOT / "workflow/schemas/config.schema.yaml"), [str(name) for name in files])
+        check(config, [str(name) for name in files if os.path.exists(name)])
         for kept in ("results", ".snakemake"):
             folder = kept if os.path.exists(kept) else "."
             if not os.access(folder, os.W_OK):
@@ -104,7 +104,7 @@ def flagged(path, kind):
 # touches. As inputs they would be half a million files for ten thousand points, each of them asked after in turn.
 # `{family}` stands for the family of a figure, `*` for every module of a package; FAMILY_MODULES are what single
 # families use beside. tests/workflow/test_modules.py compares these tables with the import graph of the scripts.
-SCENE = ["__init__", "errors", "files", "matter", "room", "scene", "surfaces", "validation"]
+SCENE = ["__init__", "errors", "files", "matter", "room", "scene", "surfaces", "validation", "yaml_text"]
 ENGINES = [
     "beside",
     "boxes",
@@ -210,6 +210,7 @@ FAMILY_MODULES = {
         *RENDERING,
         "state",
         "validation",
+        "yaml_text",
     ],
     ("draw", "packing"): [
         "kernel",
@@ -222,6 +223,7 @@ FAMILY_MODULES = {
         "rendering/tracer",
         "state",
         "validation",
+        "yaml_text",
     ],
 }
 

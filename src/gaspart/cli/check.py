@@ -62,8 +62,8 @@ def _check(given: argparse.Namespace) -> None:
 
 def _written(path: Path, tolerance: float | None) -> list:
     """The checks of a YAML file: a scene, or a config of the workflow."""
-    from gaspart.files import read_yaml
     from gaspart.inspection.written import judge_config, judge_scene
+    from gaspart.yaml_text import read_yaml
 
     content = read_yaml(path)
     if isinstance(content, dict) and ("experiments" in content or "figures" in content):

@@ -11,7 +11,7 @@ from dataclasses import asdict
 from gaspart.engines.event_driven import EventDriven
 from gaspart.engines.time_stepped import TimeStepped
 from gaspart.errors import SceneError
-from gaspart.scene import from_mapping
+from gaspart.validation import choice, from_mapping
 
 ENGINES: dict[str, type[EventDriven | TimeStepped]] = {
     engine.name: engine for engine in (EventDriven, TimeStepped)
@@ -23,9 +23,7 @@ def engine_from_dict(mapping: dict) -> EventDriven | TimeStepped:
     if not isinstance(mapping, dict):
         raise SceneError("engine", mapping, "must be a mapping with a name")
     settings = dict(mapping)
-    name = settings.pop("name", None)
-    if name not in ENGINES:
-        raise SceneError("engine.name", name, f"must be one of {tuple(ENGINES)}")
+    name = choice("engine.name", settings.pop("name", None), ENGINES)
     if isinstance(settings.get("boxes_per_side"), list):
         settings["boxes_per_side"] = tuple(settings["boxes_per_side"])
     return from_mapping(ENGINES[name], settings, "engine")

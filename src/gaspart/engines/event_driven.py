@@ -22,6 +22,7 @@ from gaspart.memory import aligned
 from gaspart.scene import Scene
 from gaspart.state import State
 from gaspart.tally import Tally
+from gaspart.validation import choice
 
 if TYPE_CHECKING:
     from gaspart.engines.layout import Record
@@ -57,8 +58,7 @@ class EventDriven:
     name: ClassVar[Literal["event"]] = "event"
 
     def __post_init__(self) -> None:
-        if self.search not in SEARCHES:
-            raise SceneError("search", self.search, f"must be one of {SEARCHES}")
+        choice("search", self.search, SEARCHES)
         if self.search != "boxes" and self.boxes_per_side is not None:
             raise SceneError("boxes_per_side", self.boxes_per_side, 'needs search "boxes"')
         if self.boxes_per_side is not None:

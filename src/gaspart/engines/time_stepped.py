@@ -25,6 +25,7 @@ from gaspart.errors import SceneError
 from gaspart.scene import Scene, count_of, number
 from gaspart.state import State
 from gaspart.tally import Tally
+from gaspart.validation import choice
 
 PRECISIONS = ("float64", "float32")
 _MOST_STEPS = 2.0**53  # above, float64 does not distinguish their numbers
@@ -61,8 +62,7 @@ class TimeStepped:
     def __post_init__(self) -> None:
         step = number("time_step", self.time_step, "must be positive", above=0.0)
         object.__setattr__(self, "time_step", step)
-        if self.precision not in PRECISIONS:
-            raise SceneError("precision", self.precision, f"must be one of {PRECISIONS}")
+        choice("precision", self.precision, PRECISIONS)
         for key in ("rewind", "near_boxes"):
             if not isinstance(getattr(self, key), bool):
                 raise SceneError(key, getattr(self, key), "must be true or false")

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from contextlib import chdir
 from pathlib import Path
 
 import numpy as np
 
 from gaspart import config, grid
-from gaspart.errors import SceneError
 from gaspart.inspection.checks import Check, judge_places
 from gaspart.inspection.frames import Frames
 from gaspart.scene import Scene
-
-SCHEMA = "workflow/schemas/config.schema.yaml"
 
 
 def judge_scene(path: Path, tolerance: float | None = None) -> list[Check]:
@@ -34,16 +30,9 @@ def judge_scene(path: Path, tolerance: float | None = None) -> list[Check]:
 def judge_config(path: Path) -> list[Check]:
     """Every point of every grid, and every figure. Raises SceneError for what cannot be run.
 
-    A config beside `config.yaml` is laid over that, as the workflow does; the schema is the one of the
-    project that it lies in.
+    A config beside `config.yaml` is laid over that, as the workflow does.
     """
-    path = path.resolve()
-    merged, files = config.laid_over(path)
-    schema = path.parent.parent / SCHEMA
-    if not schema.exists():
-        raise SceneError("file", str(path), f"must lie in a folder beside {SCHEMA}, which says what may be")
-    with chdir(path.parent.parent):  # where the workflow runs, and scene files are looked for
-        config.check(merged, str(schema), [str(file) for file in files])
+    with config.checked(path) as merged:
         points = [point for name in merged["experiments"] for point in grid.points(merged, name)]
         bodies = np.array([grid.extents(point)[0] for point in points])
     text = f"{len(merged['experiments'])} experiments of {len(points)} points, up to {bodies.max()} bodies; "

@@ -9,9 +9,9 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.figures.style import COLOURS
-from gaspart.files import parse_yaml
 from gaspart.state import State
 from gaspart.validation import count_of
+from gaspart.yaml_text import parse_yaml
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-from contextlib import chdir
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaspart import theory
@@ -54,11 +52,10 @@ def predict(path: str) -> list[str]:
     A config beside `config.yaml` is laid over that, as the workflow does. Raises SceneError.
     """
     from gaspart import grid
-    from gaspart.config import laid_over
+    from gaspart.config import checked
 
-    config, _ = laid_over(Path(path))
     lines, total, unknown = [], 0.0, []
-    with chdir(Path(path).resolve().parent.parent):  # where the workflow runs, and scene files are looked for
+    with checked(path) as config:
         for experiment in config["experiments"]:
             costs = [_seconds(point) for point in grid.points(config, experiment)]
             known = [seconds for seconds in costs if seconds is not None]

@@ -1,0 +1,233 @@
+"""YAML, read within limits and written.
+
+What is read is a tree of mappings with text keys, lists, text, numbers, true, false and null, as YAML 1.1
+defines them, and `1e3` is a number. An alias gives a copy; `<<` merges mappings. Tags and dates do not exist:
+a date is text. Duplicate keys are errors.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from gaspart.errors import SceneError
+from gaspart.files import whole_file
+
+if TYPE_CHECKING:
+    import yaml
+
+MOST_BYTES, MOST_VALUES, MOST_COPIES, DEEPEST = 2**26, 2_500_000, 100_000, 64
+"""Limits of a text: its size, its values, those of them that stand for aliases, and their nesting. The text
+of every valid scene is within them (`validation.MOST_LISTED`)."""
+_LONGEST_NUMBER = 1000  # characters
+_NUMBERS = re.compile(r"[-+]?(\d[\d_]*(\.[\d_]*)?|\.\d[\d_]*)[eE][-+]?\d+\Z")
+_SCALARS = tuple(f"tag:yaml.org,2002:{kind}" for kind in ("null", "bool", "int", "float"))
+_MERGE = "tag:yaml.org,2002:merge"
+_MERGING = object()  # stands for the key <<
+
+
+def read_yaml(path: str | Path) -> Any:
+    """The content of a YAML file. Raises SceneError, naming the file, if it cannot be read."""
+    try:
+        with Path(path).open("rb") as file:
+            text = file.read(MOST_BYTES + 1).decode("utf-8")
+    except OSError as error:
+        raise SceneError("file", str(path), f"cannot be read: {error.strerror}") from None
+    except (TypeError, ValueError) as error:  # no path; a NUL in it; not UTF-8
+        raise SceneError("file", path, f"cannot be read: {error}") from None
+    return parse_yaml(text, str(path))
+
+
+def parse_yaml(text: str, name: str = "YAML") -> Any:
+    """The content of a YAML text. Raises SceneError, naming `name`, line and column."""
+    import yaml
+
+    if not isinstance(text, str):
+        raise SceneError("YAML", text, "must be text", name)
+    if len(text) > MOST_BYTES:
+        raise SceneError("YAML", text, f"must not be longer than {MOST_BYTES >> 20} MiB", name)
+    try:
+        return _Document(text).read()
+    except SceneError as error:
+        raise error.inside("", name) from None
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        if mark is None:
+            raise SceneError("YAML", text, f"is not valid YAML: {error}", name) from None
+        line = "".join(text.split("\n", mark.line + 1)[mark.line : mark.line + 1]).strip() or "the end"
+        raise _error(mark, line, f"is not valid YAML: {error.problem}").inside("", name) from None
+    except (yaml.YAMLError, UnicodeEncodeError) as error:  # characters that no YAML may hold
+        raise SceneError("YAML", text, f"is not valid YAML: {error}", name) from None
+
+
+def dump_yaml(content: object) -> str:
+    """`content` as YAML text, keys in their own order."""
+    import yaml
+
+    return yaml.dump(content, Dumper=_dumper(), sort_keys=False, default_flow_style=None)
+
+
+def write_yaml(path: str | Path, content: object) -> None:
+    """Write `content` as a YAML file, whole or not at all."""
+    with whole_file(path) as partial:
+        partial.write_text(dump_yaml(content), encoding="utf-8")
+
+
+def _with_exponents(base: Any) -> Any:
+    """A loader or dumper that knows 1e3 and 1.5e3, which YAML 1.1 reads as text, as numbers."""
+    made: Any = type("WithExponents", (base,), {})
+    made.add_implicit_resolver(_SCALARS[-1], _NUMBERS, list("-+.0123456789"))
+    return made
+
+
+@cache
+def _loader() -> Any:
+    import yaml
+
+    return _with_exponents(getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # C where PyYAML was built with it
+
+
+@cache
+def _dumper() -> Any:
+    import yaml
+
+    return _with_exponents(yaml.SafeDumper)
+
+
+def _error(mark: yaml.Mark, value: object, rule: str) -> SceneError:
+    return SceneError(f"line {mark.line + 1}, column {mark.column + 1}", value, rule)
+
+
+class _Open:
+    """A list or mapping whose end has not been read."""
+
+    def __init__(self, content: list | dict, start: yaml.CollectionStartEvent) -> None:
+        self.content, self.start = content, start
+        self.key: Any = None  # whose value comes next
+        self.lines: dict[str, int] = {}  # where each key stands
+        self.merged: dict[str, Any] = {}
+
+    def close(self) -> list | dict:
+        """The content; what the mapping itself holds replaces what is merged into it."""
+        return {**self.merged, **self.content} if self.merged else self.content  # type: ignore[dict-item]
+
+
+class _Document:
+    """Reads one document event by event: no recursion, whatever the depth of the text."""
+
+    def __init__(self, text: str) -> None:
+        import yaml
+
+        self._yaml, self._loader = yaml, _loader()(text)
+        self._anchors: dict[str, Any] = {}
+        self._values, self._copies, self._documents = 0, 0, 0
+        self._result: Any = None
+        self._open: list[_Open] = []
+
+    def read(self) -> Any:
+        """The content. Raises SceneError with line and column, or yaml.YAMLError."""
+        yaml = self._yaml
+        while True:
+            event = self._loader.get_event()
+            if isinstance(event, yaml.NodeEvent):
+                self._node(event)
+            elif isinstance(event, yaml.CollectionEndEvent):
+                closed = self._open.pop()
+                self._place(closed.close(), closed.start)
+            elif isinstance(event, yaml.DocumentStartEvent):
+                self._documents += 1
+                if self._documents > 1:
+                    raise _error(event.start_mark, "---", "begins a second document; there may be one")
+            elif isinstance(event, yaml.StreamEndEvent):
+                return self._result
+
+    def _node(self, event: yaml.NodeEvent) -> None:
+        yaml, mark = self._yaml, event.start_mark
+        self._count(len(self._open), mark)
+        if isinstance(event, yaml.AliasEvent):
+            if event.anchor not in self._anchors:
+                raise _error(mark, f"*{event.anchor}", "no value above has this name")
+            self._place(self._copy(self._anchors[event.anchor], len(self._open), mark), event)
+        elif event.tag is not None:
+            raise _error(mark, event.tag, "tags are not supported")
+        elif isinstance(event, yaml.ScalarEvent):
+            self._place_scalar(event)
+        else:
+            if self._key_is_next():
+                raise _error(mark, "a list or mapping", "a key must be text")
+            self._open.append(_Open([] if isinstance(event, yaml.SequenceStartEvent) else {}, event))
+
+    def _key_is_next(self) -> bool:
+        return bool(self._open) and isinstance(self._open[-1].content, dict) and self._open[-1].key is None
+
+    def _place_scalar(self, event: yaml.ScalarEvent) -> None:
+        tag, text = self._loader.resolve(self._yaml.ScalarNode, event.value, event.implicit), event.value
+        if self._key_is_next() and tag == _MERGE:
+            self._open[-1].key = _MERGING
+        elif tag not in _SCALARS:
+            self._place(text, event)
+        elif len(text) > _LONGEST_NUMBER:
+            raise _error(event.start_mark, text, "has too many digits")
+        else:
+            node = self._yaml.ScalarNode(tag, text, event.start_mark, event.end_mark)
+            try:
+                value = self._loader.yaml_constructors[tag](self._loader, node)
+            except (ArithmeticError, ValueError):
+                raise _error(event.start_mark, text, "is not a number that can be read") from None
+            self._place(value, event)
+
+    def _place(self, value: Any, event: yaml.NodeEvent) -> None:
+        """Put a complete value where it belongs."""
+        if getattr(event, "anchor", None) and not isinstance(event, self._yaml.AliasEvent):
+            self._anchors[event.anchor] = value
+        if not self._open:
+            self._result = value
+            return
+        top = self._open[-1]
+        if isinstance(top.content, list):
+            top.content.append(value)
+        elif top.key is None:
+            self._place_key(top, value, event.start_mark)
+        elif top.key is _MERGING:
+            top.key = None
+            self._merge(top, value, event.start_mark)
+        else:
+            top.content[top.key], top.key = value, None
+
+    @staticmethod
+    def _place_key(top: _Open, key: Any, mark: yaml.Mark) -> None:
+        if not isinstance(key, str):
+            raise _error(mark, key, "a key must be text: write it in quotes")
+        if key in top.lines:
+            raise _error(mark, key, f"is a duplicate key: it stands in line {top.lines[key]} already")
+        top.lines[key], top.key = mark.line + 1, key
+
+    @staticmethod
+    def _merge(top: _Open, value: Any, mark: yaml.Mark) -> None:
+        """Take over a mapping, or a list of them of which the first ones take precedence."""
+        parts = value if isinstance(value, list) else [value]
+        if top.merged or not all(isinstance(part, dict) for part in parts):
+            raise _error(mark, value, "<< must be given once, with a mapping or a list of mappings")
+        for part in reversed(parts):
+            top.merged.update(part)
+
+    def _copy(self, value: Any, depth: int, mark: yaml.Mark) -> Any:
+        """What an alias stands for; its values count as if they were written there."""
+        self._count(depth, mark)
+        self._copies += 1
+        if self._copies > MOST_COPIES:
+            raise _error(mark, self._copies, f"aliases may stand for {MOST_COPIES} values")
+        if isinstance(value, dict):
+            return {key: self._copy(item, depth + 1, mark) for key, item in value.items()}
+        if isinstance(value, list):
+            return [self._copy(item, depth + 1, mark) for item in value]
+        return value
+
+    def _count(self, depth: int, mark: yaml.Mark) -> None:
+        self._values += 1
+        if self._values > MOST_VALUES:
+            raise _error(mark, self._values, f"there may be {MOST_VALUES} values")
+        if depth > DEEPEST:
+            raise _error(mark, depth, f"values may be nested {DEEPEST} deep")
