@@ -18,11 +18,19 @@ SMALLEST, LARGEST = 1e-60, 1e60
 """Sizes of what contacts multiply four of, which must be neither lost nor infinite."""
 
 
-def number(key: str, value: Any, rule: str, *, above: float = -math.inf, least: float = -math.inf) -> float:
-    """`value` as a finite float greater than `above` and at least `least`, or a SceneError with `rule`."""
+def number(
+    key: str,
+    value: Any,
+    rule: str,
+    *,
+    above: float = -math.inf,
+    least: float = -math.inf,
+    most: float = math.inf,
+) -> float:
+    """`value` as a finite float above `above` and from `least` to `most`, or a SceneError with `rule`."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real) or not math.isfinite(value):
         raise SceneError(key, value, rule)
-    if not (float(value) > above and float(value) >= least):
+    if not (float(value) > above and least <= float(value) <= most):
         raise SceneError(key, value, rule)
     return float(value)
 
