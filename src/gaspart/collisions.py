@@ -6,7 +6,6 @@ body's last event, the normal at contact, the speeds of approach. Hits of walls 
 
 from __future__ import annotations
 
-import errno
 import json
 import math
 import os
@@ -51,11 +50,11 @@ def collision_data(
     below 1 or beyond this machine's memory; SimulationError where nothing ever happens.
     """
     _check_memory(count_of("collisions", collisions, least=1), scene)
-    if scene.count < 2:
-        raise SceneError("scene", scene.count, "two bodies are needed for a collision")
     number("equilibration", equilibration, "must not be negative", least=0.0)
     if scene.gravity is not None:
         raise SceneError("gravity", scene.gravity, "free paths are straight only without gravity")
+    if scene.count < 2:
+        raise SceneError("count", scene.count, "two bodies are needed for a collision")
     simulation = Simulation(scene, EventDriven(), seed)
     simulation.advance(duration=equilibration)
     state = simulation.state
@@ -96,10 +95,9 @@ def record_collisions(
     """
     with writing(path, COLLISIONS, overwrite) as scratch:
         data = collision_data(scene, collisions, seed, equilibration)
-        try:
-            data.to_netcdf(scratch, engine="netcdf4", encoding={name: {"zlib": True} for name in data})
-        except RuntimeError as error:  # the library does not report why
-            raise OSError(errno.EIO, str(error)) from None
+        # in memory first: the library itself does not report what keeps it from writing
+        encoding = {name: {"zlib": True} for name in data}
+        scratch.write_bytes(data.to_netcdf(None, engine="netcdf4", encoding=encoding))
     return data
 
 

@@ -82,4 +82,4 @@ def _picture(trajectory: str, output: Path, options: dict, overwrite: bool) -> N
     with open_trajectory(trajectory) as opened, writing(output, PICTURE, overwrite) as scratch:
         import imageio.v3 as imageio
 
-        imageio.imwrite(scratch, render(opened, **options), extension=".png")
+        scratch.write_bytes(imageio.imwrite("<bytes>", render(opened, **options), extension=".png"))
