@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Callable
 from textwrap import fill
 from typing import Any, NoReturn, TypeAlias, TypeVar
@@ -59,6 +60,12 @@ def add_output(parser: argparse.ArgumentParser, what: str, overwrite: str) -> No
     """Add the options of a command that writes a result: `-o`, and `--force` to replace an older one."""
     parser.add_argument("-o", "--output", required=True, metavar="FILE", help=what)
     parser.add_argument("--force", action="store_true", help=f"replace {overwrite}")
+
+
+def say(text: object) -> None:
+    """Print a line; what the standard output cannot encode, as in the name of a file, is escaped."""
+    encoding = sys.stdout.encoding or "utf-8"
+    print(str(text).encode(encoding, "backslashreplace").decode(encoding))
 
 
 def several(kind: Callable[[str], T]) -> Callable[[str], tuple[T, ...]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from gaspart.cli.arguments import Commands, add_output, real, whole
+from gaspart.cli.arguments import Commands, add_output, real, say, whole
 
 _EXAMPLE = """
 example:
@@ -39,4 +39,4 @@ def _collisions(given: argparse.Namespace) -> None:
         scene, given.output, given.count, given.seed, given.equilibration, overwrite=given.force
     )
     paths = data["free_path"].mean().item()
-    print(f"{given.output}: {data.sizes['collision']} collisions, mean free path {paths:.6g}")
+    say(f"{given.output}: {data.sizes['collision']} collisions, mean free path {paths:.6g}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from gaspart.cli.arguments import Commands, add_output, whole
+from gaspart.cli.arguments import Commands, add_output, say, whole
 
 _EXAMPLES = """examples:
   gaspart export run.nc -o state.gsd                the last frame, for HOOMD and OVITO
@@ -27,4 +27,4 @@ def add_export(commands: Commands) -> None:
 def _export(given: argparse.Namespace) -> None:
     from gaspart.exports import export
 
-    print(export(given.trajectory, given.output, given.frame, given.force))
+    say(export(given.trajectory, given.output, given.frame, given.force))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from gaspart.cli.arguments import Commands, add_output, real, whole
+from gaspart.cli.arguments import Commands, add_output, real, say, whole
 from gaspart.errors import SceneError
 
 PICTURES = (".png",)
@@ -71,7 +71,7 @@ def _render(given: argparse.Namespace) -> None:
         if "frame" in options:
             raise SceneError("frame", given.frame, "has no meaning for a film, which shows all")
         film(given.trajectory, output, **options, overwrite=given.force)
-    print(output)
+    say(output)
 
 
 def _picture(trajectory: str, output: Path, options: dict, overwrite: bool) -> None:
