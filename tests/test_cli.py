@@ -194,7 +194,11 @@ def test_theory(capsys):
     capsys.readouterr()
     for wrong, complaint in (
         (["Z", "--eta", "0.9", "--dimension", "3"], "holds from 0 to"),
-        (["Z", "--eta", "nan", "--dimension", "3"], "holds from 0 to"),
+        (["Z", "--eta", "nan"], "'nan' must be a finite number and at least 0"),
+        (["collision_rate", "--eta", "0.1", "--mass", "0"], "'0' must be a finite number and above 0"),
+        (["collision_rate", "--eta", "0.1", "--diameter=-1"], "'-1' must be a finite number and above 0"),
+        (["viscosity", "--eta", "0.1", "--temperature=nan"], "'nan' must be a finite number"),
+        (["viscosity", "--eta", "0.1", "--diameter", "1e308"], "diameter = 1e+308: must be from 1e-30 to"),
         (["Z", "--eta", "0.1", "--dimension", "4"], "invalid choice"),
         (["Y", "--eta", "0.1", "--dimension", "3"], "invalid choice"),
         (["Z", "--eta", "0.1", "--dimension", "3", "--mass", "2"], "mass = 2.0: Z does not depend on it"),
@@ -248,9 +252,17 @@ def test_advice_names_engine_length_cost_and_reason(folder, capsys):
     told = capsys.readouterr().out
     for part in ("engine ", "replicas ", "run length ", "predicted cost ", "half-width ", "why: "):
         assert part in told
-    assert main(["advise", "gas.yaml", "--accuracy", "2"]) == 2
-    assert "accuracy = 2" in capsys.readouterr().err
-    assert main(["advise"]) == 2
+    (folder / "empty.yaml").write_text(PERIODIC.replace("200", "0"))
+    for wrong, complaint in (
+        (["gas.yaml", "--accuracy", "2"], "accuracy = 2"),
+        (["gas.yaml", "--accuracy", "1e-300"], "accuracy = 1e-300: must be from 1e-08 to 1"),
+        (["gas.yaml", "--budget", "nan"], "argument --budget: 'nan' must be a finite number and above 0"),
+        (["empty.yaml"], "count = 0: advice is for a gas: the scene is empty"),
+        ([], "give a scene or --config"),
+    ):
+        assert main(["advise", *wrong]) == 2
+        told = capsys.readouterr().err
+        assert complaint in told and told.count("\n") == 1
 
 
 def test_what_a_config_costs(folder, capsys):

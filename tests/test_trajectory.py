@@ -1,6 +1,7 @@
 """Trajectory files: what is in them, who can read them, and what happens when something goes wrong."""
 
 import fcntl
+import os
 import subprocess
 import sys
 import textwrap
@@ -310,8 +311,6 @@ def test_a_full_disk_loses_nothing(tmp_path):
 
 
 def _environment():
-    import os
-
     return {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
 
 
@@ -368,3 +367,44 @@ def test_a_cache_that_cannot_be_written_is_told_and_costs_time_only(tmp_path):
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment)
     assert (done.returncode, done.stdout) == (0, f"{3.0 * 0.1}\n")
     assert "cannot write the kernel cache" in done.stderr and "set GASPART_CACHE" in done.stderr
+
+
+@pytest.mark.parametrize("chosen", [True, False], ids=["chosen", "not chosen"])
+def test_without_a_home_there_is_a_cache_all_the_same(tmp_path, chosen):
+    """An unknown user without HOME: the chosen folder, or a temporary one, with one line that reports it."""
+    code = """
+        import pwd, sys, warnings
+        def unknown(user):
+            raise KeyError(user)
+        pwd.getpwuid = unknown
+        import gaspart.cache, numba
+        print(gaspart.cache.usable_cache("digest"))
+        import gaspart.kernel
+    """
+    environment = {key: value for key, value in _environment().items() if key not in _CACHES}
+    environment |= {"TMPDIR": str(tmp_path)} | ({"GASPART_CACHE": str(tmp_path / "mine")} if chosen else {})
+    command = [sys.executable, "-c", textwrap.dedent(code)]
+    done = subprocess.run(command, capture_output=True, text=True, env=environment)
+    own = "mine" if chosen else f"gaspart-{os.getuid()}"
+    assert (done.returncode, done.stdout) == (0, f"{tmp_path / own / 'digest'}\n"), done.stderr
+    assert ("there is no home for the kernel cache; using " in done.stderr) == (not chosen)
+    assert "Traceback" not in done.stderr
+
+
+_CACHES = ("HOME", "XDG_CACHE_HOME", "GASPART_CACHE", "TMPDIR")
+
+
+def test_a_temporary_cache_that_others_may_write_to_is_not_used(tmp_path, monkeypatch):
+    from gaspart.cache import usable_cache
+
+    for name in _CACHES:
+        monkeypatch.delenv(name, raising=False)
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    monkeypatch.setattr("tempfile.gettempdir", lambda: str(tmp_path))
+    own = tmp_path / f"gaspart-{os.getuid()}"
+    own.mkdir()
+    for mode, found in ((0o777, None), (0o700, own / "digest")):
+        own.chmod(mode)
+        with pytest.warns(UserWarning, match="cannot write the kernel cache"):
+            assert usable_cache("digest") == found

@@ -8,13 +8,16 @@ from __future__ import annotations
 
 import json
 import math
+import os
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
 from gaspart.engines import EventDriven
-from gaspart.errors import SceneError
+from gaspart.errors import SceneError, SimulationError
+from gaspart.files import Kind, begins_with, writing
 from gaspart.provenance import git_revision, versions
 from gaspart.scene import Scene
 from gaspart.simulation import Simulation
@@ -22,6 +25,7 @@ from gaspart.statistics import Estimate, mean_of
 from gaspart.validation import count_of, number
 
 _CHUNK = 20_000  # events that are kept at once
+_PATIENCE = 1_000_000  # events without a collision of two bodies
 _ABOUT = {
     "time": ("time of the collision", "time"),
     "bodies": ("the two bodies, the lower index first", "1"),
@@ -42,24 +46,30 @@ def collision_data(
     Dimensions collision, of (the two bodies), axis; `free_time` and `free_path` are NaN for a body that had
     no event before. Memory is bounded by the data themselves. Attributes: scene, seed, versions, revision.
 
-    Raises SceneError for gravity, under which paths are no lines, and for a count below 1; SimulationError
-    where nothing ever happens.
+    Raises SceneError for gravity, under which paths are no lines, for fewer than two bodies, and for a count
+    below 1 or beyond this machine's memory; SimulationError where nothing ever happens.
     """
-    count_of("collisions", collisions, least=1)
+    _check_memory(count_of("collisions", collisions, least=1), scene)
     number("equilibration", equilibration, "must not be negative", least=0.0)
     if scene.gravity is not None:
         raise SceneError("gravity", scene.gravity, "free paths are straight only without gravity")
+    if scene.count < 2:
+        raise SceneError("count", scene.count, "two bodies are needed for a collision")
     simulation = Simulation(scene, EventDriven(), seed)
     simulation.advance(duration=equilibration)
     state = simulation.state
     last = np.full(state.count, np.nan), state.velocities  # time and velocity after each body's last event
-    parts, found = [], 0
+    parts, found, alone = [], 0, 0
     while found < collisions:
         simulation.record_events = True  # a new, empty list
-        simulation.advance(max_events=min(_CHUNK, max(collisions - found, 1)))
+        events = min(_CHUNK, max(collisions - found, 1))
+        simulation.advance(max_events=events)
         part, last = _pairs(simulation.events, last, scene)
         parts.append(part)
         found += part.sizes["collision"]
+        alone = 0 if part.sizes["collision"] else alone + events
+        if alone > _PATIENCE:
+            raise SimulationError(f"none of the last {_PATIENCE} events was a collision of two bodies")
     return xr.concat(parts, "collision").assign_attrs(
         scene=json.dumps(scene.to_dict()),
         seed=json.dumps(seed),
@@ -68,6 +78,52 @@ def collision_data(
         gaspart_revision=git_revision(),
         **versions(),
     )
+
+
+def record_collisions(
+    scene: Scene,
+    path: str | Path,
+    collisions: int,
+    seed: int | tuple[int, ...] = 0,
+    equilibration: float = 0.0,
+    overwrite: bool = False,
+) -> xr.Dataset:
+    """Write `collision_data` to a netCDF file; returns the data. A data set of collisions that is there is
+    replaced only with `overwrite`, any other file never.
+
+    Raises SceneError for such a file, and if it cannot be written; and what `collision_data` raises.
+    """
+    with writing(path, COLLISIONS, overwrite) as scratch:
+        data = collision_data(scene, collisions, seed, equilibration)
+        # in memory first: the library itself does not report what keeps it from writing
+        encoding = {name: {"zlib": True} for name in data}
+        scratch.write_bytes(data.to_netcdf(None, engine="netcdf4", encoding=encoding))
+    return data
+
+
+def _is_collision_data(path: Path) -> bool:
+    """Whether a file was written by `record_collisions`."""
+    import netCDF4
+
+    if not begins_with(b"\x89HDF")(path):
+        return False
+    try:
+        with netCDF4.Dataset(path) as file:
+            return set(_ABOUT) <= set(file.variables) and "gaspart_revision" in file.ncattrs()
+    except (OSError, RuntimeError, UnicodeEncodeError):
+        return False
+
+
+COLLISIONS = Kind("a data set of collisions written by gaspart", _is_collision_data)
+
+
+def _check_memory(collisions: int, scene: Scene) -> None:
+    """Raise SceneError for more collisions than this machine can hold, twice."""
+    needed = 16.0 * collisions * (9 + scene.dimension)
+    there = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    if needed > there:
+        rule = f"needs {needed / 1e9:.3g} GB of memory; this machine has {there / 1e9:.3g} GB"
+        raise SceneError("collisions", collisions, rule)
 
 
 def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:

@@ -13,9 +13,12 @@ from pathlib import Path
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.files import writing
+from gaspart.files import Kind, begins_with, output_path, writing
 
-FORMATS = (".gsd", ".data")
+KINDS = {
+    ".gsd": Kind("a GSD file", begins_with(b"\xdf\x65" * 4)),
+    ".data": Kind("LAMMPS data written by gaspart", begins_with(b"gaspart: ")),
+}
 
 
 @dataclass(frozen=True)
@@ -32,18 +35,19 @@ class Snapshot:
     dimension: int
 
 
-def export(trajectory: str | Path, path: str | Path, frame: int = -1) -> Path:
+def export(trajectory: str | Path, path: str | Path, frame: int = -1, overwrite: bool = False) -> Path:
     """Write a frame of a trajectory as .gsd or LAMMPS .data; returns the path.
 
-    frame: counted from 0, or from the end if negative. Raises SceneError for another suffix, a frame that is
-    not there, and a file that cannot be read or written.
+    frame: counted from 0, or from the end if negative. A file of the same kind at `path` is replaced only
+    with `overwrite`, any other never. Raises SceneError for another suffix, a frame that is not there, and a
+    file that cannot be read or written.
     """
-    path = Path(path)
-    if path.suffix not in FORMATS:
-        raise SceneError("output", str(path), f"must end in {' or '.join(FORMATS)}")
+    path = output_path(path)
+    if path.suffix not in KINDS:
+        raise SceneError("output", str(path), f"must end in {' or '.join(KINDS)}")
     snapshot = _snapshot(Path(trajectory), frame)
-    with writing(path) as partial:
-        (_write_gsd if path.suffix == ".gsd" else _write_data)(partial, snapshot)
+    with writing(path, KINDS[path.suffix], overwrite) as scratch:
+        (_write_gsd if path.suffix == ".gsd" else _write_data)(scratch, snapshot)
     return path
 
 

@@ -1,32 +1,148 @@
-"""Files that appear whole or not at all."""
+"""The one writer of results: complete files, which replace no others."""
 
 from __future__ import annotations
 
+import errno
+import hashlib
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
+import secrets
+import socket
+import stat
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 from gaspart.errors import SceneError
 
-
-@contextmanager
-def whole_file(path: str | Path) -> Iterator[Path]:
-    """Give a `.partial` path to write to; on success it is renamed to `path`, atomically."""
-    path = Path(path)
-    partial = path.with_name(path.name + ".partial")
-    yield partial
-    os.replace(partial, path)
+_HERE, _NO_REPLACE = -100, 1
+"""AT_FDCWD and RENAME_NOREPLACE of Linux's renameat2."""
 
 
-@contextmanager
-def writing(path: str | Path) -> Iterator[Path]:
-    """A `.partial` path, as `whole_file` gives; one SceneError for a missing folder, a full disk ..."""
+@dataclass(frozen=True)
+class Kind:
+    """A kind of result: how messages name it, and whether a file is one, by its content."""
+
+    name: str
+    recognises: Callable[[Path], bool]
+
+
+def begins_with(*beginnings: bytes, at: int = 0) -> Callable[[Path], bool]:
+    """A test of a file's content: whether one of `beginnings` is in it, `at` bytes from its start."""
+
+    def recognises(path: Path) -> bool:
+        with path.open("rb") as file:
+            file.seek(at)
+            return file.read(max(map(len, beginnings))).startswith(beginnings)
+
+    return recognises
+
+
+def output_path(path: str | Path) -> Path:
+    """`path` as that of a file to be written. Raises SceneError for one that names none ("", "a/", ".")."""
+    text = os.fspath(path)
+    if os.path.basename(text) in ("", ".", "..") or "\0" in text:
+        raise SceneError("path", text, "must be the name of a file")
+    return Path(text)
+
+
+def may_replace(path: Path, kind: Kind | None, overwrite: bool) -> bool:
+    """Whether there is a file at `path` that a result may replace; False if there is nothing.
+
+    Raises SceneError for a folder, link or device, a file of another kind (None: any will do), and, without
+    `overwrite`, any file. An empty file is of every kind. May raise OSError.
+    """
     try:
-        with whole_file(path) as partial:
-            partial.touch()  # what cannot be written is found out before the work is done
-            yield partial
+        found = path.lstat()
+    except FileNotFoundError:
+        return False
+    if not stat.S_ISREG(found.st_mode):
+        raise SceneError("path", str(path), "must be a regular file: not a folder, a link or a device")
+    if found.st_size and kind is not None and not kind.recognises(path):
+        rule = f"exists and is not {kind.name}; move it away, or choose another name"
+        raise SceneError("path", str(path), rule)
+    if not overwrite:
+        raise SceneError("path", str(path), "exists; move it away, or overwrite it (--force)")
+    return True
+
+
+def place(scratch: Path, path: Path, kind: Kind | None, overwrite: bool) -> None:
+    """Rename `scratch` to `path`, atomically, if `may_replace` still allows it. May raise OSError."""
+    while True:
+        if may_replace(path, kind, overwrite):
+            return os.replace(scratch, path)
+        with suppress(FileExistsError):  # of another process, meanwhile: to be judged like any other
+            return _rename_to_new(scratch, path)
+
+
+def _rename_to_new(old: Path, new: Path) -> None:
+    """Rename a file without replacing one. Raises FileExistsError where there is one."""
+    import ctypes
+
+    rename = getattr(ctypes.CDLL(None, use_errno=True), "renameat2", None)
+    if rename and rename(_HERE, os.fsencode(old), _HERE, os.fsencode(new), _NO_REPLACE) == 0:
+        return
+    code = ctypes.get_errno() if rename else errno.ENOSYS
+    if code not in (errno.ENOSYS, errno.EINVAL, errno.EOPNOTSUPP):
+        raise OSError(code, os.strerror(code), str(new))
+    # This file system or C library cannot. An empty file of our own is replaced instead.
+    os.close(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
+    os.replace(old, new)
+
+
+@contextmanager
+def writing(path: str | Path, kind: Kind | None = None, overwrite: bool = False) -> Iterator[Path]:
+    """Give a scratch file to write to; on success it is renamed to `path`, atomically.
+
+    What `may_replace` forbids is found out before the work is done, and again at the end. The scratch file
+    lies in the folder of `path`, under a name of its own, and goes if the work fails; what a kill has left
+    of it goes with the next attempt.
+
+    Raises SceneError as `output_path` and `may_replace` do, and for a missing folder, a full disk and the
+    like.
+    """
+    path = output_path(path)
+    try:
+        may_replace(path, kind, overwrite)
+        with _scratch(path) as scratch:
+            yield scratch
+            with scratch.open("rb") as file:
+                os.fsync(file.fileno())
+            place(scratch, path, kind, overwrite)
     except OSError as error:
-        partial.unlink(missing_ok=True)
         why = error.strerror or "its writer has stopped"
         raise SceneError("path", str(path), f"cannot be written: {why}") from None
+    except UnicodeEncodeError:
+        rule = "cannot be written: the name of its folder must be UTF-8"
+        raise SceneError("path", str(path), rule) from None
+
+
+def whole_file(path: str | Path) -> AbstractContextManager[Path]:
+    """`writing` for a declared output of the workflow, which may replace any file."""
+    return writing(path, overwrite=True)
+
+
+@contextmanager
+def _scratch(path: Path) -> Iterator[Path]:
+    """A new file beside `path`, of this process alone, and removed in the end."""
+    of = hashlib.sha256(os.fsencode(path.name) + socket.gethostname().encode()).hexdigest()[:12]
+    for old in path.parent.glob(f".gaspart-{of}-*.partial"):
+        if not _is_running(old.name.split("-")[2]):
+            old.unlink(missing_ok=True)
+    scratch = path.with_name(f".gaspart-{of}-{os.getpid()}-{secrets.token_hex(4)}.partial")
+    os.close(os.open(scratch, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
+    try:
+        yield scratch
+    finally:
+        scratch.unlink(missing_ok=True)
+
+
+def _is_running(process: str) -> bool:
+    """Whether there is a process of this number; True if that cannot be known."""
+    try:
+        os.kill(int(process), 0)
+    except ProcessLookupError:
+        return False
+    except (PermissionError, ValueError, OverflowError):
+        return True
+    return True

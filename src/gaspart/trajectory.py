@@ -17,6 +17,7 @@ from gaspart import amber, provenance
 from gaspart.checkpoint import read_checkpoint, remove_checkpoint
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SceneError
+from gaspart.files import Kind, may_replace, output_path, place
 from gaspart.recipe import Recipe, begun_as, read_recipe, stored_revision
 from gaspart.recording import Progress, Recording
 from gaspart.scene import Scene, number
@@ -98,7 +99,8 @@ def run(
     with `displacements` also each body's float64 way since time 0, unwrapped; with rough contacts also the
     spins; with `follow` only so many bodies, from the first on (counters are still those of all). A run of
     the same recipe and program that was cut short is continued, and one that is whole is left as it is.
-    Anything else at `path`, or half-finished beside it, is replaced only with `overwrite`.
+    Another trajectory at `path`, or half-finished beside it, is replaced only with `overwrite`; a file of
+    another kind never.
 
     `progress(time, duration, collisions)` is called about twice a second.
 
@@ -106,7 +108,7 @@ def run(
     if the run breaks an invariant, with its state kept in `path.failed.npz`.
     """
     wanted = Recipe(scene, engine, seed, duration, sample_interval, displacements, follow)
-    return _carry_out(wanted, Path(path), checkpoint_seconds, progress, overwrite)
+    return _carry_out(wanted, output_path(path), checkpoint_seconds, progress, overwrite)
 
 
 def resume(path: str | Path, checkpoint_seconds: float = 30.0, progress: Progress | None = None) -> Path:
@@ -133,25 +135,37 @@ def _carry_out(wanted: Recipe, path: Path, every: float, progress: Progress | No
     with _writing(path):
         if path.is_dir() or not os.access(path.parent, os.W_OK | os.X_OK):
             raise SceneError("path", str(path), "must be a file in an existing folder that can be written to")
-        if _holds(path, wanted, frames=wanted.frames):
-            remove_checkpoint(checkpoint)
+        if _is_finished(wanted, path, overwrite):
+            if not partial.exists():
+                remove_checkpoint(checkpoint)
             return path
-        free = not path.exists() and (not partial.exists() or _is_blank(partial) or begun_as(partial, wanted))
-        if not (free or overwrite):
-            there = path if path.exists() else partial
-            rule = "exists, of another run or version, or damaged; move it away, or overwrite it (--force)"
-            raise SceneError("path", str(there), rule)
         simulation = Simulation(wanted.scene, wanted.engine, wanted.seed)
         with _locked(partial) as file:
-            _record(wanted, simulation, file, path, every, progress)
-            os.replace(partial, path)
-        remove_checkpoint(checkpoint)
+            # once more: another process may have finished or begun a run before the lock
+            if not _is_finished(wanted, path, overwrite):
+                _record(wanted, simulation, file, path, every, progress)
+                place(partial, path, TRAJECTORY, overwrite)
+                remove_checkpoint(checkpoint)
     return path
+
+
+def _is_finished(wanted: Recipe, path: Path, overwrite: bool) -> bool:
+    """Whether this run is complete at `path`. Raises SceneError if it may not be begun or continued."""
+    partial = partial_path(path)
+    exists = may_replace(path, TRAJECTORY, overwrite=True)
+    if exists and _holds(path, wanted, frames=wanted.frames):
+        return True
+    begun = may_replace(partial, _BEGUN, overwrite=True)
+    continued = not begun or _is_blank(partial) or begun_as(partial, wanted)
+    if (exists or not continued) and not overwrite:
+        rule = "exists, of another run or version, or damaged; move it away, or overwrite it (--force)"
+        raise SceneError("path", str(path if exists else partial), rule)
+    return False
 
 
 def _holds(path: Path, wanted: Recipe, frames: int) -> bool:
     """Whether a file is of this run, and of so many frames."""
-    if not (path.exists() and begun_as(path, wanted)):
+    if not begun_as(path, wanted):
         return False
     with path.open("rb") as file:
         return amber.frame_count(file) == frames
@@ -160,6 +174,16 @@ def _holds(path: Path, wanted: Recipe, frames: int) -> bool:
 def _is_blank(path: Path) -> bool:
     with path.open("rb") as file:
         return amber.is_blank(file)
+
+
+def _is_trajectory(path: Path) -> bool:
+    with path.open("rb") as file:
+        head = file.read(4096)
+    return head.startswith(b"CDF") and b"gaspart" in head
+
+
+TRAJECTORY = Kind("a trajectory written by gaspart", _is_trajectory)
+_BEGUN = Kind("an unfinished trajectory", lambda path: _is_blank(path) or _is_trajectory(path))
 
 
 def _record(

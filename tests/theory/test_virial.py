@@ -59,7 +59,7 @@ def test_partial_sum_uncertainty_is_that_of_the_uncertain_coefficients():
 
 
 def test_arguments_out_of_range_are_refused():
-    with pytest.raises(ValueError, match="dimension: 4"):
+    with pytest.raises(ValueError, match="dimension = 4"):
         theory.virial_coefficients(4)
     with pytest.raises(ValueError, match="order: 11"):
         theory.partial_sum(0.1, 11, 2)

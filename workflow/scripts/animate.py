@@ -5,4 +5,9 @@ from _job import job
 with job(snakemake):
     from gaspart.rendering.films import film
 
-    film(snakemake.params.trajectory, snakemake.output[0], **snakemake.params.settings)
+    film(
+        snakemake.params.trajectory,
+        snakemake.output[0],
+        **snakemake.params.settings,
+        overwrite=True,
+    )

@@ -6,7 +6,7 @@ import argparse
 import math
 from typing import TYPE_CHECKING
 
-from gaspart.cli.arguments import Commands, UsageError
+from gaspart.cli.arguments import Commands, UsageError, real
 
 if TYPE_CHECKING:
     from gaspart.tradeoff.advice import Advice, Setting
@@ -31,19 +31,13 @@ def add_advise(commands: Commands) -> None:
     add = advise.add_argument
     add("scene", nargs="?", help="scene file (YAML)")
     add("--observable", default="Z", metavar="NAME", help="Z (default), collision_rate or D")
-    add("--accuracy", type=float, default=1e-2, metavar="X", help="relative, default 0.01")
+    add("--accuracy", type=real(above=0.0), default=1e-2, metavar="X", help="relative, default 0.01")
     add("--budget", type=_seconds, metavar="S", help="processor time that may be spent, in s (60 or 60s)")
     add("--config", metavar="FILE", help="a config instead of a scene")
 
 
 def _seconds(text: str) -> float:
-    try:
-        value = float(text.removesuffix("s"))
-    except ValueError:
-        value = math.nan
-    if not value > 0.0:
-        raise argparse.ArgumentTypeError(f"{text!r} must be a time above zero, in seconds")
-    return value
+    return real(above=0.0)(text.removesuffix("s"))
 
 
 def _advise(given: argparse.Namespace) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from gaspart.cli.arguments import Commands, several
+from gaspart.cli.arguments import Commands, real, several
 from gaspart.errors import SceneError
 
 _EXAMPLES = """examples:
@@ -32,11 +32,13 @@ def add_check(commands: Commands) -> None:
     check.set_defaults(command=_check)
     add = check.add_argument
     add("file", metavar="FILE", help=".yaml, .nc, .gsd or .xyz")
-    add("--radius", type=float, metavar="R", help="of all bodies, where the file does not tell")
-    add("--lengths", type=several(float), metavar="X,Y[,Z]", help="sides of the container, likewise")
+    add("--radius", type=real(above=0.0), metavar="R", help="of all bodies, where the file does not tell")
+    add(
+        "--lengths", type=several(real(above=0.0)), metavar="X,Y[,Z]", help="sides of the container, likewise"
+    )
     add("--boundary", metavar="NAME", help="periodic (default for other programs' files) or wall")
-    add("--time-step", type=float, metavar="T", help="time of a step (GSD) or of a frame (XYZ)")
-    add("--tolerance", type=float, metavar="X", help="let overlaps of this part of a diameter pass")
+    add("--time-step", type=real(above=0.0), metavar="T", help="time of a step (GSD) or of a frame (XYZ)")
+    add("--tolerance", type=real(least=0.0), metavar="X", help="let overlaps of this part of a diameter pass")
 
 
 def _check(given: argparse.Namespace) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from gaspart.cli.arguments import Commands
+from gaspart.cli.arguments import Commands, add_output, real, say, whole
 
 _EXAMPLE = """
 example:
@@ -23,20 +23,20 @@ def add_collisions(commands: Commands) -> None:
     parser.set_defaults(command=_collisions)
     add = parser.add_argument
     add("scene", metavar="SCENE")
-    add("-o", "--output", required=True, metavar="FILE")
-    add("--count", type=int, required=True, metavar="M", help="collisions, at least")
-    add("--equilibration", type=float, default=0.0, metavar="T", help="time before the first; default: 0")
-    add("--seed", type=int, default=0, metavar="N", help="default: 0")
+    add_output(parser, "data set (netCDF)", "a data set of collisions")
+    add("--count", type=whole(least=1), required=True, metavar="M", help="collisions, at least")
+    text = "time before the first; default: 0"
+    add("--equilibration", type=real(least=0.0), default=0.0, metavar="T", help=text)
+    add("--seed", type=whole(least=0), default=0, metavar="N", help="default: 0")
 
 
 def _collisions(given: argparse.Namespace) -> None:
-    from gaspart.collisions import collision_data
-    from gaspart.files import writing
+    from gaspart.collisions import record_collisions
     from gaspart.scene import Scene
 
     scene = Scene.from_file(given.scene)
-    data = collision_data(scene, given.count, given.seed, given.equilibration)
-    with writing(given.output) as partial:
-        data.to_netcdf(partial, engine="netcdf4", encoding={name: {"zlib": True} for name in data})
+    data = record_collisions(
+        scene, given.output, given.count, given.seed, given.equilibration, overwrite=given.force
+    )
     paths = data["free_path"].mean().item()
-    print(f"{given.output}: {data.sizes['collision']} collisions, mean free path {paths:.6g}")
+    say(f"{given.output}: {data.sizes['collision']} collisions, mean free path {paths:.6g}")

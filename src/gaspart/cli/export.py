@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from gaspart.cli.arguments import Commands
+from gaspart.cli.arguments import Commands, add_output, say, whole
 
 _EXAMPLES = """examples:
   gaspart export run.nc -o state.gsd                the last frame, for HOOMD and OVITO
@@ -19,12 +19,12 @@ def add_export(commands: Commands) -> None:
     )
     export.set_defaults(command=_export)
     export.add_argument("trajectory", metavar="FILE")
-    export.add_argument("-o", "--output", required=True, metavar="FILE", help="ends in .gsd or .data")
+    add_output(export, "ends in .gsd or .data", "a state that was exported")
     text = "counted from 0, or from the end if negative; default: -1"
-    export.add_argument("--frame", type=int, default=-1, metavar="N", help=text)
+    export.add_argument("--frame", type=whole(), default=-1, metavar="N", help=text)
 
 
 def _export(given: argparse.Namespace) -> None:
     from gaspart.exports import export
 
-    print(export(given.trajectory, given.output, given.frame))
+    say(export(given.trajectory, given.output, given.frame, given.force))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from gaspart.cli.arguments import Commands
+from gaspart.cli.arguments import Commands, add_output, real, say, whole
 from gaspart.errors import SceneError
 
 PICTURES = (".png",)
@@ -26,17 +26,22 @@ def add_render(commands: Commands) -> None:
     render.set_defaults(command=_render)
     add = render.add_argument
     add("trajectory", metavar="FILE")
-    add("-o", "--output", required=True, metavar="FILE", help="ends in .png, .mp4 or .gif")
+    add_output(render, "ends in .png, .mp4 or .gif", "a picture or a film")
     add(
         "--frame",
-        type=int,
+        type=whole(),
         metavar="N",
         help="picture: counted from 0, or from the end if negative; default: -1",
     )
     add("--size", type=_size, metavar="WxH", help="in pixels; default: 1000x750")
     add("--colour", metavar="NAME", help="speed (default) or species")
-    add("--frames-per-second", type=float, metavar="X", help="film; default: 25")
-    add("--trail", type=int, metavar="N", help="film of discs: draw the way of body N, counted from 0")
+    add("--frames-per-second", type=real(above=0.0), metavar="X", help="film; default: 25")
+    add(
+        "--trail",
+        type=whole(least=0),
+        metavar="N",
+        help="film of discs: draw the way of body N, counted from 0",
+    )
 
 
 def _size(text: str) -> tuple[int, int]:
@@ -48,33 +53,33 @@ def _size(text: str) -> tuple[int, int]:
 
 
 def _render(given: argparse.Namespace) -> None:
-    output = Path(given.output)
+    from gaspart.files import output_path
+
+    output = output_path(given.output)
     named = ("size", "colour", "frame", "frames_per_second", "trail")
     options = {key: getattr(given, key) for key in named if getattr(given, key) is not None}
     if output.suffix in PICTURES:
         for key in ("frames_per_second", "trail"):
             if key in options:
                 raise SceneError(key, options[key], "has no meaning for a picture")
-        _picture(Path(given.trajectory), output, options)
+        _picture(given.trajectory, output, options, given.force)
     else:
-        from gaspart.rendering.films import FORMATS, film
+        from gaspart.rendering.films import KINDS, film
 
-        if output.suffix not in FORMATS:
-            raise SceneError("output", given.output, f"must end in {', '.join((*PICTURES, *FORMATS))}")
+        if output.suffix not in KINDS:
+            raise SceneError("output", given.output, f"must end in {', '.join((*PICTURES, *KINDS))}")
         if "frame" in options:
             raise SceneError("frame", given.frame, "has no meaning for a film, which shows all")
-        film(given.trajectory, output, **options)
-    print(output)
+        film(given.trajectory, output, **options, overwrite=given.force)
+    say(output)
 
 
-def _picture(trajectory: Path, output: Path, options: dict) -> None:
+def _picture(trajectory: str, output: Path, options: dict, overwrite: bool) -> None:
     from gaspart.files import writing
-    from gaspart.rendering.pictures import render
+    from gaspart.rendering.pictures import PICTURE, render
     from gaspart.trajectory import open_trajectory
 
-    with open_trajectory(trajectory) as opened:
-        image = render(opened, **options)
-    with writing(output) as partial:
+    with open_trajectory(trajectory) as opened, writing(output, PICTURE, overwrite) as scratch:
         import imageio.v3 as imageio
 
-        imageio.imwrite(partial, image, extension=".png")
+        scratch.write_bytes(imageio.imwrite("<bytes>", render(opened, **options), extension=".png"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from dataclasses import dataclass
 
-from gaspart.cli.arguments import Commands, UsageError, several
+from gaspart.cli.arguments import Commands, real, several
 from gaspart.errors import SceneError
 
 _BODY = ("diameter", "temperature", "mass")
@@ -53,10 +53,10 @@ def add_theory(commands: Commands) -> None:
     theory.set_defaults(command=_theory)
     add = theory.add_argument
     add("quantity", choices=_QUANTITIES, metavar="QUANTITY", help=", ".join(_QUANTITIES))
-    add("--eta", type=several(float), required=True, metavar="X[,X...]", help="packing fraction")
+    add("--eta", type=several(real(least=0.0)), required=True, metavar="X[,X...]", help="packing fraction")
     add("--dimension", type=int, choices=(2, 3), default=3, help="default: 3")
     for name in _BODY:
-        add(f"--{name}", type=float, help="default: 1")
+        add(f"--{name}", type=real(above=0.0), help="default: 1")
 
 
 def _theory(given: argparse.Namespace) -> None:
@@ -69,11 +69,8 @@ def _theory(given: argparse.Namespace) -> None:
         if key not in quantity.takes:
             raise SceneError(key, properties[key], f"{given.quantity} does not depend on it")
     for eta in given.eta:
-        try:
-            value = getattr(theory, quantity.function)(eta, dimension, **properties)
-            spread = theory.compressibility_uncertainty(eta, dimension)
-        except ValueError as error:
-            raise UsageError(error) from None
+        value = getattr(theory, quantity.function)(eta, dimension, **properties)
+        spread = theory.compressibility_uncertainty(eta, dimension)
         about = f" +- {float(spread):.1g}" if given.quantity == "Z" else ""
         print(f"{given.quantity}(eta = {eta:g}, dimension = {dimension}) = {float(value):.10g}{about}")
     highest = theory.HIGHEST_PACKING_FRACTION[dimension]

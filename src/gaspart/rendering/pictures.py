@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.files import Kind, begins_with
 from gaspart.rendering.bodies import Bodies, bodies_of, colours_of
 from gaspart.validation import count_of
 
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 
     from gaspart.state import State
 
+PICTURE = Kind("a PNG picture", begins_with(b"\x89PNG\r\n\x1a\n"))
 SIZE = (1000, 750)
 LARGEST_SIDE = 20_000
 

@@ -2,7 +2,7 @@
 
 Imports nothing of the engines, and only numpy. Every docstring says where its formula is from: exact (closed
 form), literature (read in the source), recalled (from memory of the source), computed (this project's own
-numerics).
+numerics). Arguments that are out of range raise SceneError, which is a ValueError.
 """
 
 from .brownian import (

@@ -1,25 +1,71 @@
 """Checks that every formula of this package makes of its arguments, in one place."""
 
-from typing import Any, TypeAlias
+import inspect
+import math
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, ParamSpec, TypeAlias, TypeVar
 
 import numpy as np
+
+from gaspart.errors import SceneError
 
 Numbers: TypeAlias = float | np.ndarray
 """A number, or an array of them."""
 Values: TypeAlias = Any
 """What follows from `Numbers`: a number from numbers, an array of their shape from arrays."""
 
+P = ParamSpec("P")
+R = TypeVar("R")
+
+_SMALLEST, _LARGEST = 1e-30, 1e30
+_POSITIVE = (_SMALLEST, _LARGEST, f"must be from {_SMALLEST:g} to {_LARGEST:g}: choose other units")
+_NOT_NEGATIVE = (0.0, math.inf, "must be finite and not negative")
+_FINITE = (-math.inf, math.inf, "must be finite")
+_RANGES = {
+    **dict.fromkeys(("diameter", "contact_distance", "length", "height", "outside", "width"), _POSITIVE),
+    **dict.fromkeys(("side", "spacing", "tolerance", "mass", "gas_mass"), _POSITIVE),
+    **dict.fromkeys(("temperature", "hot", "cold", "viscosity", "rate", "collision_rate"), _POSITIVE),
+    **dict.fromkeys(("number_density", "density", "bulk_density", "activity"), _NOT_NEGATIVE),
+    **dict.fromkeys(("time", "diffusion", "collisions", "radius", "size_ratio", "jump"), _NOT_NEGATIVE),
+    **dict.fromkeys(("speed", "depth", "weight", "force", "ratio", "x", "z"), _FINITE),
+    "side_over_diameter": (1.0, math.inf, "must be finite and at least 1"),
+    "count": (1.0, math.inf, "must be finite and at least 1"),
+}
+"""The least and the largest value of arguments, by name, and the rule in words."""
+
+
+def checked(function: Callable[P, R]) -> Callable[P, R]:
+    """`function`, which raises SceneError, a ValueError, for an argument out of the range of its name."""
+    names = tuple(inspect.signature(function).parameters)
+
+    @wraps(function)
+    def checking(*args: P.args, **kwargs: P.kwargs) -> R:
+        for name, value in (*zip(names, args, strict=False), *kwargs.items()):
+            if name in _RANGES and value is not None:
+                checked_range(name, value, *_RANGES[name])
+        return function(*args, **kwargs)
+
+    return checking
+
+
+def checked_range(name: str, value: Any, least: float, most: float, rule: str) -> np.ndarray:
+    """Return `value` as a float64 array; raise SceneError unless it is finite and within the range."""
+    values = np.asarray(value, dtype=float)
+    wrong = ~((values >= least) & (values <= most) & np.isfinite(values))
+    if wrong.any():
+        raise SceneError(name, float(values[wrong][0]), rule)
+    return values
+
 
 def checked_dimension(dimension: int) -> int:
-    """Return `dimension` if it is 2 or 3; raise ValueError otherwise."""
+    """Return `dimension` if it is 2 or 3; raise SceneError otherwise."""
     if dimension not in (2, 3):
-        raise ValueError(f"dimension: {dimension} (must be 2 or 3)")
+        raise SceneError("dimension", dimension, "must be 2 or 3")
     return dimension
 
 
 def checked_packing_fraction(packing_fraction: Numbers, largest: float) -> np.ndarray:
-    """Return `packing_fraction` as a float64 array; raise ValueError outside [0, largest] (or NaN)."""
-    eta = np.asarray(packing_fraction, dtype=float)
-    if not np.all((eta >= 0.0) & (eta <= largest)):
-        raise ValueError(f"packing_fraction: {packing_fraction} (this formula holds from 0 to {largest})")
-    return eta
+    """Return `packing_fraction` as a float64 array; raise SceneError outside [0, largest] (or NaN)."""
+    rule = f"this formula holds from 0 to {largest:g}"
+    return checked_range("packing_fraction", packing_fraction, 0.0, largest, rule)

@@ -6,10 +6,11 @@ centre is within w of the lowest place that it can reach.
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked_packing_fraction
+from ._arguments import Numbers, Values, checked, checked_packing_fraction
 from .equations import STABLE_DISCS
 
 
+@checked
 def well_ratio(depth: Numbers, width: Numbers, outside: Numbers) -> Values:
     """N_ads / N_gas = (w / outside) e^{depth / k_B T} of an ideal gas in equilibrium (exact).
 
@@ -20,11 +21,13 @@ def well_ratio(depth: Numbers, width: Numbers, outside: Numbers) -> Values:
     return width / outside * np.exp(depth)
 
 
+@checked
 def length_in_langmuirs_formula(ratio: Numbers, depth: Numbers, outside: Numbers) -> Values:
     """What stands in the place of lambda in N_ads / N_gas = (A lambda / V) e^{depth / k_B T} (identity)."""
     return ratio * outside * np.exp(-np.asarray(depth, dtype=float))
 
 
+@checked
 def planck_constant(length: Numbers, mass: Numbers, temperature: Numbers) -> Values:
     """h for which `length` is the thermal wavelength: length sqrt(2 pi m k_B T) (definition)."""
     return length * np.sqrt(2.0 * np.pi * mass * np.asarray(temperature, dtype=float))
@@ -40,12 +43,14 @@ def scaled_particle_activity(packing_fraction: Numbers) -> Values:
     return eta / (1.0 - eta) * np.exp((3.0 * eta - 2.0 * eta**2) / (1.0 - eta) ** 2)
 
 
+@checked
 def langmuir_coverage(activity: Numbers) -> Values:
     """K / (1 + K): places that each hold one body (Langmuir, J. Am. Chem. Soc. 40, 1361 (1918); recalled)."""
     activity = np.asarray(activity, dtype=float)
     return activity / (1.0 + activity)
 
 
+@checked
 def flux_density(speed: Numbers) -> Values:
     """Density of the normal speeds, in units of sqrt(k_B T / m), with which bodies leave a wall in
     equilibrium: v e^{-v^2 / 2} (exact)."""
@@ -53,6 +58,7 @@ def flux_density(speed: Numbers) -> Values:
     return speed * np.exp(-0.5 * speed**2)
 
 
+@checked
 def slow_flux_share(speed: Numbers) -> Values:
     """Share of those bodies that leave more slowly than this: 1 - e^{-v^2 / 2} (exact)."""
     return -np.expm1(-0.5 * np.asarray(speed, dtype=float) ** 2)

@@ -7,13 +7,14 @@ import math
 
 import numpy as np
 
-from ._arguments import Numbers, Values
+from ._arguments import Numbers, Values, checked
 
 SONINE_EQUAL_MASSES = 1.01895
 """D of a body as heavy as the gas's, over the first Sonine approximation k_B T / (M rate) (recalled, as in
 `enskog`)."""
 
 
+@checked
 def friction_rate(
     number_density: Numbers,
     contact_distance: float,
@@ -32,6 +33,7 @@ def friction_rate(
     return 8.0 / 3.0 * number_density * contact_distance**2 * momentum / mass
 
 
+@checked
 def tagged_diffusion(rate: Numbers, mass: float, gas_mass: float = 1.0, temperature: float = 1.0) -> Values:
     """D = k_B T / (M rate), the Langevin equation's; times 1.01895 for a body as heavy as the gas's.
 
@@ -42,6 +44,7 @@ def tagged_diffusion(rate: Numbers, mass: float, gas_mass: float = 1.0, temperat
     return factor * temperature / (mass * rate)
 
 
+@checked
 def langevin_msd(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: int = 3) -> Values:
     """2 d D [t - (1 - exp(-g t)) / g], of a body in equilibrium (Ornstein and Fuerth; length^2).
 
@@ -54,6 +57,7 @@ def langevin_msd(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: in
     return 2.0 * dimension * diffusion / rate * shape
 
 
+@checked
 def langevin_msd_from_rest(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: int = 3) -> Values:
     """2 d D [t - 2 (1 - exp(-g t)) / g + (1 - exp(-2 g t)) / (2 g)]: the same of a body that starts at rest.
 

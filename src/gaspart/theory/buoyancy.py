@@ -7,11 +7,12 @@ displaced). That is Archimedes's principle: nothing but the fluid that is missin
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked_packing_fraction
+from ._arguments import Numbers, Values, checked, checked_packing_fraction
 
 _HIGHEST = 0.7
 
 
+@checked
 def insertion_work(packing_fraction: Numbers, size_ratio: Numbers) -> Values:
     """W / (k_B T) of a hard disc in a fluid of discs 1 / size_ratio as large (scaled-particle theory).
 
@@ -24,6 +25,7 @@ def insertion_work(packing_fraction: Numbers, size_ratio: Numbers) -> Values:
     return -np.log1p(-eta) + 2.0 * s * eta / (1.0 - eta) + s**2 * eta / (1.0 - eta) ** 2
 
 
+@checked
 def displaced_area(packing_fraction: Numbers, size_ratio: Numbers) -> Values:
     """Area of fluid displaced over the area of a small disc, (dW/dmu) / eta (scaled-particle theory).
 

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked_packing_fraction
+from ._arguments import Numbers, Values, checked, checked_packing_fraction
 from .brownian import langevin_msd
 from .enskog import collision_rate, enskog_diffusion, enskog_viscosity
 from .geometry import number_density
@@ -29,6 +29,7 @@ def erpenbeck_wood_ratio(packing_fraction: Numbers) -> Values:
     return 1.0 + 0.05403 * y + 6.3656 * y**2 - 10.9425 * y**3
 
 
+@checked
 def erpenbeck_wood_diffusion(
     packing_fraction: Numbers, diameter: float = 1.0, temperature: float = 1.0, mass: float = 1.0
 ) -> Values:
@@ -37,6 +38,7 @@ def erpenbeck_wood_diffusion(
     return erpenbeck_wood_ratio(packing_fraction) * enskog
 
 
+@checked
 def yeh_hummer(length: Numbers, viscosity: Numbers, temperature: float = 1.0) -> Values:
     """Spheres: D_infinity - D_L = 2.837297 k_B T / (6 pi viscosity L): to be added to D_L (length^2 / time).
 
@@ -47,6 +49,7 @@ def yeh_hummer(length: Numbers, viscosity: Numbers, temperature: float = 1.0) ->
     return YEH_HUMMER_CONSTANT * temperature / (6.0 * math.pi * viscosity * length)
 
 
+@checked
 def velocity_decay_rate(
     packing_fraction: Numbers,
     dimension: int,
@@ -61,6 +64,7 @@ def velocity_decay_rate(
     return 2.0 / dimension * collision_rate(packing_fraction, dimension, diameter, temperature, mass)
 
 
+@checked
 def enskog_mean_squared_displacement(
     time: Numbers,
     packing_fraction: Numbers,
@@ -90,6 +94,7 @@ def _spreading(
     return density, diffusion + viscosity / (mass * density)
 
 
+@checked
 def velocity_autocorrelation_tail(
     time: Numbers,
     packing_fraction: Numbers,
@@ -108,6 +113,7 @@ def velocity_autocorrelation_tail(
     return amplitude * (4.0 * math.pi * spreading * np.asarray(time)) ** (-0.5 * dimension)
 
 
+@checked
 def logarithmic_slope(
     packing_fraction: Numbers, diameter: float = 1.0, temperature: float = 1.0, mass: float = 1.0
 ) -> Values:

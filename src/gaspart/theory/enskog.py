@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked_dimension
+from ._arguments import Numbers, Values, checked, checked_dimension
 from .geometry import number_density, unit_sphere_surface
 from .speeds import mean_speed
 from .state import compressibility_factor, contact_value, finite_size_correction
@@ -28,6 +28,7 @@ def _density_and_contact(packing_fraction: Numbers, dimension: int, diameter: fl
     return density, contact_value(packing_fraction, dimension)
 
 
+@checked
 def collision_rate(
     packing_fraction: Numbers,
     dimension: int,
@@ -46,6 +47,7 @@ def collision_rate(
     return unit_sphere_surface(dimension) * density * diameter ** (dimension - 1) * contact * speed
 
 
+@checked
 def collision_rate_finite_size_factor(packing_fraction: Numbers, dimension: int, count: int) -> Values:
     """nu_N / nu of `count` bodies in a periodic container, fixed energy, total momentum zero.
 
@@ -61,6 +63,7 @@ def collision_rate_finite_size_factor(packing_fraction: Numbers, dimension: int,
     return speeds * (1.0 + shift / (compressibility_factor(eta, dimension) - 1.0))
 
 
+@checked
 def mean_free_path(packing_fraction: Numbers, dimension: int, diameter: float = 1.0) -> Values:
     """Mean path between collisions, <v> / nu.
 
@@ -71,6 +74,7 @@ def mean_free_path(packing_fraction: Numbers, dimension: int, diameter: float = 
         return mean_speed(dimension) / collision_rate(packing_fraction, dimension, diameter)
 
 
+@checked
 def enskog_diffusion(
     packing_fraction: Numbers,
     dimension: int,
@@ -92,6 +96,7 @@ def enskog_diffusion(
     return first * _DIFFUSION_FACTOR[dimension] * speed * path
 
 
+@checked
 def enskog_bulk_viscosity(
     packing_fraction: Numbers,
     dimension: int,
@@ -111,6 +116,7 @@ def enskog_bulk_viscosity(
     return surface / dimension**2 * density**2 * diameter ** (dimension + 1) * contact * thermal
 
 
+@checked
 def enskog_viscosity(
     packing_fraction: Numbers,
     dimension: int,
@@ -133,6 +139,7 @@ def enskog_viscosity(
     return kinetic + dimension / (dimension + 2) * bulk
 
 
+@checked
 def enskog_conductivity(
     packing_fraction: Numbers,
     dimension: int,

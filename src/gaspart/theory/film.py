@@ -6,12 +6,14 @@ surfaces, so that centres have H - 1.
 
 import numpy as np
 
-from .equations import carnahan_starling
+from ._arguments import checked, checked_packing_fraction
+from .equations import METASTABLE_SPHERES, carnahan_starling
 from .geometry import packing_fraction
 
 _RADIUS = 0.5
 
 
+@checked
 def white_bear_slit(
     bulk_density: float, width: float, spacing: float = 0.01, tolerance: float = 1e-8
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -27,6 +29,7 @@ def white_bear_slit(
     """
     if not width > 1.0:
         raise ValueError(f"width: {width} (must be larger than a diameter)")
+    checked_packing_fraction(packing_fraction(bulk_density, 3), METASTABLE_SPHERES)
     cells = max(4, round((width - 1.0) / spacing))
     step = (width - 1.0) / cells
     half = round(_RADIUS / step)
@@ -61,6 +64,7 @@ def white_bear_slit(
     raise RuntimeError(f"the profile at density {bulk_density:g}, width {width:g} does not converge")
 
 
+@checked
 def white_bear_pressure(bulk_density: float) -> float:
     """The functional's bulk pressure, Carnahan and Starling's (k_B T / sigma^3)."""
     return bulk_density * float(carnahan_starling(packing_fraction(bulk_density, 3)))

@@ -5,7 +5,7 @@ Diameter 1 and k_B T = 1: number densities in 1 / sigma^d, pressures in k_B T / 
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked_dimension
+from ._arguments import Numbers, Values, checked, checked_dimension
 from .geometry import CLOSE_PACKING, packing_fraction
 
 COEXISTENCE_PRESSURE = {2: 9.185, 3: 11.573}
@@ -65,6 +65,7 @@ def alder_hoover_young_crystal(packing_fraction: Numbers, dimension: int) -> Val
     return dimension / alpha + np.polynomial.polynomial.polyval(alpha, series)
 
 
+@checked
 def crystal_finite_size_correction(compressibility_factor: Values, count: Values) -> Values:
     """Z_N - Z_infinity = -(Z - 1) / N of a periodic crystal of N bodies, its centre of mass free.
 

@@ -7,7 +7,7 @@ before clustering.
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked_dimension
+from ._arguments import Numbers, Values, checked, checked_dimension
 
 
 def fourth_cumulant(restitution: Numbers, dimension: int) -> Values:
@@ -35,6 +35,7 @@ def cooling_rate(restitution: Numbers, dimension: int) -> Values:
     return (1.0 - e**2) / dimension * (1.0 + 0.25 * fourth_cumulant(e, dimension))
 
 
+@checked
 def haff_time(restitution: Numbers, dimension: int, collision_rate: Numbers) -> Values:
     """t_H of Haff's law T = T_0 / (1 + t / t_H)^2; `collision_rate`: per body, of the elastic gas at T_0.
 
@@ -67,6 +68,7 @@ def rough_matrix(inertia: float, tangential: float, normal: float = 1.0) -> np.n
     return np.array([[-2.0 * a, 2.0 * b], [4.0 * b, -4.0 * c]])
 
 
+@checked
 def rough_temperatures(
     collisions: Numbers,
     inertia: float,

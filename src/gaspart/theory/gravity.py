@@ -9,11 +9,12 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._arguments import Numbers, Values, checked_dimension
+from ._arguments import Numbers, Values, checked, checked_dimension
 from .geometry import body_volume
 from .potential import packing_fraction_at
 
 
+@checked
 def ideal_profile(z: Numbers, height: float, weight: float) -> Values:
     """Chance per length of finding a body at z: w e^{-w z} / (1 - e^{-w height}) (exact; canonical)."""
     z = np.asarray(z, dtype=float)
@@ -22,6 +23,7 @@ def ideal_profile(z: Numbers, height: float, weight: float) -> Values:
     return weight * np.exp(-weight * z) / -math.expm1(-weight * height)
 
 
+@checked
 def ideal_mean_height(height: float, weight: Numbers) -> Values:
     """<z> = 1/w - height / (e^x - 1), x = w height (exact; canonical). Without a field, height / 2."""
     x = np.asarray(weight, dtype=float) * height
@@ -30,6 +32,7 @@ def ideal_mean_height(height: float, weight: Numbers) -> Values:
     return height * np.where(small, 0.5 - x / 12.0, 1.0 / safe + np.exp(-safe) / np.expm1(-safe))
 
 
+@checked
 def ideal_heat_capacity(x: Numbers, dimension: int) -> Values:
     """C_V / (N k_B) = d/2 + 1 - x^2 e^x / (e^x - 1)^2, x = m g height / (k_B T) (exact; canonical).
 
@@ -40,6 +43,7 @@ def ideal_heat_capacity(x: Numbers, dimension: int) -> Values:
     return 0.5 * checked_dimension(dimension) + 1.0 - np.where(x == 0.0, 1.0, (half / np.sinh(half)) ** 2)
 
 
+@checked
 def ideal_energy_moments(
     energy: float, count: int, height: float, force: float, dimension: int, points: int = 2**14
 ) -> tuple[float, float]:
@@ -93,6 +97,7 @@ def _canonical_temperature(energy: float, top: float, dimension: int) -> float:
     return middle
 
 
+@checked
 def lebowitz_percus_verlet(mean: Numbers, variance: Numbers, count: int, dimension: int) -> Values:
     """C_V / (N k_B) from the kinetic energy's mean and variance at fixed total energy.
 
@@ -104,6 +109,7 @@ def lebowitz_percus_verlet(mean: Numbers, variance: Numbers, count: int, dimensi
     return half / (1.0 - relative)
 
 
+@checked
 def hydrostatic_profiles(
     z: np.ndarray, numbers: ArrayLike, weights: ArrayLike, dimension: int, diameter: float = 1.0
 ) -> np.ndarray:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked_dimension
+from ._arguments import Numbers, Values, checked, checked_dimension
 from .enskog import enskog_conductivity, mean_free_path
 from .geometry import number_density, packing_fraction
 from .state import compressibility_factor
@@ -18,6 +18,7 @@ TEMPERATURE_JUMP = 2.127
 sqrt(pi) / 2, Sone, Ohwada and Aoki, Phys. Fluids A 1, 363 (1989) (recalled)."""
 
 
+@checked
 def free_molecular_flux(
     density: Numbers, hot: float, cold: float, dimension: int, mass: float = 1.0, components: str = "all"
 ) -> Values:
@@ -32,6 +33,7 @@ def free_molecular_flux(
     return carried * density * roots / np.sqrt(2.0 * np.pi * mass)
 
 
+@checked
 def dilute_fourier_flux(length: float, hot: float, cold: float, diameter: float = 1.0) -> float:
     """(2/3) lambda_0 (T_1^(3/2) - T_2^(3/2)) / length of spheres of mass 1: Fourier's law with lambda_0
     proportional to sqrt T, in the limit of a wide gap and a dilute gas. It does not depend on the density
@@ -52,6 +54,7 @@ class Slab:
     flux: float
 
 
+@checked
 def conducting_slab(
     length: float,
     density: float,

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked_dimension, checked_packing_fraction
+from ._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
 
 RSA_SATURATION = {2: 0.547074, 3: 0.384131}
 """Packing fraction at which no further body fits, infinite container (Zhang, Torquato 2013; literature)."""
@@ -35,6 +35,7 @@ def _shape_factor(excess: float, dimension: int, side_over_diameter: float, boun
     raise ValueError(f"boundary: {boundary!r} (must be 'periodic', 'wall' or 'centres_to_walls')")
 
 
+@checked
 def insertion_saturation(
     dimension: int, side_over_diameter: float | None = None, boundary: str = "periodic"
 ) -> float:
@@ -52,6 +53,7 @@ def insertion_saturation(
     return infinite * _shape_factor(_WALL_EXCESS[dimension], dimension, side_over_diameter, boundary)
 
 
+@checked
 def insertion_saturation_uncertainty(
     dimension: int, side_over_diameter: float | None = None, boundary: str = "periodic"
 ) -> float:

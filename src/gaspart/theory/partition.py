@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked_dimension
+from ._arguments import Numbers, Values, checked, checked_dimension
 
 
 def _shares(per_side: int, side: float, radius: float) -> np.ndarray:
@@ -35,6 +35,7 @@ def _moments(per_side: int, side: float, radius: float) -> np.ndarray:
     return np.array([own @ boxes, own @ near, own @ near**2])
 
 
+@checked
 def expected_pair_tests(
     count: float, per_side: int, dimension: int, side: float, radius: float
 ) -> tuple[float, float]:
@@ -52,6 +53,7 @@ def expected_pair_tests(
     return mean, math.sqrt(max(variance, 0.0))
 
 
+@checked
 def neighbour_share(
     per_side: Sequence[int] | np.ndarray, dimension: int, side: float, radius: float
 ) -> np.ndarray:
@@ -59,12 +61,14 @@ def neighbour_share(
     return np.array([_moments(int(n), side, radius)[1] for n in per_side]) ** checked_dimension(dimension)
 
 
+@checked
 def expected_box_visits(per_side: int, dimension: int, side: float, radius: float) -> float:
     """Mean number of boxes that one body looks into: its own, and half of the others around it."""
     boxes, _, _ = _moments(per_side, side, radius) ** checked_dimension(dimension)
     return 0.5 * (1.0 + boxes)
 
 
+@checked
 def boxes_in_reach(width: Numbers, reach: Numbers, dimension: int) -> Values:
     """Mean number of boxes of side `width` that a cube of half side `reach` around a random point meets."""
     return (1.0 + 2.0 * np.asarray(reach) / width) ** checked_dimension(dimension)

@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked_dimension, checked_packing_fraction
+from ._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
 from .state import HIGHEST_PACKING_FRACTION, compressibility_factor, contact_value
 
 _LOWEST = 1e-9
@@ -34,6 +34,7 @@ def _table(dimension: int) -> tuple[np.ndarray, np.ndarray]:
     return np.log(eta), np.log(eta) + excess_chemical_potential(eta, dimension)
 
 
+@checked
 def packing_fraction_at(activity: Numbers, dimension: int) -> Values:
     """The packing fraction at which eta e^{mu_excess} is `activity` (number or array, > 0; to 1e-5 of it).
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked_dimension
+from ._arguments import Numbers, Values, checked, checked_dimension
 
 _TABLES = Path(__file__).parent / "data"
 
@@ -20,12 +20,14 @@ RELAXATION_UNCERTAINTY = 3e-4
 """Standard uncertainty of the tabulated kurtosis and never-hit fraction (computed, Monte Carlo)."""
 
 
+@checked
 def mean_speed(dimension: int, temperature: float = 1.0, mass: float = 1.0) -> float:
     """Mean speed in equilibrium: sqrt(pi k_B T / 2m) in 2D, sqrt(8 k_B T / (pi m)) in 3D (exact)."""
     ratio = {2: 0.5 * math.pi, 3: 8.0 / math.pi}[checked_dimension(dimension)]
     return math.sqrt(ratio * temperature / mass)
 
 
+@checked
 def maxwell_pdf(speed: Numbers, dimension: int, temperature: float = 1.0, mass: float = 1.0) -> Values:
     """Maxwell's density of speeds (exact; time / length; 0 for negative speeds; same shape as `speed`).
 
@@ -38,6 +40,7 @@ def maxwell_pdf(speed: Numbers, dimension: int, temperature: float = 1.0, mass: 
     return scale * factor * np.exp(-0.5 * u**2)
 
 
+@checked
 def maxwell_cdf(speed: Numbers, dimension: int, temperature: float = 1.0, mass: float = 1.0) -> Values:
     """Fraction of bodies slower than `speed` (exact): incomplete gamma function P(d/2, m v^2 / 2 k_B T)."""
     from scipy.special import gammainc
@@ -47,6 +50,7 @@ def maxwell_cdf(speed: Numbers, dimension: int, temperature: float = 1.0, mass: 
     return gammainc(0.5 * dimension, energy)
 
 
+@checked
 def maxwell_ppf(probability: Numbers, dimension: int, temperature: float = 1.0, mass: float = 1.0) -> Values:
     """Speed below which the fraction `probability` of the bodies lies: inverse of `maxwell_cdf` (exact)."""
     from scipy.special import gammaincinv
@@ -56,6 +60,7 @@ def maxwell_ppf(probability: Numbers, dimension: int, temperature: float = 1.0, 
     return np.sqrt(2.0 * temperature / mass * energy)
 
 
+@checked
 def kurtosis(dimension: int, count: int | None = None, zero_momentum: bool = False) -> float:
     """<v^4> / <v^2>^2 in equilibrium: (d+2)/d, that is 2 in 2D and 5/3 in 3D (exact).
 

@@ -6,7 +6,7 @@ Everything here is dimensionless and depends on the packing fraction alone.
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked_dimension, checked_packing_fraction
+from ._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
 from .equations import METASTABLE_SPHERES, STABLE_DISCS, kolafa_labik_malijevsky, liu
 from .virial import (
     HIGHEST_ORDER,
@@ -100,6 +100,7 @@ def speed_of_sound(packing_fraction: Numbers, dimension: int) -> Values:
     return np.sqrt(slope + 2.0 / dimension * compressibility_factor(eta, dimension) ** 2)
 
 
+@checked
 def finite_size_correction(
     packing_fraction: Numbers, dimension: int, count: int, ensemble: str = "dynamics"
 ) -> Values:

@@ -24,7 +24,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ._arguments import Numbers, Values, checked_dimension, checked_packing_fraction
+from ._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
 from .geometry import number_density
 from .state import compressibility_factor, compressibility_uncertainty, finite_size_correction
 
@@ -74,6 +74,7 @@ def surface_tension_uncertainty(packing_fraction: Numbers, dimension: int) -> Va
     return np.abs(_tension(packing_fraction, dimension, 1))
 
 
+@checked
 def wall_pressure(
     length: float, density: float, count: int, dimension: int, axes: int
 ) -> tuple[float, float]:

@@ -18,7 +18,10 @@ from gaspart.errors import SceneError
 from gaspart.scene import Scene
 from gaspart.tradeoff import speed, table
 from gaspart.tradeoff.table import LEAST, QUANTILE, SETTLING
+from gaspart.validation import number
 
+ACCURACIES = 1e-8, 1.0
+"""The sharpest relative accuracy that float64 sums and the table can stand for, and the coarsest."""
 _PER_SETTLING = 10.0  # a replica is to be so many times longer than its start
 _BULK = 4.0  # the finite size of a gas should cost no more than this part of the accuracy
 
@@ -89,6 +92,8 @@ def plain_gas(scene: Scene) -> Gas:
     if len(kinds) != 1 or kinds[0].fixed or scene != plain:
         rule = "advice is known for one species of smooth bodies alone, without gravity or obstacles"
         raise SceneError("species", len(kinds), rule)
+    if not kinds[0].count:
+        raise SceneError("count", 0, "advice is for a gas: the scene is empty")
     kind, dimension = kinds[0], scene.dimension
     temperature = kind.temperature
     if temperature is None:
@@ -125,8 +130,11 @@ def advise(
     """
     if observable not in table.OBSERVABLES:
         raise SceneError("observable", observable, f"must be one of {', '.join(table.OBSERVABLES)}")
-    if not 0.0 < accuracy < 1.0:
-        raise SceneError("accuracy", accuracy, "must be between 0 and 1")
+    low, high = ACCURACIES
+    rule = f"must be from {low:g} to {high:g}"
+    accuracy = number("accuracy", accuracy, rule, least=low, most=high)
+    if budget is not None:
+        budget = number("budget", budget, "must be positive", above=0.0)
     gas = gas_of(scene)
     noise = table.noise(gas.dimension, gas.packing_fraction, observable)
     if not math.isfinite(noise):
