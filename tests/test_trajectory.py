@@ -334,7 +334,7 @@ def test_a_broken_invariant_stops_the_run_and_keeps_its_state(tmp_path, monkeypa
 
 
 def test_progress_is_told(tmp_path, monkeypatch):
-    monkeypatch.setattr(recording, "_STRETCH", 0.0)
+    monkeypatch.setattr(recording, "_PROGRESS", 0.0)
     told = []
     gp.run(
         gas(2, 10, 0.1),

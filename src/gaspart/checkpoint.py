@@ -22,6 +22,11 @@ class Checkpoint:
     arrays: dict[str, np.ndarray]
 
 
+def checkpoint_path(path: Path) -> Path:
+    """Where the float64 state of an unfinished trajectory is."""
+    return path.with_name(path.name + ".checkpoint.npz")
+
+
 def _digest(header: bytes) -> str:
     return hashlib.sha256(header).hexdigest()
 

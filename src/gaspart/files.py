@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from gaspart.errors import SceneError
+from gaspart.interruption import scratch_file
 
 
 @cache
@@ -69,8 +70,9 @@ def whole_file(path: str | Path) -> Iterator[Path]:
     """Give a `.partial` path to write to; on success it is renamed to `path`, atomically."""
     path = Path(path)
     partial = path.with_name(path.name + ".partial")
-    yield partial
-    os.replace(partial, path)
+    with scratch_file(partial):
+        yield partial
+        os.replace(partial, path)
 
 
 @contextmanager

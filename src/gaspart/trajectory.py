@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from gaspart import amber, provenance
-from gaspart.checkpoint import read_checkpoint, remove_checkpoint
+from gaspart.checkpoint import checkpoint_path, read_checkpoint, remove_checkpoint
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SceneError
 from gaspart.recipe import Recipe, begun_as, read_recipe, stored_revision
@@ -38,11 +38,6 @@ _UNITS = dict.fromkeys(_ENERGIES, "mass length^2/time^2") | {"wall_impulse": "ma
 def partial_path(path: Path) -> Path:
     """Where a trajectory is while it is being written."""
     return path.with_name(path.name + ".partial")
-
-
-def checkpoint_path(path: Path) -> Path:
-    """Where the float64 state of an unfinished trajectory is."""
-    return path.with_name(path.name + ".checkpoint.npz")
 
 
 def open_trajectory(path: str | Path) -> xr.Dataset:
@@ -101,6 +96,9 @@ def run(
     Anything else at `path`, or half-finished beside it, is replaced only with `overwrite`.
 
     `progress(time, duration, collisions)` is called about twice a second.
+
+    SIGINT and SIGTERM take effect after a checkpoint was written: the handlers of the program that calls
+    this are then called, of which Python's own raises KeyboardInterrupt.
 
     Raises SceneError for settings that cannot be, and for a file that cannot be written; SimulationError
     if the run breaks an invariant, with its state kept in `path.failed.npz`.
@@ -180,8 +178,7 @@ def _record(
         simulation.restore(found.arrays)
         kept = found.frames
     frames = amber.Frames(file, wanted.layout, header, kept)
-    recording = Recording(wanted, simulation, frames, header, checkpoint, every, progress)
-    recording.finish(failed=path.with_name(path.name + ".failed.npz"))
+    Recording(wanted, simulation, frames, header, path, every, progress).finish()
 
 
 @contextmanager
