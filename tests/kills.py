@@ -92,6 +92,7 @@ def disturb(rng, folder, engine, report):
 
 
 def main(folder, seed, signals):
+    os.environ["GIT_DIR"] = str(folder)  # no revision: somebody may edit the checkout meanwhile
     load_numba(ours=True)
     import gaspart as gp
 

@@ -255,7 +255,7 @@ def test_files_that_are_no_trajectories(tmp_path):
     complaints = {
         "missing": "cannot be read: No such file",
         "frames": f"is truncated: {len(whole) - 1} bytes, where 3 frames need {len(whole)}",
-        "header": "is not a readable NetCDF file",
+        "header": "is truncated or damaged: 600 bytes, where the header alone needs",
         "text": "is not a readable NetCDF file",
         "empty": "is not a readable NetCDF file",
         "foreign": "is not a trajectory written by gaspart",
