@@ -113,5 +113,6 @@ def _resume(given: argparse.Namespace) -> None:
 
 
 def _tell(path: Path) -> None:
-    print(f"{clear_line()}", end="", file=sys.stderr)
+    if wiped := clear_line():  # even an empty line fails where stderr is full
+        print(wiped, end="", file=sys.stderr)
     print(f"{path} is whole; `gaspart info {shlex.quote(str(path))}` tells what it holds")
