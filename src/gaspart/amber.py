@@ -157,7 +157,8 @@ def stored_header(file: BinaryIO) -> bytes:
         raise ValueError("is not a trajectory written by gaspart, or its header is damaged")
     at = _value_at(head, "header_bytes")
     length = int.from_bytes(head[at : at + _WORD], "big")
-    if not len(head) <= length <= (size := os.fstat(file.fileno()).st_size):
+    size = os.fstat(file.fileno()).st_size
+    if not len(head) <= length <= size:
         raise ValueError(f"is truncated or damaged: {size} bytes, where the header alone needs {length}")
     header = bytearray(head + file.read(length - len(head)))
     header[_FRAME_COUNT_AT : _FRAME_COUNT_AT + _WORD] = bytes(_WORD)
