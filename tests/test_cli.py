@@ -150,7 +150,8 @@ def test_a_broken_invariant_is_exit_code_1_and_ctrl_c_130(folder, capsys, monkey
     for error, code, text in (
         (gp.SimulationError("the energy\nhas drifted"), 1, "the energy has drifted"),
         (KeyboardInterrupt(), 130, "interrupted"),
-        (MemoryError(), 2, "not enough memory"),
+        (MemoryError(), 1, "not enough memory"),
+        (OSError(5, "Input/output error", "run.nc"), 1, "run.nc: Input/output error"),
     ):
         monkeypatch.setattr("gaspart.trajectory.run", lambda *_, error=error, **__: throw(error))
         assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY]) == code

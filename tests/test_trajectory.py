@@ -256,7 +256,7 @@ def test_files_that_are_no_trajectories(tmp_path):
     complaints = {
         "missing": "cannot be read: No such file",
         "frames": f"is truncated: {len(whole) - 1} bytes, where 3 frames need {len(whole)}",
-        "header": "is not a readable NetCDF file",
+        "header": "is truncated or damaged: 600 bytes, where the header alone needs",
         "text": "is not a readable NetCDF file",
         "empty": "is not a readable NetCDF file",
         "foreign": "is not a trajectory written by gaspart",
@@ -333,7 +333,7 @@ def test_a_broken_invariant_stops_the_run_and_keeps_its_state(tmp_path, monkeypa
 
 
 def test_progress_is_told(tmp_path, monkeypatch):
-    monkeypatch.setattr(recording, "_STRETCH", 0.0)
+    monkeypatch.setattr(recording, "_PROGRESS", 0.0)
     told = []
     gp.run(
         gas(2, 10, 0.1),

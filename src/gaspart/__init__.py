@@ -3,8 +3,13 @@
 The names below are loaded when first used, so that planning a workflow starts no compiler.
 """
 
+from __future__ import annotations
+
 from importlib import import_module
-from typing import Any
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:  # it takes longer to import than all else here
+    from typing import Any
 
 __version__ = "0.1.0"
 

@@ -3,12 +3,16 @@
 A netCDF-3 file is a header and then frames of equal size. The netCDF library makes the header; frames are
 appended to it as they come, and the number of frames in the header is raised when a frame is complete, so
 that a file cut short at any moment is a readable one.
+
+Checksums (CRC-32) detect damage: one in the header, of the header without the number of frames, and one at
+the end of each frame, which depends on the header and on the frame's place too. Other readers ignore both.
 """
 
 from __future__ import annotations
 
 import os
 import struct
+import zlib
 from dataclasses import fields
 from typing import BinaryIO
 
@@ -26,7 +30,11 @@ COUNTERS = tuple(field.name for field in fields(Tally) if field.name != "time")
 _PER_FACE = tuple(field.name for field in fields(Tally) if field.type == "np.ndarray")
 _MAGIC = b"CDF\x02"  # a netCDF-3 file of 64-bit offsets
 _FRAME_COUNT_AT = 4  # where a netCDF-3 header keeps the number of frames, as a big-endian uint32
-_INT = 4  # the netCDF library's number for this type
+_WORD = 4  # bytes of a checksum, and of all that a netCDF-3 header counts
+_HEAD = 1024  # bytes from the start of a file within which the attributes of `BOOKKEEPING` lie
+_CHUNK = 1 << 24  # bytes that are read at once
+BOOKKEEPING = ("header_bytes", "header_crc32", "frame_bytes")
+"""Attributes by which a file is checked: sizes of the header and of a frame, and the header's checksum."""
 MOST_FRAMES = 2**31 - 1
 
 
@@ -82,6 +90,10 @@ class Layout:
         if displacements:
             meaning = "way since time 0, unwrapped"
             self.variables["displacements"] = (">f8", vectors, {"units": "angstrom", "long_name": meaning})
+        meaning = (
+            "CRC-32 of the bytes of this frame before it, which begins with those of the header and frame"
+        )
+        self.variables["checksum"] = (">i4", (), {"long_name": meaning})
 
     def shape(self, name: str) -> tuple[int, ...]:
         """The shape of a variable in one frame."""
@@ -93,12 +105,13 @@ class Layout:
         return np.dtype([(name, kind, self.shape(name)) for name, (kind, _, _) in self.variables.items()])
 
     def header(self, attributes: dict, radii: np.ndarray, types: np.ndarray) -> bytes:
-        """A file of no frames. Its attributes also tell the bytes of the header and of a frame."""
-        sizes = {"header_bytes": np.int32(0), "frame_bytes": np.float64(self.frame.itemsize)}
-        header = self._header({**attributes, **sizes}, radii, types)
-        told = b"header_bytes" + struct.pack(">II", _INT, 1)  # name, type, and how many of these follow
-        before, _, after = header.partition(told)
-        return before + told + struct.pack(">I", len(header)) + after[4:]
+        """A file of no frames. Its first attributes are those of `BOOKKEEPING`."""
+        own = dict(zip(BOOKKEEPING, (np.int32(0), np.int32(0), np.float64(self.frame.itemsize)), strict=True))
+        header = bytearray(self._header({**own, **attributes}, radii, types))
+        for name, value in (("header_bytes", len), ("header_crc32", zlib.crc32)):
+            at = _value_at(header, name)
+            header[at : at + _WORD] = struct.pack(">I", value(header))
+        return bytes(header)
 
     def _header(self, attributes: dict, radii: np.ndarray, types: np.ndarray) -> bytes:
         import netCDF4
@@ -125,9 +138,47 @@ class Layout:
         return bytes(file.close())
 
 
+def _value_at(header: bytes | bytearray, name: str) -> int:
+    """Where the value of a numerical attribute stands: after its name, in whole words, type and count."""
+    return header.index(name.encode()) + -(-len(name) // _WORD) * _WORD + 2 * _WORD
+
+
+def stored_header(file: BinaryIO) -> bytes:
+    """The header of a file, with the number of frames set to 0, as `Layout.header` made it.
+
+    Raises ValueError, with the rule that is broken, for a damaged file and for one of another program.
+    """
+    file.seek(0)
+    head = file.read(_HEAD)
+    if not head.startswith(_MAGIC):
+        foreign = head.startswith((b"CDF", b"\x89HDF"))
+        raise ValueError(f"is not a {'trajectory written by gaspart' if foreign else 'readable NetCDF file'}")
+    if not all(name.encode() in head for name in BOOKKEEPING):
+        raise ValueError("is not a trajectory written by gaspart, or its header is damaged")
+    at = _value_at(head, "header_bytes")
+    length = int.from_bytes(head[at : at + _WORD], "big")
+    size = os.fstat(file.fileno()).st_size
+    if not len(head) <= length <= size:
+        raise ValueError(f"is truncated or damaged: {size} bytes, where the header alone needs {length}")
+    header = bytearray(head + file.read(length - len(head)))
+    header[_FRAME_COUNT_AT : _FRAME_COUNT_AT + _WORD] = bytes(_WORD)
+    at = _value_at(header, "header_crc32")
+    checksum, header[at : at + _WORD] = header[at : at + _WORD], bytes(_WORD)
+    if struct.pack(">I", zlib.crc32(header)) != checksum:
+        raise ValueError("has a damaged or edited header: its checksum does not match")
+    header[at : at + _WORD] = checksum
+    return bytes(header)
+
+
+def frame_bytes(header: bytes) -> int:
+    """The size of a frame."""
+    (size,) = struct.unpack_from(">d", header, _value_at(header, "frame_bytes"))
+    return int(size)
+
+
 def same_header(file: BinaryIO, header: bytes) -> bool:
     """Whether a file begins with this header, however many frames it counts."""
-    after = _FRAME_COUNT_AT + 4
+    after = _FRAME_COUNT_AT + _WORD
     file.seek(0)
     found = file.read(len(header))
     return found[:_FRAME_COUNT_AT] == header[:_FRAME_COUNT_AT] and found[after:] == header[after:]
@@ -142,7 +193,28 @@ def is_blank(file: BinaryIO) -> bool:
 def frame_count(file: BinaryIO) -> int:
     """The number of complete frames that a file's header tells of."""
     file.seek(_FRAME_COUNT_AT)
-    return struct.unpack(">I", file.read(4))[0]
+    return struct.unpack(">I", file.read(_WORD))[0]
+
+
+def _frame_checksum(frame: bytes | memoryview, number: int, header_checksum: int) -> bytes:
+    """The last word of a frame: the checksum of what comes before it."""
+    start = zlib.crc32(struct.pack(">I", number), header_checksum)
+    return struct.pack(">I", zlib.crc32(frame[:-_WORD], start))
+
+
+def damaged_frame(file: BinaryIO, header: bytes, frames: int) -> int | None:
+    """The first of so many frames that is not as it was written, or cut short; None if all are correct."""
+    size, header_checksum = frame_bytes(header), zlib.crc32(header)
+    at_once = max(1, _CHUNK // size)
+    file.seek(len(header))
+    for first in range(0, frames, at_once):
+        wanted = min(at_once, frames - first)
+        data = memoryview(file.read(wanted * size))
+        for n in range(wanted):
+            frame = data[n * size : (n + 1) * size]
+            if len(frame) < size or frame[-_WORD:] != _frame_checksum(frame, first + n, header_checksum):
+                return first + n
+    return None
 
 
 class Frames:
@@ -154,6 +226,7 @@ class Frames:
     def __init__(self, file: BinaryIO, layout: Layout, header: bytes, kept: int = 0) -> None:
         self._file, self._frame = file, np.zeros((), layout.frame)
         self.count = kept
+        self._header_checksum = zlib.crc32(header)
         if kept == 0:
             self._begin(header)
         else:
@@ -174,12 +247,14 @@ class Frames:
 
     def append(self, values: dict[str, np.ndarray | float]) -> None:
         """Write one frame: a value for every variable of the layout, vectors of 2 or 3 components."""
-        for name in self._frame.dtype.fields:
+        for name in self._frame.dtype.names[:-1]:
             given = np.asarray(values[name])
             there = self._frame[name]
             components = there[..., : given.shape[-1]] if given.ndim else there  # 2D leaves z = 0
             components[...] = given
-        self._write(self._frame.reshape(1).view(np.uint8).data)
+        data = self._frame.reshape(1).view(np.uint8).data
+        data[-_WORD:] = _frame_checksum(data, self.count, self._header_checksum)
+        self._write(data)
         self.count += 1
         self._count_frames()
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from gaspart.errors import SceneError
+from gaspart.interruption import scratch_file
 
 _HERE, _NO_REPLACE = -100, 1
 """AT_FDCWD and RENAME_NOREPLACE of Linux's renameat2."""
@@ -130,11 +131,12 @@ def _scratch(path: Path) -> Iterator[Path]:
         if not _is_running(old.name.split("-")[2]):
             old.unlink(missing_ok=True)
     scratch = path.with_name(f".gaspart-{of}-{os.getpid()}-{secrets.token_hex(4)}.partial")
-    os.close(os.open(scratch, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
-    try:
-        yield scratch
-    finally:
-        scratch.unlink(missing_ok=True)
+    with scratch_file(scratch):
+        os.close(os.open(scratch, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
+        try:
+            yield scratch
+        finally:
+            scratch.unlink(missing_ok=True)
 
 
 def _is_running(process: str) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import platform
 import subprocess
 from functools import cache
@@ -14,13 +16,22 @@ _PACKAGES = ("numpy", "numba", "netCDF4")
 
 
 def _git(*arguments: str) -> str | None:
-    """What git says about the folder of this package; None where there is no git, or it refuses."""
+    """What git says about the folder of this package; None where there is no git, or it refuses.
+
+    Raises OSError if it could not be asked, for want of file descriptors or memory: what is stored in a
+    trajectory must not depend on that.
+    """
     command = ["git", "-C", str(Path(__file__).parent), *arguments]
     try:
-        done = subprocess.run(command, capture_output=True, text=True, check=True)
-    except (OSError, subprocess.CalledProcessError):
+        done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "LC_ALL": "C"})
+    except (FileNotFoundError, PermissionError):
         return None
-    return done.stdout.strip()
+    if done.returncode == 0:
+        return done.stdout.strip()
+    for number in (errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN):
+        if os.strerror(number) in done.stderr:
+            raise OSError(number, os.strerror(number))
+    return None
 
 
 @cache
@@ -36,11 +47,12 @@ def git_revision() -> str:
 
 @cache
 def versions() -> dict[str, str]:
-    """Versions of gaspart, Python, and the packages that results depend on."""
+    """Versions of gaspart, Python, and the packages that results depend on. May raise OSError."""
     found = {"gaspart_version": __version__, "python_version": platform.python_version()}
     for package in _PACKAGES:
         try:
             found[f"{package}_version"] = version(package)
         except PackageNotFoundError:
+            os.scandir(Path(__file__).parent).close()  # OSError where a folder could not be searched either
             found[f"{package}_version"] = "unknown"
     return found

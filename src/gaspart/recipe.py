@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 
@@ -21,6 +23,8 @@ from gaspart.yaml_text import dump_yaml, parse_yaml
 if TYPE_CHECKING:
     import netCDF4
 
+PARTIAL = ".partial"
+"""The suffix of a trajectory that is being written."""
 ROUNDING = 1e-9
 """Relative deviation from a whole multiple that is put down to rounding."""
 
@@ -121,29 +125,64 @@ class Recipe:
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[netCDF4.Dataset]:
-    """A trajectory of ours as a netCDF4.Dataset. Raises SceneError for a file that is none, or truncated."""
-    import netCDF4
+def _checked(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
+    """A trajectory of ours: the file, its header and its number of frames, which are checked against it.
 
+    Raises SceneError for a file that is none, truncated, or damaged in its header.
+    """
     try:
-        size = path.stat().st_size
-        with path.open("rb"):
-            pass
+        with open(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as file:  # a pipe must not block
+            status = os.fstat(file.fileno())
+            if not stat.S_ISREG(status.st_mode):
+                raise ValueError("cannot be read: it is no regular file")
+            if path.suffix == PARTIAL and amber.is_blank(file):
+                raise ValueError("nothing was written to it yet; start the run again with `gaspart run`")
+            header, frames = amber.stored_header(file), amber.frame_count(file)
+            needed = len(header) + frames * amber.frame_bytes(header)
+            if status.st_size < needed:
+                rule = f"is truncated: {status.st_size} bytes, where {frames} frames need {needed}"
+                raise ValueError(rule)
+            if status.st_size > needed and path.suffix != PARTIAL:  # that one may end within a frame
+                rule = f"is damaged: {status.st_size} bytes, where {frames} frames need {needed}"
+                raise ValueError(rule)
+            yield file, header, frames
     except OSError as error:
         raise SceneError("file", str(path), f"cannot be read: {error.strerror}") from None
-    try:
-        file = netCDF4.Dataset(path)
-    except OSError as error:
-        raise SceneError("file", str(path), f"is not a readable NetCDF file: {error.strerror}") from None
-    with file:
-        if getattr(file, "program", None) != "gaspart" or "frame_bytes" not in file.ncattrs():
-            raise SceneError("file", str(path), "is not a trajectory written by gaspart")
-        frames = len(file.dimensions["frame"])
-        whole = int(file.header_bytes) + frames * int(file.frame_bytes)
-        if size < whole:
-            rule = f"is truncated: {size} bytes, where {frames} frames need {whole}"
-            raise SceneError("file", str(path), rule)
+    except ValueError as error:
+        if isinstance(error, SceneError):
+            raise
+        raise SceneError("file", str(path), str(error)) from None
+
+
+def open_netcdf(path: Path) -> netCDF4.Dataset:
+    """A trajectory of ours as a netCDF4.Dataset, to be closed by the caller.
+
+    Raises SceneError for a file that is none, truncated, or damaged in its header.
+    """
+    with _checked(path) as (file, _, _):
+        return open_descriptor(file)
+
+
+def open_descriptor(file: BinaryIO) -> netCDF4.Dataset:
+    """An open file as a netCDF4.Dataset, whose library takes no names that are not UTF-8."""
+    import netCDF4
+
+    return netCDF4.Dataset(f"/proc/self/fd/{file.fileno()}")
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[netCDF4.Dataset]:
+    """The same as `open_netcdf`, closed after the block."""
+    with open_netcdf(path) as file:
         yield file
+
+
+def check_frames(path: Path, first: int | None = None) -> None:
+    """Read the frames of a trajectory, or so many of the first. SceneError if one is damaged."""
+    with _checked(path) as (file, header, frames):
+        damaged = amber.damaged_frame(file, header, frames if first is None else min(first, frames))
+        if damaged is not None:
+            raise ValueError(f"frame {damaged} is damaged: its checksum does not match")
 
 
 def read_recipe(path: str | Path) -> Recipe:
@@ -151,17 +190,22 @@ def read_recipe(path: str | Path) -> Recipe:
     path = Path(path)
     with opened(path) as file:
         stored = file.__dict__
-    scene = Scene.from_dict(parse_yaml(stored["scene"], f"{path}, attribute scene"), str(path))
-    seed = json.loads(stored["seed"])
-    return Recipe(
-        scene=scene,
-        engine=engine_from_dict(json.loads(stored["engine"])),
-        seed=tuple(seed) if isinstance(seed, list) else seed,
-        duration=float(stored["duration"]),
-        sample_interval=float(stored["sample_interval"]),
-        displacements=bool(stored["displacements"]),
-        follow=int(stored["follow"]) if "follow" in stored else None,
-    )
+    try:
+        scene = Scene.from_dict(parse_yaml(stored["scene"], f"{path}, attribute scene"), str(path))
+        seed = json.loads(stored["seed"])
+        return Recipe(
+            scene=scene,
+            engine=engine_from_dict(json.loads(stored["engine"])),
+            seed=tuple(seed) if isinstance(seed, list) else seed,
+            duration=float(stored["duration"]),
+            sample_interval=float(stored["sample_interval"]),
+            displacements=bool(stored["displacements"]),
+            follow=int(stored["follow"]) if "follow" in stored else None,
+        )
+    except SceneError:
+        raise
+    except (KeyError, TypeError, ValueError) as error:  # of a header that was forged
+        raise SceneError("file", str(path), f"has an attribute that cannot be used: {error}") from None
 
 
 def stored_revision(path: Path) -> str:

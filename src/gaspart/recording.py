@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -10,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from gaspart import amber
-from gaspart.checkpoint import write_checkpoint
+from gaspart.checkpoint import checkpoint_path, write_checkpoint
 from gaspart.engines import TimeStepped
 from gaspart.errors import SimulationError
+from gaspart.interruption import Deferral, deferred, set_note
 from gaspart.recipe import Recipe, multiple
 from gaspart.simulation import Simulation
 from gaspart.state import State
@@ -20,12 +22,13 @@ from gaspart.state import State
 Progress = Callable[[float, float, int], None]
 """Called with the time reached, the duration, and the collisions so far."""
 
-_STRETCH = 0.5  # seconds of work between two looks at the clock, about
+_STRETCH = 0.1  # seconds of work between two looks at the clock and at signals, to within a factor of 2
+_PROGRESS = 0.5  # seconds between two reports of progress
 _FIRST_STRETCH = {"event": 256, "step": 1}  # events, steps
 
 
 class Recording:
-    """A simulation under way to its duration, the file of its frames, and where its checkpoints go.
+    """A simulation under way to its duration, the file of its frames, and the finished trajectory's path.
 
     every: seconds between checkpoints. Observing changes nothing: neither checkpoints nor the division into
     stretches changes a bit of the result.
@@ -37,46 +40,66 @@ class Recording:
         simulation: Simulation,
         frames: amber.Frames,
         header: bytes,
-        checkpoint: Path,
+        path: Path,
         every: float,
         progress: Progress | None,
     ) -> None:
         self._recipe, self._simulation, self._frames = recipe, simulation, frames
-        self._header, self._checkpoint, self._every, self._progress = header, checkpoint, every, progress
+        self._header, self._path, self._every, self._progress = header, path, every, progress
         self._origin = simulation.initial_state.unwrapped
         self._stretch = _FIRST_STRETCH[recipe.engine.name]
         self._saved = self._told = time.monotonic()
+        if simulation.time > 0.0:  # restored
+            self._note()
 
-    def finish(self, failed: Path) -> None:
+    def finish(self) -> None:
         """Write all frames that are missing. Raises SimulationError if an invariant breaks, and OSError.
 
-        In the first case the state is kept in the file `failed`.
+        In the first case the state is kept beside the trajectory, in `.failed.npz`. A signal takes effect
+        after a checkpoint was written.
         """
         try:
-            while self._frames.count < self._recipe.frames:
-                for _ in self._approach(self._frames.count):
-                    self._look_at_the_clock()
-                state = self._simulation.state
-                self._simulation.check_invariants(state)
-                self._frames.append(self._frame(state))
-                self._look_at_the_clock()
+            with deferred() as signals:
+                while self._frames.count < self._recipe.frames:
+                    for _ in self._approach(self._frames.count):
+                        signals.unsaved = True
+                        self._between_stretches(signals)
+                    state = self._simulation.state
+                    self._simulation.check_invariants(state)
+                    self._frames.append(self._frame(state))
+                    self._between_stretches(signals)
         except SimulationError as error:
+            failed = self._path.with_name(self._path.name + ".failed.npz")
             write_checkpoint(failed, self._header, self._frames.count, self._simulation.checkpoint())
             raise SimulationError(f"{error}; its state is kept in {failed}") from None
         self._frames.sync()
+        set_note("")
 
-    def _look_at_the_clock(self) -> None:
+    def _between_stretches(self, signals: Deferral) -> None:
+        """Report progress, write a checkpoint and let a signal take effect, if it is time to."""
         now = time.monotonic()
-        if self._progress and now - self._told >= _STRETCH:
+        if self._progress and now - self._told >= _PROGRESS:
             collisions = self._simulation.tally.collisions
             self._progress(self._simulation.time, self._recipe.duration, collisions)
             self._told = now
-        if now - self._saved >= self._every:
-            self._simulation.check_invariants()
-            self._frames.sync()  # before the checkpoint, which says that they are there
-            arrays = self._simulation.checkpoint()
-            write_checkpoint(self._checkpoint, self._header, self._frames.count, arrays)
-            self._saved = time.monotonic()
+        if signals.pending is not None:
+            self._save()
+            signals.deliver()
+        elif now - self._saved >= self._every:
+            self._save()
+
+    def _save(self) -> None:
+        """Write a checkpoint, from which the run can continue to the same bits."""
+        self._simulation.check_invariants()
+        self._frames.sync()  # before the checkpoint, which says that they are there
+        arrays = self._simulation.checkpoint()
+        write_checkpoint(checkpoint_path(self._path), self._header, self._frames.count, arrays)
+        self._note()
+        self._saved = time.monotonic()
+
+    def _note(self) -> None:
+        command = f"gaspart resume {shlex.quote(str(self._path))}"
+        set_note(f"`{command}` continues it from time {self._simulation.time:g} of {self._recipe.duration:g}")
 
     def _approach(self, frame: int) -> Iterator[None]:
         """Advance to the time of a frame, frame x sample_interval, by stretches."""

@@ -9,16 +9,24 @@ from __future__ import annotations
 import fcntl
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from gaspart import amber, provenance
-from gaspart.checkpoint import read_checkpoint, remove_checkpoint
+from gaspart.checkpoint import checkpoint_path, read_checkpoint, remove_checkpoint
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SceneError
 from gaspart.files import Kind, may_replace, output_path, place
-from gaspart.recipe import Recipe, begun_as, read_recipe, stored_revision
+from gaspart.recipe import (
+    PARTIAL,
+    Recipe,
+    begun_as,
+    check_frames,
+    open_netcdf,
+    read_recipe,
+    stored_revision,
+)
 from gaspart.recording import Progress, Recording
 from gaspart.scene import Scene, number
 from gaspart.simulation import Simulation
@@ -37,13 +45,10 @@ _UNITS = dict.fromkeys(_ENERGIES, "mass length^2/time^2") | {"wall_impulse": "ma
 
 
 def partial_path(path: Path) -> Path:
-    """Where a trajectory is while it is being written."""
-    return path.with_name(path.name + ".partial")
-
-
-def checkpoint_path(path: Path) -> Path:
-    """Where the float64 state of an unfinished trajectory is."""
-    return path.with_name(path.name + ".checkpoint.npz")
+    """Where a trajectory is while it is being written. Raises SceneError for a path without a name."""
+    if not path.name:
+        raise SceneError("path", str(path), "must be the name of a file")
+    return path.with_name(path.name + PARTIAL)
 
 
 def open_trajectory(path: str | Path) -> xr.Dataset:
@@ -55,19 +60,21 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     (YAML), engine and seed (JSON), and what follows from the scene: count, dimension, packing_fraction,
     number_density. Close it, or use it in a `with` statement.
 
-    Raises SceneError for a file that is unreadable, truncated, or not written by gaspart.
+    Raises SceneError for a file that is unreadable, truncated, damaged in its header, or not written by
+    gaspart. Frames are not checked: `gaspart info` does that.
     """
     import xarray as xr
 
     path = Path(path)
     scene = read_recipe(path).scene
-    data = opened = xr.open_dataset(path, engine="netcdf4", decode_times=False)
+    store = xr.backends.NetCDF4DataStore(open_netcdf(path))
+    data = opened = xr.open_dataset(store, decode_times=False)
     attributes = {**data.attrs, "count": scene.count, "dimension": scene.dimension}
     attributes |= {"packing_fraction": scene.packing_fraction, "number_density": scene.number_density}
     if "spins" in data and scene.dimension == 2:
         data["spins"] = data["spins"].isel(spatial=2)
     data = data.isel(spatial=slice(scene.dimension)).set_coords(["time", "radius", "type"])
-    data = data.drop_vars(["cell_spatial", "cell_angular"])
+    data = data.drop_vars(["cell_spatial", "cell_angular", "checksum"])
     faces = amber.face_names(scene.dimension, len(scene.walls))
     data = data.assign_coords(spatial=list("xyz"[: scene.dimension]), face=faces)
     for key, variable in data.variables.items():
@@ -75,7 +82,7 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
         told = variable.attrs.get("units", "1")
         if variable.dtype.kind in "fi":  # what is no length, time or energy is a number of things, or a ratio
             variable.attrs["units"] = _UNITS.get(name, _REDUCED.get(told, told))
-    data.attrs = {key: value for key, value in attributes.items() if not key.endswith("_bytes")}
+    data.attrs = {key: value for key, value in attributes.items() if key not in amber.BOOKKEEPING}
     data.set_close(opened.close)
     return data
 
@@ -103,6 +110,9 @@ def run(
     another kind never.
 
     `progress(time, duration, collisions)` is called about twice a second.
+
+    SIGINT and SIGTERM take effect after a checkpoint was written: the handlers of the program that calls
+    this are then called, of which Python's own raises KeyboardInterrupt.
 
     Raises SceneError for settings that cannot be, and for a file that cannot be written; SimulationError
     if the run breaks an invariant, with its state kept in `path.failed.npz`.
@@ -143,7 +153,7 @@ def _carry_out(wanted: Recipe, path: Path, every: float, progress: Progress | No
         with _locked(partial) as file:
             # once more: another process may have finished or begun a run before the lock
             if not _is_finished(wanted, path, overwrite):
-                _record(wanted, simulation, file, path, every, progress)
+                _record(wanted, simulation, file, path, every, progress, overwrite)
                 place(partial, path, TRAJECTORY, overwrite)
                 remove_checkpoint(checkpoint)
     return path
@@ -164,11 +174,25 @@ def _is_finished(wanted: Recipe, path: Path, overwrite: bool) -> bool:
 
 
 def _holds(path: Path, wanted: Recipe, frames: int) -> bool:
-    """Whether a file is of this run, and of so many frames."""
+    """Whether a file is of this run, of so many frames, and undamaged."""
     if not begun_as(path, wanted):
         return False
-    with path.open("rb") as file:
+    with suppress(SceneError), path.open("rb") as file:
+        check_frames(path)
         return amber.frame_count(file) == frames
+    return False
+
+
+def _can_keep(partial: Path, frames: int, overwrite: bool) -> bool:
+    """Whether the first frames are as they were written. SceneError if not, unless they may be replaced."""
+    try:
+        check_frames(partial, frames)
+    except SceneError as error:
+        if overwrite:
+            return False
+        rule = f"{error.rule}; overwrite it (--force) to start again"
+        raise SceneError("path", str(partial), rule) from None
+    return True
 
 
 def _is_blank(path: Path) -> bool:
@@ -193,19 +217,19 @@ def _record(
     path: Path,
     every: float,
     progress: Progress | None,
+    overwrite: bool,
 ) -> None:
     """Write all frames that the open partial file is still without."""
-    partial, checkpoint = partial_path(path), checkpoint_path(path)
+    partial = partial_path(path)
     continued = begun_as(partial, wanted)
     header = wanted.header(stored_revision(partial) if continued else provenance.git_revision())
-    found = read_checkpoint(checkpoint, header) if continued else None
+    found = read_checkpoint(checkpoint_path(path), header) if continued else None
     kept = 0
-    if found and found.frames <= amber.frame_count(file):
+    if found and found.frames <= amber.frame_count(file) and _can_keep(partial, found.frames, overwrite):
         simulation.restore(found.arrays)
         kept = found.frames
     frames = amber.Frames(file, wanted.layout, header, kept)
-    recording = Recording(wanted, simulation, frames, header, checkpoint, every, progress)
-    recording.finish(failed=path.with_name(path.name + ".failed.npz"))
+    Recording(wanted, simulation, frames, header, path, every, progress).finish()
 
 
 @contextmanager

@@ -104,7 +104,18 @@ def flagged(path, kind):
 # touches. As inputs they would be half a million files for ten thousand points, each of them asked after in turn.
 # `{family}` stands for the family of a figure, `*` for every module of a package; FAMILY_MODULES are what single
 # families use beside. tests/workflow/test_modules.py compares these tables with the import graph of the scripts.
-SCENE = ["__init__", "errors", "files", "matter", "room", "scene", "surfaces", "validation", "yaml_text"]
+SCENE = [
+    "__init__",
+    "errors",
+    "files",
+    "interruption",
+    "matter",
+    "room",
+    "scene",
+    "surfaces",
+    "validation",
+    "yaml_text",
+]
 ENGINES = [
     "beside",
     "boxes",
@@ -132,7 +143,7 @@ TRAJECTORY = ["amber", "checkpoint", "provenance", "recipe", "recording", "traje
 SIMULATE = [*SCENE, *ENGINES, *TRAJECTORY]
 THEORY = ["theory/*", "theory/data/*.csv"]
 RENDERING = [f"rendering/{name}" for name in ("__init__", "bodies", "camera", "discs", "pictures", "tracer")]
-CLAIMS = ["__init__", "errors", "files", "claims/__init__"]
+CLAIMS = ["__init__", "errors", "files", "interruption", "claims/__init__"]
 MODULES = {
     "simulate": SIMULATE,
     "measure_cost": [*SCENE, *ENGINES, "measure/__init__", "measure/cost"],
@@ -172,9 +183,18 @@ MODULES = {
     ],
     "judge": [*CLAIMS, *THEORY, "claims/{family}"],
     "claims": CLAIMS,
-    "draw": ["__init__", "errors", "files", *THEORY, "figures/__init__", "figures/style", "figures/{family}"],
+    "draw": [
+        "__init__",
+        "errors",
+        "files",
+        "interruption",
+        *THEORY,
+        "figures/__init__",
+        "figures/style",
+        "figures/{family}",
+    ],
     "animate": [*SIMULATE, "figures/__init__", "figures/style", *RENDERING, "rendering/films"],
-    "report": ["__init__", "errors", "families", "files", "provenance"],
+    "report": ["__init__", "errors", "families", "files", "interruption", "provenance"],
 }
 FAMILY_MODULES = {
     ("measure", "extremes"): ["extremes/*"],

@@ -11,7 +11,9 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "src"))
 
 from gaspart.errors import SceneError, SimulationError
+from gaspart.interruption import exit_on_signals
 
+exit_on_signals()  # before the scripts import what takes long
 gc.set_threshold(1_000_000)  # half a million objects that stay are not looked through again and again: 0.15 s
 
 
@@ -19,24 +21,32 @@ gc.set_threshold(1_000_000)  # half a million objects that stay are not looked t
 def job(snakemake):
     """Send what is printed to the rule's log. A failure is one line, there and on the terminal.
 
-    A user's mistake leaves no traceback and gives exit code 2; anything else leaves one, in the log alone.
+    A user's mistake leaves no traceback and gives exit code 2; anything else leaves one, in the log alone. So
+    is the end by a signal one line: exit code 130 or 143, and what can be continued was saved.
     """
-    terminal = os.fdopen(os.dup(2), "w", encoding="utf-8")
+    name = " ".join(["gaspart:", snakemake.rule, *snakemake.wildcards])
+    terminal = os.dup(2)
     with open(snakemake.log[0], "w", buffering=1, encoding="utf-8") as log:
         for stream in (sys.stdout, sys.stderr):
             stream.flush()
             os.dup2(log.fileno(), stream.fileno())
+
+        def report(text):
+            """Write without locks, which another thread may hold."""
+            line = f"{name}: {text}"
+            for number, where in ((terminal, f" ({snakemake.log[0]})"), (log.fileno(), "")):
+                with suppress(OSError):  # the log may be what there is no room for
+                    os.write(number, f"{line}{where}\n".encode(errors="surrogateescape"))
+
+        exit_on_signals(report)
         try:
             yield
         except Exception as error:
             expected = isinstance(error, (SceneError, SimulationError, OSError))
-            told = str(error) if expected else f"{type(error).__name__}: {error}"
-            line = " ".join(["gaspart:", snakemake.rule, *snakemake.wildcards]) + f": {told}"
-            print(f"{line} ({snakemake.log[0]})", file=terminal, flush=True)
-            with suppress(OSError):  # the log may be what there is no room for
-                if not expected:
+            if not expected:
+                with suppress(OSError):
                     traceback.print_exc(file=log)
-                print(line, file=log)
+            report(str(error) if expected else f"{type(error).__name__}: {error}")
             sys.exit(2 if expected else 1)
 
 

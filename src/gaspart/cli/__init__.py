@@ -1,13 +1,15 @@
 """The command line: a module for each command, which adds it to the parser and carries it out.
 
-A user's mistake is one line on stderr and exit code 2; a run that broke an invariant, or something that
-`check` finds wrong, 1; Ctrl-C, 130.
+A user's mistake is one line on stderr and exit code 2. A run that broke an invariant, a file or memory that
+failed, or something that `check` finds wrong: 1. An interruption: 130 (SIGINT) or 143 (SIGTERM).
 """
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
+from typing import TextIO
 
 from gaspart import __version__
 from gaspart.cli.advise import add_advise
@@ -21,6 +23,7 @@ from gaspart.cli.render import add_render
 from gaspart.cli.run import add_resume, add_run
 from gaspart.cli.theory import add_theory
 from gaspart.errors import SceneError, SimulationError
+from gaspart.interruption import interrupted, set_note
 
 _COMMANDS = {
     "run": add_run,
@@ -38,28 +41,49 @@ _COMMANDS = {
 def main(arguments: Sequence[str] | None = None) -> int:
     """Carry out a command line; returns the exit code."""
     try:
-        given = _parser().parse_args(arguments)
-        given.command(given)
+        set_note("")
+        try:
+            given = _parser().parse_args(arguments)
+            given.command(given)
+        finally:
+            sys.stdout.flush()  # here, where a full disk can still be reported
     except (SceneError, UsageError) as error:
-        return _complain(error, 2)
+        return _complain(f"error: {error}", 2)
     except Wrong:
         return 1
-    except MemoryError:
-        return _complain("there is not enough memory for this", 2)
     except SimulationError as error:
-        return _complain(error, 1)
+        return _complain(f"error: {error}", 1)
     except KeyboardInterrupt:
-        return _complain("interrupted; an unfinished run is kept, and `gaspart resume` goes on with it", 130)
+        return _complain(interrupted(), 130)
+    except MemoryError:
+        return _complain("error: there is not enough memory for this", 1)
     except BrokenPipeError:  # the reader of the output, `head` say, has had enough
-        sys.stderr.close()
-        return 0
+        _discard(sys.stdout)
+    except OSError as error:
+        where = error.filename or "a file or the standard output"
+        return _complain(f"error: {where}: {error.strerror or error}", 1)
     return 0
 
 
-def _complain(error: object, code: int) -> int:
-    text = " ".join(str(error).split())
-    print(f"{clear_line()}gaspart: error: {text}", file=sys.stderr)
+def _complain(text: str, code: int) -> int:
+    """Print one line on stderr; returns the exit code."""
+    for stream, line in (
+        (sys.stdout, ""),
+        (sys.stderr, f"{clear_line()}gaspart: {' '.join(text.split())}\n"),
+    ):
+        try:
+            stream.write(line)
+            stream.flush()
+        except OSError:  # full or closed: the exit code must do
+            _discard(stream)
     return code
+
+
+def _discard(stream: TextIO) -> None:
+    """Send what a stream still holds to the null device, where the interpreter can flush it."""
+    null = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null, stream.fileno())
+    os.close(null)
 
 
 def _parser() -> Parser:

@@ -28,7 +28,7 @@ def add_info(commands: Commands) -> None:
 
 def _info(given: argparse.Namespace) -> None:
     from gaspart.inspection.certificate import certificate
-    from gaspart.recipe import opened, read_recipe
+    from gaspart.recipe import check_frames, opened, read_recipe
     from gaspart.trajectory import partial_path
 
     path = Path(given.trajectory)
@@ -39,6 +39,7 @@ def _info(given: argparse.Namespace) -> None:
     if given.scene:
         print(stored["scene"], end="")
         return
+    check_frames(found)
     scene = recipe.scene
     state = "whole" if frames == recipe.frames else "unfinished: `gaspart resume` goes on with it"
     versions = [f"{key.removesuffix('_version')} {stored[key]}" for key in stored if key.endswith("_version")]
@@ -49,6 +50,7 @@ def _info(given: argparse.Namespace) -> None:
     print(f"{found}: {stored['title']}, {frames} of {recipe.frames} frames, {state}")
     print(f"packing fraction {scene.packing_fraction:.6g}, number density {scene.number_density:.6g}")
     print("\n".join(certificate(found)))
+    print(f"checksums: the header and {'all frames' if frames else 'no frames yet'} are as they were written")
     print(f"written by {', '.join(versions)}; revision {stored.get('git_revision', 'none')}")
     print("made again, to the same bits, by")
     print("\n".join(f"    {line}" for line in remake))

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from gaspart.cli.arguments import Commands, several
 from gaspart.cli.progress import clear_line, progress
+from gaspart.interruption import set_note
 
 _ENGINE_SETTINGS: tuple[str, ...] = ("time_step", "boxes_per_side", "precision", "rewind", "search")
 _ENGINE_SETTINGS += ("passes", "skin", "near_boxes", "threads")
@@ -70,6 +71,7 @@ def _add_progress(parser: argparse.ArgumentParser) -> None:
 
 
 def _run(given: argparse.Namespace) -> None:
+    set_note("no state was saved yet; the same command starts it again")
     from gaspart.engines import engine_from_dict
     from gaspart.loading import load_numba
     from gaspart.scene import Scene
@@ -102,6 +104,7 @@ def _alone(numbers: tuple[int, ...]) -> int | tuple[int, ...]:
 
 
 def _resume(given: argparse.Namespace) -> None:
+    set_note("nothing was changed; the same command starts it again")
     from gaspart.loading import load_numba
     from gaspart.trajectory import resume
 
@@ -110,5 +113,6 @@ def _resume(given: argparse.Namespace) -> None:
 
 
 def _tell(path: Path) -> None:
-    print(f"{clear_line()}", end="", file=sys.stderr)
+    if wiped := clear_line():  # even an empty line fails where stderr is full
+        print(wiped, end="", file=sys.stderr)
     print(f"{path} is whole; `gaspart info {shlex.quote(str(path))}` tells what it holds")

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from gaspart.amber import BOOKKEEPING
 from gaspart.errors import SceneError
 from gaspart.inspection.frames import Frames, settled
+from gaspart.recipe import check_frames, open_descriptor, opened, read_recipe
 
 KINDS = (".nc", ".gsd", ".xyz")
 
@@ -49,10 +53,10 @@ def read_frames(
 
 def _netcdf(path: Path) -> dict:
     """AMBER's convention, which LAMMPS follows; with more in it where gaspart wrote it."""
-    import netCDF4
-
-    with netCDF4.Dataset(path) as file:
-        own = getattr(file, "program", None) == "gaspart"
+    own = _is_own(path)
+    if own:
+        check_frames(path)
+    with opened(path) if own else _foreign(path) as file:
         if "coordinates" not in file.variables or "frame" not in file.dimensions:
             raise SceneError("file", str(path), "has no coordinates in frames: not AMBER's convention")
 
@@ -73,11 +77,23 @@ def _netcdf(path: Path) -> dict:
     return {key: value for key, value in found.items() if value is not None}
 
 
+def _is_own(path: Path) -> bool:
+    """Whether gaspart wrote a file. The beginning shows it in more than one place, lest damage hide it."""
+    with path.open("rb") as file:
+        head = file.read(4096)
+    return any(name.encode() in head for name in BOOKKEEPING)
+
+
+@contextmanager
+def _foreign(path: Path) -> Iterator[Any]:
+    """A netCDF file of another program."""
+    with path.open("rb") as file, open_descriptor(file) as dataset:
+        yield dataset
+
+
 def _own(path: Path) -> dict:
     """What a trajectory of gaspart says of its scene."""
-    from gaspart.recipe import read_recipe
-
-    scene = read_recipe(path).scene  # raises SceneError for one that is truncated
+    scene = read_recipe(path).scene
     elastic = scene.restitution is None or (scene.restitution.normal == 1.0 and not scene.rough)
     quiet = scene.gravity is None and not scene.faces and not scene.walls and not scene.vibrates
     alike = len({kind.mass for kind in scene.kinds}) == 1

@@ -1,0 +1,191 @@
+"""SIGINT and SIGTERM: when they take effect, and what is done before the process ends.
+
+An exception raised by a signal handler surfaces wherever the interpreter happens to be: also while a compiled
+kernel hands its result over, which then fails with a SystemError. So no handler of this module raises.
+
+`exit_on_signals` is for processes that belong to gaspart: the command line, and the jobs of the workflow. A
+thread waits for the signal, so that imports, compilers and kernels need not return first.
+
+`deferred` is for work that has something to save. In a process of gaspart a signal then waits until the work
+has saved its state; in any other program, a notebook say, that program's own handler is called thereafter.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+from contextlib import contextmanager, suppress
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:  # no module that takes time: until the handlers are set, Ctrl-C is a traceback
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+    from typing import NoReturn
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+_TOGETHER = 1.0  # seconds
+
+
+class Deferral:
+    """Work during which signals wait.
+
+    pending: the signal that waits, if any, and since: when it arrived. unsaved: whether there is work that an
+    exit would lose; before that, a process of gaspart ends at once.
+    """
+
+    def __init__(self) -> None:
+        self.pending: int | None = None
+        self.since = 0.0
+        self.unsaved = False
+        self.handlers: dict[int, Callable | int] = {}
+
+    def receive(self, signum: int, frame: object = None) -> None:
+        """Remember a signal: the handler while the work is under way."""
+        self.pending, self.since = signum, time.monotonic()
+
+    def deliver(self) -> None:
+        """Let the waiting signal, if any, take effect.
+
+        This ends a process of gaspart. Elsewhere the program's own handler is called: that of Python raises
+        KeyboardInterrupt, and SIGTERM ends the process unless it is handled. If the handler returns, so does
+        this method, and the work continues.
+        """
+        signum, self.pending = self.pending, None
+        if signum is None:
+            return
+        if _process.watched:
+            _exit(signum)
+        for number, handler in self.handlers.items():
+            signal.signal(number, handler)
+        try:
+            signal.raise_signal(signum)
+        finally:
+            for number in self.handlers:
+                signal.signal(number, self.receive)
+
+
+class _Process:
+    """What the watching thread knows. announce: prints the one line; note: what is kept of the work."""
+
+    def __init__(self) -> None:
+        self.watched = False
+        self.deferral: Deferral | None = None
+        self.note = ""
+        self.announce: Callable[[str], None] | None = None
+        self.scratch: set[Path] = set()
+        self.lock, self.exiting = threading.Lock(), threading.Lock()
+
+
+_process = _Process()
+
+
+def exit_on_signals(announce: Callable[[str], None] | None = None) -> None:
+    """Let SIGINT and SIGTERM end this process: exit code 130 or 143, one line, no scratch files left.
+
+    announce: prints that line; by default on stderr. Call it again to replace `announce`. Signals that are
+    ignored, as in a process in the background of a shell script, stay ignored. Main thread only.
+    """
+    _process.announce = announce
+    if _process.watched:
+        return
+    _process.watched = True
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
+    threading.Thread(target=_watch, args=(reader,), name="signals", daemon=True).start()
+    for number in SIGNALS:
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, _leave_it_to_the_thread)
+            signal.siginterrupt(number, False)  # C libraries do not all repeat what a signal interrupts
+
+
+def _leave_it_to_the_thread(signum: int, frame: object) -> None:
+    """Do nothing: the interpreter has written the signal's number to the pipe."""
+
+
+def _watch(reader: int) -> None:
+    while numbers := os.read(reader, 64):
+        for signum in numbers:
+            if signum in SIGNALS and not _defer(signum):
+                _exit(signum)
+
+
+def _defer(signum: int) -> bool:
+    """Whether a signal can wait. A repeated one does not, because files are resumable at any moment; unless
+    it comes with the first, as when a terminal and a parent process both send one."""
+    with _process.lock:
+        deferral = _process.deferral
+        if deferral is None or not deferral.unsaved:
+            return False
+        if deferral.pending is None:
+            deferral.receive(signum)
+        return time.monotonic() - deferral.since < _TOGETHER
+
+
+def _exit(signum: int) -> NoReturn:
+    """End the process, from whatever thread."""
+    _process.exiting.acquire()  # never released: the first of two threads ends the process
+    for path in tuple(_process.scratch):
+        with suppress(OSError):
+            path.unlink()
+    announce = _process.announce or _announce
+    with suppress(OSError, ValueError):
+        announce(interrupted(signum))
+    os._exit(128 + signum)
+
+
+def _announce(text: str) -> None:
+    """Print a line on stderr without its locks, which the main thread may hold."""
+    clear = "\r\033[K" if os.isatty(2) else ""
+    os.write(2, f"{clear}gaspart: {text}\n".encode(errors="surrogateescape"))
+
+
+def interrupted(signum: int = signal.SIGINT) -> str:
+    """One line on an interruption, and on what is kept."""
+    how = "interrupted" if signum == signal.SIGINT else "terminated"
+    return f"{how}; {_process.note}" if _process.note else how
+
+
+def set_note(text: str) -> None:
+    """State what is kept of the work, for the line that is printed at an interruption."""
+    _process.note = text
+
+
+@contextmanager
+def scratch_file(path: Path) -> Iterator[None]:
+    """Remove a scratch file if a signal ends the process within this block."""
+    _process.scratch.add(path)
+    try:
+        yield
+    finally:
+        _process.scratch.discard(path)
+
+
+@contextmanager
+def deferred() -> Iterator[Deferral]:
+    """Let signals wait for `Deferral.deliver`, or for the end of the block.
+
+    Outside of the main thread, where Python calls no handlers, and for handlers that Python did not install,
+    nothing is changed.
+    """
+    deferral = Deferral()
+    if _process.watched:
+        with _process.lock:
+            _process.deferral = deferral
+    elif threading.current_thread() is threading.main_thread():
+        for number in SIGNALS:
+            handler = signal.getsignal(number)
+            if handler is not None and handler is not signal.SIG_IGN:
+                deferral.handlers[number] = handler
+                signal.signal(number, deferral.receive)
+    try:
+        yield deferral
+    finally:
+        with _process.lock:
+            _process.deferral = None
+        for number, handler in deferral.handlers.items():
+            signal.signal(number, handler)
+        deferral.handlers.clear()
+        deferral.deliver()

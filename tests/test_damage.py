@@ -1,0 +1,228 @@
+"""Damaged trajectories and checkpoints: each is detected, in one line, or costs work and nothing else."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scenes import gas
+
+import gaspart as gp
+from gaspart import recording
+from gaspart.checkpoint import read_checkpoint
+from gaspart.cli import main
+from gaspart.recipe import read_recipe
+from gaspart.trajectory import checkpoint_path, partial_path
+
+SCENE = gas(2, 10, 0.1)
+RECIPE = (SCENE, gp.EventDriven(), 1, 8.0, 0.5)
+NUMBERS = [range(25), pytest.param(range(25, 525), marks=pytest.mark.thorough)]
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """The bytes of a finished trajectory of 17 frames."""
+    return gp.run(*RECIPE, tmp_path_factory.mktemp("whole") / "run.nc").read_bytes()
+
+
+@pytest.fixture(scope="module")
+def unfinished(tmp_path_factory):
+    """The bytes of the same trajectory under way, and of its checkpoint: (partial, checkpoint)."""
+    path, write = tmp_path_factory.mktemp("unfinished") / "run.nc", recording.write_checkpoint
+
+    def write_until_the_middle(*arguments):
+        write(*arguments)
+        if arguments[2] == 9:
+            raise KeyboardInterrupt
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(recording, "write_checkpoint", write_until_the_middle)
+        with pytest.raises(KeyboardInterrupt):
+            gp.run(*RECIPE, path, checkpoint_seconds=0.0)
+    return partial_path(path).read_bytes(), checkpoint_path(path).read_bytes()
+
+
+def damaged(rng, content):
+    """`content` with damage of a random kind, which changes at least one byte."""
+    size = len(content)
+    while True:
+        first, length = int(rng.integers(size)), int(rng.integers(1, 300))
+        # half of the damage is to the header, which is short
+        first = first % 3000 if rng.random() < 0.5 else first
+        block, rest = content[first : first + length], content[first + length :]
+        kind = rng.integers(8)
+        if kind == 0:
+            found = (
+                content[:first] + bytes([content[first] ^ (1 << int(rng.integers(8)))]) + content[first + 1 :]
+            )
+        elif kind == 1:
+            found = content[:first]
+        elif kind == 2:
+            found = content[:first] + rest
+        elif kind == 3:
+            found = content[:first] + bytes(len(block)) + rest
+        elif kind == 4:
+            found = content[:first] + rng.bytes(len(block)) + rest
+        elif kind == 5:
+            found = content[:first] + block + block + rest
+        elif kind == 6:
+            second = int(rng.integers(size))
+            low, high = sorted((first, second))
+            found = content[:low] + content[high : high + length] + content[low + length : high]
+            found += content[low : low + length] + content[high + length :]
+        else:
+            found = content + rng.bytes(length)
+        if found != content:
+            return found
+
+
+def complains(capsys, *arguments):
+    """Whether a command refuses with one line."""
+    code = main([*map(str, arguments)])
+    told = capsys.readouterr().err
+    assert (code, told.count("\n")) in ((0, 0), (2, 1)), (code, told)
+    assert "Traceback" not in told
+    return code == 2
+
+
+@pytest.mark.parametrize("numbers", NUMBERS, ids=["sample", "search"])
+def test_damage_to_a_trajectory_is_detected(tmp_path, capsys, whole, numbers):
+    path = tmp_path / "run.nc"
+    for number in numbers:
+        path.write_bytes(damaged(np.random.default_rng(number), whole))
+        assert complains(capsys, "info", path), number
+        assert complains(capsys, "check", path), number
+        assert complains(capsys, "run", *scene_and_options(tmp_path)), number
+        try:
+            with gp.open_trajectory(path) as data:
+                data.load()
+        except gp.SceneError as error:
+            assert "\n" not in str(error)
+
+
+def scene_and_options(folder):
+    scene = folder / "scene.yaml"
+    if not scene.exists():
+        SCENE.to_file(scene)
+    return [scene, "-o", folder / "run.nc", "--duration", "8", "--sample-interval", "0.5"]
+
+
+@pytest.mark.parametrize("numbers", NUMBERS, ids=["sample", "search"])
+def test_damage_to_an_unfinished_run_is_detected_or_costs_work(tmp_path, capsys, whole, unfinished, numbers):
+    path = tmp_path / "run.nc"
+    for number in numbers:
+        rng = np.random.default_rng(number)
+        contents = list(unfinished)
+        which = int(rng.integers(2))
+        contents[which] = damaged(rng, contents[which])
+        partial_path(path).write_bytes(contents[0])
+        checkpoint_path(path).write_bytes(contents[1])
+        complains(capsys, "info", path)
+        refused = complains(capsys, "resume", path)
+        assert not (refused and which), number  # without a checkpoint it starts again
+        if not refused:
+            assert path.read_bytes() == whole, number
+            path.unlink()
+        assert gp.run(*RECIPE, path, overwrite=True).read_bytes() == whole
+        path.unlink()
+
+
+@pytest.mark.parametrize("numbers", NUMBERS, ids=["sample", "search"])
+def test_edited_attributes_are_detected(tmp_path, capsys, whole, numbers):
+    import netCDF4
+
+    path, values = tmp_path / "run.nc", ["", "[", "nonsense", np.float64(np.nan), np.int32(-1), b"\xff"]
+    for number in numbers:
+        rng = np.random.default_rng(number)
+        path.write_bytes(whole)
+        with netCDF4.Dataset(path, "a") as file:
+            names = file.ncattrs()
+            name = names[rng.integers(len(names))]
+            if rng.random() < 0.5:
+                file.delncattr(name)
+            else:
+                file.setncattr(name, values[rng.integers(len(values))])
+        for command in ("info", "check", "resume"):
+            assert complains(capsys, command, path), (number, name)
+        with pytest.raises(gp.SceneError):
+            gp.open_trajectory(path)
+
+
+def test_frames_in_each_others_place_and_frames_of_another_run_are_detected(tmp_path, capsys, whole):
+    other = gp.run(SCENE, gp.EventDriven(), 2, 8.0, 0.5, tmp_path / "other.nc").read_bytes()
+    path = tmp_path / "run.nc"
+    size = next(size for size in range(len(whole) // 17, 0, -1) if header_ends(whole, size))
+    frames = [whole[len(whole) - (17 - n) * size :][:size] for n in range(17)]
+    header = whole[: len(whole) - 17 * size]
+    exchanged = [frames[1], frames[0], *frames[2:]]
+    foreign = [*frames[:16], other[-size:]]
+    for changed, place in ((exchanged, 0), (foreign, 16)):
+        path.write_bytes(header + b"".join(changed))
+        assert main(["info", str(path)]) == 2
+        assert f"frame {place} is damaged: its checksum does not match" in capsys.readouterr().err
+
+
+def header_ends(content, size):
+    """Whether the frames have this size: each begins with its time."""
+    at = len(content) - 17 * size
+    times = [np.frombuffer(content, ">f8", 1, at + n * size)[0] for n in range(17)]
+    return np.array_equal(times, 0.5 * np.arange(17))
+
+
+def test_a_damaged_frame_stops_a_resumption_and_loses_nothing(tmp_path, whole, unfinished):
+    path = tmp_path / "run.nc"
+    partial, checkpoint = unfinished
+    spoilt = bytearray(partial)
+    spoilt[len(partial) * 3 // 4] ^= 1
+    partial_path(path).write_bytes(spoilt)
+    checkpoint_path(path).write_bytes(checkpoint)
+    with pytest.raises(gp.SceneError, match=r"frame \d+ is damaged: .*--force"):
+        gp.resume(path)
+    assert partial_path(path).read_bytes() == spoilt
+    assert gp.run(*RECIPE, path, overwrite=True).read_bytes() == whole
+
+
+def test_a_checkpoint_with_a_pickle_inside_is_not_loaded(tmp_path, unfinished):
+    class Payload:
+        def __reduce__(self):
+            return Path(tmp_path / "owned").touch, ()
+
+    partial, _ = unfinished
+    path = partial_path(tmp_path / "run.nc")
+    path.write_bytes(partial)
+    header = read_recipe(path).header("")
+    checkpoint = tmp_path / "x.npz"
+    recording.write_checkpoint(checkpoint, header, 1, {"rows": np.array([Payload()], dtype=object)})
+    assert read_checkpoint(checkpoint, header) is None
+    assert not (tmp_path / "owned").exists()
+
+
+def test_a_run_without_a_first_byte_is_named_as_such(tmp_path, capsys):
+    (tmp_path / "run.nc.partial").touch()
+    for command in ("resume", "info"):
+        assert main([command, str(tmp_path / "run.nc")]) == 2
+        told = capsys.readouterr().err
+        assert "nothing was written to it yet; start the run again with `gaspart run`" in told
+    assert main(["run", *map(str, scene_and_options(tmp_path))]) == 0
+
+
+def test_paths_that_name_no_file(capsys):
+    for command in ("resume", "info", "check"):
+        for path in ("", ".", "/"):
+            assert complains(capsys, command, path)
+
+
+def test_names_that_are_not_utf_8(tmp_path, whole):
+    path = Path(str(tmp_path) + "/a\udcff.nc")
+    path.write_bytes(whole)
+    with gp.open_trajectory(path) as data:
+        assert data.sizes["frame"] == 17
+    for command in (["info", path], ["check", path], ["export", path, "-o", tmp_path / "state.data"]):
+        done = subprocess.run(
+            [sys.executable, "-m", "gaspart", *command], capture_output=True,
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+        )  # fmt: skip
+        assert done.returncode == 0 and done.stderr == b""
+        assert command[0] == "export" or os.fsencode(path) in done.stdout
