@@ -7,30 +7,7 @@ PACKAGE = Path(__file__).parents[1] / "src" / "gaspart"
 MOST_LINES = 60
 MOST_ARGUMENTS = 8
 MOST_MODULES = 8
-_STEP = "the time-stepped kernels do not take a model and records yet"
-_ROWS = "computes the variables of one data set in one pass over its points"
-EXCEPTIONS = {
-    "experiments.adsorption.measure._measured": _ROWS,
-    "experiments.film.measure.thin_film": _ROWS,
-    "experiments.insertion.measure.fill_failures": _ROWS,
-    "kernels.insertion.place": "the kernel of random insertion does not take records yet",
-    "kernels.step.loop.run_steps": _STEP,
-    "kernels.step.motion.mend_by_rules": _STEP,
-    "kernels.step.motion.move": _STEP,
-    "kernels.step.motion.move_by_rules": _STEP,
-    "kernels.step.motion.reflect_falling": _STEP,
-    "kernels.step.neighbour_list.note_across": _STEP,
-    "kernels.step.neighbour_list.note_near": _STEP,
-    "kernels.step.neighbour_list.note_row": _STEP,
-    "kernels.step.neighbour_list.search_pairs": _STEP,
-    "kernels.step.resolve.resolve": _STEP,
-    "kernels.step.resolve.resolve_all": _STEP,
-    "kernels.step.threads.move_shared": _STEP,
-    "kernels.step.threads.search_list": _STEP,
-    "kernels.step.threads.search_part": _STEP,
-    "kernels.step.threads.search_shared": _STEP,
-    "trajectory.run.run": "public; DESIGN 4 states six arguments, and the others are keywords",
-}
+EXCEPTIONS = {"trajectory.run.run": "public: six positional arguments, and the others are keywords"}
 """Functions that exceed a limit, each with the reason."""
 
 
