@@ -31,7 +31,7 @@ def _follow(following, steps):
 
 
 def read_latency(words: int = WORDS, steps: int = 1_000_000, repeats: int = 5) -> float:
-    """ns of a read whose place the one before tells, anywhere in memory; the median of the repeats."""
+    """ns of a read whose address the one before holds, anywhere in memory; the median of the repeats."""
     order = np.random.default_rng(1).permutation(words)
     following = np.empty(words, dtype=np.int64)
     following[order] = np.roll(order, -1)  # one ring through all words

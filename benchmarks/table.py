@@ -38,25 +38,25 @@ def table(run: dict) -> pd.DataFrame:
 
 
 def _row(one: dict, machine: dict) -> dict:
-    told = one["extra_info"]
+    info = one["extra_info"]
     reads = machine["read_latency_ns"]
-    row = {"feature": "", **{key: told[key] for key in COLUMNS if key in told}}
+    row = {"feature": "", **{key: info[key] for key in COLUMNS if key in info}}
     row |= {"copy_bandwidth_GB_s": machine["copy_bandwidth_GB_s"], "read_latency_ns": reads}
-    values = np.array(told.get("values") or one["stats"]["data"], dtype=float)
-    if told["engine"] == "event":
-        values = np.array(told["stretches"]) / np.array(told["seconds"])
-    elif told["engine"] == "step":
-        values = np.array(told["seconds"]) / np.array(told["stretches"])
+    values = np.array(info.get("values") or one["stats"]["data"], dtype=float)
+    if info["engine"] == "event":
+        values = np.array(info["stretches"]) / np.array(info["seconds"])
+    elif info["engine"] == "step":
+        values = np.array(info["seconds"]) / np.array(info["stretches"])
     low, value, high = np.percentile(values, [25, 50, 75])
     row |= {"value": value, "spread": 0.5 * (high - low), "rounds": len(values)}
-    contacts = told.get("collisions", 0)
+    contacts = info.get("collisions", 0)
     if contacts:
-        row["tests_per_contact"] = told["pair_tests"] / contacts
-        row["crossings_per_contact"] = told["crossings"] / contacts
-    if told["engine"] == "event":
-        row |= {"ratio": value / told["peer_value"], "value_in_random_reads": 1e9 / value / reads}
-    elif told["engine"] == "step":
-        row |= {"ratio": told["peer_value"] / value, "value_in_random_reads": value / reads}
+        row["tests_per_contact"] = info["pair_tests"] / contacts
+        row["crossings_per_contact"] = info["crossings"] / contacts
+    if info["engine"] == "event":
+        row |= {"ratio": value / info["peer_value"], "value_in_random_reads": 1e9 / value / reads}
+    elif info["engine"] == "step":
+        row |= {"ratio": info["peer_value"] / value, "value_in_random_reads": value / reads}
     return row
 
 

@@ -11,7 +11,7 @@ import gaspart as gp
 from gaspart.state.initial import initial_state
 
 START = """
-from gaspart.loading import load_numba
+from gaspart.kernels.numba_loading import load_numba
 load_numba(ours=True)
 import gaspart as gp
 scene = gp.Scene(gp.Container((20.0, 20.0)), [gp.Species(10, 0.5, speed=1.0)])
@@ -19,7 +19,7 @@ gp.Simulation(scene, gp.EventDriven(), seed=1).advance(max_events=10)
 """
 
 
-def told(benchmark, name, unit, **rest):
+def record(benchmark, name, unit, **rest):
     benchmark.extra_info.update(engine=name, unit=unit, **rest)
 
 
@@ -32,7 +32,7 @@ def test_a_job_starts(benchmark, small):
 
     start()  # fills the caches
     benchmark.pedantic(start, rounds=1 if small else 7)
-    told(benchmark, "start of a job", "s")
+    record(benchmark, "start of a job", "s")
 
 
 def test_random_insertion(benchmark, small):
@@ -42,7 +42,7 @@ def test_random_insertion(benchmark, small):
     scene = gp.Scene(cases.scene(case).container, [kind])
     initial_state(gp.Scene(scene.container, [gp.Species(10, 0.5, temperature=1.0)]), seed=1)
     benchmark.pedantic(lambda: initial_state(scene, seed=1), rounds=1)
-    told(benchmark, "random insertion", "s", count=case.count, dimension=3, packing_fraction=0.3)
+    record(benchmark, "random insertion", "s", count=case.count, dimension=3, packing_fraction=0.3)
 
 
 def test_a_trajectory_is_written(benchmark, small, tmp_path):
@@ -65,7 +65,7 @@ def test_a_trajectory_is_written(benchmark, small, tmp_path):
         shares.append((time.perf_counter() - start - plain) / plain)
 
     benchmark.pedantic(both, rounds=1 if small else 5)
-    told(
+    record(
         benchmark, "writing a trajectory", "share of the run",
         count=case.count, dimension=3, packing_fraction=0.3, values=shares,
     )  # fmt: skip

@@ -27,7 +27,7 @@ def bytes_of(thing, seen=None):
     return 0
 
 
-def told(benchmark, case, sim, seconds, stretches):
+def record(benchmark, case, sim, seconds, stretches):
     """What is written beside the times."""
     tally = sim.tally
     # without what only the face keeps: the state that the run began with
@@ -69,7 +69,7 @@ def test_events(benchmark, case, small):
         sim.advance(max_events=most)
 
     seconds = timed(benchmark, advance, 1 if small else ROUNDS)
-    told(benchmark, case, sim, seconds, [sim.tally.collisions / len(seconds)] * len(seconds))
+    record(benchmark, case, sim, seconds, [sim.tally.collisions / len(seconds)] * len(seconds))
     assert sim.tally.collisions > 0
 
 
@@ -84,5 +84,5 @@ def test_steps(benchmark, case, small):
     seconds = timed(
         benchmark, lambda: sim.advance(duration=(steps + 0.1) * engine.time_step), 1 if small else ROUNDS
     )
-    told(benchmark, case, sim, seconds, [1e-9 * case.count * steps] * len(seconds))
+    record(benchmark, case, sim, seconds, [1e-9 * case.count * steps] * len(seconds))
     assert sim.tally.steps >= steps

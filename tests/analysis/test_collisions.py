@@ -65,7 +65,7 @@ def test_invalid_input_is_refused():
     with pytest.raises(gp.SceneError, match="collisions = 0"):
         gp.collision_data(gas(2, 20, 0.2), 0)
     with pytest.raises(gp.SimulationError, match="no event"):
-        gp.collision_data(gp.Scene(gp.Container((9.0, 9.0), "periodic"), [gp.Species(1, 0.5)]), 10)
+        gp.collision_data(gp.Scene(gp.Container((9.0, 9.0), "periodic"), [gp.Species(2, 0.5)]), 10)
     mixed = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(5, r, speed=1.0) for r in (0.3, 0.5)])
     with pytest.raises(gp.SceneError, match="equal particles"):
         gp.contact_value(gp.collision_data(mixed, 50))

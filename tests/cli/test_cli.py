@@ -97,7 +97,7 @@ def test_resume_and_info_of_an_unfinished_run(folder, capsys):
             r"bodies\[1\]\.position = .*: overlaps bodies\[0\]",
             id="overlapping bodies",
         ),
-        pytest.param(GAS.replace("0.5", "7.0"), [], "radius = 7.0: a body must fit", id="body too large"),
+        pytest.param(GAS.replace("0.5", "7.0"), [], "radius = 7.0: a particle must fit", id="body too large"),
         pytest.param(
             GAS, ["--boxes-per-side", "13"], "boxes_per_side = 13: boxes must not", id="narrow boxes"
         ),

@@ -49,16 +49,16 @@ def test_a_run_stops_exactly_when_it_should():
 
 
 @pytest.mark.parametrize(
-    ("position", "told"),
+    ("position", "problem"),
     [
         ((6.0, 6.4), "overlaps bodies"),
-        ((0.4, 6.0), "wholly inside the container"),
+        ((0.4, 6.0), "completely inside the container"),
         ((9.0, 2.3), "overlaps walls"),
     ],
 )
-def test_overlapping_input_is_refused(position, told):
+def test_overlapping_input_is_refused(position, problem):
     """There, discs may begin within each other, within walls and outside of the container."""
     sim = sent((6.0, 6.0), (1.0, 0.0), [gp.Wall((8.0, 2.0), (10.0, 2.0))])
-    with pytest.raises(gp.SceneError, match=told):
+    with pytest.raises(gp.SceneError, match=problem):
         sim.add(position, (0.0, 0.0), 0.5)
     assert sim.scene.count == 1

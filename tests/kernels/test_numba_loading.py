@@ -7,7 +7,7 @@ import pytest
 
 CODE = """
 import gc, sys
-from gaspart.loading import load_numba
+from gaspart.kernels.numba_loading import load_numba
 load_numba(ours={ours})
 assert gc.isenabled() and gc.get_freeze_count() > 100_000
 assert "scipy.linalg.cython_blas" not in sys.modules or not {ours}

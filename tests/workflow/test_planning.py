@@ -62,7 +62,7 @@ import sys
 before = set(sys.modules)
 sys.path.insert(0, {scripts!r})
 import _job
-from gaspart.loading import load_numba
+from gaspart.kernels.numba_loading import load_numba
 load_numba(ours=True)
 import gaspart as gp
 discs = gp.Species(16, 0.5, temperature=1.0, arrangement="lattice")
