@@ -223,7 +223,7 @@ def test_a_config_may_lie_anywhere_and_its_scenes_beside_it(tmp_path, monkeypatc
     (tmp_path / "elsewhere").mkdir()
     monkeypatch.chdir(tmp_path / "elsewhere")
     (config_check,) = judge_config(own)
-    assert str(config_check) == "ok    config: 1 experiments of 1 points, up to 3 bodies; 1 figures"
+    assert str(config_check) == "ok    config: 1 experiments of 1 points, up to 3 particles; 1 figures"
     assert predict(own)[0].startswith("gas")
     own.write_text("experiments: [3]\n")
     for command in (judge_config, predict):
