@@ -32,7 +32,7 @@ WRITERS = {
 # Forked where all is loaded, so that the processes differ by the given times and not by those of imports.
 FORKING = """
     import os, sys, time
-    import gaspart.exports, gsd.hoomd, gaspart.collisions, gaspart.trajectory, gaspart.simulation
+    import gaspart.trajectory.export, gsd.hoomd, gaspart.analysis.collisions, gaspart.trajectory.run
     from gaspart.cli import main
 
     def carry_out(line, delay, number):

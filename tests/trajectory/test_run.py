@@ -377,9 +377,9 @@ def test_without_a_home_there_is_a_cache_all_the_same(tmp_path, chosen):
         def unknown(user):
             raise KeyError(user)
         pwd.getpwuid = unknown
-        import gaspart.cache, numba
-        print(gaspart.cache.usable_cache("digest"))
-        import gaspart.kernel
+        import gaspart.kernels.cache, numba
+        print(gaspart.kernels.cache.usable_cache("digest"))
+        import gaspart.kernels.compilation
     """
     environment = {key: value for key, value in _environment().items() if key not in _CACHES}
     environment |= {"TMPDIR": str(tmp_path)} | ({"GASPART_CACHE": str(tmp_path / "mine")} if chosen else {})
