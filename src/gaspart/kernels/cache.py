@@ -48,7 +48,7 @@ def _is_writable(directory: Path) -> bool:
 
 
 def _temporary(version: str) -> Path | None:
-    """A temporary folder that only this user may write to, lest others place machine code in it."""
+    """A temporary folder that only this user may write to, so that no other places machine code in it."""
     try:
         own = Path(tempfile.gettempdir()) / f"gaspart-{os.getuid()}"
         own.mkdir(mode=0o700, exist_ok=True)

@@ -8,12 +8,11 @@ in another file changes.
 from __future__ import annotations
 
 import hashlib
-import os
-import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
+from gaspart.kernels.cache import usable_cache
 from gaspart.kernels.numba_loading import load_numba
 
 numba = load_numba()
@@ -30,35 +29,14 @@ def source_digest() -> str:
     return digest.hexdigest()[:16]
 
 
-def cache_directory() -> Path:
-    """Where compiled kernels are kept: $GASPART_CACHE, or the user's cache folder."""
-    home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(os.environ.get("GASPART_CACHE") or Path(home) / "gaspart") / source_digest()
-
-
-def _writable(directory: Path) -> bool:
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return False
-    return os.access(directory, os.W_OK)
-
-
-_CACHE = cache_directory()
-_CACHING = _writable(_CACHE)
-if not _CACHING:
-    warnings.warn(
-        f"gaspart: cannot write the kernel cache {_CACHE}; compiling anew in every process "
-        "(set GASPART_CACHE to a writable folder)",
-        stacklevel=2,
-    )
+_CACHE = usable_cache(source_digest())
 
 
 def _compile(function: F, **options: Any) -> F:
     before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(_CACHE)
+    numba.config.CACHE_DIR = str(_CACHE or before)
     try:
-        return numba.njit(cache=_CACHING, nogil=True, error_model="numpy", **options)(function)
+        return numba.njit(cache=_CACHE is not None, nogil=True, error_model="numpy", **options)(function)
     finally:
         numba.config.CACHE_DIR = before
 
