@@ -28,11 +28,8 @@ def processor_time(work):
     return end.ru_utime + end.ru_stime - start.ru_utime - start.ru_stime
 
 
-def test_nothing_to_do_takes_less_than_three_seconds(smoke):
-    def nothing():
-        assert smoke.plan(*SMOKE) == {}
-
-    assert min(processor_time(nothing) for _ in range(3)) < 3.0
+def test_after_a_run_nothing_is_to_be_done(smoke):
+    assert smoke.plan(*SMOKE) == {}
 
 
 @pytest.mark.thorough
@@ -140,7 +137,8 @@ def test_editing_the_physics_of_a_contact_simulates_everything_again(smoke):
         undo()
     assert set(plan) >= {"warm", "simulate", "compute", "measure", "judge", "draw"}
     config, _ = laid_over(ROOT / "config/smoke.yaml")
-    jobs = Counter(point.job for name in config["experiments"] for point in points(config, name))
+    shown = {name for block in config["figures"].values() for name in block["experiments"]}
+    jobs = Counter(point.job for name in shown for point in points(config, name))
     assert jobs["fill"] > 0  # without contacts
     assert plan["compute"] == jobs.total() - jobs["simulate"] - jobs["fill"]
 

@@ -33,8 +33,13 @@ def closure(*roots: str | Path) -> frozenset[Path]:
         for path in imported(queue.pop()) - found:
             found.add(path)
             queue.append(path)
-    tables = {table for path in found for table in path.parent.glob("data/*.csv")}
-    return frozenset(found | tables)
+    folders = {path.parent for path in found}
+    return frozenset(found.union(*map(_tables, folders)))
+
+
+@cache
+def _tables(folder: Path) -> frozenset[Path]:
+    return frozenset(folder.glob("data/*.csv"))
 
 
 @cache
