@@ -18,7 +18,7 @@ from gaspart.kernels import flight, insertion, model
 from gaspart.kernels.event import box_search as search
 from gaspart.kernels.event import loop as event_kernels
 from gaspart.kernels.event import prefetch as ahead
-from gaspart.kernels.obstacles import plate, segment
+from gaspart.kernels.obstacles import distance
 from gaspart.kernels.step import neighbour_list as step_list
 from gaspart.kernels.step import resolve as step_contacts
 
@@ -138,7 +138,7 @@ def read_fields():
     """Let Python read the fields of records as the compiled kernels do: flights[i].position."""
     plain = model.flight_dtype
     model.flight_dtype = lambda dimension: np.dtype((np.record, plain(dimension)))
-    for module, name in ((model, "PREDICTION"), (segment, "SEGMENT"), (plate, "PLATE")):
+    for module, name in ((model, "PREDICTION"), (distance, "SEGMENT"), (distance, "PLATE")):
         setattr(module, name, np.dtype((np.record, getattr(module, name))))
 
 

@@ -126,7 +126,7 @@ class Faces(NamedTuple):
 
 
 class InteriorWalls(NamedTuple):
-    """rows (M, 5) or (M, 11) and wall (M,), see `obstacles.segment` and `obstacles.plate`; listed[first[b] :
+    """rows (M, 5) or (M, 11) and wall (M,), see `obstacles.distance`; listed[first[b] :
     first[b + 1]] are those near box b, for particles of a radius up to `largest_radius`; those for larger
     ones, all, follow the last box."""
 

@@ -1,6 +1,6 @@
 """Interior walls as arrays: one row per wall, and per image of it that comes near a periodic face.
 
-Rows of segments and plates are described in `kernels.obstacles.segment` and `.plate`. Particles meet
+Rows of segments and plates are described in `kernels.obstacles.distance`. Particles meet
 a wall near a periodic face across it too, so a wall has an image wherever one is within a radius of the
 container.
 """
@@ -20,8 +20,7 @@ _SLACK = 1e-9  # by which neighbourhoods are drawn wider, so that rounding leave
 
 def wall_rows(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """(M,) segments or plates, and (M,) the index of the wall that each row represents."""
-    from gaspart.kernels.obstacles.plate import PLATE
-    from gaspart.kernels.obstacles.segment import SEGMENT
+    from gaspart.kernels.obstacles.distance import PLATE, SEGMENT
 
     lengths, reach = np.array(scene.container.lengths), scene.largest_radius * (1 + _SLACK)
     rows, walls = [], []

@@ -1,6 +1,15 @@
-"""From a point to the nearest point of an interior wall (rows as in `segment` and `plate`)."""
+"""From a point to the nearest point of an interior wall of the rows below."""
+
+import numpy as np
 
 from gaspart.kernels.compilation import helper
+
+SEGMENT = np.dtype([("start", "f8", 2), ("direction", "f8", 2), ("length", "f8")])
+"""A row of a segment: its start, the unit vector along it, its length."""
+PLATE = np.dtype(
+    [("corner", "f8", 3), ("along", "f8", 3), ("length", "f8"), ("across", "f8", 3), ("width", "f8")]
+)
+"""A row of a plate: a corner, and the unit vectors along its two edges with their lengths."""
 
 
 @helper

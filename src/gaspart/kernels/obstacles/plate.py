@@ -5,8 +5,6 @@ Everything is computed in the plate's own axes: along its two edges, and across 
 
 from math import inf
 
-import numpy as np
-
 from gaspart.kernels.ballistic import (
     flown,
     time_of_summit,
@@ -18,11 +16,6 @@ from gaspart.kernels.compilation import inner_helper, inner_kernel
 from gaspart.kernels.contact import time_to_contact
 from gaspart.kernels.flight import acceleration_of
 from gaspart.kernels.obstacles.resting import rests_on, time_to_leave
-
-PLATE = np.dtype(
-    [("corner", "f8", 3), ("along", "f8", 3), ("length", "f8"), ("across", "f8", 3), ("width", "f8")]
-)
-"""A row of a plate: a corner, and the unit vectors along its two edges with their lengths."""
 
 
 @inner_helper

@@ -2,16 +2,11 @@
 
 from math import inf
 
-import numpy as np
-
 from gaspart.kernels.ballistic import time_to_contact_pulled, time_to_far_side, time_to_side
 from gaspart.kernels.compilation import inner_kernel
 from gaspart.kernels.contact import time_to_contact
 from gaspart.kernels.flight import acceleration_of
 from gaspart.kernels.obstacles.resting import rests_on, time_to_leave
-
-SEGMENT = np.dtype([("start", "f8", 2), ("direction", "f8", 2), ("length", "f8")])
-"""A row of a segment: its start, the unit vector along it, its length."""
 
 
 @inner_kernel
