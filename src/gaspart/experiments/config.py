@@ -56,7 +56,7 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> None:
 def _check_values(config: object) -> None:
     """Raise SceneError unless a config is a tree of mappings, lists and plain values, not too deep and not
     too large, whose numbers are finite and neither too large nor too small to compute with."""
-    left = [("", config, 0)]  # a stack, lest a deep config exhaust Python's own
+    left = [("", config, 0)]  # a stack, so that a deep config does not exhaust Python's own
     for count in range(MOST_VALUES):
         if not left:
             return
