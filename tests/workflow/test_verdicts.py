@@ -42,7 +42,8 @@ def test_make_prints_the_verdicts_with_or_without_work(judged):
     claims.collect([judged.path / "results/claims/virial_discs.csv"]).to_csv(table, index=False)
     (judged.path / "Makefile").write_text((ROOT / "Makefile").read_text() + "\nverdicts:\n\t$(VERDICTS)\n")
     (judged.path / ".venv").symlink_to(ROOT / ".venv")
-    done = subprocess.run(["make", "verdicts"], cwd=judged.path, capture_output=True, text=True)
+    command = ["make", "--no-print-directory", "verdicts"]
+    done = subprocess.run(command, cwd=judged.path, capture_output=True, text=True)
     assert done.stdout.splitlines() == [COUNTS, NAMED], done.stderr
     recipes = re.findall(r"^(all|smoke): setup\n((?:\t.*\n)+)", (ROOT / "Makefile").read_text(), re.MULTILINE)
     assert all("$(VERDICTS)" in recipe for _, recipe in recipes) and len(recipes) == 2

@@ -109,7 +109,7 @@ def test_what_cannot_be_measured_is_refused(made_up):
     found = [(t[:60], x[:60], v[:60]) for t, x, v in paths(setting, 2)]
     with pytest.raises(gp.SceneError, match="must be .* or more"):
         brownian.brownian_msd([made_up(short, found)], {})
-    with pytest.raises(gp.SceneError, match="one body and one species"):
+    with pytest.raises(gp.SceneError, match="one entry of bodies and one species"):
         brownian.setting_of(point(scene="config/scenes/brownian.yaml", **{"scene.bodies": []}))
 
 

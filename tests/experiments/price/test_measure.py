@@ -89,13 +89,14 @@ def is_full(record):
 
 
 def test_all_optional_arguments_of_the_kernels_are_features_or_choices_of_a_method():
-    methods = {"queue", "threads", "cells", "partition", "square"}
+    methods = {"queue", "threads", "cells", "boxes", "square"}
     optional = {
         test.left.id
         for path in (ROOT / "src/gaspart/kernels").rglob("*.py")
         for test in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
         if isinstance(test, ast.Compare) and isinstance(test.ops[0], ast.Is | ast.IsNot)
-        if isinstance(test.left, ast.Name) and ast.unparse(test.comparators[0]) == "None"
+        if isinstance(test.left, ast.Name) and test.left.id.islower()
+        if ast.unparse(test.comparators[0]) == "None"
     }
     assert optional == FEATURES | methods
 
