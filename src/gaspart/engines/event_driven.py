@@ -203,9 +203,8 @@ class EventDynamics:
     def _run(self, record: Record | None, stop: float, most: int) -> tuple[int, int, float]:
         """Let the kernel run: why it stopped, the events it processed, the time of the last."""
         monitors = self._monitors._replace(record=record)
-        return self._loop.run(
-            self._particles, self._queue, self._boxes, self._model, self._tally, monitors, stop, most
-        )
+        scene = self._particles, self._queue, self._boxes, self._model, self._tally
+        return self._loop.run(*scene, monitors, (stop, most), () if self._queue is None else None)
 
     def _next_epoch(self) -> None:
         """Start the clocks again from zero, and predict all events anew."""

@@ -13,6 +13,8 @@ and the higher index.
 
 from math import inf
 
+from numpy import int64
+
 from gaspart.kernels.compilation import inner_helper, kernel
 from gaspart.kernels.event.all_pairs import first_of_all
 from gaspart.kernels.event.box_lists import move, sort_in
@@ -38,10 +40,11 @@ from gaspart.kernels.obstacles.interior_wall import find_wall, meet_wall
 from gaspart.kernels.obstacles.well import meet_edge
 from gaspart.kernels.prefetch import fetch
 
-STOP, EVENTS, FULL, COLLAPSE = range(
-    4
-)  # why a run ended: the time, the number of events, the record, a collapse
-_NEW = (0, 0, 0)  # no box was crossed: all is predicted anew
+# Why a run ended: the time, the number of events, the record, a collapse.
+STOP, EVENTS, FULL, COLLAPSE = range(4)
+# No box was crossed: all is predicted anew. As int64, since numba compiles a function again for each type of
+# integer, and for a constant as well.
+_NEW = (int64(0), int64(0), int64(0))
 
 
 @inner_helper
@@ -129,8 +132,8 @@ def process(particles, i, time, queue, boxes, model, tally):
     and whether it is an event of the model: not the crossing of a box or a periodic face, nor an outdated
     contact."""
     predictions = particles.predictions
-    face = predictions[i].face
-    partner = predictions[i].partner
+    face = int64(predictions[i].face)
+    partner = int64(predictions[i].partner)
     number = count_event(queue)
     happens = changes = True
     first, second, crossed = i, NONE, _NEW
@@ -157,35 +160,45 @@ def process(particles, i, time, queue, boxes, model, tally):
     return i, partner, happens
 
 
-@kernel
-def run(particles, queue, boxes, model, tally, monitors, stop, most):
-    """Process all events up to time `stop`, at most `most` of them (collisions and wall hits).
+@inner_helper
+def process_first(particles, i, partner, face, time, model, tally):
+    """Process the earliest of all events, with a partner or at a face. Returns as `process` does."""
+    if partner < 0:
+        partner, happens = meet_obstacle(particles, i, face, time, model, tally)
+        return i, partner, happens
+    collide(particles.flights, i, partner, time, model, tally)
+    return i, partner, True
 
-    queue: None for the search of all pairs before every event. Returns (reason, number of events, time of the
-    last).
+
+@kernel
+def run(particles, queue, boxes, model, tally, monitors, limits, all_pairs):
+    """Process all events up to a time, at most so many of them (collisions and wall hits): `limits`.
+
+    all_pairs: () for the search of all pairs before every event, without a queue; otherwise None. numba
+    leaves out only what depends on an argument that is None, so both arguments are needed. Returns (reason,
+    number of events, time of the last).
     """
+    stop, most = limits
     done = 0
     last = -inf
-    next_bucket = -1
+    next_bucket = int64(-1)
+    time, i, partner, face, happens = inf, int64(NONE), int64(NONE), int64(NONE), True
     while done < most:
         if is_full(monitors.record):
             return FULL, done, last
-        if queue is None:
+        if all_pairs is not None:
             time, i, partner, face = first_of_all(particles, boxes, model, tally)
-        else:
+        if queue is not None:
             i = soonest(queue, particles.predictions)
             if i >= 0 and len(particles.flights) > CACHED:
                 next_bucket = prefetch(particles, queue, boxes, next_bucket)
             time = time_of(particles.predictions, i) if i >= 0 else inf
         if i < 0 or not time <= stop:
             return STOP, done, last
-        happens = True
         if queue is not None:
             i, partner, happens = process(particles, i, time, queue, boxes, model, tally)
-        elif partner >= 0:
-            collide(particles.flights, i, partner, time, model, tally)
-        else:
-            partner, happens = meet_obstacle(particles, i, face, time, model, tally)
+        if all_pairs is not None:
+            i, partner, happens = process_first(particles, i, partner, face, time, model, tally)
         if not happens:
             continue
         last = time
