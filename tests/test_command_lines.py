@@ -3,6 +3,7 @@ changes."""
 
 import io
 import os
+import shutil
 import time
 from contextlib import redirect_stderr, redirect_stdout
 from itertools import pairwise
@@ -193,17 +194,18 @@ def snapshot(folder):
     }
 
 
-def carried_out(line):
-    """Exit code and output of a command line, to streams that encode as those of a terminal do."""
-    out = io.TextIOWrapper(io.BytesIO(), encoding="utf-8")
-    err = io.TextIOWrapper(io.BytesIO(), encoding="utf-8", errors="backslashreplace")
+def carried_out(line, encoding="utf-8", errors="strict"):
+    """Exit code, output and stderr of a command line, to streams that encode as those of a terminal do."""
+    out = io.TextIOWrapper(io.BytesIO(), encoding=encoding, errors=errors)
+    err = io.TextIOWrapper(io.BytesIO(), encoding=encoding, errors="backslashreplace")
     with redirect_stdout(out), redirect_stderr(err):
         try:
             code = main(line)
         except SystemExit as leaving:  # --help, --version
             code = leaving.code
-    err.flush()
-    return code, err.buffer.getvalue().decode()
+    for stream in (out, err):
+        stream.flush()
+    return code, out.buffer.getvalue(), err.buffer.getvalue().decode()
 
 
 @example([])
@@ -213,7 +215,7 @@ def test_a_command_line_ends_with_a_known_code_and_changes_no_file(folder, line)
         line = ["theory", *line[1:]]
     before, compiling, start = snapshot(folder), [], time.monotonic()
     with install_timer("numba:compile", compiling.append):
-        code, printed = carried_out(line)
+        code, _, printed = carried_out(line)
     took = time.monotonic() - start - sum(compiling)
     if line[:1] == ["resume"]:
         restore_unfinished(folder)
@@ -230,3 +232,30 @@ def test_a_command_line_ends_with_a_known_code_and_changes_no_file(folder, line)
     else:
         assert {path: after.get(path) for path in before} == before
     assert not list(folder.glob(".gaspart-*"))
+
+
+@pytest.mark.parametrize(
+    ("encoding", "errors", "shown"),
+    [
+        ("utf-8", "surrogateescape", b"\xff\xe9"),
+        ("utf-8", "strict", b"\\udcff"),
+        ("latin-1", "strict", b"\\udcff"),
+    ],
+)
+def test_every_command_takes_names_that_are_not_utf_8(folder, tmp_path, encoding, errors, shown):
+    """As the names of folders and files; the first row is how `gaspart` sets up a terminal of today."""
+    strange = tmp_path / "\udcfe"
+    strange.mkdir()
+    for name in (*SCENES, "run.nc", UNFINISHED):
+        shutil.copy(folder / name, strange / f"\udcff\udce9{name}")
+    for line in LINES:
+        words = [str(strange / f"\udcff\udce9{word}") if is_file_name(word) else word for word in line]
+        code, printed, complaint = carried_out(words, encoding, errors)
+        assert code == (2 if line[:2] == ["resume", "run.nc"] else 0), complaint
+        assert shown in printed or line[0] in ("info", "theory", "advise", "check") or code, line
+        for path in strange.glob("*new.nc"):
+            path.unlink()
+
+
+def is_file_name(word):
+    return word.endswith((".yaml", ".nc", ".png", ".gif", ".mp4", ".gsd", ".data"))
