@@ -46,9 +46,10 @@ def git_revision() -> str:
     """
     if _git("ls-files", "--error-unmatch", Path(__file__).with_name("__init__.py").name) is None:
         return ""
-    commit = _git("rev-parse", "HEAD") or ""
-    edited = _git("status", "--porcelain", "--untracked-files=no")
-    return f"{commit}-modified" if commit and edited else commit
+    commit, edited = _git("rev-parse", "HEAD"), _git("status", "--porcelain", "--untracked-files=no")
+    if commit is None or edited is None:
+        return ""
+    return f"{commit}-modified" if edited else commit
 
 
 @cache
