@@ -117,6 +117,9 @@ def writing(path: str | Path, kind: Kind | None = None, overwrite: bool = False)
     except OSError as error:
         why = error.strerror or "its writer has stopped"
         raise SceneError("path", str(path), f"cannot be written: {why}") from None
+    except UnicodeEncodeError:  # of a library that accepts UTF-8 names only
+        rule = "cannot be written: the name of its folder must be UTF-8"
+        raise SceneError("path", str(path), rule) from None
 
 
 def whole_file(path: str | Path) -> AbstractContextManager[Path]:
