@@ -59,7 +59,9 @@ def carried_out(content, settings, duration):
         if settings:
             simulation.advance(duration=min(duration, 200.0 * settings["time_step"]))
         else:
-            simulation.advance(duration=duration, max_events=200)
+            fastest = max(kind["speed"] for kind in content["species"])
+            crossing = min(content["container"]["lengths"]) / fastest  # each is work, and no event
+            simulation.advance(duration=min(duration, 1e4 * crossing), max_events=200)
         simulation.check_invariants()
     except (gp.SceneError, gp.SimulationError) as error:
         assert str(error).isprintable() and len(str(error)) < LONGEST, error
