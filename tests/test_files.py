@@ -63,7 +63,7 @@ def refused(capsys, *command):
 @pytest.mark.parametrize("output", OUTPUTS)
 def test_a_result_is_replaced_with_force_only_and_another_file_never(folder, capsys, output):
     command = [*OUTPUTS[output], "-o", output]
-    other = "no file of this kind, but dear to its owner"
+    other = "no file of this kind, but important to its owner"
     (folder / output).write_text(other)
     before = contents(folder)
     for force in ([], ["--force"]):
@@ -257,20 +257,10 @@ def test_a_folder_that_cannot_be_written_to_costs_one_line(folder):
 
 
 @pytest.mark.parametrize("output", [name for name in OUTPUTS if name != "again.nc"])
-def test_names_that_are_not_utf8(folder, output):
-    name = os.fsdecode(b"\xff\xe9" + os.fsencode(output))
-    codes, lines = in_a_process([[*OUTPUTS[output], "-o", name]], folder)
-    assert (codes, lines) == ([0], [])
-    assert (folder / name).stat().st_size
-    inside = os.fsdecode(b"\xff")
-    (folder / inside).mkdir()
-    before = contents_of(folder / inside)
-    code = main([*OUTPUTS[output], "-o", f"{inside}/{output}"])
-    assert code == 0 or (code == 2 and contents_of(folder / inside) == before)
-
-
-def contents_of(folder):
-    return sorted(path.name for path in folder.iterdir())
+def test_results_in_a_folder_that_is_not_utf_8_are_recognised(folder, output):
+    (folder / "\udcff").mkdir()
+    for force in ([], ["--force"]):
+        assert main([*OUTPUTS[output], "-o", f"\udcff/{output}", *force]) == 0
 
 
 def test_a_run_that_another_process_finished_meanwhile_is_not_replaced(folder, monkeypatch, scene):

@@ -6,7 +6,7 @@ import argparse
 import math
 from typing import TYPE_CHECKING
 
-from gaspart.cli.arguments import Commands, UsageError, add_command, real
+from gaspart.cli.arguments import Commands, UsageError, add_command, print_line, real
 from gaspart.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -43,12 +43,12 @@ def _advise(given: argparse.Namespace) -> None:
     if given.config:
         from gaspart.experiments.cost import predict
 
-        print("\n".join(predict(given.config)))
+        print_line("\n".join(predict(given.config)))
         return
     from gaspart.tradeoff.advice import advise
 
     found = advise(Scene.from_file(given.scene), given.observable, given.accuracy, given.budget)
-    print("\n".join(_lines(found)))
+    print_line("\n".join(_lines(found)))
 
 
 def _lines(advice: Advice) -> list[str]:

@@ -78,9 +78,12 @@ def add_output(parser: argparse.ArgumentParser, what: str, overwrite: str) -> No
 
 
 def print_line(text: object) -> None:
-    """Print a line; characters that the standard output cannot encode, as in file names, are escaped."""
-    encoding = sys.stdout.encoding or "utf-8"
-    print(str(text).encode(encoding, "backslashreplace").decode(encoding))
+    """Print a line. If the standard output cannot encode it, as some file names, characters are escaped."""
+    try:
+        print(text)
+    except UnicodeEncodeError:
+        encoding = sys.stdout.encoding
+        print(str(text).encode(encoding, "backslashreplace").decode(encoding))
 
 
 def several(kind: Callable[[str], T]) -> Callable[[str], tuple[T, ...]]:

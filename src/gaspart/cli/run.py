@@ -7,7 +7,7 @@ import shlex
 import sys
 from pathlib import Path
 
-from gaspart.cli.arguments import Commands, add_command, several
+from gaspart.cli.arguments import Commands, add_command, print_line, several
 from gaspart.cli.progress import clear_line, progress
 from gaspart.interruption import set_note
 from gaspart.kernels.numba_loading import load_numba
@@ -124,4 +124,4 @@ def _resume(given: argparse.Namespace) -> None:
 def _report(path: Path) -> None:
     if wiped := clear_line():  # even an empty line fails where stderr is full
         print(wiped, end="", file=sys.stderr)
-    print(f"{path} is complete; `gaspart info {shlex.quote(str(path))}` lists its contents")
+    print_line(f"{path} is complete; `gaspart info {shlex.quote(str(path))}` lists its contents")

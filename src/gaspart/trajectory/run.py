@@ -133,10 +133,11 @@ def resume(path: str | Path, checkpoint_seconds: float = 30.0, progress: Progres
     if not partial.exists():
         rule = "is already complete" if path.exists() else f"there is no {partial.name} to continue"
         raise SceneError("path", str(path), rule)
-    wanted = read_recipe(partial)
-    if not begun_as(partial, wanted):
-        rule = "was begun by another version of gaspart, Python or a package; it could end in other bits"
-        raise SceneError("path", str(partial), rule)
+    with _writing(path):  # another process may finish the run at any moment
+        wanted = read_recipe(partial)
+        if not begun_as(partial, wanted):
+            rule = "was begun by another version of gaspart, Python or a package; it could end in other bits"
+            raise SceneError("path", str(partial), rule)
     return _carry_out(wanted, path, checkpoint_seconds, progress, overwrite=False)
 
 

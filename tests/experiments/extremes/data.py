@@ -5,7 +5,7 @@ import xarray as xr
 
 
 def extremes_data(verdict="passes", missed=0, message=""):
-    """Two rows in two engines: one passes, the other is refused; the first cell of all as told."""
+    """Two rows in two engines: one passes, the other is refused; the first cell of all as given."""
     shape = ("row", "engine")
     energy = np.array([[1e-15, 0.0], [np.nan, np.nan]])
     return xr.Dataset(

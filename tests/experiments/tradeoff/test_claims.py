@@ -40,5 +40,5 @@ def choice(dataset):
 
 def test_a_model_that_predicts_the_costs_agrees_and_one_that_does_not_is_noticed():
     assert choice(time_to_accuracy_measurement()) == dict.fromkeys(("event", "step", "choice"), "agrees")
-    wrong = choice(time_to_accuracy_measurement(dearer=4.0))
+    wrong = choice(time_to_accuracy_measurement(more_expensive=4.0))
     assert wrong == {"event": "agrees", "step": "disagrees", "choice": "disagrees"}
