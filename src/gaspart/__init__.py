@@ -27,6 +27,7 @@ _HOMES = {
     "State": "state.state",
     "Sticky": "scene.faces",
     "Tally": "state.tally",
+    "Thermostat": "scene.thermostat",
     "Thermal": "scene.faces",
     "TimeStepped": "engines",
     "Wall": "scene.walls",

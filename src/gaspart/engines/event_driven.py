@@ -9,6 +9,7 @@ import numpy as np
 
 from gaspart.engines.arrays import (
     EventLog,
+    contact_duration,
     contact_law,
     interior_walls,
     scaled_masses,
@@ -16,6 +17,8 @@ from gaspart.engines.arrays import (
     write_internal,
 )
 from gaspart.engines.clock_epochs import QUIET, epoch_length, quiet_epoch
+from gaspart.engines.kicks import kicks
+from gaspart.engines.rest import rest_watch
 from gaspart.engines.stalling import MANY, check_progress
 from gaspart.errors import SceneError, SimulationError
 from gaspart.kernels.memory import aligned
@@ -32,6 +35,7 @@ if TYPE_CHECKING:
 SEARCHES = ("boxes", "direct", "pairs")
 _QUIET = QUIET + 2000  # epochs without an event after which a run without an end is given up
 _NUMBERS = ("start", "epoch", "base", "quiet", "clock", "since")  # of a checkpoint
+_OF_DURATION = ("latest", "met", "elastic", "kept")
 _SHORTEST_BOUNCE = 2.0**-44  # of an epoch: the longest bounce on a floor that is taken for rest
 _LOWEST = 2.0**-44  # of the container: the highest bounce on an interior wall that is taken for rest
 # More contacts of one particle than these, within so much of an epoch, are taken for a collapse. Intervals
@@ -68,7 +72,7 @@ class EventDriven:
             check_boxes_per_side(self.boxes_per_side)
 
     def start(self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0) -> EventDynamics:
-        """Set the engine up for a scene in a given state; `seed` is that of thermal walls."""
+        """Set the engine up for a scene in a given state; `seed` is that of thermal walls and kicks."""
         return EventDynamics(self, scene, state, seed)
 
 
@@ -104,6 +108,8 @@ class EventDynamics:
         if self._queue:
             self._event_count = self._queue.cursor[EVENT_COUNT:]
         law = contact_law(scene, state)
+        self._duration = contact_duration(scene)
+        law = law._replace(duration=self._duration) if law else None
         self._unit_mass, masses = (1.0, None) if law else scaled_masses(state.masses)
         gravity = None
         if scene.gravity is not None and any(scene.gravity):
@@ -123,7 +129,7 @@ class EventDynamics:
         )
         collapse, self._interval = None, 0.0
         if law or gravity:
-            inelastic = law and law.normal < 1.0
+            inelastic = law and law.normal < 1.0 and not self._duration
             most, self._interval = (_INELASTIC_MOST, _INELASTIC_INTERVAL) if inelastic else (_MOST, _INTERVAL)
             collapse = CollapseWatch(np.full(n, -np.inf), np.zeros(n, dtype=np.int64), 0.0, most)
         self._monitors = Monitors(None, collapse)
@@ -133,6 +139,9 @@ class EventDynamics:
         self._begin_epoch(self._base)
         epochs, self._clock = divmod(state.time, self._epoch)
         self._start = epochs * self._epoch
+        self._rest = rest_watch(scene, state, self._clock)
+        self._kicks = kicks(scene, seed, self._unit_mass)
+        self._scheduled = self._rest or self._kicks  # no scene has both
         self._flights["clock"] = self._clock
         self._count()
         self._predict()
@@ -145,6 +154,10 @@ class EventDynamics:
     def _count(self) -> None:
         """A tally at zero."""
         self._tally = self._kernels.empty_tally(2 * self._scene.dimension + len(self._scene.walls))
+        if self._duration:
+            self._duration.elastic[:], self._duration.kept[:] = 0, 0.0
+        if self._kicks:
+            self._kicks.reset()
         self._since = self.time
 
     def _predict(self) -> None:
@@ -168,18 +181,30 @@ class EventDynamics:
         left = np.iinfo(np.int64).max if most is None else most
         many, begun = MANY, self._clock
         while left > 0:
+            if self._rest and self._rest.rests:
+                self._stay(until)
+                return
             if many == 0:
                 check_progress(self.time, self._clock - begun, self._epoch)
                 many, begun = MANY, self._clock
             stop = until - self._start
             ends_epoch = stop > self._epoch
-            reason, done, last = self._run(log.room if log else None, min(stop, self._epoch), min(left, many))
+            end = min(stop, self._epoch)
+            scheduled = self._scheduled if self._scheduled and self._scheduled.next <= end else None
+            if scheduled:
+                end = scheduled.next
+            reason, done, last = self._run(log.room if log else None, end, min(left, many))
             left -= done
             many -= done
             self._quiet = 0 if done else self._quiet
             if log is not None:
                 log.take(self._start)
             if reason == self._loop.STOP:
+                if scheduled:
+                    self._clock = end
+                    if scheduled.happen(self._particles, self._model, self._tally):
+                        self._predict()
+                    continue
                 if not ends_epoch:
                     self._clock = stop
                     return
@@ -200,6 +225,14 @@ class EventDynamics:
                     "an inelastic collapse, or a stack at rest; the state is that of the present time"
                 )
 
+    def _stay(self, until: float) -> None:
+        """Let time pass in a scene at rest."""
+        if until == np.inf:
+            raise SimulationError(
+                f"at time {self.time:g} all particles are at rest: there are no more events"
+            )
+        self._clock = until - self._start
+
     def _run(self, record: Record | None, stop: float, most: int) -> tuple[int, int, float]:
         """Let the kernel run: why it stopped, the events it processed, the time of the last."""
         monitors = self._monitors._replace(record=record)
@@ -213,6 +246,11 @@ class EventDynamics:
         self._clock = 0.0
         if self._monitors.collapse:
             self._monitors.collapse.since[:] -= self._epoch
+        if self._duration:
+            self._duration.latest[:] -= self._epoch
+            self._duration.met[:] -= self._epoch
+        if self._scheduled:
+            self._scheduled.begin_epoch(self._epoch)
         self._quiet += 1
         velocities = self._flights["velocity"]
         self._base = epoch_length(self._scene, velocities, self._lightest, self._base)
@@ -232,7 +270,7 @@ class EventDynamics:
     @property
     def tally(self) -> Tally:
         """What was counted since the last `reset_tally`."""
-        kernels, tally = self._kernels, self._tally
+        kernels, tally, duration = self._kernels, self._tally, self._duration
         return Tally(
             time=self.time - self._since,
             collisions=int(tally.counts[kernels.COLLISIONS]),
@@ -245,27 +283,35 @@ class EventDynamics:
             crossings=int(tally.counts[kernels.CROSSINGS]),
             worst_contact=float(tally.worst[0]),
             dissipated_energy=self._sums.net(tally.sums[kernels.LOSS]),
+            elastic_contacts=int(duration.elastic[0]) if duration else 0,
+            retained_energy=self._sums.net(duration.kept) if duration else 0.0,
+            thermostat_energy=self._given(),
         )
 
     @property
     def dissipated(self) -> float:
-        """The energy that contacts and thermal walls have taken since time 0."""
+        """The energy that contacts and thermal walls have taken since time 0, less what kicks have given."""
         taken = self._tally.sums[self._kernels.LOSS], self._tally.wall_energy
-        return float(self._lost[0]) + self._sums.net(*taken) * self._unit_mass
+        return float(self._lost[0]) + self._sums.net(*taken) * self._unit_mass - self._given()
 
     @property
     def exchanged(self) -> float:
         """The sum of what contacts and each face have taken or given since time 0, each counted positive."""
         loss, walls = self._tally.sums[self._kernels.LOSS], self._sums.values(self._tally.wall_energy)
         gross = self._sums.net(loss) + float(np.abs(walls).sum())
-        return float(self._lost[1]) + gross * self._unit_mass
+        return float(self._lost[1]) + gross * self._unit_mass + self._given()
+
+    def _given(self) -> float:
+        """The energy that kicks have given since the tally began."""
+        return self._sums.net(self._kicks.given) * self._unit_mass if self._kicks else 0.0
 
     @property
     def state(self) -> State:
         """All particles at the present time."""
         space = self._model.space
         flights, lengths = self._flights.copy(), np.array(space.lengths)
-        self._flight.advance_all(flights, self._clock, space, self._model.gravity)
+        if not (self._rest and self._rest.rests):
+            self._flight.advance_all(flights, self._clock, space, self._model.gravity)
         positions, images = flights["position"].copy(), self._particles.images.copy()
         # a particle that reaches a periodic face just now may stand beyond it by rounding
         outside = (positions < 0.0) | (positions >= lengths)
@@ -293,6 +339,10 @@ class EventDynamics:
             arrays["spins"] = law.spins
             if law.vibrations is not None:
                 arrays["vibrations"] = law.vibrations
+        if self._duration:
+            arrays.update({f"contact_{key}": self._duration._asdict()[key] for key in _OF_DURATION})
+        if self._scheduled:
+            arrays.update({f"scheduled_{key}": array for key, array in self._scheduled.arrays.items()})
         if collapse:
             arrays.update(contacts_since=collapse.since, contacts=collapse.contacts)
         if self._model.gravity and self._model.gravity.support:

@@ -57,6 +57,8 @@ def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
     falls, none = scene.gravity is not None, "this one has none"
     for key, value, what in (
         ("restitution", law if law and law.normal < 1.0 and falls else None, "with gravity, " + none),
+        ("restitution.contact_duration", law.contact_duration or None if law else None, none),
+        ("thermostat", scene.thermostat, none),
         ("walls", scene.walls or None, none),
         ("fixed", True if fixed and falls else None, "this one has no fixed particles under gravity"),
     ):

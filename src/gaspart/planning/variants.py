@@ -56,6 +56,9 @@ def features(scene: Scene) -> set[str]:
     found = set(_differing(scene)) - _MATTER
     if len({kind.mass for kind in scene.kinds}) <= 1:
         found -= {"species.mass", "bodies.mass"}  # equal masses are left out of the kernels
+    found.discard("restitution.contact_duration")
+    if scene.contact_duration > 0.0:  # by default under gravity
+        found.add("contact_duration")
     if scene.vibrates:  # by a temperature too
         found.add("vibrates")
     if len({kind.radius for kind in scene.kinds}) > 1:

@@ -67,6 +67,8 @@ from gaspart.theory.geometry import (
 )
 from gaspart.theory.granular import (
     cooling_rate,
+    driven_cumulant,
+    driven_temperature,
     fourth_cumulant,
     haff_time,
     rough_matrix,
@@ -162,6 +164,8 @@ __all__ = [
     "crystal_finite_size_correction",
     "dilute_fourier_flux",
     "displaced_area",
+    "driven_cumulant",
+    "driven_temperature",
     "enskog_bulk_viscosity",
     "enskog_conductivity",
     "enskog_diffusion",
