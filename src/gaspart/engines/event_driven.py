@@ -30,7 +30,7 @@ from gaspart.state.state import State
 from gaspart.state.tally import Tally
 
 if TYPE_CHECKING:
-    from gaspart.kernels.event.monitors import Record
+    from gaspart.kernels.event.monitors import Monitors, Record
 
 SEARCHES = ("boxes", "direct", "pairs")
 _QUIET = QUIET + 2000  # epochs without an event after which a run without an end is given up
@@ -84,7 +84,6 @@ class EventDynamics:
         from gaspart.kernels import flight, model, running_sum
         from gaspart.kernels.event import loop
         from gaspart.kernels.event.box_lists import empty_lists
-        from gaspart.kernels.event.monitors import CollapseWatch, Monitors
         from gaspart.kernels.event.queue import EVENT_COUNT, empty_queue
 
         self._loop, self._flight, self._kernels, self._sums = loop, flight, model, running_sum
@@ -127,12 +126,7 @@ class EventDynamics:
             walls=interior_walls(scene, boxes, largest) if scene.walls else None,
             oversized=model.Oversized(oversized, largest) if len(oversized) else None,
         )
-        collapse, self._interval = None, 0.0
-        if law or gravity:
-            inelastic = law and law.normal < 1.0 and not self._duration
-            most, self._interval = (_INELASTIC_MOST, _INELASTIC_INTERVAL) if inelastic else (_MOST, _INTERVAL)
-            collapse = CollapseWatch(np.full(n, -np.inf), np.zeros(n, dtype=np.int64), 0.0, most)
-        self._monitors = Monitors(None, collapse)
+        self._monitors, self._interval = self._watch(n)
         self._lightest = float(state.masses.min(initial=np.inf))
         self._lost = np.zeros(2)  # net and gross, before the tally began
         self._base, self._quiet = epoch_length(scene, state.velocities, self._lightest), 0
@@ -145,6 +139,18 @@ class EventDynamics:
         self._flights["clock"] = self._clock
         self._count()
         self._predict()
+
+    def _watch(self, count: int) -> tuple[Monitors, float]:
+        """What detects a collapse, if one is possible, and its interval as a part of an epoch."""
+        from gaspart.kernels.event.monitors import CollapseWatch, Monitors
+
+        law = self._model.law
+        if not (law or self._model.gravity):
+            return Monitors(None, None), 0.0
+        inelastic = law and law.normal < 1.0 and not law.duration
+        most, interval = (_INELASTIC_MOST, _INELASTIC_INTERVAL) if inelastic else (_MOST, _INTERVAL)
+        watch = CollapseWatch(np.full(count, -np.inf), np.zeros(count, dtype=np.int64), 0.0, most)
+        return Monitors(None, watch), interval
 
     def reset_tally(self) -> None:
         """Begin to count from zero."""
