@@ -1,0 +1,76 @@
+"""How the event-driven engine finds the next contact: the choice by density, and neighbour lists for a scene."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaspart.errors import SceneError
+from gaspart.state.boxes import make_boxes
+
+if TYPE_CHECKING:
+    from gaspart.kernels.event.neighbour_lists import NeighbourLists
+    from gaspart.scene.scene import Scene
+
+_MARGIN = 0.25  # of the largest diameter: how far a particle moves before its list is renewed
+_DENSE = {2: 0.5, 3: 0.3}  # packing fractions from which neighbour lists are faster than boxes
+_ALIKE = 1.5  # and the largest ratio of radii: a list of small particles reaches as far as one of large ones
+_ROOM = {2: 16, 3: 32}  # entries of a list at first
+_SMALLEST, _LARGEST = 1e-12, 1e12  # radii whose squares are numbers in single precision
+
+
+def distances(scene: Scene) -> tuple[float, float]:
+    """How far a particle moves before its list is renewed, and how far the list reaches: so far that the
+    rounding of centres to single precision hides no contact."""
+    margin = 2.0 * _MARGIN * scene.largest_radius
+    rounding = 16.0 * float(np.finfo(np.float32).eps) * max(scene.container.lengths)
+    return margin, 2.0 * (scene.largest_radius + margin) + rounding
+
+
+def obstacle_to_lists(scene: Scene) -> str | None:
+    """Why a scene cannot be run with neighbour lists, if so."""
+    from gaspart.kernels.event.neighbour_lists import MOST_PARTICLES
+
+    if scene.gravity is not None and any(scene.gravity):
+        return "gravity"
+    if scene.walls:
+        return "interior walls"
+    if not _SMALLEST < scene.largest_radius < _LARGEST:
+        return "the size of the particles"
+    if scene.count > MOST_PARTICLES:
+        return "the number of particles"
+    margin, reach = distances(scene)
+    least = max(3.0 * reach, 2.0 * reach + 4.0 * margin)  # each image of a particle is told from the others
+    container = scene.container
+    if any(length < least for length, wraps in zip(container.lengths, container.periodic, strict=True) if wraps):
+        return "a periodic axis of less than 4.5 diameters"
+    return None
+
+
+def chosen_search(scene: Scene, search: str, boxes_given: bool) -> str:
+    """The search for a scene: "boxes" or "lists" where it is left to the engine.
+
+    Raises SceneError if lists are asked for, but the scene has something that they do not support.
+    """
+    obstacle = obstacle_to_lists(scene) if search in ("automatic", "lists") else None
+    if search == "lists" and obstacle:
+        raise SceneError("search", search, f"neighbour lists do not support {obstacle}; use boxes")
+    if search != "automatic":
+        return search
+    radii = [kind.radius for kind in scene.kinds]
+    dense = scene.packing_fraction >= _DENSE[scene.dimension]
+    alike = bool(radii) and max(radii) <= _ALIKE * min(radii)
+    return "lists" if dense and alike and not obstacle and not boxes_given else "boxes"
+
+
+def neighbour_lists(scene: Scene, room: int = 0, per_cell: int = 1) -> NeighbourLists:
+    """Empty neighbour lists for a scene. room: words of each; per_cell: pages of a cell, of 8 particles
+    each."""
+    from gaspart.kernels.event.neighbour_lists import empty_neighbour_lists
+
+    margin, reach = distances(scene)
+    sides = tuple(max(1, int(length / reach)) for length in scene.container.lengths)
+    cells = make_boxes(scene, sides, images=True, narrowest=reach)
+    d = scene.dimension
+    return empty_neighbour_lists(cells, scene.count, d, (margin, reach), room or _ROOM[d], per_cell)
