@@ -1,4 +1,4 @@
-"""How the event-driven engine finds the next contact: the choice by density, and neighbour lists for a scene."""
+"""How the event-driven engine finds the next contact: the choice by density; neighbour lists for a scene."""
 
 from __future__ import annotations
 
@@ -7,14 +7,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.kernels.model import LISTED_BITS
+from gaspart.scene.geometry import ball_volume
 from gaspart.state.boxes import make_boxes
 
 if TYPE_CHECKING:
     from gaspart.kernels.event.neighbour_lists import NeighbourLists
     from gaspart.scene.scene import Scene
 
-_MARGIN = 0.25  # of the largest diameter: how far a particle moves before its list is renewed
-_DENSE = {2: 0.5, 3: 0.3}  # packing fractions from which neighbour lists are faster than boxes
+_LISTED = {2: 8.0, 3: 15.0}  # particles that a list holds on average: they fill one or two vectors of eight
+_MARGINS = 0.1, 0.65  # of the largest diameter: limits on how far a particle moves before its list is renewed
+_DENSE = {2: 0.6, 3: 0.38}  # packing fractions from which neighbour lists are faster than boxes
 _ALIKE = 1.5  # and the largest ratio of radii: a list of small particles reaches as far as one of large ones
 _ROOM = {2: 16, 3: 32}  # entries of a list at first
 _SMALLEST, _LARGEST = 1e-12, 1e12  # radii whose squares are numbers in single precision
@@ -23,28 +26,30 @@ _SMALLEST, _LARGEST = 1e-12, 1e12  # radii whose squares are numbers in single p
 def distances(scene: Scene) -> tuple[float, float]:
     """How far a particle moves before its list is renewed, and how far the list reaches: so far that the
     rounding of centres to single precision hides no contact."""
-    margin = 2.0 * _MARGIN * scene.largest_radius
+    d, diameter = scene.dimension, 2.0 * scene.largest_radius
+    holding = (_LISTED[d] + 1.0) * scene.container.volume / (scene.count * ball_volume(d))
+    least, most = (share * diameter for share in _MARGINS)
+    margin = min(max(0.5 * (holding ** (1.0 / d) - diameter), least), most)
     rounding = 16.0 * float(np.finfo(np.float32).eps) * max(scene.container.lengths)
-    return margin, 2.0 * (scene.largest_radius + margin) + rounding
+    return margin, diameter + 2.0 * margin + rounding
 
 
 def obstacle_to_lists(scene: Scene) -> str | None:
     """Why a scene cannot be run with neighbour lists, if so."""
-    from gaspart.kernels.event.neighbour_lists import MOST_PARTICLES
-
     if scene.gravity is not None and any(scene.gravity):
         return "gravity"
     if scene.walls:
         return "interior walls"
     if not _SMALLEST < scene.largest_radius < _LARGEST:
-        return "the size of the particles"
-    if scene.count > MOST_PARTICLES:
-        return "the number of particles"
+        return "particles of so extreme a size"
+    if not 0 < scene.count <= 1 << LISTED_BITS:
+        return "so few or so many particles"
     margin, reach = distances(scene)
     least = max(3.0 * reach, 2.0 * reach + 4.0 * margin)  # each image of a particle is told from the others
     container = scene.container
-    if any(length < least for length, wraps in zip(container.lengths, container.periodic, strict=True) if wraps):
-        return "a periodic axis of less than 4.5 diameters"
+    axes = zip(container.lengths, container.periodic, strict=True)
+    if any(periodic and length < least for length, periodic in axes):
+        return "so short a periodic axis"
     return None
 
 
@@ -53,10 +58,12 @@ def chosen_search(scene: Scene, search: str, boxes_given: bool) -> str:
 
     Raises SceneError if lists are asked for, but the scene has something that they do not support.
     """
-    obstacle = obstacle_to_lists(scene) if search in ("automatic", "lists") else None
-    if search == "lists" and obstacle:
-        raise SceneError("search", search, f"neighbour lists do not support {obstacle}; use boxes")
-    if search != "automatic":
+    if search not in ("automatic", "lists"):
+        return search
+    obstacle = obstacle_to_lists(scene)
+    if search == "lists":
+        if obstacle:
+            raise SceneError("search", search, f"neighbour lists do not support {obstacle}; use boxes")
         return search
     radii = [kind.radius for kind in scene.kinds]
     dense = scene.packing_fraction >= _DENSE[scene.dimension]

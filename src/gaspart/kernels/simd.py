@@ -16,10 +16,12 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
+from gaspart.kernels.model import LISTED_BITS
+
 WIDTH = 8
 PLACES = 4  # particles of a box that are listed at once
 IMAGE_BITS, IMAGE_FIRST = 2, 32  # of a candidate, above the particle's number: per axis 1 + its image
-SHORT_IMAGE_FIRST = 26  # the same in candidates of 32 bits
+SHORT_IMAGE_FIRST = LISTED_BITS  # the same in candidates of 32 bits
 _DOUBLE, _INT, _WORD = ir.DoubleType(), ir.IntType(32), ir.IntType(64)
 _STAGES = (  # of a transposition: swap single lanes, pairs of lanes, halves
     (1, [0, 8, 2, 10, 4, 12, 6, 14], [1, 9, 3, 11, 5, 13, 7, 15]),
@@ -239,7 +241,9 @@ def earliest(typingctx, flights, i, start, count, present, boxes, space, gravity
             numbers = bits(candidates, 0, image_first)
             indices = [builder.extract_element(numbers.value, _INT(n)) for n in range(WIDTH)]
             others = load_rows(builder, rows, indices)
-            offset = [image_of(candidates, image_first, k) * length for k, length in enumerate(space["lengths"])]
+            offset = [
+                image_of(candidates, image_first, k) * length for k, length in enumerate(space["lengths"])
+            ]
             time = contact_times(one, others, offset, pull)
             if falls:
                 mask = builder.or_(marks(builder, resting, indices), marks(builder, resting, [i] * WIDTH))
@@ -275,7 +279,9 @@ def nearer(typingctx, pages, page, point, offset, square):
         data = context.make_array(kind)(context, builder, pages).data
         single, byte = ir.FloatType(), ir.IntType(8)
         vector = ir.VectorType(single, WIDTH)
-        start = builder.gep(builder.bitcast(data, byte.as_pointer()), [builder.mul(page, _WORD(kind.dtype.size))])
+        start = builder.gep(
+            builder.bitcast(data, byte.as_pointer()), [builder.mul(page, _WORD(kind.dtype.size))]
+        )
         centres = builder.bitcast(start, vector.as_pointer())
         point, offset = (cgutils.unpack_tuple(builder, part) for part in (point, offset))
         total = None
@@ -292,8 +298,8 @@ def nearer(typingctx, pages, page, point, offset, square):
 
 @intrinsic
 def equal(typingctx, numbers, start, number, mask):
-    """A bit for each of 2 WIDTH numbers of an array of 32 bits, from `start` on, that is `number` after & with
-    `mask`."""
+    """A bit for each of 2 WIDTH numbers of an array of 32 bits, from `start` on, that is `number` once only
+    the bits of `mask` are left."""
 
     def generate(context, builder, signature, arguments):
         numbers, start, number, mask = arguments
@@ -301,7 +307,9 @@ def equal(typingctx, numbers, start, number, mask):
         many = ir.VectorType(_INT, 2 * WIDTH)
 
         def all_of(word):
-            first = builder.insert_element(ir.Constant(many, ir.Undefined), builder.trunc(word, _INT), _INT(0))
+            first = builder.insert_element(
+                ir.Constant(many, ir.Undefined), builder.trunc(word, _INT), _INT(0)
+            )
             return builder.shuffle_vector(first, first, ir.Constant(many, [0] * (2 * WIDTH)))
 
         place = builder.bitcast(builder.gep(data, [start]), many.as_pointer())

@@ -9,7 +9,7 @@ dozen particles, and the cells of the centres are read once in many collisions (
 Which particles are listed follows from the centres alone, so a checkpoint need not hold the lists.
 """
 
-from math import inf, sqrt
+from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -17,13 +17,13 @@ from numpy import int64, uint32, uint64
 
 from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
 from gaspart.kernels.memory import aligned
-from gaspart.kernels.model import BOX_FACES, CROSSINGS, PAIR_TESTS
-from gaspart.kernels.simd import IMAGE_BITS, SHORT_IMAGE_FIRST, WIDTH, earliest, equal, lowest, nearer
+from gaspart.kernels.model import BOX_FACES, CROSSINGS, LISTED_BITS, PAIR_TESTS
+from gaspart.kernels.simd import IMAGE_BITS, WIDTH, earliest, equal, lowest, nearer
 
-MOST_PARTICLES = 1 << SHORT_IMAGE_FIRST
+_NUMBER = (1 << LISTED_BITS) - 1
 _FAR = 1e30  # an empty place of a cell
 _STILL = 1e-280  # squared speeds below which a particle does not move
-_X, _Y, _Z = (SHORT_IMAGE_FIRST + IMAGE_BITS * k for k in range(3))
+_X, _Y, _Z = (LISTED_BITS + IMAGE_BITS * k for k in range(3))
 _HERE = (1 << _X) + (1 << _Y) + (1 << _Z)  # the image of a particle in the container itself
 
 LISTED = np.dtype([("centre", "f8", 3), ("cell", "u4"), ("place", "u4")], align=True)
@@ -154,10 +154,10 @@ def strike(lists, i, other):
     row = uint64(i) * uint64(lists.room)
     last = row + uint64(lists.candidates[row])
     place = row + uint64(1)
-    found = equal(lists.candidates, place, other, MOST_PARTICLES - 1)
+    found = equal(lists.candidates, place, other, _NUMBER)
     while not found:
         place += uint64(2 * WIDTH)
-        found = equal(lists.candidates, place, other, MOST_PARTICLES - 1)
+        found = equal(lists.candidates, place, other, _NUMBER)
     lists.candidates[place + lowest(found)] = lists.candidates[last]
     lists.candidates[last] = i + _HERE
     lists.candidates[row] -= uint32(1)
@@ -165,8 +165,8 @@ def strike(lists, i, other):
 
 @inner_helper
 def list_cell(lists, i, point, cell, offset, image, both):
-    """List the particles in a cell whose centres are near that of a particle, `point` (3,), the cell displaced
-    by `offset` (3,) into an image of the container."""
+    """List the particles in a cell whose centres are near that of a particle, `point` (3,); the cell is
+    displaced by `offset` (3,) into an image of the container."""
     page = cell * uint64(lists.per_cell)
     end = page + max((uint64(lists.filled[cell]) + uint64(WIDTH - 1)) // uint64(WIDTH), uint64(1))
     while page < end:
@@ -225,7 +225,7 @@ def renew(flights, i, time, lists, space, tally):
     tally.counts[CROSSINGS] += 1
     row = i * lists.room
     for n in range(row + 1, row + 1 + int64(lists.candidates[row])):
-        strike(lists, int64(lists.candidates[n] & uint32(MOST_PARTICLES - 1)), i)
+        strike(lists, listed_number(lists, n), i)
     clear(lists, i)
     leave_cell(lists, i)
     centre_on(lists, flights, i, time, space.lengths)
@@ -255,6 +255,12 @@ def centre_all(lists, flights, time, lengths):
 
 
 @inner_helper
+def listed_number(lists, n):
+    """The particle of an entry of a list."""
+    return int64(lists.candidates[n] & uint32(_NUMBER))
+
+
+@inner_helper
 def search_list(particles, i, lists, space, tally):
     """Predict the contact with one of the particles in a list, if it is earlier than that predicted."""
     row = uint64(i) * uint64(lists.room)
@@ -269,8 +275,8 @@ def search_list(particles, i, lists, space, tally):
 
 @inner_helper
 def next_renewal(flights, i, lists, time, face):
-    """The earlier of the time at which a particle has moved a margin from its centre, and the next face (time,
-    face code)."""
+    """The earlier of the time at which a particle has moved a margin from its centre, and the next face:
+    (time, face code)."""
     if lists is not None:
         flight, centre = flights[i], lists.listed[i].centre
         rr = rv = vv = 0.0

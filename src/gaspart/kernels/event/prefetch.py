@@ -10,7 +10,7 @@ does not come is not used.
 from numpy import int64, uint32, uint64
 
 from gaspart.kernels.compilation import inner_helper
-from gaspart.kernels.event.neighbour_lists import MOST_PARTICLES
+from gaspart.kernels.event.neighbour_lists import listed_number
 from gaspart.kernels.event.queue import BUCKET
 from gaspart.kernels.model import BOX_FACES, WELL_EDGES
 from gaspart.kernels.prefetch import fetch
@@ -94,7 +94,7 @@ def fetch_listed(flights, lists, i):
     """Fetch the flights of the particles in a neighbour list."""
     row = i * lists.room
     for n in range(row + 1, row + 1 + int64(lists.candidates[row])):
-        fetch(flights, int64(lists.candidates[n] & uint32(MOST_PARTICLES - 1)))
+        fetch(flights, listed_number(lists, n))
 
 
 @inner_helper
