@@ -200,6 +200,14 @@ def sooner(time: Lanes, number: Lanes, other_time: Lanes, other_number: Lanes) -
     return other_time.where(other_is, time), other_number.where(other_is, number)
 
 
+def load_candidates(builder: ir.IRBuilder, place: ir.Value, short: bool) -> Lanes:
+    """Eight candidates from a place on, of 64 bits or, if `short`, of 32."""
+    words = ir.VectorType(_WORD, WIDTH)
+    stored = ir.VectorType(_INT, WIDTH) if short else words
+    loaded = builder.load(builder.bitcast(place, stored.as_pointer()), align=4 if short else 8)
+    return Lanes(builder, builder.zext(loaded, words) if short else loaded)
+
+
 @intrinsic
 def earliest(typingctx, flights, i, start, count, present, boxes, space, gravity):
     """The earliest contact of a particle with `count` candidates of `boxes`, from number `start` on, if it is
@@ -232,12 +240,8 @@ def earliest(typingctx, flights, i, start, count, present, boxes, space, gravity
         best = cgutils.alloca_once_value(builder, one[0].all(present[0]).value)
         partner = cgutils.alloca_once_value(builder, one[0].all(present[1]).value)
         unknown = cgutils.alloca_once_value(builder, _WORD(0))
-        words = ir.VectorType(_WORD, WIDTH)
-        stored = ir.VectorType(_INT, WIDTH) if short else words
         with cgutils.for_range_slice(builder, _WORD(0), count, _WORD(WIDTH), _WORD) as (first, _):
-            place = builder.bitcast(builder.gep(near, [first]), stored.as_pointer())
-            loaded = builder.load(place, align=4 if short else 8)
-            candidates = Lanes(builder, builder.zext(loaded, words) if short else loaded)
+            candidates = load_candidates(builder, builder.gep(near, [first]), short)
             numbers = bits(candidates, 0, image_first)
             indices = [builder.extract_element(numbers.value, _INT(n)) for n in range(WIDTH)]
             others = load_rows(builder, rows, indices)
