@@ -63,7 +63,7 @@ def add_run(commands: Commands) -> None:
     text = "step engine: search only boxes within reach of a contact"
     add("--near-boxes", action="store_true", default=None, help=text)
     add("--threads", type=int, metavar="N", help="step engine: number of threads (1)")
-    add("--search", metavar="NAME", help="event engine: boxes (default), direct or pairs")
+    add("--search", metavar="NAME", help="event engine: automatic (default), boxes, lists, direct or pairs")
     add("--force", action="store_true", help="replace a trajectory of another run")
     _add_progress(run)
 

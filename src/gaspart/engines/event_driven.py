@@ -17,6 +17,7 @@ from gaspart.engines.arrays import (
     write_internal,
 )
 from gaspart.engines.clock_epochs import QUIET, epoch_length, quiet_epoch
+from gaspart.engines.event_search import chosen_search, neighbour_lists
 from gaspart.engines.kicks import kicks
 from gaspart.engines.rest import rest_watch
 from gaspart.engines.stalling import MANY, check_progress
@@ -31,8 +32,10 @@ from gaspart.state.tally import Tally
 
 if TYPE_CHECKING:
     from gaspart.kernels.event.monitors import Monitors, Record
+    from gaspart.kernels.model import Model
+    from gaspart.state.boxes import Boxes
 
-SEARCHES = ("boxes", "direct", "pairs")
+SEARCHES = ("automatic", "boxes", "lists", "direct", "pairs")
 _QUIET = QUIET + 2000  # epochs without an event after which a run without an end is given up
 _NUMBERS = ("start", "epoch", "base", "quiet", "clock", "since")  # of a checkpoint
 _OF_DURATION = ("latest", "met", "elastic", "kept")
@@ -49,9 +52,11 @@ _INELASTIC_MOST, _INELASTIC_INTERVAL = 12, 2.0**-34
 class EventDriven:
     """From one event to the next, exactly.
 
-    search: "boxes", with one next event per particle in a queue; "direct", the same with a single box, each
-    search over all particles; "pairs", all pairs before every event (Spencer 2021, section 3.1), the referee.
-    All three give the same bits. boxes_per_side: a number, or one per axis; by default about one a particle.
+    search: "boxes", with one next event per particle in a queue; "lists", the same with neighbour lists;
+    "automatic", the one of these that is faster at the density of the scene; "direct", with a single box,
+    each search over all particles; "pairs", all pairs before every event (Spencer 2021, section 3.1), the
+    referee. All give the same bits. boxes_per_side: a number, or one per axis; by default about one a
+    particle.
 
     No box is narrower than the diameters of the particles in it. A few oversized particles can be left out of
     the boxes, each of them tested by every small one near it: by default the largest of all, if that saves a
@@ -59,14 +64,14 @@ class EventDriven:
     box, which must be fewer than the others.
     """
 
-    search: str = "boxes"
+    search: str = "automatic"
     boxes_per_side: int | tuple[int, ...] | None = None
 
     name: ClassVar[Literal["event"]] = "event"
 
     def __post_init__(self) -> None:
         choice("search", self.search, SEARCHES)
-        if self.search != "boxes" and self.boxes_per_side is not None:
+        if self.search not in ("automatic", "boxes") and self.boxes_per_side is not None:
             raise SceneError("boxes_per_side", self.boxes_per_side, 'needs search "boxes"')
         if self.boxes_per_side is not None:
             check_boxes_per_side(self.boxes_per_side)
@@ -83,14 +88,17 @@ class EventDynamics:
     def __init__(self, engine: EventDriven, scene: Scene, state: State, seed: int | tuple[int, ...]) -> None:
         from gaspart.kernels import flight, model, running_sum
         from gaspart.kernels.event import loop
+        from gaspart.kernels.event import neighbour_lists as lists
         from gaspart.kernels.event.box_lists import empty_lists
         from gaspart.kernels.event.queue import EVENT_COUNT, empty_queue
 
         self._loop, self._flight, self._kernels, self._sums = loop, flight, model, running_sum
+        self._lists = lists
         self._scene = scene
         self._reference = state
         n = state.count
-        boxes, largest = boxes_and_largest(scene, engine.boxes_per_side if engine.search == "boxes" else 1)
+        search = chosen_search(scene, engine.search, engine.boxes_per_side is not None)
+        boxes, largest = boxes_and_largest(scene, engine.boxes_per_side if search == "boxes" else 1)
         self._particles = model.Particles(
             flights=aligned((n,), model.flight_dtype(scene.dimension)),
             images=state.images.copy(),
@@ -101,31 +109,12 @@ class EventDynamics:
         self._flights["radius"] = state.radii
         self._particles.predictions["partner"] = model.NONE
         self._particles.predictions["box"] = boxes.coordinates(state.positions)
-        self._boxes = empty_lists(boxes, n)
-        self._queue = None if engine.search == "pairs" else empty_queue(n)
+        self._boxes = empty_lists(boxes, n, neighbour_lists(scene) if search == "lists" else None)
+        self._queue = None if search == "pairs" else empty_queue(n)
         self._event_count = np.zeros(1, dtype=np.int64)
         if self._queue:
             self._event_count = self._queue.cursor[EVENT_COUNT:]
-        law = contact_law(scene, state)
-        self._duration = contact_duration(scene)
-        law = law._replace(duration=self._duration) if law else None
-        self._unit_mass, masses = (1.0, None) if law else scaled_masses(state.masses)
-        gravity = None
-        if scene.gravity is not None and any(scene.gravity):
-            support = model.no_support(n, _LOWEST * max(scene.container.lengths)) if scene.walls else None
-            gravity = model.Gravity(scene.gravity, np.isinf(state.masses), 0.0, support)
-        oversized = np.flatnonzero(state.radii > largest)
-        self._model = model.Model(
-            space=model.Space(
-                scene.container.lengths, scene.container.periodic, float(not scene.centres_to_walls)
-            ),
-            masses=masses,
-            gravity=gravity,
-            law=law,
-            faces=special_faces(scene, state, seed, self._unit_mass) if scene.faces else None,
-            walls=interior_walls(scene, boxes, largest) if scene.walls else None,
-            oversized=model.Oversized(oversized, largest) if len(oversized) else None,
-        )
+        self._model = self._model_of(state, seed, boxes, largest)
         self._monitors, self._interval = self._watch(n)
         self._lightest = float(state.masses.min(initial=np.inf))
         self._lost = np.zeros(2)  # net and gross, before the tally began
@@ -139,6 +128,32 @@ class EventDynamics:
         self._flights["clock"] = self._clock
         self._count()
         self._predict()
+
+    def _model_of(self, state: State, seed: int | tuple[int, ...], boxes: Boxes, largest: float) -> Model:
+        """The model of the scene; also the unit of mass, and what makes contacts last."""
+        model, scene = self._kernels, self._scene
+        law = contact_law(scene, state)
+        self._duration = contact_duration(scene)
+        law = law._replace(duration=self._duration) if law else None
+        self._unit_mass, masses = (1.0, None) if law else scaled_masses(state.masses)
+        gravity = None
+        if scene.gravity is not None and any(scene.gravity):
+            support = (
+                model.no_support(state.count, _LOWEST * max(scene.container.lengths)) if scene.walls else None
+            )
+            gravity = model.Gravity(scene.gravity, np.isinf(state.masses), 0.0, support)
+        oversized = np.flatnonzero(state.radii > largest)
+        return model.Model(
+            space=model.Space(
+                scene.container.lengths, scene.container.periodic, float(not scene.centres_to_walls)
+            ),
+            masses=masses,
+            gravity=gravity,
+            law=law,
+            faces=special_faces(scene, state, seed, self._unit_mass) if scene.faces else None,
+            walls=interior_walls(scene, boxes, largest) if scene.walls else None,
+            oversized=model.Oversized(oversized, largest) if len(oversized) else None,
+        )
 
     def _watch(self, count: int) -> tuple[Monitors, float]:
         """What detects a collapse, if one is possible, and its interval as a part of an epoch."""
@@ -166,7 +181,22 @@ class EventDynamics:
             self._kicks.reset()
         self._since = self.time
 
+    def _make_lists(self) -> None:
+        """Make the neighbour lists from their centres, with as much room as they need."""
+        lists, lengths = self._boxes.lists, self._model.space.lengths
+        self._lists.make_lists(lists, lengths)
+        while lists.full.any():
+            room, pages = lists.room << int(lists.full[0]), lists.per_cell << int(lists.full[1])
+            larger = neighbour_lists(self._scene, room, pages)
+            larger.listed["centre"] = lists.listed["centre"]
+            self._boxes = self._boxes._replace(lists=larger)
+            lists = larger
+            self._lists.make_lists(lists, lengths)
+
     def _predict(self) -> None:
+        if self._boxes.lists:
+            self._lists.centre_all(self._boxes.lists, self._flights, self._clock, self._model.space.lengths)
+            self._make_lists()
         if self._queue:
             self._loop.predict_all(
                 self._particles, self._queue, self._boxes, self._model, self._tally, self._clock
@@ -221,6 +251,9 @@ class EventDynamics:
                         f"no event up to time {self.time:g} in {self._quiet} epochs of the clocks: "
                         "particles miss one another"
                     )
+            elif reason == self._loop.NO_ROOM:
+                self._clock = max(self._clock, last)
+                self._predict()
             elif done:
                 self._clock = max(self._clock, last)
             if reason == self._loop.COLLAPSE and self._monitors.collapse is not None:
@@ -341,6 +374,8 @@ class EventDynamics:
         """Everything that the kernels change and that cannot be made again, by name."""
         arrays = {**self._particles._asdict(), "event_count": self._event_count, **self._tally._asdict()}
         law, faces, collapse = self._model.law, self._model.faces, self._monitors.collapse
+        if self._boxes.lists:
+            arrays["centres"] = self._boxes.lists.listed["centre"]
         if law:
             arrays["spins"] = law.spins
             if law.vibrations is not None:
@@ -372,5 +407,7 @@ class EventDynamics:
             setattr(self, f"_{key}", parts[key].item())
         self._lost = parts["lost"].copy()
         self._begin_epoch(self._epoch)
+        if self._boxes.lists:
+            self._make_lists()
         if self._queue:
             self._loop.restore(self._particles, self._queue, self._boxes, self._model, self._clock)

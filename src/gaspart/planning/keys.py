@@ -97,7 +97,15 @@ _BOXES: dict[str, Kind] = {
 
 ENGINES: dict[str, dict[str, Kind]] = {
     "event": {
-        "search": choice("how the next event is found", "boxes", "direct", "pairs", default="boxes"),
+        "search": choice(
+            "how the next event is found",
+            "automatic",
+            "boxes",
+            "lists",
+            "direct",
+            "pairs",
+            default="automatic",
+        ),
         **_BOXES,
     },
     "step": {

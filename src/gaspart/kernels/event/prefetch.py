@@ -10,11 +10,13 @@ does not come is not used.
 from numpy import int64, uint32, uint64
 
 from gaspart.kernels.compilation import inner_helper
+from gaspart.kernels.event.neighbour_lists import listed_number
 from gaspart.kernels.event.queue import BUCKET
 from gaspart.kernels.model import BOX_FACES, WELL_EDGES
 from gaspart.kernels.prefetch import fetch
 
-CACHED = 1 << 15  # particles up to which the nearer caches suffice without
+CACHED = 1 << 15  # particles up to which the nearer caches suffice without,
+CACHED_LISTS = 1 << 12  # and with neighbour lists
 _STRIDE = 3  # buckets from one stage to the next: about as many events
 _MISSED = 15  # buckets that are made up for if the queue has leapt over them
 _BOTH = (int64(0), int64(0), int64(0))  # sides of each axis
@@ -85,6 +87,48 @@ def fetch_predictions(predictions, queue, bucket):
     i = head[bucket & mask]
     if i >= 0 and predictions[i].after >= 0:
         fetch(predictions, predictions[i].after)
+
+
+@inner_helper
+def fetch_listed(flights, lists, i):
+    """Fetch the flights of the particles in a neighbour list."""
+    row = i * lists.room
+    for n in range(row + 1, row + 1 + int64(lists.candidates[row])):
+        fetch(flights, listed_number(lists, n))
+
+
+@inner_helper
+def fetch_list(flights, lists, i):
+    """Fetch the flight of a particle and its neighbour list."""
+    fetch(flights, i)
+    fetch(lists.listed, i)
+    fetch(lists.candidates, i * lists.room)
+
+
+@inner_helper
+def prefetch_lists(particles, queue, lists, next_bucket):
+    """The same as `prefetch` with neighbour lists."""
+    flights, predictions = particles.flights, particles.predictions
+    head, mask = queue.head, len(queue.head) - 2
+    now = queue.cursor[BUCKET]
+    for bucket in range(max(next_bucket, now - _MISSED), now + 1):
+        fetch_predictions(predictions, queue, bucket + 3 * _STRIDE)
+        for stage in range(2):  # the lists of a particle and its partner, those in them
+            i = int64(head[(bucket + (2 - stage) * _STRIDE) & mask])
+            while i >= 0:
+                partner = int64(predictions[i].partner)
+                meets = predictions[i].contact_time < predictions[i].face_time
+                if stage == 0:
+                    fetch_list(flights, lists, i)
+                    if meets:
+                        fetch(predictions, partner)
+                        fetch_list(flights, lists, partner)
+                else:
+                    fetch_listed(flights, lists, i)
+                    if meets:
+                        fetch_listed(flights, lists, partner)
+                i = int64(predictions[i].after)
+    return now + 1
 
 
 @inner_helper
