@@ -10,7 +10,10 @@ def verdicts(dataset):
 
 def test_right_data_agree():
     found = verdicts(pressures())
-    assert set(found.values()) == {"agrees"}
+    assert set(found.values()) == {"agrees", "no verdict"}
+    assert [text[:20] for text, verdict in found.items() if verdict == "no verdict"] == [
+        "pressure of 125 sphe"
+    ]
     assert sum("bulk pressure at N/V" in text for text in found) == 2
 
 

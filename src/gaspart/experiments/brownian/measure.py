@@ -35,6 +35,7 @@ class Setting:
     gas_mass: float
     radius: float
     temperature: float
+    contact: float
     friction: float
     diffusion: float
     share: float
@@ -61,6 +62,7 @@ def setting_of(point: grid.Point) -> Setting:
         gas_mass=gas.mass,
         radius=body.radius,
         temperature=temperature,
+        contact=contact,
         friction=friction,
         diffusion=float(theory.tagged_diffusion(friction, body.mass, gas.mass, temperature)),
         share=body.mass / (body.mass + gas.count * gas.mass) if conserved else 0.0,
