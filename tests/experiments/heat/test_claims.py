@@ -52,6 +52,7 @@ def test_too_short_runs_are_inconclusive():
         ("mode_ratio", "mean energy of a mode over kT"),
         ("energy_ratio", "E / T over"),
         ("log_fluctuation", "var E"),
+        ("bend", "second-order"),
         ("slope", "dE/dT"),
     ],
 )

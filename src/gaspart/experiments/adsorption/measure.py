@@ -104,8 +104,9 @@ class Holder:
 def adsorption(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """Adsorption on a wall, by point.
 
-    settings: `blocks` of each replica; `near`, the distance from the edge of the well, or from where
-    particles stick, within which the velocities of leaving particles are read; `bins` of their speeds.
+    settings: `blocks` of each replica, `layer_blocks` where the wall holds a layer; `near`, the distance
+    from the edge of the well, or from where particles stick, within which the velocities of leaving
+    particles are read; `bins` of their speeds.
 
     Dimensions point, bin. Of every point: kind, temperature, depth, width, momentum, mass and outside, as in
     `Holder`; with _error: held, the mean number of held particles; ratio, of it to the others, and log_ratio;
@@ -135,13 +136,14 @@ def _measured(point: grid.Point, settings: dict) -> dict:
     """The values of one point."""
     holder = Holder.of(point)
     slow = holder.momentum / np.sqrt(holder.mass * holder.temperature) or 1.0
+    layer = holder.kind == "layer"
     blocks = [
         counts_of(holder, *part, settings, slow)
         for path in point.replica_paths
-        for part in _parts(holder, point, path, settings["blocks"])
+        for part in _parts(holder, point, path, settings["layer_blocks" if layer else "blocks"])
     ]
     held, free, far, slowly, flux = (np.array(series) for series in zip(*blocks, strict=True))
-    bins, layer, absent = settings["bins"], holder.kind == "layer", (np.nan, np.nan)
+    bins, absent = settings["bins"], (np.nan, np.nan)
     estimates = _amounts(holder, held, free, far)
     if layer:  # hardly any particle leaves it
         estimates |= {"flux": (np.full(bins, np.nan),) * 2, "slow_share": absent}

@@ -123,7 +123,7 @@ def heat_conduction_metal(ds: xr.Dataset) -> list[Claim]:
     law = f"N_e d/2 + N_s = {float(ds['expected'][0]):g} (classical statistical mechanics, exact)"
     claims = []
     for row in rows(ds, "point"):
-        claims += _isothermal(row, law) if row["hot"] == row["cold"] else [_local(row)]
+        claims += _isothermal(row, law) if row["hot"] == row["cold"] else [_local(row), _linear(row)]
     return [
         *claims,
         Claim(
@@ -145,6 +145,20 @@ def _local(row: xr.Dataset) -> Claim:
         half_width=0.05,
         source="local equilibrium, to the square of the slope over a mean free path",
         fails_if="modes that do not take the temperature of the electrons",
+    )
+
+
+def _linear(row: xr.Dataset) -> Claim:
+    """Of a gas, whose particles collide with each other, T^(3/2) would be linear."""
+    slope, level = np.polyfit(row["position"].values[1:-1], row["electrons"].values[1:-1], 1)
+    return Claim(
+        claim="second-order coefficient of the electrons' temperature against position over the gap",
+        measured=Estimate.of(row, "bend"),
+        expected=0.0,
+        required=0.1 * float(row["hot"] - row["cold"]),
+        source="scatterers at rest: n sqrt(T) is uniform, the conductivity proportional to it, T(x) linear",
+        alternative=-0.25 * slope**2 / (level + 0.5 * slope),
+        fails_if="electrons that conduct as a gas does, whose T^(3/2) is linear",
     )
 
 

@@ -217,7 +217,8 @@ def heat_conduction_metal(points: list[grid.Point], settings: dict) -> xr.Datase
     `electrons_part` what the electrons have of it.
 
     Dimensions point, bin: electrons, the temperature of the electrons; modes, the mean energy of a mode; and
-    `share`, the mean over the bins of modes over electrons; hot, cold, flux, position. Over point
+    `share`, the mean over the bins of modes over electrons; `bend`, the second-order coefficient of the
+    electrons' temperature against position; hot, cold, flux, position. Over point
     too: energy_ratio, E / T over the expected heat capacity, log_fluctuation, the logarithm of var E / T^2
     over it (both with T of the walls, and NaN between different ones; the variance about the known mean,
     which has no bias where samples are correlated, and whose logarithm is closer to Gaussian),
@@ -285,6 +286,7 @@ def _metal(point: grid.Point, settings: dict) -> dict:
         "share": jackknife(lambda k, n, v, s: (v / s * n / k).mean(), kinetic, bodies, vibrating, scatterers),
         "flux": jackknife(lambda out, into: 0.5 * (into - out), given, taken),
     }
+    made["bend"] = jackknife(_bend, kinetic, bodies)
     warm = gap.hot if gap.hot == gap.cold else np.nan
     made["energy_ratio"] = jackknife(lambda e: e / (capacity * warm), total)
     made["mode_ratio"] = jackknife(lambda e: e / warm, mode)
@@ -292,6 +294,12 @@ def _metal(point: grid.Point, settings: dict) -> dict:
     row = {name: value for name, (value, _) in made.items()}
     row |= {f"{name}_error": error for name, (_, error) in made.items()}
     row |= {f"{name}_freedom": len(total) - 1 for name in made}
-    position = (np.arange(bins) + 0.5) * gap.length / bins
     row |= {"electrons_part": 1.0 - fixed.count / capacity, "expected": capacity}
-    return row | {"hot": gap.hot, "cold": gap.cold, "position": position / gap.length}
+    return row | {"hot": gap.hot, "cold": gap.cold, "position": (np.arange(bins) + 0.5) / bins}
+
+
+def _bend(kinetic: np.ndarray, number: np.ndarray) -> float:
+    """Second-order coefficient of the temperature against position over the gap, from sums in bins, without
+    the outermost, where electrons come from a wall directly."""
+    position = (np.arange(number.size) + 0.5) / number.size
+    return float(np.polyfit(position[1:-1], (kinetic / number)[1:-1], 2)[0])

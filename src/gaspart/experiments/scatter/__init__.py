@@ -1,4 +1,10 @@
 """The scatter of all claims."""
 
+from gaspart.kinds import TEXT, listed
+
 TITLE = "All claims together"
-FIGURES: dict[str, dict] = {"claims_scatter": {}}
+FIGURES = {
+    "claims_scatter": {
+        "experiments": listed(TEXT, "none: it is made of the claims of all other figures", least=0, most=0)
+    }
+}
