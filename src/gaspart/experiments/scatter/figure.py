@@ -67,7 +67,7 @@ def _figures(axis: Axes, ds: xr.Dataset, shown: xr.Dataset) -> None:
                 textcoords="offset points", va="center", fontsize=6,
             )  # fmt: skip
     axis.set_yticks(range(len(names)), names, fontsize=6)
-    axis.set_ylim(len(names) - 0.5, -0.5)
+    axis.set_ylim(max(1, len(names)) - 0.5, -0.5)
     axis.set_xlim(-FURTHEST - 0.2, FURTHEST + 0.2)
     axis.set_xlabel("deviation / standard deviations")
     style.letter(axis, "b", y=1.0)
