@@ -97,12 +97,12 @@ def _oscillation(dataset: xr.Dataset) -> list[Claim]:
     weights = narrow["at_bulk_error"].values ** -2.0
     norm = np.sum(weights * expected**2)
     return [
-        Claim.within(
+        Claim(
             claim="period of the solvation pressure in diameters",
             measured=Estimate(dataset.attrs["period"], dataset.attrs["period_error"]),
-            expected=1.0,
-            half_width=0.1,
-            source="layers of spheres, one diameter thick",
+            expected=dataset.attrs["functional_period"],
+            required=0.05,
+            source="White Bear functional (Roth and others 2002; computed), the same fit to the same widths",
             fails_if="no layers, or widths too far apart to resolve them",
         ),
         Claim.within(

@@ -134,12 +134,12 @@ def _steady(at: xr.Dataset) -> Claim:
     )
     z = float(theory.compressibility_factor(fraction, dimension))
     z += float(theory.finite_size_correction(fraction, dimension, count, ensemble="canonical"))
-    return Claim.within(
+    return Claim(
         claim=f"error of Z in the steady state minus that of paired runs, dt = {float(at.steady_step):g}, "
         f"{at.steady_setting.values}, {_gas(at.steady_dimension, at.steady_packing_fraction)}",
         measured=Estimate.of(at, "steady_z") / z - 1.0 - Estimate.of(at, "steady_paired"),
         expected=0.0,
-        half_width=0.005,
+        required=FLOOR,
         source="Kolafa, Labik & Malijevsky (2004), first order in 1/N",
         fails_if="errors accumulate over many steps",
     )
