@@ -137,10 +137,11 @@ def _measured(point: grid.Point, settings: dict) -> dict:
     holder = Holder.of(point)
     slow = holder.momentum / np.sqrt(holder.mass * holder.temperature) or 1.0
     layer = holder.kind == "layer"
+    number = settings["layer_blocks"] if layer else settings["blocks"]
     blocks = [
         counts_of(holder, *part, settings, slow)
         for path in point.replica_paths
-        for part in _parts(holder, point, path, settings["layer_blocks" if layer else "blocks"])
+        for part in _parts(holder, point, path, number)
     ]
     held, free, far, slowly, flux = (np.array(series) for series in zip(*blocks, strict=True))
     bins, absent = settings["bins"], (np.nan, np.nan)
