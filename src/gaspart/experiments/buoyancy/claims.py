@@ -63,7 +63,7 @@ def _fixed(ds: xr.Dataset) -> list[Claim]:
     ]
 
 
-def _nearer(radius: float) -> float:
+def _nearer(radius: float | xr.DataArray) -> float:
     """R or R + r, as 0 or 1, whichever is nearer."""
     return 0.0 if float(radius) < 0.5 else 1.0
 

@@ -300,6 +300,8 @@ def _metal(point: grid.Point, settings: dict) -> dict:
 
 def _bend(kinetic: np.ndarray, number: np.ndarray) -> float:
     """Second-order coefficient of the temperature against position over the gap, from sums in bins, without
-    the outermost, where electrons come from a wall directly."""
+    the outermost, where electrons come from a wall directly; NaN for fewer than five bins."""
+    if number.size < 5:
+        return np.nan
     position = (np.arange(number.size) + 0.5) / number.size
     return float(np.polyfit(position[1:-1], (kinetic / number)[1:-1], 2)[0])
