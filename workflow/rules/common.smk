@@ -94,7 +94,9 @@ def other_claims(wildcards):
     """The claims tables of all other figures, for the figure that is made of them; none for the others."""
     if family(wildcards) != "scatter":
         return []
-    return expand("results/claims/{figure}.csv", figure=[name for name in FIGURES if name != wildcards.figure])
+    return expand(
+        "results/claims/{figure}.csv", figure=[name for name in FIGURES if name != wildcards.figure]
+    )
 
 
 def cores_of(wildcards):
