@@ -10,12 +10,13 @@ ROWS = [
     {"claim": "friction rate, mass 1", "measured": "0.0512", "uncertainty": "0.0014", "expected": "0.05"},
     {"claim": "friction rate, mass 100", "measured": "0.51", "uncertainty": "0.03", "expected": "0.5"},
     {"claim": "diffusion", "measured": "nan", "uncertainty": "nan", "expected": "1.0"},
+    {"claim": "viscosity", "measured": "", "uncertainty": "", "expected": "1.0"},
 ]
 
 
 def test_a_place_is_filled_with_the_value_of_its_claim():
-    caption = "The rate is {{friction\nrate, mass 100}}, and D {{ diffusion }} or {{another}}."
-    expected = f"The rate is 0.51(3), and D {NOT_MEASURED} or {NOT_MEASURED}."
+    caption = "The rate is {{friction\nrate, mass 100}}, and D {{ diffusion }} or {{viscosity}}, {{another}}."
+    expected = f"The rate is 0.51(3), and D {NOT_MEASURED} or {NOT_MEASURED}, {NOT_MEASURED}."
     assert filled(caption, ROWS) == expected
 
 

@@ -30,11 +30,16 @@ def filled(caption: str, rows: Iterable[dict[str, Any]], absent: str = NOT_MEASU
         found = [row for row in known if row["claim"].startswith(beginning)]
         if len(found) > 1:
             raise ValueError(f"{{{{{beginning}}}}}: {len(found)} claims begin so")
-        if not found or not math.isfinite(float(found[0]["measured"])):
+        if not found or not math.isfinite(_number(found[0], "measured")):
             return absent
-        return concise(float(found[0]["measured"]), float(found[0]["uncertainty"]))
+        return concise(_number(found[0], "measured"), _number(found[0], "uncertainty"))
 
     return _PLACE.sub(value, caption)
+
+
+def _number(row: dict[str, Any], name: str) -> float:
+    """A column of a table as a number; pandas leaves nothing where there is none."""
+    return math.nan if row[name] == "" else float(row[name])
 
 
 def concise(value: float, error: float) -> str:
@@ -59,7 +64,7 @@ def literal_copies(caption: str, rows: Iterable[dict[str, Any]]) -> list[str]:
     for text in _NUMBER.findall(_PLACE.sub("", caption)):
         places = len(text.split(".")[1])
         for row in rows:
-            measured, expected = (round(float(row[name]), places) for name in ("measured", "expected"))
+            measured, expected = (round(_number(row, name), places) for name in ("measured", "expected"))
             if float(text) == measured != expected:
                 copies.append(f"{text}: {row['claim']}")
     return copies
