@@ -16,6 +16,7 @@ from docutils.core import publish_parts
 
 import gaspart
 from gaspart import theory
+from gaspart.claims.captions import filled
 from gaspart.experiments.registry import families, titles
 
 ROOT = Path(__file__).parents[1]
@@ -83,7 +84,8 @@ def family_page(family, folder):
         picture = ROOT / f"results/figures/{figure}.svg"
         if picture.exists():
             parts.append(f'<img alt="{figure}" src="{os.path.relpath(picture, folder)}">')
-        parts.append(from_rst((ROOT / f"workflow/report/{figure}.rst").read_text(encoding="utf-8")))
+        caption = (ROOT / f"workflow/report/{figure}.rst").read_text(encoding="utf-8")
+        parts.append(from_rst(filled(caption, [], "(see the claims)")))
         parts.append(claims_of(ROOT / f"results/claims/{figure}.csv"))
     for kind, title in (("measure", "Measurement"), ("claims", "Claims")):
         text = importlib.import_module(f"gaspart.experiments.{family}.{kind}").__doc__

@@ -13,6 +13,7 @@ sys.path.insert(0, str(ROOT / "src"))
 if " " in sys.executable:
     sys.executable = shlex.quote(sys.executable)
 
+from gaspart.claims.captions import filled
 from gaspart.claims.table import summary
 from gaspart.experiments.config import check
 from gaspart.experiments.registry import families, titles
@@ -89,6 +90,15 @@ def family(wildcards):
     return families()[wildcards.figure]
 
 
+def other_claims(wildcards):
+    """The claims tables of all other figures, for the figure that is made of them; none for the others."""
+    if family(wildcards) != "scatter":
+        return []
+    return expand(
+        "results/claims/{figure}.csv", figure=[name for name in FIGURES if name != wildcards.figure]
+    )
+
+
 def cores_of(wildcards):
     return (workflow.resource_settings.cores or 1) if point_of(wildcards).job == "measure_cost" else 1
 
@@ -99,7 +109,9 @@ def memory_of(wildcards):
 
 
 def caption_of(wildcards):
-    return (ROOT / f"workflow/report/{wildcards.figure}.rst").read_text(encoding="utf-8")
+    """The caption as it is known before anything is measured."""
+    text = (ROOT / f"workflow/report/{wildcards.figure}.rst").read_text(encoding="utf-8")
+    return filled(text, [], "(see the claims)")
 
 
 def flagged(path, kind):

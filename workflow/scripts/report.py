@@ -29,6 +29,16 @@ def html_of(rst):
     return publish_parts(rst, writer="html5", settings_overrides=settings)["body"]
 
 
+def caption_of(path, claims):
+    """The caption of a figure with its measured numbers; copies of them are named in the log."""
+    from gaspart.claims.captions import filled, literal_copies
+
+    text = path.read_text(encoding="utf-8")
+    for copy in literal_copies(text, claims):
+        print(f"{path.stem}: a measured number in the caption, {copy}")
+    return filled(text, claims)
+
+
 def run_times(folder):
     """Seconds of every rule: number of jobs, their sum, the longest."""
     spent = {}
@@ -61,6 +71,7 @@ with job(snakemake):
     import jinja2
 
     from gaspart import __version__
+    from gaspart.claims import counts
     from gaspart.experiments.registry import families, titles
     from gaspart.files import whole_file
     from gaspart.trajectory import provenance
@@ -74,13 +85,13 @@ with job(snakemake):
         snakemake.input.captions,
         strict=True,
     ):
-        made = attributes(dataset)
+        made, own = attributes(dataset), [row for row in claims if row["figure"] == figure]
         sections.setdefault(titles()[families()[figure]], []).append(
             {
                 "name": figure,
                 "image": base64.b64encode(Path(image).read_bytes()).decode(),
-                "caption": html_of(Path(caption).read_text(encoding="utf-8")),
-                "claims": [row for row in claims if row["figure"] == figure],
+                "caption": html_of(caption_of(Path(caption), own)),
+                "claims": own,
                 "settings": json.dumps(json.loads(made["settings"]), indent=1),
                 "points": made["points"].splitlines(),
             }
@@ -100,6 +111,7 @@ with job(snakemake):
         films=films,
         claims=claims,
         verdicts=verdicts,
+        kinds=counts(claims),
         times=run_times("results/benchmarks"),
         versions={"gaspart": __version__, "python": platform.python_version()}
         | {name: version(name) for name in TOOLS},

@@ -182,6 +182,11 @@ RUN: dict[str, Kind] = {
         default=None,
     ),
     "record_events": flag("`measure_cost`, engine `event`: record all events", default=False),
+    "without": described(
+        {"type": "array", "items": TEXT, "minItems": 1},
+        "`measure_cost`: keys that a second scene lacks, which is timed in turn with the point's own",
+        default=None,
+    ),
 }
 
 _ENGINE_KEYS: dict[str, Kind] = {name: kind for keys in ENGINES.values() for name, kind in keys.items()}

@@ -12,6 +12,7 @@ def extremes_data(verdict="passes", missed=0, message=""):
         {
             "verdict": (shape, np.array([[verdict, "passes"], ["refused", "refused"]])),
             "message": (shape, np.array([[message, ""], ["speed = 1: too fast", "speed = 1: too fast"]])),
+            "refusal": (shape, np.array([[False, False], [True, True]])),
             "energy": (shape, energy),
             "overlap": (shape, 0.0 * energy),
             "missed": (shape, np.array([[missed, 0], [0, 0]])),

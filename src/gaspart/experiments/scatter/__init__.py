@@ -1,0 +1,10 @@
+"""The scatter of all claims."""
+
+from gaspart.kinds import TEXT, listed
+
+TITLE = "All claims together"
+FIGURES = {
+    "claims_scatter": {
+        "experiments": listed(TEXT, "none: it is made of the claims of all other figures", least=0, most=0)
+    }
+}
