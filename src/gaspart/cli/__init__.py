@@ -18,6 +18,7 @@ from gaspart.cli.check import CheckFailed, add_check
 from gaspart.cli.collisions import add_collisions
 from gaspart.cli.export import add_export
 from gaspart.cli.info import add_info
+from gaspart.cli.new import add_new
 from gaspart.cli.progress import clear_line
 from gaspart.cli.render import add_render
 from gaspart.cli.run import add_resume, add_run
@@ -26,6 +27,7 @@ from gaspart.errors import SceneError, SimulationError
 from gaspart.interruption import interrupted, set_note
 
 _COMMANDS = {
+    "new": add_new,
     "run": add_run,
     "resume": add_resume,
     "info": add_info,
@@ -89,7 +91,15 @@ def _discard(stream: TextIO) -> None:
 def _parser() -> Parser:
     parser = Parser(prog="gaspart", description="Hard-sphere and hard-disc gases.")
     parser.add_argument("--version", action="version", version=f"gaspart {__version__}")
-    commands = parser.add_subparsers(required=True, metavar=" | ".join(_COMMANDS))
+    added = parser.add_subparsers(required=True, metavar=" | ".join(_COMMANDS))
     for add in _COMMANDS.values():
-        add(commands)
+        add(added)
     return parser
+
+
+def commands() -> dict[str, Parser]:
+    """The parser of each command, by name."""
+    found = Parser(prog="gaspart", description="").add_subparsers()
+    for add in _COMMANDS.values():
+        add(found)
+    return dict(found.choices)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 from collections.abc import Iterator
-from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,10 +11,11 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.files import Kind, begins_with, output_path, writing
-from gaspart.rendering.particles import FASTEST, colours_of, particles_of
+from gaspart.rendering.particles import FASTEST, colours_of, opened, particles_of
 from gaspart.rendering.pictures import SIZE, checked_size, picture
 from gaspart.scene.validation import count_of, number
-from gaspart.trajectory.run import open_trajectory
+from gaspart.simulation.simulation import Simulation
+from gaspart.state.state import State
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -58,18 +58,15 @@ def film(
     if path.suffix == ".mp4":
         size = (size[0] // 2 * 2, size[1] // 2 * 2)
     to = _gif if path.suffix == ".gif" else _mp4
-    with _opened(trajectory) as opened:
-        shown = _pictures(opened, size, colour, trail)
+    with opened(trajectory) as source:
+        if isinstance(source, Simulation | State):
+            raise SceneError(
+                "trajectory", source, "must be a path or an open trajectory: a film needs frames"
+            )
+        shown = _pictures(source, size, colour, trail)
         with writing(path, KINDS[path.suffix], overwrite) as scratch:
             to(scratch, shown, size, rate)
     return path
-
-
-def _opened(trajectory: str | Path | xr.Dataset) -> AbstractContextManager[xr.Dataset]:
-    """A trajectory, to be closed only if it was opened here."""
-    if isinstance(trajectory, (str, Path)):
-        return open_trajectory(trajectory)
-    return nullcontext(trajectory)
 
 
 def _pictures(

@@ -1,20 +1,31 @@
-"""The particles in a picture, from a state or a frame of a trajectory, and their colours."""
+"""The particles in a picture, from a simulation, a state or a frame of a trajectory, and their colours."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.rendering.style import COLOURS
+from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of
+from gaspart.scene.walls import Plate, Wall
 from gaspart.state.state import State
 from gaspart.yaml_text import parse_yaml
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from gaspart.simulation.simulation import Simulation
+
+Source: TypeAlias = "str | Path | xr.Dataset | Simulation | State"
+"""What pictures are made of: a trajectory, by its path or open, a simulation or a state."""
 
 COLOURINGS = ("speed", "species")
 FASTEST = 2.0
@@ -24,7 +35,8 @@ FASTEST = 2.0
 @dataclass(frozen=True)
 class DrawnParticles:
     """positions (N, d), radii (N,), species (N,), speeds (N,); lengths (d,) of the container; walls
-    (M, 2, 2), the ends of the interior ones."""
+    (M, 2, d), the ends of the interior ones, of plates those of their sides; periodic, whether each axis is.
+    """
 
     positions: np.ndarray
     radii: np.ndarray
@@ -32,6 +44,7 @@ class DrawnParticles:
     speeds: np.ndarray
     lengths: np.ndarray
     walls: np.ndarray
+    periodic: tuple[bool, ...] = (False, False, False)
 
     @property
     def dimension(self) -> int:
@@ -44,30 +57,66 @@ class DrawnParticles:
         return float(np.sqrt((self.speeds**2).mean())) if len(self.speeds) else 0.0
 
 
-def particles_of(source: State | xr.Dataset, frame: int = -1) -> DrawnParticles:
-    """The particles of a `State`, or of a frame (counted from the end if negative) of an open trajectory.
+@contextmanager
+def opened(source: Source) -> Iterator[xr.Dataset | Simulation | State]:
+    """A source whose trajectory is open; one that was given as a path is closed at the end."""
+    if isinstance(source, str | Path):
+        from gaspart.trajectory.run import open_trajectory
 
-    Raises SceneError for a missing frame. A state has no interior walls.
+        with open_trajectory(source) as trajectory:
+            yield trajectory
+    else:
+        yield source
+
+
+def particles_of(source: State | Simulation | xr.Dataset, frame: int = -1) -> DrawnParticles:
+    """The particles of a simulation or a `State` now, or of a frame (counted from the end if negative) of an
+    open trajectory.
+
+    Raises SceneError for a missing frame. A state has no interior walls and no periodic axes.
     """
+    from gaspart.simulation.simulation import Simulation
+
+    if isinstance(source, Simulation):
+        return _of_state(source.state, source.scene)
     if isinstance(source, State):
-        speeds = np.sqrt((source.velocities**2).sum(axis=1))
-        walls = np.zeros((0, 2, 2))
-        return DrawnParticles(source.positions, source.radii, source.species, speeds, source.lengths, walls)
+        return _of_state(source, None)
     frames = source.sizes["frame"]
     if not -frames <= count_of("frame", frame, least=-frames) < frames:
         raise SceneError("frame", frame, f"the trajectory has {frames}, counted from 0")
     shown = source.isel(frame=frame)
     positions = shown["coordinates"].values.astype(float)
     velocities = shown["velocities"].values.astype(float)
-    walls = parse_yaml(source.attrs["scene"]).get("walls", ())
+    scene = Scene.from_dict(parse_yaml(source.attrs["scene"]))
     return DrawnParticles(
         positions=positions,
         radii=source["radius"].values,
         species=source["type"].values,
         speeds=np.sqrt((velocities**2).sum(axis=1)),
         lengths=shown["cell_lengths"].values[: positions.shape[1]],
-        walls=np.array([[wall["start"], wall["end"]] for wall in walls]).reshape(-1, 2, 2),
+        walls=_sides(scene.walls, scene.dimension),
+        periodic=scene.container.periodic,
     )
+
+
+def _of_state(state: State, scene: Scene | None) -> DrawnParticles:
+    walls = _sides(scene.walls if scene else (), state.dimension)
+    periodic = scene.container.periodic if scene else (False,) * state.dimension
+    return DrawnParticles(
+        state.positions, state.radii, state.species, state.speeds, state.lengths, walls, periodic
+    )
+
+
+def _sides(walls: Iterable[Wall | Plate], dimension: int) -> np.ndarray:
+    """(M, 2, d) the segments, and the four sides of each plate."""
+    found: list[tuple] = []
+    for wall in walls:
+        if isinstance(wall, Wall):
+            found.append((wall.start, wall.end))
+        else:
+            corner, one, other, far = wall.corners.values()
+            found += pairwise((corner, one, far, other, corner))
+    return np.array(found, dtype=float).reshape(-1, 2, dimension)
 
 
 def colours_of(
