@@ -13,7 +13,7 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 
 import gaspart
-from gaspart import theory
+from gaspart import analysis, theory
 from gaspart.cli import commands
 from gaspart.cli.new import templates
 from gaspart.experiments.registry import families, titles
@@ -57,11 +57,20 @@ def api():
         pages[f"api/{page}.rst"] = heading(title) + "".join(
             entry(f"gaspart.{name}") for name in sorted(names)
         )
+    public = "".join(entry(f"gaspart.analysis.{name}") for name in analysis.__all__)
+    pages["api/analysis.rst"] = (
+        heading("Analysis")
+        + "Functions of ``gaspart.analysis``.\n\n"
+        + public
+        + heading("Collisions", "-")
+        + pages["api/analysis.rst"].partition("\n\n")[2]
+    )
     pages["api/theory.rst"] = heading("Theory") + theory_page()
     listed = "".join(f"   {page}\n" for page in (*GROUPS, "theory"))
     pages["api/index.rst"] = (
         heading("Public names")
-        + "All names are importable from ``gaspart``, those of theory from ``gaspart.theory``.\n\n"
+        + "All names are importable from ``gaspart``, those of theory from ``gaspart.theory``,\n"
+        + "observables from ``gaspart.analysis``.\n\n"
         + f".. toctree::\n   :maxdepth: 2\n\n{listed}"
     )
     return pages

@@ -53,7 +53,9 @@ def anchors(path):
 
 def test_every_public_name_command_scene_and_figure_is_there(site):
     api = set().union(*(anchors(path) for path in (site / "generated/api").glob("*.html")))
-    assert {f"gaspart.{name}" for name in gp.__all__} - {"gaspart.__version__"} <= api
+    elsewhere = {"gaspart.__version__", "gaspart.analysis", "gaspart.theory"}
+    assert {f"gaspart.{name}" for name in gp.__all__} - elsewhere <= api
+    assert {f"gaspart.analysis.{name}" for name in gp.analysis.__all__} <= api
     assert {f"gaspart.theory.{name}" for name in theory.__all__} <= api
     assert {f"gaspart-{name}" for name in commands()} <= anchors(site / "generated/command-line.html")
     assert {f"scene-{name}" for name in templates()} <= anchors(site / "generated/gallery.html")

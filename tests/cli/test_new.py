@@ -54,7 +54,7 @@ def test_the_list_has_every_template(capsys):
         (["a\nb.yaml"], "must be a printable name that ends in .yaml"),
         (["notes.yaml", "--force"], "exists and is not a scene file"),
         (["scene.yaml"], "exists; move it away, or overwrite it (--force)"),
-        (["gas.yaml", "--template", "ga"], "invalid choice: 'ga'"),
+        (["gas.yaml", "--template", "ga"], "--template: 'ga': unknown name; did you mean gas?"),
     ],
 )
 def test_what_is_refused(arguments, complaint, tmp_path, monkeypatch, capsys):

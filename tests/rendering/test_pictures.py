@@ -3,8 +3,8 @@ import pytest
 
 import gaspart as gp
 from gaspart.rendering.discs import Canvas
-from gaspart.rendering.particles import colours_of, particles_of
-from gaspart.rendering.pictures import render
+from gaspart.rendering.frames import particles_of, render
+from gaspart.rendering.particles import colours_of
 
 BLACK = np.zeros((1, 3))
 

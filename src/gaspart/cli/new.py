@@ -69,7 +69,7 @@ def add_new(commands: Commands) -> None:
     new = add_command(commands, "new", _new, "write a scene file from a template", text, _EXAMPLES)
     add = new.add_argument
     add("scene", nargs="?", metavar="FILE", help="ends in .yaml")
-    add("--template", choices=templates(), default="gas", metavar="NAME", help="default: gas")
+    add("--template", choices=tuple(templates()), default="gas", metavar="NAME", help="default: gas")
     add("--list", action="store_true", help="print the names and titles of all templates")
     add("--force", action="store_true", help="replace a scene file")
 

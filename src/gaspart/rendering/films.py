@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import errno
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,8 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.files import Kind, begins_with, output_path, writing
-from gaspart.rendering.particles import FASTEST, colours_of, opened, particles_of
+from gaspart.rendering.frames import opened, particles_of
+from gaspart.rendering.particles import FASTEST, colours_of
 from gaspart.rendering.pictures import SIZE, checked_size, picture
 from gaspart.scene.validation import count_of, number
 from gaspart.simulation.simulation import Simulation
@@ -38,12 +39,14 @@ def film(
     frames_per_second: float = 25.0,
     trail: int | None = None,
     overwrite: bool = False,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Path:
     """Write all frames of a trajectory (a path, or an open one) as a film, .mp4 or .gif; returns its path.
 
     size, colour as in `render`; all frames have one scale of speeds. For .mp4 the size is rounded down to
     even numbers. trail: the index of a disc whose path is drawn (interrupted where it crosses a periodic
-    face). A film at `path` is replaced only with `overwrite`, any other file never.
+    face). A film at `path` is replaced only with `overwrite`, any other file never. progress: is called with
+    the number of pictures so far and of all.
 
     Raises SceneError for another suffix, a file that cannot be read or written, and for arguments that
     `render` refuses.
@@ -64,9 +67,19 @@ def film(
                 "trajectory", source, "must be a path or an open trajectory: a film needs frames"
             )
         shown = _pictures(source, size, colour, trail)
+        if progress is not None:
+            shown = _reported(shown, source.sizes["frame"], progress)
         with writing(path, KINDS[path.suffix], overwrite) as scratch:
             to(scratch, shown, size, rate)
     return path
+
+
+def _reported(
+    shown: Iterator[np.ndarray], total: int, progress: Callable[[int, int], None]
+) -> Iterator[np.ndarray]:
+    for done, image in enumerate(shown, start=1):
+        yield image
+        progress(done, total)
 
 
 def _pictures(

@@ -1,4 +1,4 @@
-"""One picture of particles, as an array of pixels."""
+"""A picture of particles in given colours, as an array of pixels."""
 
 from __future__ import annotations
 
@@ -10,35 +10,12 @@ import numpy as np
 from gaspart.errors import SceneError
 from gaspart.files import Kind, begins_with
 from gaspart.rendering.camera import camera_for
-from gaspart.rendering.particles import DrawnParticles, Source, colours_of, opened, particles_of
+from gaspart.rendering.particles import DrawnParticles
 from gaspart.scene.validation import count_of
 
 PICTURE = Kind("a PNG picture", begins_with(b"\x89PNG\r\n\x1a\n"))
 SIZE = (1000, 750)
 LARGEST_SIDE = 20_000
-
-
-def render(
-    source: Source,
-    frame: int = -1,
-    size: tuple[int, int] = SIZE,
-    colour: str | np.ndarray = "speed",
-    fastest: float | None = None,
-) -> np.ndarray:
-    """A picture of a frame of a trajectory (a path or an open one; the last frame), of a `Simulation` or of a
-    `State`: uint8, (H, W, 3).
-
-    Spheres are drawn in perspective, with light and shadow, over the container's floor (z = 0); discs from
-    above, with their periodic images at periodic faces. Interior walls of a state are not drawn.
-    size: (W, H) pixels. colour: "speed", from dark at rest to bright at the speed
-    `fastest` (twice the root-mean-square one) and above; "species"; or an array (N, 3) of red, green and
-    blue from 0 to 1. The same particles give the same pixels.
-
-    Raises SceneError for a missing frame, an impossible size or an unknown colouring.
-    """
-    with opened(source) as open_source:
-        particles = particles_of(open_source, frame)
-    return picture(particles, checked_size(size), colours_of(particles, colour, fastest))
 
 
 def checked_size(size: tuple[int, int]) -> tuple[int, int]:
