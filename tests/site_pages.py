@@ -33,7 +33,8 @@ def found_on(pages, script, folder, width, wait=300, budget=60_000):
     text = _OUTER.replace("PAGES", json.dumps(list(pages))).replace("SCRIPT", script)
     outer = folder / f"frame-{width}.html"
     outer.write_text(text.replace("WIDTH", str(width)).replace("WAIT", str(wait)), encoding="utf-8")
-    command = [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--allow-file-access-from-files"]
+    command = [CHROMIUM, "--headless", "--no-sandbox", "--allow-file-access-from-files"]
+    command += ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]  # WebGL without a graphics card
     command += [f"--virtual-time-budget={budget}", f"--user-data-dir={folder}/.profile", "--dump-dom"]
     try:
         done = subprocess.run([*command, outer.as_uri()], capture_output=True, text=True, timeout=180)

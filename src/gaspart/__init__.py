@@ -42,6 +42,7 @@ _HOMES = {
     "render": "rendering.frames",
     "resume": "trajectory.run",
     "run": "trajectory.run",
+    "view": "rendering.view",
 }
 
 _PACKAGES = ("analysis", "theory")

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 LEAST_INTERVALS = 16
 """Between frames: fewer allow no uncertainty of a mean."""
+_LONG = 32  # characters of a label, from which on it has two lines
 STRETCHES = 20
 """Of a run, whose means a plot of a scalar shows."""
 
@@ -99,14 +100,16 @@ def _plot_curve(found: Observable, axis: Axes, theory: bool) -> None:
     if theory:
         assert found.theory is not None
         places = np.arange(x.size) if x.dtype.kind in "US" else x
-        axis.plot(places, found.theory, color="black", label="theory")
+        marker = "" if found.theory.notnull().sum() > 2 else "x"  # of few values, as at contact
+        axis.plot(places, found.theory, color="black", marker=marker, zorder=3, label="theory")
     axis.set_xlabel(_label(x))
 
 
 def _label(values: xr.DataArray) -> str:
     text = values.attrs.get("long_name", str(values.name))
     units = values.attrs.get("units", "1")
-    return str(text) if units == "1" else f"{text} ({units})"
+    between = "\n" if len(text) + len(units) > _LONG else " "
+    return str(text) if units == "1" else f"{text}{between}({units})"
 
 
 def scalar(name: str, series: np.ndarray, edges: np.ndarray, **about: Any) -> Observable:

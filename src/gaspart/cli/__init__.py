@@ -25,6 +25,7 @@ from gaspart.cli.progress import clear_line
 from gaspart.cli.render import add_render
 from gaspart.cli.run import add_resume, add_run
 from gaspart.cli.theory import add_theory
+from gaspart.cli.view import add_view
 from gaspart.errors import SceneError, SimulationError, unknown_word
 from gaspart.interruption import interrupted, set_note
 
@@ -35,6 +36,7 @@ _COMMANDS = {
     "info": add_info,
     "measure": add_measure,
     "render": add_render,
+    "view": add_view,
     "collisions": add_collisions,
     "export": add_export,
     "theory": add_theory,
