@@ -6,7 +6,9 @@ import sys
 from functools import cache
 from pathlib import Path
 
-ROOT = Path(workflow.basedir)
+# Where the workflow is, absolute, and from the working directory: another one where it is used as a module.
+ROOT = Path(str(workflow.current_basedir.path)).resolve().parents[1]
+FOLDER = Path(os.path.relpath(ROOT))
 SCRIPTS = ROOT / "workflow/scripts"
 sys.path.insert(0, str(ROOT / "src"))
 # Snakemake writes its interpreter's path into shell commands without quotes: with a space in it, no job would start.

@@ -29,10 +29,10 @@ rule report:
     input:
         figures=expand("results/figures/{figure}.svg", figure=FIGURES),
         datasets=expand("results/measurements/{figure}.nc", figure=FIGURES),
-        captions=expand("workflow/report/{figure}.rst", figure=FIGURES),
+        captions=expand(str(FOLDER / "workflow/report/{figure}.rst"), figure=FIGURES),
         claims="results/tables/claims.csv",
         films=expand("results/animations/{animation}.mp4", animation=ANIMATIONS),
-        template="workflow/report/report.html.j2",
+        template=str(FOLDER / "workflow/report/report.html.j2"),
     output:
         "results/report.html",
     log:

@@ -7,6 +7,7 @@ import math
 from typing import TYPE_CHECKING
 
 from gaspart.cli.arguments import Commands, UsageError, add_command, print_line, real
+from gaspart.cli.progress import waiting
 from gaspart.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -43,11 +44,15 @@ def _advise(given: argparse.Namespace) -> None:
     if given.config:
         from gaspart.experiments.cost import predict
 
-        print_line("\n".join(predict(given.config)))
+        with waiting("predicting the cost of every point"):
+            lines = predict(given.config)
+        print_line("\n".join(lines))
         return
     from gaspart.tradeoff.advice import advise
 
-    found = advise(Scene.from_file(given.scene), given.observable, given.accuracy, given.budget)
+    scene = Scene.from_file(given.scene)
+    with waiting("measuring the speed of this machine; the first time, compiling kernels"):
+        found = advise(scene, given.observable, given.accuracy, given.budget)
     print_line("\n".join(_lines(found)))
 
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from gaspart.cli.arguments import Commands, add_command, add_output, integer, print_line, real
+from gaspart.cli.progress import clear_line, counted
 from gaspart.errors import SceneError
 from gaspart.files import output_path, writing
 
@@ -68,15 +70,16 @@ def _render(given: argparse.Namespace) -> None:
             raise SceneError("output", given.output, f"must end in {', '.join((*PICTURES, *KINDS))}")
         if "frame" in options:
             raise SceneError("frame", given.frame, "has no meaning for a film, which shows all frames")
-        film(given.trajectory, output, **options, overwrite=given.force)
+        film(given.trajectory, output, **options, overwrite=given.force, progress=counted("picture"))
+        print(clear_line(), end="", file=sys.stderr)
     print_line(output)
 
 
 def _picture(trajectory: str, output: Path, options: dict, overwrite: bool) -> None:
-    from gaspart.rendering.pictures import PICTURE, render
-    from gaspart.trajectory.run import open_trajectory
+    from gaspart.rendering.frames import render
+    from gaspart.rendering.pictures import PICTURE
 
-    with open_trajectory(trajectory) as opened, writing(output, PICTURE, overwrite) as scratch:
+    with writing(output, PICTURE, overwrite) as scratch:
         import imageio.v3 as imageio
 
-        scratch.write_bytes(imageio.imwrite("<bytes>", render(opened, **options), extension=".png"))
+        scratch.write_bytes(imageio.imwrite("<bytes>", render(trajectory, **options), extension=".png"))

@@ -87,7 +87,7 @@ class Recipe:
         """The variables of a frame."""
         scene, walls = self.scene, len(self.scene.walls)
         kept = self.displacements, walls, scene.rough, scene.vibrates
-        return amber.Layout(self.stored_count, scene.dimension, *kept)
+        return amber.Layout(self.stored_count, scene.dimension, *kept, self.engine.name)
 
     def attributes(self) -> dict:
         """The recipe as the file's attributes, from which `read_recipe` restores it."""

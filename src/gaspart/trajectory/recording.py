@@ -147,7 +147,7 @@ class Recording:
             "cell_lengths": lengths,
             "cell_angles": np.full(3, 90.0),
             "kinetic_energy": state.kinetic_energy,
-            **{name: getattr(tally, name) for name in amber.COUNTERS},
+            **{name: getattr(tally, name) for name in amber.counters(self._recipe.engine.name)},
             "coordinates": state.positions[followed],
             "velocities": state.velocities[followed],
             **{name: values[followed] for name, values in inner.items()},

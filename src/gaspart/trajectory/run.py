@@ -55,7 +55,8 @@ def partial_path(path: Path) -> Path:
 def open_trajectory(path: str | Path) -> xr.Dataset:
     """A trajectory, or the finished part of a `.partial` one, as an xarray.Dataset, read as it is used.
 
-    Dimensions frame, atom, spatial (d) and face (2d); time (frame), radius and type (atom) are coordinates.
+    Dimensions frame, atom, spatial (d) and face (2d); time (frame), radius and type (atom) are coordinates,
+    and plots over frames have the time as their axis.
     Of discs that spin, `spins` is (frame, atom); of spheres (frame, atom, spatial).
     Lengths and times are in the scene's units, counters cumulative since time 0. Attributes state the scene
     (YAML), engine and seed (JSON), and what follows from the scene: count, dimension, packing_fraction,
@@ -78,6 +79,7 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     data = data.drop_vars(["cell_spatial", "cell_angular", "checksum"])
     faces = amber.face_names(scene.dimension, len(scene.walls))
     data = data.assign_coords(spatial=list("xyz"[: scene.dimension]), face=faces)
+    data = data.assign_coords(frame=("frame", data["time"].values, {"long_name": "time", "units": "time"}))
     for key, variable in data.variables.items():
         name = str(key)
         unit = variable.attrs.get("units", "1")
