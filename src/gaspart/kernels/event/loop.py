@@ -41,8 +41,8 @@ from gaspart.kernels.obstacles.interior_wall import find_wall, meet_wall
 from gaspart.kernels.obstacles.well import meet_edge
 from gaspart.kernels.prefetch import fetch
 
-# Why a run ended: the time, the number of events, the record, a collapse, a full neighbour list, the number of
-# crossings.
+# Why a run ended: the time, the number of events, the record, a collapse, a full neighbour list, the number
+# of crossings.
 STOP, EVENTS, FULL, COLLAPSE, NO_ROOM, CROSSED = range(6)
 # No box was crossed: all is predicted anew. As int64, since numba compiles a function again for each type of
 # integer, and for a constant as well.
