@@ -244,9 +244,7 @@ def earliest(typingctx, flights, i, start, count, present, boxes, space, gravity
             numbers = bits(candidates, 0, image_first)
             indices = [builder.extract_element(numbers.value, _INT(n)) for n in range(WIDTH)]
             others = load_rows(builder, rows, indices)
-            offset = [
-                image_of(candidates, image_first, k) * length for k, length in enumerate(space["lengths"])
-            ]
+            offset = [image_of(candidates, image_first, k) * side for k, side in enumerate(lengths)]
             time = contact_times(one, others, offset, pull)
             if falls:
                 mask = builder.or_(marks(builder, resting, indices), marks(builder, resting, [i] * WIDTH))
