@@ -207,16 +207,21 @@ class EventDynamics:
         """The time reached."""
         return self._start + self._clock
 
-    def advance(self, until: float, most: int | None = None, log: EventLog | None = None) -> None:
+    def advance(
+        self, until: float, most: int | None = None, log: EventLog | None = None, work: int | None = None
+    ) -> None:
         """Process events up to time `until`, at most `most` of them (collisions and wall hits).
+
+        work: the number of events, crossings and predictions of a new epoch after which to return as well, to
+        within a factor of 2, at the time reached.
 
         Raises SimulationError, with the state kept, if particles collapse: they would meet for ever in no
         time; and if nothing happens in a thousand flights through the container, where only events end the
         run.
         """
-        left = np.iinfo(np.int64).max if most is None else most
+        left, work = (np.iinfo(np.int64).max if number is None else number for number in (most, work))
         many, begun = MANY, self._clock
-        while left > 0:
+        while left > 0 and work > 0:
             if self._rest and self._rest.rests:
                 self._stay(until)
                 return
@@ -229,13 +234,16 @@ class EventDynamics:
             scheduled = self._scheduled if self._scheduled and self._scheduled.next <= end else None
             if scheduled:
                 end = scheduled.next
-            reason, done, last = self._run(log.room if log else None, end, min(left, many))
+            limits = end, min(left, many, work), min(MANY, work)
+            reason, done, crossed, last = self._run(log.room if log else None, limits)
             left -= done
             many -= done
+            work -= done + crossed
             self._quiet = 0 if done else self._quiet
             if log is not None:
                 log.take(self._start)
             if reason == self._loop.STOP:
+                work -= 1 + len(self._flights)  # what follows predicts all anew
                 if scheduled:
                     self._clock = end
                     if scheduled.happen(self._particles, self._model, self._tally):
@@ -251,18 +259,21 @@ class EventDynamics:
                         f"no event up to time {self.time:g} in {self._quiet} epochs of the clocks: "
                         "particles miss one another"
                     )
-            elif reason == self._loop.NO_ROOM:
+            else:
                 self._clock = max(self._clock, last)
+            if reason == self._loop.NO_ROOM:
                 self._predict()
-            elif done:
-                self._clock = max(self._clock, last)
-            if reason == self._loop.COLLAPSE and self._monitors.collapse is not None:
-                collapse = self._monitors.collapse
-                raise SimulationError(
-                    f"at time {self.time:g} particle {collapse.contacts.argmax()} has had "
-                    f"{collapse.most} contacts within a time of {collapse.interval:g}: "
-                    "an inelastic collapse, or a stack at rest; the state is that of the present time"
-                )
+            self._check_collapse(reason)
+
+    def _check_collapse(self, reason: int) -> None:
+        """Raise SimulationError if a collapse is why the kernel stopped."""
+        if reason == self._loop.COLLAPSE and self._monitors.collapse is not None:
+            collapse = self._monitors.collapse
+            raise SimulationError(
+                f"at time {self.time:g} particle {collapse.contacts.argmax()} has had "
+                f"{collapse.most} contacts within a time of {collapse.interval:g}: "
+                "an inelastic collapse, or a stack at rest; the state is that of the present time"
+            )
 
     def _stay(self, until: float) -> None:
         """Let time pass in a scene at rest."""
@@ -272,11 +283,11 @@ class EventDynamics:
             )
         self._clock = until - self._start
 
-    def _run(self, record: Record | None, stop: float, most: int) -> tuple[int, int, float]:
-        """Let the kernel run: why it stopped, the events it processed, the time of the last."""
+    def _run(self, record: Record | None, limits: tuple[float, int, int]) -> tuple[int, int, int, float]:
+        """Let the kernel run: why it stopped, the events and crossings it processed, the time of the last."""
         monitors = self._monitors._replace(record=record)
         scene = self._particles, self._queue, self._boxes, self._model, self._tally
-        return self._loop.run(*scene, monitors, (stop, most), () if self._queue is None else None)
+        return self._loop.run(*scene, monitors, limits, () if self._queue is None else None)
 
     def _next_epoch(self) -> None:
         """Start the clocks again from zero, and predict all events anew."""

@@ -200,6 +200,14 @@ def sooner(time: Lanes, number: Lanes, other_time: Lanes, other_number: Lanes) -
     return other_time.where(other_is, time), other_number.where(other_is, number)
 
 
+def soonest(time: Lanes, number: Lanes) -> tuple[ir.Value, ir.Value]:
+    """The soonest of eight contacts."""
+    for step in (4, 2, 1):
+        time, number = sooner(time, number, time.turned(step), number.turned(step))
+    first, second = (time.builder.extract_element(part.value, _INT(0)) for part in (time, number))
+    return first, second
+
+
 def load_candidates(builder: ir.IRBuilder, place: ir.Value, short: bool) -> Lanes:
     """Eight candidates from a place on, of 64 bits or, if `short`, of 32."""
     words = ir.VectorType(_WORD, WIDTH)
@@ -235,16 +243,17 @@ def earliest(typingctx, flights, i, start, count, present, boxes, space, gravity
         resting = data(kinds["resting"], boxes["resting"]) if falls else None
         pull = fields(builder, types_of["gravity"], gravity)["acceleration"] if falls else []
         one = load_row(builder, rows, i)
-        present = cgutils.unpack_tuple(builder, present)
-        best = cgutils.alloca_once_value(builder, one[0].all(present[0]).value)
-        partner = cgutils.alloca_once_value(builder, one[0].all(present[1]).value)
+        best, partner = (
+            cgutils.alloca_once_value(builder, one[0].all(part).value)
+            for part in cgutils.unpack_tuple(builder, present)
+        )
         unknown = cgutils.alloca_once_value(builder, _WORD(0))
         with cgutils.for_range_slice(builder, _WORD(0), count, _WORD(WIDTH), _WORD) as (first, _):
             candidates = load_candidates(builder, builder.gep(near, [first]), short)
             numbers = bits(candidates, 0, image_first)
             indices = [builder.extract_element(numbers.value, _INT(n)) for n in range(WIDTH)]
             others = load_rows(builder, rows, indices)
-            offset = [image_of(candidates, image_first, k) * length for k, length in enumerate(lengths)]
+            offset = [image_of(candidates, image_first, k) * side for k, side in enumerate(lengths)]
             time = contact_times(one, others, offset, pull)
             if falls:
                 mask = builder.or_(marks(builder, resting, indices), marks(builder, resting, [i] * WIDTH))
@@ -256,11 +265,8 @@ def earliest(typingctx, flights, i, start, count, present, boxes, space, gravity
             time, numbers = sooner(*so_far, time, numbers)
             builder.store(time.value, best)
             builder.store(numbers.value, partner)
-        time, numbers = Lanes(builder, builder.load(best)), Lanes(builder, builder.load(partner))
-        for step in (4, 2, 1):
-            time, numbers = sooner(time, numbers, time.turned(step), numbers.turned(step))
-        best = [builder.extract_element(part.value, _INT(0)) for part in (time, numbers)]
-        return context.make_tuple(builder, signature.return_type, [*best, builder.load(unknown)])
+        contact = soonest(*(Lanes(builder, builder.load(part)) for part in (best, partner)))
+        return context.make_tuple(builder, signature.return_type, [*contact, builder.load(unknown)])
 
     found = types.Tuple((types.float64, types.int64, types.uint64))
     contact = types.Tuple((types.float64, types.int64))

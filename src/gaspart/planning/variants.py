@@ -130,7 +130,7 @@ def warm(job: str) -> None:
     if "time_step" in settings:
         limits = {"duration": 4 * settings["time_step"]}
     else:
-        limits = {"duration": 1.0, "max_events": 100}
+        limits = {"duration": 1.0, "max_work": 1000}
     with suppress(SimulationError):  # a collapse; everything has been compiled before
         simulation.advance(**limits)
         simulation.restore(simulation.checkpoint())

@@ -41,8 +41,9 @@ from gaspart.kernels.obstacles.interior_wall import find_wall, meet_wall
 from gaspart.kernels.obstacles.well import meet_edge
 from gaspart.kernels.prefetch import fetch
 
-# Why a run ended: the time, the number of events, the record, a collapse, a full neighbour list.
-STOP, EVENTS, FULL, COLLAPSE, NO_ROOM = range(5)
+# Why a run ended: the time, the number of events, the record, a collapse, a full neighbour list, the number
+# of crossings.
+STOP, EVENTS, FULL, COLLAPSE, NO_ROOM, CROSSED = range(6)
 # No box was crossed: all is predicted anew. As int64, since numba compiles a function again for each type of
 # integer, and for a constant as well.
 _NEW = (int64(0), int64(0), int64(0))
@@ -217,20 +218,21 @@ def fetch_ahead(particles, queue, boxes, next_bucket, lists):
 
 @kernel
 def run(particles, queue, boxes, model, tally, monitors, limits, all_pairs):
-    """Process all events up to a time, at most so many of them (collisions and wall hits): `limits`.
+    """Process all events up to a time, at most so many of them (collisions and wall hits), and at most so
+    many crossings and outdated contacts between them: `limits` (3,).
 
     all_pairs: () for the search of all pairs before every event, without a queue; otherwise None. numba
     leaves out only what depends on an argument that is None, so both arguments are needed. Returns (reason,
-    number of events, time of the last).
+    number of events, number of crossings and outdated contacts, time of the last of all).
     """
-    stop, most = limits
-    done = 0
+    stop, most, most_crossed = limits
+    done = crossed = 0
     last = -inf
     next_bucket = int64(-1)
     time, i, partner, face, happens = inf, int64(NONE), int64(NONE), int64(NONE), True
     while done < most:
         if is_full(monitors.record):
-            return FULL, done, last
+            return FULL, done, crossed, last
         if all_pairs is not None:
             time, i, partner, face = first_of_all(particles, boxes, model, tally)
         if queue is not None:
@@ -239,18 +241,21 @@ def run(particles, queue, boxes, model, tally, monitors, limits, all_pairs):
                 next_bucket = fetch_ahead(particles, queue, boxes, next_bucket, boxes.lists)
             time = time_of(particles.predictions, i) if i >= 0 else inf
         if i < 0 or not time <= stop:
-            return STOP, done, last
+            return STOP, done, crossed, last
         if queue is not None:
             i, partner, happens = process(particles, i, time, queue, boxes, model, tally)
         if all_pairs is not None:
             i, partner, happens = process_first(particles, i, partner, face, time, model, tally)
-        if not happens:
-            if is_room_lacking(boxes.lists):
-                return NO_ROOM, done, time
-            continue
         last = time
+        if not happens:
+            crossed += 1
+            if is_room_lacking(boxes.lists):
+                return NO_ROOM, done, crossed, last
+            if crossed >= most_crossed:
+                return CROSSED, done, crossed, last
+            continue
         done += 1
         record_event(particles.flights, i, partner, time, model, monitors.record)
         if collapse_detected(i, partner, time, 2 * len(model.space.lengths), monitors.collapse):
-            return COLLAPSE, done, last
-    return EVENTS, done, last
+            return COLLAPSE, done, crossed, last
+    return EVENTS, done, crossed, last
