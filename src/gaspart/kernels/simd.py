@@ -217,8 +217,8 @@ def load_candidates(builder: ir.IRBuilder, place: ir.Value, short: bool) -> Lane
 
 
 @intrinsic
-def earliest(typingctx, flights, i, start, count, present, boxes, space, gravity):
-    """The earliest contact of a particle with `count` candidates of `boxes`, from number `start` on, if it is
+def earliest(typingctx, flights, i, span, present, boxes, space, gravity):
+    """The earliest contact of a particle with a `span` of candidates, (first, how many), of `boxes`, if it is
     sooner than `present`, (time, partner): (time, partner, a bit for each candidate of which nothing is
     known, since it or the particle may not fall, see `flight.mark_resting`).
 
@@ -226,8 +226,9 @@ def earliest(typingctx, flights, i, start, count, present, boxes, space, gravity
     """
 
     def generate(context, builder, signature, arguments):
-        flights, i, start, count, present, boxes, space, gravity = arguments
-        types_of = dict(zip(("boxes", "space", "gravity"), signature.args[5:], strict=True))
+        flights, i, span, present, boxes, space, gravity = arguments
+        start, count = cgutils.unpack_tuple(builder, span)
+        types_of = dict(zip(("boxes", "space", "gravity"), signature.args[4:], strict=True))
         boxes = fields(builder, types_of["boxes"], boxes)
         lengths = fields(builder, types_of["space"], space)["lengths"]
 
@@ -270,8 +271,8 @@ def earliest(typingctx, flights, i, start, count, present, boxes, space, gravity
 
     found = types.Tuple((types.float64, types.int64, types.uint64))
     contact = types.Tuple((types.float64, types.int64))
-    word = types.uint64
-    return found(flights, word, word, word, contact, boxes, space, gravity), generate
+    span_type = types.UniTuple(types.uint64, 2)
+    return found(flights, types.uint64, span_type, contact, boxes, space, gravity), generate
 
 
 @intrinsic

@@ -267,8 +267,8 @@ def search_list(particles, i, lists, space, tally):
     count = uint64(lists.candidates[row])
     tally.counts[PAIR_TESTS] += int64(count)
     present = particles.predictions[i].contact_time, int64(particles.predictions[i].partner)
-    first = row + uint64(1)
-    time, partner, _ = earliest(particles.flights, uint64(i), first, count, present, lists, space, None)
+    span = row + uint64(1), count
+    time, partner, _ = earliest(particles.flights, uint64(i), span, present, lists, space, None)
     particles.predictions[i].contact_time = time
     particles.predictions[i].partner = partner
 
