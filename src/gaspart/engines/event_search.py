@@ -26,11 +26,17 @@ _SMALLEST, _LARGEST = 1e-12, 1e12  # radii whose squares are numbers in single p
 def distances(scene: Scene) -> tuple[float, float]:
     """How far a particle moves before its list is renewed, and how far the list reaches: so far that the
     rounding of centres to single precision hides no contact."""
-    d, diameter = scene.dimension, 2.0 * scene.largest_radius
+    d, diameter, lengths = scene.dimension, 2.0 * scene.largest_radius, scene.container.lengths
+    rounding = 16.0 * float(np.finfo(np.float32).eps) * max(lengths)
     holding = (_LISTED[d] + 1.0) * scene.container.volume / (scene.count * ball_volume(d))
     least, most = (share * diameter for share in _MARGINS)
+    # each image of a particle is told from the others, also once both have moved
+    axes = [length for length, periodic in zip(lengths, scene.container.periodic, strict=True) if periodic]
+    for length in axes:
+        most = min(
+            most, (length / 3.0 - diameter - rounding) / 2.0, (length - 2.0 * (diameter + rounding)) / 8.0
+        )
     margin = min(max(0.5 * (holding ** (1.0 / d) - diameter), least), most)
-    rounding = 16.0 * float(np.finfo(np.float32).eps) * max(scene.container.lengths)
     return margin, diameter + 2.0 * margin + rounding
 
 
@@ -44,11 +50,7 @@ def obstacle_to_lists(scene: Scene) -> str | None:
         return "particles of so extreme a size"
     if not 0 < scene.count <= 1 << LISTED_BITS:
         return "so few or so many particles"
-    margin, reach = distances(scene)
-    least = max(3.0 * reach, 2.0 * reach + 4.0 * margin)  # each image of a particle is told from the others
-    container = scene.container
-    axes = zip(container.lengths, container.periodic, strict=True)
-    if any(periodic and length < least for length, periodic in axes):
+    if distances(scene)[0] < _MARGINS[0] * 2.0 * scene.largest_radius * (1.0 - 1e-9):
         return "so short a periodic axis"
     return None
 
@@ -81,3 +83,19 @@ def neighbour_lists(scene: Scene, room: int = 0, per_cell: int = 1) -> Neighbour
     cells = make_boxes(scene, sides, images=True, narrowest=reach)
     d = scene.dimension
     return empty_neighbour_lists(cells, scene.count, d, (margin, reach), room or _ROOM[d], per_cell)
+
+
+def make_lists(lists: NeighbourLists, scene: Scene) -> NeighbourLists:
+    """Make the neighbour lists of a scene from their centres: these ones, or new ones with as much room as
+    they need."""
+    from gaspart.kernels.event import neighbour_lists as kernels
+
+    kernels.make_lists(lists, scene.container.lengths)
+    while lists.full.any():
+        larger = neighbour_lists(
+            scene, lists.room << int(lists.full[0]), lists.per_cell << int(lists.full[1])
+        )
+        larger.listed["centre"] = lists.listed["centre"]
+        lists = larger
+        kernels.make_lists(lists, scene.container.lengths)
+    return lists

@@ -121,7 +121,7 @@ def _timed(
 
 def _sides(engine: EventDriven | TimeStepped, dimension: int) -> tuple[int, ...]:
     """Boxes along each axis; zeros if the engine chooses them itself."""
-    if getattr(engine, "search", "boxes") != "boxes":
+    if getattr(engine, "search", "boxes") not in ("automatic", "boxes"):
         return (1,) * dimension
     given = engine.boxes_per_side or 0
     return given if isinstance(given, tuple) else (given,) * dimension
