@@ -9,6 +9,7 @@ whatever width.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import reduce
 from math import inf
 
 from llvmlite import ir
@@ -292,11 +293,12 @@ def nearer(typingctx, pages, page, point, offset, square):
         )
         centres = builder.bitcast(start, vector.as_pointer())
         point, offset = (cgutils.unpack_tuple(builder, part) for part in (point, offset))
-        total = None
+        squares = []
         for k in range(kind.dtype.fields["centres"].type.shape[0]):
             there = Lanes(builder, builder.load(builder.gep(centres, [_WORD(k)]), align=32))
             gap = (there - builder.fptrunc(point[k], single)) + builder.fptrunc(offset[k], single)
-            total = gap * gap if total is None else total + gap * gap
+            squares.append(gap * gap)
+        total = reduce(Lanes.__add__, squares)
         near = (total < builder.fptrunc(square, single)).value
         return builder.zext(builder.bitcast(near, ir.IntType(WIDTH)), _WORD)
 
