@@ -74,13 +74,13 @@ def disturb(rng, folder, engine, report):
             os.kill(child, kind)
         code = finished(child)
         report["latest"] = max(report["latest"], time.monotonic() - begun) if code else report["latest"]
-        told = errors.read_text()
+        printed = errors.read_text()
         report["codes"][f"{kind.name} {code}"] += 1
-        assert code in (0, EXPECTED[kind]) or (code == 2 and command is resume), (kind, code, told)
-        assert told.count("\n") <= 1 and "Traceback" not in told, told
-        if "`gaspart resume" in told:
+        assert code in (0, EXPECTED[kind]) or (code == 2 and command is resume), (kind, code, printed)
+        assert printed.count("\n") <= 1 and "Traceback" not in printed, printed
+        if "`gaspart resume" in printed:
             report["continued"] += 1
-            assert path.with_name(f"{path.name}.checkpoint.npz").exists(), told
+            assert path.with_name(f"{path.name}.checkpoint.npz").exists(), printed
         if code == 0 or sent == 6:
             break
         command = (run, resume)[rng.integers(2)] if code != 2 else run

@@ -170,13 +170,13 @@ def test_a_command_line_ends_with_a_known_code_and_changes_no_file(folder, line)
     if is_endless(line):
         line = ["theory", *line[1:]]
     before, start = snapshot(folder), time.monotonic()
-    code, told = carried_out(line)
+    code, printed = carried_out(line)
     took = time.monotonic() - start
     after = snapshot(folder)
     for path in after.keys() - before.keys():
         (folder / path).unlink()
-    assert code in (0, 1, 2), told
-    assert code == 0 or line[0] == "check" or told.count("\n") == 1, told
+    assert code in (0, 1, 2), printed
+    assert code == 0 or line[0] == "check" or printed.count("\n") == 1, printed
     assert took < 20.0, f"{took} s"
     if "--force" in line:
         for path in before:

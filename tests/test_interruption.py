@@ -49,10 +49,10 @@ def wait_for(condition):
 def ended(process, number):
     """The line that a process prints when it is ended by a signal."""
     process.send_signal(number)
-    told = process.communicate(timeout=120)[1]
-    assert process.returncode == 128 + number, told
-    assert told.count("\n") == 1 and told.startswith("gaspart: "), told
-    return told
+    printed = process.communicate(timeout=120)[1]
+    assert process.returncode == 128 + number, printed
+    assert printed.count("\n") == 1 and printed.startswith("gaspart: "), printed
+    return printed
 
 
 def plain_line(number):
@@ -73,11 +73,11 @@ def test_a_run_ends_with_a_checkpoint_and_says_how_to_continue(folder, engine, n
     process = start("run", "scene.yaml", "-o", "a run.nc", *LONG, *options[engine], folder=folder)
     wait_for((folder / "a run.nc.partial").exists)
     time.sleep(3.0)
-    told = ended(process, number)
-    if "no state was saved yet" in told:  # on a slow machine
+    printed = ended(process, number)
+    if "no state was saved yet" in printed:  # on a slow machine
         assert not checkpoint_path(folder / "a run.nc").exists()
         return
-    command = re.search(r"`gaspart (resume .*)` continues it from time (\S+) of 1e\+09", told)
+    command = re.search(r"`gaspart (resume .*)` continues it from time (\S+) of 1e\+09", printed)
     assert shlex.split(command[1]) == ["resume", "a run.nc"]
     with np.load(checkpoint_path(folder / "a run.nc")) as saved:
         reached = saved["steps"] * 0.015625 if engine != "event" else saved["clock"]
@@ -85,10 +85,10 @@ def test_a_run_ends_with_a_checkpoint_and_says_how_to_continue(folder, engine, n
     process = start(*shlex.split(command[1]), "--quiet", folder=folder)
     wait_for(lambda: catches(process))
     process.send_signal(number)
-    told = process.communicate(timeout=120)[1]
+    printed = process.communicate(timeout=120)[1]
     assert process.returncode == 128 + number
     early = ("", plain_line(number))  # before the command had started
-    assert told in early or "nothing was changed" in told or "continues it from time" in told
+    assert printed in early or "nothing was changed" in printed or "continues it from time" in printed
 
 
 @pytest.mark.parametrize("number", SIGNALS, ids=["SIGINT", "SIGTERM"])
@@ -98,9 +98,9 @@ def test_other_commands_end_at_once_during_imports_too(folder, number, wait):
     wait_for(lambda: catches(process))
     time.sleep(wait)
     process.send_signal(number)
-    told = process.communicate(timeout=60)[1]
+    printed = process.communicate(timeout=60)[1]
     assert process.returncode == 128 + number
-    assert told in ("", plain_line(number))
+    assert printed in ("", plain_line(number))
     assert [path.name for path in folder.iterdir()] == ["scene.yaml"]
 
 
@@ -196,12 +196,12 @@ def test_a_job_of_the_workflow_ends_with_a_checkpoint(tmp_path):
     wait_for((tmp_path / "point.partial/replica-0.nc.partial").exists)
     time.sleep(3.0)
     process.send_signal(signal.SIGTERM)
-    told = process.communicate(timeout=120)[1]
-    assert process.returncode == 143, told
-    assert re.fullmatch(r"gaspart: simulate gas: terminated; .*\(\S+log\)\n", told), told
+    printed = process.communicate(timeout=120)[1]
+    assert process.returncode == 143, printed
+    assert re.fullmatch(r"gaspart: simulate gas: terminated; .*\(\S+log\)\n", printed), printed
     assert "Traceback" not in (tmp_path / "log").read_text()
     saved = (tmp_path / "point.partial/replica-0.nc.checkpoint.npz").exists()
-    assert saved == ("`gaspart resume" in told)
+    assert saved == ("`gaspart resume" in printed)
 
 
 @pytest.mark.parametrize("signals", [12, pytest.param(500, marks=pytest.mark.thorough)])

@@ -23,6 +23,6 @@ def found_by(script, page, folder, width):
     done = subprocess.run(
         [*command, "--dump-dom", outer.as_uri()], capture_output=True, text=True, timeout=120
     )
-    told = re.search(r'<body data-found="([^"]*)"', done.stdout)
-    assert told, done.stderr[-2000:]
-    return json.loads(html.unescape(told[1]))
+    printed = re.search(r'<body data-found="([^"]*)"', done.stdout)
+    assert printed, done.stderr[-2000:]
+    return json.loads(html.unescape(printed[1]))

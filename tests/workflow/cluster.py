@@ -52,7 +52,7 @@ def why_not():
     return None
 
 
-def told(*command):
+def output_of(*command):
     """What a command prints; raises with its complaints."""
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 

@@ -52,9 +52,9 @@ def test_a_run_says_so_and_goes_on_to_the_same_bits(tmp_path):
     run += ["--duration", "100", "--sample-interval", "1", "--seed", "1", "-o"]
     source = Path(__file__).parents[2] / "src"
     full, empty = twice(tmp_path / "disk", 256, tmp_path / "out", [*run, "disk/run.nc"], source)
-    told, code = full.splitlines()[-2:]
+    printed, code = full.splitlines()[-2:]
     assert code == "exit code 2"
-    assert told.startswith("gaspart: error: ") and "cannot be written: No space left on device" in told
+    assert printed.startswith("gaspart: error: ") and "cannot be written: No space left on device" in printed
     assert "Traceback" not in full
     assert sorted(path.name for path in (tmp_path / "out/left").iterdir()) == ["run.nc.partial"]
     assert empty.endswith("exit code 0\n")

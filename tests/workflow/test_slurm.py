@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 import pytest
-from cluster import cluster, told, why_not
+from cluster import cluster, output_of, why_not
 from digests import digests
 from workspace import SMOKE, copy_of_project, leave_one_figure
 
@@ -25,9 +25,9 @@ PROFILE = ["--workflow-profile", "profiles/slurm", "--slurm-init-seconds-before-
 def lose_the_node_once(node, lost, over):
     """When a simulation runs, take its node away, and bring it back."""
     while not over.is_set():
-        for job in told("squeue", "--noheader", "--states=running", "--format=%i %k").splitlines():
+        for job in output_of("squeue", "--noheader", "--states=running", "--format=%i %k").splitlines():
             if "simulate" in job:
-                told("scontrol", "update", f"nodename={node}", "state=down", "reason=test")
+                output_of("scontrol", "update", f"nodename={node}", "state=down", "reason=test")
                 lost.append(job)
                 time.sleep(1.0)
                 subprocess.run(["scontrol", "update", f"nodename={node}", "state=resume"], check=False)
