@@ -1,161 +1,19 @@
-"""Trajectory files: what is in them, who can read them, and what happens when something goes wrong."""
+"""Runs that write trajectories: what is refused, and what happens when something goes wrong."""
 
 import fcntl
 import os
 import subprocess
 import sys
 import textwrap
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from scenes import gas
 
 import gaspart as gp
-from gaspart.trajectory import amber, recording, run
-from gaspart.trajectory.recipe import Recipe, multiple, read_recipe
+from gaspart.trajectory import recording, run
+from gaspart.trajectory.recipe import multiple, read_recipe
 from gaspart.trajectory.run import checkpoint_path, partial_path
-
-ENGINES = {"event": gp.EventDriven(), "step": gp.TimeStepped(time_step=0.0625)}
-
-
-def mixture(dimension):
-    """Two species and an explicit particle between walls along y, periodic along the other axes."""
-    container = gp.Container((9.0, 8.0, 7.0)[:dimension], ("periodic", "wall", "periodic")[:dimension])
-    species = [gp.Species(12, 0.5, temperature=1.0), gp.Species(8, 0.25, mass=2.0, temperature=1.0)]
-    body = gp.Body((4.0, 4.0, 4.0)[:dimension], (0.5, 0.25, 1.0)[:dimension], radius=0.75, mass=3.0)
-    return gp.Scene(container, species, [body])
-
-
-@pytest.fixture(scope="module", params=[2, 3], ids=["discs", "spheres"])
-def written(request, tmp_path_factory):
-    """A trajectory of 9 frames, and the states and tallies that it should hold."""
-    scene, engine = mixture(request.param), ENGINES["event"]
-    path = gp.run(scene, engine, 5, 4.0, 0.5, tmp_path_factory.mktemp("run") / "run.nc", displacements=True)
-    simulation = gp.Simulation(scene, engine, 5)
-    states, tallies = [], []
-    for n in range(9):
-        simulation.advance(until=0.5 * n)
-        states.append(simulation.state)
-        tallies.append(simulation.tally)
-    return path, scene, states, tallies
-
-
-def vectors(states, name):
-    """(frame, N, 3) positions or velocities in float32, z = 0 for discs."""
-    found = np.array([getattr(state, name) for state in states], dtype=np.float32)
-    return np.pad(found, ((0, 0), (0, 0), (0, 3 - found.shape[2])))
-
-
-def test_mdanalysis_reads_it_as_it_is(written):
-    from MDAnalysis.coordinates.TRJ import NCDFReader
-
-    path, scene, states, _ = written
-    with NCDFReader(str(path), convert_units=False) as reader:
-        assert (reader.n_frames, reader.n_atoms) == (9, scene.count)
-        for n, frame in enumerate(reader):
-            assert frame.time == 0.5 * n
-            assert np.array_equal(frame.positions, vectors(states, "positions")[n])
-            assert np.array_equal(frame.velocities, vectors(states, "velocities")[n])
-            thickness = () if scene.dimension == 3 else (1.5,)
-            assert np.allclose(frame.dimensions, (*scene.container.lengths, *thickness, 90, 90, 90))
-
-
-def test_mdtraj_reads_it_as_it_is(written):
-    import mdtraj
-
-    path, scene, states, _ = written
-    with mdtraj.formats.NetCDFTrajectoryFile(str(path)) as file:
-        positions, time, lengths, angles = file.read()
-    assert np.array_equal(positions, vectors(states, "positions"))
-    assert np.array_equal(time, 0.5 * np.arange(9))
-    assert np.array_equal(lengths[:, : scene.dimension], np.tile(scene.container.lengths, (9, 1)))
-    assert (lengths > 0).all() and (angles == 90).all()
-
-    topology = mdtraj.Topology()
-    residue = topology.add_residue("gas", topology.add_chain())
-    for _ in range(scene.count):
-        topology.add_atom("X", mdtraj.element.argon, residue)
-    loaded = mdtraj.load_netcdf(str(path), top=topology)
-    assert np.allclose(loaded.xyz * 10, vectors(states, "positions"), rtol=1e-6)
-
-
-def test_xarray_reads_it_as_it_is(written):
-    import xarray as xr
-
-    path, _, states, tallies = written
-    with xr.open_dataset(path) as data:
-        assert np.array_equal(data["coordinates"], vectors(states, "positions"))
-        assert np.array_equal(data["time"], [state.time for state in states])
-        assert np.array_equal(data["collisions"], [tally.collisions for tally in tallies])
-        assert (data.attrs["Conventions"], data.attrs["ConventionVersion"]) == ("AMBER", "1.0")
-
-
-def test_it_is_netcdf_3_of_64_bit_offsets_with_the_units_that_readers_insist_on(written):
-    import netCDF4
-
-    with netCDF4.Dataset(written[0]) as file:
-        assert file.data_model == "NETCDF3_64BIT_OFFSET"
-        units = {
-            name: variable.units for name, variable in file.variables.items() if "units" in variable.ncattrs()
-        }
-        assert file.dimensions["frame"].isunlimited() and len(file.dimensions["spatial"]) == 3
-        assert b"".join(file["cell_angular"][1]) == b"beta "
-    wanted = {"time": "picosecond", "coordinates": "angstrom", "velocities": "angstrom/picosecond"}
-    assert units.items() >= {**wanted, "cell_lengths": "angstrom", "cell_angles": "degree"}.items()
-
-
-def test_open_trajectory_gives_every_number_its_name(written):
-    path, scene, states, tallies = written
-    with gp.open_trajectory(path) as data:
-        assert dict(data.sizes).items() >= {"frame": 9, "atom": 21, "spatial": scene.dimension}.items()
-        assert data["face"].values.tolist()[:3] == ["x low", "x high", "y low"]
-        assert np.array_equal(data["radius"], states[0].radii)
-        assert np.array_equal(data["type"], states[0].species)
-        for name in amber.counters("event"):
-            assert np.array_equal(data[name], [getattr(tally, name) for tally in tallies]), name
-        assert np.array_equal(data["kinetic_energy"], [state.kinetic_energy for state in states])
-        displacements = np.array([state.unwrapped - states[0].unwrapped for state in states])
-        assert data["displacements"].dtype == np.float64
-        assert np.array_equal(data["displacements"], displacements)
-        assert data.attrs["packing_fraction"] == scene.packing_fraction
-        assert data["velocities"].attrs["units"] == "length/time"
-        assert data["virial_sum"].attrs["units"] == "mass length^2/time^2"
-        assert data["collisions"].attrs["units"] == "1" and data["time"].attrs["units"] == "time"
-        assert all("units" in data[name].attrs for name in data.data_vars)
-        hit = data["wall_hits"].isel(frame=-1).sel(face=["y low", "y high"])
-        assert (hit > 0).all() and float(data["wall_hits"].isel(frame=-1).sum()) == float(hit.sum())
-
-
-@pytest.mark.parametrize("dimension", [2, 3])
-def test_rough_particles_have_spins_and_only_followed_particles_are_written(tmp_path, dimension):
-    scene = replace(gas(dimension, 20, 0.2, "wall"), restitution=gp.Restitution(0.9, 0.5))
-    path = gp.run(scene, ENGINES["event"], 5, 4.0, 2.0, tmp_path / "run.nc", displacements=True, follow=3)
-    simulation = gp.Simulation(scene, ENGINES["event"], 5)
-    simulation.advance(until=4.0)
-    state = simulation.state
-    with gp.open_trajectory(path) as data:
-        last = data.isel(frame=-1)
-        assert data["spins"].dims == ("frame", "atom", "spatial")[:dimension]
-        assert (data["spins"].isel(frame=0) == 0.0).all() and (last["spins"] != 0.0).all()
-        for name, values in (("spins", state.spins), ("coordinates", state.positions)):
-            assert np.array_equal(last[name], values[:3].astype(np.float32))
-        assert data["displacements"].shape == (3, 3, dimension) and data.sizes["atom"] == 3
-        assert data.attrs["count"] == 20 and last["kinetic_energy"] == state.kinetic_energy
-        assert last["dissipated_energy"] == simulation.tally.dissipated_energy > 0.0
-    assert read_recipe(path) == Recipe(scene, ENGINES["event"], 5, 4.0, 2.0, True, 3)
-
-
-def test_a_file_states_its_recipe(tmp_path):
-    scene = mixture(3)
-    engine = gp.TimeStepped(time_step=0.1, boxes_per_side=(3, 2, 2), precision="float32", rewind=False)
-    path = gp.run(scene, engine, (3, 2**60), 0.6, 0.3, tmp_path / "run.nc")
-    assert read_recipe(path) == Recipe(scene, engine, (3, 2**60), 0.6, 0.3)
-    again = read_recipe(path)
-    other = gp.run(
-        again.scene, again.engine, again.seed, again.duration, again.sample_interval, tmp_path / "2.nc"
-    )
-    assert other.read_bytes() == path.read_bytes()
 
 
 def test_no_frame_is_lost_to_rounding(tmp_path):
@@ -381,54 +239,3 @@ def test_a_damaged_checkpoint_costs_the_work_and_nothing_else(tmp_path):
         checkpoint_path(path).write_bytes(spoilt)
         assert gp.resume(path).read_bytes() == complete
         assert list(tmp_path.iterdir()) == [path]
-
-
-def test_a_cache_that_cannot_be_written_is_reported_and_costs_time_only(tmp_path):
-    """Compiled anew, and what is computed is the same: a kernel of one line stands for all."""
-    (tmp_path / "a file").write_text("")
-    code = "from gaspart.kernels.compilation import kernel; print(kernel(lambda x: 3.0 * x)(0.1))"
-    environment = _environment() | {"GASPART_CACHE": str(tmp_path / "a file" / "cache")}
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment)
-    assert (done.returncode, done.stdout) == (0, f"{3.0 * 0.1}\n")
-    assert "cannot write the kernel cache" in done.stderr and "set GASPART_CACHE" in done.stderr
-
-
-@pytest.mark.parametrize("chosen", [True, False], ids=["chosen", "not chosen"])
-def test_without_a_home_there_is_a_cache_all_the_same(tmp_path, chosen):
-    """An unknown user without HOME: the chosen folder, or a temporary one, with one line that reports it."""
-    code = """
-        import pwd, sys, warnings
-        def unknown(user):
-            raise KeyError(user)
-        pwd.getpwuid = unknown
-        import gaspart.kernels.cache, numba
-        print(gaspart.kernels.cache.usable_cache("digest"))
-        import gaspart.kernels.compilation
-    """
-    environment = {key: value for key, value in _environment().items() if key not in _CACHES}
-    environment |= {"TMPDIR": str(tmp_path)} | ({"GASPART_CACHE": str(tmp_path / "mine")} if chosen else {})
-    command = [sys.executable, "-c", textwrap.dedent(code)]
-    done = subprocess.run(command, capture_output=True, text=True, env=environment)
-    own = "mine" if chosen else f"gaspart-{os.getuid()}"
-    assert (done.returncode, done.stdout) == (0, f"{tmp_path / own / 'digest'}\n"), done.stderr
-    assert ("there is no home for the kernel cache; using " in done.stderr) == (not chosen)
-    assert "Traceback" not in done.stderr
-
-
-_CACHES = ("HOME", "XDG_CACHE_HOME", "GASPART_CACHE", "TMPDIR")
-
-
-def test_a_temporary_cache_that_others_may_write_to_is_not_used(tmp_path, monkeypatch):
-    from gaspart.kernels.cache import usable_cache
-
-    for name in _CACHES:
-        monkeypatch.delenv(name, raising=False)
-    (tmp_path / "file").write_text("")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
-    monkeypatch.setattr("tempfile.gettempdir", lambda: str(tmp_path))
-    own = tmp_path / f"gaspart-{os.getuid()}"
-    own.mkdir()
-    for mode, found in ((0o777, None), (0o700, own / "digest")):
-        own.chmod(mode)
-        with pytest.warns(UserWarning, match="cannot write the kernel cache"):
-            assert usable_cache("digest") == found
