@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from gaspart.kernels.cache import usable_cache
+from gaspart.kernels.compiled_files import KernelCache
 from gaspart.kernels.numba_loading import load_numba
 
 numba = load_numba()
@@ -33,12 +34,15 @@ _CACHE = usable_cache(source_digest())
 
 
 def _compile(function: F, **options: Any) -> F:
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(_CACHE or before)
-    try:
-        return numba.njit(cache=_CACHE is not None, nogil=True, error_model="numpy", **options)(function)
-    finally:
-        numba.config.CACHE_DIR = before
+    compiled = numba.njit(nogil=True, error_model="numpy", **options)(function)
+    if _CACHE:
+        before = numba.config.CACHE_DIR
+        numba.config.CACHE_DIR = str(_CACHE)
+        try:
+            compiled._cache = KernelCache(function)
+        finally:
+            numba.config.CACHE_DIR = before
+    return compiled
 
 
 def kernel(function: F) -> F:
