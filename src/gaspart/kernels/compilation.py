@@ -30,6 +30,7 @@ def source_digest() -> str:
     return digest.hexdigest()[:16]
 
 
+_INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 _CACHE = usable_cache(source_digest())
 
 
@@ -60,23 +61,28 @@ def helper(function: F) -> F:
     return _compile(function, _nrt=False, forceinline=True)
 
 
-def inner_kernel(function: F) -> F:
-    """A kernel that only kernels call: without the way in from Python, which for a function that takes an
-    engine's arrays takes longer to compile than what it does."""
-    return _compile(function, _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-
-
-def inner_helper(function: F) -> F:
-    """The same for a function that is inlined."""
-    return _compile(function, _nrt=False, forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-
-
 def allocating_kernel(function: F) -> F:
     """The same for a function that makes arrays."""
     return _compile(function)
 
 
-def parallel_kernel(function: F) -> F:
+def inner_kernel(function: F) -> F:
+    """A kernel that only kernels call: without the way in from Python, which for a function that takes an
+    engine's arrays takes longer to compile than what it does."""
+    return _compile(function, _nrt=False, **_INNER)
+
+
+def inner_helper(function: F) -> F:
+    """The same for a function that is inlined."""
+    return _compile(function, _nrt=False, forceinline=True, **_INNER)
+
+
+def inner_allocating_kernel(function: F) -> F:
+    """The same for a function that makes arrays."""
+    return _compile(function, **_INNER)
+
+
+def inner_parallel_kernel(function: F) -> F:
     """The same for a function whose `prange` loops are shared among threads. What its parts write must not
     depend on one another, so that it does not matter which is done when."""
-    return _compile(function, parallel=True)
+    return _compile(function, parallel=True, **_INNER)
