@@ -87,7 +87,8 @@ def test_files_and_functions_that_a_page_names_exist(page):
 def test_links_between_pages_lead_somewhere():
     for path in [*DOCS.glob("*.md"), DOCS.parent / "README.md"]:
         for target in re.findall(r"\]\(([^)#:]+)\)", path.read_text(encoding="utf-8")):
-            assert (path.parent / target).exists(), (path.name, target)
+            made = target.startswith("generated/")  # by `make docs`, which fails for a link to nothing
+            assert made or (path.parent / target).exists(), (path.name, target)
 
 
 def test_the_scenes_of_the_page_on_scene_files_are_valid():

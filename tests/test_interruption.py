@@ -22,15 +22,26 @@ from gaspart.trajectory.run import checkpoint_path
 
 SCENE = gas(3, 200, 0.2)
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+STARTED = []
 LONG = ["--duration", "1e9", "--sample-interval", "1e6", "--seed", "3", "--quiet"]
 
 
 def start(*arguments, folder):
     """The command line in a process of its own."""
     command = [sys.executable, "-m", "gaspart", *map(str, arguments)]
-    return subprocess.Popen(
+    process = subprocess.Popen(
         command, cwd=folder, env=ENVIRONMENT, text=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
     )
+    STARTED.append(process)
+    return process
+
+
+@pytest.fixture(autouse=True)
+def nothing_runs_on():
+    """What a test has started ends with it, also if it fails."""
+    yield
+    while STARTED:
+        STARTED.pop().kill()
 
 
 def catches(process, number=signal.SIGTERM):

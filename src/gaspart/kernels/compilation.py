@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 
 from gaspart.kernels.cache import usable_cache
 from gaspart.kernels.compiled_files import KernelCache
+from gaspart.kernels.inner_compilation import PartCompiler
 from gaspart.kernels.numba_loading import load_numba
 
 numba = load_numba()
@@ -30,13 +31,13 @@ def source_digest() -> str:
     return digest.hexdigest()[:16]
 
 
-_INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "pipeline_class": PartCompiler}
 _CACHE = usable_cache(source_digest())
 
 
 def _compile(function: F, **options: Any) -> F:
     compiled = numba.njit(nogil=True, error_model="numpy", **options)(function)
-    if _CACHE:
+    if _CACHE and not options.get("pipeline_class"):
         before = numba.config.CACHE_DIR
         numba.config.CACHE_DIR = str(_CACHE)
         try:
