@@ -85,7 +85,7 @@ def animated(wildcards):
 
 def settings_of_animation(wildcards):
     block = config["animations"][wildcards.animation]
-    return {key: value for key, value in block.items() if key != "experiment"}
+    return {key: value for key, value in block.items() if key not in ("experiment", "figure")}
 
 
 def family(wildcards):

@@ -51,8 +51,8 @@ _NUMBERS = (
     "deviation_sigma",
     "scattered",
 )
-_PLURALS = {"test": "tests", "identity": "identities", "reproduction": "reproductions", "family": "families"}
-_COUNTED = {"agrees": "agree", "disagrees": "disagree"}
+PLURALS = {"test": "tests", "identity": "identities", "reproduction": "reproductions", "family": "families"}
+COUNTED = {"agrees": "agree", "disagrees": "disagree"}
 
 
 def write(path: str | Path, figure: str, claims: Sequence[Claim]) -> None:
@@ -142,7 +142,7 @@ def summary(path: str | Path) -> str:
     rows = read(path)
     lines = [f"{len(rows)} claims"]
     for kind, found in counts(rows).items():
-        parts = (f"{number} {_COUNTED.get(verdict, verdict)}" for verdict, number in found.items())
-        lines.append(f"{_PLURALS[kind]}: {', '.join(parts)}")
+        parts = (f"{number} {COUNTED.get(verdict, verdict)}" for verdict, number in found.items())
+        lines.append(f"{PLURALS[kind]}: {', '.join(parts)}")
     lines += [f"disagrees: {row['figure']}: {row['claim']}" for row in rows if row["verdict"] == "disagrees"]
     return "\n".join(lines)

@@ -88,6 +88,9 @@ def _animation(config: dict, animation: str, block: dict | None) -> None:
     if block and kinds.get(experiment) != "simulate":
         rule = "must be the name of an experiment that makes trajectories"
         raise SceneError(f"animations.{animation}.experiment", experiment, rule)
+    figure = block.get("figure") if block else None
+    if figure is not None and figure not in config["figures"]:
+        raise SceneError(f"animations.{animation}.figure", figure, unknown_word(figure, config["figures"]))
 
 
 def _experiment(config: dict, experiment: str) -> None:

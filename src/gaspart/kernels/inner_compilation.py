@@ -12,14 +12,10 @@ from typing import Any
 from gaspart.kernels.numba_loading import load_numba
 
 numba: Any = load_numba()
-codegen, compiler, compiler_machinery = (
-    numba.core.codegen,
-    numba.core.compiler,
-    numba.core.compiler_machinery,
-)
+core: Any = numba.core
 
 
-class _PartLibrary(codegen.JITCodeLibrary):
+class _PartLibrary(core.codegen.JITCodeLibrary):
     """Code that is linked into that of the callers, and neither optimised nor run by itself."""
 
     def finalize(self) -> None:
@@ -30,8 +26,8 @@ class _PartLibrary(codegen.JITCodeLibrary):
         self._finalized = True
 
 
-@compiler_machinery.register_pass(mutates_CFG=False, analysis_only=False)
-class _BeginPart(compiler_machinery.LoweringPass):
+@core.compiler_machinery.register_pass(mutates_CFG=False, analysis_only=False)
+class _BeginPart(core.compiler_machinery.LoweringPass):
     _name = "begin_part"
 
     def __init__(self) -> None:
@@ -43,8 +39,8 @@ class _BeginPart(compiler_machinery.LoweringPass):
         return True
 
 
-@compiler_machinery.register_pass(mutates_CFG=False, analysis_only=False)
-class _OfferPart(compiler_machinery.LoweringPass):
+@core.compiler_machinery.register_pass(mutates_CFG=False, analysis_only=False)
+class _OfferPart(core.compiler_machinery.LoweringPass):
     """Let other functions call it."""
 
     _name = "offer_part"
@@ -64,12 +60,13 @@ class _OfferPart(compiler_machinery.LoweringPass):
         return True
 
 
-class PartCompiler(compiler.CompilerBase):
+class PartCompiler(core.compiler.CompilerBase):
     """numba's own compiler but for these two passes."""
 
     def define_pipelines(self) -> list:
-        passes = compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
-        passes.add_pass_after(_BeginPart, numba.core.typed_passes.AnnotateTypes)
-        passes.add_pass_after(_OfferPart, numba.core.typed_passes.NativeLowering)
+        """The passes of numba with a first and a last one around its translation to LLVM."""
+        passes = core.compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
+        passes.add_pass_after(_BeginPart, core.typed_passes.AnnotateTypes)
+        passes.add_pass_after(_OfferPart, core.typed_passes.NativeLowering)
         passes.finalize()
         return [passes]

@@ -3,6 +3,7 @@
 from gaspart.kinds import count, positive
 
 TITLE = "Walls that hold particles"
+CHAPTER = "Gravity, heat and walls"
 FIGURES = {
     "adsorption": {
         "blocks": count("stretches of each replica"),
