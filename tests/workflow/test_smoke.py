@@ -65,7 +65,8 @@ CLICKS = """
 await new Promise(loaded => addEventListener("load", loaded));
 const images = [...document.images];
 images.forEach(image => { image.loading = "eager"; });
-await Promise.all(images.map(image => image.complete || new Promise(done => { image.onload = image.onerror = done; })));
+const seen = image => new Promise(done => { image.onload = image.onerror = done; });
+await Promise.all(images.map(image => image.complete || seen(image)));
 const table = document.querySelector("table.sortable"), rows = () => [...table.tBodies[0].rows];
 const heads = [...table.querySelectorAll("th button")];
 const deviations = () => rows().map(row => row.cells[heads.findIndex(

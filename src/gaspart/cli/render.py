@@ -44,6 +44,7 @@ def add_render(commands: Commands) -> None:
         metavar="N",
         help="film of discs: draw the path of particle N, counted from 0",
     )
+    add("--clock", action="store_true", default=None, help="film: write the time and the scale into it")
 
 
 def _size(text: str) -> tuple[int, int]:
@@ -56,10 +57,10 @@ def _size(text: str) -> tuple[int, int]:
 
 def _render(given: argparse.Namespace) -> None:
     output = output_path(given.output)
-    named = ("size", "colour", "frame", "frames_per_second", "trail")
+    named = ("size", "colour", "frame", "frames_per_second", "trail", "clock")
     options = {key: getattr(given, key) for key in named if getattr(given, key) is not None}
     if output.suffix in PICTURES:
-        for key in ("frames_per_second", "trail"):
+        for key in ("frames_per_second", "trail", "clock"):
             if key in options:
                 raise SceneError(key, options[key], "has no meaning for a picture")
         _picture(given.trajectory, output, options, given.force)

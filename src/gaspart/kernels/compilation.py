@@ -31,7 +31,8 @@ def source_digest() -> str:
     return digest.hexdigest()[:16]
 
 
-_INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "pipeline_class": PartCompiler}
+_UNWRAPPED = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_INNER = {**_UNWRAPPED, "pipeline_class": PartCompiler}
 _CACHE = usable_cache(source_digest())
 
 
@@ -86,4 +87,4 @@ def inner_allocating_kernel(function: F) -> F:
 def inner_parallel_kernel(function: F) -> F:
     """The same for a function whose `prange` loops are shared among threads. What its parts write must not
     depend on one another, so that it does not matter which is done when."""
-    return _compile(function, parallel=True, **_INNER)
+    return _compile(function, parallel=True, **_UNWRAPPED)

@@ -38,6 +38,7 @@ def film(
     colour: str | np.ndarray = "speed",
     frames_per_second: float = 25.0,
     trail: int | None = None,
+    clock: bool = False,
     overwrite: bool = False,
     progress: Callable[[int, int], None] | None = None,
 ) -> Path:
@@ -45,8 +46,9 @@ def film(
 
     size, colour as in `render`; all frames have one scale of speeds. For .mp4 the size is rounded down to
     even numbers. trail: the index of a disc whose path is drawn (interrupted where it crosses a periodic
-    face). A film at `path` is replaced only with `overwrite`, any other file never. progress: is called with
-    the number of pictures so far and of all.
+    face). clock: whether the time is written into the pictures, and for discs a bar of a round length. A
+    film at `path` is replaced only with `overwrite`, any other file never. progress: is called with the
+    number of pictures so far and of all.
 
     Raises SceneError for another suffix, a file that cannot be read or written, and for arguments that
     `render` refuses.
@@ -67,11 +69,25 @@ def film(
                 "trajectory", source, "must be a path or an open trajectory: a film needs frames"
             )
         shown = _pictures(source, size, colour, trail)
+        if clock:
+            shown = _labelled(shown, source, size)
         if progress is not None:
             shown = _reported(shown, source.sizes["frame"], progress)
         with writing(path, KINDS[path.suffix], overwrite) as scratch:
             to(scratch, shown, size, rate)
     return path
+
+
+def _labelled(
+    shown: Iterator[np.ndarray], trajectory: xr.Dataset, size: tuple[int, int]
+) -> Iterator[np.ndarray]:
+    from gaspart.rendering.discs import scale_of
+    from gaspart.rendering.labels import labelled
+
+    lengths = particles_of(trajectory, 0).lengths
+    pixels = scale_of(lengths, size)[0] if len(lengths) == 2 else None
+    for image, time in zip(shown, trajectory["time"].values, strict=True):
+        yield labelled(image, float(time), pixels)
 
 
 def _reported(
