@@ -35,7 +35,7 @@ rule report:
         films=expand("results/animations/{animation}.mp4", animation=ANIMATIONS),
         template=str(FOLDER / "workflow/report/report.html.j2"),
         style=str(FOLDER / "workflow/report/page.css"),
-        behaviour=str(FOLDER / "workflow/report/page.js"),
+        behaviour=[str(FOLDER / "workflow/report" / name) for name in ("page.js", "explore.js")],
         findings=str(FOLDER / "workflow/report/findings.yaml"),
     output:
         "results/report.html",

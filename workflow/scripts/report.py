@@ -35,6 +35,18 @@ def attributes(path):
         return {name: file.getncattr(name) for name in file.ncattrs()}
 
 
+def explanations(datasets):
+    """What a reader may vary on the page, if its figures are there. datasets: {figure: path}."""
+    import xarray as xr
+
+    from gaspart.report import explore
+
+    if not {*explore.SERIES, explore.COSTS} <= datasets.keys():
+        return None
+    loaded = {figure: xr.load_dataset(datasets[figure]) for figure in (*explore.SERIES, explore.COSTS)}
+    return {"series": explore.series(loaded), "costs": explore.costs(loaded[explore.COSTS])}
+
+
 with job(snakemake):
     import jinja2
 
@@ -87,6 +99,7 @@ with job(snakemake):
         findings=page.findings(read_yaml(given.findings), claims),
         headline=page.headline(claims),
         verdicts=page.verdicts(claims),
+        explore=explanations(dict(zip(params.figures, given.datasets, strict=True))),
         words=table.COUNTED,
         kinds=table.PLURALS,
         times=run_times("results/benchmarks"),
