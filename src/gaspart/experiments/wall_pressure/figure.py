@@ -44,7 +44,7 @@ def _temperatures(axis: Axes, ds: xr.Dataset) -> None:
         )
     if series:
         axis.plot(line, np.ones(2), color=style.GREY, linestyle=":", label="ideal gas")
-        axis.set_xlim(line)
+        axis.set_xlim(0.0, float(line[1]))
         axis.legend(loc="lower right")
     axis.set_ylim(0.0, 1.2 * axis.get_ylim()[1])
     axis.set_xlabel(r"temperature $T$")
