@@ -2,7 +2,7 @@
 # make test       set up, run all tests (among them the whole workflow, small)
 # make check-all  the linters, the tests, 2500 new random scenes for each property of the engines, and the slow tests
 # make smoke      all figures, small
-# make docs       a page of all public names, a page for each family of figures: results/docs/index.html
+# make docs       the documentation site, with executed notebooks: results/docs/html/index.html
 # make benchmark  the speed of the engines on this machine, which should run nothing else: results/tables/performance.csv
 # make coverage   which lines of src/gaspart the tests run (at least 95 %); compiles all kernels anew
 # make lint | report | clean | distclean
@@ -76,7 +76,8 @@ report: setup
 	$(SNAKEMAKE) report --quiet rules
 
 docs: setup
-	.venv/bin/python docs/build.py results/docs
+	.venv/bin/python -m sphinx --quiet --fail-on-warning --jobs auto docs results/docs/html
+	@echo "documentation: results/docs/html/index.html"
 
 clean:
 	rm -rf .snakemake $(filter-out results/README.md,$(wildcard results/*))

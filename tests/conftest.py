@@ -1,7 +1,12 @@
 """How the tests are run: which random scenes hypothesis draws, and how several processes share the work."""
 
+import signal
+
 from hypothesis import settings
 from xdist.scheduler import LoadScopeScheduling
+
+# A shell lets what it runs in the background ignore Ctrl-C, and programs inherit that.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # The same scenes every time, or new ones with `--hypothesis-profile=search`.
 settings.register_profile("fixed", max_examples=50, derandomize=True, deadline=None)

@@ -11,6 +11,7 @@ import xarray as xr
 
 import gaspart as gp
 from gaspart.analysis.collisions import record_collisions
+from gaspart.trajectory.provenance import git_revision
 from gaspart.trajectory.run import TRAJECTORY
 
 GAS = """\
@@ -64,7 +65,17 @@ def same_collisions(path, other):
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
+def no_revision():
+    """No revision in any file: the checkout may be edited during the test."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("GIT_DIR", os.devnull)
+        git_revision.cache_clear()
+        yield
+    git_revision.cache_clear()
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory, no_revision):
     """A folder with a scene, a trajectory, and what each of the writers would write alone."""
     folder = tmp_path_factory.mktemp("writers")
     (folder / "scene.yaml").write_text(GAS)
@@ -96,7 +107,7 @@ def process(folder):
 
 
 def play(folder, process, generator):
-    """One round, of one path and its writers: what is there afterwards, and what was said."""
+    """One round, of one path and its writers: what is there afterwards, and what was printed."""
     output = str(generator.choice(list(WRITERS)))
     alone = [path.read_bytes() for path in folder.glob(f"alone*{Path(output).suffix}")]
     before = {path.name for path in folder.iterdir()}
@@ -104,17 +115,17 @@ def play(folder, process, generator):
     process.stdin.write(repr(writers) + "\n")
     process.stdin.flush()
     codes = eval(process.stdout.readline())
-    said = [(folder / f"log/{number}.err").read_text() for number in range(len(writers))]
-    story = list(zip(codes, said, writers, strict=True))
-    assert set(codes) <= {0, 2} and 0 in codes, story
-    for code, text, _ in story:
-        assert (text == "") if code == 0 else (text.count("\n") == 1 and "gaspart: error" in text), story
+    printed = [(folder / f"log/{number}.err").read_text() for number in range(len(writers))]
+    outcome = list(zip(codes, printed, writers, strict=True))
+    assert set(codes) <= {0, 2} and 0 in codes, outcome
+    for code, text, _ in outcome:
+        assert (text == "") if code == 0 else (text.count("\n") == 1 and "gaspart: error" in text), outcome
     path = folder / output
-    assert path.read_bytes() in alone or same_collisions(path, folder / "alone.nc"), story
+    assert path.read_bytes() in alone or same_collisions(path, folder / "alone.nc"), outcome
     left = {path.name for path in folder.iterdir()} - before
     if not TRAJECTORY.recognises(path):  # the trajectory could not replace it, and can be finished elsewhere
         left -= {"out.nc.partial", "out.nc.checkpoint.npz"}
-    assert left == {output}, story
+    assert left == {output}, outcome
     for name in (output, "out.nc.partial", "out.nc.checkpoint.npz"):
         (folder / name).unlink(missing_ok=True)
     return sum(code == 0 for code in codes)

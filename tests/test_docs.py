@@ -9,7 +9,8 @@ import pytest
 
 import gaspart as gp
 from gaspart.cli import main
-from gaspart.experiments.registry import families
+from gaspart.scene.faces import KINDS
+from gaspart.yaml_text import parse_yaml
 
 DOCS = Path(__file__).parents[1] / "docs"
 SOURCE = DOCS.parent / "src/gaspart"
@@ -86,18 +87,13 @@ def test_files_and_functions_that_a_page_names_exist(page):
 def test_links_between_pages_lead_somewhere():
     for path in [*DOCS.glob("*.md"), DOCS.parent / "README.md"]:
         for target in re.findall(r"\]\(([^)#:]+)\)", path.read_text(encoding="utf-8")):
-            assert (path.parent / target).exists(), (path.name, target)
+            made = target.startswith("generated/")  # by `make docs`, which fails for a link to nothing
+            assert made or (path.parent / target).exists(), (path.name, target)
 
 
-def test_the_reference_has_every_public_name_and_every_figure(tmp_path):
-    script("build").build(tmp_path)
-    api = (tmp_path / "api.html").read_text()
-    for name in gp.__all__:
-        assert f'<h3 id="{name}">' in api
-    for figure, family in families().items():
-        assert f'<h2 id="{figure}">' in (tmp_path / f"{family}.html").read_text()
-    for page in tmp_path.glob("*.html"):
-        text = page.read_text()
-        assert "system-message" not in text, page.name  # a mistake in reStructuredText
-        for target in re.findall(r'href="([^"#:]+)"', text):
-            assert (tmp_path / target).exists()
+def test_the_scenes_of_the_page_on_scene_files_are_valid():
+    blocks = re.findall(r"^```yaml\n(.*?)^```", (DOCS / "scenes.md").read_text(), re.M | re.S)
+    scenes = [gp.Scene.from_dict(parse_yaml(block)) for block in blocks]
+    kinds = {face.kind for scene in scenes for face in scene.faces.values()}
+    walls = {type(wall) for scene in scenes for wall in scene.walls}
+    assert kinds == set(KINDS) and walls == {gp.Wall, gp.Plate}

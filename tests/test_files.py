@@ -9,6 +9,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+import xarray as xr
 from machine import WITHOUT_RIGHTS, why_not
 
 import gaspart as gp
@@ -63,7 +64,7 @@ def refused(capsys, *command):
 @pytest.mark.parametrize("output", OUTPUTS)
 def test_a_result_is_replaced_with_force_only_and_another_file_never(folder, capsys, output):
     command = [*OUTPUTS[output], "-o", output]
-    other = "no file of this kind, but dear to its owner"
+    other = "no file of this kind, but important to its owner"
     (folder / output).write_text(other)
     before = contents(folder)
     for force in ([], ["--force"]):
@@ -71,7 +72,7 @@ def test_a_result_is_replaced_with_force_only_and_another_file_never(folder, cap
         assert contents(folder) == before
     (folder / output).unlink()
     assert main(command) == 0
-    result = (folder / output).read_bytes()
+    result = result_of(folder / output)
     if output == "again.nc":
         command[command.index("--seed") + 1] = "3"
     before = contents(folder)
@@ -79,10 +80,16 @@ def test_a_result_is_replaced_with_force_only_and_another_file_never(folder, cap
     assert contents(folder) == before
     assert main([*command, "--force"]) == 0
     assert contents(folder).keys() == before.keys()
-    assert ((folder / output).read_bytes() == result) == (output != "again.nc")
+    assert (result_of(folder / output) == result) == (output != "again.nc")
+
     assert stat.S_IMODE((folder / output).stat().st_mode) == stat.S_IMODE(
         (folder / "scene.yaml").stat().st_mode
     )
+
+
+def result_of(path):
+    """What a result says; HDF5 notes the second in which a file was made, so its bytes do not repeat."""
+    return str(xr.load_dataset(path).to_dict()) if path.name == "met.nc" else path.read_bytes()
 
 
 def test_inputs_and_trajectories_are_never_replaced(folder, capsys):
@@ -257,20 +264,10 @@ def test_a_folder_that_cannot_be_written_to_costs_one_line(folder):
 
 
 @pytest.mark.parametrize("output", [name for name in OUTPUTS if name != "again.nc"])
-def test_names_that_are_not_utf8(folder, output):
-    name = os.fsdecode(b"\xff\xe9" + os.fsencode(output))
-    codes, lines = in_a_process([[*OUTPUTS[output], "-o", name]], folder)
-    assert (codes, lines) == ([0], [])
-    assert (folder / name).stat().st_size
-    inside = os.fsdecode(b"\xff")
-    (folder / inside).mkdir()
-    before = contents_of(folder / inside)
-    code = main([*OUTPUTS[output], "-o", f"{inside}/{output}"])
-    assert code == 0 or (code == 2 and contents_of(folder / inside) == before)
-
-
-def contents_of(folder):
-    return sorted(path.name for path in folder.iterdir())
+def test_results_in_a_folder_that_is_not_utf_8_are_recognised(folder, output):
+    (folder / "\udcff").mkdir()
+    for force in ([], ["--force"]):
+        assert main([*OUTPUTS[output], "-o", f"\udcff/{output}", *force]) == 0
 
 
 def test_a_run_that_another_process_finished_meanwhile_is_not_replaced(folder, monkeypatch, scene):

@@ -22,15 +22,26 @@ from gaspart.trajectory.run import checkpoint_path
 
 SCENE = gas(3, 200, 0.2)
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+STARTED = []
 LONG = ["--duration", "1e9", "--sample-interval", "1e6", "--seed", "3", "--quiet"]
 
 
 def start(*arguments, folder):
     """The command line in a process of its own."""
     command = [sys.executable, "-m", "gaspart", *map(str, arguments)]
-    return subprocess.Popen(
+    process = subprocess.Popen(
         command, cwd=folder, env=ENVIRONMENT, text=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
     )
+    STARTED.append(process)
+    return process
+
+
+@pytest.fixture(autouse=True)
+def nothing_runs_on():
+    """What a test has started ends with it, also if it fails."""
+    yield
+    while STARTED:
+        STARTED.pop().kill()
 
 
 def catches(process, number=signal.SIGTERM):
@@ -53,6 +64,17 @@ def ended(process, number):
     assert process.returncode == 128 + number, printed
     assert printed.count("\n") == 1 and printed.startswith("gaspart: "), printed
     return printed
+
+
+def test_a_run_with_crossings_only_ends_with_a_checkpoint(tmp_path):
+    """Two discs that cross a thin periodic axis, and never meet: there is no event of the model."""
+    discs = [gp.Body((0.5, height), (1.0, 0.0), 0.05) for height in (1e9, 9e9)]
+    gp.Scene(gp.Container((1.0, 1e10), "periodic"), bodies=discs).to_file(tmp_path / "scene.yaml")
+    long = ["--duration", "1e12", "--sample-interval", "1e12", "--quiet"]
+    process = start("run", "scene.yaml", "-o", "run.nc", *long, folder=tmp_path)
+    wait_for((tmp_path / "run.nc.partial").exists)
+    time.sleep(3.0)
+    assert "continues it from time" in ended(process, signal.SIGINT)
 
 
 def plain_line(number):

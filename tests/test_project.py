@@ -42,3 +42,14 @@ def test_ci_runs_targets_that_the_makefile_has():
 def test_cleaning_keeps_the_description_of_the_results():
     assert "!/results/README.md" in (ROOT / ".gitignore").read_text(encoding="utf-8").splitlines()
     assert "$(filter-out results/README.md," in (ROOT / "Makefile").read_text(encoding="utf-8")
+
+
+def test_the_conda_environment_has_every_dependency_at_its_locked_version():
+    names = {"matplotlib": "matplotlib-base", "freud-analysis": "freud"}
+    listed = yaml.safe_load((ROOT / "workflow/envs/gaspart.yaml").read_text(encoding="utf-8"))["dependencies"]
+    versions = dict(line.split("=") for line in listed)
+    lock = (ROOT / "environment.txt").read_text(encoding="utf-8")
+    for line in (*project()["dependencies"], "jinja2>=0", "docutils>=0"):
+        name = Requirement(line).name.lower()
+        locked = re.search(rf"^{re.escape(name)}==([^ ;]+)", lock, re.MULTILINE)[1]
+        assert locked.startswith(versions[names.get(name, name)]), name

@@ -1,10 +1,13 @@
-"""What the README shows in Python runs to its end as printed, and so does its scene with other seeds."""
+"""What the README shows runs to its end as printed, and so does its scene with other seeds."""
 
 import re
+import shlex
 from pathlib import Path
 
 import numpy as np
 import pytest
+
+from gaspart.cli import commands, main
 
 README = Path(__file__).parents[1] / "README.md"
 
@@ -26,8 +29,29 @@ def test_the_examples_run(names, tmp_path, monkeypatch, capsys):
         assert "advance(" in example  # a scene is not only made but run
     assert (tmp_path / "run.nc").exists()
     assert int(printed[0].split()[0]) > 0
-    assert float(printed[1].split()[0]) == pytest.approx(names["sim"].initial_state.energy, rel=1e-9)
+    assert (tmp_path / "run.mp4").stat().st_size > 10_000
+    energy, dissipated = map(float, printed[1].split()[:2])
+    assert energy + dissipated == pytest.approx(names["sim"].initial_state.energy, rel=1e-9)
+    assert dissipated > 0.0
     assert names["sim"].time == 1000.0
+
+
+def test_the_first_film(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    block = re.search(r"## A first film\n\n```sh\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)[1]
+    for line in block.splitlines():
+        program, *arguments = shlex.split(line)
+        assert program == "gaspart" and main(arguments) == 0, line
+    assert (tmp_path / "gas.mp4").stat().st_size > 100_000
+
+
+def test_the_targets_of_make_and_the_commands_exist():
+    text = README.read_text(encoding="utf-8")
+    rules = re.findall(r"^([\w-]+):", (README.parent / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
+    assert set(re.findall(r"`make ([\w-]+)`", text)) <= set(rules)
+    assert set(re.findall(r"^make (\w+)", text, re.MULTILINE)) == {"test"}
+    named = text[text.index("The commands: ") : text.index("has an example in its")]
+    assert set(commands()) <= set(re.findall(r"`(?:gaspart )?(\w+)`", named))
 
 
 @pytest.mark.parametrize("seed", range(2, 12))

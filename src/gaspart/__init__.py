@@ -27,6 +27,7 @@ _HOMES = {
     "State": "state.state",
     "Sticky": "scene.faces",
     "Tally": "state.tally",
+    "Thermostat": "scene.thermostat",
     "Thermal": "scene.faces",
     "TimeStepped": "engines",
     "Wall": "scene.walls",
@@ -39,15 +40,20 @@ _HOMES = {
     "export": "trajectory.export",
     "film": "rendering.films",
     "open_trajectory": "trajectory.run",
-    "render": "rendering.pictures",
+    "render": "rendering.frames",
     "resume": "trajectory.run",
     "run": "trajectory.run",
+    "view": "rendering.view",
 }
 
-__all__ = ["__version__", *_HOMES]
+_PACKAGES = ("analysis", "theory")
+
+__all__ = ["__version__", *_PACKAGES, *_HOMES]
 
 
 def __getattr__(name: str) -> Any:
+    if name in _PACKAGES:
+        return import_module(f"gaspart.{name}")
     if name in _HOMES:
         return getattr(import_module(f"gaspart.{_HOMES[name]}"), name)
     raise AttributeError(f"module 'gaspart' has no attribute {name!r}")

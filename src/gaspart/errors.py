@@ -30,6 +30,15 @@ class SceneError(ValueError):
         return SceneError(key, self.value, self.rule, file or self.file)
 
 
+def unknown_word(word: object, known: Iterable[str], what: str = "key") -> str:
+    """The rule for a word that is none of `known`: the most similar one, or all of them."""
+    from difflib import get_close_matches
+
+    words = list(known)
+    near = get_close_matches(str(word), words, n=1)
+    return f"unknown {what}; " + (f"did you mean {near[0]}?" if near else f"known are {', '.join(words)}")
+
+
 class SimulationError(RuntimeError):
     """A run broke one of its invariants, or cannot continue; the last good state is kept by the caller."""
 

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import IO
 
 from gaspart.errors import SceneError
 from gaspart.interruption import scratch_file
@@ -46,6 +47,11 @@ def output_path(path: str | Path) -> Path:
     if os.path.basename(text) in ("", ".", "..") or "\0" in text:
         raise SceneError("path", text, "must be the name of a file")
     return Path(text)
+
+
+def descriptor_path(file: IO[bytes]) -> str:
+    """A path of an open file in ASCII, for libraries that accept UTF-8 names only."""
+    return f"/proc/self/fd/{file.fileno()}"
 
 
 def may_replace(path: Path, kind: Kind | None, overwrite: bool) -> bool:
@@ -111,7 +117,7 @@ def writing(path: str | Path, kind: Kind | None = None, overwrite: bool = False)
     except OSError as error:
         why = error.strerror or "its writer has stopped"
         raise SceneError("path", str(path), f"cannot be written: {why}") from None
-    except UnicodeEncodeError:
+    except UnicodeEncodeError:  # of a library that accepts UTF-8 names only
         rule = "cannot be written: the name of its folder must be UTF-8"
         raise SceneError("path", str(path), rule) from None
 

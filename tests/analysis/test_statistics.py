@@ -171,20 +171,24 @@ def test_optimum_of_a_cost_of_two_terms():
     inside = 0
     for _ in range(200):
         cost = (64.0 / x + x) * (1.0 + 0.02 * generator.standard_normal(x.size))
-        best = statistics.optimum(x, cost, 0.02 * cost, within=1.6)
+        best = statistics.optimum(x, cost, 0.02 * cost)
         assert best.interior
         assert best.low < best.location < best.high
         inside += best.low <= 8.0 <= best.high
         assert best.cost == pytest.approx(16.0, rel=0.06)
+        for edge in (best.flat_low, best.flat_high):
+            assert 64.0 / edge + edge == pytest.approx(16.8, rel=0.05)
     assert 180 <= inside <= 199  # 95 %
 
 
 def test_optimum_without_errors_uses_the_scatter():
     x = np.geomspace(2.0, 32.0, 9)
     scatter = 1.0 + 0.01 * np.array([1, -1, 1, -1, 1, -1, 1, -1, 1])
-    best = statistics.optimum(x, np.exp(0.3 * np.log(x / 8.0) ** 2) * scatter)
-    assert best.location == pytest.approx(8.0, rel=0.05)
-    assert best.low < 8.0 < best.high < 10.0
+    best = statistics.optimum(x, (100.0 + 64.0 / x + x) * scatter)
+    assert best.location == pytest.approx(8.0, rel=0.2)
+    assert best.low < 8.0 < best.high
+    assert best.flat_low == pytest.approx(3.51, rel=0.05)  # 64 / x + x = 21.8, 5 % of 116 above 16
+    assert best.flat_high == pytest.approx(18.3, rel=0.05)
 
 
 def test_a_minimum_at_the_edge_is_not_an_optimum():
@@ -212,3 +216,20 @@ def test_a_minimum_at_the_edge_is_not_an_optimum():
 def test_unusable_input_is_refused(call, message):
     with pytest.raises(ValueError, match=message):
         call()
+
+
+def test_the_mean_of_a_current_through_a_store_is_as_certain_as_it_is():
+    """A current of white noise, part of which is stored: blocks that store more give it back."""
+    generator = np.random.default_rng(21)
+    deviations, plain = [], []
+    for _ in range(300):
+        stored = 5.0 * generator.standard_normal(21)
+        current = 1.0 + 0.3 * generator.standard_normal(20) + np.diff(stored)
+        found = statistics.steady_mean(current, np.diff(stored))
+        assert found.freedom == 18.0
+        deviations.append((found.value - 1.0) / found.error)
+        plain.append((current.mean() - 1.0) / statistics.mean_of(current).error)
+    assert np.mean(np.square(deviations)) == pytest.approx(18.0 / 16.0, abs=3.0 * 1.8 / 300**0.5)  # Student's
+    assert np.mean(np.square(plain)) < 0.2
+    nothing = np.zeros(20)
+    assert statistics.steady_mean(current, nothing).freedom == 19.0

@@ -5,7 +5,8 @@ import pytest
 import xarray as xr
 from claims.data import claim
 
-from gaspart.claims import Claim, Estimate, judge
+from gaspart.analysis.statistics import mean_of
+from gaspart.claims import UNVERIFIED, Claim, Estimate, judge
 
 COMMON = {"source": "theory", "fails_if": "it is not"}
 
@@ -44,6 +45,60 @@ def test_a_plain_number_in_a_formula_is_exact():
     assert estimate / xr.DataArray(-2.0) == Estimate(-1.5, 0.25)
 
 
+def test_degrees_of_freedom_are_propagated():
+    few, many = Estimate(3.0, 0.3, 3), Estimate(4.0, 0.3)
+    assert (-few).freedom == 3.0
+    assert (few + few).freedom == pytest.approx(6.0)
+    assert (few + many).freedom == pytest.approx(12.0)  # half the variance is known exactly
+    assert (few * 2.0).freedom == pytest.approx(3.0) == (few / 2.0).freedom
+    assert (many + many).freedom == math.inf
+    dataset = xr.Dataset({"Z": 1.5, "Z_error": 0.25, "Z_freedom": 5})
+    assert Estimate.of(dataset, "Z") == Estimate(1.5, 0.25, 5.0)
+    with pytest.raises(ValueError, match="freedom: 0"):
+        Estimate(1.0, 0.1, 0)
+
+
+def test_a_deviation_of_few_samples_is_students():
+    few = Claim(claim="Z", measured=Estimate(4.0, 1.0, 3), expected=0.0, required=2.0, **COMMON)
+    # P(|t| > 4) with 3 degrees of freedom is 0.0280: 2.197 standard deviations of a Gaussian
+    assert few.p_value == pytest.approx(0.0280, abs=1e-4)
+    assert few.deviation_sigma == pytest.approx(2.197, abs=2e-3)
+    assert judge([few]) == ["agrees"]
+    known = Claim(claim="Z", measured=Estimate(4.0, 1.0), expected=0.0, required=2.0, **COMMON)
+    assert judge([known]) == ["disagrees"]
+    for far in (1e3, -1e6):
+        strange = Claim(claim="Z", measured=Estimate(far, 1.0, 40), expected=0.0, required=2.0, **COMMON)
+        assert math.isfinite(strange.deviation_sigma) and strange.deviation_sigma * far > 0.0
+
+
+def test_means_of_few_gaussian_numbers_scatter_as_students_deviations_state():
+    samples = np.random.default_rng(5).standard_normal((4000, 4))
+    found = [mean_of(row) for row in samples]
+    square = [Claim(claim="0", measured=one, expected=0.0, required=9.0, **COMMON) for one in found]
+    deviations = np.array([one.deviation_sigma for one in square])
+    assert abs(np.mean(deviations**2) - 1.0) < 3.0 * math.sqrt(2.0 / 4000)
+    gaussian = np.array([one.value / one.error for one in found])
+    assert np.mean(gaussian**2) > 2.0  # 3 for infinitely many: the variance of Student's t
+
+
+def test_an_allowance_needs_a_source():
+    with pytest.raises(ValueError, match=r"allowance_source: empty \(the allowance 0\.1"):
+        Claim(claim="Z", measured=Estimate(1.0), expected=Estimate(1.0, 0.1), required=1.0, **COMMON)
+    cited = claim(1.0, expected=Estimate(1.0, 0.1))
+    assert cited.allowance_source
+    assert not cited.is_scattered
+    assert claim(1.0, 0.01, expected=Estimate(1.0, 0.001)).is_scattered
+
+
+def test_only_tests_of_values_scatter_as_gaussians():
+    assert claim().is_scattered and claim().form == "value"
+    band = Claim.within(claim="Z", measured=Estimate(1.0, 0.1), expected=1.0, half_width=1.0, **COMMON)
+    joint = Claim.joint(claim="Z", deviations=[1.0, 1.0], **COMMON)
+    assert (band.form, joint.form) == ("bound", "distribution")
+    others = claim(kind="reproduction"), claim(error=math.nan), claim(error=0.0), claim(no_verdict=UNVERIFIED)
+    assert not any(one.is_scattered for one in (band, joint, *others))
+
+
 def test_deviation_combines_both_uncertainties():
     assert claim(1.05, 0.03, expected=Estimate(1.0, 0.04)).deviation_sigma == pytest.approx(1.0)
     assert claim(0.95, 0.05).deviation_sigma == pytest.approx(-1.0)
@@ -77,6 +132,7 @@ def test_a_band():
     assert beyond.deviation_sigma == pytest.approx(4.0)
     assert judge([beyond]) == ["disagrees"]
     assert judge([within(1.0, 0.03)]) == ["inconclusive"]
+    assert judge([within(2.0, 0.03)]) == ["disagrees"]
     assert judge([within(1.0, 0.03, required=0.03)]) == ["agrees"]
 
 

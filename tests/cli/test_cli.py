@@ -6,6 +6,7 @@ import re
 import shlex
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import pytest
@@ -109,13 +110,18 @@ def test_resume_and_info_of_an_unfinished_run(folder, capsys):
         pytest.param("a: [1\n", [], "line 2, column 1 = 'the end': is not valid YAML", id="not YAML"),
         pytest.param(b"\xff\xfe\x00", [], "cannot be read", id="not text"),
         pytest.param(None, [], "cannot be read: .*No such file", id="no file"),
-        pytest.param(GAS, ["--engine", "magic"], "engine.name = 'magic': must be one of", id="engine"),
-        pytest.param(GAS, ["--engine", "step"], "time_step = None: is required", id="no time step"),
-        pytest.param(GAS, ["--time-step", "0.1"], "time_step = 0.1: unknown key", id="wrong engine"),
+        pytest.param(GAS, ["--engine", "magic"], "--engine: 'magic': must be one of", id="engine"),
+        pytest.param(GAS, ["--engine", "step"], "--time-step: is required", id="no time step"),
+        pytest.param(
+            GAS,
+            ["--time-step", "0.1"],
+            "--time-step: 0.1: has no meaning with --engine event",
+            id="wrong engine",
+        ),
         pytest.param(GAS, ["--sample-interval", "0.3"], "must be a whole multiple of sample", id="interval"),
         pytest.param(GAS, ["--duration", "soon"], "argument --duration: invalid float", id="duration"),
         pytest.param(GAS, ["--seed", "1,x"], "argument --seed: '1,x' must be a whole number", id="seed"),
-        pytest.param(GAS, ["--sed", "1"], "unrecognized arguments: --sed 1", id="unknown option"),
+        pytest.param(GAS, ["--sed", "1"], "--sed: unknown option; did you mean --seed", id="unknown option"),
         pytest.param(GAS, ["-o", "nowhere/run.nc"], "must be a file in an existing folder", id="output"),
     ],
 )
@@ -175,6 +181,43 @@ def test_progress_is_one_line_on_a_terminal_and_nothing_elsewhere(monkeypatch):
     assert terminal.getvalue() == "\r\033[K 40.0%  5e+03 collisions/s  0:00:30 left"
 
 
+def test_waiting_is_shown_on_a_terminal_after_a_while(monkeypatch):
+    shown = threading.Event()
+
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+        def write(self, text):
+            shown.set()
+            return super().write(text)
+
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    monkeypatch.setattr(progress, "_PATIENCE", 0.0)
+    with progress.waiting("compiling") as end:
+        assert shown.wait(60.0)
+        end()
+        written = sys.stderr.getvalue()
+        assert written.startswith("\r\033[Kcompiling 0:00:00") and written.endswith("\r\033[K")
+    assert sys.stderr.getvalue() == written  # it has ended
+    monkeypatch.setattr(sys, "stderr", io.StringIO())
+    with progress.waiting("compiling"):
+        pass
+    assert progress.counted("picture") is None and sys.stderr.getvalue() == ""
+
+
+def test_pictures_are_counted(monkeypatch):
+    terminal = io.StringIO()
+    terminal.isatty = lambda: True
+    monkeypatch.setattr(sys, "stderr", terminal)
+    clock = iter([100.0, 101.0, 110.0])
+    monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock))
+    show = progress.counted("picture")
+    show(1, 40)
+    show(10, 40)
+    assert terminal.getvalue() == "\r\033[Kpicture 10 of 40  0:00:30 left"
+
+
 def throw(error):
     raise error
 
@@ -203,8 +246,8 @@ def test_theory(capsys):
         (["collision_rate", "--eta", "0.1", "--diameter=-1"], "'-1' must be a finite number and above 0"),
         (["viscosity", "--eta", "0.1", "--temperature=nan"], "'nan' must be a finite number"),
         (["viscosity", "--eta", "0.1", "--diameter", "1e308"], "diameter = 1e+308: must be from 1e-30 to"),
-        (["Z", "--eta", "0.1", "--dimension", "4"], "invalid choice"),
-        (["Y", "--eta", "0.1", "--dimension", "3"], "invalid choice"),
+        (["Z", "--eta", "0.1", "--dimension", "4"], "--dimension: 4: unknown name; known are 2, 3"),
+        (["Y", "--eta", "0.1", "--dimension", "3"], "'Y': unknown name; known are Z"),
         (["Z", "--eta", "0.1", "--dimension", "3", "--mass", "2"], "mass = 2.0: Z does not depend on it"),
     ):
         assert main(["theory", *wrong]) == 2

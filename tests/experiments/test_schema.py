@@ -111,7 +111,7 @@ def test_the_tables_of_the_engines_follow_from_the_keys():
     ("kind", "words"),
     [
         (keys.POINT["packing_fraction"], "number > 0 and < 1"),
-        (keys.POINT["search"], "`boxes`, `direct`, `pairs`"),
+        (keys.POINT["search"], "`automatic`, `boxes`, `lists`, `direct`, `pairs`"),
         (keys.POINT["side"], "number > 0 or list of 2 to 3 values (number > 0)"),
         (keys.POINT["replicas"], "whole number ≥ 1 and ≤ 10000"),
         (settings()["virial_discs"]["fits"]["items"]["properties"]["held"], "`true` or `false`"),

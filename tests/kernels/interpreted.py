@@ -142,10 +142,11 @@ def read_fields():
         setattr(module, name, np.dtype((np.record, getattr(module, name))))
 
 
-def earliest(flights, i, count, present, boxes, space, gravity):
-    """`simd.earliest`, one candidate after the other; none remains unknown."""
+def earliest(flights, i, span, present, boxes, space, gravity):
+    """`simd.earliest` for boxes, one candidate after the other; none remains unknown."""
     best, partner = present
-    for candidate in boxes.candidates[: int(count)]:
+    first, count = (int(part) for part in span)
+    for candidate in boxes.candidates[first : first + count]:
         other, offset = int(candidate & search._NUMBER), search.offset_of(candidate, space)
         time = flight.time_of_contact(flights, int(i), other, offset, space, gravity)
         if time < best or (time == best and time < np.inf and other < partner):

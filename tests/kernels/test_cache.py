@@ -1,11 +1,15 @@
 """Where compiled kernels are kept, and what happens where they cannot be."""
 
 import os
+import shutil
 import subprocess
 import sys
 import textwrap
+from pathlib import Path
 
 import pytest
+
+import gaspart
 
 
 def test_a_cache_that_cannot_be_written_is_reported_and_costs_time_only(tmp_path):
@@ -57,3 +61,17 @@ def test_a_temporary_cache_that_others_may_write_to_is_not_used(tmp_path, monkey
         own.chmod(mode)
         with pytest.warns(UserWarning, match="cannot write the kernel cache"):
             assert usable_cache("digest") == found
+
+
+def test_copies_of_the_package_share_what_was_compiled(tmp_path):
+    """A clone, or an update that leaves the kernels alone, need not wait; other types have other files."""
+    code = "from gaspart.kernels.rng import log_of; log_of({}); print(sum(log_of.stats.cache_hits.values()))"
+    for name in ("one", "two"):
+        shutil.copytree(Path(gaspart.__file__).parent, tmp_path / name / "gaspart")
+    hits = []
+    for name, argument in (("one", 2.0), ("one", 2), ("two", 2.0), ("two", 2)):
+        environment = os.environ | {"GASPART_CACHE": str(tmp_path), "PYTHONPATH": str(tmp_path / name)}
+        command = [sys.executable, "-c", code.format(argument)]
+        hits.append(int(subprocess.run(command, capture_output=True, env=environment, check=True).stdout))
+    assert hits == [0, 0, 1, 1]
+    assert len(list(tmp_path.glob("*/kernels/rng.log_of-*.nbc"))) == 2

@@ -127,7 +127,8 @@ def test_a_tally_is_the_sum_of_its_parts(scene):
 @pytest.mark.thorough
 @pytest.mark.parametrize("scene", list(scenes()))
 def test_a_long_tally_is_the_sum_of_its_parts(scene):
-    check_sums(scene, gp.EventDriven(), 3000, 1e-15, max_events=10_000)
+    """1e8 events."""
+    check_sums(scene, gp.EventDriven(), 1000, 1e-15, max_events=100_000)
 
 
 @kernel

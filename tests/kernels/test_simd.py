@@ -15,7 +15,7 @@ from gaspart.state.boxes import make_boxes
 
 @kernel
 def compiled_first(flights, i, count, present, boxes, space, gravity):
-    return earliest(flights, uint64(i), uint64(count), present, boxes, space, gravity)
+    return earliest(flights, uint64(i), (uint64(0), uint64(count)), present, boxes, space, gravity)
 
 
 BOXES = empty_lists(make_boxes(gp.Scene(gp.Container((9.0,) * 3)), 1, images=True), 64)

@@ -30,6 +30,7 @@ def described(tmp_path, scene, **settings):
         ({}, "event-boxes-2d-ww"),
         ({"boundary": "periodic", "dimension": 3}, "event-boxes-3d-ppp"),
         ({"boundary": ["periodic", "wall"], "search": "direct"}, "event-direct-2d-pw"),
+        ({"side": 34.0, "arrangement": "lattice"}, "event-lists-2d-ww"),
         ({"engine": "step", "time_step": 0.1}, "step-list-float64-2d-ww"),
         ({"engine": "step", "time_step": 0.1, "precision": "float32"}, "step-list-float32-2d-ww"),
         ({"job": "fill", "dimension": 3}, "fill-random-3d-www"),

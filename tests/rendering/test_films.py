@@ -5,6 +5,7 @@ import pytest
 import gaspart as gp
 from gaspart.cli import main
 from gaspart.rendering.films import _pieces, film
+from gaspart.rendering.labels import round_length
 
 
 @pytest.fixture(scope="module")
@@ -41,6 +42,23 @@ def test_a_film_of_spheres_is_made_of_their_pictures(runs):
         first = gp.render(trajectory, 0, size=(64, 48), colour="species")
     images = imageio.imread(runs / "spheres.gif").astype(int)
     assert np.abs(images[-1] - last).mean() < 4.0 < np.abs(images[-1] - first).mean()
+
+
+@pytest.mark.parametrize("scene", ["discs", "spheres"])
+def test_a_clock_is_written_into_the_lower_corners_and_runs(runs, scene):
+    plain, timed = runs / f"{scene}-plain.gif", runs / f"{scene}-timed.gif"
+    film(runs / f"{scene}.nc", plain, size=(240, 180), colour="species")
+    film(runs / f"{scene}.nc", timed, size=(240, 180), colour="species", clock=True)
+    without, within = (imageio.imread(path).astype(int) for path in (plain, timed))
+    changed = np.abs(within - without).max(axis=-1) > 100
+    assert not changed[:, :150].any() and changed[:, 150:, :80].any(axis=(1, 2)).all()
+    assert changed[:, 150:, 160:].any() == (scene == "discs")
+    assert (within[0, 150:, :80] != within[4, 150:, :80]).any()
+
+
+@pytest.mark.parametrize(("longest", "length"), [(37.0, 20.0), (0.7, 0.5), (1.0, 1.0), (9.99, 5.0)])
+def test_the_bar_has_a_round_length(longest, length):
+    assert round_length(longest) == length
 
 
 def test_walls_of_the_scene_are_drawn(runs):

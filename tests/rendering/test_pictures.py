@@ -3,8 +3,8 @@ import pytest
 
 import gaspart as gp
 from gaspart.rendering.discs import Canvas
-from gaspart.rendering.particles import colours_of, particles_of
-from gaspart.rendering.pictures import render
+from gaspart.rendering.frames import particles_of, render
+from gaspart.rendering.particles import colours_of
 
 BLACK = np.zeros((1, 3))
 
@@ -73,3 +73,45 @@ def test_colours():
 def test_an_impossible_size_is_refused(size):
     with pytest.raises(gp.SceneError, match="size"):
         render(state([[2.0, 2.0]], [1.0], [8.0, 8.0]), size=size)
+
+
+def test_a_disc_at_a_periodic_face_is_drawn_on_both_sides():
+    body = gp.Body((0.5, 4.0), (0.0, 0.0), 1.0)
+    white = np.zeros((1, 3))
+    areas = []
+    for boundary in ("wall", ("periodic", "wall")):
+        scene = gp.Scene(gp.Container((16.0, 8.0), boundary), bodies=[body], centres_to_walls=True)
+        simulation = gp.Simulation(scene, gp.EventDriven(search="direct"))
+        image = render(simulation, size=(400, 100), colour=white)
+        empty = render(gp.Simulation(gp.Scene(scene.container), gp.EventDriven()), size=(400, 100))
+        areas.append(float((empty.astype(int) - image)[..., 0].sum()) / 255)
+    # the whole disc, drawn over one face or two; the dark lines of the faces hide a little of it
+    assert areas[1] == pytest.approx(2.0 * areas[0], rel=0.02)
+
+
+def test_a_path_a_simulation_and_a_state_give_one_picture(tmp_path):
+    scene = gp.Scene(gp.Container((9.0, 9.0), "periodic"), [gp.Species(20, 0.5, temperature=1.0)])
+    gp.run(scene, gp.EventDriven("direct"), 3, 1.0, 0.5, tmp_path / "a.nc")
+    simulation = gp.Simulation(scene, gp.EventDriven("direct"), seed=3)
+    simulation.advance(duration=1.0)
+    size = (80, 60)
+    with gp.open_trajectory(tmp_path / "a.nc") as trajectory:
+        image = render(trajectory, size=size)
+    assert (image == render(tmp_path / "a.nc", size=size)).all()
+    assert np.abs(image.astype(int) - render(simulation, size=size)).max() <= 1  # frames are in float32
+    assert (render(simulation.state, size=size) != render(simulation, size=size)).any()  # has no images
+    with pytest.raises(gp.SceneError, match="a film needs frames"):
+        gp.film(simulation, tmp_path / "a.mp4")
+
+
+def test_the_sides_of_plates_are_drawn():
+    plate = gp.Plate((4.0, 1.0, 1.0), ((0.0, 6.0, 0.0), (0.0, 0.0, 6.0)))
+    scene = gp.Scene(gp.Container((8.0, 8.0, 8.0)), walls=[plate])
+    walls = particles_of(gp.Simulation(scene, gp.EventDriven())).walls
+    assert walls.shape == (4, 2, 3) and (walls[:, 0] == np.roll(walls[:, 1], 1, axis=0)).all()
+    assert sorted(np.linalg.norm(walls[:, 1] - walls[:, 0], axis=1)) == [6.0] * 4
+    with_plate, without = (
+        render(gp.Simulation(one, gp.EventDriven()), size=(200, 150)).astype(int)
+        for one in (scene, gp.Scene(scene.container))
+    )
+    assert 200 < (with_plate != without).any(axis=-1).sum() < 3000

@@ -181,12 +181,52 @@ def test_a_notebook_shows_what_a_simulation_is():
         ({"until": -1.0}, "until"),
         ({"max_events": -3}, "max_events"),
         ({"max_events": 2.5}, "max_events"),
+        ({"duration": 1.0, "max_work": 0}, "max_work"),
+        ({"max_work": 1}, "duration"),
     ],
 )
 def test_targets_that_are_not_numbers(arguments, key):
     sim = gp.Simulation(gas(2, 5, 0.1), gp.EventDriven(), seed=1)
     with pytest.raises(gp.SceneError, match=key):
         sim.advance(**arguments)
+
+
+@pytest.mark.parametrize("search", ["boxes", "pairs"])
+def test_work_is_bounded_where_nothing_but_crossings_happens(search):
+    """Two discs that cross a thin periodic axis a million million times and never meet."""
+    discs = [gp.Body((0.5, height), (1.0, 0.0), 0.05) for height in (1e9, 9e9)]
+    scene = gp.Scene(gp.Container((1.0, 1e10), "periodic"), bodies=discs)
+    sim, whole = (gp.Simulation(scene, gp.EventDriven(search), seed=1) for _ in range(2))
+    crossed, pieces = 0, [100_000, 1, 7, 100_000]
+    for work in pieces:
+        before = sim.time
+        sim.advance(until=1e12, max_work=work)
+        images = int(sim.state.images.sum())
+        assert work // 2 - 2 <= images - crossed <= work + 2  # both stand at the face just now
+        assert before <= sim.time
+        crossed = images
+    whole.advance(until=sim.time)
+    for name in ("positions", "velocities", "images"):
+        assert np.array_equal(getattr(sim.state, name), getattr(whole.state, name)), name
+
+
+@pytest.mark.parametrize("search", ["boxes", "direct", "pairs"])
+def test_pieces_of_bounded_work_change_no_bit(search):
+    sims = [gp.Simulation(gas(2, 20, 0.2, "periodic"), gp.EventDriven(search), seed=2) for _ in range(2)]
+    pieces = 0
+    while sims[0].time < 5.0:
+        sims[0].advance(until=5.0, max_work=1 + pieces % 5)
+        pieces += 1
+    sims[1].advance(until=5.0)
+    assert pieces > sims[1].tally.collisions / 5 > 10
+    for name, values in sims[1].checkpoint().items():
+        assert np.array_equal(sims[0].checkpoint()[name], values), name
+
+
+def test_work_is_counted_by_the_event_driven_engine_only():
+    sim = gp.Simulation(gas(2, 5, 0.1), gp.TimeStepped(0.01), seed=1)
+    with pytest.raises(gp.SceneError, match="max_work"):
+        sim.advance(duration=1.0, max_work=5)
 
 
 def test_states_and_tallies_are_copies():

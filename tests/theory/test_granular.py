@@ -56,10 +56,31 @@ def test_smooth_discs_cool_by_haffs_law():
     assert 2.0 / theory.haff_time(0.9, 2, 0.3) == pytest.approx(theory.cooling_rate(0.9, 2) * slowed * 0.3)
 
 
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("e", [0.0, 0.4, 0.8, 0.99])
+def test_the_moments_of_the_cooling_gas_are_those_of_the_driven_one(dimension, e):
+    """From mu_4 = (d + 2) (1 + a2) mu_2 and mu_4 = (d + 2) mu_2, with the same moments to first order."""
+    fourth = dimension + 1.5 + e**2
+    slope = 3.0 * (10.0 * dimension + 39.0 + 10.0 * e**2) / 32.0 + (dimension - 1.0) / (1.0 - e)
+    for own, found in ((1.0, theory.fourth_cumulant), (0.0, theory.driven_cumulant)):
+        expected = (dimension + 2 - fourth) / (slope - (dimension + 2) * (own + 3.0 / 16.0))
+        assert found(e, dimension) == pytest.approx(expected, rel=1e-12)
+
+
+def test_the_driven_gas_loses_what_it_is_given():
+    """In its steady state -dT/dt of the cooling gas is 2 power/d, but for the cumulant, which is another."""
+    for e, dimension in ((0.999, 2), (0.999, 3)):
+        temperature = theory.driven_temperature(e, dimension, 0.02, 0.1)
+        rate = theory.collision_rate(0.1, dimension, temperature=float(temperature))
+        lost = theory.cooling_rate(e, dimension) * rate * temperature
+        assert lost == pytest.approx(2.0 * 0.02 / dimension, rel=1e-3)
+
+
 @pytest.mark.parametrize(
     ("function", "arguments"),
     [
         (theory.fourth_cumulant, (1.1, 2)),
+        (theory.driven_cumulant, (1.1, 2)),
         (theory.rough_matrix, (0.0, 1.0)),
         (theory.rough_matrix, (0.5, 1.5)),
         (theory.rough_ratio, (0.5, -1.0)),

@@ -14,7 +14,7 @@ from gaspart.cli import main
 from gaspart.trajectory import recording
 from gaspart.trajectory.checkpoint import read_checkpoint
 from gaspart.trajectory.recipe import read_recipe
-from gaspart.trajectory.run import checkpoint_path, partial_path
+from gaspart.trajectory.run import TRAJECTORY, checkpoint_path, partial_path
 
 SCENE = gas(2, 10, 0.1)
 RECIPE = (SCENE, gp.EventDriven(), 1, 8.0, 0.5)
@@ -125,6 +125,10 @@ def test_damage_to_an_unfinished_run_is_detected_or_repaired(tmp_path, capsys, c
         if not refused:
             assert path.read_bytes() == complete, number
             path.unlink()
+        elif not TRAJECTORY.recognises(partial_path(path)):  # it could be anybody's file
+            with pytest.raises(gp.SceneError, match="is not an unfinished trajectory"):
+                gp.run(*RECIPE, path, overwrite=True)
+            partial_path(path).unlink()
         assert gp.run(*RECIPE, path, overwrite=True).read_bytes() == complete
         path.unlink()
 

@@ -11,7 +11,7 @@ import pytest
 from scenes import gas
 
 import gaspart as gp
-from gaspart.trajectory import recording
+from gaspart.trajectory import recording, run
 from gaspart.trajectory.recipe import multiple, read_recipe
 from gaspart.trajectory.run import checkpoint_path, partial_path
 
@@ -92,6 +92,30 @@ def test_a_run_under_way_belongs_to_one_process_and_is_not_replaced_by_another_r
         gp.resume(path)
     with pytest.raises(gp.SceneError, match=r"there is no other\.nc\.partial"):
         gp.resume(tmp_path / "other.nc")
+
+
+@pytest.mark.parametrize("moment", ["read_recipe", "begun_as", "may_replace", "_is_blank", "_locked"])
+@pytest.mark.parametrize("command", ["resume", "run"])
+def test_a_run_that_another_process_finishes_meanwhile(tmp_path, monkeypatch, command, moment):
+    """At each moment at which its files are looked at."""
+    recipe, path = (gas(2, 10, 0.1), gp.EventDriven(), 1, 1.0, 0.5), tmp_path / "run.nc"
+    complete = gp.run(*recipe, path).read_bytes()
+    path.rename(partial_path(path))
+    original = getattr(run, moment)
+
+    def after_it_was_finished(*arguments, **options):
+        if not path.exists():
+            partial_path(path).rename(path)
+        return original(*arguments, **options)
+
+    monkeypatch.setattr(run, moment, after_it_was_finished)
+    if command == "resume" and moment in ("read_recipe", "begun_as"):
+        with pytest.raises(gp.SceneError, match=r"run\.nc': is already complete"):
+            gp.resume(path)
+    else:
+        assert (gp.resume(path) if command == "resume" else gp.run(*recipe, path)) == path
+    assert path.read_bytes() == complete
+    assert list(tmp_path.iterdir()) == [path]
 
 
 def test_a_run_killed_while_its_header_was_written_begins_again(tmp_path):

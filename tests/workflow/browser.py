@@ -7,19 +7,24 @@ import shutil
 import subprocess
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+_REPORT = "parent.document.body.dataset.found = JSON.stringify(found);"
 
 
 def found_by(script, page, folder, width):
-    """What the JavaScript function body `script` returns on the page, in a frame of this width.
+    """What the body `script` of an asynchronous JavaScript function returns on the page, in a frame of this
+    width.
 
     In a frame, because a window of the browser has a width below which it does not go.
     """
-    run = f"parent.document.body.dataset.found = JSON.stringify((() => {{ {script} }})());"
-    inner = page.read_text(encoding="utf-8").replace("</body>", f"<script>{run}</script></body>")
+    run = f"(async () => {{ {script} }})().catch(String).then(found => {{ {_REPORT} }});"
+    base = f'<head><base href="{page.parent.as_uri()}/">'
+    inner = page.read_text(encoding="utf-8").replace("<head>", base)
+    inner = inner.replace("</body>", f"<script>{run}</script></body>")
     frame = f'<iframe width="{width}" height="800" style="border: 0" srcdoc="{html.escape(inner)}"></iframe>'
     outer = folder / "frame.html"
     outer.write_text(f"<!doctype html><html><body>{frame}</body></html>", encoding="utf-8")
     command = [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder}/profile"]
+    command += ["--allow-file-access-from-files", "--virtual-time-budget=20000"]
     done = subprocess.run(
         [*command, "--dump-dom", outer.as_uri()], capture_output=True, text=True, timeout=120
     )

@@ -42,4 +42,4 @@ def test_the_new_figure_is_drawn_and_its_claims_evaluated(workspace):
     assert (workspace.path / targets[0]).read_bytes().startswith(b"\x89PNG")
     with (workspace.path / targets[1]).open(newline="") as file:
         claims = list(csv.DictReader(file))
-    assert [claim["verdict"] for claim in claims] == ["agrees", "agrees"]
+    assert [claim["verdict"] for claim in claims] == ["agrees"] * 3

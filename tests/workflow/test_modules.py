@@ -32,6 +32,7 @@ LAYERS = [  # a module imports only from the packages above its own
     {"rendering"},
     {"planning"},
     {"experiments"},
+    {"report"},
     {"inspection"},
     {"cli"},
 ]

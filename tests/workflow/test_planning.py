@@ -96,7 +96,7 @@ def test_adding_a_point_simulates_that_point_only(smoke, tmp_path):
     assert SIMULATIONS & set(plan) == {"simulate"}
     assert plan["simulate"] == 1
     assert "warm" not in plan
-    assert plan["measure"] == plan["draw"] == plan["judge"] == 1
+    assert plan["measure"] == plan["draw"] == plan["judge"] == 2  # and the scatter of all claims
 
 
 def test_a_longer_run_reruns_its_experiment_only(smoke, tmp_path):
@@ -105,14 +105,17 @@ def test_a_longer_run_reruns_its_experiment_only(smoke, tmp_path):
     plan = smoke.plan(*SMOKE, str(longer))
     assert SIMULATIONS & set(plan) == {"simulate"}
     assert plan["simulate"] == len(PACKING_FRACTIONS)
-    assert plan["measure"] == 1
+    assert plan["measure"] == 2  # and the scatter of all claims
 
 
 @pytest.mark.parametrize(
     ("path", "expected"),
     [
         ("src/gaspart/experiments/virial/figure.py", {"draw", "report", "all"}),
-        ("src/gaspart/experiments/virial/claims.py", {"judge", "claims", "report", "all"}),
+        (
+            "src/gaspart/experiments/virial/claims.py",
+            {"measure", "judge", "draw", "claims", "report", "all"},  # and the scatter of all claims
+        ),
         ("src/gaspart/theory/virial.py", {"measure", "judge", "draw", "claims", "report", "all"}),
         ("src/gaspart/experiments/registry.py", {"report", "all"}),
         ("src/gaspart/experiments/config.py", set()),

@@ -2,12 +2,14 @@
 
 import csv
 import json
+import re
 from pathlib import Path
 
 import pytest
 from browser import CHROMIUM, found_by
 from digests import digests
 
+from gaspart.claims import KINDS, VERDICTS
 from gaspart.experiments.registry import families
 from gaspart.yaml_text import read_yaml
 
@@ -32,21 +34,39 @@ def test_every_figure_is_drawn_twice_and_has_a_claim_with_a_verdict(smoke, figur
         claims = [row for row in csv.DictReader(file) if row["figure"] == figure]
     assert claims
     for claim in claims:
-        assert claim["verdict"] in ("agrees", "disagrees", "inconclusive")
-        assert claim["kind"] in ("test", "identity", "reproduction")
+        assert claim["verdict"] in VERDICTS
+        assert claim["kind"] in KINDS
+        assert claim["why"] or claim["verdict"] in ("agrees", "reproduced", "disagrees")
         assert claim["fails_if"]
 
 
-def test_the_report_holds_every_figure_and_needs_no_other_file(smoke):
-    page = (smoke.path / "results/report.html").read_text()
+def test_the_report_holds_every_figure_and_its_pictures_lie_beside_it(smoke):
+    path = smoke.path / "results/report.html"
+    page = path.read_text()
     for figure in FIGURES:
-        assert f'<section id="{figure}">' in page
-    assert 'src="data:image/svg+xml;base64,' in page
-    assert "http://" not in page.split("</style>")[1].split("data:image")[0]
-    assert 'name="viewport"' in page
+        assert f'<section class="figure" id="{figure}"' in page
+    files = set(re.findall(r'(?:src|href)="([^"#:]+)"', page))
+    assert len(files) >= 4 * len(FIGURES)
+    assert not [file for file in files if not (path.parent / file).exists()]
+    assert path.stat().st_size < 1.5e6 and 'name="viewport"' in page
+    shown = sum((path.parent / file).stat().st_size for file in files)
+    assert shown < 40e6
+
+
+def test_the_report_in_one_file_needs_no_other(smoke):
+    smoke.run("results/report-in-one-file.html")
+    path = smoke.path / "results/report-in-one-file.html"
+    addresses = re.findall(r'src="([^"]+)"', path.read_text())
+    assert len(addresses) > 2 * len(FIGURES) and all(one.startswith("data:") for one in addresses)
+    assert path.stat().st_size < 10e6
 
 
 CLICKS = """
+await new Promise(loaded => addEventListener("load", loaded));
+const images = [...document.images];
+images.forEach(image => { image.loading = "eager"; });
+const seen = image => new Promise(done => { image.onload = image.onerror = done; });
+await Promise.all(images.map(image => image.complete || seen(image)));
 const table = document.querySelector("table.sortable"), rows = () => [...table.tBodies[0].rows];
 const heads = [...table.querySelectorAll("th button")];
 const deviations = () => rows().map(row => row.cells[heads.findIndex(
@@ -57,21 +77,29 @@ deviation.click(); const up = deviations();
 deviation.click(); const down = deviations();
 const agrees = [...document.querySelectorAll("#filter button")].find(one => one.dataset.verdict === "agrees");
 agrees.click();
+const dots = [...document.querySelectorAll(".overview .dot")];
+const fold = document.getElementById(dots[0].hash.slice(1)).closest("details"), folded = !fold.open;
+location.hash = dots[0].hash; open();
 return {
-  before, up, down, after: rows().length, width: document.documentElement.scrollWidth,
+  before, up, down, after: rows().length, width: document.documentElement.scrollWidth, folded,
+  unfolded: fold.open, dots: dots.length,
   shown: rows().filter(row => !row.hidden).map(row => row.dataset.verdict),
-  images: [...document.images].map(image => image.naturalWidth),
-  films: document.querySelectorAll("video").length,
+  verdicts: rows().filter(row => !row.hidden).every(row => {
+    const box = row.querySelector(".verdict").getBoundingClientRect();
+    return box.right <= innerWidth && box.width > 0;
+  }),
+  images: images.map(image => image.naturalWidth),
+  films: document.querySelectorAll(".beside video").length,
   font: Math.min(...[...document.querySelectorAll("p, td, figcaption")].map(
     one => parseFloat(getComputedStyle(one).fontSize))),
   broken: [...document.querySelectorAll('a[href^="#"]')].filter(
-    link => !document.getElementById(link.hash.slice(1))).length,
+    link => !document.getElementById(link.getAttribute("href").slice(1))).length,
 };
 """
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium here to click through the report with")
-@pytest.mark.parametrize("width", [390, 1280])
+@pytest.mark.parametrize("width", [390, 1400])
 def test_the_report_reads_and_clicks_on_a_phone_and_on_a_desk(smoke, tmp_path, width):
     found = found_by(CLICKS, smoke.path / "results/report.html", tmp_path, width)
     with (smoke.path / "results/tables/claims.csv").open(newline="") as file:
@@ -80,7 +108,9 @@ def test_the_report_reads_and_clicks_on_a_phone_and_on_a_desk(smoke, tmp_path, w
     assert found["up"] == sorted(found["up"]) and found["down"] == sorted(found["up"], reverse=True)
     assert found["up"][0] < found["up"][-1]
     assert found["shown"] == ["agrees"] * sum(row["verdict"] == "agrees" for row in claims)
-    assert len(found["images"]) == len(FIGURES) and min(found["images"]) > 0
+    assert found["verdicts"] and found["folded"] and found["unfolded"]
+    assert found["dots"] == sum(row["kind"] != "family" for row in claims)
+    assert len(found["images"]) >= 2 * len(FIGURES) and min(found["images"]) > 0
     assert found["films"] == len(list((smoke.path / "results/animations").iterdir()))
     assert found["width"] <= width and found["font"] >= 12.0
     assert found["broken"] == 0

@@ -10,7 +10,7 @@ from workspace import ROOT, copy_of_project, leave_one_figure
 from gaspart import claims
 
 pytestmark = pytest.mark.workflow
-COUNTS = "2 claims: 1 agree, 1 disagree, 0 inconclusive"
+COUNTS = ["3 claims", "tests: 1 agree, 1 disagree", "families: 1 disagree"]
 NAMED = "disagrees: virial_discs: Z of a wrong gas"
 
 
@@ -30,10 +30,11 @@ def test_snakemake_ends_with_the_verdicts(judged, monkeypatch):
     done = judged.snakemake(*run)
     assert done.returncode == 0, done.stdout
     lines = done.stdout.splitlines()
-    assert lines[lines.index(COUNTS) + 1] == NAMED
+    at = lines.index(COUNTS[0])
+    assert lines[at : at + 4] == [*COUNTS, NAMED]
 
     monkeypatch.setenv("MAKELEVEL", "1")  # make prints them itself
-    assert COUNTS not in judged.snakemake("--force", *run).stdout
+    assert COUNTS[1] not in judged.snakemake("--force", *run).stdout
 
 
 def test_make_prints_the_verdicts_with_or_without_work(judged):
@@ -44,6 +45,6 @@ def test_make_prints_the_verdicts_with_or_without_work(judged):
     (judged.path / ".venv").symlink_to(ROOT / ".venv")
     command = ["make", "--no-print-directory", "verdicts"]
     done = subprocess.run(command, cwd=judged.path, capture_output=True, text=True)
-    assert done.stdout.splitlines() == [COUNTS, NAMED], done.stderr
+    assert done.stdout.splitlines()[:4] == [*COUNTS, NAMED], done.stderr
     recipes = re.findall(r"^(all|smoke): setup\n((?:\t.*\n)+)", (ROOT / "Makefile").read_text(), re.MULTILINE)
     assert all("$(VERDICTS)" in recipe for _, recipe in recipes) and len(recipes) == 2

@@ -22,10 +22,12 @@ class Workspace:
 
     path: Path
 
-    def snakemake(self, *arguments, within=()):
-        """Run Snakemake here, by another command that isolates it; the result, whatever it exits with."""
-        # The copy's own modules are to be used, wherever the installed ones are.
-        environment = {**os.environ, "PYTHONPATH": str(self.path / "src")}
+    def snakemake(self, *arguments, within=(), source=None):
+        """Run Snakemake here, by another command that isolates it; the result, whatever it exits with.
+
+        source: the folder whose modules are used; by default this copy, wherever the installed ones are.
+        """
+        environment = {**os.environ, "PYTHONPATH": str((source or self.path) / "src")}
         return subprocess.run(
             [*within, sys.executable, "-m", "snakemake", *arguments],
             cwd=self.path,

@@ -6,13 +6,16 @@ import sys
 from functools import cache
 from pathlib import Path
 
-ROOT = Path(workflow.basedir)
+# Where the workflow is, absolute, and from the working directory: another one where it is used as a module.
+ROOT = Path(str(workflow.current_basedir.path)).resolve().parents[1]
+FOLDER = Path(os.path.relpath(ROOT))
 SCRIPTS = ROOT / "workflow/scripts"
 sys.path.insert(0, str(ROOT / "src"))
 # Snakemake writes its interpreter's path into shell commands without quotes: with a space in it, no job would start.
 if " " in sys.executable:
     sys.executable = shlex.quote(sys.executable)
 
+from gaspart.claims.captions import filled
 from gaspart.claims.table import summary
 from gaspart.experiments.config import check
 from gaspart.experiments.registry import families, titles
@@ -82,11 +85,20 @@ def animated(wildcards):
 
 def settings_of_animation(wildcards):
     block = config["animations"][wildcards.animation]
-    return {key: value for key, value in block.items() if key != "experiment"}
+    return {key: value for key, value in block.items() if key not in ("experiment", "figure")}
 
 
 def family(wildcards):
     return families()[wildcards.figure]
+
+
+def other_claims(wildcards):
+    """The claims tables of all other figures, for the figure that is made of them; none for the others."""
+    if family(wildcards) != "scatter":
+        return []
+    return expand(
+        "results/claims/{figure}.csv", figure=[name for name in FIGURES if name != wildcards.figure]
+    )
 
 
 def cores_of(wildcards):
@@ -99,7 +111,9 @@ def memory_of(wildcards):
 
 
 def caption_of(wildcards):
-    return (ROOT / f"workflow/report/{wildcards.figure}.rst").read_text(encoding="utf-8")
+    """The caption as it is known before anything is measured."""
+    text = (ROOT / f"workflow/report/{wildcards.figure}.rst").read_text(encoding="utf-8")
+    return filled(text, [], "(see the claims)")
 
 
 def flagged(path, kind):

@@ -27,12 +27,16 @@ rule draw:
 
 rule report:
     input:
-        figures=expand("results/figures/{figure}.svg", figure=FIGURES),
+        pictures=expand("results/figures/{figure}.png", figure=FIGURES),
+        vectors=expand("results/figures/{figure}.svg", figure=FIGURES),
         datasets=expand("results/measurements/{figure}.nc", figure=FIGURES),
-        captions=expand("workflow/report/{figure}.rst", figure=FIGURES),
+        captions=expand(str(FOLDER / "workflow/report/{figure}.rst"), figure=FIGURES),
         claims="results/tables/claims.csv",
         films=expand("results/animations/{animation}.mp4", animation=ANIMATIONS),
-        template="workflow/report/report.html.j2",
+        template=str(FOLDER / "workflow/report/report.html.j2"),
+        style=str(FOLDER / "workflow/report/page.css"),
+        behaviour=[str(FOLDER / "workflow/report" / name) for name in ("page.js", "explore.js")],
+        findings=str(FOLDER / "workflow/report/findings.yaml"),
     output:
         "results/report.html",
     log:
@@ -48,6 +52,24 @@ rule report:
     params:
         modules=digest(*sources("report")),
         figures=FIGURES,
+        films={name: config["animations"][name].get("figure", "") for name in ANIMATIONS},
         title=config["title"],
+        one_file=False,
     script:
         "../scripts/report.py"
+
+
+# The same page with its pictures and films in it, to be sent or kept as one file.
+use rule report as report_in_one_file with:
+    output:
+        "results/report-in-one-file.html",
+    log:
+        "results/logs/report_in_one_file.log",
+    benchmark:
+        "results/benchmarks/report_in_one_file.tsv"
+    params:
+        modules=digest(*sources("report")),
+        figures=FIGURES,
+        films={name: config["animations"][name].get("figure", "") for name in ANIMATIONS},
+        title=config["title"],
+        one_file=True,

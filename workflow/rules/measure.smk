@@ -4,6 +4,7 @@
 rule measure:
     input:
         points=lambda wildcards: [point.path for point in figure_points(wildcards)],
+        tables=other_claims,
     output:
         "results/measurements/{figure}.nc",
     log:

@@ -21,6 +21,7 @@ rule warm:
         runtime=10,
     params:
         python=lambda wildcards, threads: sys.executable,
+        script=lambda wildcards, threads: str(FOLDER / "workflow/scripts/warm.py"),
         task=lambda wildcards, threads: task_of(wildcards),
     shell:
-        "{params.python} workflow/scripts/warm.py {params.task:q} > {log} 2>&1"
+        "{params.python} {params.script:q} {params.task:q} > {log} 2>&1"

@@ -10,14 +10,16 @@ with job(snakemake):
     from gaspart.trajectory import provenance
 
     figure = snakemake.wildcards.figure
-    points = [Point.from_dict(values) for values in snakemake.params.points]
+    # The claims of other figures, or points of experiments.
+    tables = list(snakemake.input.tables)
+    points = tables or [Point.from_dict(values) for values in snakemake.params.points]
     settings = {key: value for key, value in snakemake.params.settings.items() if key != "experiments"}
     dataset = function(f"gaspart.experiments.{snakemake.params.family}.measure", figure)(points, settings)
     dataset.attrs.update(
         figure=figure,
         config=snakemake.params.title,
         settings=json.dumps(snakemake.params.settings),
-        points="\n".join(point.path for point in points),
+        points="\n".join(tables or (point.path for point in points)),
         git_revision=provenance.git_revision(),
         **provenance.versions(),
     )

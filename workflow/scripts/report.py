@@ -1,6 +1,5 @@
 """The report: figures, captions, claims, their provenance and run times."""
 
-import base64
 import csv
 import json
 import os
@@ -14,39 +13,18 @@ from _job import job
 TOOLS = ["numpy", "numba", "scipy", "xarray", "matplotlib", "snakemake"]
 
 
-def rows(path):
-    """A CSV or TSV file as a list of mappings."""
-    path = Path(path)
-    with path.open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file, delimiter="\t" if path.suffix == ".tsv" else ","))
-
-
-def html_of(rst):
-    """reStructuredText as a fragment of HTML."""
-    from docutils.core import publish_parts
-
-    settings = {"file_insertion_enabled": False, "raw_enabled": False, "math_output": "MathML"}
-    return publish_parts(rst, writer="html5", settings_overrides=settings)["body"]
-
-
 def run_times(folder):
     """Seconds of every rule: number of jobs, their sum, the longest."""
     spent = {}
     for path in sorted(Path(folder).rglob("*.tsv")):
         rule = path.relative_to(folder).parts[0].removesuffix(".tsv")
-        spent.setdefault(rule, []).extend(float(row["s"]) for row in rows(path))
+        with path.open(newline="", encoding="utf-8") as file:
+            times = [float(row["s"]) for row in csv.DictReader(file, delimiter="\t")]
+        spent.setdefault(rule, []).extend(times)
     return [
         {"rule": rule, "jobs": len(times), "total": sum(times), "longest": max(times)}
         for rule, times in spent.items()
     ]
-
-
-def number(text):
-    """A number with five significant digits; other text unchanged."""
-    try:
-        return f"{float(text):.5g}"
-    except ValueError:
-        return text
 
 
 def attributes(path):
@@ -57,49 +35,73 @@ def attributes(path):
         return {name: file.getncattr(name) for name in file.ncattrs()}
 
 
+def explanations(datasets):
+    """What a reader may vary on the page, if its figures are there. datasets: {figure: path}."""
+    import xarray as xr
+
+    from gaspart.report import explore
+
+    if not {*explore.SERIES, explore.COSTS} <= datasets.keys():
+        return None
+    loaded = {figure: xr.load_dataset(datasets[figure]) for figure in (*explore.SERIES, explore.COSTS)}
+    return {"series": explore.series(loaded), "costs": explore.costs(loaded[explore.COSTS])}
+
+
 with job(snakemake):
     import jinja2
 
     from gaspart import __version__
-    from gaspart.experiments.registry import families, titles
+    from gaspart.claims import table
     from gaspart.files import whole_file
+    from gaspart.report import page
     from gaspart.trajectory import provenance
+    from gaspart.yaml_text import read_yaml
 
-    claims = rows(snakemake.input.claims)
-    sections = {}
-    for figure, image, dataset, caption in zip(
-        snakemake.params.figures,
-        snakemake.input.figures,
-        snakemake.input.datasets,
-        snakemake.input.captions,
-        strict=True,
+    params, given = snakemake.params, snakemake.input
+    claims = [row | {"id": f"claim-{n}"} for n, row in enumerate(table.read(given.claims), 1)]
+    of_figure = {figure: [row for row in claims if row["figure"] == figure] for figure in params.figures}
+    pictures, sections = {}, []
+    for figure, picture, dataset, caption in zip(
+        params.figures, given.pictures, given.datasets, given.captions, strict=True
     ):
-        made = attributes(dataset)
-        sections.setdefault(titles()[families()[figure]], []).append(
-            {
-                "name": figure,
-                "image": base64.b64encode(Path(image).read_bytes()).decode(),
-                "caption": html_of(Path(caption).read_text(encoding="utf-8")),
-                "claims": [row for row in claims if row["figure"] == figure],
-                "settings": json.dumps(json.loads(made["settings"]), indent=1),
-                "points": made["points"].splitlines(),
-            }
+        made, rows = attributes(dataset), of_figure[figure]
+        for copy in page.copies(Path(caption), rows):
+            print(f"{figure}: a measured number in the caption, {copy}")
+        pictures[figure] = page.picture(Path(picture), params.one_file)
+        sections.append(
+            page.Section(
+                name=figure,
+                caption=page.captioned(Path(caption), rows),
+                claims=rows,
+                films=[film for film, beside in params.films.items() if beside == figure],
+                settings=json.dumps(json.loads(made["settings"]), indent=1),
+                points=made["points"].splitlines(),
+            )
         )
-    films = {
-        Path(film).stem: base64.b64encode(Path(film).read_bytes()).decode() for film in snakemake.input.films
-    }
-    verdicts = {}
-    for row in claims:
-        verdicts[row["verdict"]] = verdicts.get(row["verdict"], 0) + 1
-    template = Path(snakemake.input.template).read_text(encoding="utf-8")
-    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
-    environment.filters["number"] = number
-    text = environment.from_string(template).render(
-        title=snakemake.params.title,
-        sections=sections,
+    of_chapter = page.by_chapter(sections)
+    films = {Path(film).stem: page.address(Path(film), params.one_file) for film in given.films}
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(Path(given.template).parent),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    environment.filters["number"] = "{:.5g}".format
+    text = environment.get_template(Path(given.template).name).render(
+        title=params.title,
+        one_file=params.one_file,
+        sections=[section for own in of_chapter.values() for section in own],
+        chapters=of_chapter,
+        pictures=pictures,
         films=films,
+        opening=next(iter(films), None),
+        other_films=[film for film, beside in params.films.items() if beside not in of_figure],
         claims=claims,
-        verdicts=verdicts,
+        findings=page.findings(read_yaml(given.findings), claims),
+        headline=page.headline(claims),
+        verdicts=page.verdicts(claims),
+        explore=explanations(dict(zip(params.figures, given.datasets, strict=True))),
+        words=table.COUNTED,
+        kinds=table.PLURALS,
         times=run_times("results/benchmarks"),
         versions={"gaspart": __version__, "python": platform.python_version()}
         | {name: version(name) for name in TOOLS},

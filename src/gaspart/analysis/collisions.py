@@ -20,7 +20,7 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
 from gaspart.engines import EventDriven
 from gaspart.errors import SceneError, SimulationError
-from gaspart.files import Kind, begins_with, writing
+from gaspart.files import Kind, begins_with, descriptor_path, writing
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of, number
 from gaspart.simulation.simulation import Simulation
@@ -115,9 +115,9 @@ def _is_collision_data(path: Path) -> bool:
     if not begins_with(b"\x89HDF")(path):
         return False
     try:
-        with netCDF4.Dataset(path) as file:
+        with path.open("rb") as opened, netCDF4.Dataset(descriptor_path(opened)) as file:
             return set(_ABOUT) <= set(file.variables) and "gaspart_revision" in file.ncattrs()
-    except (OSError, RuntimeError, UnicodeEncodeError):
+    except (OSError, RuntimeError):
         return False
 
 

@@ -17,43 +17,61 @@ Scalar = Any
 class Estimate:
     """A number and its standard uncertainty, 0 where it is exact.
 
-    Sums, products and quotients propagate the uncertainties of independent numbers to first order. Raises
-    ValueError for a negative uncertainty.
+    freedom: degrees of freedom of the uncertainty, if it comes from the scatter of a few samples (their
+    number less one); infinite if it is known otherwise. A deviation is then distributed as Student's t. Sums,
+    products and quotients propagate the uncertainties of independent numbers to first order, and the degrees
+    of freedom by the formula of Welch and Satterthwaite (Biometrics Bulletin 2, 110 (1946)). Raises
+    ValueError for a negative uncertainty, and for degrees of freedom that are not positive.
     """
 
     value: Scalar
     error: Scalar = 0.0
+    freedom: Scalar = math.inf
 
     def __post_init__(self) -> None:
-        for name in ("value", "error"):
+        for name in ("value", "error", "freedom"):
             object.__setattr__(self, name, float(getattr(self, name)))
         if self.error < 0.0:
             raise ValueError(f"error: {self.error} (must not be negative)")
+        if self.freedom <= 0.0:
+            raise ValueError(f"freedom: {self.freedom} (must be positive)")
 
     @classmethod
     def of(cls, dataset: xarray.Dataset, name: str) -> Estimate:
-        """The scalar variable `name` of a dataset, with the variable `name`_error as its uncertainty."""
-        return cls(dataset[name], dataset[f"{name}_error"])
+        """The scalar variable `name` of a dataset, with the variable `name`_error as its uncertainty, and
+        `name`_freedom, if there is one and it is finite, as the degrees of freedom of the uncertainty."""
+        freedom = float(dataset.get(f"{name}_freedom", math.inf))
+        return cls(dataset[name], dataset[f"{name}_error"], freedom if freedom > 0.0 else math.inf)
 
     def __neg__(self) -> Estimate:
-        return Estimate(-self.value, self.error)
+        return Estimate(-self.value, self.error, self.freedom)
 
     def __add__(self, other: Estimate | Scalar) -> Estimate:
         other = as_estimate(other)
-        return Estimate(self.value + other.value, math.hypot(self.error, other.error))
+        return _sum(self.value + other.value, (self.error, self.freedom), (other.error, other.freedom))
 
     def __sub__(self, other: Estimate | Scalar) -> Estimate:
         return self + -as_estimate(other)
 
     def __mul__(self, other: Estimate | Scalar) -> Estimate:
         other = as_estimate(other)
-        error = math.hypot(self.error * other.value, self.value * other.error)
-        return Estimate(self.value * other.value, error)
+        mine, its = self.error * abs(other.value), abs(self.value) * other.error
+        return _sum(self.value * other.value, (mine, self.freedom), (its, other.freedom))
 
     def __truediv__(self, other: Estimate | Scalar) -> Estimate:
         other = as_estimate(other)
         value = self.value / other.value
-        return Estimate(value, math.hypot(self.error, value * other.error) / abs(other.value))
+        mine, its = self.error / abs(other.value), abs(value) * other.error / abs(other.value)
+        return _sum(value, (mine, self.freedom), (its, other.freedom))
+
+
+def _sum(value: float, *parts: tuple[float, float]) -> Estimate:
+    """The value with the uncertainty of all parts, each (error, degrees of freedom)."""
+    error = math.hypot(*(error for error, _ in parts))
+    if error == 0.0 or not math.isfinite(error):
+        return Estimate(value, error)
+    inverse = sum((part / error) ** 4 / freedom for part, freedom in parts)
+    return Estimate(value, error, 1.0 / inverse if inverse > 0.0 else math.inf)
 
 
 def as_estimate(number: Estimate | Scalar) -> Estimate:

@@ -11,21 +11,33 @@ from gaspart.analysis.estimate import Estimate, Scalar, as_estimate
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-KINDS = ("test", "identity", "reproduction")
-"""test: could be false; identity: true by construction, checks the code; reproduction: a source's report."""
+KINDS = ("test", "identity", "reproduction", "family")
+"""test: could be false; identity: true by construction, checks the code; reproduction: a source's report;
+family: whether the deviations of a figure's value claims scatter as their uncertainties state."""
+POWER = 2.0
+"""Standard deviations between the expected value and the alternative that a conclusive claim must resolve."""
+NEGLIGIBLE = 0.1
+"""Part of the measurement's uncertainty below which an allowance does not change a deviation (0.5 %)."""
+UNVERIFIED = "the reference is quoted from memory and has not been verified"
+"""Why a claim has no verdict: see `Claim.no_verdict`."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Claim:
     """One measured number and what it should be, in the unit that the claim's text gives.
 
-    claim: the statement in words; expected: with the uncertainty of the theory or the literature (a plain
-    number is exact), and its source; required: the largest uncertainty of the measurement at which the claim
-    means anything; fails_if: what would make it fail; kind: one of KINDS. bounds: the lowest and the highest
-    allowed number, for a statement of bounds instead of a value (see `at_least`, `at_most`, `within`).
-    exact_deviation: for numbers that are not Gaussian, their deviation as a Gaussian one (see `chi_square`).
+    claim: the statement in words; expected: a plain number is exact, the uncertainty of an Estimate is the
+    allowance for that of the theory or the literature, whose origin is `allowance_source`, and which must
+    not be derived from the data; source: of the expected value; required: the largest uncertainty of the
+    measurement at which the claim means anything; fails_if: what would make it fail; kind: one of KINDS.
+    bounds: the lowest and the highest allowed number, for a statement of bounds instead of a value (see
+    `at_least`, `at_most`, `within`). exact_deviation: for numbers that are not Gaussian, their deviation as a
+    Gaussian one (see `chi_square`). alternative: the value of a competing theory, which a claim that agrees
+    must exclude. no_verdict: why the number is reported only, such as UNVERIFIED. why: of a reproduction,
+    why the source errs if it is not reproduced.
 
-    Raises ValueError for an unknown kind, an empty text, source or fails_if, a negative required uncertainty.
+    Raises ValueError for an unknown kind, an empty text, source or fails_if, a negative required uncertainty,
+    and an allowance without a source.
     """
 
     claim: str
@@ -37,6 +49,10 @@ class Claim:
     kind: str = "test"
     bounds: tuple[float, float] | None = None
     exact_deviation: float | None = None
+    allowance_source: str = ""
+    alternative: Scalar | None = None
+    no_verdict: str = ""
+    why: str = ""
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -50,6 +66,10 @@ class Claim:
         object.__setattr__(self, "required", float(self.required))
         if self.required < 0.0:
             raise ValueError(f"required: {self.required} (must not be negative)")
+        if self.expected.error > 0.0 and not self.allowance_source.strip():
+            raise ValueError(
+                f"allowance_source: empty (the allowance {self.expected.error:g} needs a source)"
+            )
 
     @classmethod
     def at_least(cls, *, claim: str, bound: Scalar, **others: Any) -> Claim:
@@ -106,27 +126,29 @@ class Claim:
         return cls.chi_square(claim=text, chi_square=total, degrees_of_freedom=freedom, **others)
 
     @property
-    def is_bound(self) -> bool:
-        """Whether the claim states bounds rather than a value."""
-        return self.bounds is not None
+    def form(self) -> str:
+        """What is stated: "value", "bound" (or two), or "distribution", of many numbers at once."""
+        if self.exact_deviation is not None:
+            return "distribution"
+        return "value" if self.bounds is None else "bound"
 
     @property
     def deviation_sigma(self) -> float:
         """Signed distance from what was stated, in standard deviations; 0 inside stated bounds.
 
         (measured - expected) / sqrt(sum of the squares of both uncertainties); for bounds, expected is the
-        nearer bound.
+        nearer bound. Where the uncertainty comes from a few samples, the Gaussian deviation of the same
+        probability as that of Student's t.
         """
         if self.exact_deviation is not None:
             return self.exact_deviation
         stated = self.expected.value
         if self.bounds is not None:
             stated = min(max(self.measured.value, self.bounds[0]), self.bounds[1])
-        difference = self.measured.value - stated
-        spread = math.hypot(self.measured.error, self.expected.error)
-        if spread == 0.0:
-            return 0.0 if difference == 0.0 else math.copysign(math.inf, difference)
-        return difference / spread
+        difference = self.measured - Estimate(stated, self.expected.error)
+        if difference.error == 0.0:
+            return 0.0 if difference.value == 0.0 else math.copysign(math.inf, difference.value)
+        return gaussian_deviation(difference.value / difference.error, difference.freedom)
 
     @property
     def p_value(self) -> float:
@@ -134,14 +156,44 @@ class Claim:
         return math.erfc(abs(self.deviation_sigma) / math.sqrt(2.0))
 
     @property
-    def is_conclusive(self) -> bool:
-        """Whether all numbers are finite and the uncertainty is not above the required one."""
+    def is_finite(self) -> bool:
+        """Whether the measured and the expected number and their uncertainties are finite."""
         numbers = (self.measured.value, self.measured.error, self.expected.value, self.expected.error)
-        return all(map(math.isfinite, numbers)) and self.measured.error <= self.required
+        return all(map(math.isfinite, numbers))
 
     @property
-    def stated_source(self) -> str:
-        """The source, with the expected value's own uncertainty where it has one."""
-        if self.expected.error == 0.0:
-            return self.source
-        return f"{self.source} (± {self.expected.error:.2g})"
+    def has_power(self) -> bool:
+        """Whether the combined uncertainty would distinguish the alternative, if there is one."""
+        if self.alternative is None:
+            return True
+        spread = math.hypot(self.measured.error, self.expected.error)
+        return abs(float(self.alternative) - self.expected.value) >= POWER * spread
+
+    @property
+    def is_conclusive(self) -> bool:
+        """Whether agreement would mean something: the uncertainty is not above the required one, and the
+        alternative would be noticed."""
+        return self.is_finite and self.measured.error <= self.required and self.has_power
+
+    @property
+    def is_scattered(self) -> bool:
+        """Whether the deviation is a standard Gaussian one if the claim is true: a test of a value, with a
+        verdict, whose allowance is negligible beside the measurement's uncertainty."""
+        return (
+            self.form == "value"
+            and self.kind == "test"
+            and not self.no_verdict
+            and self.is_finite
+            and self.measured.error > 0.0
+            and self.expected.error <= NEGLIGIBLE * self.measured.error
+        )
+
+
+def gaussian_deviation(t: float, freedom: float) -> float:
+    """The Gaussian deviation that is as probable as the deviation t of Student's distribution."""
+    if math.isinf(freedom) or t == 0.0 or not math.isfinite(t):
+        return t
+    from scipy import stats
+
+    beyond = max(float(stats.t.sf(abs(t), freedom)), 1e-300)
+    return math.copysign(float(stats.norm.isf(beyond)), t)

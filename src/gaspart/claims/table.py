@@ -8,8 +8,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gaspart.claims.claim import Claim
-from gaspart.claims.judging import VERDICTS, judge
+from gaspart.claims.claim import KINDS, Claim
+from gaspart.claims.judging import VERDICTS, family_test, judge, reason
 from gaspart.files import whole_file
 
 if TYPE_CHECKING:
@@ -19,48 +19,83 @@ COLUMNS = (
     "figure",
     "claim",
     "kind",
+    "form",
     "measured",
     "uncertainty",
+    "degrees_of_freedom",
     "required_uncertainty",
     "expected",
+    "allowance",
+    "lowest",
+    "highest",
     "source",
+    "allowance_source",
     "deviation_sigma",
+    "scattered",
     "verdict",
+    "why",
     "fails_if",
 )
-"""Columns of a claims table, in this order. `source` states the expected value's uncertainty, if any."""
-_NUMBERS = ("measured", "uncertainty", "required_uncertainty", "expected", "deviation_sigma")
+"""Columns of a claims table, in this order. allowance: the uncertainty of the expected value; lowest,
+highest: the stated bounds, NaN for a value; scattered: 1 where `deviation_sigma` is a standard Gaussian
+number if the claim is true (`Claim.is_scattered`), else 0."""
+_NUMBERS = (
+    "measured",
+    "uncertainty",
+    "degrees_of_freedom",
+    "required_uncertainty",
+    "expected",
+    "allowance",
+    "lowest",
+    "highest",
+    "deviation_sigma",
+    "scattered",
+)
+PLURALS = {"test": "tests", "identity": "identities", "reproduction": "reproductions", "family": "families"}
+COUNTED = {"agrees": "agree", "disagrees": "disagree"}
 
 
 def write(path: str | Path, figure: str, claims: Sequence[Claim]) -> None:
-    """Judge the claims of `figure` and write them as CSV with COLUMNS, atomically.
+    """Judge the claims of `figure` and write them, with their joint test, as CSV with COLUMNS, atomically.
 
     Raises ValueError if two claims have the same text: their rows could not be distinguished.
     """
+    claims = [*claims, *family_test(claims)]
     texts = [claim.claim for claim in claims]
     for text in texts:
         if texts.count(text) > 1:
             raise ValueError(f"{figure}: the claim {text!r} occurs twice")
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     with whole_file(path) as partial, partial.open("w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow(COLUMNS)
+        table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        table.writeheader()
         for claim, verdict in zip(claims, judge(claims), strict=True):
-            table.writerow(
-                [
-                    figure,
-                    claim.claim,
-                    claim.kind,
-                    f"{claim.measured.value:.10g}",
-                    f"{claim.measured.error:.4g}",
-                    f"{claim.required:.4g}",
-                    f"{claim.expected.value:.10g}",
-                    claim.stated_source,
-                    f"{claim.deviation_sigma:.3f}",
-                    verdict,
-                    claim.fails_if,
-                ]
-            )
+            table.writerow({"figure": figure, **_row(claim, verdict)})
+
+
+def _row(claim: Claim, verdict: str) -> dict[str, str]:
+    """A judged claim by column."""
+    lowest, highest = claim.bounds or (math.nan, math.nan)
+    return {
+        "claim": claim.claim,
+        "kind": claim.kind,
+        "form": claim.form,
+        "measured": f"{claim.measured.value:.10g}",
+        "uncertainty": f"{claim.measured.error:.4g}",
+        "degrees_of_freedom": f"{claim.measured.freedom:.4g}",
+        "required_uncertainty": f"{claim.required:.4g}",
+        "expected": f"{claim.expected.value:.10g}",
+        "allowance": f"{claim.expected.error:.4g}",
+        "lowest": f"{lowest:.10g}",
+        "highest": f"{highest:.10g}",
+        "source": claim.source,
+        "allowance_source": claim.allowance_source,
+        "deviation_sigma": f"{claim.deviation_sigma:.3f}",
+        "scattered": f"{claim.is_scattered:d}",
+        "verdict": verdict,
+        "why": reason(claim, verdict),
+        "fails_if": claim.fails_if,
+    }
 
 
 def read(path: str | Path) -> list[dict[str, Any]]:
@@ -90,14 +125,24 @@ def collect(paths: Iterable[str | Path]) -> pandas.DataFrame:
     return pandas.DataFrame([row for path in paths for row in read(path)], columns=list(COLUMNS))
 
 
+def counts(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, int]]:
+    """How many claims of each kind have each verdict: {kind: {verdict: number}}, in the order of KINDS and
+    VERDICTS, without those that do not occur."""
+    pairs = [(row["kind"], row["verdict"]) for row in rows]
+    return {
+        kind: {verdict: pairs.count((kind, verdict)) for verdict in VERDICTS if (kind, verdict) in pairs}
+        for kind in KINDS
+        if any(kind == one for one, _ in pairs)
+    }
+
+
 def summary(path: str | Path) -> str:
-    """What a claims table says, in one line, "212 claims: 205 agree, 3 disagree, ...", and a line for each
-    claim that disagrees. Raises ValueError as `read` does."""
+    """What a claims table states: the number of claims, a line for each kind, "tests: 205 agree, 3 disagree",
+    and a line for each claim that disagrees. Raises ValueError as `read` does."""
     rows = read(path)
-    counts = {verdict: sum(row["verdict"] == verdict for row in rows) for verdict in VERDICTS}
-    lines = [
-        f"{len(rows)} claims: {counts['agrees']} agree, {counts['disagrees']} disagree, "
-        f"{counts['inconclusive']} inconclusive"
-    ]
+    lines = [f"{len(rows)} claims"]
+    for kind, found in counts(rows).items():
+        parts = (f"{number} {COUNTED.get(verdict, verdict)}" for verdict, number in found.items())
+        lines.append(f"{PLURALS[kind]}: {', '.join(parts)}")
     lines += [f"disagrees: {row['figure']}: {row['claim']}" for row in rows if row["verdict"] == "disagrees"]
     return "\n".join(lines)

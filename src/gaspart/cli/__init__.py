@@ -16,25 +16,33 @@ from gaspart.cli.advise import add_advise
 from gaspart.cli.arguments import Parser, UsageError
 from gaspart.cli.check import CheckFailed, add_check
 from gaspart.cli.collisions import add_collisions
+from gaspart.cli.completion import add_completion
 from gaspart.cli.export import add_export
 from gaspart.cli.info import add_info
+from gaspart.cli.measure import add_measure
+from gaspart.cli.new import add_new
 from gaspart.cli.progress import clear_line
 from gaspart.cli.render import add_render
 from gaspart.cli.run import add_resume, add_run
 from gaspart.cli.theory import add_theory
-from gaspart.errors import SceneError, SimulationError
+from gaspart.cli.view import add_view
+from gaspart.errors import SceneError, SimulationError, unknown_word
 from gaspart.interruption import interrupted, set_note
 
 _COMMANDS = {
+    "new": add_new,
     "run": add_run,
     "resume": add_resume,
     "info": add_info,
+    "measure": add_measure,
     "render": add_render,
+    "view": add_view,
     "collisions": add_collisions,
     "export": add_export,
     "theory": add_theory,
     "advise": add_advise,
     "check": add_check,
+    "completion": add_completion,
 }
 
 
@@ -43,7 +51,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         set_note("")
         try:
-            given = _parser().parse_args(arguments)
+            given, left = _parser().parse_known_args(arguments)
+            if left:
+                raise UsageError(_unrecognised(left, given.parser))
             given.command(given)
         finally:
             sys.stdout.flush()  # here, where a full disk can still be reported
@@ -86,10 +96,29 @@ def _discard(stream: TextIO) -> None:
     os.close(null)
 
 
+def _unrecognised(words: list[str], parser: Parser) -> str:
+    """The message for words of a command line that its command does not take."""
+    options = [word.partition("=")[0] for word in words if word.startswith("-")]
+    if options:
+        return f"{options[0]}: {unknown_word(options[0], parser.options(), 'option')}"
+    return f"{' '.join(words)}: too many arguments; see `{parser.prog} --help`"
+
+
 def _parser() -> Parser:
     parser = Parser(prog="gaspart", description="Hard-sphere and hard-disc gases.")
     parser.add_argument("--version", action="version", version=f"gaspart {__version__}")
-    commands = parser.add_subparsers(required=True, metavar=" | ".join(_COMMANDS))
-    for add in _COMMANDS.values():
-        add(commands)
+    _add_commands(parser)
+    parser.set_defaults(program=parser)
     return parser
+
+
+def _add_commands(parser: Parser) -> dict[str, Parser]:
+    added = parser.add_subparsers(required=True, metavar=" | ".join(_COMMANDS))
+    for add in _COMMANDS.values():
+        add(added)
+    return dict(added.choices)
+
+
+def commands() -> dict[str, Parser]:
+    """The parser of each command, by name."""
+    return _add_commands(Parser(prog="gaspart", description=""))

@@ -6,7 +6,8 @@ import argparse
 import math
 from typing import TYPE_CHECKING
 
-from gaspart.cli.arguments import Commands, UsageError, add_command, real
+from gaspart.cli.arguments import Commands, UsageError, add_command, print_line, real
+from gaspart.cli.progress import waiting
 from gaspart.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -43,12 +44,16 @@ def _advise(given: argparse.Namespace) -> None:
     if given.config:
         from gaspart.experiments.cost import predict
 
-        print("\n".join(predict(given.config)))
+        with waiting("predicting the cost of every point"):
+            lines = predict(given.config)
+        print_line("\n".join(lines))
         return
     from gaspart.tradeoff.advice import advise
 
-    found = advise(Scene.from_file(given.scene), given.observable, given.accuracy, given.budget)
-    print("\n".join(_lines(found)))
+    scene = Scene.from_file(given.scene)
+    with waiting("measuring the speed of this machine; the first time, compiling kernels"):
+        found = advise(scene, given.observable, given.accuracy, given.budget)
+    print_line("\n".join(_lines(found)))
 
 
 def _lines(advice: Advice) -> list[str]:

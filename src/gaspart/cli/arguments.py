@@ -8,6 +8,7 @@ from collections.abc import Callable
 from textwrap import fill
 from typing import Any, NoReturn, TypeAlias, TypeVar
 
+from gaspart.errors import unknown_word
 from gaspart.scene.validation import number
 
 T = TypeVar("T")
@@ -29,6 +30,17 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Raise UsageError with a message of argparse."""
         raise UsageError(message)
+
+    def options(self) -> list[str]:
+        """All options, such as --seed."""
+        return [option for action in self._actions for option in action.option_strings]
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Refuse a word that is no choice, with the most similar one."""
+        if action.choices is not None and value not in action.choices:
+            what = "command" if action.nargs == argparse.PARSER else "name"
+            option = f"{action.option_strings[0]}: " if action.option_strings else ""
+            raise UsageError(f"{option}{value!r}: {unknown_word(value, map(str, action.choices), what)}")
 
 
 def real(**limits: float) -> Callable[[str], float]:
@@ -67,7 +79,7 @@ def add_command(
 ) -> Parser:
     """Add a command that `run` carries out. brief: its line in the list of commands; returns its parser."""
     parser = commands.add_parser(name, help=brief, description=description, epilog=examples)
-    parser.set_defaults(command=run)
+    parser.set_defaults(command=run, parser=parser)
     return parser
 
 
@@ -78,9 +90,12 @@ def add_output(parser: argparse.ArgumentParser, what: str, overwrite: str) -> No
 
 
 def print_line(text: object) -> None:
-    """Print a line; characters that the standard output cannot encode, as in file names, are escaped."""
-    encoding = sys.stdout.encoding or "utf-8"
-    print(str(text).encode(encoding, "backslashreplace").decode(encoding))
+    """Print a line. If the standard output cannot encode it, as some file names, characters are escaped."""
+    try:
+        print(text)
+    except UnicodeEncodeError:
+        encoding = sys.stdout.encoding
+        print(str(text).encode(encoding, "backslashreplace").decode(encoding))
 
 
 def several(kind: Callable[[str], T]) -> Callable[[str], tuple[T, ...]]:

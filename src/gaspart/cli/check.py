@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from gaspart.cli.arguments import Commands, add_command, real, several
+from gaspart.cli.arguments import Commands, add_command, print_line, real, several
 from gaspart.errors import SceneError
 from gaspart.yaml_text import read_yaml
 
@@ -53,10 +53,10 @@ def _check(given: argparse.Namespace) -> None:
 
         frames = read_frames(given.file, given.radius, given.lengths, given.boundary, given.time_step)
         kind = "discs" if frames.dimension == 2 else "spheres"
-        print(f"{given.file}: {frames.count} {kind} in {len(frames.positions)} frames")
+        print_line(f"{given.file}: {frames.count} {kind} in {len(frames.positions)} frames")
         found = judge(frames, given.tolerance)
     for check in found:
-        print(check)
+        print_line(check)
     if any(check.passed is False for check in found):
         raise CheckFailed
 

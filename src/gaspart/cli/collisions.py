@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from gaspart.cli.arguments import Commands, add_command, add_output, integer, print_line, real
+from gaspart.cli.progress import waiting
 from gaspart.scene.scene import Scene
 
 _EXAMPLE = """
@@ -34,8 +35,9 @@ def _collisions(given: argparse.Namespace) -> None:
     from gaspart.analysis.collisions import record_collisions
 
     scene = Scene.from_file(given.scene)
-    data = record_collisions(
-        scene, given.output, given.count, given.seed, given.equilibration, overwrite=given.force
-    )
+    with waiting("recording collisions; the first time, compiling kernels"):
+        data = record_collisions(
+            scene, given.output, given.count, given.seed, given.equilibration, overwrite=given.force
+        )
     paths = data["free_path"].mean().item()
     print_line(f"{given.output}: {data.sizes['collision']} collisions, mean free path {paths:.6g}")

@@ -7,7 +7,7 @@ import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaspart.cli.arguments import Commands, add_command
+from gaspart.cli.arguments import Commands, add_command, print_line
 
 if TYPE_CHECKING:
     from gaspart.trajectory.recipe import Recipe
@@ -36,7 +36,7 @@ def _info(given: argparse.Namespace) -> None:
     with opened(found) as file:
         stored, frames = file.__dict__, len(file.dimensions["frame"])
     if given.scene:
-        print(stored["scene"], end="")
+        print_line(stored["scene"].rstrip("\n"))
         return
     check_frames(found)
     scene = recipe.scene
@@ -46,15 +46,15 @@ def _info(given: argparse.Namespace) -> None:
         f"gaspart info --scene {shlex.quote(str(found))} > scene.yaml",
         "gaspart run scene.yaml " + shlex.join(_run_options(path, recipe, stored)),
     ]
-    print(f"{found}: {stored['title']}, {frames} of {recipe.frames} frames, {state}")
-    print(f"packing fraction {scene.packing_fraction:.6g}, number density {scene.number_density:.6g}")
-    print("\n".join(certificate(found)))
-    print(f"checksums: the header and {'all frames' if frames else 'no frames yet'} are undamaged")
-    print(f"written by {', '.join(versions)}; revision {stored.get('git_revision', 'none')}")
-    print("reproduced, to the same bits, by")
-    print("\n".join(f"    {line}" for line in remake))
-    print("scene:")
-    print("".join(f"    {line}\n" for line in stored["scene"].splitlines()), end="")
+    print_line(f"{found}: {stored['title']}, {frames} of {recipe.frames} frames, {state}")
+    print_line(f"packing fraction {scene.packing_fraction:.6g}, number density {scene.number_density:.6g}")
+    print_line("\n".join(certificate(found)))
+    print_line(f"checksums: the header and {'all frames' if frames else 'no frames yet'} are undamaged")
+    print_line(f"written by {', '.join(versions)}; revision {stored.get('git_revision', 'none')}")
+    print_line("reproduced, to the same bits, by")
+    print_line("\n".join(f"    {line}" for line in remake))
+    print_line("scene:")
+    print_line("\n".join(f"    {line}" for line in stored["scene"].splitlines()))
 
 
 def _run_options(path: Path, recipe: Recipe, stored: dict) -> list[str]:

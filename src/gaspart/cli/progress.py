@@ -1,23 +1,78 @@
-"""Progress of a run on one line of a terminal."""
+"""Progress on one line of a terminal."""
 
 from __future__ import annotations
 
 import sys
+import threading
 import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from gaspart.trajectory.recording import Progress
 
 
-def progress(quiet: bool) -> Progress | None:
-    """A function that prints the progress of a run on one line; None if quiet or without a terminal."""
+_PATIENCE = 2.0
+"""Seconds without a word before `waiting` shows what the program does."""
+
+
+@contextmanager
+def waiting(text: str, quiet: bool = False) -> Iterator[Callable[[], None]]:
+    """Within the `with` block, show `text` and the time that has passed, if it takes longer than 2 s.
+
+    Gives a function that ends the display, for a block that then reports its progress itself.
+    """
+    ended = threading.Event()
+    if quiet or not sys.stderr.isatty():
+        yield ended.set
+        return
+    begun, ticker = time.monotonic(), threading.Thread(target=lambda: tick(), daemon=True)
+
+    def tick() -> None:
+        pause = _PATIENCE
+        while not ended.wait(pause):
+            show_line(f"{text} {clock(time.monotonic() - begun)}")
+            pause = 1.0
+
+    def end() -> None:
+        if not ended.is_set():
+            ended.set()
+            ticker.join()
+            show_line("")
+
+    ticker.start()
+    try:
+        yield end
+    finally:
+        end()
+
+
+def counted(what: str) -> Callable[[int, int], None] | None:
+    """A function that shows how many of all are done and the time left; None without a terminal."""
+    if not sys.stderr.isatty():
+        return None
+    begun = time.monotonic()
+
+    def show(done: int, total: int) -> None:
+        took = time.monotonic() - begun
+        if took > _PATIENCE:
+            show_line(f"{what} {done} of {total}  {clock(took / done * (total - done))} left")
+
+    return show
+
+
+def progress(quiet: bool, started: Callable[[], None] | None = None) -> Progress | None:
+    """A function that shows the progress of a run; None if quiet or without a terminal. started: is called
+    first."""
     if quiet or not sys.stderr.isatty():
         return None
     begun: tuple[float, float, int] | None = None
 
     def show(reached: float, duration: float, collisions: int) -> None:
         nonlocal begun
+        if started is not None:
+            started()
         now = time.monotonic()
         if begun is None:  # a resumed run begins in the middle
             begun = now, reached, collisions
@@ -26,11 +81,14 @@ def progress(quiet: bool) -> Progress | None:
         rate = (reached - begun[1]) / took
         left = f"{clock((duration - reached) / rate)} left" if rate > 0.0 else ""
         speed = f"{(collisions - begun[2]) / took:.3g} collisions/s"
-        print(
-            f"{clear_line()}{reached / duration:6.1%}  {speed}  {left}", end="", file=sys.stderr, flush=True
-        )
+        show_line(f"{reached / duration:6.1%}  {speed}  {left}")
 
     return show
+
+
+def show_line(text: str) -> None:
+    """Replace the line of progress."""
+    print(f"{clear_line()}{text}", end="", file=sys.stderr, flush=True)
 
 
 def clear_line() -> str:

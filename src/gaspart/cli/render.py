@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from gaspart.cli.arguments import Commands, add_command, add_output, integer, print_line, real
+from gaspart.cli.progress import clear_line, counted
 from gaspart.errors import SceneError
 from gaspart.files import output_path, writing
 
@@ -42,6 +44,7 @@ def add_render(commands: Commands) -> None:
         metavar="N",
         help="film of discs: draw the path of particle N, counted from 0",
     )
+    add("--clock", action="store_true", default=None, help="film: write the time and the scale into it")
 
 
 def _size(text: str) -> tuple[int, int]:
@@ -54,10 +57,10 @@ def _size(text: str) -> tuple[int, int]:
 
 def _render(given: argparse.Namespace) -> None:
     output = output_path(given.output)
-    named = ("size", "colour", "frame", "frames_per_second", "trail")
+    named = ("size", "colour", "frame", "frames_per_second", "trail", "clock")
     options = {key: getattr(given, key) for key in named if getattr(given, key) is not None}
     if output.suffix in PICTURES:
-        for key in ("frames_per_second", "trail"):
+        for key in ("frames_per_second", "trail", "clock"):
             if key in options:
                 raise SceneError(key, options[key], "has no meaning for a picture")
         _picture(given.trajectory, output, options, given.force)
@@ -68,15 +71,16 @@ def _render(given: argparse.Namespace) -> None:
             raise SceneError("output", given.output, f"must end in {', '.join((*PICTURES, *KINDS))}")
         if "frame" in options:
             raise SceneError("frame", given.frame, "has no meaning for a film, which shows all frames")
-        film(given.trajectory, output, **options, overwrite=given.force)
+        film(given.trajectory, output, **options, overwrite=given.force, progress=counted("picture"))
+        print(clear_line(), end="", file=sys.stderr)
     print_line(output)
 
 
 def _picture(trajectory: str, output: Path, options: dict, overwrite: bool) -> None:
-    from gaspart.rendering.pictures import PICTURE, render
-    from gaspart.trajectory.run import open_trajectory
+    from gaspart.rendering.frames import render
+    from gaspart.rendering.pictures import PICTURE
 
-    with open_trajectory(trajectory) as opened, writing(output, PICTURE, overwrite) as scratch:
+    with writing(output, PICTURE, overwrite) as scratch:
         import imageio.v3 as imageio
 
-        scratch.write_bytes(imageio.imwrite("<bytes>", render(opened, **options), extension=".png"))
+        scratch.write_bytes(imageio.imwrite("<bytes>", render(trajectory, **options), extension=".png"))

@@ -7,13 +7,15 @@ import shlex
 import sys
 from pathlib import Path
 
-from gaspart.cli.arguments import Commands, add_command, several
-from gaspart.cli.progress import clear_line, progress
+from gaspart.cli.arguments import Commands, UsageError, add_command, print_line, several
+from gaspart.cli.progress import clear_line, progress, waiting
+from gaspart.errors import SceneError, shown
 from gaspart.interruption import set_note
 from gaspart.kernels.numba_loading import load_numba
 from gaspart.scene.scene import Scene
 
 _ENGINE_SETTINGS: tuple[str, ...] = ("time_step", "boxes_per_side", "precision", "rewind", "search")
+_PREPARING = "placing particles, compiling kernels (once for each kind of scene)"
 _ENGINE_SETTINGS += ("passes", "skin", "near_boxes", "threads")
 
 
@@ -63,7 +65,7 @@ def add_run(commands: Commands) -> None:
     text = "step engine: search only boxes within reach of a contact"
     add("--near-boxes", action="store_true", default=None, help=text)
     add("--threads", type=int, metavar="N", help="step engine: number of threads (1)")
-    add("--search", metavar="NAME", help="event engine: boxes (default), direct or pairs")
+    add("--search", metavar="NAME", help="event engine: automatic (default), boxes, lists, direct or pairs")
     add("--force", action="store_true", help="replace a trajectory of another run")
     _add_progress(run)
 
@@ -71,7 +73,8 @@ def add_run(commands: Commands) -> None:
 def add_resume(commands: Commands) -> None:
     """Add `resume` to the other commands."""
     text = "Finish a run that was cut short, from FILE.partial and FILE.checkpoint.npz."
-    resume = add_command(commands, "resume", _resume, "finish a run that was cut short", text)
+    examples = "example:\n  gaspart resume run.nc"
+    resume = add_command(commands, "resume", _resume, "finish a run that was cut short", text, examples)
     resume.add_argument("trajectory", metavar="FILE", help="the trajectory of the run")
     _add_progress(resume)
 
@@ -91,22 +94,34 @@ def _run(given: argparse.Namespace) -> None:
     if "boxes_per_side" in settings:
         settings["boxes_per_side"] = _alone(settings["boxes_per_side"])
     scene = Scene.from_file(given.scene)
-    engine = engine_from_dict({"name": given.engine, **settings})
-    load_numba(ours=True)
-    path = run(
-        scene,
-        engine,
-        seed=_alone(given.seed),
-        duration=given.duration,
-        sample_interval=given.sample_interval,
-        path=given.output,
-        displacements=given.displacements,
-        follow=given.follow,
-        checkpoint_seconds=given.checkpoint_seconds,
-        progress=progress(given.quiet),
-        overwrite=given.force,
-    )
+    try:
+        engine = engine_from_dict({"name": given.engine, **settings})
+    except SceneError as error:
+        raise UsageError(_as_option(error, given.engine)) from None
+    with waiting(_PREPARING, given.quiet) as started:
+        load_numba(ours=True)
+        path = run(
+            scene,
+            engine,
+            seed=_alone(given.seed),
+            duration=given.duration,
+            sample_interval=given.sample_interval,
+            path=given.output,
+            displacements=given.displacements,
+            follow=given.follow,
+            checkpoint_seconds=given.checkpoint_seconds,
+            progress=progress(given.quiet, started),
+            overwrite=given.force,
+        )
     _report(path)
+
+
+def _as_option(error: SceneError, engine: str) -> str:
+    """An error of the engine's settings in terms of the options that state them."""
+    name = error.key.removeprefix("engine.")
+    option = {"name": "--engine", "rewind": "--no-rewind"}.get(name, f"--{name.replace('_', '-')}")
+    rule = f"has no meaning with --engine {engine}" if "unknown key" in error.rule else error.rule
+    return f"{option}: {'is required' if error.value is None else f'{shown(error.value)}: {rule}'}"
 
 
 def _alone(numbers: tuple[int, ...]) -> int | tuple[int, ...]:
@@ -117,11 +132,13 @@ def _resume(given: argparse.Namespace) -> None:
     set_note("nothing was changed; the same command starts it again")
     from gaspart.trajectory.run import resume
 
-    load_numba(ours=True)
-    _report(resume(given.trajectory, given.checkpoint_seconds, progress(given.quiet)))
+    with waiting(_PREPARING, given.quiet) as started:
+        load_numba(ours=True)
+        path = resume(given.trajectory, given.checkpoint_seconds, progress(given.quiet, started))
+    _report(path)
 
 
 def _report(path: Path) -> None:
     if wiped := clear_line():  # even an empty line fails where stderr is full
         print(wiped, end="", file=sys.stderr)
-    print(f"{path} is complete; `gaspart info {shlex.quote(str(path))}` lists its contents")
+    print_line(f"{path} is complete; `gaspart info {shlex.quote(str(path))}` lists its contents")

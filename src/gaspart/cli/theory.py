@@ -49,7 +49,7 @@ def add_theory(commands: Commands) -> None:
     names = "; ".join(f"{name}: {quantity.meaning}" for name, quantity in _QUANTITIES.items())
     text = f"{names}. Units: k_B = 1."
     add = add_command(commands, "theory", _theory, "values of theory", text, _EXAMPLES).add_argument
-    add("quantity", choices=_QUANTITIES, metavar="QUANTITY", help=", ".join(_QUANTITIES))
+    add("quantity", choices=tuple(_QUANTITIES), metavar="QUANTITY", help=", ".join(_QUANTITIES))
     add("--eta", type=several(real(least=0.0)), required=True, metavar="X[,X...]", help="packing fraction")
     add("--dimension", type=int, choices=(2, 3), default=3, help="default: 3")
     for name in _PARTICLE:

@@ -6,7 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.kernels.model import HARD, STICKY, THERMAL, THERMAL_NORMAL, ContactLaw, Faces, InteriorWalls
+from gaspart.kernels.model import (
+    HARD,
+    STICKY,
+    THERMAL,
+    THERMAL_NORMAL,
+    ContactDuration,
+    ContactLaw,
+    Faces,
+    InteriorWalls,
+)
 from gaspart.scene.faces import FACES, Sticky, Thermal, Well
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene
@@ -45,7 +54,21 @@ def contact_law(scene: Scene, state: State) -> ContactLaw | None:
     if modes.any() and state.vibrations is not None:
         vibrations = np.where(modes, state.vibrations, -1.0)
     inverses = 1 / state.masses, 1 / state.moments_of_inertia
-    return ContactLaw(rule.normal, rule.tangential, *inverses, spins, vibrations)
+    return ContactLaw(rule.normal, rule.tangential, *inverses, spins, vibrations, None)
+
+
+def contact_duration(scene: Scene) -> ContactDuration | None:
+    """The rule of contacts that last, before the first contact; None if there is none."""
+    if not scene.contact_duration > 0.0:
+        return None
+    never = np.full(scene.count, -np.inf)
+    return ContactDuration(
+        length=scene.contact_duration,
+        latest=never,
+        met=never.copy(),
+        elastic=np.zeros(1, dtype=np.int64),
+        kept=np.zeros((1, 2)),
+    )
 
 
 def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float) -> Faces:

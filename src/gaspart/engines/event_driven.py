@@ -2,52 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar, Literal
+from dataclasses import dataclass
+from typing import ClassVar, Literal
 
-import numpy as np
-
-from gaspart.engines.arrays import (
-    EventLog,
-    contact_law,
-    interior_walls,
-    scaled_masses,
-    special_faces,
-    write_internal,
-)
-from gaspart.engines.clock_epochs import QUIET, epoch_length, quiet_epoch
-from gaspart.engines.stalling import MANY, check_progress
-from gaspart.errors import SceneError, SimulationError
-from gaspart.kernels.memory import aligned
+from gaspart.engines.event_dynamics import EventDynamics
+from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import choice
 from gaspart.state.boxes import check_boxes_per_side
-from gaspart.state.oversized import boxes_and_largest
 from gaspart.state.state import State
-from gaspart.state.tally import Tally
 
-if TYPE_CHECKING:
-    from gaspart.kernels.event.monitors import Record
-
-SEARCHES = ("boxes", "direct", "pairs")
-_QUIET = QUIET + 2000  # epochs without an event after which a run without an end is given up
-_NUMBERS = ("start", "epoch", "base", "quiet", "clock", "since")  # of a checkpoint
-_SHORTEST_BOUNCE = 2.0**-44  # of an epoch: the longest bounce on a floor that is taken for rest
-_LOWEST = 2.0**-44  # of the container: the highest bounce on an interior wall that is taken for rest
-# More contacts of one particle than these, within so much of an epoch, are taken for a collapse. Intervals
-# between inelastic contacts shrink geometrically until rounding lets the particles part, so few of them can
-# be seen.
-_MOST, _INTERVAL = 1000, _SHORTEST_BOUNCE
-_INELASTIC_MOST, _INELASTIC_INTERVAL = 12, 2.0**-34
+SEARCHES = ("automatic", "boxes", "lists", "direct", "pairs")
 
 
 @dataclass(frozen=True)
 class EventDriven:
     """From one event to the next, exactly.
 
-    search: "boxes", with one next event per particle in a queue; "direct", the same with a single box, each
-    search over all particles; "pairs", all pairs before every event (Spencer 2021, section 3.1), the referee.
-    All three give the same bits. boxes_per_side: a number, or one per axis; by default about one a particle.
+    search: "boxes", with one next event per particle in a queue; "lists", the same with neighbour lists;
+    "automatic", the one of these that is faster at the density of the scene; "direct", with a single box,
+    each search over all particles; "pairs", all pairs before every event (Spencer 2021, section 3.1), the
+    referee. All give the same bits. boxes_per_side: a number, or one per axis; by default about one a
+    particle.
 
     No box is narrower than the diameters of the particles in it. A few oversized particles can be left out of
     the boxes, each of them tested by every small one near it: by default the largest of all, if that saves a
@@ -55,267 +31,18 @@ class EventDriven:
     box, which must be fewer than the others.
     """
 
-    search: str = "boxes"
+    search: str = "automatic"
     boxes_per_side: int | tuple[int, ...] | None = None
 
     name: ClassVar[Literal["event"]] = "event"
 
     def __post_init__(self) -> None:
         choice("search", self.search, SEARCHES)
-        if self.search != "boxes" and self.boxes_per_side is not None:
+        if self.search not in ("automatic", "boxes") and self.boxes_per_side is not None:
             raise SceneError("boxes_per_side", self.boxes_per_side, 'needs search "boxes"')
         if self.boxes_per_side is not None:
             check_boxes_per_side(self.boxes_per_side)
 
     def start(self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0) -> EventDynamics:
-        """Set the engine up for a scene in a given state; `seed` is that of thermal walls."""
-        return EventDynamics(self, scene, state, seed)
-
-
-class EventDynamics:
-    """A scene in progress. Clocks count from the start of the current epoch, so that they lose no
-    precision."""
-
-    def __init__(self, engine: EventDriven, scene: Scene, state: State, seed: int | tuple[int, ...]) -> None:
-        from gaspart.kernels import flight, model, running_sum
-        from gaspart.kernels.event import loop
-        from gaspart.kernels.event.box_lists import empty_lists
-        from gaspart.kernels.event.monitors import CollapseWatch, Monitors
-        from gaspart.kernels.event.queue import EVENT_COUNT, empty_queue
-
-        self._loop, self._flight, self._kernels, self._sums = loop, flight, model, running_sum
-        self._scene = scene
-        self._reference = state
-        n = state.count
-        boxes, largest = boxes_and_largest(scene, engine.boxes_per_side if engine.search == "boxes" else 1)
-        self._particles = model.Particles(
-            flights=aligned((n,), model.flight_dtype(scene.dimension)),
-            images=state.images.copy(),
-            predictions=aligned((n,), model.PREDICTION),
-        )
-        self._flights = self._particles.flights
-        self._flights["position"], self._flights["velocity"] = state.positions, state.velocities
-        self._flights["radius"] = state.radii
-        self._particles.predictions["partner"] = model.NONE
-        self._particles.predictions["box"] = boxes.coordinates(state.positions)
-        self._boxes = empty_lists(boxes, n)
-        self._queue = None if engine.search == "pairs" else empty_queue(n)
-        self._event_count = np.zeros(1, dtype=np.int64)
-        if self._queue:
-            self._event_count = self._queue.cursor[EVENT_COUNT:]
-        law = contact_law(scene, state)
-        self._unit_mass, masses = (1.0, None) if law else scaled_masses(state.masses)
-        gravity = None
-        if scene.gravity is not None and any(scene.gravity):
-            support = model.no_support(n, _LOWEST * max(scene.container.lengths)) if scene.walls else None
-            gravity = model.Gravity(scene.gravity, np.isinf(state.masses), 0.0, support)
-        oversized = np.flatnonzero(state.radii > largest)
-        self._model = model.Model(
-            space=model.Space(
-                scene.container.lengths, scene.container.periodic, float(not scene.centres_to_walls)
-            ),
-            masses=masses,
-            gravity=gravity,
-            law=law,
-            faces=special_faces(scene, state, seed, self._unit_mass) if scene.faces else None,
-            walls=interior_walls(scene, boxes, largest) if scene.walls else None,
-            oversized=model.Oversized(oversized, largest) if len(oversized) else None,
-        )
-        collapse, self._interval = None, 0.0
-        if law or gravity:
-            inelastic = law and law.normal < 1.0
-            most, self._interval = (_INELASTIC_MOST, _INELASTIC_INTERVAL) if inelastic else (_MOST, _INTERVAL)
-            collapse = CollapseWatch(np.full(n, -np.inf), np.zeros(n, dtype=np.int64), 0.0, most)
-        self._monitors = Monitors(None, collapse)
-        self._lightest = float(state.masses.min(initial=np.inf))
-        self._lost = np.zeros(2)  # net and gross, before the tally began
-        self._base, self._quiet = epoch_length(scene, state.velocities, self._lightest), 0
-        self._begin_epoch(self._base)
-        epochs, self._clock = divmod(state.time, self._epoch)
-        self._start = epochs * self._epoch
-        self._flights["clock"] = self._clock
-        self._count()
-        self._predict()
-
-    def reset_tally(self) -> None:
-        """Begin to count from zero."""
-        self._lost = np.array([self.dissipated, self.exchanged])
-        self._count()
-
-    def _count(self) -> None:
-        """A tally at zero."""
-        self._tally = self._kernels.empty_tally(2 * self._scene.dimension + len(self._scene.walls))
-        self._since = self.time
-
-    def _predict(self) -> None:
-        if self._queue:
-            self._loop.predict_all(
-                self._particles, self._queue, self._boxes, self._model, self._tally, self._clock
-            )
-
-    @property
-    def time(self) -> float:
-        """The time reached."""
-        return self._start + self._clock
-
-    def advance(self, until: float, most: int | None = None, log: EventLog | None = None) -> None:
-        """Process events up to time `until`, at most `most` of them (collisions and wall hits).
-
-        Raises SimulationError, with the state kept, if particles collapse: they would meet for ever in no
-        time; and if nothing happens in a thousand flights through the container, where only events end the
-        run.
-        """
-        left = np.iinfo(np.int64).max if most is None else most
-        many, begun = MANY, self._clock
-        while left > 0:
-            if many == 0:
-                check_progress(self.time, self._clock - begun, self._epoch)
-                many, begun = MANY, self._clock
-            stop = until - self._start
-            ends_epoch = stop > self._epoch
-            reason, done, last = self._run(log.room if log else None, min(stop, self._epoch), min(left, many))
-            left -= done
-            many -= done
-            self._quiet = 0 if done else self._quiet
-            if log is not None:
-                log.take(self._start)
-            if reason == self._loop.STOP:
-                if not ends_epoch:
-                    self._clock = stop
-                    return
-                begun -= self._epoch
-                self._next_epoch()
-                if until == np.inf and self._quiet > _QUIET:
-                    raise SimulationError(
-                        f"no event up to time {self.time:g} in {self._quiet} epochs of the clocks: "
-                        "particles miss one another"
-                    )
-            elif done:
-                self._clock = max(self._clock, last)
-            if reason == self._loop.COLLAPSE and self._monitors.collapse is not None:
-                collapse = self._monitors.collapse
-                raise SimulationError(
-                    f"at time {self.time:g} particle {collapse.contacts.argmax()} has had "
-                    f"{collapse.most} contacts within a time of {collapse.interval:g}: "
-                    "an inelastic collapse, or a stack at rest; the state is that of the present time"
-                )
-
-    def _run(self, record: Record | None, stop: float, most: int) -> tuple[int, int, float]:
-        """Let the kernel run: why it stopped, the events it processed, the time of the last."""
-        monitors = self._monitors._replace(record=record)
-        return self._loop.run(
-            self._particles, self._queue, self._boxes, self._model, self._tally, monitors, stop, most
-        )
-
-    def _next_epoch(self) -> None:
-        """Start the clocks again from zero, and predict all events anew."""
-        self._flight.restart_clocks(self._flights, self._epoch, self._model.space, self._model.gravity)
-        self._start += self._epoch
-        self._clock = 0.0
-        if self._monitors.collapse:
-            self._monitors.collapse.since[:] -= self._epoch
-        self._quiet += 1
-        velocities = self._flights["velocity"]
-        self._base = epoch_length(self._scene, velocities, self._lightest, self._base)
-        self._begin_epoch(quiet_epoch(self._scene, velocities, self._lightest, self._base, self._quiet))
-        self._predict()
-
-    def _begin_epoch(self, length: float) -> None:
-        """Let the present epoch have this length, and with it all times that are too short for the clocks."""
-        self._epoch = length
-        if self._model.gravity:
-            gravity = self._model.gravity._replace(shortest_bounce=_SHORTEST_BOUNCE * length)
-            self._model = self._model._replace(gravity=gravity)
-        if self._monitors.collapse:
-            collapse = self._monitors.collapse._replace(interval=self._interval * length)
-            self._monitors = self._monitors._replace(collapse=collapse)
-
-    @property
-    def tally(self) -> Tally:
-        """What was counted since the last `reset_tally`."""
-        kernels, tally = self._kernels, self._tally
-        return Tally(
-            time=self.time - self._since,
-            collisions=int(tally.counts[kernels.COLLISIONS]),
-            wall_hits=tally.wall_hits.copy(),
-            wall_impulse=self._sums.values(tally.wall_impulse) * self._unit_mass,
-            wall_energy=self._sums.values(tally.wall_energy) * self._unit_mass,
-            virial_sum=self._sums.net(tally.sums[kernels.VIRIAL]) * self._unit_mass,
-            pair_tests=int(tally.counts[kernels.PAIR_TESTS]),
-            box_visits=int(tally.counts[kernels.BOX_VISITS]),
-            crossings=int(tally.counts[kernels.CROSSINGS]),
-            worst_contact=float(tally.worst[0]),
-            dissipated_energy=self._sums.net(tally.sums[kernels.LOSS]),
-        )
-
-    @property
-    def dissipated(self) -> float:
-        """The energy that contacts and thermal walls have taken since time 0."""
-        taken = self._tally.sums[self._kernels.LOSS], self._tally.wall_energy
-        return float(self._lost[0]) + self._sums.net(*taken) * self._unit_mass
-
-    @property
-    def exchanged(self) -> float:
-        """The sum of what contacts and each face have taken or given since time 0, each counted positive."""
-        loss, walls = self._tally.sums[self._kernels.LOSS], self._sums.values(self._tally.wall_energy)
-        gross = self._sums.net(loss) + float(np.abs(walls).sum())
-        return float(self._lost[1]) + gross * self._unit_mass
-
-    @property
-    def state(self) -> State:
-        """All particles at the present time."""
-        space = self._model.space
-        flights, lengths = self._flights.copy(), np.array(space.lengths)
-        self._flight.advance_all(flights, self._clock, space, self._model.gravity)
-        positions, images = flights["position"].copy(), self._particles.images.copy()
-        # a particle that reaches a periodic face just now may stand beyond it by rounding
-        outside = (positions < 0.0) | (positions >= lengths)
-        beyond = np.nonzero(outside & space.periodic)
-        there, length = positions[beyond], lengths[beyond[1]]
-        crossed = np.where(there < 0.0, -1, 1)
-        there = there - crossed * length
-        positions[beyond] = np.where(there >= length, 0.0, there)
-        images[beyond] += crossed
-        state = replace(
-            self._reference,
-            time=self.time,
-            positions=positions,
-            velocities=flights["velocity"].copy(),
-            images=images,
-        )
-        write_internal(state, self._scene, self._model.law, self._model.faces, self._unit_mass)
-        return state
-
-    def _arrays(self) -> dict[str, np.ndarray]:
-        """Everything that the kernels change and that cannot be made again, by name."""
-        arrays = {**self._particles._asdict(), "event_count": self._event_count, **self._tally._asdict()}
-        law, faces, collapse = self._model.law, self._model.faces, self._monitors.collapse
-        if law:
-            arrays["spins"] = law.spins
-            if law.vibrations is not None:
-                arrays["vibrations"] = law.vibrations
-        if collapse:
-            arrays.update(contacts_since=collapse.since, contacts=collapse.contacts)
-        if self._model.gravity and self._model.gravity.support:
-            support = self._model.gravity.support._asdict()
-            arrays.update({f"support_{key}": support[key] for key in support if key != "height"})
-        if faces:
-            arrays.update({key: getattr(faces, key) for key in ("place", "held", "draws")})
-        return arrays
-
-    def checkpoint(self) -> dict[str, np.ndarray]:
-        """All that a continuation to the same bits needs: particles at their own clocks, predictions,
-        counts."""
-        parts = {**{key: getattr(self, f"_{key}") for key in _NUMBERS}, "lost": self._lost}
-        return {key: np.array(value) for key, value in {**parts, **self._arrays()}.items()}
-
-    def restore(self, parts: dict[str, np.ndarray]) -> None:
-        """Go on from a checkpoint of the same scene and engine."""
-        for key, array in self._arrays().items():
-            array[...] = parts[key]
-        for key in _NUMBERS:
-            setattr(self, f"_{key}", parts[key].item())
-        self._lost = parts["lost"].copy()
-        self._begin_epoch(self._epoch)
-        if self._queue:
-            self._loop.restore(self._particles, self._queue, self._boxes, self._model, self._clock)
+        """Set the engine up for a scene in a given state; `seed` is that of thermal walls and kicks."""
+        return EventDynamics(scene, state, seed, self.search, self.boxes_per_side)

@@ -57,6 +57,8 @@ def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
     falls, none = scene.gravity is not None, "this one has none"
     for key, value, what in (
         ("restitution", law if law and law.normal < 1.0 and falls else None, "with gravity, " + none),
+        ("restitution.contact_duration", law.contact_duration or None if law else None, none),
+        ("thermostat", scene.thermostat, none),
         ("walls", scene.walls or None, none),
         ("fixed", True if fixed and falls else None, "this one has no fixed particles under gravity"),
     ):
@@ -72,12 +74,16 @@ def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
 
 
 def check_precision(engine: TimeStepped, scene: Scene, state: State) -> None:
-    """Raise SceneError for steps in which particles move by less than their positions are rounded by; and, in
-    float32, for lengths and speeds whose squares it cannot hold, and particles so small in their container
-    that it cannot resolve where they touch."""
+    """Raise SceneError for steps in which particles move by less than their positions are rounded by, or so
+    far that the rounding is as large as the container; and, in float32, for lengths and speeds whose squares
+    it cannot hold, and particles so small in their container that it cannot resolve where they touch."""
     longest, speeds = max(scene.container.lengths), np.sqrt((state.velocities**2).sum(axis=1))
     typical, fastest = math.sqrt(float((speeds**2).mean())) if state.count else 0.0, speeds.max(initial=0.0)
-    if 0.0 < typical * engine.time_step < 0.5 * np.finfo(engine.precision).eps * longest:
+    moved, rounding = typical * engine.time_step, float(np.finfo(engine.precision).eps)
+    if moved * rounding > longest:
+        rule = f"moves particles so far that {engine.precision} does not resolve a length of {longest:g}"
+        raise SceneError("time_step", engine.time_step, rule)
+    if 0.0 < moved < 0.5 * rounding * longest:
         rule = f"moves particles by less than {engine.precision} resolves in a length of {longest:g}"
         raise SceneError("time_step", engine.time_step, rule)
     if engine.precision != "float32" or not state.count:

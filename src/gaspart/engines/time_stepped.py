@@ -167,14 +167,17 @@ class StepDynamics:
         """The time reached, at the end of a step."""
         return self._start + self._steps * self._engine.time_step
 
-    def advance(self, until: float, most: int | None = None, log: EventLog | None = None) -> None:
+    def advance(
+        self, until: float, most: int | None = None, log: EventLog | None = None, work: int | None = None
+    ) -> None:
         """Step to the last whole step not after `until` (to within 1e-9 of a step).
 
         Raises SceneError for what only the event-driven engine can do, count or record events, and for a time
         that is not within 2^53 steps.
         """
-        if most is not None:
-            raise SceneError("max_events", most, 'needs the "event" engine; this one makes whole steps only')
+        for key, limit in (("max_events", most), ("max_work", work)):
+            if limit is not None:
+                raise SceneError(key, limit, 'needs the "event" engine; this one makes whole steps only')
         if log is not None:
             raise SceneError(
                 "record_events", True, 'needs the "event" engine; this one makes whole steps only'

@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from gaspart.errors import SceneError
+from gaspart.errors import SceneError, unknown_word
 from gaspart.experiments.schema import schema
 from gaspart.kinds import Kind
 from gaspart.planning import grid, keys
@@ -88,6 +88,9 @@ def _animation(config: dict, animation: str, block: dict | None) -> None:
     if block and kinds.get(experiment) != "simulate":
         rule = "must be the name of an experiment that makes trajectories"
         raise SceneError(f"animations.{animation}.experiment", experiment, rule)
+    figure = block.get("figure") if block else None
+    if figure is not None and figure not in config["figures"]:
+        raise SceneError(f"animations.{animation}.figure", figure, unknown_word(figure, config["figures"]))
 
 
 def _experiment(config: dict, experiment: str) -> None:
@@ -97,7 +100,7 @@ def _experiment(config: dict, experiment: str) -> None:
         if key.startswith(keys.PREFIX):  # a value of a scene file, which the scene validates
             continue
         if key not in keys.POINT:
-            raise SceneError(f"{where}.grid.{key}", value, f"unknown key; known are {', '.join(keys.POINT)}")
+            raise SceneError(f"{where}.grid.{key}", value, unknown_word(key, keys.POINT))
         _against(keys.POINT[key], value, f"{where}.grid.{key}")
     for point in points(config, experiment):
         grid.check(point)
@@ -137,7 +140,7 @@ def _against(kind: Kind, value: object, where: str) -> None:
             for name in error.instance
             if name not in known and not any(re.search(pattern, name) for pattern in patterns)
         )
-        rule_text = f"unknown key; known are {', '.join(known)}"
+        rule_text = unknown_word(unknown, known)
         raise SceneError(f"{key}.{unknown}".lstrip("."), error.instance[unknown], rule_text)
     if error.validator == "required":
         missing = next(name for name in error.validator_value if name not in error.instance)

@@ -1,8 +1,8 @@
 """The figures, by family: found in the folders of this package.
 
-The folder of a family states its `TITLE` and its `FIGURES` in `__init__.py`, which imports nothing heavy, and
-holds a function of the name of each figure in `measure.py`, `claims.py` and `figure.py`. `FIGURES` declares
-the settings of each figure: the kind of each key, with its meaning.
+The folder of a family states its `TITLE`, its `CHAPTER` of the report and its `FIGURES` in `__init__.py`,
+which imports nothing heavy, and holds a function of the name of each figure in `measure.py`, `claims.py` and
+`figure.py`. `FIGURES` declares the settings of each figure: the kind of each key, with its meaning.
 """
 
 from __future__ import annotations
@@ -25,6 +25,11 @@ def _packages() -> dict[str, ModuleType]:
 def titles() -> dict[str, str]:
     """The title of each family, in alphabetical order of the families."""
     return {name: package.TITLE for name, package in _packages().items()}
+
+
+def chapters() -> dict[str, str]:
+    """The chapter of the report in which each family stands."""
+    return {name: package.CHAPTER for name, package in _packages().items()}
 
 
 @cache

@@ -23,7 +23,7 @@ _TYPES |= {"string": "text"}
 _INTRODUCTION = """# Reference of all keys
 
 Generated from the declarations in the code by `python -m gaspart.experiments.schema`; do not edit it.
-What the keys are for is explained in [config/README.md](../config/README.md).
+What the keys are for is explained in [the config page](config.md).
 For editors, `workflow/schemas` has the same rules as JSON schemas.
 A key without a default is required. A default of *none* means that the key is absent.
 """

@@ -17,8 +17,8 @@ def certificate(path: Path) -> list[str]:
     with opened(path) as file:
         if not len(file.dimensions["frame"]):
             return ["no frame yet"]
-        names = ["kinetic_energy", "collisions", "virial_sum", "worst_contact", "deepest_overlap"]
-        names += ["overlaps_left", "steps", "time"]
+        names = ["kinetic_energy", "collisions", "virial_sum", "worst_contact", "time"]
+        names += [name for name in ("deepest_overlap", "overlaps_left") if name in file.variables]
         series = {name: np.asarray(file[name][:], dtype=float) for name in names}
     return [_drift(scene, series["kinetic_energy"]), _contacts(series), _samples(scene, series)]
 
@@ -35,7 +35,7 @@ def _drift(scene: Scene, energy: np.ndarray) -> str:
 def _contacts(series: dict) -> str:
     """Errors of the engine, from its counters."""
     counted = f"{series['collisions'][-1]:.0f} collisions"
-    if series["steps"][-1]:
+    if "overlaps_left" in series:
         deepest, left = series["deepest_overlap"][-1], series["overlaps_left"][-1]
         return f"{counted}; deepest overlap {deepest:.2g} of a contact distance, {left:.0f} left after a step"
     return f"{counted}; worst contact off by {series['worst_contact'][-1]:.1e} of its distance, squared"

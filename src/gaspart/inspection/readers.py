@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.files import descriptor_path
 from gaspart.inspection.frames import Frames, complete_frames
 from gaspart.trajectory.amber import BOOKKEEPING
 from gaspart.trajectory.recipe import check_frames, open_descriptor, opened, read_recipe
@@ -117,7 +118,7 @@ def _gsd(path: Path) -> dict:
     """HOOMD's format: the origin is the middle of the box, and a frame states its step."""
     import gsd.hoomd
 
-    with gsd.hoomd.open(str(path), "r") as file:
+    with path.open("rb") as opened_file, gsd.hoomd.open(descriptor_path(opened_file), "r") as file:
         frames = list(file)
     boxes = np.array([frame.configuration.box for frame in frames], dtype=float)
     if np.any(boxes[:, 3:] != 0.0):

@@ -7,12 +7,12 @@ that touches and approaches does so now, and every root is taken in the form tha
 
 from math import inf, sqrt
 
-from gaspart.kernels.compilation import helper, kernel
+from gaspart.kernels.compilation import helper, inner_helper, kernel
 
 _HALVINGS = 2200  # bisection alone narrows any interval of floats to two neighbours in fewer
 
 
-@helper
+@inner_helper
 def flown(x, v, pull, time):
     """Where a coordinate x of speed v is after `time` under `pull` (Spencer 2022, Eq. 1)."""
     return x + (v + 0.5 * pull * time) * time
@@ -48,7 +48,7 @@ def time_along(gap, speed, pull):
     return (sqrt(max(0.0, speed * speed + 2.0 * pull * gap)) - speed) / pull
 
 
-@helper
+@inner_helper
 def time_to_side(gap, closing, pull):
     """Time until a body touches the side that it is on: `gap` from it, approaching at `closing`, drawn
     towards it by `pull`; inf if it never does."""
@@ -61,7 +61,7 @@ def time_to_side(gap, closing, pull):
     return max(0.0, gap / closing)
 
 
-@helper
+@inner_helper
 def time_to_far_side(gap, closing, pull):
     """The same for the side that it is not on yet (gap < 0): it must pass the line, turn and come back."""
     if closing >= 0.0 or pull <= 0.0:
@@ -70,12 +70,12 @@ def time_to_far_side(gap, closing, pull):
     return (sqrt(square) - closing) / pull if square > 0.0 else inf
 
 
-@helper
+@inner_helper
 def _polynomial(c0, c1, c2, c3, c4, t):
     return (((c4 * t + c3) * t + c2) * t + c1) * t + c0
 
 
-@helper
+@inner_helper
 def _root_between(c0, c1, c2, c3, c4, low, high):
     """A root of the quartic between `low` and `high`, where its signs differ: Newton within bisection."""
     falls = _polynomial(c0, c1, c2, c3, c4, low) > 0.0

@@ -8,6 +8,7 @@ from math import sqrt
 
 from gaspart.kernels.compilation import inner_helper, inner_kernel
 from gaspart.kernels.contact import exchange, exchange_equal, normal_change, tangential_impulse
+from gaspart.kernels.contact_duration import keep, restitution_at_wall, restitution_of_pair
 from gaspart.kernels.model import LOSS
 from gaspart.kernels.periodic import nearest
 from gaspart.kernels.running_sum import add
@@ -95,13 +96,24 @@ def slip(velocity, spin, normal):
 
 
 @inner_helper
-def rub(velocity, mobility, lever, law, tally):
+def lose(approach, mobility, normal, law, tally):
+    """Count the energy that the normal part of a contact takes, with this restitution; and what that of the
+    law would have taken more."""
+    add(tally.sums, LOSS, 0.5 * (1.0 - normal * normal) * approach * approach / mobility)
+    keep(0.5 * (normal * normal - law.normal * law.normal) * approach * approach / mobility, law.duration)
+
+
+@inner_helper
+def rub(velocity, mobility, lever, tangential, law, tally):
     """(3,) the tangential impulse on the first of two surfaces with a tangential relative velocity (3,).
-    mobility, lever: as in `contact.tangential_impulse`."""
-    factor = tangential_impulse(mobility, lever, law.tangential)
+    mobility, lever, tangential: as in `contact.tangential_impulse`."""
+    factor = tangential_impulse(mobility, lever, tangential)
     gx, gy, gz = velocity
     square = gx * gx + gy * gy + gz * gz
-    add(tally.sums, LOSS, 0.5 * (1.0 - law.tangential) * factor * square)
+    lost = 0.5 * (1.0 - tangential) * factor * square
+    add(tally.sums, LOSS, lost)
+    usual = 0.5 * (1.0 - law.tangential) * tangential_impulse(mobility, lever, law.tangential) * square
+    keep(usual - lost, law.duration)
     return -factor * gx, -factor * gy, -factor * gz
 
 
@@ -145,12 +157,13 @@ def collide_by_law(flights, i, j, rr, rv, space, tally, law):
     )
     least = LEAST * max(fastest_component(flights, i, space), fastest_component(flights, j, space))
     approach = -rv / length
+    normal_part, tangential_part = restitution_of_pair(flights, i, j, law, law.duration)
     parting = exchange_with_vibration(i, j, approach, mobility, law.vibrations)
     if parting >= 0.0:
         impulse = (approach + max(parting, least)) / mobility
     else:
-        impulse = normal_change(approach, law.normal, least) / mobility
-    add(tally.sums, LOSS, 0.5 * (1.0 - law.normal * law.normal) * approach * approach / mobility)
+        impulse = normal_change(approach, normal_part, least) / mobility
+    lose(approach, mobility, normal_part, law, tally)
     if law.tangential > -1.0:
         a, b = velocity_of(flights, i, space), velocity_of(flights, j, space)
         s, t = spin_of(flights, i, law), spin_of(flights, j, law)
@@ -158,7 +171,7 @@ def collide_by_law(flights, i, j, rr, rv, space, tally, law):
         sliding = slip(velocity, (s[0] + t[0], s[1] + t[1], s[2] + t[2]), normal)
         radius_i, radius_j = flights[i].radius, flights[j].radius
         lever = radius_i * radius_i * law.inverse_inertia[i] + radius_j * radius_j * law.inverse_inertia[j]
-        friction = rub(sliding, mobility, lever, law, tally)
+        friction = rub(sliding, mobility, lever, tangential_part, law, tally)
         push(flights, i, mobility_i, friction, space)
         push(flights, j, -mobility_j, friction, space)
         add_spin(flights, i, normal, friction, law)
@@ -175,12 +188,14 @@ def collide_wall_by_law(flights, i, normal, least, space, tally, law):
     mobility = law.inverse_mass[i]
     velocity = velocity_of(flights, i, space)
     approach = normal[0] * velocity[0] + normal[1] * velocity[1] + normal[2] * velocity[2]
-    change = normal_change(approach, law.normal, least)
-    add(tally.sums, LOSS, 0.5 * (1.0 - law.normal * law.normal) * approach * approach / mobility)
+    normal_part, tangential_part = restitution_at_wall(flights, i, law, law.duration)
+    change = normal_change(approach, normal_part, least)
+    lose(approach, mobility, normal_part, law, tally)
     if law.tangential > -1.0:
         radius = flights[i].radius
         lever = radius * radius * law.inverse_inertia[i]
-        friction = rub(slip(velocity, spin_of(flights, i, law), normal), mobility, lever, law, tally)
+        sliding = slip(velocity, spin_of(flights, i, law), normal)
+        friction = rub(sliding, mobility, lever, tangential_part, law, tally)
         push(flights, i, mobility, friction, space)
         add_spin(flights, i, normal, friction, law)
     push(flights, i, -change, normal, space)

@@ -13,6 +13,8 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from gaspart.kernels.cache import usable_cache
+from gaspart.kernels.compiled_files import KernelCache
+from gaspart.kernels.inner_compilation import PartCompiler
 from gaspart.kernels.numba_loading import load_numba
 
 numba = load_numba()
@@ -29,16 +31,21 @@ def source_digest() -> str:
     return digest.hexdigest()[:16]
 
 
+_UNWRAPPED = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_INNER = {**_UNWRAPPED, "pipeline_class": PartCompiler}
 _CACHE = usable_cache(source_digest())
 
 
 def _compile(function: F, **options: Any) -> F:
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(_CACHE or before)
-    try:
-        return numba.njit(cache=_CACHE is not None, nogil=True, error_model="numpy", **options)(function)
-    finally:
-        numba.config.CACHE_DIR = before
+    compiled = numba.njit(nogil=True, error_model="numpy", **options)(function)
+    if _CACHE and not options.get("pipeline_class"):
+        before = numba.config.CACHE_DIR
+        numba.config.CACHE_DIR = str(_CACHE)
+        try:
+            compiled._cache = KernelCache(function)
+        finally:
+            numba.config.CACHE_DIR = before
+    return compiled
 
 
 def kernel(function: F) -> F:
@@ -56,23 +63,28 @@ def helper(function: F) -> F:
     return _compile(function, _nrt=False, forceinline=True)
 
 
-def inner_kernel(function: F) -> F:
-    """A kernel that only kernels call: without the way in from Python, which for a function that takes an
-    engine's arrays takes longer to compile than what it does."""
-    return _compile(function, _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-
-
-def inner_helper(function: F) -> F:
-    """The same for a function that is inlined."""
-    return _compile(function, _nrt=False, forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-
-
 def allocating_kernel(function: F) -> F:
     """The same for a function that makes arrays."""
     return _compile(function)
 
 
-def parallel_kernel(function: F) -> F:
+def inner_kernel(function: F) -> F:
+    """A kernel that only kernels call: without the way in from Python, which for a function that takes an
+    engine's arrays takes longer to compile than what it does."""
+    return _compile(function, _nrt=False, **_INNER)
+
+
+def inner_helper(function: F) -> F:
+    """The same for a function that is inlined."""
+    return _compile(function, _nrt=False, forceinline=True, **_INNER)
+
+
+def inner_allocating_kernel(function: F) -> F:
+    """The same for a function that makes arrays."""
+    return _compile(function, **_INNER)
+
+
+def inner_parallel_kernel(function: F) -> F:
     """The same for a function whose `prange` loops are shared among threads. What its parts write must not
     depend on one another, so that it does not matter which is done when."""
-    return _compile(function, parallel=True)
+    return _compile(function, parallel=True, **_UNWRAPPED)

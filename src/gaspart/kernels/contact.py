@@ -8,7 +8,7 @@ The arithmetic keeps the type of its arguments (float32 stays float32): hence x 
 
 from math import inf, sqrt
 
-from gaspart.kernels.compilation import helper
+from gaspart.kernels.compilation import helper, inner_helper
 
 
 @helper
@@ -58,14 +58,14 @@ def exchange(rr, rv, mass1, mass2):
     return (mass2 + mass2) / total * k, (mass1 + mass1) / total * k
 
 
-@helper
+@inner_helper
 def normal_change(approach, restitution, least):
     """By how much a contact changes the normal relative velocity: `approach` becomes -restitution * approach
     (Spencer 2022, Eq. 35), or -least, whichever parts the two faster."""
     return approach + max(restitution * approach, least)
 
 
-@helper
+@inner_helper
 def tangential_impulse(inverse_mass, lever, restitution):
     """Impulse per tangential relative velocity of the surfaces (Spencer 2022, Eq. 38).
 
@@ -74,7 +74,7 @@ def tangential_impulse(inverse_mass, lever, restitution):
     return (1.0 + restitution) / (inverse_mass + lever)
 
 
-@helper
+@inner_helper
 def time_to_plane(x, v, plane):
     """Time at which a coordinate x, moving at v != 0, reaches `plane` (Spencer 2022, Eqs. 10 and 13)."""
     return (plane - x) / v

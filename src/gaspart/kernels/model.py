@@ -15,6 +15,7 @@ NONE = -1  # no particle, no face
 BOX_FACES = 6  # face codes: 2 axis + side for the container's faces, BOX_FACES more for those between boxes,
 WELL_EDGES = 12  # WELL_EDGES more for the edges of the wells at the container's faces,
 WALLS = 18  # and from here on the rows of interior walls
+LISTED_BITS = 26  # of a particle's number in a neighbour list
 HARD, THERMAL, THERMAL_NORMAL, STICKY = range(4)  # kinds of faces
 
 
@@ -97,9 +98,22 @@ class Gravity(NamedTuple):
     support: Support | None
 
 
+class ContactDuration(NamedTuple):
+    """Contacts less than `length` after an earlier one are elastic. Of the particles: latest (N,), the time
+    of the latest contact; met (N,), that with another particle. elastic (1,): the number of such contacts;
+    kept (1, 2): the energy that they have not dissipated, see `running_sum.add`."""
+
+    length: float
+    latest: np.ndarray
+    met: np.ndarray
+    elastic: np.ndarray
+    kept: np.ndarray
+
+
 class ContactLaw(NamedTuple):
     """normal, tangential: restitution; inverse_mass, inverse_inertia (N,), 0 if fixed; spins (N, 3);
-    vibrations (N,), energies of modes, -1 where there is none, or None if no particle has one."""
+    vibrations (N,), energies of modes, -1 where there is none, or None if no particle has one; duration, None
+    if every contact dissipates."""
 
     normal: float
     tangential: float
@@ -107,6 +121,7 @@ class ContactLaw(NamedTuple):
     inverse_inertia: np.ndarray
     spins: np.ndarray
     vibrations: np.ndarray | None
+    duration: ContactDuration | None
 
 
 class Faces(NamedTuple):

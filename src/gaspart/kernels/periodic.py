@@ -1,9 +1,9 @@
 """Along one axis of the container: the box that holds a coordinate, the nearest image of a difference."""
 
-from gaspart.kernels.compilation import helper
+from gaspart.kernels.compilation import helper, inner_helper
 
 
-@helper
+@inner_helper
 def box_coordinate(x, width, per_side):
     """Which box along an axis holds coordinate x; the outermost one for x outside."""
     c = int(x / width)

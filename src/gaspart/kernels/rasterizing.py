@@ -2,12 +2,12 @@
 
 import math
 
-from gaspart.kernels.compilation import kernel
+from gaspart.kernels.compilation import inner_kernel, kernel
 
 _LINE = 0.75  # half the width of lines, in pixels
 
 
-@kernel
+@inner_kernel
 def _blend(image, row, column, cover, red, green, blue):
     image[row, column, 0] += cover * (red - image[row, column, 0])
     image[row, column, 1] += cover * (green - image[row, column, 1])

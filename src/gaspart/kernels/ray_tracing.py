@@ -2,7 +2,7 @@
 
 import math
 
-from gaspart.kernels.compilation import helper, kernel
+from gaspart.kernels.compilation import helper, inner_helper, inner_kernel, kernel
 
 SUBRAYS = 4
 NOTHING, FLOOR, EDGE, SPHERE = 0, 2, 4, 6
@@ -32,17 +32,17 @@ def _cell(x, low, side, number):
     return min(max(int((x - low) / side), 0), number - 1)
 
 
-@helper
+@inner_helper
 def _dot(a, b):
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@helper
+@inner_helper
 def _along(o, d, t):
     return o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]
 
 
-@kernel
+@inner_kernel
 def _hit(o, d, sphere):
     """Distance at which a ray from outside enters a sphere, or infinity."""
     to = (sphere[0] - o[0], sphere[1] - o[1], sphere[2] - o[2])
@@ -55,7 +55,7 @@ def _hit(o, d, sphere):
     return t if t > 1e-6 * sphere[3] else math.inf
 
 
-@kernel
+@inner_kernel
 def _nearest(o, d, spheres, grid, any_will_do):
     """Distance and index of the first sphere that a ray meets: infinity and -1 if there is none."""
     low, side, numbers, first, listed, _ = grid
@@ -132,7 +132,7 @@ def sky(p, n, spheres, grid):
     return free
 
 
-@kernel
+@inner_kernel
 def _edge(o, d, edges, thickness):
     """Distance of the nearest edge that a ray passes by less than `thickness` times that distance."""
     best = math.inf
@@ -150,7 +150,7 @@ def _edge(o, d, edges, thickness):
     return best
 
 
-@kernel
+@inner_kernel
 def _look(o, d, forward, light, scales, scene, grid, thickness):
     """Red, green and blue along a ray, and what is seen there."""
     spheres, colours, edges, lengths = scene
@@ -193,7 +193,7 @@ def _look(o, d, forward, light, scales, scene, grid, thickness):
     )
 
 
-@kernel
+@inner_kernel
 def _pixel(column, row, image, view, scales, scene, grid):
     """What is seen at a place of the picture, in pixels from its upper left corner."""
     height, width = image.shape[0], image.shape[1]

@@ -9,6 +9,7 @@ whatever width.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import reduce
 from math import inf
 
 from llvmlite import ir
@@ -16,12 +17,12 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
+from gaspart.kernels.model import LISTED_BITS
+
 WIDTH = 8
 PLACES = 4  # particles of a box that are listed at once
-IMAGE_BITS, IMAGE_FIRST = (
-    2,
-    32,
-)  # of a candidate, above the particle's number: per axis 1 + the image it is in
+IMAGE_BITS, IMAGE_FIRST = 2, 32  # of a candidate, above the particle's number: per axis 1 + its image
+SHORT_IMAGE_FIRST = LISTED_BITS  # the same in candidates of 32 bits
 _DOUBLE, _INT, _WORD = ir.DoubleType(), ir.IntType(32), ir.IntType(64)
 _STAGES = (  # of a transposition: swap single lanes, pairs of lanes, halves
     (1, [0, 8, 2, 10, 4, 12, 6, 14], [1, 9, 3, 11, 5, 13, 7, 15]),
@@ -164,10 +165,11 @@ def bits(candidates: Lanes, start: int, count: int) -> Lanes:
     return Lanes(builder, builder.and_(shifted, candidates.all(_WORD((1 << count) - 1)).value))
 
 
-def image_of(candidates: Lanes, axis: int) -> Lanes:
-    """In which image of the container each candidate stands along an axis: -1, 0 or 1."""
+def image_of(candidates: Lanes, first: int, axis: int) -> Lanes:
+    """In which image of the container each candidate stands along an axis: -1, 0 or 1. first: the bit at
+    which images begin."""
     builder = candidates.builder
-    image = bits(candidates, IMAGE_FIRST + IMAGE_BITS * axis, IMAGE_BITS).value
+    image = bits(candidates, first + IMAGE_BITS * axis, IMAGE_BITS).value
     image = builder.trunc(image, ir.VectorType(_INT, WIDTH))
     image = builder.sub(image, candidates.all(_INT(1)).value)
     return Lanes(builder, builder.sitofp(image, ir.VectorType(_DOUBLE, WIDTH)))
@@ -199,41 +201,61 @@ def sooner(time: Lanes, number: Lanes, other_time: Lanes, other_number: Lanes) -
     return other_time.where(other_is, time), other_number.where(other_is, number)
 
 
+def soonest(time: Lanes, number: Lanes) -> tuple[ir.Value, ir.Value]:
+    """The soonest of eight contacts."""
+    for step in (4, 2, 1):
+        time, number = sooner(time, number, time.turned(step), number.turned(step))
+    first, second = (time.builder.extract_element(part.value, _INT(0)) for part in (time, number))
+    return first, second
+
+
+def load_candidates(builder: ir.IRBuilder, place: ir.Value, short: bool) -> Lanes:
+    """Eight candidates from a place on, of 64 bits or, if `short`, of 32."""
+    words = ir.VectorType(_WORD, WIDTH)
+    stored = ir.VectorType(_INT, WIDTH) if short else words
+    loaded = builder.load(builder.bitcast(place, stored.as_pointer()), align=4 if short else 8)
+    return Lanes(builder, builder.zext(loaded, words) if short else loaded)
+
+
 @intrinsic
-def earliest(typingctx, flights, i, count, present, boxes, space, gravity):
-    """The earliest contact of a particle with the first `count` candidates of `boxes`, if it is sooner than
-    `present`, (time, partner): (time, partner, a bit for each candidate of which nothing is known, since it
-    or the particle may not fall, see `flight.mark_resting`)."""
+def earliest(typingctx, flights, i, span, present, boxes, space, gravity):
+    """The earliest contact of a particle with a `span` of candidates, (first, how many), of `boxes`, if it is
+    sooner than `present`, (time, partner): (time, partner, a bit for each candidate of which nothing is
+    known, since it or the particle may not fall, see `flight.mark_resting`).
+
+    boxes: a named tuple with `candidates`, of 64 or 32 bits, and under gravity `resting`.
+    """
 
     def generate(context, builder, signature, arguments):
-        flights, i, count, present, boxes, space, gravity = arguments
+        flights, i, span, present, boxes, space, gravity = arguments
+        start, count = cgutils.unpack_tuple(builder, span)
         types_of = dict(zip(("boxes", "space", "gravity"), signature.args[4:], strict=True))
-        space = fields(builder, types_of["space"], space)
         boxes = fields(builder, types_of["boxes"], boxes)
+        lengths = fields(builder, types_of["space"], space)["lengths"]
 
         def data(array_type, array):
             return context.make_array(array_type)(context, builder, array).data
 
         kinds = dict(zip(types_of["boxes"].fields, types_of["boxes"].types, strict=True))
         rows = builder.bitcast(data(signature.args[0], flights), _DOUBLE.as_pointer())
-        near = data(kinds["candidates"], boxes["candidates"])
-        resting = data(kinds["resting"], boxes["resting"])
+        near = builder.gep(data(kinds["candidates"], boxes["candidates"]), [start])
+        short = kinds["candidates"].dtype.bitwidth == 32
+        image_first = SHORT_IMAGE_FIRST if short else IMAGE_FIRST
         falls = not isinstance(types_of["gravity"], types.NoneType)
+        resting = data(kinds["resting"], boxes["resting"]) if falls else None
         pull = fields(builder, types_of["gravity"], gravity)["acceleration"] if falls else []
-
         one = load_row(builder, rows, i)
-        present = cgutils.unpack_tuple(builder, present)
-        best = cgutils.alloca_once_value(builder, one[0].all(present[0]).value)
-        partner = cgutils.alloca_once_value(builder, one[0].all(present[1]).value)
+        best, partner = (
+            cgutils.alloca_once_value(builder, one[0].all(part).value)
+            for part in cgutils.unpack_tuple(builder, present)
+        )
         unknown = cgutils.alloca_once_value(builder, _WORD(0))
-        words = ir.VectorType(_WORD, WIDTH)
         with cgutils.for_range_slice(builder, _WORD(0), count, _WORD(WIDTH), _WORD) as (first, _):
-            place = builder.bitcast(builder.gep(near, [first]), words.as_pointer())
-            candidates = Lanes(builder, builder.load(place, align=8))
-            numbers = bits(candidates, 0, IMAGE_FIRST)
+            candidates = load_candidates(builder, builder.gep(near, [first]), short)
+            numbers = bits(candidates, 0, image_first)
             indices = [builder.extract_element(numbers.value, _INT(n)) for n in range(WIDTH)]
             others = load_rows(builder, rows, indices)
-            offset = [image_of(candidates, k) * length for k, length in enumerate(space["lengths"])]
+            offset = [image_of(candidates, image_first, k) * side for k, side in enumerate(lengths)]
             time = contact_times(one, others, offset, pull)
             if falls:
                 mask = builder.or_(marks(builder, resting, indices), marks(builder, resting, [i] * WIDTH))
@@ -245,16 +267,68 @@ def earliest(typingctx, flights, i, count, present, boxes, space, gravity):
             time, numbers = sooner(*so_far, time, numbers)
             builder.store(time.value, best)
             builder.store(numbers.value, partner)
-        time, numbers = Lanes(builder, builder.load(best)), Lanes(builder, builder.load(partner))
-        for step in (4, 2, 1):
-            time, numbers = sooner(time, numbers, time.turned(step), numbers.turned(step))
-        found = [builder.extract_element(part.value, _INT(0)) for part in (time, numbers)]
-        return context.make_tuple(builder, signature.return_type, [*found, builder.load(unknown)])
+        contact = soonest(*(Lanes(builder, builder.load(part)) for part in (best, partner)))
+        return context.make_tuple(builder, signature.return_type, [*contact, builder.load(unknown)])
 
     found = types.Tuple((types.float64, types.int64, types.uint64))
     contact = types.Tuple((types.float64, types.int64))
+    span_type = types.UniTuple(types.uint64, 2)
+    return found(flights, types.uint64, span_type, contact, boxes, space, gravity), generate
+
+
+@intrinsic
+def nearer(typingctx, pages, page, point, offset, square):
+    """A bit for each of the WIDTH points of a page (see `neighbour_lists.page_dtype`) whose distance from a
+    point (3,), once the page is displaced by `offset` (3,), has a square below `square`; in single
+    precision, and the same seen from either point."""
+
+    def generate(context, builder, signature, arguments):
+        pages, page, point, offset, square = arguments
+        kind = signature.args[0]
+        data = context.make_array(kind)(context, builder, pages).data
+        single, byte = ir.FloatType(), ir.IntType(8)
+        vector = ir.VectorType(single, WIDTH)
+        start = builder.gep(
+            builder.bitcast(data, byte.as_pointer()), [builder.mul(page, _WORD(kind.dtype.size))]
+        )
+        centres = builder.bitcast(start, vector.as_pointer())
+        point, offset = (cgutils.unpack_tuple(builder, part) for part in (point, offset))
+        squares = []
+        for k in range(kind.dtype.fields["centres"].type.shape[0]):
+            there = Lanes(builder, builder.load(builder.gep(centres, [_WORD(k)]), align=32))
+            gap = (there - builder.fptrunc(point[k], single)) + builder.fptrunc(offset[k], single)
+            squares.append(gap * gap)
+        total = reduce(Lanes.__add__, squares)
+        near = (total < builder.fptrunc(square, single)).value
+        return builder.zext(builder.bitcast(near, ir.IntType(WIDTH)), _WORD)
+
+    vector = types.UniTuple(types.float64, 3)
+    return types.uint64(pages, types.uint64, vector, vector, types.float64), generate
+
+
+@intrinsic
+def equal(typingctx, numbers, start, number, mask):
+    """A bit for each of 2 WIDTH numbers of an array of 32 bits, from `start` on, that is `number` once only
+    the bits of `mask` are left."""
+
+    def generate(context, builder, signature, arguments):
+        numbers, start, number, mask = arguments
+        data = context.make_array(signature.args[0])(context, builder, numbers).data
+        many = ir.VectorType(_INT, 2 * WIDTH)
+
+        def all_of(word):
+            first = builder.insert_element(
+                ir.Constant(many, ir.Undefined), builder.trunc(word, _INT), _INT(0)
+            )
+            return builder.shuffle_vector(first, first, ir.Constant(many, [0] * (2 * WIDTH)))
+
+        place = builder.bitcast(builder.gep(data, [start]), many.as_pointer())
+        masked = builder.and_(builder.load(place, align=4), all_of(mask))
+        same = builder.icmp_unsigned("==", masked, all_of(number))
+        return builder.zext(builder.bitcast(same, ir.IntType(2 * WIDTH)), _WORD)
+
     word = types.uint64
-    return found(flights, word, word, contact, boxes, space, gravity), generate
+    return word(numbers, word, word, word), generate
 
 
 @intrinsic

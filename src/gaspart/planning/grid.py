@@ -61,6 +61,8 @@ def check(point: Point) -> None:
     if settings.get("record_events") and (point.job, engine) != ("measure_cost", "event"):
         rule = "has a meaning with job: measure_cost and engine: event only"
         raise SceneError(f"{where}.record_events", True, rule)
+    if "without" in settings and point.job != "measure_cost":
+        raise SceneError(f"{where}.without", settings["without"], "has a meaning with job: measure_cost only")
     if point.job == "compare" and engine != "step":
         raise SceneError(f"{where}.engine", engine, "must be step with job: compare")
     if "boxes_per_side" in settings and "boxes_per_body" in settings:
@@ -173,9 +175,9 @@ def recipe(point: Point) -> dict:
     if follow is not None and follow > count:
         raise SceneError(f"experiments.{point.experiment}.follow", follow, f"there are {count} particles")
     if point.job in ("measure_cost", "compare"):
-        recording = (
-            {"record": point.settings.get("record_events", False)} if point.job == "measure_cost" else {}
-        )
+        recording: dict = {}
+        if point.job == "measure_cost":
+            recording = {"record": point.settings.get("record_events", False), "rival": rival(point)}
         return {
             **made,
             **recording,
@@ -200,6 +202,15 @@ def recipe(point: Point) -> dict:
         "displacements": point.settings.get("displacements", False),
         "follow": follow,
     }
+
+
+def rival(point: Point) -> dict | None:
+    """The scene that is timed in turn with a point's own, which lacks its keys `without`; None if it has
+    none."""
+    if "without" not in point.settings:
+        return None
+    left = {key: value for key, value in point.settings.items() if key not in point.settings["without"]}
+    return scene(replace(point, settings=left)).to_dict()
 
 
 def _unit_of_time(point: Point, unit: str) -> float:

@@ -97,7 +97,15 @@ _BOXES: dict[str, Kind] = {
 
 ENGINES: dict[str, dict[str, Kind]] = {
     "event": {
-        "search": choice("how the next event is found", "boxes", "direct", "pairs", default="boxes"),
+        "search": choice(
+            "how the next event is found",
+            "automatic",
+            "boxes",
+            "lists",
+            "direct",
+            "pairs",
+            default="automatic",
+        ),
         **_BOXES,
     },
     "step": {
@@ -174,6 +182,11 @@ RUN: dict[str, Kind] = {
         default=None,
     ),
     "record_events": flag("`measure_cost`, engine `event`: record all events", default=False),
+    "without": described(
+        {"type": "array", "items": TEXT, "minItems": 1},
+        "`measure_cost`: keys that a second scene lacks, which is timed in turn with the point's own",
+        default=None,
+    ),
 }
 
 _ENGINE_KEYS: dict[str, Kind] = {name: kind for keys in ENGINES.values() for name, kind in keys.items()}
@@ -220,6 +233,8 @@ ANIMATION: dict[str, Kind] = {
     "colour": choice("what the colour of a particle shows", "speed", "species", default="speed"),
     "frames_per_second": positive("pictures per second", default=25.0),
     "trail": count("number of a disc whose path is drawn", 0, default=None),
+    "clock": flag("write time and scale into the pictures", default=False),
+    "figure": described(TEXT, "the figure beside which the report shows the film", default=None),
 }
 
 

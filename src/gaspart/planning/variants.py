@@ -9,6 +9,7 @@ from contextlib import suppress
 from dataclasses import fields, is_dataclass
 from typing import TYPE_CHECKING, Any
 
+from gaspart.engines.event_search import chosen_search
 from gaspart.errors import SimulationError
 from gaspart.planning import grid
 from gaspart.planning.point import Point
@@ -35,16 +36,16 @@ def variant(point: Point) -> str:
         key in point.settings
         for key in ("boxes_per_side", "boxes_per_body", "scan_boxes_per_side", "scan_boxes_per_body")
     )
-    choice = {
-        "fill": "random",
-        "event": point.settings.get("search", "boxes"),
-        "step": "-".join(
-            ["boxes" if boxes else "list", point.settings.get("precision", "float64")]
-            + (["threads"] if point.settings.get("threads", 1) > 1 else [])
-        ),
-    }
+    if engine == "event":
+        choice = chosen_search(scene, point.settings.get("search", "automatic"), boxes)
+    elif engine == "step":
+        choice = "boxes" if boxes else "list"
+        choice += f"-{point.settings.get('precision', 'float64')}"
+        choice += "-threads" if point.settings.get("threads", 1) > 1 else ""
+    else:
+        choice = "random"
     boundary = "".join(kind[0] for kind in scene.container.boundary)
-    parts = [engine, choice[engine], f"{scene.dimension}d", boundary]
+    parts = [engine, choice, f"{scene.dimension}d", boundary]
     present = sorted(features(scene))
     if present:
         parts.append(hashlib.sha256(" ".join(present).encode()).hexdigest()[:8])
@@ -56,6 +57,9 @@ def features(scene: Scene) -> set[str]:
     found = set(_differing(scene)) - _MATTER
     if len({kind.mass for kind in scene.kinds}) <= 1:
         found -= {"species.mass", "bodies.mass"}  # equal masses are left out of the kernels
+    found.discard("restitution.contact_duration")
+    if scene.contact_duration > 0.0:  # by default under gravity
+        found.add("contact_duration")
     if scene.vibrates:  # by a temperature too
         found.add("vibrates")
     if len({kind.radius for kind in scene.kinds}) > 1:
@@ -101,6 +105,9 @@ def task(point: Point) -> str:
     if features(Scene.from_dict(scene)) != features(full):
         scene = full.to_dict()
     engine = recipe.get("engine") or recipe.get("engines", [None])[0]
+    if engine and engine["name"] == "event":  # not the one for only a few particles
+        search = chosen_search(full, engine.get("search", "automatic"), "boxes_per_side" in engine)
+        engine = {**engine, "search": search}
     return json.dumps({"scene": scene, "engine": engine})
 
 
@@ -123,7 +130,7 @@ def warm(job: str) -> None:
     if "time_step" in settings:
         limits = {"duration": 4 * settings["time_step"]}
     else:
-        limits = {"duration": 1.0, "max_events": 100}
+        limits = {"duration": 1.0, "max_work": 1000}
     with suppress(SimulationError):  # a collapse; everything has been compiled before
         simulation.advance(**limits)
         simulation.restore(simulation.checkpoint())

@@ -84,3 +84,10 @@ def edges_of(lengths: np.ndarray) -> np.ndarray:
             for ends in product((0.0, 1.0), repeat=2)
         ]
     )
+
+
+def segments(lines: np.ndarray) -> np.ndarray:
+    """(M, 7) lines (M, 2, 3), from end to end, in the same form."""
+    along = lines[:, 1] - lines[:, 0]
+    lengths = np.linalg.norm(along, axis=1, keepdims=True)
+    return np.hstack([lines[:, 0], along / lengths, lengths])

@@ -10,14 +10,21 @@ _MARGIN = 0.02  # of the picture's shorter side
 INK = (0.16, 0.16, 0.16)
 
 
+def scale_of(lengths: np.ndarray, size: tuple[int, int]) -> tuple[float, np.ndarray]:
+    """Pixels per length of a container of `lengths` (2,) in the middle of a picture of `size` (W, H), and
+    where its corner is (2,)."""
+    width, height = size
+    margin = max(2.0, _MARGIN * min(size))
+    scale = float(min((width - 2 * margin) / lengths[0], (height - 2 * margin) / lengths[1]))
+    return scale, 0.5 * (np.array([width, height]) - scale * np.asarray(lengths))
+
+
 class Canvas:
     """A white picture of `size` (W, H) pixels, with a container of `lengths` (2,) in the middle."""
 
     def __init__(self, lengths: np.ndarray, size: tuple[int, int]) -> None:
         width, height = size
-        margin = max(2.0, _MARGIN * min(size))
-        self.scale = float(min((width - 2 * margin) / lengths[0], (height - 2 * margin) / lengths[1]))
-        self.corner = 0.5 * (np.array([width, height]) - self.scale * np.asarray(lengths))
+        self.scale, self.corner = scale_of(lengths, size)
         self.image = np.ones((height, width, 3))
         self._height = height
 

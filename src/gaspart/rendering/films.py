@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import errno
-from collections.abc import Iterator
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,10 +11,12 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.files import Kind, begins_with, output_path, writing
-from gaspart.rendering.particles import FASTEST, colours_of, particles_of
+from gaspart.rendering.frames import opened, particles_of
+from gaspart.rendering.particles import FASTEST, colours_of
 from gaspart.rendering.pictures import SIZE, checked_size, picture
 from gaspart.scene.validation import count_of, number
-from gaspart.trajectory.run import open_trajectory
+from gaspart.simulation.simulation import Simulation
+from gaspart.state.state import State
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,13 +38,17 @@ def film(
     colour: str | np.ndarray = "speed",
     frames_per_second: float = 25.0,
     trail: int | None = None,
+    clock: bool = False,
     overwrite: bool = False,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Path:
     """Write all frames of a trajectory (a path, or an open one) as a film, .mp4 or .gif; returns its path.
 
     size, colour as in `render`; all frames have one scale of speeds. For .mp4 the size is rounded down to
     even numbers. trail: the index of a disc whose path is drawn (interrupted where it crosses a periodic
-    face). A film at `path` is replaced only with `overwrite`, any other file never.
+    face). clock: whether the time is written into the pictures, and for discs a bar of a round length. A
+    film at `path` is replaced only with `overwrite`, any other file never. progress: is called with the
+    number of pictures so far and of all.
 
     Raises SceneError for another suffix, a file that cannot be read or written, and for arguments that
     `render` refuses.
@@ -58,18 +63,39 @@ def film(
     if path.suffix == ".mp4":
         size = (size[0] // 2 * 2, size[1] // 2 * 2)
     to = _gif if path.suffix == ".gif" else _mp4
-    with _opened(trajectory) as opened:
-        shown = _pictures(opened, size, colour, trail)
+    with opened(trajectory) as source:
+        if isinstance(source, Simulation | State):
+            raise SceneError(
+                "trajectory", source, "must be a path or an open trajectory: a film needs frames"
+            )
+        shown = _pictures(source, size, colour, trail)
+        if clock:
+            shown = _labelled(shown, source, size)
+        if progress is not None:
+            shown = _reported(shown, source.sizes["frame"], progress)
         with writing(path, KINDS[path.suffix], overwrite) as scratch:
             to(scratch, shown, size, rate)
     return path
 
 
-def _opened(trajectory: str | Path | xr.Dataset) -> AbstractContextManager[xr.Dataset]:
-    """A trajectory, to be closed only if it was opened here."""
-    if isinstance(trajectory, (str, Path)):
-        return open_trajectory(trajectory)
-    return nullcontext(trajectory)
+def _labelled(
+    shown: Iterator[np.ndarray], trajectory: xr.Dataset, size: tuple[int, int]
+) -> Iterator[np.ndarray]:
+    from gaspart.rendering.discs import scale_of
+    from gaspart.rendering.labels import labelled
+
+    lengths = particles_of(trajectory, 0).lengths
+    pixels = scale_of(lengths, size)[0] if len(lengths) == 2 else None
+    for image, time in zip(shown, trajectory["time"].values, strict=True):
+        yield labelled(image, float(time), pixels)
+
+
+def _reported(
+    shown: Iterator[np.ndarray], total: int, progress: Callable[[int, int], None]
+) -> Iterator[np.ndarray]:
+    for done, image in enumerate(shown, start=1):
+        yield image
+        progress(done, total)
 
 
 def _pictures(

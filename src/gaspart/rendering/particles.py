@@ -1,20 +1,13 @@
-"""The particles in a picture, from a state or a frame of a trajectory, and their colours."""
+"""The particles in a picture and their colours."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.rendering.style import COLOURS
-from gaspart.scene.validation import count_of
-from gaspart.state.state import State
-from gaspart.yaml_text import parse_yaml
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 COLOURINGS = ("speed", "species")
 FASTEST = 2.0
@@ -24,7 +17,8 @@ FASTEST = 2.0
 @dataclass(frozen=True)
 class DrawnParticles:
     """positions (N, d), radii (N,), species (N,), speeds (N,); lengths (d,) of the container; walls
-    (M, 2, 2), the ends of the interior ones."""
+    (M, 2, d), the ends of the interior ones, of plates those of their sides; periodic, whether each axis is.
+    """
 
     positions: np.ndarray
     radii: np.ndarray
@@ -32,6 +26,7 @@ class DrawnParticles:
     speeds: np.ndarray
     lengths: np.ndarray
     walls: np.ndarray
+    periodic: tuple[bool, ...] = (False, False, False)
 
     @property
     def dimension(self) -> int:
@@ -42,32 +37,6 @@ class DrawnParticles:
     def root_mean_square_speed(self) -> float:
         """Of all particles; 0 if there are none."""
         return float(np.sqrt((self.speeds**2).mean())) if len(self.speeds) else 0.0
-
-
-def particles_of(source: State | xr.Dataset, frame: int = -1) -> DrawnParticles:
-    """The particles of a `State`, or of a frame (counted from the end if negative) of an open trajectory.
-
-    Raises SceneError for a missing frame. A state has no interior walls.
-    """
-    if isinstance(source, State):
-        speeds = np.sqrt((source.velocities**2).sum(axis=1))
-        walls = np.zeros((0, 2, 2))
-        return DrawnParticles(source.positions, source.radii, source.species, speeds, source.lengths, walls)
-    frames = source.sizes["frame"]
-    if not -frames <= count_of("frame", frame, least=-frames) < frames:
-        raise SceneError("frame", frame, f"the trajectory has {frames}, counted from 0")
-    shown = source.isel(frame=frame)
-    positions = shown["coordinates"].values.astype(float)
-    velocities = shown["velocities"].values.astype(float)
-    walls = parse_yaml(source.attrs["scene"]).get("walls", ())
-    return DrawnParticles(
-        positions=positions,
-        radii=source["radius"].values,
-        species=source["type"].values,
-        speeds=np.sqrt((velocities**2).sum(axis=1)),
-        lengths=shown["cell_lengths"].values[: positions.shape[1]],
-        walls=np.array([[wall["start"], wall["end"]] for wall in walls]).reshape(-1, 2, 2),
-    )
 
 
 def colours_of(

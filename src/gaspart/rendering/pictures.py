@@ -1,46 +1,21 @@
-"""One picture of particles, as an array of pixels."""
+"""A picture of particles in given colours, as an array of pixels."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from itertools import product
 
 import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.files import Kind, begins_with
 from gaspart.rendering.camera import camera_for
-from gaspart.rendering.particles import DrawnParticles, colours_of, particles_of
+from gaspart.rendering.particles import DrawnParticles
 from gaspart.scene.validation import count_of
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from gaspart.state.state import State
 
 PICTURE = Kind("a PNG picture", begins_with(b"\x89PNG\r\n\x1a\n"))
 SIZE = (1000, 750)
 LARGEST_SIDE = 20_000
-
-
-def render(
-    source: State | xr.Dataset,
-    frame: int = -1,
-    size: tuple[int, int] = SIZE,
-    colour: str | np.ndarray = "speed",
-    fastest: float | None = None,
-) -> np.ndarray:
-    """A picture of a `State`, or of a frame of an open trajectory (the last one): uint8, (H, W, 3).
-
-    Spheres are drawn in perspective, with light and shadow, over the container's floor (z = 0); discs from
-    above, with all walls. size: (W, H) pixels. colour: "speed", from dark at rest to bright at the speed
-    `fastest` (twice the root-mean-square one) and above; "species"; or an array (N, 3) of red, green and
-    blue from 0 to 1. The same particles give the same pixels.
-
-    Raises SceneError for a missing frame, an impossible size or an unknown colouring.
-    """
-    particles = particles_of(source, frame)
-    return picture(particles, checked_size(size), colours_of(particles, colour, fastest))
 
 
 def checked_size(size: tuple[int, int]) -> tuple[int, int]:
@@ -62,7 +37,8 @@ def picture(
         from gaspart.rendering.tracer import trace
 
         camera = camera_for(particles.lengths, *size)
-        image, _ = trace(particles.positions, particles.radii, colours, particles.lengths, camera, size)
+        lengths, walls = particles.lengths, particles.walls
+        image, _ = trace(particles.positions, particles.radii, colours, lengths, camera, size, walls)
     else:
         image = _plane(particles, size, colours, lines)
     return np.rint(255.0 * image).astype(np.uint8)
@@ -74,9 +50,26 @@ def _plane(
     from gaspart.rendering.discs import Canvas
 
     canvas = Canvas(particles.lengths, size)
-    canvas.discs(particles.positions, particles.radii, colours)
+    shown, shifts = _images(particles)
+    canvas.discs(particles.positions[shown] + shifts, particles.radii[shown], colours[shown])
     x, y = particles.lengths
     canvas.line(np.array([[0.0, 0.0], [x, 0.0], [x, y], [0.0, y], [0.0, 0.0]]))
     for line in (*particles.walls, *lines):
         canvas.line(line)
     return canvas.image
+
+
+def _images(particles: DrawnParticles) -> tuple[np.ndarray, np.ndarray]:
+    """Indices (M,) of particles and shifts (M, d): all discs, then the periodic images of those that reach
+    over a periodic face."""
+    radii, lengths = particles.radii[:, None], particles.lengths
+    steps = [(0, -1, 1) if periodic else (0,) for periodic in particles.periodic[: particles.dimension]]
+    indices, shifts = [], []
+    for step in product(*steps):
+        shift = np.array(step) * lengths
+        places = particles.positions + shift
+        inside = ((places > -radii) & (places < lengths + radii)).all(axis=1)
+        chosen = np.flatnonzero(inside) if any(step) else np.arange(len(radii))
+        indices.append(chosen)
+        shifts.append(np.broadcast_to(shift, (len(chosen), len(lengths))))
+    return np.concatenate(indices), np.concatenate(shifts)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike
 
 if TYPE_CHECKING:  # the colours are used without matplotlib
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.container import ErrorbarContainer
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
@@ -32,6 +34,9 @@ REFERENCE = "#0072b2"
 """Colour of the curve that the measurement is compared with."""
 GREY = "#8c8c8c"
 """For guides: zero lines, bands, limits."""
+_SHORTEST, _SHORT = 0.5, 2.2
+"""Decades of a logarithmic axis: below the first it has ticks like a linear one, up to the second also at
+twice and five times a power of ten."""
 
 RULES: dict[Any, Any] = {
     "figure.figsize": (COLUMN, 2.6),
@@ -169,5 +174,24 @@ def save(figure: Figure, path: str | Path) -> None:
 
     kind = Path(path).suffix.lstrip(".")
     metadata = {"Date": None} if kind == "svg" else {"Software": None}
+    for panel in figure.axes:
+        for axis in (panel.xaxis, panel.yaxis):
+            _number_ticks(axis)
     with whole_file(path) as partial:
         figure.savefig(partial, format=kind, metadata=metadata)
+
+
+def _number_ticks(axis: Axis) -> None:
+    """Ticks of a logarithmic axis whose numbers do not run into each other: 1, 2, 5, 10 on a short one,
+    powers of ten alone on a long one; those that a figure has chosen remain."""
+    from matplotlib.ticker import AutoLocator, FixedLocator, FuncFormatter, LogLocator, NullFormatter
+
+    if axis.get_scale() != "log" or isinstance(axis.get_major_locator(), FixedLocator):
+        return
+    axis.set_minor_formatter(NullFormatter())
+    low, high = sorted(map(float, axis.get_view_interval()))
+    decades = math.log10(high / low)
+    if decades > _SHORT or low < 1e-4 or high > 1e5:
+        return
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)) if decades > _SHORTEST else AutoLocator())
+    axis.set_major_formatter(FuncFormatter("{:g}".format))

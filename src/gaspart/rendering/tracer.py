@@ -11,7 +11,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from gaspart.kernels.ray_tracing import EDGE, FLOOR, NOTHING, SPHERE, list_spheres, refine, render_once
-from gaspart.rendering.camera import Camera, edges_of
+from gaspart.rendering.camera import Camera, edges_of, segments
 
 __all__ = ["EDGE", "FLOOR", "NOTHING", "SPHERE", "cells", "trace"]
 _GAMMA = 2.2
@@ -24,11 +24,12 @@ def trace(
     lengths: np.ndarray,
     camera: Camera,
     size: tuple[int, int],
+    lines: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """The picture (H, W, 3), from 0 to 1, and the kind of object in the middle of each pixel (H, W).
 
     positions (N, 3), radii (N,), colours (N, 3); lengths (3,) of the container, whose lower face is the
-    floor; size: (W, H) pixels.
+    floor; size: (W, H) pixels; lines (M, 2, 3), drawn like the container's edges.
     """
     spheres = np.column_stack([positions, radii]).astype(float)
     grid = cells(spheres, np.asarray(lengths, dtype=float))
@@ -36,7 +37,10 @@ def trace(
     image, shown = np.empty((height, width, 3)), np.empty((height, width), dtype=np.int64)
     view = np.array([camera.eye, camera.forward, camera.right, camera.up, camera.light])
     scales = (camera.half_width, camera.half_height, camera.near, camera.far)
-    scene = (spheres, np.asarray(colours, dtype=float) ** _GAMMA, edges_of(lengths), np.array(lengths, float))
+    edges = edges_of(lengths)
+    if lines is not None and len(lines):
+        edges = np.vstack([edges, segments(lines)])
+    scene = (spheres, np.asarray(colours, dtype=float) ** _GAMMA, edges, np.array(lengths, float))
     render_once(image, shown, view, scales, scene, grid)
     around = sliding_window_view(np.pad(shown, 1, mode="edge"), (3, 3))
     mixed = (around != shown[..., None, None]).any(axis=(2, 3))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from gaspart.scene.keys import between, declared, validate
+from gaspart.scene.keys import NOT_NEGATIVE, between, declared, validate
 
 
 @dataclass(frozen=True)
@@ -26,6 +26,15 @@ class Restitution:
         ),
     )
 
+    contact_duration: float | None = field(
+        default=None,
+        metadata=declared(
+            NOT_NEGATIVE,
+            "a contact of a particle less than this after its last one is elastic; 0: none is; default: "
+            "under gravity 0.01 of the time scale of a fall through the smallest diameter, else 0",
+        ),
+    )
+
     def __post_init__(self) -> None:
         validate(self)
 
@@ -33,6 +42,11 @@ class Restitution:
     def smooth_and_elastic(self) -> bool:
         """Whether contacts are those of a scene without a Restitution."""
         return self.normal == 1.0 and self.tangential == -1.0
+
+    @property
+    def dissipative(self) -> bool:
+        """Whether contacts may lose energy."""
+        return self.normal < 1.0 or -1.0 < self.tangential < 1.0
 
     @property
     def rough(self) -> bool:

@@ -22,11 +22,13 @@ from gaspart.scene.keys import FLAG, VECTOR, checked_by_class, declared, instanc
 from gaspart.scene.limits import Nearby, check_room
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.species import SHARED, Body, Species
+from gaspart.scene.thermostat import Thermostat, check_thermostat
 from gaspart.scene.validation import MOST_BODIES, from_mapping, vector
 from gaspart.scene.walls import Plate, Wall
 from gaspart.yaml_text import read_yaml, write_yaml
 
 _TOUCH = 1e-12  # of a radius: overlap with a wall that rounding may show for a particle that touches it
+_CONTACT = 0.01  # of sqrt(d/g): the default duration of a contact
 _ABSENT = ("fixed", "walls", "faces")  # not written into a file unless there
 _WALLS = "a Wall needs a container of two dimensions, a Plate one of three"
 
@@ -75,6 +77,13 @@ class Scene:
         metadata=declared(checked_by_class(FACES_SCHEMA), "kinds of the container's faces; others are hard"),
     )
 
+    thermostat: Thermostat | None = field(
+        default=None,
+        metadata=declared(
+            instance_of(Thermostat), "random kicks that give energy; without it there are none"
+        ),
+    )
+
     def __post_init__(self) -> None:
         validate(self)
         if self.count > MOST_BODIES:
@@ -85,6 +94,7 @@ class Scene:
             raise SceneError("centres_to_walls", True, rule)
         self._check_walls()
         check_faces(self)
+        check_thermostat(self)
         if self.vibrates and self.restitution is not None and self.restitution.normal != 1.0:
             rule = "must be 1 where particles vibrate: energy would be lost twice"
             raise SceneError("restitution.normal", self.restitution.normal, rule)
@@ -167,6 +177,18 @@ class Scene:
     def kinds(self) -> tuple[Species | Body, ...]:
         """All that has a radius and a mass: species and single particles."""
         return (*self.species, *self.bodies)
+
+    @property
+    def contact_duration(self) -> float:
+        """The time after a contact of a particle within which its next ones are elastic (`Restitution`), 0 if
+        all dissipate. By default 0.01 sqrt(d/g), d the smallest diameter, if there is gravity g."""
+        law = self.restitution
+        if law is None or not law.dissipative:
+            return 0.0
+        if law.contact_duration is not None:
+            return law.contact_duration
+        strength = math.hypot(*(self.gravity or (0.0,)))
+        return _CONTACT * math.sqrt(2.0 * self.smallest_radius / strength) if strength > 0.0 else 0.0
 
     @property
     def rough(self) -> bool:
@@ -260,6 +282,8 @@ class Scene:
             parts["container"] = from_mapping(Container, parts["container"], "container")
             if parts.get("restitution") is not None:
                 parts["restitution"] = from_mapping(Restitution, parts["restitution"], "restitution")
+            if parts.get("thermostat") is not None:
+                parts["thermostat"] = from_mapping(Thermostat, parts["thermostat"], "thermostat")
             if isinstance(parts.get("faces"), dict):
                 faces = parts["faces"].items()
                 parts["faces"] = {name: surface_from_dict(face, f"faces.{name}") for name, face in faces}

@@ -12,7 +12,7 @@ from dataclasses import fields
 from itertools import islice
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from gaspart.errors import SceneError
+from gaspart.errors import SceneError, unknown_word
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -146,7 +146,7 @@ def from_mapping(cls: type[T], mapping: object, where: str) -> T:
     known = {f.name: f for f in fields(cls)}
     for key in mapping:
         if key not in known:
-            raise SceneError(f"{where}.{key}", mapping[key], f"unknown key; known are {', '.join(known)}")
+            raise SceneError(f"{where}.{key}", mapping[key], unknown_word(key, known))
     for name, field in known.items():
         if name not in mapping and field.default is field.default_factory:  # both MISSING: no default
             raise SceneError(f"{where}.{name}", None, "is required")

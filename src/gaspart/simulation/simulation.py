@@ -111,16 +111,25 @@ class Simulation:
             raise
 
     def advance(
-        self, duration: float | None = None, max_events: int | None = None, until: float | None = None
+        self,
+        duration: float | None = None,
+        max_events: int | None = None,
+        until: float | None = None,
+        max_work: int | None = None,
     ) -> None:
         """Advance by `duration`, to the time `until`, or by `max_events` collisions and wall hits, whichever
         comes first. The time-stepped engine stops at the last complete step not after the target.
+
+        max_work (event-driven engine): stop as well after about so many events, crossings of boxes and of
+        periodic faces, and predictions, so that a call takes a bounded time however rare events are.
 
         Raises SceneError, with nothing changed, for no target, one in the past, or one that is not a number;
         `until` may be infinite together with max_events.
         """
         if max_events is not None:
             max_events = count_of("max_events", max_events)
+        if max_work is not None:
+            max_work = count_of("max_work", max_work, least=1)
         if until is not None and not (until == math.inf and max_events is not None):
             until = number("until", until, "must be a finite number, or be given with max_events")
             if until < self.time:
@@ -134,7 +143,7 @@ class Simulation:
             until = math.inf
         before, self._advanced = self._advanced, True
         try:
-            self._dynamics.advance(until, max_events, self._log)
+            self._dynamics.advance(until, max_events, self._log, max_work)
         except SceneError:  # the engine refused the target
             self._advanced = before
             raise

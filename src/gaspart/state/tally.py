@@ -16,7 +16,9 @@ class Tally:
     heat given to each of them by particles that it re-emitted thermally; virial_sum: sum of
     |dr.dp| over collisions; pair_tests: pairs examined; box_visits: boxes searched; crossings of box
     boundaries; worst_contact: largest |r^2/sigma^2 - 1| at a contact; dissipated_energy: energy lost in
-    inelastic contacts.
+    inelastic contacts; elastic_contacts, of pairs and with walls, that were elastic since an earlier one of
+    the same particle had not ended (`Restitution.contact_duration`), and retained_energy, what they would
+    have dissipated; thermostat_energy: energy given by kicks.
 
     The time-stepped engine also reports its errors: steps; overlaps_left, pairs that still overlap and
     approach when a step ends; deepest_overlap met, as a fraction of the contact distance;
@@ -34,6 +36,9 @@ class Tally:
     crossings: int = 0
     worst_contact: float = 0.0
     dissipated_energy: float = 0.0
+    elastic_contacts: int = 0
+    retained_energy: float = 0.0
+    thermostat_energy: float = 0.0
     steps: int = 0
     overlaps_left: int = 0
     deepest_overlap: float = 0.0

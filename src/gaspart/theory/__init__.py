@@ -67,6 +67,8 @@ from gaspart.theory.geometry import (
 )
 from gaspart.theory.granular import (
     cooling_rate,
+    driven_cumulant,
+    driven_temperature,
     fourth_cumulant,
     haff_time,
     rough_matrix,
@@ -95,6 +97,7 @@ from gaspart.theory.insertion import (
     insertion_saturation,
     insertion_saturation_uncertainty,
 )
+from gaspart.theory.modes import diffusion_modes, sound_attenuation, velocity_autocorrelation_modes
 from gaspart.theory.potential import excess_chemical_potential, packing_fraction_at
 from gaspart.theory.speeds import (
     KURTOSIS_RELAXATION_RATE,
@@ -160,8 +163,11 @@ __all__ = [
     "contact_value",
     "cooling_rate",
     "crystal_finite_size_correction",
+    "diffusion_modes",
     "dilute_fourier_flux",
     "displaced_area",
+    "driven_cumulant",
+    "driven_temperature",
     "enskog_bulk_viscosity",
     "enskog_conductivity",
     "enskog_diffusion",
@@ -213,12 +219,14 @@ __all__ = [
     "rough_temperatures",
     "santos_haro_yuste",
     "scaled_particle",
+    "sound_attenuation",
     "speed_of_sound",
     "speedy_crystal",
     "surface_tension",
     "surface_tension_uncertainty",
     "tagged_diffusion",
     "van_der_waals",
+    "velocity_autocorrelation_modes",
     "velocity_autocorrelation_tail",
     "velocity_decay_rate",
     "virial_coefficients",

@@ -8,6 +8,7 @@ before clustering.
 import numpy as np
 
 from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
+from gaspart.theory.enskog import collision_rate
 
 
 def fourth_cumulant(restitution: Numbers, dimension: int) -> Values:
@@ -45,6 +46,34 @@ def haff_time(restitution: Numbers, dimension: int, collision_rate: Numbers) -> 
     """
     slowed = 1.0 - fourth_cumulant(restitution, dimension) / 16.0
     return 2.0 / (cooling_rate(restitution, dimension) * slowed * collision_rate)
+
+
+def driven_cumulant(restitution: Numbers, dimension: int) -> Values:
+    """a2 of the smooth inelastic gas that white noise heats, in its steady state.
+
+    a2 = 16 (1-e) (1-2e^2) / (73 + 56 d - (24 d + 105) e + 30 e^2 (1-e)); van Noije and Ernst, Granular Matter
+    1, 57 (1998) (recalled). Derived again: the moments mu_2 ~ 1 + 3 a2/16 and mu_4 ~ d + 3/2 + e^2 + a2
+    (3 (10 d + 39 + 10 e^2)/32 + (d-1)/(1-e)) give it from mu_4 = (d+2) mu_2, and `fourth_cumulant` from mu_4
+    = (d+2) (1 + a2) mu_2.
+    """
+    e, d = _checked_restitution(restitution), checked_dimension(dimension)
+    below = 73.0 + 56.0 * d - (24.0 * d + 105.0) * e + 30.0 * e**2 * (1.0 - e)
+    return 16.0 * (1.0 - e) * (1.0 - 2.0 * e**2) / below
+
+
+@checked
+def driven_temperature(
+    restitution: Numbers, dimension: int, power: Numbers, packing_fraction: Numbers
+) -> Values:
+    """The steady temperature of such a gas of mass 1 and diameter 1, if each particle is given `power`.
+
+    Contacts take (1 - e^2)/2 nu T (1 + 3 a2/16) per particle and time, nu = nu_1 sqrt(T) Enskog's rate of the
+    elastic gas: T^(3/2) = 2 power / ((1 - e^2) nu_1 (1 + 3 a2/16)). Infinite for e = 1.
+    """
+    rate = collision_rate(packing_fraction, dimension)
+    e = _checked_restitution(restitution)
+    lost = 0.5 * (1.0 - e**2) * rate * (1.0 + 0.1875 * driven_cumulant(e, dimension))
+    return np.divide(power, lost) ** (2.0 / 3.0)
 
 
 def rough_matrix(inertia: float, tangential: float, normal: float = 1.0) -> np.ndarray:

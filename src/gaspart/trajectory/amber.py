@@ -24,8 +24,8 @@ NOTE = (
     "Reduced units: lengths and times are in the scene's own units, masses relative to the reference "
     "species, k_B = 1. Picosecond and angstrom stand for these, because readers of AMBER files insist on it."
 )
-COUNTERS = tuple(field.name for field in fields(Tally) if field.name != "time")
-"""Sums since time 0, one variable each."""
+_STEPS = ("steps", "overlaps_left", "deepest_overlap", "multiple_contacts", "rebuilds")
+"""Of the time-stepped engine; in other files they would be zero."""
 
 _PER_FACE = tuple(field.name for field in fields(Tally) if field.type == "np.ndarray")
 _MAGIC = b"CDF\x02"  # a netCDF-3 file of 64-bit offsets
@@ -38,6 +38,12 @@ BOOKKEEPING = ("header_bytes", "header_crc32", "frame_bytes")
 MOST_FRAMES = 2**31 - 1
 
 
+def counters(engine: str) -> tuple[str, ...]:
+    """Sums since time 0 that a file of this engine has, one variable each."""
+    absent = ("time",) if engine == "step" else ("time", *_STEPS)
+    return tuple(field.name for field in fields(Tally) if field.name not in absent)
+
+
 def face_names(dimension: int, walls: int = 0) -> list[str]:
     """(2d + walls,) names of faces and interior walls, in the order of the counters."""
     faces = [f"{axis} {end}" for axis in "xyz"[:dimension] for end in ("low", "high")]
@@ -48,7 +54,7 @@ class Layout:
     """The variables of one frame, in their order in the file: name -> (type, dimensions, attributes).
 
     count: particles in the file; displacements, spins, vibrations: whether the file has these; walls: the
-    number of interior walls.
+    number of interior walls; engine: by whose name the counters are chosen.
     """
 
     def __init__(
@@ -59,6 +65,7 @@ class Layout:
         walls: int = 0,
         spins: bool = False,
         vibrations: bool = False,
+        engine: str = "step",
     ) -> None:
         self.sizes = {
             "spatial": 3,
@@ -77,7 +84,7 @@ class Layout:
             "kinetic_energy": (">f8", (), {"long_name": "kinetic energy of all bodies"}),
             **{
                 name: (">f8", ("face",) if name in _PER_FACE else (), faces if name in _PER_FACE else {})
-                for name in COUNTERS
+                for name in counters(engine)
             },
             "coordinates": (">f4", vectors, {"units": "angstrom"}),
             "velocities": (">f4", vectors, {"units": "angstrom/picosecond"}),

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.files import Kind, begins_with, output_path, writing
+from gaspart.files import Kind, begins_with, descriptor_path, output_path, writing
 from gaspart.state.insertion import per_body
 from gaspart.trajectory.recipe import opened, read_recipe
 
@@ -89,7 +89,7 @@ def _write_gsd(path: Path, snapshot: Snapshot) -> None:
     frame.particles.velocity = snapshot.velocities
     frame.particles.diameter = snapshot.diameters
     frame.particles.mass = snapshot.masses
-    with gsd.hoomd.open(str(path), "w") as file:
+    with path.open("rb") as scratch, gsd.hoomd.open(descriptor_path(scratch), "w") as file:
         file.append(frame)
 
 

@@ -18,12 +18,16 @@ _PACKAGES = ("numpy", "numba", "netCDF4")
 def _git(*arguments: str) -> str | None:
     """Output of git about the folder of this package; None if git is missing or fails.
 
+    Git takes no optional locks: one that is killed would leave `.git/index.lock`, which blocks later commits.
+    For `git describe --dirty` a lock is not optional.
+
     Raises OSError if git could not be started for lack of file descriptors or memory: the contents of a
     trajectory must not depend on that.
     """
     command = ["git", "-C", str(Path(__file__).parent), *arguments]
+    environment = {**os.environ, "LC_ALL": "C", "GIT_OPTIONAL_LOCKS": "0"}
     try:
-        done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "LC_ALL": "C"})
+        done = subprocess.run(command, capture_output=True, text=True, env=environment)
     except (FileNotFoundError, PermissionError):
         return None
     if done.returncode == 0:
@@ -42,7 +46,10 @@ def git_revision() -> str:
     """
     if _git("ls-files", "--error-unmatch", Path(__file__).with_name("__init__.py").name) is None:
         return ""
-    return _git("describe", "--always", "--abbrev=40", "--exclude=*", "--dirty=-modified") or ""
+    commit, edited = _git("rev-parse", "HEAD"), _git("status", "--porcelain", "--untracked-files=no")
+    if commit is None or edited is None:
+        return ""
+    return f"{commit}-modified" if edited else commit
 
 
 @cache

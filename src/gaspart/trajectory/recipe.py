@@ -15,6 +15,7 @@ import numpy as np
 
 from gaspart.engines import EventDriven, TimeStepped, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
+from gaspart.files import descriptor_path
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of, number
 from gaspart.state.random import stream
@@ -86,7 +87,7 @@ class Recipe:
         """The variables of a frame."""
         scene, walls = self.scene, len(self.scene.walls)
         kept = self.displacements, walls, scene.rough, scene.vibrates
-        return amber.Layout(self.stored_count, scene.dimension, *kept)
+        return amber.Layout(self.stored_count, scene.dimension, *kept, self.engine.name)
 
     def attributes(self) -> dict:
         """The recipe as the file's attributes, from which `read_recipe` restores it."""
@@ -168,10 +169,10 @@ def open_netcdf(path: Path) -> netCDF4.Dataset:
 
 
 def open_descriptor(file: BinaryIO) -> netCDF4.Dataset:
-    """An open file as a netCDF4.Dataset, by its descriptor, because the library accepts UTF-8 names only."""
+    """An open file as a netCDF4.Dataset."""
     import netCDF4
 
-    return netCDF4.Dataset(f"/proc/self/fd/{file.fileno()}")
+    return netCDF4.Dataset(descriptor_path(file))
 
 
 @contextmanager

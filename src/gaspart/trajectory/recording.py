@@ -24,7 +24,7 @@ Progress = Callable[[float, float, int], None]
 
 _STRETCH = 0.1  # seconds of work between two looks at the clock and at signals, to within a factor of 2
 _PROGRESS = 0.5  # seconds between two reports of progress
-_FIRST_STRETCH = {"event": 256, "step": 1}  # events, steps
+_FIRST_STRETCH = {"event": 256, "step": 1}  # events with crossings and predictions, steps
 
 
 class Recording:
@@ -114,7 +114,7 @@ class Recording:
             return
         until = frame * recipe.sample_interval
         while simulation.time < until:
-            self._advance(until, until=until, max_events=self._stretch)
+            self._advance(until, until=until, max_work=self._stretch)
             yield
         simulation.advance(until=until)  # remaining events at exactly this time
 
@@ -147,7 +147,7 @@ class Recording:
             "cell_lengths": lengths,
             "cell_angles": np.full(3, 90.0),
             "kinetic_energy": state.kinetic_energy,
-            **{name: getattr(tally, name) for name in amber.COUNTERS},
+            **{name: getattr(tally, name) for name in amber.counters(self._recipe.engine.name)},
             "coordinates": state.positions[followed],
             "velocities": state.velocities[followed],
             **{name: values[followed] for name, values in inner.items()},

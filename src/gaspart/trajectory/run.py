@@ -55,7 +55,8 @@ def partial_path(path: Path) -> Path:
 def open_trajectory(path: str | Path) -> xr.Dataset:
     """A trajectory, or the finished part of a `.partial` one, as an xarray.Dataset, read as it is used.
 
-    Dimensions frame, atom, spatial (d) and face (2d); time (frame), radius and type (atom) are coordinates.
+    Dimensions frame, atom, spatial (d) and face (2d); time (frame), radius and type (atom) are coordinates,
+    and plots over frames have the time as their axis.
     Of discs that spin, `spins` is (frame, atom); of spheres (frame, atom, spatial).
     Lengths and times are in the scene's units, counters cumulative since time 0. Attributes state the scene
     (YAML), engine and seed (JSON), and what follows from the scene: count, dimension, packing_fraction,
@@ -78,6 +79,7 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     data = data.drop_vars(["cell_spatial", "cell_angular", "checksum"])
     faces = amber.face_names(scene.dimension, len(scene.walls))
     data = data.assign_coords(spatial=list("xyz"[: scene.dimension]), face=faces)
+    data = data.assign_coords(frame=("frame", data["time"].values, {"long_name": "time", "units": "time"}))
     for key, variable in data.variables.items():
         name = str(key)
         unit = variable.attrs.get("units", "1")
@@ -130,13 +132,18 @@ def resume(path: str | Path, checkpoint_seconds: float = 30.0, progress: Progres
     """
     path = Path(path)
     partial = partial_path(path)
-    if not partial.exists():
+    try:
+        with _writing(path):
+            wanted = read_recipe(partial)
+            if not begun_as(partial, wanted):
+                rule = "was begun by another version of gaspart, Python or a package: it could end otherwise"
+                raise SceneError("path", str(partial), rule)
+    except SceneError:
+        if partial.exists():
+            raise
+        # not before: another process may finish the run at any moment
         rule = "is already complete" if path.exists() else f"there is no {partial.name} to continue"
-        raise SceneError("path", str(path), rule)
-    wanted = read_recipe(partial)
-    if not begun_as(partial, wanted):
-        rule = "was begun by another version of gaspart, Python or a package; it could end in other bits"
-        raise SceneError("path", str(partial), rule)
+        raise SceneError("path", str(path), rule) from None
     return _carry_out(wanted, path, checkpoint_seconds, progress, overwrite=False)
 
 
@@ -167,12 +174,18 @@ def _is_finished(wanted: Recipe, path: Path, overwrite: bool) -> bool:
     exists = may_replace(path, TRAJECTORY, overwrite=True)
     if exists and _holds(path, wanted, frames=wanted.frames):
         return True
-    begun = may_replace(partial, _BEGUN, overwrite=True)
-    continued = not begun or _is_blank(partial) or begun_as(partial, wanted)
-    if (exists or not continued) and not overwrite:
+    if (exists or not _can_continue(partial, wanted)) and not overwrite:
         rule = "exists, of another run or version, or damaged; move it away, or overwrite it (--force)"
         raise SceneError("path", str(path if exists else partial), rule)
     return False
+
+
+def _can_continue(partial: Path, wanted: Recipe) -> bool:
+    """Whether nothing was begun, or this run. Raises SceneError for a file of another kind."""
+    with suppress(FileNotFoundError):  # another process has finished it just now
+        begun = may_replace(partial, _BEGUN, overwrite=True)
+        return not begun or _is_blank(partial) or begun_as(partial, wanted) or not partial.exists()
+    return True
 
 
 def _holds(path: Path, wanted: Recipe, frames: int) -> bool:

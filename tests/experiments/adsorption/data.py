@@ -13,7 +13,7 @@ def _row(kind, **values):
     row = dict.fromkeys(
         ("temperature", "depth", "width", "momentum", "ratio", "ratio_error", "log_ratio", "log_ratio_error",
          "length", "length_error", "coverage", "coverage_error", "gas_density", "activity", "activity_error",
-         "filling", "filling_error", "layer_uncertainty"), np.nan,
+         "filling", "filling_error", "filling_by_activity", "filling_by_activity_error"), np.nan,
     )  # fmt: skip
     flux = theory.flux_density(SPEED) * (SPEED > 1.0 if kind == "sticky" else 1.0)
     slow = 0.0 if kind == "sticky" else theory.slow_flux_share(1.0)
@@ -37,13 +37,14 @@ def walls(power=0.0, coverage_power=0.0):
                     length=length, length_error=0.002 * length,
                 )
             )  # fmt: skip
-    for activity in (0.1, 1.0, 10.0):
+    for activity, deviation in ((0.1, 1.0), (1.0, -1.2), (10.0, 0.5)):
         coverage = float(packing_fraction_at(activity, 2))
         rows.append(
             _row(
                 "layer", depth=5.0, width=0.1, coverage=coverage, coverage_error=0.01 * coverage,
-                activity=activity, activity_error=0.02 * activity, filling=1.0, filling_error=0.01,
-                layer_uncertainty=0.005,
+                activity=activity, activity_error=0.02 * activity, filling=1.0 + 0.004 * deviation,
+                filling_error=0.004,
+                filling_by_activity=0.985, filling_by_activity_error=0.004,
             )
         )  # fmt: skip
     for density in (0.01, 0.02, 0.05):

@@ -9,7 +9,7 @@ from gaspart.theory.adsorption import flux_density, slow_flux_share, well_ratio
 from gaspart.trajectory.run import run
 
 SCENES = Path(__file__).parents[3] / "config/scenes"
-SETTINGS = {"blocks": 10, "near": 0.5, "bins": 20}
+SETTINGS = {"blocks": 10, "layer_blocks": 10, "near": 0.5, "bins": 20}
 
 
 def point(name, folder="results/points", **settings):

@@ -84,7 +84,8 @@ def _curves(eta, dimension, interval, lags):
 
 ABSENT = dict.fromkeys(
     ("integral_difference", "integral_difference_error", "diffusion", "diffusion_error", "correction",
-     "correction_uncertainty", "logarithmic_slope", "logarithmic_slope_error", "fit_from", "fit_to"),
+     "correction_uncertainty", "logarithmic_slope", "logarithmic_slope_error", "slope_expected",
+     "fit_from", "fit_to"),
     math.nan,
 )  # fmt: skip
 
@@ -156,6 +157,7 @@ def discs():
         curves["running"][late] += expected * np.log(curves["time"][late] / curves["time"][5])
         fit = {"fit_from": curves["time"][5], "fit_to": curves["time"][25]}
         slope = {"logarithmic_slope": expected, "logarithmic_slope_error": 0.05 * expected}
+        slope["slope_expected"] = expected
         rows.append({**ABSENT, **curves, **fit, **slope, "count": 4096, "side": 100.0})
     rows.append(_short(0.3, 2, count=1024, side=50.0))
     return _table(rows, 2)

@@ -137,7 +137,8 @@ def test_the_slope_against_the_logarithm_is_found(monkeypatch):
     assert float(ds["logarithmic_slope"]) == pytest.approx(0.06, rel=1e-9)
     assert float(ds["logarithmic_slope_error"]) == pytest.approx(0.005 / np.sqrt(3))
     assert "diffusion" not in ds
-    assert float(ds["fit_from"] * ds["collision_rate"]) == pytest.approx(15.0)
+    assert float(ds["fit_from"] * ds["collision_rate"]) == pytest.approx(30.0)
+    assert float(ds["slope_expected"]) == pytest.approx(float(theory.logarithmic_slope(0.3)), rel=0.4)
     assert float(ds["fit_to"]) == pytest.approx(float(ds["sound_time"]))
 
 

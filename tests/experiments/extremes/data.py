@@ -5,13 +5,14 @@ import xarray as xr
 
 
 def extremes_data(verdict="passes", missed=0, message=""):
-    """Two rows in two engines: one passes, the other is refused; the first cell of all as told."""
+    """Two rows in two engines: one passes, the other is refused; the first cell of all as given."""
     shape = ("row", "engine")
     energy = np.array([[1e-15, 0.0], [np.nan, np.nan]])
     return xr.Dataset(
         {
             "verdict": (shape, np.array([[verdict, "passes"], ["refused", "refused"]])),
             "message": (shape, np.array([[message, ""], ["speed = 1: too fast", "speed = 1: too fast"]])),
+            "refusal": (shape, np.array([[False, False], [True, True]])),
             "energy": (shape, energy),
             "overlap": (shape, 0.0 * energy),
             "missed": (shape, np.array([[missed, 0], [0, 0]])),

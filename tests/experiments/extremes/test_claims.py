@@ -13,13 +13,19 @@ def test_rows_that_pass_or_are_refused_agree():
     assert set(judge(claims)) == {"agrees"}
 
 
+def test_a_refusal_is_expected_and_has_one_line():
+    for verdict, message in (("passes", ""), ("refused", ""), ("refused", "two\nlines")):
+        data = extremes_data()
+        data["verdict"][1, 0], data["message"][1, 0] = verdict, message
+        assert judge(stability_extremes(data)[:2]) == ["agrees", "disagrees"]
+
+
 @pytest.mark.parametrize(
     ("changed", "wrong"),
     [
         ({"verdict": "fails", "message": "energy"}, 0),
         ({"verdict": "hangs"}, 0),
-        ({"verdict": "refused"}, 0),  # without a word
-        ({"verdict": "refused", "message": "two\nlines"}, 0),
+        ({"verdict": "refused", "message": "speed = 1: too fast"}, 0),  # which should pass
         ({"missed": -1}, 4),
     ],
 )

@@ -45,5 +45,6 @@ def slits(error=0.003, seed=1):
         attrs={
             "bulk_density": density, "bulk_pressure": bulk, "functional_bulk_pressure": bulk - 0.01,
             "bulk_chemical_potential": potential, "period": 1.01, "period_error": 0.01,
+            "functional_period": 1.02,
         },
     )  # fmt: skip

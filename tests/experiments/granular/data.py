@@ -6,7 +6,7 @@ import xarray as xr
 from gaspart import theory
 
 
-def rough(noise=1.0, rate=1.0, ratio=1.0, steady=0.97, seed=1):
+def rough(noise=1.0, rate=1.0, ratio=1.0, steady=1.0, seed=1):
     """Discs of three moments of inertia; rate, ratio and steady ratio are theirs over theory's."""
     rng = np.random.default_rng(seed)
     inertia = np.array([0.1, 0.5, 1.0])
@@ -52,8 +52,9 @@ def inelastic(rate=1.0, exponent=-2.0, clustered=True, seed=1):
             "time": (("gas", "frame"), time),
             "temperature": (("gas", "frame"), (1.0 + time) ** -2.0),
             "temperature_error": (("gas", "frame"), np.full(time.shape, 1e-4)),
-            "rate": ("gas", expected * (rate + 0.002 * rng.standard_normal(4))),
-            "rate_error": ("gas", 0.002 * expected),
+            "count": ("gas", np.full(4, 1024)),
+            "rate": ("gas", expected * 1024 / 1023 * (rate + 1e-4 * rng.standard_normal(4))),
+            "rate_error": ("gas", 1e-4 * expected),
             "exponent": ("gas", exponent + 0.005 * rng.standard_normal(4)),
             "exponent_error": ("gas", np.full(4, 0.005)),
             "cluster_restitution": ("clusters", np.array([0.8, 1.0])),

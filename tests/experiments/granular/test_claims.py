@@ -18,6 +18,15 @@ def test_right_data_agree():
     assert verdicts(cooling(inelastic())) == {"agrees"}
 
 
+def test_a_rate_that_does_not_show_the_cumulant_is_inconclusive():
+    gases = inelastic()
+    gases["rate_error"] = 10.0 * gases["rate_error"]
+    undecided = [claim.claim for claim in cooling(gases) if not claim.has_power]
+    assert len(undecided) == 2 and all(
+        "restitution 0.7" in text for text in undecided
+    )  # it is nearly 0 there
+
+
 @pytest.mark.parametrize(
     ("wrong", "beginning"),
     [

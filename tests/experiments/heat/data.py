@@ -57,7 +57,8 @@ def metals(error=0.002):
     values = {
         "share": ones,
         "energy_ratio": ones,
-        "fluctuation": ones,
+        "log_fluctuation": 0.0 * ones,
+        "bend": 0.0 * ones,
         "mode_ratio": ones,
         "flux": 0.1 * ones,
     }
@@ -65,7 +66,9 @@ def metals(error=0.002):
     for name in ("electrons", "modes"):
         ds[name] = (("point", "bin"), np.tile(2.0 - position, (3, 1)))
     for name in list(ds):
-        ds[f"{name}_error"] = error * ds[name]
+        ds[f"{name}_error"] = (
+            error * ds[name] if name not in ("log_fluctuation", "bend") else ("point", error * ones)
+        )
     ds["position"] = (("point", "bin"), np.tile(position, (3, 1)))
     for name, value in {"hot": [2, 1, 2], "cold": [1, 1, 2], "expected": [360] * 3}.items():
         ds[name] = ("point", np.array(value, dtype=float))

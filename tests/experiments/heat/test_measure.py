@@ -60,7 +60,7 @@ def test_the_jump_of_a_made_up_profile_comes_back():
 
 def test_a_dense_gas_is_compared_with_fourier(tmp_path):
     point = run(tmp_path, gas(100, 0.5), duration=300.0, equilibration=100.0, samples=60, boxes_per_side=1)
-    ds = heat.heat_conduction_gas([point], {"bins": 5, "blocks": 5, "clear": 1}).isel(point=0)
+    ds = heat.heat_conduction_gas([point], {"bins": 5, "blocks": 12, "clear": 1}).isel(point=0)
     assert float(ds["knudsen"]) < heat.FLUID
     assert float(ds["density"].mean()) == pytest.approx(100 / 360, rel=1e-3)
     assert float(ds["profile_ratio"]) == pytest.approx(1.0, abs=0.1)
@@ -80,7 +80,17 @@ def test_modes_and_electrons_have_the_temperature_of_the_walls(tmp_path):
         points.append(run(folder, scene, duration=6000.0, equilibration=100.0, samples=600))
     ds = heat.heat_conduction_metal(points, {"bins": 2, "blocks": 10})
     assert ds["expected"].values == pytest.approx([40.0, 40.0])
-    for name in ("energy_ratio", "mode_ratio", "fluctuation"):
+    for name in ("energy_ratio", "mode_ratio"):
         assert (np.abs(ds[name] - 1.0) < 4.0 * ds[f"{name}_error"]).all()
+    assert (np.abs(ds["log_fluctuation"]) < 4.0 * ds["log_fluctuation_error"]).all()
+    assert np.isnan(ds["bend"]).all()  # of two bins
     assert ds["mode_ratio"].values == pytest.approx([1.0, 1.0], abs=0.05)
     assert float(ds["slope"]) == pytest.approx(1.0, abs=0.05)
+
+
+def test_a_bent_profile_is_distinguished_from_a_straight_one():
+    position, number = (np.arange(10) + 0.5) / 10, np.linspace(3.0, 5.0, 10)
+    straight, bent = 2.0 - position, 2.0 - position + 0.3 * position**2
+    straight[[0, -1]] = 1.5  # next to the walls
+    assert heat._bend(straight * number, number) == pytest.approx(0.0, abs=1e-12)
+    assert heat._bend(bent * number, number) == pytest.approx(0.3)

@@ -12,6 +12,7 @@ def packings(inserted=0.376, compressed=0.641, contacts=5.85):
             "rule": ("packing", ["periodic", "compressed"]),
             "packing_fraction": ("packing", [inserted, compressed]),
             "error": ("packing", [1e-3, 1e-3]),
+            "freedom": ("packing", [7, 7]),
             "contacts": ("packing", [np.nan, contacts]),
             "contacts_error": ("packing", [np.nan, 0.03]),
             "position": (("packing", "body", "axis"), np.array([corners, corners])),

@@ -32,7 +32,9 @@ def scene(**changes):
 )
 def test_the_gas(changes, disagreeing):
     claims = pictures.gas_render(scene(**changes))
-    found = {claim.claim for claim, verdict in zip(claims, judge(claims), strict=True) if verdict != "agrees"}
+    found = {
+        claim.claim for claim, verdict in zip(claims, judge(claims), strict=True) if verdict == "disagrees"
+    }
     assert found == disagreeing
 
 

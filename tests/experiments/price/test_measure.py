@@ -1,15 +1,19 @@
 """The price of features: ratios to the plain scene, and removal of absent features from the source."""
 
 import ast
+from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from gaspart.claims import judge
-from gaspart.experiments.jobs.measure_cost import measure_cost
+from gaspart.errors import SceneError
+from gaspart.experiments.jobs.measure_cost import run
 from gaspart.experiments.price.claims import price_of_features as claims
-from gaspart.experiments.price.measure import price_of_features
+from gaspart.experiments.price.measure import _together, price_of_features
 from gaspart.experiments.price.stripped import FEATURES, instructions, stripped
 from gaspart.planning import grid
 
@@ -23,15 +27,12 @@ def points(tmp_path_factory):
     common = {"scene": str(ROOT / "config/scenes/price.yaml"), "engine": "event", "duration": 2, "samples": 2}
     small = {"scene.species.0.count": 100, "scene.species.1.count": 100}
     made = []
-    for k, feature in enumerate([{}, {"scene.species.1.mass": 4.0}, {"record_events": True}]):
-        point = grid.Point("price", str(k), "measure_cost", {**common, **small, **feature}, str(root), 3)
-        recipe = grid.recipe(point)
-        run = measure_cost(
-            grid.scene(point), grid.engines(point), tuple(recipe["seeds"][0]), recipe["equilibration"],
-            recipe["stretch"], recipe["repeats"], recipe["record"],
-        )  # fmt: skip
+    features = {}, {"scene.species.1.mass": 4.0}, {"record_events": True}
+    for k, (feature, equilibration) in enumerate(product(features, (0, 0.5))):
+        varied = {**feature, "equilibration": equilibration, "without": list(feature) or ["scene.gravity"]}
+        point = grid.Point("price", str(k), "measure_cost", {**common, **small, **varied}, str(root), 3)
         Path(point.path).parent.mkdir(parents=True, exist_ok=True)
-        run.to_netcdf(point.path)
+        run(grid.recipe(point)).to_netcdf(point.path)
         made.append(point)
     return made
 
@@ -39,25 +40,46 @@ def points(tmp_path_factory):
 def test_costs_are_those_of_the_plain_scene_times_a_ratio(points):
     ds = price_of_features(points, SETTINGS)
     assert ds["feature"].values.tolist() == ["plain", "two masses", "recording"]
-    assert ds["ratio"].values == pytest.approx(ds["seconds"].values / ds["seconds"].values[0])
-    assert ds["ratio_error"].values[0] == 0.0
+    assert ds["ratio_freedom"].values.tolist() == [1.0, 1.0, 1.0]
+    assert np.all(ds["ratio_error"] > 0.0) and np.all(ds["ratio"] > 0.0)
     assert np.all(ds["pair_tests"] > 1.0)
 
 
-def test_there_must_be_a_plain_scene(points):
-    with pytest.raises(ValueError, match="no plain scene"):
-        price_of_features(points[1:], SETTINGS)
+def test_the_scene_beside_lacks_the_feature_and_is_timed_as_often(points):
+    with xr.open_dataset(points[2].path) as made:
+        assert made.sizes == {"partition": 2, "repeat": 2}
+        assert made["collisions"].values[0] != made["collisions"].values[1]
+    with xr.open_dataset(points[0].path) as made:  # the plain scene beside itself
+        assert made["collisions"].values[0] == made["collisions"].values[1]
+
+
+def test_only_costs_have_a_scene_beside_them(points):
+    with pytest.raises(SceneError, match="without"):
+        grid.recipe(replace(points[0], job="simulate"))
+
+
+def test_scatter_between_jobs_is_the_uncertainty(tmp_path):
+    """Jobs of the same work that are disturbed differently."""
+    columns = {"engine": "event", "feature": "walls", "seconds": 1.0, "pair_tests": 3.0}
+    columns |= {"box_visits": 2.0, "crossings": 1.0}
+    row = _together([columns | {"log_ratio": value} for value in (0.0, 0.1, 0.2)])
+    assert row["ratio"] == pytest.approx(np.exp(0.1))
+    assert row["ratio_error"] == pytest.approx(np.exp(0.1) * 0.1 / np.sqrt(3.0))
+    assert row["ratio_freedom"] == 2.0
+    assert np.isnan(_together([columns | {"log_ratio": 0.0}])["ratio_error"])
 
 
 def test_claims_can_fail(points):
     ds = price_of_features(points, SETTINGS).assign(
         ratio=("point", [1.0, 1.1, 2.0]),
-        ratio_error=("point", [0.0, 0.02, 0.02]),
+        ratio_error=("point", [0.01, 0.02, 0.02]),
+        ratio_freedom=("point", [20.0, 20.0, 20.0]),
         instructions=("kernel", [1000, 1000]),
         stripped=("kernel", [1000, 900]),
     )
     ds = ds.assign_coords(kernel=["event", "step"])
-    assert judge(claims(ds)) == ["agrees", "disagrees", "agrees", "disagrees"]
+    assert judge(claims(ds)) == ["agrees", "disagrees", "agrees", "agrees", "disagrees"]
+    assert judge(claims(ds.assign(ratio=("point", [1.2, 1.1, 1.2]))))[2] == "disagrees"
 
 
 def test_branches_on_absent_features_are_cut_out():
@@ -89,7 +111,7 @@ def is_full(record):
 
 
 def test_all_optional_arguments_of_the_kernels_are_features_or_choices_of_a_method():
-    methods = {"queue", "threads", "cells", "boxes", "square"}
+    methods = {"all_pairs", "lists", "queue", "threads", "cells", "boxes", "square"}
     optional = {
         test.left.id
         for path in (ROOT / "src/gaspart/kernels").rglob("*.py")

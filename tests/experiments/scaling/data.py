@@ -97,7 +97,7 @@ def _events(count, sides, search, gas):
         "pairs": (events + 1) * count * (count - 1) / 2 + 0.0 * near,
         "direct": 2.0 * events * near,
         "boxes": near * (2.0 * events + crossings / 3.0) if sides.max() > 1 else 20.0 * events + 0.0 * near,
-    }[search]
+    }["boxes" if search == "automatic" else search]
     whole = np.ones(sides.size, dtype=int)
     return {
         "steps": 0 * whole,

@@ -80,7 +80,7 @@ def written(folder, made):
     return points
 
 
-def time_to_accuracy_measurement(dearer=1.0):
+def time_to_accuracy_measurement(more_expensive=1.0):
     """What `measure.time_to_accuracy` gives if the model is right but for a factor of the steps' cost."""
     accuracy = np.array([0.1, 0.01, 0.001, 0.0001])
     axes = ("gas", "observable", "count", "accuracy")
@@ -88,7 +88,7 @@ def time_to_accuracy_measurement(dearer=1.0):
     event = 1.0 / accuracy**2 + np.zeros(shape)
     step = 0.5 / accuracy**2 * (1.0 + 0.005 / accuracy) + np.zeros(shape)
     measured = np.stack([event, step], axis=-1)
-    model = np.stack([event, dearer * step], axis=-1)
+    model = np.stack([event, more_expensive * step], axis=-1)
     picked = np.where(model[..., 0] < model[..., 1], event, step)
     return xr.Dataset(
         {

@@ -23,14 +23,11 @@ def test_contacts_late_by_half_a_step_are_noticed(tmp_path):
     assert sum(verdict == "disagrees" for verdict in found.values()) == 3
 
 
-def test_steps_cheaper_than_events_for_a_thousandth_of_a_dense_gas_are_noticed(tmp_path):
+def test_the_cheaper_engine_is_reported_without_a_verdict(tmp_path):
     dataset = speed_accuracy_measurement(tmp_path)
     dataset["gas_packing_fraction"] = dataset.gas_packing_fraction * 0.0 + 0.3
-    expensive = [verdict for claim, verdict in verdicts(dataset).items() if "time of steps over" in claim]
-    for name in ("best_ratio", "best_ratio_error"):
-        dataset[name] = 0.1 * dataset[name]
-    cheap = [verdict for claim, verdict in verdicts(dataset).items() if "time of steps over" in claim]
-    assert (set(expensive), set(cheap)) == ({"agrees"}, {"disagrees"})
+    found = [verdict for claim, verdict in verdicts(dataset).items() if "time of steps over" in claim]
+    assert set(found) == {"no verdict"}
 
 
 def choice(dataset):
@@ -40,5 +37,5 @@ def choice(dataset):
 
 def test_a_model_that_predicts_the_costs_agrees_and_one_that_does_not_is_noticed():
     assert choice(time_to_accuracy_measurement()) == dict.fromkeys(("event", "step", "choice"), "agrees")
-    wrong = choice(time_to_accuracy_measurement(dearer=4.0))
+    wrong = choice(time_to_accuracy_measurement(more_expensive=4.0))
     assert wrong == {"event": "agrees", "step": "disagrees", "choice": "disagrees"}

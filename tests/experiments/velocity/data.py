@@ -6,8 +6,8 @@ import xarray as xr
 from gaspart import theory
 
 
-def correlations(start=1.0, tail=1.0, exponent=0.0, error=0.01, seed=1):
-    """Two finely sampled points and two long ones; start and tail: over theory's; exponent: added."""
+def correlations(start=1.0, tail=1.0, error=0.01, seed=1):
+    """Two finely sampled points and two long ones; start and tail: over theory's."""
     rng = np.random.default_rng(seed)
     nan, rows = np.nan, []
     for dimension, eta, interval in ((2, 0.3, 0.05), (3, 0.3, 0.05), (2, 0.2, 1.0), (3, 0.3, 1.0)):
@@ -27,12 +27,10 @@ def correlations(start=1.0, tail=1.0, exponent=0.0, error=0.01, seed=1):
             "sound": 60.0,
             "start_rate": nan if long else 2.0 / dimension * (start + 0.002 * rng.standard_normal()),
             "start_rate_error": nan if long else 2.0 / dimension * 0.002,
-            "tail_from": 15.0 if long else nan,
-            "tail_to": 30.0 if long else nan,
+            "tail_from": 30.0 if long else nan,
+            "tail_to": 60.0 if long else nan,
             "tail_ratio": tail + error * rng.standard_normal() if long else nan,
             "tail_ratio_error": error if long else nan,
-            "tail_exponent": exponent - 0.5 * dimension + error * rng.standard_normal() if long else nan,
-            "tail_exponent_error": error if long else nan,
         })  # fmt: skip
     return xr.Dataset({
         name: (("point", "lag")[: 1 + np.ndim(rows[0][name])], np.array([row[name] for row in rows]))

@@ -32,14 +32,16 @@ def test_the_tail_the_start_and_their_ratio_are_drawn(points, tmp_path):
     for n, row in enumerate(long):
         time, eta, dimension = (row[name] for name in ("time", "packing_fraction", "dimension"))
         tail = theory.velocity_autocorrelation_tail(np.maximum(time, 1e-9), float(eta), int(dimension))
-        expected.append(
-            Points(
-                None, row["collisions"], row["correlation"] / tail, row["correlation_error"] / tail, some=True
-            )
+        at = row.isel(lag=np.flatnonzero(row["collisions"].values > 5.0))
+        modes = theory.velocity_autocorrelation_modes(
+            at["time"].values, float(eta), int(dimension), int(row["count"])
         )
+        share = 1.0 / int(row["count"])
+        seen = (at["correlation"] - share) / (modes - share), at["correlation_error"] / (modes - share)
+        expected.append(Points(None, at["collisions"], *seen, some=True))
         late = (row["collisions"] > 3.0).values
         follows(lines(tails)[2 + n], row["collisions"][late], np.asarray(tail)[late])
-    shows(ratios, "collisions per particle", "tail", *expected)
+    shows(ratios, "collisions per particle", "modes", *expected)
     for one, row in zip(lines(starts), fine, strict=True):
         dimension = int(row["dimension"])
         obeys(one, lambda s, d=dimension: np.exp(-2.0 / d * s))

@@ -20,14 +20,16 @@ def test_pressures_against_temperature_and_density_and_their_deviation(tmp_path)
     ds = varied(pressures(), "density", "temperature")
     temperatures, densities, residuals = draw(wall_pressure, ds, tmp_path).axes
     series = ds.isel(point=[2, 8, 9]).sortby("temperature")
-    t = series["temperature"]
+    t, n = series["temperature"], float(series["density"][0].round(9))
     label = f"$\\eta={series['packing_fraction'][0].item():.2g}$"
     shows(
-        temperatures, "temperature", "pressure",
-        Points(label, t, series["pressure"] * t, series["pressure_error"] * t),
-    )  # fmt: skip
-    obeys(lines(temperatures)[0], lambda x: x * float(series["expected"][0]))
-    obeys(lines(temperatures)[1], lambda x: x * float(series["density"][0].round(9)))
+        temperatures,
+        "temperature",
+        "P/",
+        Points(label, t, series["pressure"] / n, series["pressure_error"] / n),
+    )
+    obeys(lines(temperatures)[0], lambda x: np.full_like(x, float(series["expected"][0]) / n))
+    obeys(lines(temperatures)[1], np.ones_like)
     expected = []
     for dimension, name in NAMES.items():
         own = ds.isel(point=(ds["dimension"] == dimension).values)
@@ -51,5 +53,5 @@ def test_pressures_against_temperature_and_density_and_their_deviation(tmp_path)
 
 def test_one_dimension_without_temperatures_leaves_their_panel_empty(tmp_path):
     axes = draw(wall_pressure, pressures().isel(point=[0, 1, 6]), tmp_path).axes
-    shows(axes[0], "temperature", "pressure")
+    shows(axes[0], "temperature", "P/")
     assert len(axes[1].containers) == 2

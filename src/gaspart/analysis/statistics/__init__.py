@@ -9,7 +9,14 @@ unequal length or not finite raise ValueError.
 from gaspart.analysis.statistics.blocks import BlockAverage, autocorrelation_time, block_average
 from gaspart.analysis.statistics.distributions import Histogram, histogram_chi_square
 from gaspart.analysis.statistics.fits import Fit, PowerLaw, fit_linear, fit_polynomial, fit_power_law
-from gaspart.analysis.statistics.means import Combination, bootstrap, combine, jackknife, mean_of
+from gaspart.analysis.statistics.means import (
+    Combination,
+    bootstrap,
+    combine,
+    jackknife,
+    mean_of,
+    steady_mean,
+)
 from gaspart.analysis.statistics.minimum import Optimum, optimum
 
 __all__ = [
@@ -30,4 +37,5 @@ __all__ = [
     "jackknife",
     "mean_of",
     "optimum",
+    "steady_mean",
 ]

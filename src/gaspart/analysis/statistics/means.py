@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from scipy import stats
 
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.statistics.fits import fit_linear
 from gaspart.analysis.statistics.inputs import positive_errors, series_of
 
 
@@ -25,9 +26,30 @@ class Combination:
 
 
 def mean_of(values: ArrayLike) -> Estimate:
-    """Mean of independent numbers and its standard error from their scatter (N - 1). At least two."""
+    """Mean of N independent numbers, at least two, and its standard error from their scatter, which has N - 1
+    degrees of freedom."""
     values = series_of("values", values, 2)
-    return Estimate(float(values.mean()), float(values.std(ddof=1) / math.sqrt(values.size)))
+    error = float(values.std(ddof=1) / math.sqrt(values.size))
+    return Estimate(float(values.mean()), error, values.size - 1)
+
+
+def steady_mean(series: ArrayLike, *changes: ArrayLike) -> Estimate:
+    """Mean of a current into and out of a store, from its averages in K blocks of time.
+
+    changes: (K,) each, by how much a bounded quantity, such as the energy stored, has changed during each
+    block. What a block stores, another one gives back: blocks anticorrelate, and their scatter exceeds that
+    of the long-time mean. So the blocks are regressed on the changes (least squares), which leaves the
+    current of blocks without a change; it differs from the plain mean by a bounded amount over the length of
+    the run. Degrees of freedom: K - 1 - len(changes). Raises ValueError as `fit_linear`.
+    """
+    series = series_of("series", series, 2)
+    design = [np.ones(series.size)]
+    for change in changes:
+        change = series_of("change", change, 2)
+        if np.ptp(change) > 0.0:  # nothing is stored
+            design.append(change / np.abs(change).max())
+    fit = fit_linear(np.stack(design, axis=1), series)
+    return Estimate(fit.values[0], fit.errors[0], fit.degrees_of_freedom)
 
 
 def combine(values: ArrayLike, errors: ArrayLike) -> Combination:
@@ -46,7 +68,10 @@ def bootstrap(
 ) -> Estimate:
     """function(samples) with its standard error from resampled data (with replacement, along axis 0).
 
-    `seed`: of the resampling; the same seed gives the same error. `function` returns one number.
+    `seed`: of the resampling; the same seed gives the same error. `function` returns one number. Resampled
+    means of n samples scatter by the fraction sqrt(1 - 1/n) of the standard error, which is divided by it;
+    the error has n - 1 degrees of freedom (Efron and Tibshirani, An introduction to the bootstrap (1993),
+    section 5.3).
     """
     samples = np.asarray(samples)
     if samples.shape[0] < 2:
@@ -54,7 +79,8 @@ def bootstrap(
     generator = np.random.default_rng(seed)
     draws = generator.integers(0, samples.shape[0], size=(repeats, samples.shape[0]))
     scatter = np.std([function(samples[draw]) for draw in draws], ddof=1)
-    return Estimate(float(function(samples)), float(scatter))
+    number = samples.shape[0]
+    return Estimate(float(function(samples)), float(scatter) * math.sqrt(number / (number - 1.0)), number - 1)
 
 
 def jackknife(function: Callable[..., Any], *samples: ArrayLike) -> tuple[Any, Any]:

@@ -7,30 +7,35 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
 
-from gaspart.analysis.statistics.fits import fit_polynomial
+from gaspart.analysis.statistics.fits import fit_linear
 from gaspart.analysis.statistics.inputs import positive_errors, series_of
+
+FLAT = 0.05
+"""Part of the least cost by which that of a flat minimum may be exceeded."""
 
 
 @dataclass(frozen=True)
 class Optimum:
-    """Place of a minimum with its 95 % interval, the cost there, and whether it lies between the points."""
+    """Place of a minimum with its 95 % interval, the cost there, whether it lies between the points; and from
+    where to where the cost exceeds the least by less than FLAT."""
 
     location: float
     low: float
     high: float
     cost: float
     interior: bool
+    flat_low: float
+    flat_high: float
 
 
 def optimum(x: ArrayLike, cost: ArrayLike, errors: ArrayLike | None = None, within: float = 3.0) -> Optimum:
-    """Where a cost is least: a parabola of ln cost against ln x, through the points near the minimum.
+    """Where the cost a + b / x + c x is least, which falls steeply and rises slowly: at sqrt(b / c).
 
-    Taken are the points whose cost is below `within` times the least one (at least four, the cheapest
-    first). The 95 % interval is Fieller's: all u for which the parabola's slope at u is compatible with 0,
-    which stays right when the curvature is uncertain (the interval may then be infinite: low = 0, high =
-    inf). errors: of the cost; without, the scatter about the parabola. `interior`: the parabola opens upwards
-    and its minimum lies between the points. If it does not, the location is the cheapest point's, and low and
-    high are 0 and inf: no minimum was measured.
+    The three parts are fitted to the points near the minimum: those whose cost is below `within` times the
+    least one (at least four, the cheapest first). The interval is that of the logarithm, by propagation.
+    errors: of the cost; without, the scatter about the curve. `interior`: b and c are positive and the
+    minimum lies between the points. If it does not, the location is the cheapest point's, the intervals are
+    from 0 to inf: no minimum was measured.
     """
     x = series_of("x", x, 4)
     cost = series_of("cost", cost, 4)
@@ -38,33 +43,23 @@ def optimum(x: ArrayLike, cost: ArrayLike, errors: ArrayLike | None = None, with
         raise ValueError("x, cost: must be as many, and positive")
     cheapest = np.argsort(cost, kind="stable")
     near = np.sort(cheapest[: max(4, np.count_nonzero(cost < within * cost.min()))])
-    if np.unique(x[near]).size < 3:
+    at, seen = x[near], cost[near]
+    if np.unique(at).size < 3:
         raise ValueError("x: needs at least three different values near the minimum")
-    middle = np.log(x[near]).mean()
-    u = np.log(x[near]) - middle
-    relative = None if errors is None else positive_errors(errors, cost.size)[near] / cost[near]
-    fit = fit_polynomial(u, np.log(cost[near]), relative, powers=(0, 1, 2))
-    level, slope, curvature = fit.values
+    scale = seen if errors is None else positive_errors(errors, cost.size)[near]
+    design = np.stack([np.ones(at.size), 1.0 / at, at], axis=1) / scale[:, None]
+    fit = fit_linear(design, seen / scale, None if errors is None else 1.0)
+    (constant, falling, rising), covariance = fit.values, fit.covariance
+    best = math.sqrt(falling / rising) if min(falling, rising) > 0.0 else math.nan
+    if not at.min() < best < at.max():
+        least = cheapest[0]
+        return Optimum(float(x[least]), 0.0, math.inf, float(cost[least]), False, 0.0, math.inf)
+    gradient = np.array([0.0, 0.5 / falling, -0.5 / rising])  # of ln location
     freedom = fit.degrees_of_freedom
     quantile = stats.t.ppf(0.975, freedom) if errors is None else stats.norm.ppf(0.975)
-    vertex = -0.5 * slope / curvature if curvature > 0.0 else math.nan
-    if not u.min() < vertex < u.max():
-        best = cheapest[0]
-        return Optimum(float(x[best]), 0.0, math.inf, float(cost[best]), False)
-    low, high = _fieller(slope, curvature, fit.covariance[1:, 1:], quantile)
-    least = math.exp(level + 0.5 * slope * vertex)
-    return Optimum(math.exp(vertex + middle), math.exp(low + middle), math.exp(high + middle), least, True)
-
-
-def _fieller(slope: float, curvature: float, covariance: np.ndarray, quantile: float) -> tuple[float, float]:
-    """Interval of u where slope + 2 curvature u differs from 0 by at most `quantile` standard errors."""
-    # (slope + 2 c u)^2 <= q^2 (V_ss + 4 V_sc u + 4 V_cc u^2): a quadratic in u.
-    square = quantile**2
-    a = 4.0 * (curvature**2 - square * covariance[1, 1])
-    b = 4.0 * (slope * curvature - square * covariance[0, 1])
-    c = slope**2 - square * covariance[0, 0]
-    discriminant = b**2 - 4.0 * a * c
-    if a <= 0.0 or discriminant < 0.0:
-        return -math.inf, math.inf
-    root = math.sqrt(discriminant)
-    return (-b - root) / (2.0 * a), (-b + root) / (2.0 * a)
+    spread = math.exp(quantile * math.sqrt(gradient @ covariance @ gradient))
+    middle = math.sqrt(falling * rising)
+    most = FLAT * (constant + 2.0 * middle) + 2.0 * middle  # of b / x + c x
+    root = math.sqrt(most**2 - 4.0 * middle**2)
+    flat = (most - root) / (2.0 * rising), (most + root) / (2.0 * rising)
+    return Optimum(best, best / spread, best * spread, constant + 2.0 * middle, True, *flat)

@@ -94,20 +94,19 @@ class Holder:
     def _hold(self) -> float:
         return self.width * np.exp(self.depth / self.temperature) * body_volume(2, 2.0 * self.radius)
 
-    def uncertainty(self, density: float) -> float:
-        """Relative, of the coverage: the layer interacts with the gas next to it, so that the gas'
-        activity replaces its pressure, at most completely."""
+    def fugacity(self, density: float | np.ndarray) -> float | np.ndarray:
+        """The same with the gas' activity, rho exp(mu_excess / kT), in the place of its pressure: what it
+        would be if the layer felt nothing of the gas in front of it."""
         eta = density * body_volume(3, 2.0 * self.radius)
-        both = np.array([compressibility_factor(eta, 3), np.exp(excess_chemical_potential(eta, 3))])
-        low, high = packing_fraction_at(density * both * self._hold, 2)
-        return float(0.5 * (high / low - 1.0))
+        return density * np.exp(excess_chemical_potential(eta, 3)) * self._hold
 
 
 def adsorption(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """Adsorption on a wall, by point.
 
-    settings: `blocks` of each replica; `near`, the distance from the edge of the well, or from where
-    particles stick, within which the velocities of leaving particles are read; `bins` of their speeds.
+    settings: `blocks` of each replica, `layer_blocks` where the wall holds a layer; `near`, the distance
+    from the edge of the well, or from where particles stick, within which the velocities of leaving
+    particles are read; `bins` of their speeds.
 
     Dimensions point, bin. Of every point: kind, temperature, depth, width, momentum, mass and outside, as in
     `Holder`; with _error: held, the mean number of held particles; ratio, of it to the others, and log_ratio;
@@ -115,7 +114,8 @@ def adsorption(points: list[grid.Point], settings: dict) -> xr.Dataset:
     cover; gas_density far from both walls; flux (bin), the density of the normal speeds of particles that
     leave, in units of sqrt(kT/m), and slow_share, that of those below `slow_speed`, the sticky wall's limit
     (1 for wells; NaN both for layers). Of layers: activity, beta P w e^(depth/kT) pi sigma^2/4, and filling,
-    the coverage over that of hard discs in equilibrium with it, whose uncertainty is layer_uncertainty.
+    the coverage over that of hard discs in equilibrium with it; filling_by_activity, the same with the gas'
+    activity in the place of its pressure. `_freedom` are the degrees of freedom of the errors.
     """
     rows = [_measured(point, settings) for point in points]
     values = {}
@@ -136,25 +136,27 @@ def _measured(point: grid.Point, settings: dict) -> dict:
     """The values of one point."""
     holder = Holder.of(point)
     slow = holder.momentum / np.sqrt(holder.mass * holder.temperature) or 1.0
+    layer = holder.kind == "layer"
+    number = settings["layer_blocks"] if layer else settings["blocks"]
     blocks = [
         counts_of(holder, *part, settings, slow)
         for path in point.replica_paths
-        for part in _parts(holder, point, path, settings["blocks"])
+        for part in _parts(holder, point, path, number)
     ]
     held, free, far, slowly, flux = (np.array(series) for series in zip(*blocks, strict=True))
-    bins, layer, absent = settings["bins"], holder.kind == "layer", (np.nan, np.nan)
+    bins, absent = settings["bins"], (np.nan, np.nan)
     estimates = _amounts(holder, held, free, far)
     if layer:  # hardly any particle leaves it
         estimates |= {"flux": (np.full(bins, np.nan),) * 2, "slow_share": absent}
         estimates |= _isotherm(holder, held, far)
     else:
         estimates |= _desorption(slowly, flux, _REACH / bins)
-        estimates |= {"activity": absent, "filling": absent}
+        estimates |= {"activity": absent, "filling": absent, "filling_by_activity": absent}
     row = {name: value for name, (value, _) in estimates.items()}
     row |= {f"{name}_error": error for name, (_, error) in estimates.items()}
     for name in ("kind", "temperature", "depth", "width", "momentum", "mass", "outside"):
         row[name] = getattr(holder, name)
-    row["layer_uncertainty"] = holder.uncertainty(row["gas_density"]) if layer else np.nan
+    row |= {f"{name}_freedom": len(held) - 1 for name in estimates}
     return row | {"slow_speed": slow}
 
 
@@ -193,7 +195,14 @@ def _isotherm(holder: Holder, held: np.ndarray, far: np.ndarray) -> dict[str, tu
     def filling(inside: np.ndarray, counted: np.ndarray) -> np.ndarray:
         return holder.coverage(inside) / packing_fraction_at(activity(counted), 2)
 
-    return {"activity": jackknife(activity, far), "filling": jackknife(filling, held, far)}
+    def by_activity(inside: np.ndarray, counted: np.ndarray) -> np.ndarray:
+        return holder.coverage(inside) / packing_fraction_at(holder.fugacity(holder.gas_density(counted)), 2)
+
+    return {
+        "activity": jackknife(activity, far),
+        "filling": jackknife(filling, held, far),
+        "filling_by_activity": jackknife(by_activity, held, far),
+    }
 
 
 def counts_of(holder: Holder, height: np.ndarray, velocity: np.ndarray, settings: dict, slow: float) -> tuple:

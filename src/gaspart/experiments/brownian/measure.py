@@ -22,8 +22,9 @@ from gaspart.trajectory.run import open_trajectory
 
 LONGEST = 8.0
 """Friction times up to which curves are taken."""
-FRICTION_AT, DIFFUSION_AT = 0.2, 5.0
-"""Friction times at which the velocity autocorrelation gives the friction, and the msd the diffusion."""
+FRICTION_TO, DIFFUSION_AT = 0.5, 5.0
+"""Friction times up to which the velocity autocorrelation gives the friction, from all lags, and at which the
+msd gives the diffusion."""
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,7 @@ class Setting:
     gas_mass: float
     radius: float
     temperature: float
+    contact: float
     friction: float
     diffusion: float
     share: float
@@ -61,6 +63,7 @@ def setting_of(point: grid.Point) -> Setting:
         gas_mass=gas.mass,
         radius=body.radius,
         temperature=temperature,
+        contact=contact,
         friction=friction,
         diffusion=float(theory.tagged_diffusion(friction, body.mass, gas.mass, temperature)),
         share=body.mass / (body.mass + gas.count * gas.mass) if conserved else 0.0,
@@ -121,8 +124,9 @@ def brownian_msd(points: list[grid.Point], settings: dict) -> xr.Dataset:
     In a periodic container the gas as a whole drifts, and absorbs the momentum that the particle loses:
     with `share` s and friction g the correlation is (k_B T / M)(1 - s)(exp(-g' t) + s), g' = g / (1 - s).
     The constant part is subtracted from correlation and msd; what follows is brought to an infinite gas:
-    `equipartition` is M <V^2> / (3 k_B T (1 - s)), `measured_friction` (1 - s) times the decay rate until
-    FRICTION_AT, `measured_diffusion` D times the msd at DIFFUSION_AT over that of the Langevin equation.
+    `equipartition` is M <V^2> / (3 k_B T (1 - s)), `measured_friction` (1 - s) times the decay rate, the
+    slope of ln C until FRICTION_TO, `measured_diffusion` D times the msd at DIFFUSION_AT over that of the
+    Langevin equation.
 
     Dimensions point, lag: `time` in 1 / g', `vacf` in (1 - s) k_B T / M, `msd` in 6 (1 - s) k_B T / (M g'^2).
     Errors: standard errors over replicas (bootstrap for the numbers).
@@ -149,14 +153,20 @@ def _statistics(point: grid.Point) -> dict:
     drift = rest * setting.share * equilibrium
     vacf = np.array([one.correlation for one in curves]) - drift
     msd = np.array([one.msd for one in curves]) - 3.0 * drift * curves[0].time ** 2
-    early, late = (int(np.argmin(np.abs(time - at))) for at in (FRICTION_AT, DIFFUSION_AT))
-    early = max(early, 1)
+    late = int(np.argmin(np.abs(time - DIFFUSION_AT)))
+    early = time[1 : max(2, np.searchsorted(time, FRICTION_TO) + 1)]
     langevin = float(theory.langevin_msd(time[late], setting.diffusion, 1.0)) * rest**2 / rate
-    both = np.concatenate([vacf[:, [0, early]], msd[:, [late]]], axis=1)
+    both = np.concatenate([vacf[:, : early.size + 1], msd[:, [late]]], axis=1)
+
+    def decay(x: np.ndarray) -> float:
+        """Slope of the line through -ln C / C(0), which is 0 at the first lag."""
+        logarithm = np.log(x[:, 1:-1].mean(axis=0) / x[:, 0].mean())
+        return -float(early @ logarithm / (early @ early))
+
     derived = {
         "equipartition": lambda x: x[:, 0].mean() / (rest * equilibrium),
-        "measured_friction": lambda x: -rest * rate * np.log(x[:, 1].mean() / x[:, 0].mean()) / time[early],
-        "measured_diffusion": lambda x: x[:, 2].mean() / langevin * setting.diffusion,
+        "measured_friction": lambda x: rest * rate * decay(x),
+        "measured_diffusion": lambda x: x[:, -1].mean() / langevin * setting.diffusion,
     }
     estimates = {name: bootstrap(function, both) for name, function in derived.items()}
     root = math.sqrt(len(curves))

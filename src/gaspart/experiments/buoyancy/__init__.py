@@ -3,6 +3,7 @@
 from gaspart.kinds import count, positive
 
 TITLE = "Under gravity"
+CHAPTER = "Gravity, heat and walls"
 FIGURES = {
     "buoyancy": {
         "bins": count("bins of height"),

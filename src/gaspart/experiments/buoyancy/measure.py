@@ -112,6 +112,7 @@ def _fixed(point: grid.Point, settings: dict) -> dict:
     }
     row = {name: float(value) for name, (value, _) in made.items()}
     row |= {f"{name}_error": float(error) for name, (_, error) in made.items()}
+    row |= {f"{name}_freedom": len(found) - 1 for name in made}
     return row | {
         "height": height,
         "size_ratio": ratio,
@@ -154,6 +155,7 @@ def _free(point: grid.Point, settings: dict) -> dict:
         "mass": mass / place.masses[-1],
         "height": value[0],
         "height_error": error[0],
+        "height_freedom": len(found) - 1,
         "spread": value[1],
         "spread_error": error[1],
         "expected": expected,

@@ -28,8 +28,8 @@ SHORT_INTERVAL = 0.5
 autocorrelation is integrated (Simpson's rule, good to 1e-4 at this spacing), and no D is taken from it."""
 GREEN_KUBO_FROM, GREEN_KUBO_TO = 8.0, 16.0
 """Collisions per particle between which the integral is compared with the slope of the msd."""
-LOGARITHM_FROM = 15.0
-"""Collisions per particle after which discs' velocity autocorrelation has its long-time form."""
+LOGARITHM_FROM = 30.0
+"""Collisions per particle after which hydrodynamic modes describe discs' velocity autocorrelation."""
 
 
 def replicas(point: grid.Point, longest: float) -> list[Curves]:
@@ -134,7 +134,8 @@ def _common(point: grid.Point, state: dict, curves: list[Curves]) -> dict:
 
 def _absent(*names: str, empty: float | np.ndarray = math.nan) -> dict:
     """Entries, and those of their errors, for quantities that a point does not measure."""
-    return {key: empty for name in names for key in (name, f"{name}_error")}
+    values = {key: empty for name in names for key in (name, f"{name}_error")}
+    return values | {f"{name}_freedom": math.nan for name in names}
 
 
 def _spheres(point: grid.Point) -> dict:
@@ -181,7 +182,8 @@ def _spheres(point: grid.Point) -> dict:
 
 
 def _discs(point: grid.Point) -> dict:
-    """The slope of D(t), the msd's derivative over 2d, against ln t, and the curves.
+    """The slope of D(t), the msd's derivative over 2d, against ln t, and the curves; `slope_expected`, that
+    of the hydrodynamic modes of the container, fitted in the same way.
 
     Until sound has crossed the container a particle is not affected by its size, but is affected at once by
     the fact that the total momentum is zero: without this condition all would share a velocity of mean square
@@ -189,7 +191,8 @@ def _discs(point: grid.Point) -> dict:
     curves end there.
     """
     state = _state(point)
-    start, stop = LOGARITHM_FROM / state["collision_rate"], state["sound_time"]
+    start = LOGARITHM_FROM / state["collision_rate"]
+    stop = max(state["sound_time"], 2.0 * start)
     share = 1.0 / state["count"]
     curves = [
         Curves(
@@ -202,12 +205,16 @@ def _discs(point: grid.Point) -> dict:
     ]
     rows = _common(point, state, curves)
     if rows["interval"] <= SHORT_INTERVAL:
-        return {**rows, **_absent("logarithmic_slope")}
+        return {**rows, **_absent("logarithmic_slope"), "slope_expected": math.nan}
     slopes = []
     for one in curves:
         inside = between(one.time, start, stop)
         slopes.append(line(np.log(one.time[inside]), one.running[inside]))
-    return {**rows, **_mean("logarithmic_slope", slopes), "fit_from": start, "fit_to": stop}
+    time = rows["time"][between(rows["time"], start, stop)]
+    running = theory.diffusion_modes(time, state["packing_fraction"], 2, state["count"])
+    expected = line(np.log(time), running)
+    slope = _mean("logarithmic_slope", slopes)
+    return {**rows, **slope, "slope_expected": expected, "fit_from": start, "fit_to": stop}
 
 
 def _green_kubo(curves: list[Curves], rate: float, dimension: int) -> dict:
@@ -232,9 +239,10 @@ def _green_kubo(curves: list[Curves], rate: float, dimension: int) -> dict:
 
 
 def _mean(name: str, samples: list) -> dict:
-    """Mean over replicas and its standard error, as two entries."""
+    """Mean over replicas, its standard error and the degrees of freedom of that, as three entries."""
     values = np.array(samples)
-    return {name: values.mean(axis=0), f"{name}_error": values.std(axis=0, ddof=1) / math.sqrt(len(values))}
+    error = values.std(axis=0, ddof=1) / math.sqrt(len(values))
+    return {name: values.mean(axis=0), f"{name}_error": error, f"{name}_freedom": len(values) - 1}
 
 
 UNITS = {

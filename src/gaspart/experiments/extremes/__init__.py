@@ -3,6 +3,7 @@
 from gaspart.kinds import TEXT, listed, names
 
 TITLE = "Speed, accuracy, stability"
+CHAPTER = "Speed and accuracy"
 FIGURES = {
     "stability_extremes": {
         "experiments": listed(TEXT, "none: its scenes are a table of the library", least=0, most=0),

@@ -22,7 +22,8 @@ def stability_extremes(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """Run all rows of the table, or those whose group is in the setting `groups`. There are no points.
 
     Returns over row and engine: verdict ("passes", "refused", "fails", "hangs"), message, what was refused or
-    failed; energy, momentum, overlap, contacts, missed (see `extremes.trial.Outcome`), seconds. Over row:
+    failed; energy, momentum, overlap, contacts, missed (see `extremes.trial.Outcome`), seconds; refusal,
+    whether a refusal is the expected result. Over row:
     group; expected, the contacts that there must be by an exact answer, -1 where all pairs are the referee.
     """
     groups = settings.get("groups")
@@ -46,6 +47,10 @@ def stability_extremes(points: list[grid.Point], settings: dict) -> xr.Dataset:
             "contacts": column("contacts", "1"),
             "missed": column("missed", "1"),
             "seconds": column("seconds", "s"),
+            "refusal": (
+                ("row", "engine"),
+                np.array([[engine.startswith(row.refused) for engine in ENGINES] for row in rows]),
+            ),
             "group": ("row", [row.group for row in rows]),
             "expected": ("row", [-1 if row.contacts is None else row.contacts for row in rows]),
         },

@@ -3,6 +3,7 @@
 from gaspart.kinds import POSITIVE, count, listed, positive
 
 TITLE = "Thin films"
+CHAPTER = "Equation of state and structure"
 FIGURES = {
     "thin_film": {
         "bulk_packing_fraction": positive(

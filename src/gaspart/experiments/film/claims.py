@@ -67,7 +67,7 @@ def _bulk(dataset: xr.Dataset) -> Claim:
     return Claim(
         claim=f"pressure on the walls over the bulk's at the density in the middle, {_width(dataset)}",
         measured=Estimate(pressure.value, math.hypot(pressure.error, bulk.error)) / bulk.value,
-        expected=Estimate(1.0, 1e-3),  # layers that have not decayed, by the density functional
+        expected=1.0,
         required=0.005,
         source="uniform normal pressure (exact) and Kolafa, Labík and Malijevský 2004",
         fails_if="wrong momentum transfer to walls, or layers that reach the middle",
@@ -83,7 +83,7 @@ def _potential(dataset: xr.Dataset) -> Claim:
         claim="chemical potential by insertion minus the bulk's at the density in the middle, k_B T, "
         f"{_width(dataset)}",
         measured=measured - bulk,
-        expected=Estimate(0.0, 0.005),
+        expected=0.0,
         required=0.1,
         source="uniform chemical potential (exact) and Kolafa, Labík and Malijevský 2004",
         fails_if="the slit is not in equilibrium, or too small for its number to fluctuate freely",
@@ -97,12 +97,12 @@ def _oscillation(dataset: xr.Dataset) -> list[Claim]:
     weights = narrow["at_bulk_error"].values ** -2.0
     norm = np.sum(weights * expected**2)
     return [
-        Claim.within(
+        Claim(
             claim="period of the solvation pressure in diameters",
             measured=Estimate(dataset.attrs["period"], dataset.attrs["period_error"]),
-            expected=1.0,
-            half_width=0.1,
-            source="layers of spheres, one diameter thick",
+            expected=dataset.attrs["functional_period"],
+            required=0.05,
+            source="White Bear functional (Roth and others 2002; computed), the same fit to the same widths",
             fails_if="no layers, or widths too far apart to resolve them",
         ),
         Claim.within(

@@ -64,10 +64,11 @@ def thin_film(points: list[grid.Point], settings: dict) -> xr.Dataset:
         rows.append(_estimates(slits, settings["insertions"] // len(slits), point))
         truncation.append(_truncation(place, density) * rows[-1]["contact"])
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-    # The chemical potentials differ slightly from the bulk's: dP = rho dmu (Gibbs and Duhem), rho the bulk's.
-    lacking = potential - columns["chemical_potential"]
-    columns["at_bulk"] = columns["pressure"] + bulk * lacking
-    columns["at_bulk_error"] = np.hypot(columns["pressure_error"], bulk * columns["chemical_potential_error"])
+    # The chemical potentials differ slightly from the bulk's.
+    lacking, response = potential - columns["chemical_potential"], _responses(bulk, widths)
+    columns["at_bulk"] = columns["pressure"] + response * lacking
+    uncertain = response * columns["chemical_potential_error"]
+    columns["at_bulk_error"] = np.hypot(columns["pressure_error"], uncertain)
     columns |= {"truncation": np.array(truncation), "functional_pressure": np.array(functional)}
     columns["count"] = np.array([grid.extents(point)[0] for point in points])
     dataset = xr.Dataset(
@@ -83,8 +84,21 @@ def thin_film(points: list[grid.Point], settings: dict) -> xr.Dataset:
         "bulk_chemical_potential": potential,
         "functional_bulk_pressure": theory.white_bear_pressure(bulk),
     }
-    dataset.attrs["period"], dataset.attrs["period_error"] = _period(dataset)
+    excess = dataset["at_bulk"] - dataset.attrs["bulk_pressure"]
+    dataset.attrs["period"], dataset.attrs["period_error"] = _period(dataset, excess)
+    excess = dataset["functional_pressure"] - dataset.attrs["functional_bulk_pressure"]
+    dataset.attrs["functional_period"], _ = _period(dataset, excess)
     return dataset
+
+
+def _responses(bulk: float, widths: list[float]) -> np.ndarray:
+    """dP/dmu of slits of fixed widths, by the density functional; that of a bulk, rho (Gibbs and Duhem),
+    holds for the widest only."""
+    densities = bulk * np.array([0.99, 1.01])
+    eta = theory.packing_fraction(densities, 3)
+    potentials = np.log(densities) + theory.excess_chemical_potential(eta, 3)
+    pressures = [[theory.white_bear_slit(rho, w, 0.02)[1][0] for rho in densities] for w in widths]
+    return np.diff(pressures, axis=1)[:, 0] / np.diff(potentials)
 
 
 def _estimates(slits: list[Slit], insertions: int, point: grid.Point) -> dict[str, float]:
@@ -195,9 +209,9 @@ def _profile(slits: list[Slit], place: np.ndarray, functional: np.ndarray) -> xr
     )
 
 
-def _period(dataset: xr.Dataset) -> tuple[float, float]:
-    """Of a damped oscillation about the bulk's pressure, fitted to P(H); NaN through fewer than six
-    widths."""
+def _period(dataset: xr.Dataset, excess: xr.DataArray) -> tuple[float, float]:
+    """Of a damped oscillation fitted to the excess of the pressure over the bulk's against the width, with
+    the errors of the measured one; NaN through fewer than six widths."""
     from scipy.optimize import curve_fit
 
     if dataset.sizes["width"] < 6:
@@ -206,7 +220,7 @@ def _period(dataset: xr.Dataset) -> tuple[float, float]:
     def wave(width: np.ndarray, amplitude: float, decay: float, period: float, phase: float) -> np.ndarray:
         return amplitude * np.exp(-(width - 2.0) / decay) * np.cos(2.0 * np.pi * (width - phase) / period)
 
-    excess = dataset["at_bulk"].values - dataset.attrs["bulk_pressure"]
     start, error = (1.5, 1.0, 1.0, 2.0), dataset["at_bulk_error"].values
-    values, covariance = curve_fit(wave, dataset["width"].values, excess, start, error, absolute_sigma=True)
+    seen = dataset["width"].values, excess.values
+    values, covariance = curve_fit(wave, *seen, start, error, absolute_sigma=True)
     return float(values[2]), float(np.sqrt(covariance[2, 2]))

@@ -3,6 +3,7 @@
 from gaspart.kinds import POSITIVE, count, listed, positive
 
 TITLE = "Freezing and melting"
+CHAPTER = "Equation of state and structure"
 FIGURES = {
     "freezing_discs": {
         "shown": listed(POSITIVE, "packing fractions whose structure is kept"),

@@ -3,6 +3,7 @@
 from gaspart.kinds import count, names, positive
 
 TITLE = "Rough and inelastic particles"
+CHAPTER = "Granular matter"
 FIGURES = {
     "equipartition": {
         "steady_from": positive(

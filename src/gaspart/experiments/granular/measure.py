@@ -127,6 +127,7 @@ def _start(point: grid.Point) -> dict:
         "inertia": inertia(point),
         "rate": rate.value,
         "rate_error": rate.error,
+        "rate_freedom": rate.freedom,
     }
 
 
@@ -171,6 +172,7 @@ def _cooling(point: grid.Point, steady_from: float) -> dict:
         "cooling_inertia": inertia(point),
         "cooling_collisions": collisions,
         "cooling_ratio": rotation / np.mean([run.translation for run in runs], axis=0),
+        "steady_ratio_freedom": steady.freedom,
         "steady_ratio": steady.value,
         "steady_ratio_error": steady.error,
     }
@@ -213,6 +215,7 @@ def _gas(point: grid.Point) -> dict:
     temperature, error = _spread([run.translation for run in runs])
     return {
         "dimension": dimension,
+        "count": scene.count,
         "restitution": restitution,
         "collisions": np.mean([run.collisions for run in runs], axis=0),
         "time": np.mean(times, axis=0),
@@ -222,6 +225,8 @@ def _gas(point: grid.Point) -> dict:
         "rate_error": rate.error,
         "exponent": exponent.value,
         "exponent_error": exponent.error,
+        "rate_freedom": rate.freedom,
+        "exponent_freedom": exponent.freedom,
     }
 
 

@@ -3,6 +3,7 @@
 from gaspart.kinds import POSITIVE, count, listed, positive
 
 TITLE = "Under gravity"
+CHAPTER = "Gravity, heat and walls"
 _PROFILES = {
     "bins": count("bins of height"),
     "blocks": count("stretches of each replica"),

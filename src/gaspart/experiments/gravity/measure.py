@@ -208,6 +208,7 @@ def _column(point: grid.Point, settings: dict) -> dict:
         }
     row = {name: value for name, (value, _) in made.items()}
     row |= {f"{name}_error": error for name, (_, error) in made.items()}
+    row |= {f"{name}_freedom": len(found) - 1 for name in made}
     return row | {
         "height": bins.height,
         "used": bins.used,
@@ -286,5 +287,6 @@ def _energies(point: grid.Point, blocks: int) -> dict:
         "run_x": force * place.height / float(temperature),
         "fluctuation": float(fluctuation),
         "fluctuation_error": float(spread),
+        "fluctuation_freedom": blocks - 1,
         "fluctuation_expected": lebowitz_percus_verlet(mean, variance, count, 2),
     }

@@ -3,6 +3,7 @@
 from gaspart.kinds import count, positive
 
 TITLE = "Heat between walls"
+CHAPTER = "Gravity, heat and walls"
 _PROFILES = {"bins": count("bins across the gap"), "blocks": count("stretches of each replica")}
 FIGURES = {
     "heat_conduction_gas": {

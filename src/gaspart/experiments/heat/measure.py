@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.statistics import fit_polynomial, jackknife
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.statistics import fit_polynomial, jackknife, steady_mean
 from gaspart.planning import grid
 from gaspart.scene.faces import thermal_face
 from gaspart.scene.scene import Scene
@@ -49,18 +50,30 @@ class Averages:
     """Averages over K time blocks: given (K,) and taken (K,), the fluxes out of the hot and into the cold
     wall; density (K, B) of particles in bins, energy (K, B) theirs per volume, as a temperature; imbalance,
     the largest difference between the energy given by the walls and that gained by the particles, over the
-    heat conducted."""
+    heat conducted. stored (R, K/R + 1, 2): the particles' energy, and its first moment about the middle, at
+    the ends of the blocks of each replica; heat: conducted in all."""
 
     given: np.ndarray
     taken: np.ndarray
     density: np.ndarray
     energy: np.ndarray
     imbalance: float
+    stored: np.ndarray
+    heat: float
 
-    @property
-    def flux(self) -> np.ndarray:
-        """(K,) the mean of both walls."""
-        return 0.5 * (self.given + self.taken)
+    def flux(self, blocks: slice = slice(None)) -> Estimate:
+        """The steady flux, from the mean of both walls in some of the blocks: without what changes the
+        energy of the particles or moves it, which is bounded."""
+        changes = np.diff(self.stored, axis=1).reshape(-1, 2)[blocks]
+        return steady_mean(0.5 * (self.given + self.taken)[blocks], *changes.T)
+
+    def wall_ratio(self) -> Estimate:
+        """Heat into the cold over heat out of the hot wall. They differ by the energy that the particles have
+        gained (exact), in a steady state the difference of independent energies at both ends of a replica."""
+        replicas, ends, _ = self.stored.shape
+        spread = self.stored[:, :, 0].std(axis=1, ddof=1)
+        error = np.sqrt(2.0 * np.sum(spread**2)) / self.heat
+        return Estimate(self.taken.sum() / self.given.sum(), error, replicas * (ends - 1))
 
 
 def averages(point: grid.Point, gap: Gap, blocks: int, bins: int) -> Averages:
@@ -70,13 +83,13 @@ def averages(point: grid.Point, gap: Gap, blocks: int, bins: int) -> Averages:
     """
     first = grid.schedule(point).equilibration_frames
     radius = grid.scene(point).smallest_radius
-    heats, densities, energies, missing = [], [], [], []
+    heats, densities, energies, missing, stored, conducted = [], [], [], [], [], 0.0
     for path in point.replica_paths:
         with open_trajectory(path) as trajectory:
             part = trajectory.isel(frame=slice(first, None))
             time, heat, kinetic = (part[name].values for name in ("time", "wall_energy", "kinetic_energy"))
-            places = part["coordinates"].values[1:, :, 0]
-            squares = (part["velocities"].values[1:].astype(float) ** 2).sum(axis=2)
+            places = part["coordinates"].values[:, :, 0]
+            squares = (part["velocities"].values.astype(float) ** 2).sum(axis=2)
         length = (len(time) - 1) // blocks
         if length < 1:
             raise ValueError(f"blocks: {blocks} (more than the {len(time) - 1} intervals of {path})")
@@ -85,6 +98,10 @@ def averages(point: grid.Point, gap: Gap, blocks: int, bins: int) -> Averages:
         heats.append(np.diff(ends, axis=0) / np.diff(time[: used + 1 : length])[:, None] / gap.area)
         through = heat - heat[0]
         missing.append(abs(through.sum(axis=1) + kinetic - kinetic[0]).max() / abs(through[-1]).max())
+        moment = 0.5 * (squares * (places - radius - 0.5 * gap.length)).sum(axis=1)
+        stored.append(np.stack([kinetic, moment], axis=1)[: used + 1 : length])
+        conducted += abs(ends[-1] - ends[0]).mean()
+        places, squares = places[1:], squares[1:]
         bin_of = np.clip(((places - radius) * (bins / gap.length)).astype(int), 0, bins - 1)
         block_of = np.repeat(np.arange(blocks), length)[:, None] * bins
         slot = (bin_of[:used] + block_of).ravel()
@@ -93,7 +110,8 @@ def averages(point: grid.Point, gap: Gap, blocks: int, bins: int) -> Averages:
         weights = squares[:used].ravel() / gap.dimension
         energies.append(np.bincount(slot, weights, minlength=blocks * bins).reshape(blocks, bins) / volume)
     given, taken = np.concatenate(heats).T
-    return Averages(-given, taken, np.concatenate(densities), np.concatenate(energies), float(max(missing)))
+    profiles = np.concatenate(densities), np.concatenate(energies)
+    return Averages(-given, taken, *profiles, float(max(missing)), np.array(stored), float(conducted))
 
 
 def heat_conduction_gas(points: list[grid.Point], settings: dict) -> xr.Dataset:
@@ -102,8 +120,9 @@ def heat_conduction_gas(points: list[grid.Point], settings: dict) -> xr.Dataset:
     settings: `bins` across the gap; `blocks` of each replica; `clear`, the mean free paths next to the walls
     that are left out where profiles are compared with Fourier's law.
 
-    Dimensions point, bin. `flux` is the mean of both walls, `wall_ratio` cold over hot, `half_ratio` the
-    second over the first half of the run; `free` and `fourier` theory's fluxes for particles that collide
+    Dimensions point, bin; `_error` and `_freedom`, the degrees of freedom of the error. `flux` is the steady
+    flux through both walls, `wall_ratio` cold over hot, `half_ratio` the second over the first half of the
+    run; `free` and `fourier` theory's fluxes for particles that collide
     with nothing but walls, and for a gas so dilute that only its conductivity counts. Where the Knudsen
     number is below FLUID, three dimensions, walls of full accommodation: `slab_flux` of Fourier's law with
     jumps, its profiles, `profile_ratio` the mean of T over it, and `jump`, the temperature jumps in units of
@@ -129,12 +148,13 @@ def _gas(point: grid.Point, settings: dict) -> dict:
     number = scene.species[0].count / (gap.area * gap.length)
     path = float(mean_free_path(packing_fraction(number, gap.dimension, diameter), gap.dimension, diameter))
     components = thermal_face(scene, "x_low").components
-    half = len(found.flux) // 2
-    early, late = found.flux[:half], found.flux[-half:]
+    half = len(found.given) // 2
+    estimates = {
+        "flux": found.flux(),
+        "wall_ratio": found.wall_ratio(),
+        "half_ratio": found.flux(slice(half, None)) / found.flux(slice(half)),
+    }
     made = {
-        "flux": jackknife(lambda q: q, found.flux),
-        "wall_ratio": jackknife(lambda given, taken: taken / given, found.given, found.taken),
-        "half_ratio": jackknife(lambda a, b: b / a, early, late),
         "density": jackknife(lambda n: n, found.density),
         "temperature": jackknife(lambda e, n: e / n, found.energy, found.density),
     }
@@ -172,7 +192,11 @@ def _gas(point: grid.Point, settings: dict) -> dict:
             lambda e, n: _jump(gap, position[used], e[used], n[used], diameter), found.energy, found.density
         )
     row |= {name: value for name, (value, _) in made.items()}
-    return row | {f"{name}_error": error for name, (_, error) in made.items()}
+    row |= {f"{name}_error": error for name, (_, error) in made.items()}
+    row |= dict.fromkeys(("profile_ratio_freedom", "jump_freedom"), len(found.given) - 1)
+    for name, one in estimates.items():
+        row |= {name: one.value, f"{name}_error": one.error, f"{name}_freedom": one.freedom}
+    return row
 
 
 def _jump(gap: Gap, position: np.ndarray, energy: np.ndarray, density: np.ndarray, diameter: float) -> float:
@@ -193,10 +217,13 @@ def heat_conduction_metal(points: list[grid.Point], settings: dict) -> xr.Datase
     `electrons_part` what the electrons have of it.
 
     Dimensions point, bin: electrons, the temperature of the electrons; modes, the mean energy of a mode; and
-    `share`, the mean over the bins of modes over electrons; hot, cold, flux, position. Over point
-    too: energy_ratio, E / T over the expected heat capacity, fluctuation, var E / T^2 over it (both with T of
-    the walls, and NaN between different ones), mode_ratio, the mean energy of all modes over T. `slope` is
-    dE/dT over the expected, from a line through the points in equilibrium, of which there must be two.
+    `share`, the mean over the bins of modes over electrons; `bend`, the second-order coefficient of the
+    electrons' temperature against position; hot, cold, flux, position. Over point
+    too: energy_ratio, E / T over the expected heat capacity, log_fluctuation, the logarithm of var E / T^2
+    over it (both with T of the walls, and NaN between different ones; the variance about the known mean,
+    which has no bias where samples are correlated, and whose logarithm is closer to Gaussian),
+    mode_ratio, the mean energy of all modes over T. `slope` is dE/dT over the expected, from a line
+    through the points in equilibrium, of which there must be two.
     """
     rows = [_metal(point, settings) for point in points]
     long = {name for name, value in rows[0].items() if np.ndim(value)}
@@ -259,14 +286,22 @@ def _metal(point: grid.Point, settings: dict) -> dict:
         "share": jackknife(lambda k, n, v, s: (v / s * n / k).mean(), kinetic, bodies, vibrating, scatterers),
         "flux": jackknife(lambda out, into: 0.5 * (into - out), given, taken),
     }
+    made["bend"] = jackknife(_bend, kinetic, bodies)
     warm = gap.hot if gap.hot == gap.cold else np.nan
     made["energy_ratio"] = jackknife(lambda e: e / (capacity * warm), total)
     made["mode_ratio"] = jackknife(lambda e: e / warm, mode)
-    made["fluctuation"] = jackknife(
-        lambda q, e: (q - (e - capacity * gap.hot) ** 2) / (capacity * warm**2), square, total
-    )
+    made["log_fluctuation"] = jackknife(lambda q: np.log(q / (capacity * warm**2)), square)
     row = {name: value for name, (value, _) in made.items()}
     row |= {f"{name}_error": error for name, (_, error) in made.items()}
-    position = (np.arange(bins) + 0.5) * gap.length / bins
+    row |= {f"{name}_freedom": len(total) - 1 for name in made}
     row |= {"electrons_part": 1.0 - fixed.count / capacity, "expected": capacity}
-    return row | {"hot": gap.hot, "cold": gap.cold, "position": position / gap.length}
+    return row | {"hot": gap.hot, "cold": gap.cold, "position": (np.arange(bins) + 0.5) / bins}
+
+
+def _bend(kinetic: np.ndarray, number: np.ndarray) -> float:
+    """Second-order coefficient of the temperature against position over the gap, from sums in bins, without
+    the outermost, where electrons come from a wall directly; NaN for fewer than five bins."""
+    if number.size < 5:
+        return np.nan
+    position = (np.arange(number.size) + 0.5) / number.size
+    return float(np.polyfit(position[1:-1], (kinetic / number)[1:-1], 2)[0])

@@ -3,6 +3,7 @@
 from gaspart.kinds import count, listed, names, positive
 
 TITLE = "Random insertion"
+CHAPTER = "Equation of state and structure"
 FIGURES = {
     "fill_failures": {
         "saturated": names("the experiments that are filled until nothing more fits"),

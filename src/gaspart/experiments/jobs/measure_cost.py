@@ -34,10 +34,12 @@ def measure_cost(
     stretch: float,
     repeats: int,
     record: bool = False,
+    rival: Scene | None = None,
 ) -> xr.Dataset:
     """Time `repeats` times, with each of the engines, the same stretch of simulated time of the same gas.
 
-    equilibration, stretch: in the scene's time; record: write down all events, and forget them.
+    equilibration, stretch: in the scene's time; record: write down all events, and forget them; rival:
+    another scene, timed in turn with these, by the first engine and without a record: the last partition.
     Returns a dataset over ``partition`` (the engines, in their order) and ``repeat``: ``seconds``
     (partition, repeat), processor time of the advance alone (filling the container, setting up and compiling
     are left out); over ``partition``: ``boxes`` in all, ``boxes_per_side`` (of the first axis; both 0 if the
@@ -49,19 +51,22 @@ def measure_cost(
     """
     # By the shortest step: a longer one leaves overlaps, which would count against a shorter one.
     careful = min(engines, key=lambda engine: getattr(engine, "time_step", 0.0))
-    state = _start(scene, careful, seed, equilibration)
-    seconds = np.empty((len(engines), repeats))
-    counts: list[dict] = [{}] * len(engines)
+    own = scene, _start(scene, careful, seed, equilibration)
+    runs = [(*own, engine, record) for engine in engines]
+    if rival is not None:
+        runs.append((rival, _start(rival, careful, seed, equilibration), engines[0], False))
+    seconds = np.empty((len(runs), repeats))
+    counts: list[dict] = [{}] * len(runs)
     for repeat in range(repeats):
-        order = range(len(engines))
+        order = range(len(runs))
         for n in order if repeat % 2 == 0 else reversed(order):
-            seconds[n, repeat], counted = _timed(scene, engines[n], state, stretch, record)
+            seconds[n, repeat], counted = _timed(*runs[n], stretch)
             if not counts[n]:
                 counts[n] = counted
             elif counted != counts[n]:
                 raise SimulationError(f"the same run twice: counted {counts[n]}, then {counted}")
     columns = {name: ("partition", np.array([counted[name] for counted in counts])) for name in counts[0]}
-    sides = [_sides(engine, scene.dimension) for engine in engines]
+    sides = [_sides(engine, one.dimension) for one, _, engine, _ in runs]
     return xr.Dataset(
         {
             "seconds": (("partition", "repeat"), seconds, {"units": "s"}),
@@ -96,7 +101,7 @@ def _start(
 
 
 def _timed(
-    scene: Scene, engine: EventDriven | TimeStepped, state: State, stretch: float, record: bool
+    scene: Scene, state: State, engine: EventDriven | TimeStepped, record: bool, stretch: float
 ) -> tuple[float, dict]:
     """Processor time of one stretch, in s, and what was counted in it."""
     dynamics = engine.start(scene, state)
@@ -116,7 +121,7 @@ def _timed(
 
 def _sides(engine: EventDriven | TimeStepped, dimension: int) -> tuple[int, ...]:
     """Boxes along each axis; zeros if the engine chooses them itself."""
-    if getattr(engine, "search", "boxes") != "boxes":
+    if getattr(engine, "search", "boxes") not in ("automatic", "boxes"):
         return (1,) * dimension
     given = engine.boxes_per_side or 0
     return given if isinstance(given, tuple) else (given,) * dimension
@@ -132,4 +137,5 @@ def run(recipe: dict) -> xr.Dataset:
         stretch=recipe["stretch"],
         repeats=recipe["repeats"],
         record=recipe["record"],
+        rival=recipe["rival"] and Scene.from_dict(recipe["rival"]),
     )

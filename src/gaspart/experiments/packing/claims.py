@@ -22,7 +22,7 @@ def _compressed(one: xr.Dataset) -> list[Claim]:
     return [
         Claim.at_least(
             claim="packing fraction of spheres grown until they jam",
-            measured=Estimate(one["packing_fraction"], one["error"]),
+            measured=Estimate(one["packing_fraction"], one["error"], one["freedom"]),
             bound=0.60,
             required=5e-3,
             source="Lubachevsky and Stillinger 1990: random packings end at 0.60 to 0.65",
@@ -30,7 +30,7 @@ def _compressed(one: xr.Dataset) -> list[Claim]:
         ),
         Claim.within(
             claim="contacts per sphere that does not rattle, in a jammed packing",
-            measured=Estimate.of(one, "contacts"),
+            measured=Estimate(one["contacts"], one["contacts_error"], one["freedom"]),
             expected=6.0,
             half_width=0.5,
             source="Donev, Torquato and Stillinger, Phys. Rev. E 71, 011105 (2005): isostatic, 2d contacts",
@@ -45,7 +45,7 @@ def _inserted(one: xr.Dataset) -> Claim:
     return Claim.at_most(
         claim=f"packing fraction of random insertion, {rule.replace('_', ' ')} (L/σ = {side:.3g}), "
         "over saturation",
-        measured=Estimate(one["packing_fraction"], one["error"]) / saturation,
+        measured=Estimate(one["packing_fraction"], one["error"], one["freedom"]) / saturation,
         bound=1.0,
         required=0.02,
         source="Zhang and Torquato 2013, with the wall excess of fill_failures",

@@ -35,8 +35,9 @@ def densest_fill(points: list[grid.Point], settings: dict) -> xr.Dataset:
             if compressed
         ] or [np.nan]
         filled, touched = _mean(made[-1]["packing_fraction"].values), _mean(np.array(touching))
-        columns.append(("compressed" if compressed else rule, *filled, *touched))
-    rules, fractions, errors, numbers, number_errors = zip(*columns, strict=True)
+        freedom = max(1, made[-1]["packing_fraction"].size - 1)
+        columns.append(("compressed" if compressed else rule, *filled, *touched, freedom))
+    rules, fractions, errors, numbers, number_errors, freedoms = zip(*columns, strict=True)
     bodies = max(one.sizes["body"] for one in made)
     shown = np.full((len(made), bodies, 3), np.nan)
     for place, one in zip(shown, made, strict=True):
@@ -46,6 +47,7 @@ def densest_fill(points: list[grid.Point], settings: dict) -> xr.Dataset:
             "rule": ("packing", list(rules)),
             "packing_fraction": ("packing", list(fractions), {"units": "1"}),
             "error": ("packing", list(errors), {"units": "1"}),
+            "freedom": ("packing", list(freedoms), {"units": "1", "long_name": "of the errors"}),
             "contacts": ("packing", list(numbers), {"units": "1"}),
             "contacts_error": ("packing", list(number_errors), {"units": "1"}),
             "position": (("packing", "body", "axis"), shown, {"units": "length"}),

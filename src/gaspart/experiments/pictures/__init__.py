@@ -1,4 +1,5 @@
 """Pictures."""
 
 TITLE = "Pictures"
+CHAPTER = "Pictures and checks"
 FIGURES: dict[str, dict] = {"gas_render": {}, "brownian_render": {}}

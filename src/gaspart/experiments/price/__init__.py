@@ -3,6 +3,7 @@
 from gaspart.kinds import flag
 
 TITLE = "Speed against accuracy"
+CHAPTER = "Speed and accuracy"
 FIGURES = {
     "price_of_features": {
         "count_instructions": flag(

@@ -39,4 +39,17 @@ def price_of_features(ds: xr.Dataset) -> list[Claim]:
         for one in rows(ds, "point")
         if one["feature"].item() != "plain"
     ]
-    return absent + present
+    null = [
+        Claim(
+            claim="time per event of the plain scene over that of itself beside it, "
+            f"{one['engine'].item()} engine",
+            measured=Estimate.of(one, "ratio"),
+            expected=1.0,
+            required=0.05,
+            source="the same work, timed in turn",
+            fails_if="what disturbs the machine favours one of two scenes, or the uncertainty is too small",
+        )
+        for one in rows(ds, "point")
+        if one["feature"].item() == "plain"
+    ]
+    return absent + null + present

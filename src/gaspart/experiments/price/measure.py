@@ -1,10 +1,15 @@
-"""The cost of each feature of a scene relative to the plain scene, and that of absent features."""
+"""The cost of each feature of a scene relative to the plain scene, and that of absent features.
+
+Each job times a scene and the plain one in turn, A B B A, so that what disturbs the machine disturbs both.
+Several jobs of one feature differ in their equilibration: their scatter is the uncertainty.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.statistics import mean_of
 from gaspart.experiments.price.stripped import instructions
 from gaspart.experiments.shared.timings import per_event
 from gaspart.planning import grid
@@ -15,26 +20,21 @@ WORK = ("pair_tests", "box_visits", "crossings")
 
 
 def price_of_features(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """Costs per event (a collision or a hit at a wall), and over those of the same engine's plain scene.
+    """Costs per event (a collision or a hit at a wall), and over those of the plain scene beside it.
 
     settings: `count_instructions`, whether to compare those of compiled kernels with those of kernels whose
     source lacks the features.
 
-    Over point: engine, feature (which the plain scene lacks), seconds per event with
-    seconds_error, `ratio` over the plain one's and its error, counted `pair_tests`, `box_visits` and
-    `crossings` per event. Over kernel, if counted: engine's name, `instructions`, and `stripped`.
-
-    Raises ValueError if an engine has no plain point.
+    Over point (a feature with an engine): engine, feature (which the plain scene lacks), seconds per event,
+    `ratio` over the plain one's in the same jobs with its error, which is the jobs' scatter, and the degrees
+    of freedom of that; counted `pair_tests`, `box_visits` and `crossings` per event. The plain scene beside
+    itself has the ratio 1. Over kernel, if counted: engine's name, `instructions`, and `stripped`.
     """
-    rows = [_row(point) for point in points]
-    plain = {row["engine"]: row for row in rows if row["feature"] == PLAIN}
-    for row in rows:
-        if row["engine"] not in plain:
-            raise ValueError(f"no plain scene with engine {row['engine']}")
-        own, other = row, plain[row["engine"]]
-        row["ratio"] = own["seconds"] / other["seconds"]
-        relative = [one["seconds_error"] / one["seconds"] for one in (own, other)]
-        row["ratio_error"] = 0.0 if own is other else row["ratio"] * float(np.hypot(*relative))
+    jobs = [_row(point) for point in points]
+    groups: dict[tuple, list[dict]] = {}
+    for job in jobs:
+        groups.setdefault((job["engine"], job["feature"]), []).append(job)
+    rows = [_together(group) for group in groups.values()]
     dataset = xr.Dataset({name: ("point", [row[name] for row in rows]) for name in rows[0]})
     if settings["count_instructions"]:
         counted = instructions()
@@ -45,15 +45,34 @@ def price_of_features(points: list[grid.Point], settings: dict) -> xr.Dataset:
     return dataset
 
 
+def _together(jobs: list[dict]) -> dict:
+    """The row of several jobs of one feature; NaN errors for a single one."""
+    ratios = np.array([job["log_ratio"] for job in jobs])
+    error, freedom = (one.error, one.freedom) if len(jobs) > 1 and (one := mean_of(ratios)) else (np.nan,) * 2
+    ratio = float(np.exp(ratios.mean()))
+    return {
+        "engine": jobs[0]["engine"],
+        "feature": jobs[0]["feature"],
+        **{name: float(np.mean([job[name] for job in jobs])) for name in ("seconds", *WORK)},
+        "ratio": ratio,
+        "ratio_error": ratio * error,
+        "ratio_freedom": freedom,
+    }
+
+
 def _row(point: grid.Point) -> dict:
+    """One job: its costs per event, and the mean over its repeats of ln of the time per event over that of
+    the plain scene timed next to it."""
     with xr.open_dataset(point.path) as run:
-        costs = per_event(run).isel(partition=0)
+        costs = per_event(run)
         engine, recorded = run.attrs["engine"], bool(run.attrs["recorded"])
-    named = ("seconds", "seconds_error", *WORK)
+        beside = np.log(run.seconds.values / costs["events"].values[:, None])
+    own = costs.isel(partition=0)
     return {
         "engine": engine,
         "feature": _feature(grid.scene(point), recorded),
-        **{name: float(costs[name]) for name in named},
+        "log_ratio": float(np.median(beside[0] - beside[-1])),
+        **{name: float(own[name]) for name in ("seconds", *WORK)},
     }
 
 

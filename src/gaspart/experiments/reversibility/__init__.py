@@ -1,4 +1,5 @@
 """Speed against accuracy."""
 
 TITLE = "Speed against accuracy"
+CHAPTER = "Speed and accuracy"
 FIGURES: dict[str, dict] = {"reversibility": {}}

@@ -67,6 +67,7 @@ def _row(run: xr.Dataset) -> dict:
         estimate = mean_of(values) if values.size > 1 else None
         row[name] = estimate.value if estimate else np.nan
         row[f"{name}_error"] = estimate.error if estimate else np.nan
+        row[f"{name}_freedom"] = estimate.freedom if estimate else np.nan
     return row
 
 

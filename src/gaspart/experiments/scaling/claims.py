@@ -19,6 +19,7 @@ A = "Frederickx & Meerts 2010"
 C = "Spencer 2022"
 YEAR = 365.25 * 86400.0
 _INTERVAL = 2.0 * 1.96  # a 95 % interval in standard errors
+OTHER_MACHINE = "on this machine, and by this program, tests and boxes have other relative costs"
 _OTHER_CAUSE = "something other than the pair tests takes the time"
 
 
@@ -49,6 +50,8 @@ def _ideal_number(gas: str, ideal: Estimate, source_number: float, source: str) 
         expected=Estimate(source_number, 0.1 * source_number),
         required=0.3 * ideal.value,
         source=source,
+        allowance_source="read from the source's figure to 10 %",
+        why=OTHER_MACHINE,
         fails_if="another machine or program has other relative costs of tests and boxes",
     )
 
@@ -86,10 +89,17 @@ def box_count(ds: xr.Dataset) -> list[Claim]:
                 fails_if="time rises or falls with the number of boxes throughout",
             )
         )
-    # The source's figure 6 at this number of particles.
-    ideal = Estimate(ds.ideal, (ds.ideal_high - ds.ideal_low) / _INTERVAL)
-    gas = f"N = {int(ds['count'])}, r = {float(ds.radius):g}"
-    number = _ideal_number(gas, ideal, float(ds.source_boxes_per_body), f"{A}, figure 6")
+    # The minimum is flat: what matters is what the source's number costs, not where exactly the least is.
+    number = Claim.at_most(
+        claim=f"time with {float(ds.source_boxes_per_body):g} boxes per particle over the least of the scan",
+        kind="reproduction",
+        measured=Estimate.of(ds, "source_penalty"),
+        bound=1.05,
+        required=0.05,
+        source=f"{A}, figure 6 at this number of particles",
+        why=OTHER_MACHINE,
+        fails_if="the source's number is far from the flat minimum on this machine",
+    )
     return [*claims, *_counts(ds), number, *_round_widths(ds), *_sectors(ds)]
 
 
@@ -192,6 +202,7 @@ def ideal_boxes(ds: xr.Dataset) -> list[Claim]:
             expected=1.0,
             half_width=0.4,
             source=f"{A}, figures 5 to 7: linear",
+            why=OTHER_MACHINE,
             fails_if="the ideal number per particle depends on N, as when caches overflow",
         )
         for series in rows(ds, "series")
@@ -217,6 +228,7 @@ def _source_numbers(source: xr.Dataset, origin: str) -> list[Claim]:
             bound=1.1,
             required=0.05,
             source=origin,
+            why=OTHER_MACHINE,
             fails_if="the source's number is far from the minimum on this machine",
         ),
     ]
@@ -253,6 +265,7 @@ def linear_scaling(ds: xr.Dataset) -> list[Claim]:
             expected=math.log10(float(ds.source_years) * YEAR),
             required=0.1,
             source=f"{A}, section 3.4: {float(ds.source_years):g} years instead of a second",
+            why="no count of the work of one step gives it: it is what about a thousand steps would take",
             fails_if="the source's years are not those of one step",
         ),
     ]
@@ -270,6 +283,7 @@ def _regime(part: xr.Dataset, number: int) -> Claim:
             bound=1.0,
             required=0.15,
             source=f"{source}: superlinear",
+            why="caches of this machine are larger",
             fails_if="larger gases are no slower per particle",
         )
     return _exponent(
@@ -279,6 +293,7 @@ def _regime(part: xr.Dataset, number: int) -> Claim:
         expected=1.0,
         half_width=0.1,
         source=f"{source}: linear",
+        why="the same operations are more expensive in memory than in the caches",
         fails_if="the time per particle depends on N, as when caches overflow",
     )
 

@@ -58,7 +58,8 @@ def box_count(points: list[grid.Point], settings: dict) -> xr.Dataset:
     that can hold no partner (``in_reach``: within a diameter).
     Over (``container``, ``fine``): ``fine_seconds`` ... of the two other scans, in containers whose sides
     (``container_side``) do and do not give round widths. Over ``power``: ``advantage``, see `_advantage`.
-    Over ``sector``: ``sector_seconds`` ... as in `per_event`. Scalars: as in `ideal`; of the sectors, how
+    Over ``sector``: ``sector_seconds`` ... as in `per_event`. Scalars: as in `ideal`; ``source_penalty``, the
+    time at the source's number over the least, with error; of the sectors, how
     many neighbourhoods are searched at an event (``event_searches``) and at a crossing
     (``crossing_searches``), from pair tests = discs in a neighbourhood x (a + b crossings), and
     ``crossing_exponent``, of the crossings per event in the number of planes between sectors; with errors.
@@ -77,6 +78,7 @@ def box_count(points: list[grid.Point], settings: dict) -> xr.Dataset:
     searches = statistics.fit_polynomial(events.crossings.values, events.pair_tests.values / near)
     crossings = statistics.fit_power_law(events.boxes_per_side.values - 1.0, events.crossings.values)
     advantage = np.array([_advantage(pair, per_side) for per_side in settings["round_per_side"]])
+    slower = penalty(costs, settings["source_boxes_per_body"])
     return xr.merge(
         [
             costs.assign(_expected(main)).rename(partition="scan"),
@@ -88,6 +90,8 @@ def box_count(points: list[grid.Point], settings: dict) -> xr.Dataset:
         count=main.attrs["count"],
         radius=main.radius,
         source_boxes_per_body=settings["source_boxes_per_body"],
+        source_penalty=slower[0],
+        source_penalty_error=slower[1],
         container_side=("container", [run.side for run in fine]),
         round_per_side=("power", settings["round_per_side"]),
         advantage=("power", advantage[:, 0]),

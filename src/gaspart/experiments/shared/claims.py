@@ -7,7 +7,7 @@ import xarray as xr
 
 PARTICLES = {2: "discs", 3: "spheres"}
 """Names of the particles in each dimension."""
-MODE_COUPLING = "mode coupling with Enskog's D and viscosity (Ernst, Hauge & van Leeuwen 1970; recalled)"
+MODE_COUPLING = "hydrodynamic modes of the container, transport coefficients Enskog's (gaspart.theory.modes)"
 
 
 def rows(dataset: xr.Dataset, dimension: str) -> list[xr.Dataset]:

@@ -88,7 +88,8 @@ def read_run(point: grid.Point, path: str) -> Run:
         drift = trajectory["velocities"][first].values.astype(float).mean(axis=0)
         energy = float(trajectory["kinetic_energy"][first:].mean())
         virial = np.diff(trajectory["virial_sum"][first:].values)
-        counters = {name: np.diff(trajectory[name][first:].values) for name in COUNTED}
+        counted = [name for name in COUNTED if name in trajectory]
+        counters = {name: np.diff(trajectory[name][first:].values) for name in counted}
     about_centre = energy - 0.5 * mass * count * (drift @ drift)
     time = schedule.sample_interval
     temperature = 2.0 * about_centre / (dimension * (count - 1))
@@ -128,7 +129,7 @@ def combine_runs(runs: list[Run]) -> Pressure:
 
 def totals(runs: list[Run]) -> dict[str, float]:
     """Sums of the counters over all replicas, by name."""
-    return {name: float(sum(run.counters[name].sum() for run in runs)) for name in COUNTED}
+    return {name: float(sum(run.counters[name].sum() for run in runs)) for name in runs[0].counters}
 
 
 def _mean(averages: list[BlockAverage]) -> tuple[float, float]:

@@ -98,11 +98,12 @@ def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
     """The ideal number of boxes per particle of one gas, from its `per_body` costs; each with its 95 %
     interval.
 
-    By time: the minimum of a parabola of ln seconds against ln boxes (``ideal``, ``ideal_low``,
-    ``ideal_high``, ``ideal_interior``). By work: with seconds = a + b tests + c boxes, all per particle,
-    fitted to the same partitions, the minimum is at sqrt(3^d b / 2 c) (``model``, ``model_low``,
-    ``model_high``; NaN if a weight is not positive), with ``body_seconds`` a (moving, sorting, and looking
-    into boxes, whose number hardly changes), ``test_seconds`` b, ``box_seconds`` c, and their ``_error``.
+    By time: the minimum of a + b / boxes + c boxes (``ideal``, ``ideal_low``, ``ideal_high``,
+    ``ideal_interior``), and the boxes from ``flat_low`` to ``flat_high`` that cost at most 5 % more. By
+    work: with seconds = a + b tests + c boxes, all per particle, fitted to the same partitions, the
+    minimum is at sqrt(3^d b / 2 c) (``model``, ``model_low``, ``model_high``; NaN if a weight is not
+    positive), with ``body_seconds`` a (moving, sorting, and looking into boxes, whose number hardly
+    changes), ``test_seconds`` b, ``box_seconds`` c, and their ``_error``.
     """
     boxes, seconds, error = (costs[name].values for name in ("boxes_per_body", "seconds", "seconds_error"))
     best = statistics.optimum(boxes, seconds, within=NEAR)
@@ -119,6 +120,8 @@ def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
         "ideal_low": best.low,
         "ideal_high": best.high,
         "ideal_interior": int(best.interior),
+        "flat_low": best.flat_low,
+        "flat_high": best.flat_high,
         "model": model,
         "model_low": model * math.exp(-spread),
         "model_high": model * math.exp(spread),

@@ -3,6 +3,7 @@
 from gaspart.kinds import POSITIVE, count, listed, positive
 
 TITLE = "Speed distributions"
+CHAPTER = "Motion and its memory"
 _HISTOGRAM = {
     "bins": count("bins of the histogram"),
     "highest": positive("its largest speed, over the root-mean-square speed"),

@@ -3,6 +3,7 @@
 from gaspart.kinds import COUNT, POSITIVE, listed, positive
 
 TITLE = "Speed against accuracy"
+CHAPTER = "Speed and accuracy"
 _ACCURACIES = listed(POSITIVE, "relative accuracies of the cheapest settings")
 FIGURES = {
     "speed_accuracy": {

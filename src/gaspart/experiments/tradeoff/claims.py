@@ -58,7 +58,6 @@ def _orders(ds: xr.Dataset) -> list[Claim]:
                 fails_if="a contact is resolved at the wrong place or time, or lost",
             )
             for observable, order in expected
-            if np.isfinite(row.order.sel(observable=observable))
         ]
     return claims
 
@@ -78,7 +77,7 @@ def _missed(ds: xr.Dataset) -> list[Claim]:
                 claim=f"collisions lost to steps of {float(row.time_step[at]):g}, {setting}, "
                 f"{_gas(row.dimension, row.packing_fraction)}",
                 measured=-Estimate.of(row.sel(observable="collision_rate").isel(step=at), "bias"),
-                expected=Estimate(lost[at], 0.05 * lost[at]),
+                expected=lost[at],
                 required=0.1 * lost[at],
                 source=FLUX,
                 fails_if="contacts that touch and part within a step are found, or others are not",
@@ -102,10 +101,11 @@ def _frontier(z: xr.Dataset) -> list[Claim]:
             bound=1.0,
             required=0.2 * float(at.best_ratio),
             source="cost of a collision by each engine, on this machine",
+            no_verdict="which engine is cheaper depends on the machine and on both programs",
             fails_if="time steps are nevertheless cheaper than events",
         )
         for at in rows(z, "accuracy")
-        if at.accuracy <= 0.001 and np.isfinite(at.best_ratio)
+        if at.accuracy <= 0.001
     ]
     relative = (z.best_ratio_error / z.best_ratio).values
     coarse, fine = (Estimate(z.best_seconds[k], z.best_seconds[k] * relative[k]) for k in (0, -1))
@@ -134,12 +134,12 @@ def _steady(at: xr.Dataset) -> Claim:
     )
     z = float(theory.compressibility_factor(fraction, dimension))
     z += float(theory.finite_size_correction(fraction, dimension, count, ensemble="canonical"))
-    return Claim.within(
+    return Claim(
         claim=f"error of Z in the steady state minus that of paired runs, dt = {float(at.steady_step):g}, "
         f"{at.steady_setting.values}, {_gas(at.steady_dimension, at.steady_packing_fraction)}",
         measured=Estimate.of(at, "steady_z") / z - 1.0 - Estimate.of(at, "steady_paired"),
         expected=0.0,
-        half_width=0.005,
+        required=FLOOR,
         source="Kolafa, Labik & Malijevsky (2004), first order in 1/N",
         fails_if="errors accumulate over many steps",
     )

@@ -3,6 +3,7 @@
 from gaspart.kinds import POSITIVE, listed, positive
 
 TITLE = "Velocity autocorrelation"
+CHAPTER = "Motion and its memory"
 FIGURES = {
     "velocity_autocorrelation": {
         "start_to": positive("collisions of a particle up to which the initial decay is fitted"),

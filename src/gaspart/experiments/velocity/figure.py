@@ -1,4 +1,4 @@
-"""The velocity autocorrelation: its tail, its start, and the ratio of the tail to theory's."""
+"""The velocity autocorrelation: its tail, its start, and the ratio to the modes of the container."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from gaspart.rendering import style
 
 
 def velocity_autocorrelation(ds: xr.Dataset) -> Figure:
-    """Three panels: C against collisions per particle, log-log; its start; C over theory's tail."""
+    """Three panels: C against collisions per particle, log-log; its start; C - 1/N over the modes."""
     figure, (upper, middle, lower) = style.new(
         rows=3, height=6.8, height_ratios=(2.2, 1.5, 1.5), share_x=False
     )
@@ -58,7 +58,7 @@ def _tails(axis: Axes, ds: xr.Dataset) -> None:
         )
     axis.set_xscale("log")
     axis.set_yscale("log")
-    axis.set_xlim(0.8, 40.0)
+    axis.set_xlim(0.8, 65.0)
     axis.set_ylim(1e-3, 1.0)
     _integer_ticks(axis)
     axis.set_ylabel(r"$C=\langle v(0)v(t)\rangle/\langle v^2\rangle$")
@@ -86,20 +86,22 @@ def _starts(axis: Axes, ds: xr.Dataset) -> None:
 
 
 def _ratios(axis: Axes, ds: xr.Dataset) -> None:
-    """C over theory's tail, until sound has crossed the container."""
+    """C - 1/N over the sum of the container's modes; marked, when sound has crossed it."""
     style.level(axis, 1.0)
     for kind in range(ds.sizes["point"]):
         row = ds.isel(point=kind)
         dimension, eta, lags = _of(row)
         at = row.isel(lag=lags)
         s = at["collisions"].values
-        shown = (s > 5.0) & (s < float(row["sound"]))
-        tail = theory.velocity_autocorrelation_tail(at["time"].values, eta, dimension)
+        shown, share = s > 5.0, 1.0 / float(row["count"])
+        time = at["time"].values[shown]
+        modes = theory.velocity_autocorrelation_modes(time, eta, dimension, int(row["count"])) - share
+        axis.axvline(float(row["sound"]), color=style.COLOURS[kind], linestyle=":", linewidth=0.8)
         style.points(
             axis,
             s[shown],
-            (at["correlation"].values / tail)[shown],
-            (at["correlation_error"].values / tail)[shown],
+            (at["correlation"].values[shown] - share) / modes,
+            at["correlation_error"].values[shown] / modes,
             kind,
             markersize=2.5,
         )
@@ -108,11 +110,11 @@ def _ratios(axis: Axes, ds: xr.Dataset) -> None:
             float(ds["tail_from"].min()), float(ds["tail_to"].max()), color=style.GREY, alpha=0.18, lw=0
         )
     axis.set_xscale("log")
-    axis.set_xlim(5.0, 40.0)
-    axis.set_ylim(0.6, 1.6)
+    axis.set_xlim(5.0, 65.0)
+    axis.set_ylim(0.4, 1.8)
     _integer_ticks(axis)
     axis.set_xlabel(r"collisions per particle $s=\nu t$")
-    axis.set_ylabel("$C$ / theory's tail")
+    axis.set_ylabel("$C-1/N$ over modes")
 
 
 def _integer_ticks(axis: Axes) -> None:

@@ -6,8 +6,8 @@ of mass; where momentum is free (canonical) one has the centre's own beside, whi
 
     C(t) = 1/N + <u(0).u(t)> / (d k_B T),    k_B T = m <u^2> / d * N / (N-1) .
 
-That is exact. C(t) of an infinite fluid differs from it once momentum has come round the container: sound
-does that first.
+That is exact. C(t) of an infinite fluid differs from it once momentum has come round the container, sound
+first, so that the tail is compared with the modes of the container (`theory.velocity_autocorrelation_modes`).
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.correlations import autocorrelation, between, centred
-from gaspart.analysis.statistics import bootstrap, fit_polynomial, mean_of
+from gaspart.analysis.statistics import fit_polynomial, mean_of
 from gaspart.planning import grid
 from gaspart.trajectory.run import open_trajectory
 
 
 def velocity_autocorrelation(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """C(t) of every point, the rate of its start and the amplitude and exponent of its tail.
+    """C(t) of every point, the rate of its start and the amplitude of its tail.
 
     settings: `start_to`, collisions of a particle up to which -ln C is fitted by a line and a parabola, where
     it is sampled that often; `tail`, from and to which the tail is fitted of all other points.
@@ -33,7 +33,7 @@ def velocity_autocorrelation(points: list[grid.Point], settings: dict) -> xr.Dat
     Returns over `point` and `lag` (NaN beyond a point's own): collisions s, time, correlation and its error;
     over `point`: dimension, packing_fraction, count, sound (s at which it has crossed the container),
     start_rate and its error (over the collision rate), tail_from, tail_to, tail_ratio and its error
-    (amplitude over theory's), tail_exponent and its error; NaN where a point has none.
+    (C - 1/N over the sum of the container's hydrodynamic modes); NaN where a point has none.
     """
     rows = [_row(point, settings) for point in points]
     lags = max(len(row["collisions"]) for row in rows)
@@ -68,25 +68,22 @@ def _row(point: grid.Point, settings: dict) -> dict:
         "time": time,
         "correlation": samples.mean(axis=0),
         "correlation_error": samples.std(axis=0, ddof=1) / math.sqrt(len(samples)),
+        **dict.fromkeys(("start_rate_freedom", "tail_ratio_freedom"), len(samples) - 1),
         **dict.fromkeys(("start_rate", "start_rate_error", "tail_from", "tail_to"), math.nan),
         **dict.fromkeys(("tail_ratio", "tail_ratio_error"), math.nan),
-        **dict.fromkeys(("tail_exponent", "tail_exponent_error"), math.nan),
     }
     early = between(row["collisions"], row["collisions"][1], settings["start_to"])
     if early.sum() >= 4:
         slope = mean_of([_initial_rate(row["collisions"][early], values[early]) for values in samples])
         row |= {"start_rate": slope.value, "start_rate_error": slope.error}
-    start, stop = settings["tail"][0], min(settings["tail"][1], sound)
+    start, stop = settings["tail"]
     late = between(row["collisions"], start, stop)
     if late.sum() >= 4 and early.sum() < 4:  # what is sampled finely is too short for the tail
-        expected = theory.velocity_autocorrelation_tail(time[late], eta, dimension)
-        ratio = mean_of([float(values[late] @ expected / (expected @ expected)) for values in samples])
-        exponent = bootstrap(
-            lambda chosen: _exponent(time[late], chosen.mean(axis=0)), samples[:, late], repeats=200
-        )
+        share = 1.0 / count  # known exactly, and not part of the tail
+        expected = theory.velocity_autocorrelation_modes(time[late], eta, dimension, count) - share
+        ratio = mean_of(((samples[:, late] - share) @ expected / (expected @ expected)).tolist())
         row |= {"tail_from": start, "tail_to": stop, "tail_ratio": ratio.value}
-        row |= {"tail_ratio_error": ratio.error, "tail_exponent": exponent.value}
-        row["tail_exponent_error"] = exponent.error
+        row["tail_ratio_error"] = ratio.error
     return row
 
 
@@ -106,12 +103,3 @@ def _replica(point: grid.Point, path: str, longest: float) -> tuple[np.ndarray, 
 def _initial_rate(collisions: np.ndarray, values: np.ndarray) -> float:
     """-d ln C / ds at s = 0, of a parabola through 0."""
     return float(fit_polynomial(collisions, -np.log(values), powers=(1, 2)).values[0])
-
-
-def _exponent(time: np.ndarray, values: np.ndarray) -> float:
-    """Of the power law through C, all lags alike in C: the noise is the same at all of them. By one Newton
-    step from the straight line in the logarithms, whose noise grows as C falls."""
-    slope, level = np.polyfit(np.log(time), np.log(np.abs(values)), 1, w=np.abs(values))
-    power = np.exp(level) * time**slope
-    design = np.stack([power, power * np.log(time)], axis=1)
-    return float(slope + np.linalg.lstsq(design, values - power, rcond=None)[0][1])

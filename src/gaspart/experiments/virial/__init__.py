@@ -3,6 +3,7 @@
 from gaspart.kinds import count, flag, listed, positive, record
 
 TITLE = "Equation of state"
+CHAPTER = "Equation of state and structure"
 _FITS = listed(
     record(
         {

@@ -13,7 +13,7 @@ from gaspart.rendering import style
 
 
 def wall_pressure(ds: xr.Dataset) -> Figure:
-    """Three panels: P against T; P/(n k T) against packing fraction, raw and corrected; residuals."""
+    """Three panels: P/(n k T) against T; the same against packing fraction, raw and corrected; residuals."""
     figure, (upper, middle, lower) = style.new(
         rows=3, height=6.6, height_ratios=(1.6, 2.2, 1.5), share_x=False
     )
@@ -26,31 +26,29 @@ def wall_pressure(ds: xr.Dataset) -> Figure:
 
 
 def _temperatures(axis: Axes, ds: xr.Dataset) -> None:
-    """P in the scene's units where one density has several temperatures; lines: theory, ideal gas."""
+    """P / (n k T) against T where one density has several temperatures; lines: theory, ideal gas."""
     density = ds["density"].values.round(9)
     series = [n for n in sorted(set(density)) if np.ptp(ds["temperature"].values[density == n]) > 1.0]
     for kind, n in enumerate(series):
         part = ds.isel(point=density == n).sortby("temperature")
-        temperature = part["temperature"].values
-        line = np.array([0.8 * temperature.min(), 1.25 * temperature.max()])
-        colour = style.COLOURS[kind]
-        axis.plot(line, line * float(part["expected"][0]), color=colour, zorder=1)
-        axis.plot(line, line * n, color=colour, linestyle=":", zorder=1)
+        line = np.array([0.0, 1.1 * float(part["temperature"].max())])
+        z = np.full(2, float(part["expected"][0]) / n)
+        axis.plot(line, z, color=style.COLOURS[kind], zorder=1)
         style.points(
             axis,
-            temperature,
-            part["pressure"] * temperature,
-            part["pressure_error"] * temperature,
+            part["temperature"],
+            part["pressure"] / n,
+            part["pressure_error"] / n,
             kind=kind,
             label=rf"$\eta={float(part['packing_fraction'][0]):.2g}$",
         )
     if series:
-        axis.plot([], [], color=style.GREY, linestyle=":", label="ideal gas")
+        axis.plot(line, np.ones(2), color=style.GREY, linestyle=":", label="ideal gas")
+        axis.set_xlim(0.0, float(line[1]))
         axis.legend(loc="lower right")
-    axis.set_xscale("log")
-    axis.set_yscale("log")
+    axis.set_ylim(0.0, 1.2 * axis.get_ylim()[1])
     axis.set_xlabel(r"temperature $T$")
-    axis.set_ylabel(r"pressure $P\ (1/\sigma^2)$")
+    axis.set_ylabel(r"$P/(n k_\mathrm{B}T)$")
 
 
 def _densities(axis: Axes, ds: xr.Dataset) -> None:
@@ -71,7 +69,7 @@ def _densities(axis: Axes, ds: xr.Dataset) -> None:
     axis.set_xlim(0.0, 0.43)
     axis.set_xlabel(r"packing fraction $\eta$ of the container")
     axis.set_ylabel(r"$P/(n k_\mathrm{B}T)$")
-    axis.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
+    axis.legend(loc="lower right")
 
 
 def _residuals(axis: Axes, ds: xr.Dataset) -> None:

@@ -3,7 +3,7 @@
 Nearly all boxes hold a few particles only, and a search then reads each in one go, whatever their number.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,7 +19,8 @@ class BoxLists(NamedTuple):
     """The grid of boxes (see `state.boxes.Boxes`): per_side, widths, strides (3,), neighbour, shift. How many
     particles each box holds, filled (boxes,), the first of them, places (boxes, PLACES), and of the others
     the first, head (boxes,), and the next after each particle, following (N,). candidates (M,), room for
-    those of a search; resting (N,), which particles gravity may not pull, see `flight.mark_resting`."""
+    those of a search; resting (N,), which particles gravity may not pull, see `flight.mark_resting`. lists:
+    `NeighbourLists`, which are searched instead, or None."""
 
     per_side: np.ndarray
     widths: np.ndarray
@@ -32,9 +33,10 @@ class BoxLists(NamedTuple):
     following: np.ndarray
     candidates: np.ndarray
     resting: np.ndarray
+    lists: Any
 
 
-def empty_lists(boxes, count):
+def empty_lists(boxes, count, lists=None):
     """The lists of these `state.boxes.Boxes` for `count` particles, with none in them."""
     return BoxLists(
         boxes.per_side, boxes.widths, boxes.strides, boxes.neighbour, boxes.shift,
@@ -44,6 +46,7 @@ def empty_lists(boxes, count):
         following=np.zeros(count, dtype=np.uint32),
         candidates=np.zeros(CANDIDATES + WIDTH, dtype=np.uint64),
         resting=np.zeros(count, dtype=np.uint8),
+        lists=lists,
     )  # fmt: skip
 
 

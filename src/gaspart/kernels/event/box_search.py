@@ -42,7 +42,7 @@ def test_candidates(particles, i, count, boxes, space, tally, gravity):
     for n in range(_WIDTH):
         candidates[count + n] = i  # no particle meets itself
     before, partner = predictions[i].contact_time, int64(predictions[i].partner)
-    best, found, unknown = earliest(flights, i, count, (before, partner), boxes, space, gravity)
+    best, found, unknown = earliest(flights, i, (uint64(0), count), (before, partner), boxes, space, gravity)
     if gravity is not None:
         while unknown:
             candidate = candidates[lowest(unknown)]

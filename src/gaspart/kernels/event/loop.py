@@ -13,14 +13,17 @@ and the higher index.
 
 from math import inf
 
+from numpy import int64
+
 from gaspart.kernels.compilation import inner_helper, kernel
 from gaspart.kernels.event.all_pairs import first_of_all
 from gaspart.kernels.event.box_lists import move, sort_in
 from gaspart.kernels.event.box_search import find_contact
 from gaspart.kernels.event.monitors import collapse_detected, is_full, record_event
+from gaspart.kernels.event.neighbour_lists import is_room_lacking, next_renewal, renew, search_list
 from gaspart.kernels.event.oversized import search_oversized
 from gaspart.kernels.event.pair_contact import collide
-from gaspart.kernels.event.prefetch import CACHED, crossing_of, prefetch
+from gaspart.kernels.event.prefetch import CACHED, CACHED_LISTS, crossing_of, prefetch, prefetch_lists
 from gaspart.kernels.event.queue import (
     EVENT_COUNT,
     bucket_of,
@@ -38,10 +41,22 @@ from gaspart.kernels.obstacles.interior_wall import find_wall, meet_wall
 from gaspart.kernels.obstacles.well import meet_edge
 from gaspart.kernels.prefetch import fetch
 
-STOP, EVENTS, FULL, COLLAPSE = range(
-    4
-)  # why a run ended: the time, the number of events, the record, a collapse
-_NEW = (0, 0, 0)  # no box was crossed: all is predicted anew
+# Why a run ended: the time, the number of events, the record, a collapse, a full neighbour list, the number
+# of crossings.
+STOP, EVENTS, FULL, COLLAPSE, NO_ROOM, CROSSED = range(6)
+# No box was crossed: all is predicted anew. As int64, since numba compiles a function again for each type of
+# integer, and for a constant as well.
+_NEW = (int64(0), int64(0), int64(0))
+
+
+@inner_helper
+def predict_contact(particles, i, boxes, model, tally, crossed, lists):
+    """Predict the next contact of a particle, if it is earlier than that predicted."""
+    if lists is not None:
+        search_list(particles, i, lists, model.space, tally)
+    else:
+        find_contact(particles, i, boxes, model.space, tally, crossed, model.gravity)
+        search_oversized(particles, i, boxes, model.space, tally, crossed, model.gravity, model.oversized)
 
 
 @inner_helper
@@ -53,28 +68,30 @@ def predict(particles, i, boxes, model, tally, now, number, crossed):
         predictions[i].contact_time = inf
         predictions[i].partner = NONE
     time, partner = predictions[i].contact_time, predictions[i].partner
-    find_contact(particles, i, boxes, space, tally, crossed, gravity)
-    search_oversized(particles, i, boxes, space, tally, crossed, gravity, model.oversized)
+    predict_contact(particles, i, boxes, model, tally, crossed, boxes.lists)
     if predictions[i].contact_time != time or predictions[i].partner != partner:
         predictions[i].predicted = number
     time, face = next_face(particles, i, boxes, space, now, gravity, model.faces, model.oversized)
     time, face = find_wall(particles, i, boxes, space, gravity, model.walls, time, face)
+    time, face = next_renewal(particles.flights, i, boxes.lists, time, face)
     predictions[i].face_time = time
     predictions[i].face = face
 
 
 @inner_helper
-def prepare(particles, boxes, model):
-    """Sort all particles into their boxes, and mark which may rest."""
-    sort_in(particles.predictions, boxes)
+def prepare(particles, boxes, model, lists):
+    """Sort all particles into their boxes, unless there are neighbour lists, and mark which may rest."""
+    if lists is None:
+        sort_in(particles.predictions, boxes)
     for i in range(len(particles.flights)):
         mark_resting(particles.flights, i, model.space, model.gravity, boxes.resting)
 
 
 @kernel
 def predict_all(particles, queue, boxes, model, tally, now):
-    """Sort all particles into their boxes, predict all events and fill the queue."""
-    prepare(particles, boxes, model)
+    """Sort all particles into their boxes, predict all events and fill the queue. Neighbour lists must have
+    been made."""
+    prepare(particles, boxes, model, boxes.lists)
     number = queue.cursor[EVENT_COUNT]
     for i in range(len(particles.flights)):
         predict(particles, i, boxes, model, tally, now, number, _NEW)
@@ -84,7 +101,7 @@ def predict_all(particles, queue, boxes, model, tally, now):
 @kernel
 def restore(particles, queue, boxes, model, now):
     """Make the lists and the queue from the predictions of a checkpoint."""
-    prepare(particles, boxes, model)
+    prepare(particles, boxes, model, boxes.lists)
     fill(queue, particles.predictions, now)
 
 
@@ -124,27 +141,47 @@ def predict_after(particles, pair, queue, boxes, model, tally, event, crossed):
 
 
 @inner_helper
+def leave_box(particles, i, face, time, boxes, model, tally, lists):
+    """Let a particle cross into the next box, or renew its neighbour list. Returns the step (3,) into the
+    box, if any."""
+    if lists is not None:
+        renew(particles.flights, i, time, lists, model.space, tally)
+        return _NEW
+    axis, step = face % BOX_FACES // 2, 1 if face % 2 else -1
+    move(particles.predictions, boxes, i, axis, particles.predictions[i].box[axis] + step)
+    tally.counts[CROSSINGS] += 1
+    return crossing_of(face)
+
+
+@inner_helper
+def enter_opposite_box(particles, i, face, time, boxes, model, tally, lists):
+    """Let a particle that has crossed a periodic face be found where it now is."""
+    if lists is not None:
+        renew(particles.flights, i, time, lists, model.space, tally)
+    else:
+        axis, upper = face // 2, face % 2
+        move(particles.predictions, boxes, i, axis, 0 if upper else boxes.per_side[axis] - 1)
+
+
+@inner_helper
 def process(particles, i, time, queue, boxes, model, tally):
     """Process the next event of a particle. Returns the two particles it happens to, or one and -1 - a face,
     and whether it is an event of the model: not the crossing of a box or a periodic face, nor an outdated
     contact."""
     predictions = particles.predictions
-    face = predictions[i].face
-    partner = predictions[i].partner
+    face = int64(predictions[i].face)
+    partner = int64(predictions[i].partner)
     number = count_event(queue)
     happens = changes = True
     first, second, crossed = i, NONE, _NEW
     if predictions[i].face_time <= predictions[i].contact_time:
-        axis, upper = face % BOX_FACES // 2, face % 2
         if BOX_FACES <= face < WELL_EDGES:
             happens = changes = False
-            crossed = crossing_of(face)
-            move(predictions, boxes, i, axis, predictions[i].box[axis] + (1 if upper else -1))
-            tally.counts[CROSSINGS] += 1
+            crossed = leave_box(particles, i, face, time, boxes, model, tally, boxes.lists)
         else:
             partner, happens = meet_obstacle(particles, i, face, time, model, tally)
             if not happens and face < BOX_FACES:
-                move(predictions, boxes, i, axis, 0 if upper else boxes.per_side[axis] - 1)
+                enter_opposite_box(particles, i, face, time, boxes, model, tally, boxes.lists)
     elif is_outdated(predictions, i):
         happens = changes = False
         tally.counts[OUTDATED] += 1
@@ -157,40 +194,68 @@ def process(particles, i, time, queue, boxes, model, tally):
     return i, partner, happens
 
 
-@kernel
-def run(particles, queue, boxes, model, tally, monitors, stop, most):
-    """Process all events up to time `stop`, at most `most` of them (collisions and wall hits).
+@inner_helper
+def process_first(particles, i, partner, face, time, model, tally):
+    """Process the earliest of all events, with a partner or at a face. Returns as `process` does."""
+    if partner < 0:
+        partner, happens = meet_obstacle(particles, i, face, time, model, tally)
+        return i, partner, happens
+    collide(particles.flights, i, partner, time, model, tally)
+    return i, partner, True
 
-    queue: None for the search of all pairs before every event. Returns (reason, number of events, time of the
-    last).
+
+@inner_helper
+def fetch_ahead(particles, queue, boxes, next_bucket, lists):
+    """Prefetch what the next events will read, if the particles are too many for the nearer caches. Returns
+    the next bucket to do so for."""
+    if lists is not None:
+        if len(particles.flights) > CACHED_LISTS:
+            return prefetch_lists(particles, queue, lists, next_bucket)
+    elif len(particles.flights) > CACHED:
+        return prefetch(particles, queue, boxes, next_bucket)
+    return next_bucket
+
+
+@kernel
+def run(particles, queue, boxes, model, tally, monitors, limits, all_pairs):
+    """Process all events up to a time, at most so many of them (collisions and wall hits), and at most so
+    many crossings and outdated contacts between them: `limits` (3,).
+
+    all_pairs: () for the search of all pairs before every event, without a queue; otherwise None. numba
+    leaves out only what depends on an argument that is None, so both arguments are needed. Returns (reason,
+    number of events, number of crossings and outdated contacts, time of the last of all).
     """
-    done = 0
+    stop, most, most_crossed = limits
+    done = crossed = 0
     last = -inf
-    next_bucket = -1
+    next_bucket = int64(-1)
+    time, i, partner, face, happens = inf, int64(NONE), int64(NONE), int64(NONE), True
     while done < most:
         if is_full(monitors.record):
-            return FULL, done, last
-        if queue is None:
+            return FULL, done, crossed, last
+        if all_pairs is not None:
             time, i, partner, face = first_of_all(particles, boxes, model, tally)
-        else:
+        if queue is not None:
             i = soonest(queue, particles.predictions)
-            if i >= 0 and len(particles.flights) > CACHED:
-                next_bucket = prefetch(particles, queue, boxes, next_bucket)
+            if i >= 0:
+                next_bucket = fetch_ahead(particles, queue, boxes, next_bucket, boxes.lists)
             time = time_of(particles.predictions, i) if i >= 0 else inf
         if i < 0 or not time <= stop:
-            return STOP, done, last
-        happens = True
+            return STOP, done, crossed, last
         if queue is not None:
             i, partner, happens = process(particles, i, time, queue, boxes, model, tally)
-        elif partner >= 0:
-            collide(particles.flights, i, partner, time, model, tally)
-        else:
-            partner, happens = meet_obstacle(particles, i, face, time, model, tally)
-        if not happens:
-            continue
+        if all_pairs is not None:
+            i, partner, happens = process_first(particles, i, partner, face, time, model, tally)
         last = time
+        if not happens:
+            crossed += 1
+            if is_room_lacking(boxes.lists):
+                return NO_ROOM, done, crossed, last
+            if crossed >= most_crossed:
+                return CROSSED, done, crossed, last
+            continue
         done += 1
         record_event(particles.flights, i, partner, time, model, monitors.record)
         if collapse_detected(i, partner, time, 2 * len(model.space.lengths), monitors.collapse):
-            return COLLAPSE, done, last
-    return EVENTS, done, last
+            return COLLAPSE, done, crossed, last
+    return EVENTS, done, crossed, last

@@ -2,6 +2,7 @@
 
 from gaspart.kernels.collision import exchange_momentum, gap_along
 from gaspart.kernels.compilation import inner_helper
+from gaspart.kernels.event.pressed_contact import least_parting, part
 from gaspart.kernels.flight import advance
 from gaspart.kernels.model import COLLISIONS, VIRIAL
 from gaspart.kernels.obstacles.resting import release_after
@@ -20,7 +21,9 @@ def collide(flights, i, j, time, model, tally):
         gap = gap_along(flights, i, j, k, space)
         rr += gap * gap
         rv += gap * (flights[j].velocity[k] - flights[i].velocity[k])
+    least = least_parting(flights, i, j, space, model.gravity, model.law)
     add(tally.sums, VIRIAL, exchange_momentum(flights, i, j, rr, rv, model, tally, model.law))
+    part(flights, i, j, least, model, tally, model.law)
     release_after(flights, i, space, model.gravity)
     release_after(flights, j, space, model.gravity)
     sigma = flights[i].radius + flights[j].radius

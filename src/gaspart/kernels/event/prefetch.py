@@ -7,16 +7,19 @@ particles in them, and the same for its partner. Nothing is changed, and what wa
 does not come is not used.
 """
 
-from numpy import uint32, uint64
+from numpy import int64, uint32, uint64
 
 from gaspart.kernels.compilation import inner_helper
+from gaspart.kernels.event.neighbour_lists import listed_number
 from gaspart.kernels.event.queue import BUCKET
 from gaspart.kernels.model import BOX_FACES, WELL_EDGES
 from gaspart.kernels.prefetch import fetch
 
-CACHED = 1 << 15  # particles up to which the nearer caches suffice without
+CACHED = 1 << 15  # particles up to which the nearer caches suffice without,
+CACHED_LISTS = 1 << 12  # and with neighbour lists
 _STRIDE = 3  # buckets from one stage to the next: about as many events
 _MISSED = 15  # buckets that are made up for if the queue has leapt over them
+_BOTH = (int64(0), int64(0), int64(0))  # sides of each axis
 _FETCHED = 2  # places of a box whose particles are fetched: few boxes hold more
 
 
@@ -67,8 +70,8 @@ def crossing_of(face):
 def searched(predictions, i):
     """The box (3,) about which a particle will search at its next event, and on which side only (3,), if any:
     what lies in its way if it crosses into the next box."""
-    at, face = predictions[i].box, predictions[i].face
-    side = 0, 0, 0
+    at, face = predictions[i].box, int64(predictions[i].face)
+    side = _BOTH
     if predictions[i].face_time <= predictions[i].contact_time and BOX_FACES <= face < WELL_EDGES:
         side = crossing_of(face)
     return (at[0] + side[0], at[1] + side[1], at[2] + side[2]), side
@@ -87,6 +90,48 @@ def fetch_predictions(predictions, queue, bucket):
 
 
 @inner_helper
+def fetch_listed(flights, lists, i):
+    """Fetch the flights of the particles in a neighbour list."""
+    row = i * lists.room
+    for n in range(row + 1, row + 1 + int64(lists.candidates[row])):
+        fetch(flights, listed_number(lists, n))
+
+
+@inner_helper
+def fetch_list(flights, lists, i):
+    """Fetch the flight of a particle and its neighbour list."""
+    fetch(flights, i)
+    fetch(lists.listed, i)
+    fetch(lists.candidates, i * lists.room)
+
+
+@inner_helper
+def prefetch_lists(particles, queue, lists, next_bucket):
+    """The same as `prefetch` with neighbour lists."""
+    flights, predictions = particles.flights, particles.predictions
+    head, mask = queue.head, len(queue.head) - 2
+    now = queue.cursor[BUCKET]
+    for bucket in range(max(next_bucket, now - _MISSED), now + 1):
+        fetch_predictions(predictions, queue, bucket + 3 * _STRIDE)
+        for stage in range(2):  # the lists of a particle and its partner, those in them
+            i = int64(head[(bucket + (2 - stage) * _STRIDE) & mask])
+            while i >= 0:
+                partner = int64(predictions[i].partner)
+                meets = predictions[i].contact_time < predictions[i].face_time
+                if stage == 0:
+                    fetch_list(flights, lists, i)
+                    if meets:
+                        fetch(predictions, partner)
+                        fetch_list(flights, lists, partner)
+                else:
+                    fetch_listed(flights, lists, i)
+                    if meets:
+                        fetch_listed(flights, lists, partner)
+                i = int64(predictions[i].after)
+    return now + 1
+
+
+@inner_helper
 def prefetch(particles, queue, boxes, next_bucket):
     """Fetch what the events some buckets after the current one will read, if `next_bucket` was the next to do
     so for. Returns which now is."""
@@ -96,7 +141,7 @@ def prefetch(particles, queue, boxes, next_bucket):
     for bucket in range(max(next_bucket, now - _MISSED), now + 1):
         fetch_predictions(predictions, queue, bucket + 4 * _STRIDE)
         for stage in range(4):  # the particle's boxes, those in them, and the same for its partner
-            i = head[(bucket + (3 - (stage + 1) // 2) * _STRIDE) & mask]
+            i = int64(head[(bucket + (3 - (stage + 1) // 2) * _STRIDE) & mask])
             while i >= 0:
                 partner = predictions[i].partner
                 if stage == 0:
@@ -109,6 +154,7 @@ def prefetch(particles, queue, boxes, next_bucket):
                     fetch_about(flights, boxes, at, side, stage == 1)
                 elif predictions[i].contact_time < predictions[i].face_time:
                     at = predictions[partner].box
-                    fetch_about(flights, boxes, (at[0], at[1], at[2]), (0, 0, 0), stage == 3)
-                i = predictions[i].after
+                    about = int64(at[0]), int64(at[1]), int64(at[2])
+                    fetch_about(flights, boxes, about, _BOTH, stage == 3)
+                i = int64(predictions[i].after)
     return now + 1

@@ -136,9 +136,9 @@ def fill(queue, predictions, now):
 def _recall_overflow(queue, predictions):
     """Move the particles of the overflow whose time has come within the horizon into their buckets."""
     buckets = len(queue.head) - 1
-    i = queue.head[buckets]
+    i = np.int64(queue.head[buckets])
     while i >= 0:
-        after = predictions[i].after
+        after = np.int64(predictions[i].after)
         if time_of(predictions, i) * queue.rate[0] < queue.cursor[BUCKET] + buckets:
             reschedule(queue, predictions, i)
         i = after
@@ -148,10 +148,10 @@ def _recall_overflow(queue, predictions):
 def _leap(queue, predictions):
     """With all buckets empty, go straight to the first event of the overflow. False if there is none."""
     first = np.inf
-    i = queue.head[len(queue.head) - 1]
+    i = np.int64(queue.head[len(queue.head) - 1])
     while i >= 0:
         first = min(first, time_of(predictions, i))
-        i = predictions[i].after
+        i = np.int64(predictions[i].after)
     if not first * queue.rate[0] < 2.0**62:
         return False
     queue.cursor[BUCKET] = max(queue.cursor[BUCKET], int(first * queue.rate[0]))
@@ -166,15 +166,15 @@ def soonest(queue, predictions):
     while True:
         if queue.cursor[FILLED] == 0 and not _leap(queue, predictions):
             return -1
-        best = queue.head[queue.cursor[BUCKET] & (buckets - 1)]
+        best = np.int64(queue.head[queue.cursor[BUCKET] & (buckets - 1)])
         if best >= 0:
             soon = time_of(predictions, best)
-            i = predictions[best].after
+            i = np.int64(predictions[best].after)
             while i >= 0:
                 time = time_of(predictions, i)
                 if time < soon or (time == soon and tie(predictions, i) < tie(predictions, best)):
                     best, soon = i, time
-                i = predictions[i].after
+                i = np.int64(predictions[i].after)
             return best
         queue.cursor[BUCKET] += 1
         if queue.cursor[BUCKET] & (buckets - 1) == 0:

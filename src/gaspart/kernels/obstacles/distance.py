@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from gaspart.kernels.compilation import helper
+from gaspart.kernels.compilation import inner_helper
 
 SEGMENT = np.dtype([("start", "f8", 2), ("direction", "f8", 2), ("length", "f8")])
 """A row of a segment: its start, the unit vector along it, its length."""
@@ -12,7 +12,7 @@ PLATE = np.dtype(
 """A row of a plate: a corner, and the unit vectors along its two edges with their lengths."""
 
 
-@helper
+@inner_helper
 def to_segment(rows, m, point):
     """(3,) the vector from a point (2,) to the nearest point of a segment, its ends included."""
     ux, uy = rows[m].direction[0], rows[m].direction[1]
@@ -21,12 +21,12 @@ def to_segment(rows, m, point):
     return s * ux - dx, s * uy - dy, 0.0
 
 
-@helper
+@inner_helper
 def _dot(a, x, y, z):
     return x * a[0] + y * a[1] + z * a[2]
 
 
-@helper
+@inner_helper
 def to_plate(rows, m, point):
     """(3,) the vector from a point (3,) to the nearest point of a plate, its rim included."""
     along, across, corner = rows[m].along, rows[m].across, rows[m].corner
@@ -40,7 +40,7 @@ def to_plate(rows, m, point):
     )
 
 
-@helper
+@inner_helper
 def to_wall(rows, m, point, lengths):
     """(3,) the same for the kind of wall that stands in a container with sides `lengths` (d,)."""
     if len(lengths) == 2:

@@ -11,6 +11,7 @@ from gaspart.kernels.flight import acceleration_of, advance, face_plane
 from gaspart.kernels.model import BOX_FACES, NONE, STICKY, THERMAL, THERMAL_NORMAL
 from gaspart.kernels.obstacles.interior_wall import mass_in
 from gaspart.kernels.obstacles.resting import come_to_rest, release, release_after
+from gaspart.kernels.obstacles.short_bounce import longest_rest, rest_on_floor
 from gaspart.kernels.obstacles.sticky import collide_sticky
 from gaspart.kernels.obstacles.thermal import collide_thermal
 from gaspart.kernels.obstacles.well import mass_of, time_to_edge
@@ -152,7 +153,8 @@ def rest_on_face(flights, i, face, hard, model, tally, gravity, support):
         axis, side = face // 2, 1.0 if face % 2 else -1.0
         normal = side if axis == 0 else 0.0, side if axis == 1 else 0.0, side if axis == 2 else 0.0
         mass = mass_of(i, model.masses, model.law)
-        come_to_rest(flights, i, normal, (NONE, False), mass, model.space, tally, gravity)
+        place = NONE, False, longest_rest(flights, i, gravity, model.law)
+        come_to_rest(flights, i, normal, place, mass, model.space, tally, gravity)
 
 
 @inner_helper
@@ -163,6 +165,8 @@ def rest_after(flights, i, face, hard, model, tally, gravity):
         shortest = abs(gravity.acceleration[axis]) * gravity.shortest_bounce
         if hard and abs(flights[i].velocity[axis]) < shortest:
             flights[i].velocity[axis] = 0.0
+        elif hard:
+            rest_on_floor(flights, i, face, tally, gravity, model.law)
         rest_on_face(flights, i, face, hard, model, tally, gravity, gravity.support)
 
 

@@ -18,6 +18,7 @@ from gaspart.kernels.obstacles.distance import to_wall
 from gaspart.kernels.obstacles.plate import time_to_plate
 from gaspart.kernels.obstacles.resting import come_to_rest, is_resting_on, leave, release
 from gaspart.kernels.obstacles.segment import time_to_segment
+from gaspart.kernels.obstacles.short_bounce import longest_rest
 from gaspart.kernels.obstacles.well import mass_of
 from gaspart.kernels.running_sum import add
 
@@ -115,7 +116,8 @@ def settle_on(flights, i, m, normal, model, tally, gravity):
     """Let a particle rest on an interior wall if its bounce cannot be resolved."""
     if gravity is not None:
         mass = mass_of(i, model.masses, model.law)
-        place = m, is_at_end(flights, i, model.walls.rows[m], model.space.lengths)
+        at_end = is_at_end(flights, i, model.walls.rows[m], model.space.lengths)
+        place = m, at_end, longest_rest(flights, i, gravity, model.law)
         come_to_rest(flights, i, normal, place, mass, model.space, tally, gravity)
 
 

@@ -120,25 +120,41 @@ def add_plane(flights, i, normal, row, space, support):
     support.number[i] = n + 1
 
 
+@inner_helper
+def lies_on_floor(flights, i, axis, space, gravity, longest):
+    """Whether a particle lies on a face of the container along an axis, or bounces there no longer than the
+    longest bounce that is taken for rest."""
+    if axis >= len(space.lengths):
+        return False
+    pull, x = gravity.acceleration[axis], flights[i].position[axis]
+    if pull == 0.0 or abs(flights[i].velocity[axis]) > abs(pull) * longest:
+        return False
+    floor = face_plane(flights, i, axis, pull > 0.0, space)
+    return x >= floor if pull > 0.0 else x <= floor
+
+
 @inner_kernel
-def add_floors(flights, i, space, gravity):
+def add_floors(flights, i, space, gravity, longest):
     """Add the faces of the container on which a particle lies at rest (`flight.acceleration_of`)."""
     for k in range(len(space.lengths)):
-        pull = gravity.acceleration[k]
-        if pull != 0.0 and flights[i].velocity[k] == 0.0:
-            floor, x = face_plane(flights, i, k, pull > 0.0, space), flights[i].position[k]
-            if (x >= floor) if pull > 0.0 else (x <= floor):
-                side = 1.0 if pull > 0.0 else -1.0
-                normal = side if k == 0 else 0.0, side if k == 1 else 0.0, side if k == 2 else 0.0
-                add_plane(flights, i, normal, NONE, space, gravity.support)
+        if lies_on_floor(flights, i, k, space, gravity, longest):
+            side = 1.0 if gravity.acceleration[k] > 0.0 else -1.0
+            normal = side if k == 0 else 0.0, side if k == 1 else 0.0, side if k == 2 else 0.0
+            add_plane(flights, i, normal, NONE, space, gravity.support)
 
 
-@inner_helper
-def pressing(i, normal, gravity):
-    """The acceleration of a particle in the direction of a unit vector (3,)."""
+@inner_kernel
+def pressing(flights, i, normal, space, gravity, longest):
+    """The acceleration of a particle in the direction of a unit vector (3,): by gravity, or if that leads
+    away, by what the floors on which the particle lies leave of it."""
     if gravity.support.number[i] > 0:
         return dot(normal, gravity.support.pull[i])
-    return dot(normal, (pull_along(gravity, 0), pull_along(gravity, 1), pull_along(gravity, 2)))
+    press = remaining = 0.0
+    for k in range(len(space.lengths)):
+        press += normal[k] * gravity.acceleration[k]
+        if not lies_on_floor(flights, i, k, space, gravity, longest):
+            remaining += normal[k] * gravity.acceleration[k]
+    return press if press > 0.0 else remaining
 
 
 @inner_kernel
@@ -165,19 +181,19 @@ def release_after(flights, i, space, gravity):
 @inner_kernel
 def come_to_rest(flights, i, normal, place, mass, space, tally, gravity):
     """After a bounce on a wall in the direction of a unit vector (3,): let the particle rest there if the
-    bounce cannot be resolved, or else make it as long as can be. place: the row of the wall, and whether it
-    is touched at an end, where only what is balanced can rest."""
-    row, at_end = place
+    bounce cannot be resolved, or else make it as long as can be. place: the row of the wall, whether it
+    is touched at an end, where only what is balanced can rest, and the longest bounce taken for rest."""
+    row, at_end, longest = place
     support = gravity.support
-    press = pressing(i, normal, gravity)
+    press = pressing(flights, i, normal, space, gravity, longest)
     v = velocity_of(flights, i, space)
     speed = -dot(normal, v)
     highest = 2.0 * press * support.height
-    if not (press > 0.0 and (speed * speed <= highest or speed < press * gravity.shortest_bounce)):
+    if not (press > 0.0 and (speed * speed <= highest or speed < press * longest)):
         release(flights, i, space, support)
         return
     if support.number[i] == 0:
-        add_floors(flights, i, space, gravity)
+        add_floors(flights, i, space, gravity, longest)
     add_plane(flights, i, normal, row, space, support)
     dimension = len(space.lengths)
     find_pull(gravity, i, dimension)

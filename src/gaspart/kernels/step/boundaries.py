@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gaspart.kernels.collision import collide_by_law
-from gaspart.kernels.compilation import helper, kernel
+from gaspart.kernels.compilation import helper, inner_helper, inner_kernel, kernel
 from gaspart.kernels.contact import time_to_plane
 from gaspart.kernels.flight import advance, face_plane
 from gaspart.kernels.model import LOSS as LOST
@@ -39,7 +39,7 @@ class Rules(NamedTuple):
     heat: np.ndarray
 
 
-@helper
+@inner_helper
 def is_free(particles, slot, rules):
     """Whether an ordinary particle cannot have met a face, nor the edge of a well."""
     free = True
@@ -51,7 +51,7 @@ def is_free(particles, slot, rules):
     return free
 
 
-@kernel
+@inner_kernel
 def gather(particles, slot, rules):
     """Write the particle in a slot into its flight, with the clock at 0; returns its number."""
     flights, i = rules.flights, np.int64(particles.index[slot])
@@ -75,7 +75,7 @@ def scatter(particles, slot, rules):
     return square
 
 
-@kernel
+@inner_kernel
 def crossing_time(flights, i, axis, space, faces):
     """When a particle on its present flight came through a face across an axis, or the edge of a well there:
     (time, face code), a time up to the end of the step, or (inf, NONE).
@@ -98,7 +98,7 @@ def crossing_time(flights, i, axis, space, faces):
     return (time, 2 * axis + (1 if upper else 0)) if time <= 0.0 else (inf, NONE)
 
 
-@kernel
+@inner_kernel
 def crossing_time_pulled(flights, i, axis, pull, space, dt):
     """The same under a pull along the axis, with the formulas of `motion.reflect_falling`. A particle that
     was pushed out by a contact, or that comes down too slowly to resolve its bounces, does so now."""
@@ -118,7 +118,7 @@ def crossing_time_pulled(flights, i, axis, pull, space, dt):
     return inf, NONE
 
 
-@kernel
+@inner_kernel
 def first_crossing(flights, i, space, dt, faces, gravity):
     """The first of all faces and edges that a particle came through: (time, face code) as in
     `crossing_time`."""
@@ -145,7 +145,7 @@ def taken(sums, n):
     return x
 
 
-@kernel
+@inner_kernel
 def record_face(face, rules, tally):
     """Move what an event at a face has added to the rules' tally into that of the step engine."""
     event = rules.tally
@@ -156,7 +156,7 @@ def record_face(face, rules, tally):
     event.wall_hits[face] = 0
 
 
-@kernel
+@inner_kernel
 def meet_faces(particles, slot, rules, dt, tally, law):
     """Let a particle meet all faces that it has come through, one after another. Returns whether there was
     any."""
@@ -183,7 +183,7 @@ def meet_faces(particles, slot, rules, dt, tally, law):
     return met
 
 
-@kernel
+@inner_kernel
 def collide_flights(particles, i, j, contact, rules, tally, law):
     """A contact under a law of the particles in two slots. contact: how long ago (a negative time), and the
     invariants rr, rv then. Returns the squares of the two speeds.

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gaspart.kernels.compilation import helper, kernel
+from gaspart.kernels.compilation import inner_helper, inner_kernel
 from gaspart.kernels.periodic import box_coordinate
 from gaspart.kernels.step.model import BOX_VISITS, PAIR_TESTS
 from gaspart.kernels.step.resolve import distance_squared, examine
@@ -31,7 +31,7 @@ class StepBoxes(NamedTuple):
     reach: float
 
 
-@kernel
+@inner_kernel
 def sort_in(particles, boxes):
     """Put all ordinary particles into the lists of their boxes."""
     boxes.head[:] = -1
@@ -45,7 +45,7 @@ def sort_in(particles, boxes):
         boxes.head[box] = slot
 
 
-@helper
+@inner_helper
 def gap_squared(particles, slot, boxes, axis, offset):
     """The square of the distance of a particle from a box's slab, `offset` boxes along an axis (-1, 0, 1)."""
     x = particles.positions[axis, slot]
@@ -59,7 +59,7 @@ def gap_squared(particles, slot, boxes, axis, offset):
     return gap * gap
 
 
-@kernel
+@inner_kernel
 def is_out_of_reach(particles, slot, boxes, dx, dy, dz):
     """Whether a neighbouring box is too far from a particle to hold a partner's centre."""
     square = gap_squared(particles, slot, boxes, 0, dx - 1)
@@ -69,7 +69,7 @@ def is_out_of_reach(particles, slot, boxes, dx, dy, dz):
     return square > boxes.reach * boxes.reach
 
 
-@kernel
+@inner_kernel
 def search_all(particles, i, space, step, found):
     """Test a particle against all before it, a loop without branches for each block of them; the number of
     tests."""
@@ -90,7 +90,7 @@ def search_all(particles, i, space, step, found):
     return i
 
 
-@helper
+@inner_helper
 def search_list_of_box(particles, i, j, boxes, space, step, found):
     """Test a particle against that in slot j and all that follow it in its box; the number of tests."""
     tests = 0
@@ -104,7 +104,7 @@ def search_list_of_box(particles, i, j, boxes, space, step, found):
     return tests
 
 
-@kernel
+@inner_kernel
 def search_boxes(particles, boxes, space, step, found, tally):
     """Record all pairs to be resolved of ordinary particles."""
     if len(boxes.head) == 1:

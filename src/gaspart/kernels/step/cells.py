@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gaspart.kernels.compilation import helper, kernel
+from gaspart.kernels.compilation import helper, inner_kernel, kernel
 from gaspart.kernels.step.model import part_of
 
 ONE = np.uint32(1)  # whole numbers of this type index arrays without a test for negative ones
@@ -41,14 +41,14 @@ def coordinate(x, inverse, per_side):
     return min(max(int(x * inverse), 0), per_side - 1)
 
 
-@kernel
+@inner_kernel
 def locate(x, inverse, per_side, stride, cell):
     """Add to the cells (n,) of particles the term of their coordinates x (n,) along one axis."""
     for n in range(len(x)):
         cell[n] += np.uint32((coordinate(x[n], inverse, per_side) + 1) * stride)
 
 
-@kernel
+@inner_kernel
 def locate_part(particles, part, cells):
     """Find the cells of one thread's slots."""
     low, high = part_of(part, len(cells.ends), particles.ordinary)
@@ -59,7 +59,7 @@ def locate_part(particles, part, cells):
         locate(x, cells.inverse[k], cells.per_side[k], cells.strides[k], cell)
 
 
-@kernel
+@inner_kernel
 def count_part(particles, part, cells):
     """Count into ends[part] how many particles of one thread's slots are in each cell."""
     low, high = part_of(part, len(cells.ends), particles.ordinary)
@@ -69,7 +69,7 @@ def count_part(particles, part, cells):
         number[c] += ONE
 
 
-@kernel
+@inner_kernel
 def begin_cells(ends):
     """Replace how many slots each thread has in each cell by where these begin."""
     place = np.uint32(0)
@@ -87,7 +87,7 @@ def begin_cells(ends):
             place += number
 
 
-@kernel
+@inner_kernel
 def order_part(particles, part, cells):
     """Put one thread's slots into the order of their cells."""
     low, high = part_of(part, len(cells.ends), particles.ordinary)
@@ -98,7 +98,7 @@ def order_part(particles, part, cells):
         ends[cell] += ONE
 
 
-@kernel
+@inner_kernel
 def copy_periodic_rows(cells):
     """Give the rows behind periodic faces the slots of those across the container."""
     ends = cells.ends[len(cells.ends) - 1]
@@ -111,7 +111,7 @@ def copy_periodic_rows(cells):
                     ends[n + across + stride] = ends[n + stride]
 
 
-@kernel
+@inner_kernel
 def permute(values, order, slots, permuted):
     """permuted[n] becomes values[order[n]] for n from slots[0] to slots[1]."""
     source, permuted = order[slots[0] : slots[1]], permuted[slots[0] : slots[1]]

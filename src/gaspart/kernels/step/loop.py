@@ -6,7 +6,9 @@ find what the first has left or made. Which search finds the pairs changes no bi
 arithmetic keeps the precision of the positions (float32 or float64): hence dt - dt for 0 and x + x for 2x.
 """
 
-from gaspart.kernels.compilation import allocating_kernel, helper
+from numpy import int64
+
+from gaspart.kernels.compilation import allocating_kernel, inner_allocating_kernel, inner_helper
 from gaspart.kernels.step.box_search import search_all, search_boxes, sort_in
 from gaspart.kernels.step.model import DISPLACEMENT, FASTEST, PAIR_TESTS, Search, Step
 from gaspart.kernels.step.neighbour_list import is_outdated
@@ -14,7 +16,7 @@ from gaspart.kernels.step.resolve import count_left, in_order, resolve_all
 from gaspart.kernels.step.threads import gathered, make_list, move_all, room_for, search_list
 
 
-@helper
+@inner_helper
 def total_pull(gravity):
     """The sum of the components of gravity, each counted positive."""
     pull = 0.0
@@ -24,16 +26,16 @@ def total_pull(gravity):
     return pull
 
 
-@allocating_kernel
+@inner_allocating_kernel
 def update_list(particles, pairs, space, tally, before, threads, cells):
     """Make the list anew if it is outdated. Returns its pairs, and `before`, see `Step`."""
     if cells is not None:
         if is_outdated(particles, cells, space):
-            return make_list(particles, cells, pairs, space, tally, threads), 0
+            return make_list(particles, cells, pairs, space, tally, threads), int64(0)
     return pairs, before
 
 
-@helper
+@inner_helper
 def search_grid(particles, space, step, found, tally, boxes):
     """Search the boxes, if there are any."""
     if boxes is not None:
@@ -41,7 +43,7 @@ def search_grid(particles, space, step, found, tally, boxes):
         search_boxes(particles, boxes, space, step, found, tally)
 
 
-@allocating_kernel
+@inner_allocating_kernel
 def find_contacts(particles, search, space, step, found, tally, threads):
     """Find all pairs to be resolved. Returns them in `found`, or in more room."""
     parts, count = len(found.number), particles.positions.shape[1]
@@ -74,7 +76,7 @@ def run_steps(particles, search, model, settings, steps, tally, threads):
         particles.bounds[FASTEST] += pull * dt
         particles.bounds[DISPLACEMENT] += particles.bounds[FASTEST] * dt
         move_all(particles, model, dt, tally, threads, rules, cells)
-        number, before, first = 0, 0, n * passes + 1
+        number, before, first = 0, int64(0), n * passes + 1
         for now in range(first, first + passes):
             pairs, before = update_list(particles, pairs, space, tally, before, threads, cells)
             step = Step(dt, rewind, passes > 1, now, first, before)

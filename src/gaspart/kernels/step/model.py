@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gaspart.kernels.compilation import helper
+from gaspart.kernels.compilation import inner_helper
 from gaspart.kernels.model import ContactLaw, Space
 
 COLLISIONS, PAIR_TESTS, BOX_VISITS, OVERLAPS_LEFT, MULTIPLE, REBUILDS, LATE, PASSED = range(8)
@@ -103,7 +103,7 @@ class Found(NamedTuple):
     touching: np.ndarray
 
 
-@helper
+@inner_helper
 def part_of(part, parts, count):
     """Where part `part` of `count` things divided among `parts` begins, and where it ends."""
     return part * count // parts, (part + 1) * count // parts

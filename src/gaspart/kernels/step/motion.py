@@ -6,7 +6,7 @@ has left the container.
 
 import numpy as np
 
-from gaspart.kernels.compilation import allocating_kernel, helper, kernel
+from gaspart.kernels.compilation import helper, inner_allocating_kernel, inner_helper, inner_kernel, kernel
 from gaspart.kernels.periodic import nearest
 from gaspart.kernels.running_sum import add_whole
 from gaspart.kernels.step.boundaries import is_free, meet_faces
@@ -31,7 +31,7 @@ def wrap(particles, slot, axis, length):
         particles.images[axis, particles.index[slot]] += int(images)
 
 
-@helper
+@inner_helper
 def reflect(particles, slot, axis, planes, model, tally, thread):
     """Reflect a particle that left through a wall, as long as it moves outward. planes: (lower, upper)."""
     lower, upper = planes
@@ -54,7 +54,7 @@ def reflect(particles, slot, axis, planes, model, tally, thread):
     particles.velocities[axis, slot] = v
 
 
-@kernel
+@inner_kernel
 def reflect_falling(particles, slot, axis, planes, pull, dt, tally, thread):
     """The same under a pull: back along the parabola to the plane, and on from there with the speed it had.
 
@@ -93,7 +93,7 @@ def reflect_falling(particles, slot, axis, planes, pull, dt, tally, thread):
     particles.velocities[axis, slot] = v
 
 
-@helper
+@inner_helper
 def displacement_since_rebuild(particles, slot, cells, space):
     """How far a particle is from where it was when the list was made."""
     square = space.margin - space.margin
@@ -104,7 +104,7 @@ def displacement_since_rebuild(particles, slot, cells, space):
     return np.sqrt(square)
 
 
-@helper
+@inner_helper
 def raise_bounds(particles, slot, speed_squared, space, cells):
     """Let the bounds of all particles hold for one that has changed."""
     bounds = particles.bounds
@@ -115,7 +115,7 @@ def raise_bounds(particles, slot, speed_squared, space, cells):
             bounds[DISPLACEMENT] = max(bounds[DISPLACEMENT], gap)
 
 
-@kernel
+@inner_kernel
 def apply_rules(particles, slot, model, dt, tally, rules, law, cells):
     """Bring one particle back into the container whose walls have rules of their own."""
     met = meet_faces(particles, slot, rules, dt, tally, law)
@@ -129,7 +129,7 @@ def apply_rules(particles, slot, model, dt, tally, rules, law, cells):
         raise_bounds(particles, slot, square, space, cells)
 
 
-@kernel
+@inner_kernel
 def apply_boundaries(particles, slot, model, dt, tally, thread, gravity):
     """Bring one particle back into the container."""
     space = model.space
@@ -144,7 +144,7 @@ def apply_boundaries(particles, slot, model, dt, tally, thread, gravity):
             reflect_falling(particles, slot, k, planes, gravity[k], dt, tally, thread)
 
 
-@helper
+@inner_helper
 def is_outside(particles, slot, space, inset):
     """Whether an ordinary particle may have left the container."""
     outside = False
@@ -155,7 +155,7 @@ def is_outside(particles, slot, space, inset):
     return outside
 
 
-@kernel
+@inner_kernel
 def fly(x, v, lower, upper, dt):
     """Move particles along one axis; the number that are not in [lower, upper) then."""
     outside = 0
@@ -180,7 +180,7 @@ def fall(x, v, pull, lower, upper, dt):
     return outside
 
 
-@helper
+@inner_helper
 def advance_axis(particles, slots, axis, limits, dt, gravity):
     """Move the particles in `slots` (2,) along one axis; the number that are not within the limits (2,)
     then."""
@@ -191,7 +191,7 @@ def advance_axis(particles, slots, axis, limits, dt, gravity):
     return fall(x, v, gravity[axis], limits[0], limits[1], dt)
 
 
-@kernel
+@inner_kernel
 def move_by_rules(particles, model, dt, tally, rules, law, cells, gravity):
     """Make the motion of one step where walls have rules of their own."""
     count = particles.positions.shape[1]
@@ -226,14 +226,14 @@ def move(particles, slots, model, dt, tally, thread, gravity):
         start = stop
 
 
-@kernel
+@inner_kernel
 def add_squares(values, squares):
     """Add the squares of some values (n,) to others (n,)."""
     for n in range(len(values)):
         squares[n] += values[n] * values[n]
 
 
-@kernel
+@inner_kernel
 def add_gaps(x, origin, length, squares):
     """Add the squares of how far coordinates x (n,) are from others, on an axis of that period."""
     for n in range(len(x)):
@@ -255,7 +255,7 @@ def highest(squares, most):
     return most
 
 
-@allocating_kernel
+@inner_allocating_kernel
 def measure_fastest(particles):
     """Measure the highest speed of any particle."""
     count = particles.velocities.shape[1]
@@ -271,7 +271,7 @@ def measure_fastest(particles):
     particles.bounds[FASTEST] = np.sqrt(most)
 
 
-@allocating_kernel
+@inner_allocating_kernel
 def measure_displacement(particles, cells, space):
     """Measure how far any ordinary particle is from where it was when the list was made."""
     room = np.empty(_BLOCK, particles.positions.dtype)

@@ -9,7 +9,7 @@ wait for it.
 
 import numpy as np
 
-from gaspart.kernels.compilation import allocating_kernel, helper, kernel
+from gaspart.kernels.compilation import helper, inner_allocating_kernel, inner_helper, inner_kernel
 from gaspart.kernels.prefetch import fetch
 from gaspart.kernels.simd import lowest
 from gaspart.kernels.step.model import DISPLACEMENT, part_of
@@ -25,7 +25,7 @@ _PLACE, _MARKS = np.uint64(28), np.uint64(56)  # of an entry: where its slot beg
 _SLOTS = (ONE << _PLACE) - ONE
 
 
-@kernel
+@inner_kernel
 def compact(entries, number, pairs, listed):
     """Write those of the first entries that have a mark into pairs (room,), behind those `listed` before, as
     long as there is room; how many there are then."""
@@ -37,7 +37,7 @@ def compact(entries, number, pairs, listed):
     return listed
 
 
-@helper
+@inner_helper
 def record_near(particles, slot, others, cells, space, entries, pairs, filled):
     """Record which of the slots from others[0] to others[1] are nearer to one than a contact and the skin,
     eight an entry. filled: the numbers of entries, and of those in the list; these numbers then."""
@@ -56,7 +56,7 @@ def record_near(particles, slot, others, cells, space, entries, pairs, filled):
             return number, listed
 
 
-@helper
+@inner_helper
 def rows_ahead(dimension):
     """How many rows of cells hold partners of a particle that its row is to be listed with: its own, and
     those that come next to it along the other axes."""
@@ -71,7 +71,7 @@ def ahead(cells, n):
     return cells.strides[2] + cells.strides[1] * (n - 3)
 
 
-@helper
+@inner_helper
 def record_row(particles, slots, n, cells, space, entries, pairs, filled):
     """`record_near` of the slots from slots[0] to slots[1] with those of row n in their columns and in the
     columns beside these; the numbers of entries then, and of tests."""
@@ -86,7 +86,7 @@ def record_row(particles, slots, n, cells, space, entries, pairs, filled):
     return filled, tests
 
 
-@helper
+@inner_helper
 def record_across(particles, at, across, cells, space, entries, pairs, filled):
     """`record_near` of the slots in cell `at` with those in the cell `across` the container and in the same
     column of the rows ahead; the numbers of entries then, and of tests."""
@@ -101,7 +101,7 @@ def record_across(particles, at, across, cells, space, entries, pairs, filled):
     return filled, tests
 
 
-@allocating_kernel
+@inner_allocating_kernel
 def list_part(particles, part, cells, pairs, space, tests):
     """Write all pairs of slots nearer than a contact and the skin that one thread is to find, as entries into
     pairs[part] (room,), and how many these are into cells.listed (if there is no room for all, the last are
@@ -132,13 +132,13 @@ def list_part(particles, part, cells, pairs, space, tests):
     tests[part] = total
 
 
-@kernel
+@inner_kernel
 def is_complete(particles, cells):
     """Whether no two particles may have come nearer by more than the skin since the list was made."""
     return 2.0 * particles.bounds[DISPLACEMENT] < _SAFE * cells.skin
 
 
-@allocating_kernel
+@inner_allocating_kernel
 def is_outdated(particles, cells, space):
     """Whether the list is to be made anew. By how far the fastest particle may have come, first; and if that
     is too much, by how far all have come."""
@@ -149,7 +149,7 @@ def is_outdated(particles, cells, space):
     return not is_complete(particles, cells)
 
 
-@kernel
+@inner_kernel
 def search_pairs(particles, entries, space, step, found, thread):
     """Record the pairs, among those of some entries (n,), that are to be resolved; with a pass `step.before`,
     only those of which one particle at least had a contact in that pass: for all others nothing has changed

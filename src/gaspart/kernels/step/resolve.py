@@ -10,7 +10,7 @@ restitution: tests/kernels/step/test_resolve.py compares it bit for bit with `co
 
 import numpy as np
 
-from gaspart.kernels.compilation import allocating_kernel, helper, kernel
+from gaspart.kernels.compilation import allocating_kernel, helper, inner_helper, inner_kernel, kernel
 from gaspart.kernels.contact import contact_root, exchange
 from gaspart.kernels.periodic import nearest
 from gaspart.kernels.prefetch import fetch
@@ -70,7 +70,7 @@ def entry_time(rr, rv, vv, ss):
     return -(np.sqrt(rv * rv - vv * (rr - ss)) + rv) / vv
 
 
-@helper
+@inner_helper
 def must_resolve(rr, rv, vv, ss, step):
     """Whether an overlap is to be resolved: it grows, or (if `step.parting`) it began in this step."""
     if not rr < ss:
@@ -78,7 +78,7 @@ def must_resolve(rr, rv, vv, ss, step):
     return rv < 0.0 or (step.parting and rv > 0.0 and -entry_time(rr, rv, vv, ss) < step.dt)
 
 
-@helper
+@inner_helper
 def examine(particles, i, j, space, step, found, thread):
     """Record a pair of overlapping slots if it is to be resolved."""
     if particles.index[i] > particles.index[j]:
@@ -188,7 +188,7 @@ def impulse_factors(rr, rv, mass1, mass2):
     return k1, k2, (mass1 + mass1) * (mass2 / (mass1 + mass2)) * abs(rv)
 
 
-@helper
+@inner_helper
 def record_contact(particles, slot, speed_squared, space, step, tally, cells):
     """Count a contact of a particle if it is not its first in this step, and let all bounds hold for it."""
     tally.counts[MULTIPLE] += particles.last_pass[slot] >= step.first
@@ -260,7 +260,7 @@ def resolve(particles, i, j, model, step, tally, law, cells):
     record_contact(particles, j, speed_j, space, step, tally, cells)
 
 
-@helper
+@inner_helper
 def fetch_particle(particles, slot, cells):
     """Begin to load what a contact of a particle reads."""
     for k in range(len(particles.positions)):
@@ -273,7 +273,7 @@ def fetch_particle(particles, slot, cells):
     fetch(particles.last_pass, slot)
 
 
-@kernel
+@inner_kernel
 def resolve_all(particles, pairs, order, model, step, tally, law, cells):
     """Resolve what one search has found, in order."""
     last = len(order) - 1
@@ -285,7 +285,7 @@ def resolve_all(particles, pairs, order, model, step, tally, law, cells):
         resolve(particles, i, j, model, step, tally, law, cells)
 
 
-@kernel
+@inner_kernel
 def count_left(particles, pairs, space, tally):
     """Count the pairs found that overlap and approach even now."""
     for n in range(len(pairs)):

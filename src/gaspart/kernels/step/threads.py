@@ -8,7 +8,13 @@ tuples in tuples to threads: a `StepModel` or a `Space` is taken apart before an
 import numpy as np
 from numba import prange
 
-from gaspart.kernels.compilation import allocating_kernel, helper, kernel, parallel_kernel
+from gaspart.kernels.compilation import (
+    allocating_kernel,
+    inner_allocating_kernel,
+    inner_helper,
+    inner_kernel,
+    inner_parallel_kernel,
+)
 from gaspart.kernels.model import Space
 from gaspart.kernels.step.cells import (
     begin_cells,
@@ -27,7 +33,7 @@ from gaspart.kernels.step.simd import WIDTH
 _BLOCK = 1024  # pairs that are tested before those that touch are looked at
 
 
-@allocating_kernel
+@inner_allocating_kernel
 def room_for(threads, room, like):
     """Empty arrays for contacts to resolve."""
     return Found(
@@ -39,7 +45,7 @@ def room_for(threads, room, like):
     )
 
 
-@parallel_kernel
+@inner_parallel_kernel
 def move_shared(particles, lengths, periodic, numbers, dt, tally, threads, gravity):
     """`move` for all slots. numbers: those of the model, and the margin of its space."""
     count = particles.positions.shape[1]
@@ -50,7 +56,7 @@ def move_shared(particles, lengths, periodic, numbers, dt, tally, threads, gravi
         move(particles, part_of(part, threads, count), model, dt, tally, part, gravity)
 
 
-@helper
+@inner_helper
 def move_all(particles, model, dt, tally, threads, rules, cells):
     """Make the motion of one step."""
     gravity, space = model.gravity, model.space
@@ -63,14 +69,14 @@ def move_all(particles, model, dt, tally, threads, rules, cells):
         move_shared(particles, space.lengths, space.periodic, numbers, dt, tally, threads, gravity)
 
 
-@parallel_kernel
+@inner_parallel_kernel
 def locate_shared(particles, cells):
     """`locate_part` for all parts."""
     for part in prange(len(cells.ends)):
         locate_part(particles, part, cells)
 
 
-@parallel_kernel
+@inner_parallel_kernel
 def count_shared(particles, cells):
     """`locate_part` and `count_part` for all parts."""
     for part in prange(len(cells.ends)):
@@ -78,48 +84,48 @@ def count_shared(particles, cells):
         count_part(particles, part, cells)
 
 
-@parallel_kernel
+@inner_parallel_kernel
 def order_shared(particles, cells):
     """`order_part` for all parts."""
     for part in prange(len(cells.ends)):
         order_part(particles, part, cells)
 
 
-@parallel_kernel
+@inner_parallel_kernel
 def permute_shared(values, order, permuted, threads):
     """`permute` for all slots."""
     for part in prange(threads):
         permute(values, order, part_of(part, threads, len(order)), permuted)
 
 
-@parallel_kernel
+@inner_parallel_kernel
 def copy_shared(permuted, values, threads):
     """`copy` for all slots."""
     for part in prange(threads):
         copy(permuted, part_of(part, threads, len(permuted)), values)
 
 
-@parallel_kernel
+@inner_parallel_kernel
 def list_shared(particles, cells, pairs, lengths, periodic, margin, tests):
     """`list_part` for all parts."""
     for part in prange(len(pairs)):
         list_part(particles, part, cells, pairs, Space(lengths, periodic, margin), tests)
 
 
-@helper
+@inner_helper
 def search_part(particles, cells, pairs, space, step, found, part):
     """Search one thread's list; see `search_pairs`."""
     search_pairs(particles, pairs[part, : cells.listed[part]], space, step, found, part)
 
 
-@parallel_kernel
+@inner_parallel_kernel
 def search_shared(particles, cells, pairs, lengths, periodic, margin, step, found):
     """`search_part` for the whole list."""
     for part in prange(len(pairs)):
         search_part(particles, cells, pairs, Space(lengths, periodic, margin), step, found, part)
 
 
-@allocating_kernel
+@inner_allocating_kernel
 def search_list(particles, pairs, space, step, found, threads, cells):
     """Search the whole list, if there is one."""
     if cells is not None:
@@ -129,7 +135,7 @@ def search_list(particles, pairs, space, step, found, threads, cells):
             search_shared(particles, cells, pairs, space.lengths, space.periodic, space.margin, step, found)
 
 
-@kernel
+@inner_kernel
 def reorder(values, order, room, threads):
     """values[n] becomes values[order[n]], by way of `room`; what lies beyond the order stays."""
     permuted = room[: len(order)]
@@ -141,7 +147,7 @@ def reorder(values, order, room, threads):
         copy_shared(permuted, values, threads)
 
 
-@kernel
+@inner_kernel
 def sort_into_cells(particles, cells, threads):
     """Bring the ordinary particles into the order of their cells."""
     if threads is None:
@@ -187,16 +193,16 @@ def make_list(particles, cells, pairs, space, tally, threads):
     return pairs
 
 
-@allocating_kernel
+@inner_allocating_kernel
 def gathered(found):
     """What the threads have found: pairs (n, 2) and times (n,)."""
     number = found.number.sum()
     pairs = np.empty((number, 2), np.uint32)
     times = np.empty(number, found.times.dtype)
-    start = 0
+    n = 0
     for part in range(len(found.number)):
-        stop = start + found.number[part]
-        pairs[start:stop] = found.pairs[part, : found.number[part]]
-        times[start:stop] = found.times[part, : found.number[part]]
-        start = stop
+        for k in range(found.number[part]):
+            pairs[n, 0], pairs[n, 1] = found.pairs[part, k, 0], found.pairs[part, k, 1]
+            times[n] = found.times[part, k]
+            n += 1
     return pairs, times

@@ -1,0 +1,190 @@
+"""The pages of the site that follow from the code, written into docs/generated: a Sphinx extension.
+
+The public names, the commands, the gallery of scenes, and a page for each family of figures, with its
+captions and, if the workflow has run, its figures and claims.
+"""
+
+import argparse
+import csv
+import importlib
+import inspect
+import shutil
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+
+import gaspart
+from gaspart import analysis, theory
+from gaspart.claims.captions import filled
+from gaspart.cli import commands
+from gaspart.cli.new import templates
+from gaspart.experiments.registry import families, titles
+
+ROOT = Path(__file__).parents[1]
+GROUPS = {
+    "scenes": ("Scenes", ("scene",)),
+    "simulations": ("Simulations", ("engines", "simulation", "state", "errors")),
+    "trajectories": ("Trajectories", ("trajectory",)),
+    "analysis": ("Analysis", ("analysis",)),
+    "rendering": ("Pictures and films", ("rendering",)),
+}
+"""Pages of public names: name of the page -> title, packages."""
+
+
+def heading(text, mark="="):
+    """A heading of reStructuredText."""
+    return f"{text}\n{mark * len(text)}\n\n"
+
+
+def indented(text, by="   "):
+    """Every line of a text after some blanks."""
+    return "".join(f"{by}{line}".rstrip() + "\n" for line in text.splitlines())
+
+
+def entry(name):
+    """The directive for a public name."""
+    thing = getattr(importlib.import_module(name.rpartition(".")[0]), name.rpartition(".")[2])
+    if inspect.isclass(thing):
+        return f".. autoclass:: {name}\n\n"
+    if callable(thing):
+        return f".. autofunction:: {name}\n\n"
+    return f".. py:data:: {name}\n   :value: {thing!r}\n\n"
+
+
+def api():
+    """Pages of the public names: path -> text."""
+    pages = {}
+    for page, (title, packages) in GROUPS.items():
+        names = [name for name, home in gaspart._HOMES.items() if home.split(".")[0] in packages]
+        pages[f"api/{page}.rst"] = heading(title) + "".join(
+            entry(f"gaspart.{name}") for name in sorted(names)
+        )
+    public = "".join(entry(f"gaspart.analysis.{name}") for name in analysis.__all__)
+    pages["api/analysis.rst"] = (
+        heading("Analysis")
+        + "Functions of ``gaspart.analysis``.\n\n"
+        + public
+        + heading("Collisions", "-")
+        + pages["api/analysis.rst"].partition("\n\n")[2]
+    )
+    pages["api/theory.rst"] = heading("Theory") + theory_page()
+    listed = "".join(f"   {page}\n" for page in (*GROUPS, "theory"))
+    pages["api/index.rst"] = (
+        heading("Public names")
+        + "All names are importable from ``gaspart``, those of theory from ``gaspart.theory``,\n"
+        + "observables from ``gaspart.analysis``.\n\n"
+        + f".. toctree::\n   :maxdepth: 2\n\n{listed}"
+    )
+    return pages
+
+
+def theory_page():
+    """The names of gaspart.theory, in sections by the module that defines them."""
+    sections = {}
+    for name in sorted(theory.__all__, key=str.lower):
+        home = inspect.getmodule(getattr(theory, name))
+        module = home.__name__.rpartition(".")[2] if home else "constants"
+        sections.setdefault(module, []).append(name)
+    text = inspect.getdoc(theory) + "\n\n"
+    for module, names in sorted(sections.items()):
+        text += heading(module.replace("_", " ").capitalize(), "-")
+        text += "".join(entry(f"gaspart.theory.{name}") for name in names)
+    return text
+
+
+def command_line():
+    """The page of the commands: the help of each."""
+    text = heading("Command line")
+    text += "What each command prints with ``--help``.\n\n"
+    for name, parser in commands().items():
+        text += heading(f"gaspart {name}", "-")
+        text += f".. code-block:: text\n\n{indented(helped(parser))}\n"
+    return {"command-line.rst": text}
+
+
+def helped(parser):
+    """The help of a command, in lines of 90 characters."""
+    parser.formatter_class = lambda prog: argparse.RawDescriptionHelpFormatter(prog, width=90)
+    return parser.format_help()
+
+
+def gallery(folder):
+    """The page of the templates, whose pictures are copied."""
+    text = heading("Gallery of scenes")
+    text += "``gaspart new NAME.yaml --template NAME`` writes a scene file; the command below it runs it.\n\n"
+    for name, template in templates().items():
+        shutil.copyfile(ROOT / f"docs/scenes/{name}.png", folder / f"{name}.png")
+        scene = "".join(line for line in template.text.splitlines(True) if not line.startswith("#"))
+        text += f".. _scene-{name}:\n\n" + heading(template.title, "-")
+        text += (
+            f".. image:: {name}.png\n   :alt: {template.title}\n   :width: 420\n\n{template.description}\n\n"
+        )
+        if template.figure:
+            text += f"Measured in the figure :ref:`{template.figure} <figure-{template.figure}>`.\n\n"
+        text += f".. code-block:: yaml\n   :caption: {name}.yaml\n\n{indented(scene)}\n"
+        first = f"gaspart new {name}.yaml --template {name}"
+        film = f"gaspart render {name}.nc -o {name}.mp4"
+        text += f".. code-block:: sh\n\n{indented(chr(10).join((first, template.command, film)))}\n"
+    return {"gallery.rst": text}
+
+
+def figures(folder):
+    """The pages of the families of figures; figures that the workflow has drawn are copied."""
+    pages = {}
+    for family, title in titles().items():
+        text = heading(title)
+        for figure in (name for name, its in families().items() if its == family):
+            text += f".. _figure-{figure}:\n\n" + heading(figure, "-")
+            drawn = ROOT / f"results/figures/{figure}.svg"
+            if drawn.exists():
+                shutil.copyfile(drawn, folder / f"figures/{figure}.svg")
+                text += f".. image:: {figure}.svg\n   :alt: {figure}\n\n"
+            caption = (ROOT / f"workflow/report/{figure}.rst").read_text(encoding="utf-8")
+            text += filled(caption, [], "(see the claims)") + "\n\n"
+            text += claims_of(ROOT / f"results/claims/{figure}.csv")
+            text += f".. code-block:: sh\n\n   snakemake --cores all results/figures/{figure}.png\n\n"
+        for kind, name in (("measure", "Measurement"), ("claims", "Claims")):
+            doc = importlib.import_module(f"gaspart.experiments.{family}.{kind}").__doc__
+            text += heading(name, "-") + f".. code-block:: text\n\n{indented(doc.strip())}\n"
+        pages[f"figures/{family}.rst"] = text
+    listed = "".join(f"   {family}\n" for family in titles())
+    pages["figures/index.rst"] = heading("Figures") + f".. toctree::\n   :maxdepth: 2\n\n{listed}"
+    return pages
+
+
+def claims_of(path):
+    """A table of the claims with their verdicts; empty if the workflow has not run."""
+    if not path.exists():
+        return ""
+    wanted = ("claim", "measured", "expected", "verdict")
+    with path.open(newline="", encoding="utf-8") as file:
+        rows = [wanted, *([row[key] for key in wanted] for row in csv.DictReader(file))]
+    text = ".. list-table::\n   :header-rows: 1\n\n"
+    for row in rows:
+        cells = [cell.replace("\\", "\\\\").replace("*", "\\*").replace("|", "\\|") for cell in row]
+        text += f"   * - {cells[0]}\n" + "".join(f"     - {cell}\n" for cell in cells[1:])
+    return text + "\n"
+
+
+def write(folder):
+    """Write all pages; those that are up to date are not touched, so that Sphinx reads only what is new."""
+    for part in ("api", "figures"):
+        (folder / part).mkdir(parents=True, exist_ok=True)
+    for path, text in {**api(), **command_line(), **gallery(folder), **figures(folder)}.items():
+        target = folder / path
+        if not target.exists() or target.read_text(encoding="utf-8") != text:
+            target.write_text(text, encoding="utf-8")
+
+
+def describe_keys(app, what, name, thing, options, lines):
+    """Prepare a docstring: bars are those of absolute values, and a dataclass has its declared keys."""
+    lines[:] = [line.replace("|", "\\|") for line in lines]
+    if what == "class" and is_dataclass(thing):
+        keys = [field for field in fields(thing) if "meaning" in field.metadata]
+        lines += [""] + [f":param {field.name}: {field.metadata['meaning']}" for field in keys]
+
+
+def setup(app):
+    """Register with Sphinx."""
+    app.connect("builder-inited", lambda app: write(Path(app.srcdir) / "generated"))
+    app.connect("autodoc-process-docstring", describe_keys)
+    return {"parallel_read_safe": True}

@@ -1,0 +1,159 @@
+"""A measured quantity: an xarray.Dataset with uncertainties, units and theory, which plots itself."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from gaspart.analysis.statistics import block_average
+from gaspart.errors import SceneError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+LEAST_INTERVALS = 16
+"""Between frames: fewer allow no uncertainty of a mean."""
+_LONG = 32  # characters of a label, from which on it has two lines
+STRETCHES = 20
+"""Of a run, whose means a plot of a scalar shows."""
+
+
+class Observable(xr.Dataset):
+    """The result of a function of `gaspart.analysis`.
+
+    Variables: the quantity, by the name in the attribute `quantity`; the same with the suffix _error, one
+    standard deviation; where theory exists, with the suffixes _theory and _theory_error (NaN if the
+    uncertainty is not known, as of an approximation). A scalar also has `stretches` (time), its means over
+    consecutive parts of the run. Every variable has `units`.
+    """
+
+    __slots__ = ()
+
+    @property
+    def estimate(self) -> xr.DataArray:
+        """The measured values."""
+        return self[self.attrs["quantity"]]
+
+    @property
+    def error(self) -> xr.DataArray:
+        """Their standard uncertainties."""
+        return self[f"{self.attrs['quantity']}_error"]
+
+    @property
+    def theory(self) -> xr.DataArray | None:
+        """The values of theory; None where there is none for this scene."""
+        return self.get(f"{self.attrs['quantity']}_theory")
+
+    @property
+    def deviation(self) -> xr.DataArray | None:
+        """Measured minus theory, in standard deviations of the difference; None without theory."""
+        if self.theory is None:
+            return None
+        unsure = self[f"{self.attrs['quantity']}_theory_error"]
+        return (self.estimate - self.theory) / np.hypot(self.error, unsure)
+
+    def plot(self, theory: bool = False, axis: Axes | None = None) -> Axes:  # type: ignore[override]
+        """Draw the values with bars of one standard deviation, a scalar as the means of consecutive stretches
+        of the run; with `theory`, the curve of theory too. axis: an Axes of matplotlib; by default a new one.
+        Returns the Axes.
+
+        Raises SceneError for `theory` where there is none for this scene.
+        """
+        import matplotlib.pyplot as plt
+
+        if theory and self.theory is None:
+            raise SceneError("theory", True, f"there is none of {self.attrs['quantity']} for this scene")
+        if axis is None:
+            axis = plt.figure(layout="constrained").add_subplot()
+        if self.estimate.ndim:
+            _plot_curve(self, axis, theory)
+        else:
+            _plot_scalar(self, axis, theory)
+        axis.set_ylabel(_label(self.estimate))
+        axis.legend(frameon=False)
+        return axis
+
+
+def _plot_scalar(found: Observable, axis: Axes, theory: bool) -> None:
+    value, error = float(found.estimate), float(found.error)
+    axis.plot(found["time"], found["stretches"], "o", markersize=3, label="stretches of the run")
+    axis.axhspan(value - error, value + error, alpha=0.3, label=f"measured, {value:.5g} ± {error:.1g}")
+    if theory:
+        assert found.theory is not None
+        axis.axhline(float(found.theory), color="black", label=f"theory, {float(found.theory):.5g}")
+    axis.set_xlabel(_label(found["time"]))
+
+
+def _plot_curve(found: Observable, axis: Axes, theory: bool) -> None:
+    name = found.estimate.dims[-1]
+    x = found[name]
+    for part in found.estimate.transpose(..., name).values.reshape(-1, x.size):
+        error = found.error.values.reshape(-1, x.size)[0]
+        if x.dtype.kind in "US":  # names, such as those of faces
+            axis.errorbar(np.arange(x.size), part, error, fmt="o", capsize=2, label="measured")
+            axis.set_xticks(np.arange(x.size), [str(text) for text in x.values])
+        else:
+            axis.errorbar(x, part, error, fmt="o", markersize=3, label="measured")
+    if theory:
+        assert found.theory is not None
+        places = np.arange(x.size) if x.dtype.kind in "US" else x
+        marker = "" if found.theory.notnull().sum() > 2 else "x"  # of few values, as at contact
+        axis.plot(places, found.theory, color="black", marker=marker, zorder=3, label="theory")
+    axis.set_xlabel(_label(x))
+
+
+def _label(values: xr.DataArray) -> str:
+    text = values.attrs.get("long_name", str(values.name))
+    units = values.attrs.get("units", "1")
+    between = "\n" if len(text) + len(units) > _LONG else " "
+    return str(text) if units == "1" else f"{text}{between}({units})"
+
+
+def scalar(name: str, series: np.ndarray, edges: np.ndarray, **about: Any) -> Observable:
+    """The mean of a series over the intervals between frames, with its error from blocks.
+
+    series (M,); edges (M + 1,), the times of the frames. about: `units`, `long_name`, and perhaps `theory`, a
+    value and its uncertainty, and its `source`. Raises SceneError for fewer than `LEAST_INTERVALS`.
+    """
+    if len(series) < LEAST_INTERVALS:
+        raise SceneError("frames", len(series) + 1, f"an error needs {LEAST_INTERVALS + 1} or more")
+    found = block_average(series, LEAST_INTERVALS)
+    stretches = [part.mean() for part in np.array_split(series, min(STRETCHES, len(series)))]
+    ends = [part[[0, -1]].mean() for part in np.array_split(0.5 * (edges[1:] + edges[:-1]), len(stretches))]
+    result = observable(name, {}, found.mean, found.error, **about)
+    result["stretches"] = ("time", np.array(stretches), {"units": about["units"]})
+    result["time"] = ("time", np.array(ends), {"units": "time", "long_name": "time"})
+    return result.set_coords("time")
+
+
+def observable(
+    name: str,
+    along: dict[str, tuple[np.ndarray, dict]],
+    values: np.ndarray | float,
+    errors: np.ndarray | float,
+    *,
+    units: str,
+    long_name: str,
+    theory: tuple[Any, Any] | None = None,
+    source: str | None = None,
+) -> Observable:
+    """A result from its parts. along: dimension -> its coordinate and the attributes of that."""
+    dims = tuple(along)
+    parts = {name: (values, long_name), f"{name}_error": (errors, "standard uncertainty")}
+    if theory is not None:
+        shape = np.shape(values)
+        parts[f"{name}_theory"] = np.broadcast_to(theory[0], shape), f"theory: {source}"
+        parts[f"{name}_theory_error"] = np.broadcast_to(theory[1], shape), "uncertainty of theory"
+    return Observable(
+        {key: (dims, value, {"units": units, "long_name": text}) for key, (value, text) in parts.items()},
+        coords={key: (key, place, attributes) for key, (place, attributes) in along.items()},
+        attrs={"quantity": name} | ({"source": source} if source else {}),
+    )
+
+
+def grouped(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Mean and standard error over axis 0 of values of independent groups (G, ...)."""
+    return values.mean(axis=0), values.std(axis=0, ddof=1) / math.sqrt(len(values))

@@ -1,0 +1,199 @@
+"""What observables are measured from: a trajectory, by its path or open, or a simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TypeAlias
+
+import numpy as np
+import xarray as xr
+
+from gaspart.engines import TimeStepped
+from gaspart.errors import SceneError
+from gaspart.scene.scene import Scene
+from gaspart.scene.validation import number
+from gaspart.simulation.simulation import Simulation
+from gaspart.trajectory.run import open_trajectory
+from gaspart.yaml_text import dump_yaml, parse_yaml
+
+Source: TypeAlias = str | Path | xr.Dataset | Simulation
+
+EQUILIBRATION = 0.25
+"""The part of a run that is not measured, unless the caller states a time."""
+REPEATED = 129
+"""Frames of a simulation, which is run again to measure it; fewer of many particles."""
+_MOST = 20_000_000  # numbers that such frames hold
+_COUNTERS = ("collisions", "virial_sum", "wall_impulse")
+
+
+@dataclass(frozen=True)
+class Run:
+    """T frames of N particles in d dimensions: the measured part of a run.
+
+    time (T,); positions, velocities (T, N, d); unwrapped (T, N, d) or None where the file does not have them;
+    counters: cumulative, (T,) or (T, walls), by name.
+    """
+
+    scene: Scene
+    time: np.ndarray
+    data: xr.Dataset
+
+    @property
+    def count(self) -> int:
+        """N, of the scene."""
+        return self.scene.count
+
+    @property
+    def dimension(self) -> int:
+        """2 or 3."""
+        return self.scene.dimension
+
+    @property
+    def periodic(self) -> np.ndarray:
+        """(d,) whether each axis is periodic."""
+        return np.array(self.scene.container.periodic)
+
+    def increments(self, name: str) -> np.ndarray:
+        """(T - 1, ...) how much a counter grew in each interval."""
+        return np.diff(self.data[name].values, axis=0)
+
+    @cached_property
+    def positions(self) -> np.ndarray:
+        """(T, N, d)."""
+        return self.data["coordinates"].values.astype(float)
+
+    @cached_property
+    def velocities(self) -> np.ndarray:
+        """(T, N, d)."""
+        return self.data["velocities"].values.astype(float)
+
+    @cached_property
+    def masses(self) -> np.ndarray:
+        """(N,), infinite for fixed particles; single particles come before species."""
+        parts = [(body, 1) for body in self.scene.bodies] + [
+            (kind, kind.count) for kind in self.scene.species
+        ]
+        return np.concatenate([np.full(k, np.inf if it.fixed else it.mass) for it, k in parts])
+
+    @cached_property
+    def moving(self) -> np.ndarray:
+        """(N,) which particles are not fixed. Raises SceneError if the file lacks some particles."""
+        stored = self.data.sizes["atom"]
+        if stored < self.count:
+            raise SceneError("follow", stored, f"needs all {self.count} particles in the file")
+        return np.isfinite(self.masses)
+
+    @property
+    def conserved(self) -> np.ndarray:
+        """(d,) the axes along which the total momentum is: periodic ones, if no particle is fixed."""
+        return self.periodic & self.moving.all()
+
+    @cached_property
+    def peculiar(self) -> np.ndarray:
+        """(T, M, d) velocities of the M moving particles about the centre of mass's, where that is
+        conserved."""
+        velocities, masses = self.velocities[:, self.moving], self.masses[self.moving]
+        drift = np.einsum("tnd,n->td", velocities, masses) / masses.sum()
+        return velocities - np.where(self.conserved, drift, 0.0)[:, None]
+
+    @cached_property
+    def temperature(self) -> float:
+        """k_B T: twice the mean kinetic energy of flight per degree of freedom."""
+        energy = 0.5 * np.einsum("tnd,tnd,n->t", self.peculiar, self.peculiar, self.masses[self.moving])
+        freedom = self.dimension * self.moving.sum() - self.conserved.sum()
+        return float(2.0 * energy.mean() / freedom)
+
+    @property
+    def simple(self) -> bool:
+        """Whether theory of the plain gas holds: one species of moving, smooth and elastic particles, nothing
+        else."""
+        scene = self.scene
+        contacts = scene.restitution is None or scene.restitution.smooth_and_elastic
+        kinds = {(it.radius, it.mass, it.fixed) for it in scene.kinds}
+        bare = scene.gravity is None and not scene.walls and not scene.faces
+        return bare and contacts and len(kinds) == 1 and not next(iter(kinds))[2]
+
+    @property
+    def bulk(self) -> bool:
+        """Whether it is such a gas in a periodic container."""
+        return self.simple and bool(self.periodic.all())
+
+    @property
+    def particle(self) -> dict[str, float]:
+        """diameter, temperature and mass, as the functions of theory take them."""
+        kind = self.scene.kinds[0]
+        return {"diameter": 2.0 * kind.radius, "temperature": self.temperature, "mass": kind.mass}
+
+
+def require_elastic(run: Run) -> None:
+    """Raise SceneError for a scene that loses energy, which is in no equilibrium."""
+    law = run.scene.restitution
+    if law is not None and law.normal < 1.0:
+        raise SceneError("restitution.normal", law.normal, "a gas that loses energy is in no equilibrium")
+
+
+def require_periodic(run: Run) -> None:
+    """Raise SceneError for a container with walls."""
+    if not run.periodic.all():
+        boundary = run.scene.container.boundary
+        raise SceneError("container.boundary", boundary, "this observable needs a periodic container")
+
+
+@contextmanager
+def measured(source: Source, start: float | None) -> Iterator[Run]:
+    """The part of a source from the time `start` on; by default without its first quarter.
+
+    A simulation is run again, from its start to the present time. Raises SceneError for fewer than two frames
+    and for what `open_trajectory` refuses.
+    """
+    if isinstance(source, Simulation):
+        opened = nullcontext(repeated(source))
+    elif isinstance(source, xr.Dataset):
+        opened = nullcontext(source)
+    else:
+        opened = open_trajectory(source)
+    with opened as data:
+        if "scene" not in data.attrs or "coordinates" not in data:
+            raise SceneError(
+                "source", type(source).__name__, "must be a trajectory, its path or a simulation"
+            )
+        time = data["time"].values
+        last = float(time[-1]) if len(time) else 0.0
+        begin = EQUILIBRATION * last if start is None else number("start", start, "must be a finite number")
+        chosen = time >= begin - 1e-9 * last
+        if chosen.sum() < 2:
+            raise SceneError("start", begin, f"leaves {chosen.sum()} frames of a run until time {last:g}")
+        part = data.isel(frame=slice(int(np.argmax(chosen)), None))
+        yield Run(Scene.from_dict(parse_yaml(data.attrs["scene"])), time[chosen], part)
+
+
+def repeated(simulation: Simulation) -> xr.Dataset:
+    """The frames of a simulation, which is run again from its start, at even times. Raises SceneError for one
+    that has not advanced."""
+    scene, engine = simulation.scene, simulation.engine
+    if simulation.time <= 0.0:
+        raise SceneError("simulation", "at time 0", "has not advanced")
+    frames = int(np.clip(_MOST // (3 * max(1, scene.count) * scene.dimension), 33, REPEATED))
+    times = np.linspace(0.0, simulation.time, frames)
+    if isinstance(engine, TimeStepped):  # half a step more, so that rounding does not cost one
+        steps = max(1, round(simulation.time / engine.time_step) // (frames - 1))
+        times = np.append(0.0, (steps * np.arange(1, frames) + 0.5) * engine.time_step)
+        times = times[times < simulation.time + engine.time_step]
+    again, rows = Simulation(scene, engine, simulation.seed), []
+    for time in times:
+        again.advance(until=time)
+        state, tally = again.state, again.tally
+        counters = [getattr(tally, name) for name in _COUNTERS]
+        rows.append((again.time, state.positions, state.velocities, state.unwrapped, *counters))
+    names = ("time", "coordinates", "velocities", "displacements", *_COUNTERS)
+    columns = dict(zip(names, map(np.array, zip(*rows, strict=True)), strict=True))
+    columns["displacements"] = columns["displacements"] - columns["displacements"][0]
+    dims = {3: ("frame", "atom", "spatial"), 2: ("frame", "face"), 1: ("frame",)}
+    return xr.Dataset(
+        {name: (dims[values.ndim], values) for name, values in columns.items()},
+        attrs={"scene": dump_yaml(scene.to_dict())},
+    )

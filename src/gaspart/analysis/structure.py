@@ -1,0 +1,202 @@
+"""Observables from positions and speeds: distributions, profiles and order.
+
+Uncertainties are the scatter of consecutive stretches of the run, or of groups of particles.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from gaspart import theory
+from gaspart.analysis.observable import Observable, grouped, observable, scalar
+from gaspart.analysis.source import Run, Source, measured, require_periodic
+from gaspart.errors import SceneError
+from gaspart.scene.validation import choice, count_of, number
+
+STRETCHES = 16
+MOST_FRAMES = 320
+"""Frames, evenly spaced, that are searched for pairs of particles."""
+FASTEST = 4.0
+"""The histogram of speeds ends at this many thermal speeds sqrt(k_B T / m)."""
+
+
+def speed_distribution(source: Source, bins: int = 40, start: float | None = None) -> Observable:
+    """Density of the speeds of moving particles, (speed,), in time / length, of all frames together.
+
+    source: a trajectory, by its path or open, or a simulation; bins: up to four thermal speeds; start: the
+    time from which frames count (by default a quarter of the run). Velocities are those about the centre of
+    mass where that is conserved. The error is the scatter of groups of particles. Theory: Maxwell's, of the
+    run's own temperature. Raises SceneError for fewer than 16 moving particles.
+    """
+    bins = count_of("bins", bins, least=2)
+    with measured(source, start) as run:
+        if run.moving.sum() < STRETCHES:
+            raise SceneError("count", int(run.moving.sum()), f"an error needs {STRETCHES} moving particles")
+        masses, temperature = run.masses[run.moving], run.temperature
+        count = len(masses)
+        free = count / (count - 1) if run.conserved.all() else 1.0
+        speeds = np.sqrt(free * (run.peculiar**2).sum(axis=2))
+        edges = np.linspace(0.0, FASTEST * np.sqrt(temperature / masses.min()), bins + 1)
+        # every group has a share of each species, which come one after the other
+        groups = [speeds[:, first::STRETCHES] for first in range(STRETCHES)]
+        found = np.array([np.histogram(part, edges)[0] / part.size / np.diff(edges) for part in groups])
+        values, errors = grouped(found)
+        expected: dict[str, Any] = {}
+        if np.ptp(masses) == 0.0:
+            share = np.diff(theory.maxwell_cdf(edges, run.dimension, temperature, masses[0]))
+            expected = {"theory": (share / np.diff(edges), 0.0), "source": "Maxwell's distribution"}
+        middle = 0.5 * (edges[1:] + edges[:-1])
+        along = {"speed": (middle, {"units": "length / time", "long_name": "speed"})}
+        about: dict[str, Any] = {"units": "time / length", "long_name": "density of speeds", **expected}
+        return observable("speed_distribution", along, values, errors, **about)
+
+
+def rdf(
+    source: Source, bins: int = 100, furthest: float | None = None, start: float | None = None
+) -> Observable:
+    """Radial distribution function g(r) of all particles of a periodic scene, (distance,), dimensionless.
+
+    Mean over up to 320 frames; furthest: the largest distance (five of the largest diameters, or just below
+    half of the shortest side). Theory: the value at contact of the fluid's equation of state, at the first
+    bins beyond the diameter only. Raises SceneError for walls, too few frames and too large a distance.
+    """
+    from gaspart.analysis.order import radial_distribution
+
+    bins = count_of("bins", bins, least=2)
+    with measured(source, start) as run:
+        require_periodic(run)
+        lengths = run.scene.container.lengths
+        diameter, half = 2.0 * run.scene.largest_radius, 0.499 * min(lengths)
+        rule = f"must be positive and below half of the shortest side, {half:.4g}"
+        end = min(5.0 * diameter, half) if furthest is None else furthest
+        end = number("furthest", end, rule, above=0.0, most=half)
+        frames = _chosen(run, run.positions)
+        found = [radial_distribution(part, lengths, bins, end) for part in np.array_split(frames, STRETCHES)]
+        values, errors = grouped(np.array([g for _, g in found]))
+        distance = np.asarray(found[0][0], dtype=float)
+        expected: dict[str, Any] = {}
+        eta = run.scene.packing_fraction
+        if run.bulk and eta <= theory.HIGHEST_PACKING_FRACTION[run.dimension]:
+            contact = float(theory.contact_value(eta, run.dimension))
+            near = (distance > diameter) & (distance < diameter + 1.5 * end / bins)
+            expected = {"theory": (np.where(near, contact, np.nan), np.nan), "source": "g at contact, from Z"}
+        along = {"distance": (distance, {"units": "length", "long_name": "distance"})}
+        about: dict[str, Any] = {"units": "1", "long_name": "radial distribution g(r)", **expected}
+        return observable("rdf", along, values, errors, **about)
+
+
+def profile(
+    source: Source,
+    of: str = "density",
+    axis: str | None = None,
+    bins: int = 40,
+    start: float | None = None,
+) -> Observable:
+    """Profile of a property along an axis, (position,), mean over all frames.
+
+    of: "density", particles per volume, or "temperature" of the moving particles; axis: "x", "y" or "z", by
+    default the last one. Theory: the density of equal particles under gravity along this axis, by
+    hydrostatics with the fluid's equation of state; a uniform temperature without thermal faces. Raises
+    SceneError for an unknown property or axis, and for too few frames.
+    """
+    choice("of", of, ("density", "temperature"))
+    bins = count_of("bins", bins, least=2)
+    with measured(source, start) as run:
+        names = "xyz"[: run.dimension]
+        k = names.index(choice("axis", names[-1] if axis is None else axis, tuple(names)))
+        edges = np.linspace(0.0, run.scene.container.lengths[k], bins + 1)
+        parts = np.array_split(np.arange(len(run.time)), min(STRETCHES, len(run.time)))
+        if len(parts) < STRETCHES:
+            raise SceneError("frames", len(run.time), f"an error needs {STRETCHES} or more")
+        measure = _density if of == "density" else _temperature
+        values, errors = grouped(np.array([measure(run, part, k, edges) for part in parts]))
+        middle = 0.5 * (edges[1:] + edges[:-1])
+        expected = _theory_of_density(run, k, edges) if of == "density" else _theory_of_temperature(run)
+        along = {"position": (middle, {"units": "length", "long_name": names[k]})}
+        units = f"1 / length^{run.dimension}" if of == "density" else "energy"
+        long_name = "number density" if of == "density" else "temperature"
+        return observable(of, along, values, errors, units=units, long_name=long_name, **expected)
+
+
+def order_parameter(source: Source, start: float | None = None) -> Observable:
+    """Global bond order of a periodic scene, dimensionless: |<psi_6>| of discs, Q_6 of spheres.
+
+    1 in a triangular lattice of discs, 0.5745 in a face-centred cubic one, small in a fluid (about
+    1 / sqrt(12 N) for spheres). Raises SceneError for walls and for too few frames.
+    """
+    from gaspart.analysis.order import global_steinhardt, hexatic
+
+    with measured(source, start) as run:
+        require_periodic(run)
+        lengths = run.scene.container.lengths
+        frames, time = _chosen(run, run.positions), _chosen(run, run.time)
+        if run.dimension == 2:
+            series, name = [abs(hexatic(frame, lengths).mean()) for frame in frames], "|psi_6|"
+        else:
+            series, name = [global_steinhardt(frame, lengths) for frame in frames], "Q_6"
+        edges = np.append(time, 2.0 * time[-1] - time[-2])
+        about: dict[str, Any] = {"units": "1", "long_name": f"bond order {name}"}
+        return scalar("order_parameter", np.array(series, dtype=float), edges, **about)
+
+
+def _chosen(run: Run, values: np.ndarray) -> np.ndarray:
+    """Of values for each frame, up to `MOST_FRAMES`, evenly spaced. Raises SceneError for too few."""
+    if len(run.time) < STRETCHES:
+        raise SceneError("frames", len(run.time), f"an error needs {STRETCHES} or more")
+    return values[:: -(-len(run.time) // MOST_FRAMES)]
+
+
+def _density(run: Run, part: np.ndarray, axis: int, edges: np.ndarray) -> np.ndarray:
+    count = np.histogram(run.positions[part][:, :, axis], edges)[0]
+    area = run.scene.container.volume / run.scene.container.lengths[axis]
+    whole = run.count / run.data.sizes["atom"]
+    return whole * count / (len(part) * area * np.diff(edges))
+
+
+def _temperature(run: Run, part: np.ndarray, axis: int, edges: np.ndarray) -> np.ndarray:
+    """Twice the kinetic energy of flight per degree of freedom; NaN in empty bins."""
+    places = run.positions[part][:, run.moving, axis].ravel()
+    moving = run.peculiar[part]
+    energy = 0.5 * (moving**2).sum(axis=2) * run.masses[run.moving]
+    freedom = run.dimension * int(run.moving.sum())
+    share = freedom / (freedom - run.conserved.sum())
+    count = np.histogram(places, edges)[0]
+    total = np.histogram(places, edges, weights=energy.ravel())[0]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return 2.0 * share * total / (run.dimension * count)
+
+
+def _theory_of_temperature(run: Run) -> dict[str, Any]:
+    law = run.scene.restitution
+    if run.scene.faces or (law is not None and law.normal < 1.0):
+        return {}
+    return {"theory": (run.temperature, 0.0), "source": "equilibrium"}
+
+
+def _theory_of_density(run: Run, axis: int, edges: np.ndarray) -> dict[str, Any]:
+    scene, kinds = run.scene, run.scene.kinds
+    field = 0.0 if scene.gravity is None else scene.gravity[axis]
+    across = scene.gravity is not None and any(g for n, g in enumerate(scene.gravity) if n != axis)
+    equal = len({(kind.radius, kind.mass) for kind in kinds}) == 1 and run.moving.all()
+    if not equal or scene.walls or scene.faces or across or not (field or run.periodic[axis]):
+        return {}
+    if not field:
+        return {"theory": (scene.number_density, 0.0), "source": "uniform"}
+    lower, upper = scene.reach(kinds[0].radius)
+    z = np.linspace(lower[axis], upper[axis], 2001)
+    down = z if field < 0.0 else z[::-1]
+    area = scene.container.volume / scene.container.lengths[axis]
+    weight = kinds[0].mass * abs(field) / run.temperature
+    try:
+        found = theory.hydrostatic_profiles(
+            z, [run.count / area], [weight], run.dimension, 2.0 * kinds[0].radius
+        )[0]
+    except ValueError:  # denser than theory goes
+        return {}
+    total = np.concatenate([[0.0], np.cumsum(0.5 * (found[1:] + found[:-1]) * np.diff(z))])
+    if down is not z:
+        total = total[-1] - total[::-1]
+    share = np.diff(np.interp(edges, z, total))
+    return {"theory": (share / np.diff(edges), np.nan), "source": "hydrostatics, local equation of state"}

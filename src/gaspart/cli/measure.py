@@ -1,0 +1,135 @@
+"""`gaspart measure`: observables of a trajectory, with uncertainties and theory."""
+
+from __future__ import annotations
+
+import argparse
+import io
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from gaspart.cli.arguments import Commands, UsageError, add_command, print_line, real
+from gaspart.cli.progress import waiting
+from gaspart.errors import SceneError
+from gaspart.files import Kind, begins_with, output_path, writing
+
+if TYPE_CHECKING:
+    from gaspart.analysis.observable import Observable
+
+OBSERVABLES = {
+    "Z": ("compressibility_factor", {}, "compressibility factor PV/(N k_B T), periodic"),
+    "pressure": ("wall_pressure", {}, "pressure on each wall"),
+    "collision_rate": ("collision_rate", {}, "collisions of a particle per time"),
+    "msd": ("mean_squared_displacement", {}, "mean-squared displacement"),
+    "D": ("diffusion_coefficient", {}, "diffusion coefficient"),
+    "vacf": ("velocity_autocorrelation", {}, "velocity autocorrelation"),
+    "speeds": ("speed_distribution", {}, "distribution of speeds"),
+    "rdf": ("rdf", {}, "radial distribution function, periodic"),
+    "density": ("profile", {"of": "density"}, "density along the last axis"),
+    "temperature": ("profile", {"of": "temperature"}, "temperature along the last axis"),
+    "order": ("order_parameter", {}, "global bond order, periodic"),
+}
+"""Names on the command line -> function of `gaspart.analysis`, its arguments, meaning."""
+_ROWS = 12  # of a curve that are printed
+_TITLE = "# gaspart measure"
+_TABLE = Kind("a table written by gaspart measure", begins_with(_TITLE.encode()))
+_EXAMPLES = """examples:
+  gaspart measure run.nc Z msd
+  gaspart measure run.nc vacf -o vacf.png
+  gaspart measure run.nc msd -o msd.csv --start 10"""
+
+
+def add_measure(commands: Commands) -> None:
+    """Add the command to the others."""
+    names = "; ".join(f"{name}: {meaning}" for name, (_, _, meaning) in OBSERVABLES.items())
+    text = f"{names}. Uncertainties are one standard deviation; of curves a few rows are printed."
+    measure = add_command(commands, "measure", _measure, "observables of a trajectory", text, _EXAMPLES)
+    add = measure.add_argument
+    add("trajectory", metavar="FILE")
+    add("observables", nargs="+", choices=tuple(OBSERVABLES), metavar="NAME", help=", ".join(OBSERVABLES))
+    text = "time from which frames count; by default a quarter of the run"
+    add("--start", type=real(least=0.0), metavar="T", help=text)
+    add("-o", "--output", metavar="FILE", help="all rows of one observable as .csv, or a plot as .png")
+    add("--force", action="store_true", help="replace a table or a picture")
+
+
+def _measure(given: argparse.Namespace) -> None:
+    from gaspart import analysis
+    from gaspart.trajectory.run import open_trajectory
+
+    write = _writer(given)
+    with open_trajectory(given.trajectory) as trajectory:
+        for name in given.observables:
+            function, arguments, _ = OBSERVABLES[name]
+            with waiting(f"measuring {name}"):
+                found = getattr(analysis, function)(trajectory, start=given.start, **arguments)
+            if found.estimate.ndim:
+                _print_curve(name, found)
+            else:
+                _print_scalar(name, found)
+            write(found)
+
+
+def _print_scalar(name: str, found: Observable) -> None:
+    units = found.estimate.attrs["units"]
+    line = f"{name} = {_with_error(found.estimate, found.error)}{'' if units == '1' else f' {units}'}"
+    if found.theory is not None and found.deviation is not None:
+        unsure = found[f"{found.estimate.name}_theory_error"]
+        line += f", theory {_with_error(found.theory, unsure)}: {float(found.deviation):+.1f} standard"
+        line += f" deviations ({found.attrs['source']})"
+    print_line(line)
+
+
+def _with_error(value: Any, error: Any) -> str:
+    return f"{float(value):.6g} +- {float(error):.1g}" if float(error) > 0.0 else f"{float(value):.6g}"
+
+
+def _print_curve(name: str, found: Observable) -> None:
+    (along,) = found.estimate.dims
+    rows = found.sizes[along]
+    stride = max(1, -(-rows // _ROWS))
+    columns = [found[along], found.estimate, found.error]
+    columns += [] if found.theory is None else [found.theory]
+    heads = [str(along), name, "error", *(["theory"] if found.theory is not None else [])]
+    print_line("".join(f"{head:>14}" for head in heads))
+    for row in range(0, rows, stride):
+        cells = [column.values[row] for column in columns]
+        print_line("".join(f"{cell if isinstance(cell, str) else f'{cell:.5g}':>14}" for cell in cells))
+    if stride > 1:
+        shown = -(-rows // stride)
+        print_line(f"({shown} of {rows} rows; -o {name}.csv writes all, -o {name}.png draws them)")
+
+
+def _writer(given: argparse.Namespace) -> Callable[[Observable], None]:
+    """What writes the result, after the arguments were checked."""
+    if given.output is None:
+        return lambda found: None
+    path = output_path(given.output)
+    if len(given.observables) > 1:
+        raise UsageError("-o takes one observable; give one, or leave -o out")
+    if path.suffix == ".csv":
+        return partial(_write_table, path, given.force)
+    if path.suffix == ".png":
+        return partial(_write_plot, path, given.force)
+    raise SceneError("output", given.output, "must end in .csv or .png")
+
+
+def _write_table(path: Any, overwrite: bool, found: Observable) -> None:
+    with writing(path, _TABLE, overwrite) as scratch:
+        units = {name: variable.attrs.get("units", "1") for name, variable in found.variables.items()}
+        title = f"{_TITLE}: units " + ", ".join(f"{name}: {unit}" for name, unit in units.items())
+        scratch.write_text(f"{title}\n{found.to_dataframe().to_csv()}", encoding="utf-8")
+    print_line(path)
+
+
+def _write_plot(path: Any, overwrite: bool, found: Observable) -> None:
+    from gaspart.rendering import style
+    from gaspart.rendering.pictures import PICTURE
+
+    with writing(path, PICTURE, overwrite) as scratch, style.applied():
+        figure, axis = style.new()
+        found.plot(theory=found.theory is not None, axis=axis)
+        picture = io.BytesIO()
+        figure.savefig(picture, format="png", metadata={"Software": None})
+        scratch.write_bytes(picture.getvalue())
+    print_line(path)

@@ -1,0 +1,103 @@
+"""`gaspart new`: a scene file from a template.
+
+The templates are files of this package. Comments at their beginning state the title, what happens, the
+command that runs the scene and the figure of the workflow that measures it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from gaspart.cli.arguments import Commands, add_command, print_line
+from gaspart.errors import SceneError
+from gaspart.files import Kind, output_path, writing
+from gaspart.scene.scene import Scene
+
+_FOLDER = Path(__file__).parent / "templates"
+_EXAMPLES = """examples:
+  gaspart new gas.yaml
+  gaspart new hot.yaml --template heat
+  gaspart new --list"""
+
+
+def _is_scene(path: Path) -> bool:
+    try:
+        Scene.from_file(path)
+    except SceneError:
+        return False
+    return True
+
+
+_SCENE = Kind("a scene file", _is_scene)
+
+
+@dataclass(frozen=True)
+class Template:
+    """A template: its name, title and description, the command that runs it, the figure of the workflow (None
+    for a scene of which there is none), the text of the file."""
+
+    name: str
+    title: str
+    description: str
+    command: str
+    figure: str | None
+    text: str
+
+
+@cache
+def templates() -> dict[str, Template]:
+    """All templates, by name."""
+    return {path.stem: _read(path) for path in sorted(_FOLDER.glob("*.yaml"))}
+
+
+def _read(path: Path) -> Template:
+    text = path.read_text(encoding="utf-8")
+    comments = [line.removeprefix("# ") for line in text.splitlines() if line.startswith("#")]
+    notes = [line.strip() for line in comments if line.startswith("  ")]
+    description = " ".join(line for line in comments[1:] if not line.startswith("  "))
+    figure = notes[1].removeprefix("figure: ") if len(notes) > 1 else None
+    return Template(path.stem, comments[0], description, notes[0], figure, text)
+
+
+def add_new(commands: Commands) -> None:
+    """Add the command to the others."""
+    text = "Write a scene file from a template. The scenes are in the gallery of the documentation."
+    new = add_command(commands, "new", _new, "write a scene file from a template", text, _EXAMPLES)
+    add = new.add_argument
+    add("scene", nargs="?", metavar="FILE", help="ends in .yaml")
+    add("--template", choices=tuple(templates()), default="gas", metavar="NAME", help="default: gas")
+    add("--list", action="store_true", help="print the names and titles of all templates")
+    add("--force", action="store_true", help="replace a scene file")
+
+
+def _new(given: argparse.Namespace) -> None:
+    if given.list:
+        for template in templates().values():
+            print_line(f"{template.name:12}{template.title}")
+        return
+    if given.scene is None:
+        raise SceneError("scene", None, "give the name of the file, or --list")
+    output, template = output_path(given.scene), templates()[given.template]
+    if output.suffix not in (".yaml", ".yml") or not given.scene.isprintable():
+        raise SceneError("scene", given.scene, "must be a printable name that ends in .yaml")
+    with writing(output, _SCENE, given.force) as scratch:
+        scratch.write_text(_renamed(template, output), encoding="utf-8")
+    print_line(f"{output}: {template.title}. Run it:")
+    print_line(_command(template, output))
+
+
+def _command(template: Template, path: Path) -> str:
+    """The command that runs the scene, with the names of the file and of its trajectory."""
+    scene, trajectory = shlex.quote(str(path)), shlex.quote(str(path.with_suffix(".nc")))
+    command = template.command.replace(f"{template.name}.yaml", scene)
+    return command.replace(f"{template.name}.nc", trajectory)
+
+
+def _renamed(template: Template, path: Path) -> str:
+    """The text of the file, without the note on the figure."""
+    kept = [line for line in template.text.splitlines(keepends=True) if not line.startswith("#   figure")]
+    return "".join(kept).replace(template.command, _command(template, path))

@@ -1,0 +1,33 @@
+"""`gaspart view`: an interactive page of a trajectory."""
+
+from __future__ import annotations
+
+import argparse
+
+from gaspart.cli.arguments import Commands, add_command, add_output, integer, print_line
+from gaspart.cli.progress import waiting
+
+_EXAMPLES = """examples:
+  gaspart view run.nc -o run.html
+  gaspart view run.nc -o run.html --frames 50"""
+
+
+def add_view(commands: Commands) -> None:
+    """Add the command to the others."""
+    text = (
+        "Write one page of HTML that shows a trajectory in any browser, without a server: play, turn, move "
+        "and zoom, colours by speed or species, time and scale."
+    )
+    parser = add_command(commands, "view", _view, "an interactive page", text, _EXAMPLES)
+    parser.add_argument("trajectory", metavar="FILE")
+    add_output(parser, "ends in .html", "a page of this command")
+    text = "how many are shown, evenly spaced; default: 200"
+    parser.add_argument("--frames", type=integer(least=1), default=200, metavar="N", help=text)
+
+
+def _view(given: argparse.Namespace) -> None:
+    from gaspart.rendering.view import view
+
+    with waiting("writing the page"):
+        path = view(given.trajectory, given.frames).save(given.output, given.force)
+    print_line(path)

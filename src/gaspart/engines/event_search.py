@@ -1,0 +1,101 @@
+"""How the event-driven engine finds the next contact: the choice by density; neighbour lists for a scene."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaspart.errors import SceneError
+from gaspart.kernels.model import LISTED_BITS
+from gaspart.scene.geometry import ball_volume
+from gaspart.state.boxes import make_boxes
+
+if TYPE_CHECKING:
+    from gaspart.kernels.event.neighbour_lists import NeighbourLists
+    from gaspart.scene.scene import Scene
+
+_LISTED = {2: 8.0, 3: 15.0}  # particles that a list holds on average: they fill one or two vectors of eight
+_MARGINS = 0.1, 0.65  # of the largest diameter: limits on how far a particle moves before its list is renewed
+_DENSE = {2: 0.6, 3: 0.38}  # packing fractions from which neighbour lists are faster than boxes
+_ALIKE = 1.5  # and the largest ratio of radii: a list of small particles reaches as far as one of large ones
+_ROOM = {2: 16, 3: 32}  # entries of a list at first
+_SMALLEST, _LARGEST = 1e-12, 1e12  # radii whose squares are numbers in single precision
+
+
+def distances(scene: Scene) -> tuple[float, float]:
+    """How far a particle moves before its list is renewed, and how far the list reaches: so far that the
+    rounding of centres to single precision hides no contact."""
+    d, diameter, lengths = scene.dimension, 2.0 * scene.largest_radius, scene.container.lengths
+    rounding = 16.0 * float(np.finfo(np.float32).eps) * max(lengths)
+    holding = (_LISTED[d] + 1.0) * scene.container.volume / (scene.count * ball_volume(d))
+    least, most = (share * diameter for share in _MARGINS)
+    # each image of a particle is told from the others, also once both have moved
+    axes = [length for length, periodic in zip(lengths, scene.container.periodic, strict=True) if periodic]
+    for length in axes:
+        most = min(
+            most, (length / 3.0 - diameter - rounding) / 2.0, (length - 2.0 * (diameter + rounding)) / 8.0
+        )
+    margin = min(max(0.5 * (holding ** (1.0 / d) - diameter), least), most)
+    return margin, diameter + 2.0 * margin + rounding
+
+
+def obstacle_to_lists(scene: Scene) -> str | None:
+    """Why a scene cannot be run with neighbour lists, if so."""
+    if scene.gravity is not None and any(scene.gravity):
+        return "gravity"
+    if scene.walls:
+        return "interior walls"
+    if not _SMALLEST < scene.largest_radius < _LARGEST:
+        return "particles of so extreme a size"
+    if not 0 < scene.count <= 1 << LISTED_BITS:
+        return "so few or so many particles"
+    if distances(scene)[0] < _MARGINS[0] * 2.0 * scene.largest_radius * (1.0 - 1e-9):
+        return "so short a periodic axis"
+    return None
+
+
+def chosen_search(scene: Scene, search: str, boxes_given: bool) -> str:
+    """The search for a scene: "boxes" or "lists" where it is left to the engine.
+
+    Raises SceneError if lists are asked for, but the scene has something that they do not support.
+    """
+    if search not in ("automatic", "lists"):
+        return search
+    obstacle = obstacle_to_lists(scene)
+    if search == "lists":
+        if obstacle:
+            raise SceneError("search", search, f"neighbour lists do not support {obstacle}; use boxes")
+        return search
+    radii = [kind.radius for kind in scene.kinds]
+    dense = scene.packing_fraction >= _DENSE[scene.dimension]
+    alike = bool(radii) and max(radii) <= _ALIKE * min(radii)
+    return "lists" if dense and alike and not obstacle and not boxes_given else "boxes"
+
+
+def neighbour_lists(scene: Scene, room: int = 0, per_cell: int = 1) -> NeighbourLists:
+    """Empty neighbour lists for a scene. room: words of each; per_cell: pages of a cell, of 8 particles
+    each."""
+    from gaspart.kernels.event.neighbour_lists import empty_neighbour_lists
+
+    margin, reach = distances(scene)
+    sides = tuple(max(1, int(length / reach)) for length in scene.container.lengths)
+    cells = make_boxes(scene, sides, images=True, narrowest=reach)
+    d = scene.dimension
+    return empty_neighbour_lists(cells, scene.count, d, (margin, reach), room or _ROOM[d], per_cell)
+
+
+def make_lists(lists: NeighbourLists, scene: Scene) -> NeighbourLists:
+    """Make the neighbour lists of a scene from their centres: these ones, or new ones with as much room as
+    they need."""
+    from gaspart.kernels.event import neighbour_lists as kernels
+
+    kernels.make_lists(lists, scene.container.lengths)
+    while lists.full.any():
+        larger = neighbour_lists(
+            scene, lists.room << int(lists.full[0]), lists.per_cell << int(lists.full[1])
+        )
+        larger.listed["centre"] = lists.listed["centre"]
+        lists = larger
+        kernels.make_lists(lists, scene.container.lengths)
+    return lists

@@ -1,0 +1,75 @@
+"""Scenes under gravity that come to rest.
+
+With a contact duration, a pile that has settled goes on with tiny elastic contacts for ever. A scene is taken
+for being at rest, and nothing happens in it any more, if for the time sqrt(d/g) of a fall each particle has
+stayed within 2^-8 of the smallest diameter d, and then lies on a wall or has contacts that last. The kinetic
+energy of flight is then counted as dissipated; spins, on which elastic contacts do not act, are kept.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaspart.scene.scene import Scene
+from gaspart.state.state import State
+
+if TYPE_CHECKING:
+    from gaspart.kernels.model import Model, Particles, Tally
+
+_FURTHEST = 2.0**-8  # of the smallest diameter
+
+
+class RestWatch:
+    """Looks at regular times, which do not depend on where a run is split, whether all particles rest.
+
+    arrays: what belongs to a checkpoint: before (N, d), the places at the last look; next (1,), the time of
+    the next one on the clocks of the epoch; rests (1,), whether the scene is at rest.
+    """
+
+    def __init__(self, scene: Scene, state: State, clock: float) -> None:
+        diameter = 2.0 * scene.smallest_radius
+        self._window = math.sqrt(diameter / math.hypot(*(scene.gravity or ())))
+        self._most = _FURTHEST * diameter
+        self.arrays = {
+            "before": state.positions.copy(),
+            "next": np.array([clock + self._window]),
+            "rests": np.zeros(1, dtype=bool),
+        }
+
+    @property
+    def next(self) -> float:
+        """The time of the next look, on the clocks of the epoch."""
+        return float(self.arrays["next"][0])
+
+    @property
+    def rests(self) -> bool:
+        """Whether the scene is at rest."""
+        return bool(self.arrays["rests"][0])
+
+    def begin_epoch(self, last: float) -> None:
+        """Count from the end of an epoch of a length `last`."""
+        self.arrays["next"] -= last
+
+    def happen(self, particles: Particles, model: Model, tally: Tally) -> bool:
+        """Look whether all particles rest at the time `next`, and stop them if they do. Returns that no event
+        need be predicted anew."""
+        from gaspart.kernels.event.scene_at_rest import at_rest, stop_all
+
+        flights, before, time = particles.flights, self.arrays["before"], self.next
+        if at_rest(flights, before, time, self._most, model):
+            stop_all(flights, time, model, tally)
+            self.arrays["rests"][0] = True
+        self.arrays["next"] += self._window
+        return False
+
+
+def rest_watch(scene: Scene, state: State, clock: float) -> RestWatch | None:
+    """That of a scene in which all particles may come to rest: contacts that last, gravity, and no face that
+    gives energy."""
+    falls = scene.gravity is not None and any(scene.gravity)
+    return (
+        RestWatch(scene, state, clock) if scene.contact_duration > 0.0 and falls and not scene.faces else None
+    )

@@ -1,0 +1,11 @@
+"""The scatter of all claims."""
+
+from gaspart.kinds import TEXT, listed
+
+TITLE = "All claims together"
+CHAPTER = "Pictures and checks"
+FIGURES = {
+    "claims_scatter": {
+        "experiments": listed(TEXT, "none: it is made of the claims of all other figures", least=0, most=0)
+    }
+}

@@ -1,0 +1,301 @@
+"""Neighbour lists: for each particle, which others a contact is possible with before it has moved a margin.
+
+A particle's list holds all particles whose *centre*, the place at which their own list was made, is nearer
+to its own centre than the largest diameter and two margins. Once a particle has moved a margin from its
+centre, its list is renewed: an event of its own, which changes no flight. So in a dense gas a search tests a
+dozen particles, and the cells of the centres are read once in many collisions (Verlet, Phys. Rev. 159, 98
+(1967); for events Donev, Torquato & Stillinger, J. Comput. Phys. 202, 737 (2005)).
+
+Which particles are listed follows from the centres alone, so a checkpoint need not hold the lists.
+"""
+
+from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
+from numpy import int64, uint32, uint64
+
+from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
+from gaspart.kernels.memory import aligned
+from gaspart.kernels.model import BOX_FACES, CROSSINGS, LISTED_BITS, PAIR_TESTS
+from gaspart.kernels.simd import IMAGE_BITS, WIDTH, earliest, equal, lowest, nearer
+
+_NUMBER = (1 << LISTED_BITS) - 1
+_FAR = 1e30  # an empty place of a cell
+_STILL = 1e-280  # squared speeds below which a particle does not move
+_X, _Y, _Z = (LISTED_BITS + IMAGE_BITS * k for k in range(3))
+_HERE = (1 << _X) + (1 << _Y) + (1 << _Z)  # the image of a particle in the container itself
+
+LISTED = np.dtype([("centre", "f8", 3), ("cell", "u4"), ("place", "u4")], align=True)
+"""Of a particle: where its list was made, the cell of that point, and its place in it."""
+
+
+def page_dtype(dimension: int) -> np.dtype:
+    """WIDTH places of a cell, two cache lines: the centres of the particles in it, and their numbers."""
+    return np.dtype(
+        {
+            "names": ["centres", "members"],
+            "formats": [(np.float32, (dimension, WIDTH)), (np.uint32, (WIDTH,))],
+            "offsets": [0, 96],
+            "itemsize": 128,
+        }
+    )
+
+
+class NeighbourLists(NamedTuple):
+    """listed (N,), see `LISTED`; candidates (N * room,), the lists: of each row the first word is its length,
+    and the unused rest names the particle itself. Of the cells of centres (see `state.boxes.Boxes`):
+    per_side, per_length (one over their widths), strides (3,), neighbour, shift; filled (cells,), how many
+    each holds; pages (cells * per_cell,), see `page_dtype`. margin, reach: the distance a particle may move,
+    and that within which centres are listed. full (2,): whether a list or a cell had no room."""
+
+    listed: np.ndarray
+    candidates: np.ndarray
+    room: int
+    per_side: np.ndarray
+    per_length: np.ndarray
+    strides: np.ndarray
+    neighbour: np.ndarray
+    shift: np.ndarray
+    filled: np.ndarray
+    pages: np.ndarray
+    per_cell: int
+    margin: float
+    reach: float
+    full: np.ndarray
+
+
+def empty_neighbour_lists(cells, count, dimension, distances, room, per_cell):
+    """Lists of less than `room` entries for `count` particles, and cells (see `state.boxes.Boxes`) of
+    `per_cell` pages, with none in them. distances: margin, reach."""
+    return NeighbourLists(
+        listed=aligned((count,), LISTED),
+        candidates=aligned((count * room + 2 * WIDTH,), np.uint32),
+        room=room,
+        per_side=cells.per_side, per_length=1.0 / cells.widths, strides=cells.strides,
+        neighbour=cells.neighbour, shift=cells.shift,
+        filled=np.zeros(cells.count, dtype=np.uint32),
+        pages=aligned((cells.count * per_cell,), page_dtype(dimension)),
+        per_cell=per_cell,
+        margin=distances[0],
+        reach=distances[1],
+        full=np.zeros(2, dtype=np.uint8),
+    )  # fmt: skip
+
+
+@inner_helper
+def write_place(lists, cell, place, i, centre):
+    """Let a place of a cell hold a particle with this centre (d,)."""
+    page, lane = cell * uint64(lists.per_cell) + place // uint64(WIDTH), place % uint64(WIDTH)
+    lists.pages[page].members[lane] = i
+    for k in range(lists.pages[page].centres.shape[0]):
+        lists.pages[page].centres[k, lane] = centre[k]
+
+
+@inner_helper
+def cell_along(lists, axis, x):
+    """The coordinate along an axis of the cell of a point; of the outermost one for a point outside."""
+    return min(max(int64(x * lists.per_length[axis]), int64(0)), lists.per_side[axis] - 1)
+
+
+@inner_helper
+def enter_cell(lists, i):
+    """Put a particle into the cell of its centre."""
+    listed = lists.listed[i]
+    cell = int64(0)
+    for k in range(lists.pages[0].centres.shape[0]):
+        cell += cell_along(lists, k, listed.centre[k]) * lists.strides[k]
+    place = uint64(lists.filled[cell])
+    listed.cell, listed.place = cell, place
+    if place == uint64(lists.per_cell * WIDTH):
+        lists.full[1] = 1
+        return
+    write_place(lists, uint64(cell), place, i, listed.centre)
+    lists.filled[cell] = place + uint64(1)
+
+
+@inner_helper
+def leave_cell(lists, i):
+    """Take a particle out of its cell; the last one there fills its place."""
+    cell, place = uint64(lists.listed[i].cell), uint64(lists.listed[i].place)
+    last = uint64(lists.filled[cell]) - uint64(1)
+    page = cell * uint64(lists.per_cell) + last // uint64(WIDTH)
+    other = lists.pages[page].members[last % uint64(WIDTH)]
+    write_place(lists, cell, place, other, lists.listed[other].centre)
+    lists.listed[other].place = place
+    write_place(lists, cell, last, i, (_FAR, _FAR, _FAR))
+    lists.filled[cell] = last
+
+
+@inner_helper
+def append(lists, i, entry):
+    """Add an entry, a particle and its image, to a list."""
+    row = uint64(i) * uint64(lists.room)
+    count = uint64(lists.candidates[row]) + uint64(1)
+    if count == uint64(lists.room):
+        lists.full[0] = 1
+        return
+    lists.candidates[row + count] = entry
+    lists.candidates[row] = count
+
+
+@inner_helper
+def clear(lists, i):
+    """Empty a list: all its entries name the particle itself, which no particle meets."""
+    row = i * lists.room
+    lists.candidates[row] = 0
+    for n in range(row + 1, row + lists.room):
+        lists.candidates[n] = i + _HERE
+
+
+@inner_helper
+def strike(lists, i, other):
+    """Remove a particle from a list."""
+    row = uint64(i) * uint64(lists.room)
+    last = row + uint64(lists.candidates[row])
+    place = row + uint64(1)
+    found = equal(lists.candidates, place, other, _NUMBER)
+    while not found:
+        place += uint64(2 * WIDTH)
+        found = equal(lists.candidates, place, other, _NUMBER)
+    lists.candidates[place + lowest(found)] = lists.candidates[last]
+    lists.candidates[last] = i + _HERE
+    lists.candidates[row] -= uint32(1)
+
+
+@inner_helper
+def list_cell(lists, i, point, cell, offset, image, both):
+    """List the particles in a cell whose centres are near that of a particle, `point` (3,); the cell is
+    displaced by `offset` (3,) into an image of the container."""
+    page = cell * uint64(lists.per_cell)
+    end = page + max((uint64(lists.filled[cell]) + uint64(WIDTH - 1)) // uint64(WIDTH), uint64(1))
+    while page < end:
+        found = nearer(lists.pages, page, point, offset, lists.reach * lists.reach)
+        while found:
+            other = int64(lists.pages[page].members[lowest(found)])
+            found &= found - uint64(1)
+            if other != i:
+                append(lists, i, other + image)
+                if both:
+                    append(lists, other, i + 2 * _HERE - image)
+        page += uint64(1)
+
+
+@inner_kernel
+def list_near(lists, i, lengths, both):
+    """List the particles whose centres are near that of a particle. both: also list it in theirs."""
+    centre, neighbour, shift = lists.listed[i].centre, lists.neighbour, lists.shift
+    point = centre[0], centre[1], centre[2]
+    ax, ay = uint64(cell_along(lists, 0, point[0])), uint64(cell_along(lists, 1, point[1]))
+    az = uint64(cell_along(lists, 2, point[2])) if len(lengths) == 3 else uint64(0)
+    within = 0 < ax < lists.per_side[0] - 1  # a row's three cells lie side by side
+    for dz in range(uint64(0), uint64(3)):
+        z, shift_z = neighbour[2, az, dz], shift[2, az, dz]
+        if z < 0:
+            continue
+        for dy in range(uint64(0), uint64(3)):
+            y, shift_y = neighbour[1, ay, dy], shift[1, ay, dy]
+            if y < 0:
+                continue
+            y_offset, z_offset = shift_y * lengths[1], shift_z * lengths[len(lengths) - 1]
+            image = _HERE + (shift_y << _Y) + (shift_z << _Z)
+            if within:
+                first = uint64(y + z) + ax - uint64(1)
+                for cell in range(first, first + uint64(3)):
+                    list_cell(lists, i, point, cell, (0.0, y_offset, z_offset), image, both)
+                continue
+            for dx in range(uint64(0), uint64(3)):
+                x, shift_x = neighbour[0, ax, dx], shift[0, ax, dx]
+                if x >= 0:
+                    offset = shift_x * lengths[0], y_offset, z_offset
+                    list_cell(lists, i, point, uint64(x + y + z), offset, image + (shift_x << _X), both)
+
+
+@inner_helper
+def centre_on(lists, flights, i, time, lengths):
+    """Let the place of a particle at a time be its centre."""
+    late = time - flights[i].clock
+    for k in range(len(lengths)):
+        lists.listed[i].centre[k] = flights[i].position[k] + flights[i].velocity[k] * late
+
+
+@inner_kernel
+def renew(flights, i, time, lists, space, tally):
+    """Renew the list of a particle at a time, and its entries in those of others."""
+    tally.counts[CROSSINGS] += 1
+    row = i * lists.room
+    for n in range(row + 1, row + 1 + int64(lists.candidates[row])):
+        strike(lists, listed_number(lists, n), i)
+    clear(lists, i)
+    leave_cell(lists, i)
+    centre_on(lists, flights, i, time, space.lengths)
+    enter_cell(lists, i)
+    list_near(lists, i, space.lengths, True)
+
+
+@kernel
+def make_lists(lists, lengths):
+    """Make all lists from the centres. `full` if there was no room."""
+    lists.full[:] = 0
+    lists.filled[:] = 0
+    for page in range(len(lists.pages)):
+        lists.pages[page].centres[:] = _FAR
+    for i in range(len(lists.listed)):
+        clear(lists, i)
+        enter_cell(lists, i)
+    for i in range(len(lists.listed)):
+        list_near(lists, i, lengths, False)
+
+
+@kernel
+def centre_all(lists, flights, time, lengths):
+    """Let the place of each particle at a time be its centre."""
+    for i in range(len(flights)):
+        centre_on(lists, flights, i, time, lengths)
+
+
+@inner_helper
+def listed_number(lists, n):
+    """The particle of an entry of a list."""
+    return int64(lists.candidates[n] & uint32(_NUMBER))
+
+
+@inner_helper
+def search_list(particles, i, lists, space, tally):
+    """Predict the contact with one of the particles in a list, if it is earlier than that predicted."""
+    row = uint64(i) * uint64(lists.room)
+    count = uint64(lists.candidates[row])
+    tally.counts[PAIR_TESTS] += int64(count)
+    present = particles.predictions[i].contact_time, int64(particles.predictions[i].partner)
+    span = row + uint64(1), count
+    time, partner, _ = earliest(particles.flights, uint64(i), span, present, lists, space, None)
+    particles.predictions[i].contact_time = time
+    particles.predictions[i].partner = partner
+
+
+@inner_helper
+def next_renewal(flights, i, lists, time, face):
+    """The earlier of the time at which a particle has moved a margin from its centre, and the next face:
+    (time, face code)."""
+    if lists is not None:
+        flight, centre = flights[i], lists.listed[i].centre
+        rr = rv = vv = 0.0
+        for k in range(len(flight.position)):
+            r, v = flight.position[k] - centre[k], flight.velocity[k]
+            rr += r * r
+            rv += r * v
+            vv += v * v
+        if vv > _STILL:
+            left = rv * rv - vv * (rr - lists.margin * lists.margin)
+            moved = flight.clock + (sqrt(max(left, 0.0)) - rv) / vv
+            if moved < time:
+                return moved, int64(BOX_FACES)
+    return time, face
+
+
+@inner_helper
+def is_room_lacking(lists):
+    """Whether a list or cell had no room for a particle, so that the lists are not complete."""
+    if lists is None:
+        return False
+    return lists.full[0] + lists.full[1] > 0

@@ -1,0 +1,64 @@
+"""Contacts of two particles that gravity presses together, as in a stack at rest.
+
+The lower one rests on a floor, on a wall, or is fixed, so that the upper one falls relative to it and would
+meet it infinitely often. With a contact duration they part at least so fast that they meet again after a
+small part of it; this energy, far below that of a fall through a diameter, is counted as a negative loss.
+"""
+
+from math import sqrt
+
+from gaspart.kernels.collision import gap_along, push
+from gaspart.kernels.compilation import inner_helper, inner_kernel
+from gaspart.kernels.contact_duration import SHORTEST
+from gaspart.kernels.flight import acceleration_of
+from gaspart.kernels.model import LOSS
+from gaspart.kernels.running_sum import add
+
+
+@inner_helper
+def least_parting(flights, i, j, space, gravity, law):
+    """The least speed at which two particles that touch part; 0 if nothing presses them together."""
+    if gravity is not None:
+        if law is not None:
+            return _pressed_parting(flights, i, j, space, gravity, law.duration)
+    return 0.0
+
+
+@inner_helper
+def _pressed_parting(flights, i, j, space, gravity, duration):
+    if duration is not None:
+        square = along = 0.0
+        for k in range(len(space.lengths)):
+            gap = gap_along(flights, i, j, k, space)
+            pull = acceleration_of(flights, j, k, space, gravity)
+            pull -= acceleration_of(flights, i, k, space, gravity)
+            square += gap * gap
+            along += gap * pull
+        return max(0.0, -along / sqrt(square)) * 0.5 * SHORTEST * duration.length
+    return 0.0
+
+
+@inner_helper
+def part(flights, i, j, least, model, tally, law):
+    """Let two particles that have collided part at least so fast."""
+    if law is not None:
+        _part_pressed(flights, i, j, least, model.space, tally, law, law.duration)
+
+
+@inner_kernel
+def _part_pressed(flights, i, j, least, space, tally, law, duration):
+    if duration is None or least == 0.0:
+        return
+    x, y = gap_along(flights, i, j, 0, space), gap_along(flights, i, j, 1, space)
+    z = gap_along(flights, i, j, 2, space)
+    distance = sqrt(x * x + y * y + z * z)
+    normal = x / distance, y / distance, z / distance
+    speed = 0.0
+    for k in range(len(space.lengths)):
+        speed += normal[k] * (flights[j].velocity[k] - flights[i].velocity[k])
+    if speed < least:
+        mobility = law.inverse_mass[i] + law.inverse_mass[j]
+        impulse = (least - speed) / mobility
+        push(flights, i, -impulse * law.inverse_mass[i], normal, space)
+        push(flights, j, impulse * law.inverse_mass[j], normal, space)
+        add(tally.sums, LOSS, -0.5 * (least * least - speed * speed) / mobility)

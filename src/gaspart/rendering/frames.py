@@ -1,0 +1,109 @@
+"""Pictures of trajectories, simulations and states."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from gaspart.errors import SceneError
+from gaspart.rendering.particles import DrawnParticles, colours_of
+from gaspart.rendering.pictures import SIZE, checked_size, picture
+from gaspart.scene.scene import Scene
+from gaspart.scene.validation import count_of
+from gaspart.scene.walls import Plate, Wall
+from gaspart.simulation.simulation import Simulation
+from gaspart.state.state import State
+from gaspart.trajectory.run import open_trajectory
+from gaspart.yaml_text import parse_yaml
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Source: TypeAlias = "str | Path | xr.Dataset | Simulation | State"
+"""What pictures are made of: a trajectory, by its path or open, a simulation or a state."""
+
+
+def render(
+    source: Source,
+    frame: int = -1,
+    size: tuple[int, int] = SIZE,
+    colour: str | np.ndarray = "speed",
+    fastest: float | None = None,
+) -> np.ndarray:
+    """A picture of a frame of a trajectory (a path or an open one; the last frame), of a `Simulation` or of a
+    `State`: uint8, (H, W, 3).
+
+    Spheres are drawn in perspective, with light and shadow, over the container's floor (z = 0); discs from
+    above, with their periodic images at periodic faces. Interior walls of a state are not drawn.
+    size: (W, H) pixels. colour: "speed", from dark at rest to bright at the speed
+    `fastest` (twice the root-mean-square one) and above; "species"; or an array (N, 3) of red, green and
+    blue from 0 to 1. The same particles give the same pixels.
+
+    Raises SceneError for a missing frame, an impossible size or an unknown colouring.
+    """
+    with opened(source) as open_source:
+        particles = particles_of(open_source, frame)
+    return picture(particles, checked_size(size), colours_of(particles, colour, fastest))
+
+
+@contextmanager
+def opened(source: Source) -> Iterator[xr.Dataset | Simulation | State]:
+    """A source whose trajectory is open; one that was given as a path is closed at the end."""
+    if isinstance(source, str | Path):
+        with open_trajectory(source) as trajectory:
+            yield trajectory
+    else:
+        yield source
+
+
+def particles_of(source: State | Simulation | xr.Dataset, frame: int = -1) -> DrawnParticles:
+    """The particles of a simulation or a `State` now, or of a frame (counted from the end if negative) of an
+    open trajectory.
+
+    Raises SceneError for a missing frame. A state has no interior walls and no periodic axes.
+    """
+    if isinstance(source, Simulation):
+        return _of_state(source.state, source.scene)
+    if isinstance(source, State):
+        return _of_state(source, None)
+    frames = source.sizes["frame"]
+    if not -frames <= count_of("frame", frame, least=-frames) < frames:
+        raise SceneError("frame", frame, f"the trajectory has {frames}, counted from 0")
+    shown = source.isel(frame=frame)
+    positions = shown["coordinates"].values.astype(float)
+    velocities = shown["velocities"].values.astype(float)
+    scene = Scene.from_dict(parse_yaml(source.attrs["scene"]))
+    return DrawnParticles(
+        positions=positions,
+        radii=source["radius"].values,
+        species=source["type"].values,
+        speeds=np.sqrt((velocities**2).sum(axis=1)),
+        lengths=shown["cell_lengths"].values[: positions.shape[1]],
+        walls=_sides(scene.walls, scene.dimension),
+        periodic=scene.container.periodic,
+    )
+
+
+def _of_state(state: State, scene: Scene | None) -> DrawnParticles:
+    walls = _sides(scene.walls if scene else (), state.dimension)
+    periodic = scene.container.periodic if scene else (False,) * state.dimension
+    return DrawnParticles(
+        state.positions, state.radii, state.species, state.speeds, state.lengths, walls, periodic
+    )
+
+
+def _sides(walls: Iterable[Wall | Plate], dimension: int) -> np.ndarray:
+    """(M, 2, d) the segments, and the four sides of each plate."""
+    found: list[tuple] = []
+    for wall in walls:
+        if isinstance(wall, Wall):
+            found.append((wall.start, wall.end))
+        else:
+            corner, one, other, far = wall.corners.values()
+            found += pairwise((corner, one, far, other, corner))
+    return np.array(found, dtype=float).reshape(-1, 2, dimension)

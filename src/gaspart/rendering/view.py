@@ -1,0 +1,134 @@
+"""An interactive view: one page of HTML, without a server and without other files, drawn by WebGL."""
+
+from __future__ import annotations
+
+import base64
+import html
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaspart.analysis.source import repeated
+from gaspart.errors import SceneError
+from gaspart.files import Kind, output_path, writing
+from gaspart.rendering.camera import edges_of
+from gaspart.rendering.frames import opened, particles_of
+from gaspart.rendering.particles import FASTEST
+from gaspart.rendering.style import COLOURS
+from gaspart.scene.validation import count_of
+from gaspart.simulation.simulation import Simulation
+from gaspart.state.state import State
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_TEMPLATE = Path(__file__).with_name("view.html")
+_RAMP = 16  # colours of the bar of speeds
+_MARK = "gaspart view"
+
+
+def _is_view(path: Path) -> bool:
+    with path.open("rb") as file:
+        return _MARK.encode() in file.read(1000)
+
+
+PAGE = Kind("a page written by gaspart view", _is_view)
+
+
+@dataclass(frozen=True)
+class View:
+    """A page that shows the particles of a run. In a notebook it shows itself."""
+
+    page: str
+
+    def save(self, path: str | Path, overwrite: bool = False) -> Path:
+        """Write the page, .html; returns its path. A page of this kind is replaced only with `overwrite`, any
+        other file never. Raises SceneError for these, and for another suffix."""
+        path = output_path(path)
+        if path.suffix != ".html":
+            raise SceneError("path", str(path), "a view must end in .html")
+        with writing(path, PAGE, overwrite) as scratch:
+            scratch.write_text(self.page, encoding="utf-8")
+        return path
+
+    def _repr_html_(self) -> str:
+        source = html.escape(self.page)
+        return f'<iframe srcdoc="{source}" style="width: 100%; height: 480px; border: 0"></iframe>'
+
+
+def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200) -> View:
+    """An interactive view of a trajectory (a path or an open one), or of a simulation, which is run again.
+
+    Play, turn, move and zoom; colours by speed or species; time and scale. frames: how many are shown, evenly
+    spaced. Ten thousand particles in 200 frames make a page of 19 MB. Raises SceneError for a simulation that
+    has not advanced, and for a file that cannot be read.
+    """
+    count_of("frames", frames, least=1)
+    with opened(source) as found:
+        if isinstance(found, State):
+            raise SceneError("source", "a State", "must be a trajectory or a simulation: a view needs frames")
+        data = _with_names(found) if isinstance(found, Simulation) else found
+        last = data.sizes["frame"] - 1
+        if last < 0:
+            raise SceneError("frame", 0, "the trajectory has no frame yet")
+        chosen = np.unique(np.linspace(0, last, min(frames, last + 1)).round().astype(int))
+        content = json.dumps(_content(data, chosen))
+    text = _TEMPLATE.read_text(encoding="utf-8").replace("TITLE", _MARK, 1)
+    return View(text.replace("DATA", content, 1))
+
+
+def _with_names(simulation: Simulation) -> xr.Dataset:
+    """The frames of a simulation, with the variables of a trajectory that pictures need."""
+    data, state = repeated(simulation), simulation.state
+    lengths = np.tile(state.lengths, (data.sizes["frame"], 1))
+    return data.assign(
+        radius=("atom", state.radii), type=("atom", state.species), cell_lengths=(("frame", "cell"), lengths)
+    )
+
+
+def _content(data: xr.Dataset, chosen: np.ndarray) -> dict:
+    """What the page draws: numbers as base64, positions as 16-bit parts of the sides."""
+    import matplotlib
+
+    shown = [particles_of(data, int(n)) for n in chosen]
+    first, d = shown[0], shown[0].dimension
+    fastest = FASTEST * max(one.root_mean_square_speed for one in shown) or 1.0
+    places = np.zeros((len(shown), len(first.radii), 3), dtype="<u2")
+    inside = np.clip([one.positions / one.lengths for one in shown], 0.0, 1.0)
+    places[:, :, :d] = np.rint(65535.0 * inside)
+    speeds = np.rint(255.0 * np.clip([one.speeds / fastest for one in shown], 0.0, 1.0)).astype(np.uint8)
+    lengths = np.zeros(3)
+    lengths[:d] = first.lengths
+    colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 1.0, 256))[:, :3]
+    return {
+        "dimension": d,
+        "count": len(first.radii),
+        "time": data["time"].values[chosen].tolist(),
+        "lengths": lengths.tolist(),
+        "periodic": [int(n < d and first.periodic[n]) for n in range(3)],
+        "places": _text(places),
+        "speeds": _text(speeds),
+        "fastest": fastest,
+        "radii": _text(first.radii.astype("<f4")),
+        "species": _text((first.species % 256).astype(np.uint8)),
+        "lines": _text(_lines(lengths, first.walls).astype("<f4")),
+        "map": _text(np.rint(255.0 * colours).astype(np.uint8)),
+        "ramp": colours[:: 256 // _RAMP].round(3).tolist(),
+        "palette": [list(matplotlib.colors.to_rgb(colour)) for colour in COLOURS],
+    }
+
+
+def _lines(lengths: np.ndarray, walls: np.ndarray) -> np.ndarray:
+    """(2M, 3) ends of the container's edges and of the sides of interior walls."""
+    edges = edges_of(lengths)
+    ends = np.stack([edges[:, :3], edges[:, :3] + edges[:, 3:6] * edges[:, 6:]], axis=1)
+    interior = np.zeros((len(walls), 2, 3))
+    interior[..., : walls.shape[-1]] = walls
+    return np.concatenate([ends, interior]).reshape(-1, 3)
+
+
+def _text(values: np.ndarray) -> str:
+    return base64.b64encode(np.ascontiguousarray(values).tobytes()).decode()

@@ -1,0 +1,157 @@
+"""The page: what the template is filled with."""
+
+from __future__ import annotations
+
+import base64
+import mimetypes
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+from gaspart.claims import counts
+from gaspart.claims.captions import filled, literal_copies
+from gaspart.experiments.registry import chapters, families
+from gaspart.report.caption import Caption, divided, html_of
+from gaspart.report.strip import dots
+
+_PIXELS_PER_INCH = 96.0 * 1.5
+"""Of a page, enlarged so that the lettering of the pictures, 8 points, is that of the text."""
+CHAPTERS = (
+    "Equation of state and structure",
+    "Motion and its memory",
+    "Gravity, heat and walls",
+    "Granular matter",
+    "Speed and accuracy",
+    "Pictures and checks",
+)
+"""In the order of the page."""
+_THUMBNAIL = 360
+HEADLINE = ("test", "identity", "reproduction")
+"""The kinds of claims that are counted on the first screen, apart from one another."""
+
+
+@dataclass(frozen=True)
+class Section:
+    """A figure on the page. claims: its rows of the claims table; films: their names; settings: of its
+    measurement, as text; points: the files of its simulations."""
+
+    name: str
+    caption: Caption
+    claims: list[dict[str, Any]]
+    films: list[str]
+    settings: str
+    points: list[str]
+
+    @property
+    def dots(self) -> list:
+        """Its claims on the axis of deviations, but for the joint test of the others."""
+        return dots(row for row in self.claims if row["kind"] != "family")
+
+    @property
+    def verdicts(self) -> dict[str, int]:
+        """How many of its claims have each verdict."""
+        return verdicts(self.claims)
+
+    @property
+    def family(self) -> dict[str, Any] | None:
+        """The joint test of its claims, if there are enough of them."""
+        return next((row for row in self.claims if row["kind"] == "family"), None)
+
+
+def by_chapter(sections: Iterable[Section]) -> dict[str, list[Section]]:
+    """The sections of each chapter, in the order of the figures."""
+    of_family = chapters()
+    found: dict[str, list[Section]] = {chapter: [] for chapter in CHAPTERS}
+    for section in sections:
+        found[of_family[families()[section.name]]].append(section)
+    return {chapter: own for chapter, own in found.items() if own}
+
+
+def findings(chosen: Iterable[Mapping[str, str]], rows: list[dict[str, Any]]) -> list[dict[str, str]]:
+    """The key findings, with the measured numbers of their figures filled in: [{figure, text}]. chosen: the
+    same with places for numbers as in a caption."""
+    return [
+        {
+            "figure": one["figure"],
+            "text": html_of(filled(one["text"], [row for row in rows if row["figure"] == one["figure"]])),
+        }
+        for one in chosen
+    ]
+
+
+def headline(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """What the first screen says of the claims: how many there are of each kind with each verdict, and those
+    that disagree."""
+    found = counts(rows)
+    return {
+        "kinds": {kind: found[kind] for kind in HEADLINE if kind in found},
+        "disagree": [row for row in rows if row["verdict"] == "disagrees"],
+    }
+
+
+def verdicts(rows: Iterable[dict[str, Any]]) -> dict[str, int]:
+    """How many claims have each verdict."""
+    return dict(Counter(row["verdict"] for row in rows))
+
+
+@dataclass(frozen=True)
+class Picture:
+    """Addresses of a figure's picture, as it is read and as a thumbnail, and its size in pixels of the page,
+    which so does not move while it is loaded."""
+
+    large: str
+    small: str
+    width: int
+    height: int
+
+
+def picture(path: Path, one_file: bool) -> Picture:
+    """The picture of a figure, of which `path` is the PNG; an SVG lies beside it.
+
+    one_file: the page is to hold its pictures; they are then WebP, a third of their size.
+    """
+    from PIL import Image
+
+    with Image.open(path) as image:
+        width, height = image.size
+        scale = _PIXELS_PER_INCH / float(image.info["dpi"][0])
+    size = round(width * scale), round(height * scale)
+    if one_file:
+        return Picture(_webp(path, 2 * size[0]), _webp(path, _THUMBNAIL), *size)
+    return Picture(address(path.with_suffix(".svg"), one_file), address(path, one_file), *size)
+
+
+def address(path: Path, one_file: bool) -> str:
+    """The address of a file of results/: relative to the page, or one that holds the file."""
+    if one_file:
+        return _data(mimetypes.guess_type(path.name)[0] or "", path.read_bytes())
+    return f"{path.parent.name}/{path.name}"
+
+
+def _data(kind: str, content: bytes) -> str:
+    return f"data:{kind};base64,{base64.b64encode(content).decode()}"
+
+
+def _webp(path: Path, width: int) -> str:
+    """The address that holds a picture of this width in pixels at most."""
+    from PIL import Image
+
+    content = BytesIO()
+    with Image.open(path) as image:
+        image = image.convert("RGB")
+        image.thumbnail((width, 10 * width))
+        image.save(content, "WEBP", quality=80)
+    return _data("image/webp", content.getvalue())
+
+
+def copies(caption: Path, rows: list[dict[str, Any]]) -> list[str]:
+    """Measured numbers that a caption states itself."""
+    return literal_copies(caption.read_text(encoding="utf-8"), rows)
+
+
+def captioned(path: Path, rows: list[dict[str, Any]]) -> Caption:
+    """The caption of a figure with its measured numbers."""
+    return divided(filled(path.read_text(encoding="utf-8"), rows))

@@ -1,0 +1,94 @@
+r"""The long-time velocity autocorrelation in a periodic container: a sum over the hydrodynamic modes.
+
+A tagged particle's velocity spreads over the modes of the fluid, each of which decays while the particle
+diffuses away from where it started. With wave vectors k of the container's lattice, the total momentum of N
+particles being zero,
+
+.. math:: C(t) = \frac{1}{d N} \sum_{k \ne 0} e^{-D k^2 t} [(d-1) e^{-\nu k^2 t}
+          + e^{-\Gamma k^2 t / 2} \cos(c k t)] ,
+
+d - 1 shear modes with the kinematic viscosity nu, and sound with the speed c and the attenuation Gamma =
+[2 (d-1)/d eta + zeta] / rho + (gamma - 1) lambda / (rho c_p). Where momentum is free the term k = 0 is 1/N.
+In an infinite fluid the sum over shear modes is an integral, the known tail ((d-1) / (d rho)) [4 pi (D + nu)
+t]^(-d/2) (Ernst, Hauge and van Leeuwen, Phys. Rev. Lett. 25, 1254 (1970)); sound decays faster. Transport
+coefficients are Enskog's. Everything is in diameters, masses and k_B T.
+"""
+
+import math
+
+import numpy as np
+
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
+from gaspart.theory.enskog import (
+    enskog_bulk_viscosity,
+    enskog_conductivity,
+    enskog_diffusion,
+    enskog_viscosity,
+)
+from gaspart.theory.geometry import number_density
+from gaspart.theory.state import compressibility_factor, speed_of_sound
+
+_SMALLEST = 40.0
+"""Modes that have decayed by exp(-40) at the first time are left out."""
+
+
+@checked
+def sound_attenuation(packing_fraction: float, dimension: int) -> float:
+    """Gamma, by which sound of the wave number k decays as exp(-Gamma k^2 t / 2) (diameter^2 / time).
+
+    Of hard particles c_v = d/2, and c_p - c_v = Z^2 / (d rho Z / d rho) (exact); the transport coefficients
+    are Enskog's.
+    """
+    d, eta = checked_dimension(dimension), packing_fraction
+    density, z = float(number_density(eta, d)), float(compressibility_factor(eta, d))
+    slope = float(speed_of_sound(eta, d)) ** 2 - 2.0 * z**2 / d  # of rho Z
+    added, constant = z**2 / slope, 0.5 * d
+    viscous = 2.0 * (d - 1) / d * float(enskog_viscosity(eta, d)) + float(enskog_bulk_viscosity(eta, d))
+    thermal = float(enskog_conductivity(eta, d)) * (1.0 / constant - 1.0 / (constant + added))
+    return (viscous + thermal) / density
+
+
+@checked
+def velocity_autocorrelation_modes(
+    time: Numbers, packing_fraction: float, dimension: int, count: int
+) -> Values:
+    """C(t), over its value at 0, of `count` particles in a periodic square or cube, the term 1/N included.
+
+    time: positive, in diameters sqrt(m / k_B T); valid after many collisions of a particle, whatever the
+    time that sound takes to cross the container.
+    """
+    return _sum(time, packing_fraction, dimension, count, integrated=False) + 1.0 / count
+
+
+@checked
+def diffusion_modes(time: Numbers, packing_fraction: float, dimension: int, count: int) -> Values:
+    """The integral of `velocity_autocorrelation_modes` over time, but for a constant (diameter^2 / time).
+
+    What particles diffuse before modes describe them is unknown, so only differences have a meaning.
+    """
+    return _sum(time, packing_fraction, dimension, count, integrated=True) + np.asarray(time) / count
+
+
+def _sum(time: Numbers, eta: float, dimension: int, count: int, integrated: bool) -> Values:
+    """Over all wave vectors but 0 that matter at the earliest time: C(t), or its integral."""
+    times = np.atleast_1d(np.asarray(time, dtype=float))
+    if np.any(times <= 0.0):
+        raise ValueError("time: must be positive")
+    d = checked_dimension(dimension)
+    diffusion, density = float(enskog_diffusion(eta, d)), float(number_density(eta, d))
+    shear = diffusion + float(enskog_viscosity(eta, d)) / density
+    sound = diffusion + 0.5 * sound_attenuation(eta, d)
+    unit = 2.0 * math.pi * (density / count) ** (1.0 / d)
+    most = math.ceil(math.sqrt(_SMALLEST / (min(shear, sound) * times.min())) / unit)
+    axis = np.arange(-most, most + 1) ** 2
+    squares, numbers = np.unique(sum(np.meshgrid(*[axis] * d)), return_counts=True)
+    inside = (squares > 0) & (squares <= most**2)
+    squares, numbers = unit**2 * squares[inside], numbers[inside]
+    rates = np.stack(
+        [-shear * squares, -sound * squares + 1j * float(speed_of_sound(eta, d)) * np.sqrt(squares)]
+    )
+    terms = np.exp(np.multiply.outer(times, rates))
+    if integrated:
+        terms /= rates
+    total = ((d - 1) * terms[:, 0] + terms[:, 1]).real @ numbers / (d * count)
+    return total.reshape(np.shape(time))[()]

@@ -1,0 +1,217 @@
+"""Observables of a user's own run, against theory and exact cases."""
+
+import math
+
+import numpy as np
+import pytest
+
+import gaspart as gp
+from gaspart.analysis.source import REPEATED
+from gaspart.cli import main
+
+A = gp.analysis
+SPHERES = gp.Scene(gp.Container((11.0,) * 3, "periodic"), [gp.Species(500, 0.5, temperature=1.3, mass=2.0)])
+DISCS = gp.Scene(gp.Container((20.0, 20.0)), [gp.Species(150, 0.5, temperature=1.0)])
+
+
+@pytest.fixture(scope="module")
+def spheres(tmp_path_factory):
+    """A fluid of spheres at a packing fraction of 0.2: 160 collisions of each."""
+    path = tmp_path_factory.mktemp("runs") / "spheres.nc"
+    return gp.run(SPHERES, gp.EventDriven(), 1, 40.0, 0.1, path)
+
+
+@pytest.fixture(scope="module")
+def discs():
+    """A simulation of discs between walls."""
+    simulation = gp.Simulation(DISCS, gp.EventDriven(), seed=3)
+    simulation.advance(duration=300.0)
+    return simulation
+
+
+def chi_square(found, least=0.0):
+    """Of the bins in which theory is above `least`, per bin."""
+    shown = (found.theory > least * found.theory.max()).values
+    return float((((found.estimate - found.theory) / found.error).values[shown] ** 2).mean()), shown.sum()
+
+
+@pytest.mark.parametrize("name", ["compressibility_factor", "collision_rate", "diffusion_coefficient"])
+def test_scalars_of_a_fluid_agree_with_theory(spheres, name):
+    found = getattr(A, name)(spheres)
+    assert abs(float(found.deviation)) < 3.0
+    assert 0.0 < float(found.error) < 0.05 * float(found.estimate)
+
+
+def test_the_error_of_z_is_that_of_many_runs():
+    values, errors = [], []
+    scene = gp.Scene(gp.Container((12.0, 12.0), "periodic"), [gp.Species(60, 0.5, temperature=1.0)])
+    for seed in range(24):
+        simulation = gp.Simulation(scene, gp.EventDriven(), seed=seed)
+        simulation.advance(duration=60.0)
+        found = A.compressibility_factor(simulation)
+        values.append(float(found.estimate))
+        errors.append(float(found.error))
+    scatter = np.std(values, ddof=1)  # known to a seventh
+    assert 0.6 < np.sqrt(np.mean(np.square(errors))) / scatter < 1.6
+    assert abs(np.mean(values) - float(found.theory)) < 3.0 * scatter / math.sqrt(24)
+
+
+def test_motion_is_exact_at_short_times(spheres):
+    displacement, correlation = A.mean_squared_displacement(spheres), A.velocity_autocorrelation(spheres)
+    for found, first in ((displacement, 1), (correlation, 0)):
+        early = slice(first, first + 3)
+        apart = np.abs(found.estimate - found.theory)[early]
+        assert (apart < 3.0 * found.error[early] + 0.01 * np.abs(found.theory[early])).all()
+        assert np.isnan(found[f"{found.estimate.name}_theory_error"]).all()  # an approximation
+    assert float(correlation.estimate[0]) == pytest.approx(1.3 / 2.0, rel=0.05)
+    assert float(displacement.estimate[0]) == 0.0
+
+
+def test_displacements_follow_particles_across_periodic_faces(spheres, tmp_path):
+    path = gp.run(SPHERES, gp.EventDriven(), 1, 40.0, 0.1, tmp_path / "a.nc", displacements=True)
+    stored, followed = (A.mean_squared_displacement(source).estimate for source in (path, spheres))
+    assert np.allclose(stored, followed, rtol=1e-4, atol=1e-6)  # positions are float32
+    far = gp.run(SPHERES, gp.EventDriven(), 1, 400.0, 10.0, tmp_path / "b.nc")
+    with pytest.raises(gp.SceneError, match="make the run with --displacements"):
+        A.mean_squared_displacement(far)
+
+
+def test_speeds_are_maxwellian(spheres, discs):
+    for source in (spheres, discs):
+        value, bins = chi_square(A.speed_distribution(source, bins=20), least=0.05)
+        assert bins > 10 and value < 1.0 + 3.0 * math.sqrt(2.0 / bins) + 2.0 / 15.0  # errors of 16 groups
+
+
+def test_the_pressure_on_walls(discs):
+    found = A.wall_pressure(discs)
+    assert list(found["face"].values) == ["x low", "x high", "y low", "y high"]
+    assert (np.abs(found.deviation) < 3.5).all()
+    assert float(found.error.max()) < 0.03 * float(found.theory[0])
+
+
+def test_the_radial_distribution_starts_at_contact(spheres):
+    found = A.rdf(spheres, bins=100)
+    assert float(found.estimate.sel(distance=slice(0.0, 0.97)).max()) == 0.0
+    contact = found.theory.dropna("distance")
+    measured = found.estimate.sel(distance=contact["distance"])
+    assert contact.size and (np.abs(measured / contact - 1.0) < 0.06).all()  # g falls within a bin
+    assert float(found.estimate[-20:].mean()) == pytest.approx(1.0, abs=0.01)
+
+
+def test_the_profile_of_a_dilute_atmosphere_is_barometric(tmp_path):
+    container = gp.Container((200.0, 40.0), ("periodic", "wall"))
+    scene = gp.Scene(container, [gp.Species(200, 0.5, temperature=1.0)], gravity=(0.0, -0.05))
+    path = gp.run(scene, gp.EventDriven(), 1, 8000.0, 20.0, tmp_path / "a.nc")
+    density = A.profile(path, bins=8, start=3000.0)
+    apart = (density.estimate - density.theory) / density.error
+    assert float((apart**2).mean()) < 1.0 + 3.0 * math.sqrt(2.0 / 8.0) + 2.0 / 15.0
+    assert float(density.estimate[0]) > 3.0 * float(density.estimate[-1])
+    total = float(density.estimate.mean()) * 40.0 * 200.0
+    assert total == pytest.approx(200.0)
+    temperature = A.profile(path, "temperature", bins=4, start=3000.0)
+    assert float((temperature.deviation**2).mean()) < 1.0 + 3.0 * math.sqrt(2.0 / 4.0) + 2.0 / 15.0
+
+
+@pytest.mark.parametrize(
+    ("lengths", "count", "expected"), [((16.8, 12.73), 224, 1.0), ((8.0,) * 3, 500, 0.5745)]
+)
+def test_the_order_of_a_crystal(lengths, count, expected):
+    species = gp.Species(count, 0.5, temperature=1.0, arrangement="lattice")
+    simulation = gp.Simulation(gp.Scene(gp.Container(lengths, "periodic"), [species]), gp.EventDriven(), 1)
+    simulation.advance(duration=0.002)  # particles hardly move
+    assert float(A.order_parameter(simulation, start=0.0).estimate) == pytest.approx(expected, abs=0.02)
+
+
+def test_a_path_a_dataset_and_a_simulation_give_the_same(tmp_path):
+    scene = gp.Scene(gp.Container((9.0,) * 3, "periodic"), [gp.Species(100, 0.5, temperature=1.0)])
+    interval = 0.125
+    duration = (REPEATED - 1) * interval
+    path = gp.run(scene, gp.EventDriven(), 5, duration, interval, tmp_path / "a.nc")
+    simulation = gp.Simulation(scene, gp.EventDriven(), seed=5)
+    simulation.advance(duration=duration)
+    with gp.open_trajectory(path) as trajectory:
+        for function in (A.compressibility_factor, A.collision_rate, A.velocity_autocorrelation):
+            first, second, third = (function(it) for it in (path, trajectory, simulation))
+            assert first.identical(second)
+            assert np.allclose(first.estimate, third.estimate, rtol=1e-5, atol=1e-6)
+            assert np.allclose(first.error, third.error, rtol=1e-3, atol=1e-6)
+
+
+def test_the_time_stepped_engine_is_measured_at_even_times():
+    simulation = gp.Simulation(SPHERES, gp.TimeStepped(time_step=0.003), seed=2)
+    simulation.advance(duration=3.0)
+    found = A.compressibility_factor(simulation)
+    assert abs(float(found.deviation)) < 3.5
+    assert A.mean_squared_displacement(simulation).sizes["lag"] > 30
+
+
+def test_results_have_units_and_plot_themselves(spheres, discs):
+    for found in (A.compressibility_factor(spheres), A.speed_distribution(spheres), A.wall_pressure(discs)):
+        numbers = [variable for variable in found.variables.values() if variable.dtype.kind == "f"]
+        assert len(numbers) >= 4 and all("units" in variable.attrs for variable in numbers)
+        axis = found.plot(theory=True)
+        assert len(axis.lines) >= 2 and axis.get_ylabel() and axis.get_legend()
+    with pytest.raises(gp.SceneError, match="there is none of order_parameter"):
+        A.order_parameter(spheres).plot(theory=True)
+
+
+WALLED = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.5, temperature=1.0)])
+COOLING = gp.Scene(
+    gp.Container((9.0, 9.0), "periodic"),
+    [gp.Species(20, 0.5, temperature=1.0)],
+    restitution=gp.Restitution(normal=0.9),
+)
+
+
+@pytest.mark.parametrize(
+    ("scene", "function", "complaint"),
+    [
+        (WALLED, A.compressibility_factor, "container.boundary = .*: this observable needs a periodic"),
+        (COOLING, A.compressibility_factor, "restitution.normal = 0.9: a gas that loses energy"),
+        (COOLING, A.wall_pressure, "has no walls: measure compressibility_factor"),
+        (COOLING, A.diffusion_coefficient, "discs have no diffusion coefficient"),
+        (WALLED, A.rdf, "needs a periodic container"),
+    ],
+)
+def test_what_cannot_be_measured_is_refused(scene, function, complaint):
+    simulation = gp.Simulation(scene, gp.EventDriven(search="direct"), seed=1)
+    with pytest.raises(gp.SceneError, match="has not advanced"):
+        function(simulation)
+    simulation.advance(duration=1.0)
+    with pytest.raises(gp.SceneError, match=complaint):
+        function(simulation)
+
+
+def test_a_run_that_is_too_short_is_refused(tmp_path):
+    path = gp.run(WALLED, gp.EventDriven("direct"), 1, 1.0, 0.1, tmp_path / "a.nc")
+    with pytest.raises(gp.SceneError, match="frames = 8: an error needs 17"):
+        A.collision_rate(path)
+    with pytest.raises(gp.SceneError, match="start = 3.0: leaves 0 frames"):
+        A.collision_rate(path, start=3.0)
+    few = gp.run(WALLED, gp.EventDriven("direct"), 1, 1.0, 0.1, tmp_path / "b.nc", follow=10)
+    with pytest.raises(gp.SceneError, match="follow = 10: needs all 20 particles"):
+        A.speed_distribution(few)
+
+
+def test_the_command_prints_and_writes_the_same_numbers(spheres, tmp_path, capsys):
+    path = str(spheres)
+    assert main(["measure", path, "Z", "msd"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    found = A.compressibility_factor(spheres)
+    assert lines[0].startswith(f"Z = {float(found.estimate):.6g} +- ") and "theory 2.3" in lines[0]
+    assert lines[1].split() == ["lag", "msd", "error", "theory"]
+    table = tmp_path / "speeds.csv"
+    assert main(["measure", path, "speeds", "-o", str(table)]) == 0
+    title, *rows = table.read_text().splitlines()
+    assert "speed: length / time" in title and len(rows) == 41
+    picture = tmp_path / "speeds.png"
+    assert main(["measure", path, "speeds", "-o", str(picture)]) == 0
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    for arguments, complaint in (
+        (["speeds", "-o", str(table)], "exists; move it away"),
+        (["speeds", "Z", "-o", str(table), "--force"], "-o takes one observable"),
+        (["speeds", "-o", "a.txt"], "must end in .csv or .png"),
+        (["viscosity"], "'viscosity': unknown name; known are Z"),
+    ):
+        assert main(["measure", path, *arguments]) == 2
+        assert complaint in capsys.readouterr().err

@@ -1,0 +1,158 @@
+"""Sixty typical mistakes on the command line: each is one line that states what to do, with exit code 2."""
+
+import pytest
+
+from gaspart.cli import main
+
+GAS = """\
+container: {lengths: [12.0, 12.0], boundary: wall}
+species:
+- {count: 20, radius: 0.5, temperature: 1.0}
+"""
+SPHERES = GAS.replace("[12.0, 12.0]", "[12.0, 12.0, 12.0]")
+CONFIG = """\
+title: a
+seed: 1
+points: results/a
+experiments:
+  gas:
+    point: {dimension: 2, count: 50, packing_fraction: 0.1, boundary: periodic, collisions_per_body: 5}
+figures: {wall_pressure: {experiments: [gas]}}
+"""
+RUN = ["run", "scene.yaml", "-o", "run.nc", "--duration", "1", "--sample-interval", "0.5"]
+CHECK = ["check", "scene.yaml"]
+
+
+def scene(old, new, text=GAS):
+    """A mistake in a scene file."""
+    assert old in text
+    return text.replace(old, new), CHECK
+
+
+def config(old, new):
+    """A mistake in a config."""
+    assert old in CONFIG
+    return CONFIG.replace(old, new), CHECK
+
+
+def added(line, text=GAS):
+    """A line too many in a scene file."""
+    return f"{text}{line}\n", CHECK
+
+
+def line(*arguments):
+    """A mistake on the command line, with a correct scene file."""
+    return GAS, list(arguments)
+
+
+MISTAKES = {
+    # words
+    "no command": (line(), "the following arguments are required"),
+    "misspelt command": (line("rnu"), "'rnu': unknown command; did you mean run?"),
+    "unknown command": (line("fly"), "unknown command; known are new, run, resume"),
+    "misspelt option": (line(*RUN, "--sede", "1"), "--sede: unknown option; did you mean --seed?"),
+    "option of another command": (line(*RUN, "--eta", "1"), "--eta: unknown option"),
+    "American colour": (line("render", "a.nc", "-o", "a.png", "--color", "speed"), "did you mean --colour?"),
+    "underscore": (line(*RUN, "--time_step", "1"), "did you mean --time-step?"),
+    "option without value": (line(*RUN, "--seed"), "--seed: expected one argument"),
+    "two scenes": (line("run", "a.yaml", *RUN[1:]), "too many arguments; see `gaspart run --help`"),
+    "no output": (line("run", "scene.yaml", "--duration", "1"), "required: -o/--output"),
+    "no duration": (line(*RUN[:4], "--sample-interval", "1"), "required: --duration"),
+    "duration is a word": (line(*RUN, "--duration", "long"), "--duration: invalid float value: 'long'"),
+    "duration is negative": (line(*RUN, "--duration", "-1"), "duration = -1.0: must be positive"),
+    "interval does not fit": (line(*RUN, "--sample-interval", "0.3"), "must be a whole multiple of sample"),
+    "seed is a fraction": (line(*RUN, "--seed", "1.5"), "--seed: '1.5' must be a whole number"),
+    "seed is negative": (line(*RUN, "--seed", "-1"), "seed = -1"),
+    "unknown engine": (line(*RUN, "--engine", "md"), "--engine: 'md': must be one of ('event', 'step')"),
+    "step without a step": (line(*RUN, "--engine", "step"), "--time-step: is required"),
+    "step of the event engine": (line(*RUN, "--time-step", "1"), "has no meaning with --engine event"),
+    "unknown search": (line(*RUN, "--search", "tree"), "--search: 'tree': must be one of"),
+    "interval below the step": (
+        line(*RUN, "--engine", "step", "--time-step", "0.7"),
+        "sample_interval = 0.5: must be a whole multiple of time_step, 0.7",
+    ),
+    "too many boxes": (line(*RUN, "--boxes-per-side", "13"), "boxes_per_side = 13"),
+    "following too many": (line(*RUN, "--follow", "21"), "follow = 21: there are 20 particles"),
+    "no such scene": (line("check", "gas.yaml"), "gas.yaml"),
+    "no such folder": (line(*RUN, "-o", "out/run.nc"), "must be a file in an existing folder"),
+    "output is the scene": (line(*RUN, "-o", "scene.yaml"), "scene.yaml"),
+    "no such trajectory": (line("info", "run.nc"), "run.nc"),
+    "a scene is no trajectory": (line("info", "scene.yaml"), "is not a readable NetCDF file"),
+    "picture of an unknown kind": (line("render", "a.nc", "-o", "a.jpg"), "must end in .png, .mp4, .gif"),
+    "frame of a film": (line("render", "a.nc", "-o", "a.mp4", "--frame", "1"), "has no meaning for a film"),
+    "size is one number": (line("render", "a.nc", "-o", "a.png", "--size", "9"), "of the form 1000x750"),
+    "unknown observable": (line("measure", "run.nc", "viscosity"), "'viscosity': unknown name; known are Z"),
+    "misspelt observable": (line("measure", "run.nc", "mds"), "did you mean msd?"),
+    "table of two": (line("measure", "run.nc", "Z", "D", "-o", "a.csv"), "-o takes one observable"),
+    "unknown quantity of theory": (line("theory", "pressure", "--eta", "0.1"), "'pressure': unknown name"),
+    "theory beyond the fluid": (line("theory", "Z", "--eta", "0.9"), "0.9"),
+    "theory without density": (line("theory", "Z"), "required: --eta"),
+    "unknown template": (line("new", "a.yaml", "--template", "haet"), "did you mean heat?"),
+    "template without a name": (line("new"), "give the name of the file, or --list"),
+    "new scene over an old one": (
+        line("new", "scene.yaml"),
+        "exists; move it away, or overwrite it (--force)",
+    ),
+    "advice on nothing": (line("advise"), "give a scene or --config, and not both"),
+    "unknown shell": (line("completion", "fish"), "'fish': unknown name; known are bash, zsh, tcsh"),
+    # scene files
+    "empty file": (("", CHECK), "must be a mapping"),
+    "not YAML": (("container: [1\n", CHECK), "is not valid YAML"),
+    "tab": (("container:\n\tlengths: [9, 9]\n", CHECK), "is not valid YAML"),
+    "key twice": (added("gravity: [0, -1]\ngravity: [0, -2]"), "gravity"),
+    "misspelt key": (scene("temperature", "temprature"), "unknown key; did you mean temperature?"),
+    "misspelt top key": (added("gravitiy: [0.0, -1.0]"), "unknown key; did you mean gravity?"),
+    "plural": (scene("radius", "radii"), "unknown key; did you mean radius?"),
+    "no container": (scene("container", "box"), "container = None: is required"),
+    "no radius": (scene("radius: 0.5, ", ""), "species[0].radius = None: is required"),
+    "negative radius": (scene("0.5", "-0.5"), "species[0].radius = -0.5: must be positive"),
+    "text for a number": (scene("0.5", "big"), "species[0].radius = 'big': must be positive"),
+    "speed and temperature": (scene("temp", "speed: 1.0, temp"), "give speed or temperature, not both"),
+    "unknown boundary": (scene("wall", "open"), "container.boundary = 'open': must be one of"),
+    "one length": (scene("[12.0, 12.0]", "12.0"), "container.lengths = 12.0: must be a list of 2 or 3"),
+    "gravity along a periodic axis": (
+        (GAS.replace("wall", "periodic") + "gravity: [0.0, -1.0]\n", CHECK),
+        "gravity",
+    ),
+    "gravity of three components": (added("gravity: [0.0, 0.0, -1.0]"), "gravity"),
+    "too dense": (scene("count: 20", "count: 150"), "count = 150"),
+    "particle too large": (scene("0.5", "7.0"), "radius = 7.0: a particle must fit"),
+    "unknown face": (added("faces: {left: {kind: thermal, temperature: 1.0}}"), "faces"),
+    "unknown kind of face": (
+        added("faces: {x_low: {kind: hot, temperature: 1.0}}"),
+        "faces.x_low.kind = 'hot'",
+    ),
+    "face of the other dimension": (added("faces: {z_low: {kind: sticky, momentum: 1.0}}"), "faces"),
+    "wall in three dimensions": (
+        added("walls: [{start: [1.0, 1.0], end: [2.0, 2.0]}]", SPHERES),
+        "walls[0].start = [1.0, 1.0]: unknown key; known are corner, edges",
+    ),
+    "restitution above one": (
+        added("restitution: {normal: 1.1}"),
+        "restitution.normal = 1.1: must be from 0 to 1",
+    ),
+    # configs
+    "misspelt key of a point": (config("count", "cuont"), "unknown key; did you mean count?"),
+    "misspelt key of a config": (config("title", "titel"), "unknown key; did you mean title?"),
+    "missing key of a point": (config("dimension: 2, ", ""), "dimension"),
+    "unknown figure": (config("wall_pressure", "wall_presure"), "did you mean wall_pressure?"),
+}
+
+
+def test_there_are_sixty():
+    assert len(MISTAKES) >= 60
+
+
+@pytest.mark.parametrize("name", MISTAKES)
+def test_a_mistake_is_one_line_that_states_what_to_do(name, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (text, arguments), expected = MISTAKES[name]
+    (tmp_path / "scene.yaml").write_text(text)
+    code = main(arguments)
+    shown = capsys.readouterr()
+    assert code == 2, shown
+    assert shown.err.count("\n") == 1 and shown.err.startswith("gaspart: error: "), shown.err
+    assert expected in shown.err
+    assert len(shown.err) < 400 and "Traceback" not in shown.err
+    assert [path.name for path in tmp_path.iterdir()] == ["scene.yaml"]
+    assert (tmp_path / "scene.yaml").read_text() == text

@@ -1,0 +1,97 @@
+"""Random kicks: the stochastic thermostat of a driven gas."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from referee import events_of, same_bits
+from scenes import gas
+
+import gaspart as gp
+
+
+def driven(dimension=2, count=20, law=None, power=0.3, interval=0.37, boundary="periodic"):
+    scene = gas(dimension, count, 0.1, boundary)
+    return replace(scene, restitution=law, thermostat=gp.Thermostat(power, interval))
+
+
+@given(st.integers(1, 12), st.sampled_from([None, 0.5]), st.floats(0.01, 2.0), st.integers(0, 2**32))
+def test_all_searches_give_the_same_events_bit_for_bit(count, normal, interval, seed):
+    law = None if normal is None else gp.Restitution(normal)
+    scene = driven(2, count, law, interval=interval)
+    referee = events_of(scene, "pairs", 100, seed) if count > 1 else None
+    for search in ("boxes", "direct") if referee else ():
+        other = events_of(scene, search, 100, seed)
+        assert same_bits(referee, other)
+        assert referee.tally.thermostat_energy == other.tally.thermostat_energy
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_splits_and_checkpoints_change_no_bit(dimension):
+    scene = driven(dimension, law=gp.Restitution(0.8))
+    whole, split = (gp.Simulation(scene, gp.EventDriven(), seed=3) for _ in range(2))
+    for end in (0.1, 0.37, 5.0, 40.0, 700.0):
+        split.advance(until=end)
+        again = gp.Simulation(scene, gp.EventDriven(), seed=3)
+        again.restore(split.checkpoint())
+        split = again
+    whole.advance(until=700.0)
+    whole.check_invariants()
+    for key in ("positions", "velocities"):
+        assert np.array_equal(getattr(whole.state, key), getattr(split.state, key))
+    assert whole.tally.thermostat_energy == split.tally.thermostat_energy > 0.0
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_kicks_give_the_power_and_keep_the_momentum(dimension):
+    """The mean energy of a kick is (1 - 1/N) power interval for each particle, whatever its mass: its
+    fluctuation is that of v.dv and of dv^2. A fixed particle is not kicked."""
+    power, interval, kicks = 0.3, 0.01, 400
+    kinds = [gp.Species(300, 0.05, temperature=1.0), gp.Species(300, 0.05, mass=9.0, temperature=1.0)]
+    container = gp.Container((20.0,) * dimension, "periodic")
+    scene = gp.Scene(container, kinds, thermostat=gp.Thermostat(power, interval))
+    sim = gp.Simulation(scene, gp.EventDriven(), seed=2)
+    before = sim.initial_state
+    sim.advance(until=(kicks + 0.5) * interval)
+    sim.check_invariants()
+    scale = float((before.masses[:, None] * abs(before.velocities)).sum())
+    assert sim.state.momentum == pytest.approx(before.momentum, abs=1e-12 * scale)
+    given = sim.tally.thermostat_energy
+    expected = 600 * (1.0 - 1.0 / 600) * power * interval * kicks
+    step = power * interval  # variance of m v.dv: m^2 <v^2>/d <dv^2> = (d T) 2 step / d, T rising from 1
+    warmest = 1.0 + 2.0 * power * interval * kicks / dimension
+    error = math.sqrt(600 * kicks * (2.0 * step * warmest + 2.0 * step**2 / dimension))
+    assert given == pytest.approx(expected, abs=4.0 * error)
+    assert error < 0.1 * expected
+    assert sim.state.energy == pytest.approx(before.energy + given, rel=1e-12)
+
+
+def test_a_fixed_particle_is_not_kicked():
+    bodies = [gp.Body((2.0, 2.0), (0.0, 0.0), 0.5, fixed=True), gp.Body((5.0, 5.0), (0.0, 0.0), 0.5)]
+    bodies.append(gp.Body((8.0, 2.0), (0.0, 0.0), 0.5))
+    scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=bodies, thermostat=gp.Thermostat(1.0, 0.1))
+    sim = gp.Simulation(scene, gp.EventDriven(), seed=1)
+    sim.advance(duration=0.15)
+    velocities = sim.state.velocities
+    assert np.array_equal(velocities[0], [0.0, 0.0])
+    assert (velocities[1] != 0.0).all()
+    assert velocities[1] == pytest.approx(-velocities[2], rel=1e-12)
+
+
+def test_what_has_no_meaning_is_refused():
+    with pytest.raises(gp.SceneError, match="thermostat.*without gravity"):
+        replace(driven(boundary="wall"), gravity=(0.0, -1.0))
+    with pytest.raises(gp.SceneError, match="hard or thermal"):
+        replace(driven(boundary="wall"), faces={"x_low": gp.Sticky(0.1)})
+    with pytest.raises(gp.SceneError, match="interval"):
+        gp.Thermostat(1.0, 0.0)
+    with pytest.raises(gp.SceneError, match='needs the "event" engine'):
+        gp.Simulation(driven(), gp.TimeStepped(0.01))
+
+
+def test_a_scene_file_has_it(tmp_path):
+    driven().to_file(tmp_path / "scene.yaml")
+    assert gp.Scene.from_file(tmp_path / "scene.yaml") == driven()

@@ -1,0 +1,143 @@
+"""Neighbour lists: complete at any time, and the same events as every other search."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from referee import events_of, same_bits
+from scenes import gas, mixtures
+
+import gaspart as gp
+from gaspart.engines import event_search
+from gaspart.engines.event_search import chosen_search, distances, obstacle_to_lists
+from gaspart.kernels.model import LISTED_BITS
+
+
+def lists_of(sim):
+    return sim._dynamics._boxes.lists
+
+
+def listed(sim):
+    """The pairs (i, j) in the lists of a simulation."""
+    lists = lists_of(sim)
+    rows = lists.candidates[: sim.scene.count * lists.room].reshape(-1, lists.room)
+    numbers = rows & ((1 << LISTED_BITS) - 1)
+    return {(i, int(j)) for i, row in enumerate(numbers) for j in row[1 : 1 + rows[i, 0]]}
+
+
+def separations(sim, points):
+    """(N, N) distances between points, of the nearest images."""
+    container = sim.scene.container
+    gaps = points[:, None] - points[None]
+    for k, (length, periodic) in enumerate(zip(container.lengths, container.periodic, strict=True)):
+        if periodic:
+            gaps[..., k] -= length * np.round(gaps[..., k] / length)
+    return np.linalg.norm(gaps, axis=2)
+
+
+@pytest.mark.parametrize("boundary", ["periodic", "wall", ("periodic", "wall", "periodic")])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_lists_hold_exactly_what_the_centres_say(dimension, boundary):
+    boundary = boundary if isinstance(boundary, str) else boundary[:dimension]
+    scene = gas(dimension, 300, 0.3, boundary)
+    sim = gp.Simulation(scene, gp.EventDriven("lists"), seed=4)
+    margin, reach = distances(scene)
+    for _ in range(5):
+        sim.advance(max_events=700)
+        centres = lists_of(sim).listed["centre"][:, :dimension]
+        apart = separations(sim, centres)
+        np.fill_diagonal(apart, np.inf)
+        assert listed(sim) == {(i, j) for i, j in np.argwhere(apart < reach).tolist()}
+        moved = sim.state.positions - centres
+        lengths = np.array(scene.container.lengths)
+        moved -= np.where(scene.container.periodic, lengths * np.round(moved / lengths), 0.0)
+        assert np.linalg.norm(moved, axis=1).max() < margin * (1 + 1e-9)
+
+
+@given(mixtures(most=40), st.integers(0, 2**32))
+def test_lists_give_the_same_events_bit_for_bit(scene, seed):
+    assume(obstacle_to_lists(scene) is None)
+    assert same_bits(events_of(scene, "pairs", 150, seed), events_of(scene, "lists", 150, seed))
+
+
+@pytest.mark.parametrize(("dimension", "eta"), [(2, 0.65), (3, 0.45)])
+@pytest.mark.parametrize("boundary", ["periodic", "wall"])
+def test_a_dense_gas_has_the_same_events_with_lists_and_boxes(dimension, eta, boundary):
+    scene = gas(dimension, 400, eta, boundary, arrangement="lattice")
+    assert same_bits(events_of(scene, "boxes", 20_000), events_of(scene, "lists", 20_000))
+
+
+@pytest.mark.parametrize(
+    "properties",
+    [
+        {"restitution": gp.Restitution(1.0, 0.5)},
+        {"faces": {"x_low": gp.Thermal(2.0), "x_high": gp.Well(0.5, 0.7), "y_low": gp.Sticky(1.0)}},
+    ],
+    ids=["rough", "faces"],
+)
+def test_other_features_have_the_same_events(properties):
+    species = [
+        gp.Species(60, 0.5, temperature=1.0, moment_of_inertia=0.1),
+        gp.Species(20, 0.4, mass=3.0, temperature=1.0, moment_of_inertia=0.1, fixed=True),
+    ]
+    scene = gp.Scene(gp.Container((15.0, 12.0)), species, **properties)
+    one, other = (events_of(scene, search, 3000) for search in ("boxes", "lists"))
+    assert same_bits(one, other)
+    assert one.tally.wall_impulse.tolist() == other.tally.wall_impulse.tolist()
+
+
+def test_lists_and_cells_grow_when_they_are_full():
+    """Small particles among large ones are more than there is room for at first."""
+    species = [gp.Species(2, 1.5, temperature=1.0), gp.Species(900, 0.1, temperature=1.0)]
+    scene = gp.Scene(gp.Container((14.0, 14.0)), species)
+    sim = gp.Simulation(scene, gp.EventDriven("lists"), seed=1)
+    assert lists_of(sim).room > 16
+    assert lists_of(sim).per_cell > 1
+    assert same_bits(events_of(scene, "boxes", 4000), events_of(scene, "lists", 4000))
+
+
+def test_room_that_is_lacking_on_the_way_is_made(monkeypatch):
+    """On the lattice all lists are equally long; in the fluid some become longer."""
+    scene = gas(2, 300, 0.6, arrangement="lattice")
+    lists = lists_of(gp.Simulation(scene, gp.EventDriven("lists"), seed=1))
+    room = 1 + int(lists.candidates[: scene.count * lists.room : lists.room].max())
+    monkeypatch.setitem(event_search._ROOM, 2, room)
+    assert lists_of(gp.Simulation(scene, gp.EventDriven("lists"), seed=1)).room == room
+    sim = events_of(scene, "lists", 5000)
+    assert lists_of(sim).room > room
+    assert same_bits(events_of(scene, "boxes", 5000), sim)
+
+
+@given(st.integers(0, 2**32), st.integers(1, 2000))
+@settings(max_examples=10)
+def test_a_checkpoint_goes_on_to_the_same_bits_and_counts(seed, most):
+    scene = gas(3, 120, 0.4, ("periodic", "periodic", "wall"), arrangement="lattice")
+    whole = gp.Simulation(scene, gp.EventDriven("lists"), seed=seed)
+    whole.advance(max_events=most)
+    kept = {key: value.copy() for key, value in whole.checkpoint().items()}
+    whole.advance(max_events=1500)
+    again = gp.Simulation(scene, gp.EventDriven("lists"), seed=seed)
+    again.restore(kept)
+    again.advance(max_events=1500)
+    assert np.array_equal(whole.state.positions, again.state.positions)
+    assert whole.tally.pair_tests == again.tally.pair_tests
+    assert whole.tally.crossings == again.tally.crossings
+
+
+@pytest.mark.parametrize(
+    ("dimension", "eta", "chosen"),
+    [(2, 0.3, "boxes"), (2, 0.7, "lists"), (3, 0.2, "boxes"), (3, 0.45, "lists")],
+)
+def test_the_engine_chooses_by_density(dimension, eta, chosen):
+    scene = gas(dimension, 1000, eta, arrangement="lattice")
+    assert chosen_search(scene, "automatic", False) == chosen
+    assert chosen_search(scene, "automatic", True) == "boxes"
+
+
+def test_what_lists_do_not_support_is_refused():
+    species = [gp.Species(5, 0.5, temperature=1.0)]
+    falling = gp.Scene(gp.Container((12.0, 12.0)), species, gravity=(0.0, -1.0))
+    short = gp.Scene(gp.Container((3.0, 12.0), "periodic"), species)
+    for scene, what in [(falling, "gravity"), (short, "so short a periodic axis")]:
+        with pytest.raises(gp.SceneError, match=f"search = 'lists'.*{what}"):
+            gp.Simulation(scene, gp.EventDriven("lists"), seed=1)

@@ -1,0 +1,130 @@
+"""The interactive view: one page with all data in it, which works in headless Chromium."""
+
+import base64
+import json
+import re
+
+import numpy as np
+import pytest
+from site_pages import CHROMIUM, found_on
+
+import gaspart as gp
+from gaspart.cli import main
+
+needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
+PIXELS = """
+const pixels = () => {
+  const gl = window.eval("gl"), found = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+  gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, found);
+  return found;
+};
+const painted = () => pixels().filter((value, n) => n % 4 < 3 && value < 250).length / pixels().length;
+const print = () => pixels().reduce((sum, value, n) => (31 * sum + value * (n % 97 + 1)) % 1000000007, 7);
+const get = id => document.getElementById(id), set = (id, event, value) => {
+  get(id).value = value; get(id).dispatchEvent(new window.Event(event)); return print(); };
+const drag = (dx, dy) => {
+  for (const [kind, x, y] of [["down", 9, 9], ["move", 9 + dx, 9 + dy], ["up", 0, 0]]) {
+    const where = { pointerId: 1, clientX: x, clientY: y };
+    get("canvas").dispatchEvent(new window.PointerEvent("pointer" + kind, where));
+  }
+  return print();
+};
+"""
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory):
+    """A folder with views of discs and spheres, and their trajectories."""
+    folder = tmp_path_factory.mktemp("views")
+    species = [gp.Species(20, 0.5, temperature=1.0), gp.Species(5, 1.0, temperature=1.0)]
+    discs = gp.Scene(gp.Container((14.0, 10.0), ("periodic", "wall")), species)
+    plate = gp.Plate((3.0, 2.0, 2.0), ((0.0, 2.0, 0.0), (0.0, 0.0, 2.0)))
+    spheres = gp.Scene(gp.Container((8.0,) * 3), [gp.Species(20, 0.5, temperature=1.0)], walls=[plate])
+    for name, scene in (("discs", discs), ("spheres", spheres)):
+        search = "direct" if name == "discs" else "boxes"
+        gp.run(scene, gp.EventDriven(search), 1, 4.0, 0.5, folder / f"{name}.nc")
+        gp.view(folder / f"{name}.nc").save(folder / f"{name}.html")
+    return folder
+
+
+def content(page):
+    """The data in a page."""
+    return json.loads(re.search(r'<script id="data" type="application/json">(.*?)</script>', page)[1])
+
+
+@pytest.mark.parametrize("name", ["discs", "spheres"])
+def test_the_page_has_the_positions_of_every_frame_and_needs_no_other_file(pages, name):
+    page = (pages / f"{name}.html").read_text()
+    data = content(page)
+    with gp.open_trajectory(pages / f"{name}.nc") as run:
+        places = np.frombuffer(base64.b64decode(data["places"]), "<u2").reshape(9, data["count"], 3)
+        d = run.attrs["dimension"]
+        lengths = np.array(data["lengths"])[:d]
+        assert np.allclose(
+            places[..., :d] / 65535.0 * lengths, run["coordinates"], atol=lengths.max() / 65535
+        )
+        assert data["time"] == run["time"].values.tolist()
+        assert np.array_equal(np.frombuffer(base64.b64decode(data["species"]), "u1"), run["type"])
+    assert not re.search(r"(?:src|href)=|https?://|@import|fetch\(", page)
+    lines = np.frombuffer(base64.b64decode(data["lines"]), "<f4").reshape(-1, 2, 3)
+    assert len(lines) == (12 if name == "discs" else 16)
+
+
+def test_a_simulation_shows_itself_in_a_notebook(pages):
+    scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.5, temperature=1.0)])
+    simulation = gp.Simulation(scene, gp.EventDriven(search="direct"), seed=1)
+    with pytest.raises(gp.SceneError, match="has not advanced"):
+        gp.view(simulation)
+    simulation.advance(duration=1.0)
+    shown = gp.view(simulation, frames=10)
+    assert len(content(shown.page)["time"]) == 10 and shown._repr_html_().startswith("<iframe srcdoc=")
+    with pytest.raises(gp.SceneError, match="a view needs frames"):
+        gp.view(simulation.state)
+
+
+def test_the_command_writes_a_page(pages, capsys):
+    source, page = str(pages / "discs.nc"), pages / "few.html"
+    assert main(["view", source, "-o", str(page), "--frames", "3"]) == 0
+    assert len(content(page.read_text())["time"]) == 3
+    assert main(["view", source, "-o", str(page)]) == 2
+    assert "overwrite it (--force)" in capsys.readouterr().err
+    assert main(["view", source, "-o", str(page), "--force"]) == 0
+    assert main(["view", source, "-o", str(pages / "a.htm")]) == 2
+    assert "must end in .html" in capsys.readouterr().err
+    page.unlink()
+
+
+@needs_chromium
+@pytest.mark.parametrize("width", [1400, 390])
+def test_it_draws_turns_and_plays(pages, width):
+    script = f"""{PIXELS}
+const first = print(), share = painted();
+const later = set("frame", "input", "5"), clock = get("clock").textContent;
+const coloured = set("colour", "change", "species"), bar = get("bar").textContent.trim();
+const dragged = drag(40, 25);
+get("canvas").dispatchEvent(new window.WheelEvent("wheel", {{ deltaY: -400, cancelable: true }}));
+const zoomed = print();
+get("reset").click(); set("colour", "change", "speed");
+const again = set("frame", "input", "0");
+get("play").click();
+return {{ prints: [first, later, coloured, dragged, zoomed], again: again === first, share, clock, bar,
+  label: get("play").textContent, over: document.documentElement.scrollWidth > window.innerWidth,
+  buttons: document.querySelector("footer").getBoundingClientRect().bottom <= window.innerHeight }};
+"""
+    for name, found in found_on(["discs.html", "spheres.html"], script, pages, width).items():
+        different = found["prints"] if name == "discs.html" else found["prints"][:2] + found["prints"][3:]
+        assert len(set(different)) == len(different), (name, found)
+        assert found["again"] and 0.01 < found["share"] < 0.7, (name, found)
+        assert found["clock"] == "t = 2.500" and found["bar"].startswith("species 0")
+        assert found["label"] == "pause" and found["buttons"] and not found["over"]
+
+
+@needs_chromium
+def test_playing_advances_the_frames(pages):
+    script = """
+window.eval('get("rate").value = "60"; get("play").click()');
+const seen = new Set();
+for (let n = 1; n < 40; n++) { window.eval(`step(due + ${n})`); seen.add(window.eval("frame")); }
+return [...seen].sort();
+"""
+    assert found_on(["discs.html"], script, pages, 800)["discs.html"] == list(range(9))

@@ -1,0 +1,46 @@
+"""What the page is filled with."""
+
+import numpy as np
+from PIL import Image
+
+from gaspart.experiments.registry import chapters, families
+from gaspart.report.page import CHAPTERS, Section, address, by_chapter, findings, headline, picture
+
+ROW = {"figure": "cooling", "claim": "rate of cooling, discs", "measured": 0.93, "uncertainty": 0.02}
+
+
+def claim(kind, verdict):
+    return {"kind": kind, "verdict": verdict}
+
+
+def test_every_family_is_in_a_chapter_of_the_page():
+    assert set(chapters().values()) == set(CHAPTERS)
+    sections = [Section(figure, None, [], [], "", []) for figure in families()]
+    found = by_chapter(sections)
+    assert list(found) == list(CHAPTERS)
+    assert sorted(one.name for own in found.values() for one in own) == sorted(families())
+
+
+def test_findings_state_the_measured_number_of_their_figure():
+    chosen = [{"figure": "cooling", "text": "It cools at {{rate of cooling}}."}]
+    (finding,) = findings(chosen, [ROW, ROW | {"figure": "other"}])
+    assert finding == {"figure": "cooling", "text": "<p>It cools at 0.93(2).</p>"}
+
+
+def test_the_first_screen_counts_kinds_apart_and_names_what_disagrees():
+    rows = [claim("test", "agrees"), claim("test", "disagrees"), claim("family", "disagrees")]
+    found = headline(rows)
+    assert found["kinds"] == {"test": {"agrees": 1, "disagrees": 1}}
+    assert found["disagree"] == rows[1:]
+
+
+def test_pictures_lie_beside_the_page_or_are_in_it(tmp_path):
+    path = tmp_path / "figures" / "one.png"
+    path.parent.mkdir()
+    Image.fromarray(np.zeros((60, 100, 3), dtype=np.uint8)).save(path, dpi=(144, 144))
+    beside, within = picture(path, False), picture(path, True)
+    assert (beside.large, beside.small) == ("figures/one.svg", "figures/one.png")
+    assert (beside.width, beside.height) == (within.width, within.height) == (100, 60)
+    assert within.large.startswith("data:image/webp;base64,")
+    (tmp_path / "film.mp4").write_bytes(b"film")
+    assert address(tmp_path / "film.mp4", True) == "data:video/mp4;base64,ZmlsbQ=="

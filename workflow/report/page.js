@@ -1,0 +1,53 @@
+// The table of all claims: a click on a heading sorts by it, another one the other way; verdicts and words select rows.
+const table = document.querySelector("table.sortable"), body = table.tBodies[0];
+const value = (row, column) => row.cells[column].dataset.value ?? row.cells[column].textContent.trim();
+const compare = (a, b, sign) => {
+  const [x, y] = [Number(a), Number(b)];
+  if (a === "" || b === "") return (a === "") - (b === ""); // what has no value comes last
+  return sign * (Number.isNaN(x) || Number.isNaN(y) ? a.localeCompare(b) : x - y);
+};
+[...table.tHead.rows[0].cells].forEach((cell, column) => {
+  const button = document.createElement("button");
+  button.textContent = cell.textContent;
+  cell.replaceChildren(button);
+  button.addEventListener("click", () => {
+    const sign = cell.ariaSort === "ascending" ? -1 : 1;
+    [...table.tHead.rows[0].cells].forEach(other => other.removeAttribute("aria-sort"));
+    cell.ariaSort = sign === 1 ? "ascending" : "descending";
+    body.append(...[...body.rows].sort((a, b) => compare(value(a, column), value(b, column), sign)));
+  });
+});
+const buttons = document.querySelectorAll("#filter button"), words = document.getElementById("words");
+const select = () => {
+  const wanted = document.querySelector("#filter button[aria-pressed=true]").dataset.verdict;
+  const text = words.value.toLowerCase();
+  [...body.rows].forEach(row => {
+    row.hidden = wanted !== "" && row.dataset.verdict !== wanted || !row.textContent.toLowerCase().includes(text);
+  });
+};
+buttons.forEach(button => button.addEventListener("click", () => {
+  buttons.forEach(other => other.setAttribute("aria-pressed", other === button));
+  select();
+}));
+words.addEventListener("input", select);
+
+// The gallery: words of a figure's name or finding select it.
+const search = document.getElementById("search");
+search.addEventListener("input", () => document.querySelectorAll(".cards li").forEach(card => {
+  card.hidden = !card.textContent.toLowerCase().includes(search.value.toLowerCase());
+}));
+
+// A link into a folded part opens it.
+const open = () => {
+  const there = location.hash && document.getElementById(location.hash.slice(1));
+  for (let fold = there && there.closest("details"); fold; fold = fold.parentElement.closest("details")) fold.open = true;
+  if (there) there.scrollIntoView();
+};
+addEventListener("hashchange", open);
+open();
+
+// Beside the page the contents are open.
+const wide = matchMedia("(min-width: 70rem)");
+const unfold = () => document.querySelectorAll("nav details").forEach(fold => { fold.open = wide.matches; });
+wide.addEventListener("change", unfold);
+unfold();
