@@ -105,52 +105,56 @@ def _compare(
 
 
 def speed_distribution_spheres(ds: xr.Dataset) -> Figure:
-    """Density, residual and cumulative difference in 3D."""
+    """Density, residual, tails and the difference of the cumulative distribution in 3D."""
     return _distribution(ds)
 
 
 def speed_distribution_discs(ds: xr.Dataset) -> Figure:
-    """Density, residual and cumulative difference in 2D."""
+    """Density, residual, tails and the difference of the cumulative distribution in 2D."""
     return _distribution(ds)
 
 
 def _distribution(ds: xr.Dataset) -> Figure:
     dimension = ds.attrs["dimension"]
-    figure, axes = style.new(rows=4, height=6.4, height_ratios=(3, 1.3, 2.2, 1.3))
-    u = np.linspace(0.0, float(ds["upper"][-1]), 400)
-    axes[0].plot(u, theory.maxwell_pdf(u, dimension, 1.0 / dimension), color=style.DATA, label="Maxwell")
-    maxwell = theory.maxwell_cdf(ds["speed"].values, dimension, 1.0 / dimension)
-    axes[2].plot(ds["speed"], maxwell, color=style.DATA, lw=0.8, zorder=4)
-    style.band(axes[1], -3.0, 3.0)
-    style.level(axes[1], 0.0)
-    style.level(axes[3], 0.0)
+    figure, (density, residual, tail, difference) = style.new(
+        rows=4, height=6.4, height_ratios=(3, 1.3, 2.2, 1.3)
+    )
+    end = float(ds["upper"][-1])
+    u = np.linspace(0.0, end, 401)[1:]
+    for axis, label in ((density, "Maxwell"), (tail, None)):
+        curve = theory.maxwell_pdf(u, dimension, 1.0 / dimension)
+        axis.plot(u, curve, color=style.DATA, label=label, zorder=4)
+    style.band(residual, -3.0, 3.0)
+    style.level(residual, 0.0)
+    style.band(difference, -KOLMOGOROV_BAND, KOLMOGOROV_BAND)
+    style.level(difference, 0.0)
     middle = 0.5 * (ds["lower"].values + ds["upper"].values)
     width = ds["upper"].values[0] - ds["lower"].values[0]
     for kind in range(ds.sizes["point"]):
         row = ds.isel(point=kind)
         label = rf"$\eta={float(row['packing_fraction']):.2g}$, {ENGINES[str(row['engine'].values)]}"
-        density, error = row["density"].values, row["density_error"].values
-        style.points(axes[0], middle, density, error, kind=kind, hollow=True, label=label)
-        # The residuals of different packing fractions are drawn side by side within their bin.
+        values, errors = row["density"].values, row["density_error"].values
+        style.points(density, middle, values, errors, kind=kind, hollow=True, label=label)
+        # Different packing fractions are drawn side by side within their bin.
         beside = middle + width * 0.25 * (kind - 0.5 * (ds.sizes["point"] - 1))
-        style.points(axes[1], beside, row["residual"].values, kind=kind, markersize=2.5)
-        dashes = (2.0 * kind, (2.0, 2.0 * ds.sizes["point"] - 2.0)) if ds.sizes["point"] > 1 else (0, (2, 2))
-        cumulative = row["difference"].values + maxwell
-        axes[2].plot(ds["speed"], cumulative, color=style.COLOURS[kind], ls=dashes, lw=2)
+        seen = values > 0.0
+        style.points(tail, beside[seen], values[seen], errors[seen], kind=kind, hollow=True)
+        style.points(residual, beside, row["residual"].values, kind=kind, markersize=2.5)
         scaled = float(row["samples"]) ** 0.5 * row["difference"]
-        axes[3].plot(ds["speed"], scaled, color=style.COLOURS[kind])
-    style.band(axes[3], -KOLMOGOROV_BAND, KOLMOGOROV_BAND)
-    axes[0].set_ylabel("probability density")
-    axes[1].set_ylabel(r"residual ($\sigma$)")
-    axes[2].set_ylabel("cumulative probability")
-    axes[3].set_ylabel(r"$\sqrt{n}\times$ difference")
-    axes[3].set_xlabel(r"speed $v/\sqrt{\langle v^2\rangle}$")
-    axes[1].set_ylim(-4.5, 4.5)
-    axes[1].set_yticks([-3, 0, 3])
-    axes[2].set_ylim(0.0, 1.03)
-    axes[3].set_ylim(-2.0, 2.0)
-    axes[3].set_xlim(0.0, float(ds["upper"][-1]))
-    axes[0].set_ylim(0.0, 1.5 * float(ds["density"].max()))
-    axes[0].legend(loc="upper right")
-    style.letters(axes[0], axes[2])
+        difference.plot(ds["speed"], scaled, color=style.COLOURS[kind])
+    density.set_ylabel("probability density")
+    residual.set_ylabel(r"residual ($\sigma$)")
+    tail.set_ylabel("probability density")
+    difference.set_ylabel(r"$\sqrt{n}\times$ difference")
+    difference.set_xlabel(r"speed $v/\sqrt{\langle v^2\rangle}$")
+    residual.set_ylim(-4.5, 4.5)
+    residual.set_yticks([-3, 0, 3])
+    tail.set_yscale("log")
+    smallest = float(ds["density"].where(ds["density"] > 0.0).min())
+    tail.set_ylim(0.2 * smallest, 3.0 * float(ds["density"].max()))
+    difference.set_ylim(-2.0, 2.0)
+    difference.set_xlim(0.0, end)
+    density.set_ylim(0.0, 1.5 * float(ds["density"].max()))
+    density.legend(loc="upper right")
+    style.letters(density, tail, difference)
     return figure
