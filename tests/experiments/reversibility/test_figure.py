@@ -9,7 +9,9 @@ def test_echoes_growth_and_memory(tmp_path):
     ds = varied(measurement(tmp_path), "packing_fraction")
     echoes, growth, memory = draw(reversibility, ds, tmp_path).axes
     assert "collisions" in echoes.get_xlabel() and "echo" in echoes.get_ylabel()
-    for n, one in enumerate(lines(echoes)):
+    drawn = lines(echoes)
+    assert [one.get_label() for one in drawn[2:]] == ["event-driven", "time-stepped", "time-stepped, float32"]
+    for n, one in enumerate(drawn[:2]):
         row = ds.isel(row=n)
         follows(one, row["collisions"], row["echo"])
         assert one.get_linestyle() == {"event": "-", "step": "--"}[row["engine"].item()]

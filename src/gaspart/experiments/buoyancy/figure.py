@@ -61,5 +61,5 @@ def _heights(axis: Axes, ds: xr.Dataset) -> None:
     axis.set_xlim(0.0, 1.08 * mass.max())
     axis.set_ylim(0.0, ds.attrs["top"])
     axis.set_xlabel("mass $M/m$ of a free disc")
-    axis.set_ylabel("height $z$")
+    axis.set_ylabel("height $z$ (length)")
     axis.legend(loc="upper right")

@@ -56,7 +56,7 @@ def barometric(ds: xr.Dataset) -> Figure:
     state.set_ylabel(r"$Z = P/\rho kT$")
     state.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
     off.set_ylabel(r"$Z/Z_\mathrm{ref} - 1$ (%)")
-    warm.set_xlabel("height $z$")
+    warm.set_xlabel("height $z$ (length)")
     off.set_xlabel(r"packing fraction $\eta$")
     style.share_x(top, ratio, warm)
     style.share_x(state, off)
@@ -104,7 +104,7 @@ def separation(ds: xr.Dataset) -> Figure:
     axes[3].set_ylabel(r"residual ($\sigma$)")
     axes[3].set_ylim(-4.5, 4.5)
     axes[3].set_yticks([-3, 0, 3])
-    axes[3].set_xlabel("height $z$")
+    axes[3].set_xlabel("height $z$ (length)")
     style.letter(axes[2], "c", y=0.13)
     return figure
 
@@ -112,7 +112,8 @@ def separation(ds: xr.Dataset) -> Figure:
 def heat_capacity(ds: xr.Dataset) -> Figure:
     """Heat capacity against x, from neighbouring energies and from fluctuations, and its deviation."""
     figure, (top, bottom) = style.new(rows=2, height=3.8, height_ratios=(3, 1.2))
-    x = np.linspace(0.0, 6.0, 300)
+    end = 1.15 * float(max(ds["x"].max(), ds["run_x"].max()))
+    x = np.linspace(0.0, end, 300)
     top.plot(x, ideal_heat_capacity(x, 2), color=style.DATA, label="canonical, ideal gas")
     style.level(top, 1.0, ls="--")
     style.level(top, 2.0, ls="--")
@@ -138,7 +139,7 @@ def heat_capacity(ds: xr.Dataset) -> Figure:
     top.set_ylim(0.9, 2.1)
     top.legend(loc="lower right", bbox_to_anchor=(1.0, 0.08))
     bottom.set_ylabel("deviation from\nexact (%)")
-    bottom.set_xlim(-0.2, 6.0)
+    bottom.set_xlim(-0.03 * end, end)
     bottom.set_ylim(-4.5, 4.5)
     bottom.set_xlabel(r"height of the box $x = mgH/kT$")
     style.letter(top, "a")

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from gaspart.claims.captions import concise
 from gaspart.rendering import style
 from gaspart.rendering.particles import DrawnParticles, colours_of
 from gaspart.rendering.pictures import picture
@@ -41,5 +42,5 @@ def densest_fill(ds: xr.Dataset) -> Figure:
         axis.imshow(picture(bodies, (side, side), colours_of(bodies, "species")))
         axis.set_axis_off()
         fraction, error = float(one["packing_fraction"]), float(one["error"])
-        axis.set_title(f"{NAMES[str(one['rule'].values)]}\nη = {fraction:.3f} ± {error:.3f}")
+        axis.set_title(f"{NAMES[str(one['rule'].values)]}\nη = {concise(fraction, error)}")
     return figure

@@ -29,6 +29,8 @@ def reversibility(ds: xr.Dataset) -> Figure:
         label = f"{gas[0]}D, {gas[1]:g}" if line == "-" else None
         colour = style.COLOURS[gases.index(gas) % len(style.COLOURS)]
         axes[0].plot(row.collisions, row.echo, color=colour, ls=line, label=label)
+    for name, line in ENGINES.values():
+        axes[0].plot([], [], color=style.GREY, ls=line, label=name)
     axes[0].set(
         xscale="log",
         yscale="log",

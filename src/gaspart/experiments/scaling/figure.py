@@ -265,6 +265,8 @@ def event_scaling(ds: xr.Dataset) -> Figure:
     top.set_ylim(top=3e6)
     top.legend(loc="upper right")
     bottom.set(yscale="log", xlabel="number of particles $N$", ylabel="time per event (µs)")
+    style.letter(top, "a", y=0.12)
+    style.letter(bottom, "b", y=0.12)
     return figure
 
 
