@@ -34,6 +34,7 @@ RATES = 0.01, 1000.0
 def film(
     trajectory: str | Path | xr.Dataset,
     path: str | Path,
+    *,
     size: tuple[int, int] = SIZE,
     colour: str | np.ndarray = "speed",
     frames_per_second: float = 25.0,
