@@ -81,7 +81,6 @@ def test_a_result_is_replaced_with_force_only_and_another_file_never(folder, cap
     assert main([*command, "--force"]) == 0
     assert contents(folder).keys() == before.keys()
     assert (result_of(folder / output) == result) == (output != "again.nc")
-
     assert stat.S_IMODE((folder / output).stat().st_mode) == stat.S_IMODE(
         (folder / "scene.yaml").stat().st_mode
     )

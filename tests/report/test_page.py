@@ -22,7 +22,10 @@ def test_every_family_is_in_a_chapter_of_the_page():
 
 
 def test_findings_state_the_measured_number_of_their_figure():
-    chosen = [{"figure": "cooling", "text": "It cools at {{rate of cooling}}."}]
+    chosen = [
+        {"figure": "cooling", "text": "It cools at {{rate of cooling}}."},
+        {"figure": "absent", "text": "No figure of this config."},
+    ]
     (finding,) = findings(chosen, [ROW, ROW | {"figure": "other"}])
     assert finding == {"figure": "cooling", "text": "<p>It cools at 0.93(2).</p>"}
 

@@ -16,7 +16,7 @@ const three = x => Number(x.toPrecision(3)).toString();
 const percent = x => `${three(100 * x)} %`;
 
 const virial = document.getElementById("explore-virial"), kind = virial.querySelector("select");
-const packing = virial.querySelector("input"), sums = virial.querySelector("svg"), told = virial.querySelector("output");
+const packing = virial.querySelector("input"), sums = virial.querySelector("svg"), sentence = virial.querySelector("output");
 const drawSeries = () => {
   const gas = stored.series[kind.value], n = Number(packing.value), eta = gas.packing_fraction[n], z = gas.reference[n];
   const parts = gas.sums.map(one => one[n]);
@@ -29,7 +29,7 @@ const drawSeries = () => {
     + parts.map((part, k) => `<circle cx="${xs(k + 1)}" cy="${ys(part)}" r="5"/>`).join("");
   const lacks = 1 - parts[3] / z, [etas, values, errors] = gas.measured;
   const near = etas.findIndex(other => Math.abs(other - eta) < 0.004);
-  told.textContent = `Packing fraction ${three(eta)}: Z = ${three(z)} (line). The series to the fourth coefficient lacks ${percent(Math.abs(lacks))}.`
+  sentence.textContent = `Packing fraction ${three(eta)}: Z = ${three(z)} (line). The series to the fourth coefficient lacks ${percent(Math.abs(lacks))}.`
     + (near < 0 ? "" : ` Measured: ${values[near]} ± ${three(errors[near])}.`);
 };
 [kind, packing].forEach(one => one.addEventListener("input", drawSeries));

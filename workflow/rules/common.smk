@@ -43,6 +43,7 @@ if workflow.is_main_process:
 
 FIGURES = list(config["figures"])
 ANIMATIONS = [name for name, block in config.get("animations", {}).items() if block]
+FILMS = {name: config["animations"][name].get("figure", "") for name in ANIMATIONS}  # beside which figure
 POINTS = {
     experiment: {point.name: point for point in points(config, experiment)}
     for experiment in config["experiments"]

@@ -52,7 +52,7 @@ rule report:
     params:
         modules=digest(*sources("report")),
         figures=FIGURES,
-        films={name: config["animations"][name].get("figure", "") for name in ANIMATIONS},
+        films=FILMS,
         title=config["title"],
         one_file=False,
     script:
@@ -70,6 +70,6 @@ use rule report as report_in_one_file with:
     params:
         modules=digest(*sources("report")),
         figures=FIGURES,
-        films={name: config["animations"][name].get("figure", "") for name in ANIMATIONS},
+        films=FILMS,
         title=config["title"],
         one_file=True,

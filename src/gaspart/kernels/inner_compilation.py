@@ -26,12 +26,15 @@ class _PartLibrary(core.codegen.JITCodeLibrary):
         self._finalized = True
 
 
-@core.compiler_machinery.register_pass(mutates_CFG=False, analysis_only=False)
-class _BeginPart(core.compiler_machinery.LoweringPass):
-    _name = "begin_part"
-
+class _Pass(core.compiler_machinery.LoweringPass):
     def __init__(self) -> None:
+        """numba's is abstract."""
         super().__init__()
+
+
+@core.compiler_machinery.register_pass(mutates_CFG=False, analysis_only=False)
+class _BeginPart(_Pass):
+    _name = "begin_part"
 
     def run_pass(self, state: Any) -> bool:
         state.library = _PartLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
@@ -40,17 +43,14 @@ class _BeginPart(core.compiler_machinery.LoweringPass):
 
 
 @core.compiler_machinery.register_pass(mutates_CFG=False, analysis_only=False)
-class _OfferPart(core.compiler_machinery.LoweringPass):
+class _OfferPart(_Pass):
     """Let other functions call it."""
 
     _name = "offer_part"
 
-    def __init__(self) -> None:
-        super().__init__()
-
     def run_pass(self, state: Any) -> bool:
         described, environment = state.cr.fndesc, state.cr.env
-        no_code = 0  # numba knows a function by an object for Python to call, which nobody does
+        no_code = 0  # numba identifies a function by what Python would call
         known_as = numba._dynfunc.make_function(
             described.lookup_module(), described.qualname, "", no_code, environment, (state.library,)
         )

@@ -71,14 +71,16 @@ def by_chapter(sections: Iterable[Section]) -> dict[str, list[Section]]:
 
 
 def findings(chosen: Iterable[Mapping[str, str]], rows: list[dict[str, Any]]) -> list[dict[str, str]]:
-    """The key findings, with the measured numbers of their figures filled in: [{figure, text}]. chosen: the
-    same with places for numbers as in a caption."""
+    """The key findings of the figures that have claims, with their measured numbers filled in: [{figure,
+    text}]. chosen: the same with places for numbers as in a caption."""
+    present = {row["figure"] for row in rows}
     return [
         {
             "figure": one["figure"],
             "text": html_of(filled(one["text"], [row for row in rows if row["figure"] == one["figure"]])),
         }
         for one in chosen
+        if one["figure"] in present
     ]
 
 
