@@ -209,7 +209,6 @@ def _slab(dataset: xr.Dataset) -> list[Claim]:
             expected=expected,
             half_width=TOLERANCE * expected,
             source=SPHERES_SOURCE,
-            no_verdict=UNVERIFIED,
             fails_if="one phase has vanished, the crystal is strained, or contacts are missed",
         ),
         Claim(
