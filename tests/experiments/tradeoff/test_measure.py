@@ -12,7 +12,7 @@ from experiments.tradeoff.data import (
     written,
 )
 
-from gaspart.experiments.tradeoff.measure import time_to_accuracy
+from gaspart.experiments.tradeoff.measure import OBSERVABLES, frontier, time_to_accuracy
 
 
 @pytest.fixture(scope="module")
@@ -64,3 +64,25 @@ def test_time_to_accuracy_of_the_reference_gas(tmp_path):
     steps = dataset.sel(engine="step", observable="Z", accuracy=0.01)
     assert float(steps.measured) > 2.0 * float(event.measured[0])
     assert (dataset.regret.sel(observable="Z") == 1.0).all()
+
+
+def with_long_runs(dataset, build_up, setting="4 passes"):
+    """The data with one long run, whose error of Z differs by `build_up` from that of paired runs."""
+    return dataset.assign(
+        steady_dimension=("steady", [3]),
+        steady_packing_fraction=("steady", [0.01]),
+        steady_setting=("steady", [setting]),
+        build_up=("steady", [build_up]),
+        build_up_error=("steady", [1e-4]),
+    )
+
+
+@pytest.mark.parametrize(
+    ("build_up", "setting", "step"),
+    [(0.0, "4 passes", 0.16), (3e-4, "4 passes", 0.16), (9e-3, "4 passes", 0.08), (9e-3, "1 pass", 0.16)],
+)
+def test_the_frontier_allows_for_what_builds_up_over_many_steps(dataset, build_up, setting, step):
+    """A hundredth is reached by steps of 0.16 (an error of 0.0014), by those of 0.08 if 0.009 builds up."""
+    best = frontier(with_long_runs(dataset, build_up, setting)).best_step.isel(gas=0, accuracy=0)
+    assert best.values[OBSERVABLES.index("Z")] == step
+    assert best.values[0] == float(dataset.best_step[0, 0, 0])  # of the collision rate

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from gaspart import theory
 from gaspart.claims import Claim, Estimate
 from gaspart.experiments.shared.claims import PARTICLES, rows
 
@@ -126,21 +125,19 @@ def _frontier(z: xr.Dataset) -> list[Claim]:
 
 
 def _steady(at: xr.Dataset) -> Claim:
-    """Long runs have the errors that the short, paired ones measure."""
-    fraction, dimension, count = (
-        float(at.steady_packing_fraction),
-        int(at.steady_dimension),
-        int(at.steady_count),
-    )
-    z = float(theory.compressibility_factor(fraction, dimension))
-    z += float(theory.finite_size_correction(fraction, dimension, count, ensemble="canonical"))
+    """Long runs have the errors that the short, paired ones measure. One pass leaves pairs that overlap, and
+    there are more of them in the steady state."""
+    setting = str(at.steady_setting.values)
     return Claim(
         claim=f"error of Z in the steady state minus that of paired runs, dt = {float(at.steady_step):g}, "
-        f"{at.steady_setting.values}, {_gas(at.steady_dimension, at.steady_packing_fraction)}",
-        measured=Estimate.of(at, "steady_z") / z - 1.0 - Estimate.of(at, "steady_paired"),
+        f"{setting}, {_gas(at.steady_dimension, at.steady_packing_fraction)}",
+        measured=Estimate.of(at, "build_up"),
         expected=0.0,
         required=FLOOR,
         source="Kolafa, Labik & Malijevsky (2004), first order in 1/N",
+        no_verdict=""
+        if setting.startswith("4 passes")
+        else "what one pass leaves builds up; the frontier allows for it",
         fails_if="errors accumulate over many steps",
     )
 
