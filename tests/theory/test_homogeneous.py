@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from gaspart import theory
-from gaspart.theory.homogeneous import homogeneous_gas
+from gaspart.theory.homogeneous import homogeneous_gas, rough_discs
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -27,3 +27,21 @@ def test_the_cumulant_of_a_cooling_gas_is_that_of_the_program():
     assert 0.5 * theory.fourth_cumulant(0.5, 2) < cumulant < theory.fourth_cumulant(0.5, 2)
     rate = -np.polyfit(gas.collisions[late], np.log(gas.energy[late]), 1)[0]
     assert rate == pytest.approx(float(theory.cooling_rate(0.5, 2)), rel=0.01)
+
+
+def test_the_table_of_rough_cooling_is_that_of_the_program():
+    ratios = rough_discs(10_000, 20.0, 0.5, 0.0, seed=6)
+    late = ratios[len(ratios) * 2 // 5 :]
+    ((_, _, _, tabulated, error),) = [row for row in theory.rough_cooling() if row[1] == 0.0]
+    # the table is of 24 times as many discs (6 gases of 40 000), over 40 collisions of a disc instead of 12
+    assert late.mean() == pytest.approx(tabulated, abs=3.0 * error * np.sqrt(1.0 + 24.0 * 40.0 / 12.0))
+
+
+def test_perfectly_rough_discs_keep_equipartition():
+    assert rough_discs(20_000, 1.0, 0.5, 1.0, seed=7) == pytest.approx(1.0, abs=0.04)
+
+
+@pytest.mark.parametrize("tangential", [-0.5, 0.0, 0.5, 0.8])
+def test_rough_discs_that_cool_have_less_spin_than_if_they_were_maxwellian(tangential):
+    ((*_, ratio, error),) = [row for row in theory.rough_cooling() if row[1] == tangential]
+    assert 0.95 < (ratio + 3.0 * error) / theory.rough_ratio(0.5, tangential) < 1.001

@@ -5,6 +5,9 @@ density, has no part. Homogeneous gases, velocities nearly Maxwellian and partic
 before clustering.
 """
 
+from functools import cache
+from pathlib import Path
+
 import numpy as np
 
 from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
@@ -122,6 +125,17 @@ def rough_ratio(inertia: float, tangential: float, normal: float = 1.0) -> float
     values, vectors = np.linalg.eig(rough_matrix(inertia, tangential, normal))
     slower = vectors[:, np.argmax(values)]
     return float(slower[1] / slower[0])
+
+
+@cache
+def rough_cooling() -> np.ndarray:
+    """T_rot / T_tr of rough discs that cool, which `rough_ratio` gives to 5 % only: (n, 5), in each row
+    inertia, tangential and normal restitution, the ratio, and its standard uncertainty.
+
+    Velocities and spins are not Maxwellian there, and not independent. Computed by direct simulation of the
+    homogeneous Boltzmann equation (`homogeneous.rough_discs`).
+    """
+    return np.loadtxt(Path(__file__).parent / "data" / "rough_cooling.csv", delimiter=",", skiprows=1)
 
 
 def _checked_restitution(restitution: Numbers) -> np.ndarray:

@@ -1,8 +1,9 @@
 """The homogeneous Boltzmann equation of hard spheres and discs, by direct simulation.
 
 This program computes what has no closed form: `data/relaxation_2d.csv` and `_3d.csv`, the relaxation of a gas
-whose particles all start with one speed, and the fourth cumulant of a gas that cools. There are no positions:
-partners are drawn at random, which is molecular chaos (Nanbu 1980, Babovsky 1986).
+whose particles all start with one speed; the fourth cumulant of a gas that cools; `data/rough_cooling.csv`,
+the temperatures of rough discs that cool. There are no positions: partners are drawn at random, which is
+molecular chaos (Nanbu 1980, Babovsky 1986).
 """
 
 from dataclasses import dataclass
@@ -10,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaspart.theory._arguments import checked_dimension
+from gaspart.theory.granular import rough_ratio
 
 _SHARE = 0.01
 """Time step times the root-mean-square speed: 0.4 % of the particles collide in a step, so that what would
@@ -41,14 +43,8 @@ def homogeneous_gas(
     hit = np.zeros(count, dtype=bool)
     made, rows = 0.0, [(0.0, 1.0, 1.0, 1.0)]
     while made < collisions:
-        square = (velocity**2).sum(axis=1)
-        step = _SHARE / np.sqrt(square.mean())
-        first, second = rng.permutation(count)[: count // 2 * 2].reshape(2, -1)
-        normal = _directions(rng, len(first), d)
-        approach = ((velocity[first] - velocity[second]) * normal).sum(axis=1)
-        meets = rng.random(len(first)) < step * approach
-        i, j = first[meets], second[meets]
-        change = 0.5 * (1.0 + restitution) * approach[meets, None] * normal[meets]
+        i, j, normal, approach = _meetings(rng, velocity)
+        change = 0.5 * (1.0 + restitution) * approach[:, None] * normal
         velocity[i] -= change
         velocity[j] += change
         hit[i] = hit[j] = True
@@ -56,6 +52,45 @@ def homogeneous_gas(
         square = (velocity**2).sum(axis=1)
         rows.append((made, (square**2).mean() / square.mean() ** 2, 1.0 - hit.mean(), square.mean()))
     return Homogeneous(*np.array(rows).T)
+
+
+def rough_discs(
+    count: int, collisions: float, inertia: float, tangential: float, normal: float = 1.0, seed: int = 0
+) -> np.ndarray:
+    """T_rot / T_tr (S,) after each step of rough discs that cool, until `collisions` of a particle.
+
+    Restitution normal and tangential, moment of inertia q = I / (m R^2). Velocities and spins start
+    Maxwellian, at the ratio of `granular.rough_ratio`, and leave that: they become correlated.
+    """
+    rng = np.random.default_rng(seed)
+    velocity, spin = rng.standard_normal((count, 2)), rng.standard_normal(count)  # spin: R omega
+    spin *= np.sqrt(rough_ratio(inertia, tangential, normal) / inertia)
+    share = inertia * (1.0 + tangential) / (2.0 * inertia + 2.0)
+    made, ratios = 0.0, []
+    while made < collisions:
+        i, j, along, approach = _meetings(rng, velocity)
+        across = np.stack([-along[:, 1], along[:, 0]], axis=1)
+        slip = ((velocity[i] - velocity[j]) * across).sum(axis=1) + spin[i] + spin[j]
+        change = 0.5 * (1.0 + normal) * approach[:, None] * along + share * slip[:, None] * across
+        velocity[i] -= change
+        velocity[j] += change
+        spin[i] -= share / inertia * slip
+        spin[j] -= share / inertia * slip
+        made += 2.0 * len(i) / count
+        ratios.append(2.0 * inertia * (spin**2).mean() / (velocity**2).sum(axis=1).mean())
+    return np.array(ratios)
+
+
+def _meetings(
+    rng: np.random.Generator, velocity: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Who collides in one step: particles i and j (M,), unit normals (M, d), speeds of approach (M,)."""
+    step = _SHARE / np.sqrt((velocity**2).sum(axis=1).mean())
+    first, second = rng.permutation(len(velocity))[: len(velocity) // 2 * 2].reshape(2, -1)
+    normal = _directions(rng, len(first), velocity.shape[1])
+    approach = ((velocity[first] - velocity[second]) * normal).sum(axis=1)
+    meets = rng.random(len(first)) < step * approach
+    return first[meets], second[meets], normal[meets], approach[meets]
 
 
 def _directions(rng: np.random.Generator, count: int, dimension: int) -> np.ndarray:

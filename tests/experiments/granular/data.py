@@ -16,7 +16,7 @@ def rough(noise=1.0, rate=1.0, ratio=1.0, steady=1.0, seed=1):
     rotation = 2.0 / 3.0 * (1.0 - np.exp(-rate * expected[:, None] * s))
     rotation = rotation + noise * error * rng.standard_normal(s.shape)
     tangential = np.array([-0.5, 0.0, 0.5])
-    theoretical = np.array([theory.rough_ratio(0.5, value) for value in tangential])
+    theoretical = theory.rough_cooling()[:3, 3]
     return xr.Dataset({
         "collisions": (("start", "frame"), s),
         "translation": (("start", "frame"), 1.0 - 0.5 * rotation),

@@ -66,11 +66,15 @@ def _differences(axis: Axes, ds: xr.Dataset) -> None:
 
 
 def _ratios(axis: Axes, ds: xr.Dataset) -> None:
-    """T_rot / T_tr against the tangential restitution: theory, cooling discs, elastic rough discs."""
+    """T_rot / T_tr against the tangential restitution: theories, cooling discs, elastic rough discs."""
     curve = np.linspace(-0.99, 1.0, 200)
     for kind, q in enumerate(sorted(set(ds["equilibrium_inertia"].values))):
         theoretical = [theory.rough_ratio(q, tangential) for tangential in curve]
         axis.plot(curve, theoretical, color=style.COLOURS[kind], label=f"$q={q:g}$", zorder=1)
+        known = theory.rough_cooling()
+        known = known[np.isclose(known[:, 0], q) & (known[:, 2] == 1.0)]
+        label = "Boltzmann equation" if len(known) else None
+        axis.plot(known[:, 1], known[:, 3], "x", color=style.DATA, zorder=5, label=label)
         cooled = ds.isel(cooling=np.isclose(ds["cooling_inertia"].values, q))
         style.points(axis, cooled["tangential"], cooled["steady_ratio"], cooled["steady_ratio_error"], kind)
         still = ds.isel(equilibrium=np.isclose(ds["equilibrium_inertia"].values, q))
