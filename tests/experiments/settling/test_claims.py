@@ -13,7 +13,7 @@ def test_right_data_agree():
     ("wrong", "claim"),
     [
         ({"contacts": 3.0}, "contacts of a disc"),
-        ({"contacts": 1.8}, "contacts of a disc"),
+        ({"contacts": 1.5}, "contacts of a disc"),
         ({"displacement": 1e-3}, "largest displacement"),
         ({"rise": 1e-3}, "largest rise"),
         ({"residual": 3.0}, "kinetic energy"),

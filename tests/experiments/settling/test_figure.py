@@ -9,11 +9,11 @@ def test_four_panels(tmp_path):
     ds = settled()
     energies, contacts, left, rates = draw(figure.settling, ds, tmp_path).axes
     moving = ds["kinetic"].values > 0.0
-    for n, duration in ((0, "0.003"), (2, "0.01")):
+    for n, duration in ((0, "0.003"), (3, "0.01")):
         row = ds.isel(pile=n)
         follows(line(energies, duration), row["time"][moving[n]], row["kinetic"][moving[n]])
     curves = [one for one in contacts.lines if len(one.get_xdata()) == ds.sizes["frame"]]
-    for curve, n in zip(curves, (0, 2), strict=True):
+    for curve, n in zip(curves, (0, 3), strict=True):
         follows(curve, ds["time"][n], ds["contacts"][n])
     for n, curve in enumerate(left.lines[:4]):
         follows(curve, ds["flow_time"][n], ds["left"][n])

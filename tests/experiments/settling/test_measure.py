@@ -9,7 +9,7 @@ from experiments.granular.test_measure import made
 import gaspart as gp
 from gaspart.experiments.settling import measure
 
-SETTINGS = {"gap": 1e-3, "start": 0.8, "head": 1.0}
+SETTINGS = {"gap": 1e-3, "start": 0.8, "head": 0.6}
 
 
 def pile(count=12, **law):
@@ -18,12 +18,12 @@ def pile(count=12, **law):
     return gp.Scene(gp.Container((4.0, 12.0)), kinds, gravity=(0.0, -2.0), restitution=law)
 
 
-def hopper(count=60, width=5.0):
+def hopper(count=80, width=5.0):
     """An orifice of this width in the floor of a hopper, 10 wide."""
-    region = ((0.0, 200.0), (10.0, 212.0))
+    region = ((0.0, 200.0), (10.0, 214.0))
     ends = 5.0 - 0.5 * width, 5.0 + 0.5 * width
     return gp.Scene(
-        gp.Container((10.0, 212.0)),
+        gp.Container((10.0, 214.0)),
         [gp.Species(count, 0.5, region=region)],
         gravity=(0.0, -1.0),
         restitution=gp.Restitution(0.5, 0.0, 0.01),
@@ -62,8 +62,8 @@ def test_piles_and_flows_are_read(tmp_path):
     assert (np.diff(ds["rate"]) > 0.0).all() and (ds["rate_error"] < 0.2 * ds["rate"]).all()
     for n in range(3):  # what passes while the flow is timed: the slope of the discs that are left
         time, left = ds["flow_time"][n].values, ds["left"][n].values
-        assert left[0] == 60 and left[-1] < 20
-        timed = (left < 48) & (left > 30)
+        assert left[0] == 80 and left[-1] < 20
+        timed = (left < 64) & (left > 40)
         slope = np.polyfit(time[timed], left[timed], 1)[0]
         assert ds["rate"][n] == pytest.approx(-slope, rel=0.3)
 

@@ -7,7 +7,7 @@ import xarray as xr
 
 from gaspart.analysis.statistics import combine, mean_of
 from gaspart.claims import Claim, Estimate
-from gaspart.experiments.settling.measure import EXPONENT
+from gaspart.theory.granular import DISCHARGE_EXPONENT
 
 BEVERLOO = (
     "Beverloo, Leniger & van de Velde, Chem. Eng. Sci. 15, 260 (1961), in two dimensions: free fall from an "
@@ -72,7 +72,7 @@ def _flows(ds: xr.Dataset) -> list[Claim]:
         Claim(
             claim="exponent of the rate of flow against the width of the orifice less k diameters, k fitted",
             measured=Estimate.of(ds, "exponent"),
-            expected=EXPONENT,
+            expected=DISCHARGE_EXPONENT,
             required=0.25,
             source=BEVERLOO,
             alternative=1.0,

@@ -7,8 +7,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from gaspart.experiments.settling.measure import EXPONENT
 from gaspart.rendering import style
+from gaspart.theory.granular import DISCHARGE_EXPONENT
 
 
 def settling(ds: xr.Dataset) -> Figure:
@@ -65,7 +65,13 @@ def _rates(axis: Axes, ds: xr.Dataset) -> None:
     offset, amplitude = float(ds["beverloo_offset"]), float(ds["beverloo_amplitude"])
     apart = ds["width"] - offset
     line = np.array([0.85 * float(apart.min()), 1.15 * float(apart.max())])
-    axis.plot(line, amplitude * line**EXPONENT, color=style.REFERENCE, zorder=1, label="slope 3/2 (Beverloo)")
+    axis.plot(
+        line,
+        amplitude * line**DISCHARGE_EXPONENT,
+        color=style.REFERENCE,
+        zorder=1,
+        label="slope 3/2 (Beverloo)",
+    )
     style.points(axis, apart, ds["rate"], ds["rate_error"], color=style.DATA, label="measured")
     axis.set_xscale("log")
     axis.set_yscale("log")

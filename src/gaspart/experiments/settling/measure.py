@@ -13,10 +13,9 @@ import xarray as xr
 
 from gaspart.planning import grid
 from gaspart.scene.scene import Scene
+from gaspart.theory.granular import DISCHARGE_EXPONENT
 from gaspart.trajectory.run import open_trajectory
 
-EXPONENT = 1.5
-"""Of Beverloo's law in two dimensions."""
 _FILLED = 0.84  # packing fraction of a filling of discs of two sizes (random close packing)
 
 
@@ -124,6 +123,11 @@ class Flow:
     time: np.ndarray
     left: np.ndarray
 
+    @property
+    def rate(self) -> float:
+        """Geometric mean of the rates."""
+        return float(np.exp(np.log(self.rates).mean()))
+
 
 def _flow(point: grid.Point, settings: dict) -> Flow:
     """The flow of a point. Raises ValueError if fewer discs leave the hopper than are to be timed."""
@@ -167,7 +171,7 @@ def _flows(flows: list[Flow]) -> dict:
     factor for all orifices, which is measured by all replicas; likewise that of a ratio.
     """
     flows = sorted(flows, key=lambda flow: flow.width)
-    width, rate = (np.array([value(flow) for flow in flows]) for value in (_width, _rate))
+    width, rate = np.array([(flow.width, flow.rate) for flow in flows]).T
     error, freedom = _relative_errors(flows, "rates")
     ratio = np.array([np.exp(np.log(flow.ratios).mean()) for flow in flows])
     ratio_error, _ = _relative_errors(flows, "ratios")
@@ -185,14 +189,6 @@ def _flows(flows: list[Flow]) -> dict:
         "left": (("orifice", "flow_frame"), _padded([flow.left.astype(float) for flow in flows])),
         **_fit(width, rate, error, freedom),
     }
-
-
-def _width(flow: Flow) -> float:
-    return flow.width
-
-
-def _rate(flow: Flow) -> float:
-    return float(np.exp(np.log(flow.rates).mean()))
 
 
 def _relative_errors(flows: list[Flow], name: str) -> tuple[np.ndarray, int]:
@@ -213,11 +209,13 @@ def _fit(width: np.ndarray, rate: np.ndarray, error: np.ndarray, freedom: int) -
     chi_square of this fit). The offset is not negative."""
     from scipy.optimize import curve_fit
 
-    def law(width: np.ndarray, amplitude: float, offset: float, exponent: float = EXPONENT) -> np.ndarray:
+    def law(
+        width: np.ndarray, amplitude: float, offset: float, exponent: float = DISCHARGE_EXPONENT
+    ) -> np.ndarray:
         return np.log(amplitude) + exponent * np.log(width - offset)
 
-    start = (rate[-1] / width[-1] ** EXPONENT, 0.5 * width.min(), EXPONENT)
-    bounds = ((0.0, 0.0, 0.0), (np.inf, 0.95 * width.min(), 2.0 * EXPONENT))
+    start = (rate[-1] / width[-1] ** DISCHARGE_EXPONENT, 0.5 * width.min(), DISCHARGE_EXPONENT)
+    bounds = ((0.0, 0.0, 0.0), (np.inf, 0.95 * width.min(), 2.0 * DISCHARGE_EXPONENT))
     data = (width, np.log(rate))
     fixed, _ = curve_fit(
         lambda width, amplitude, offset: law(width, amplitude, offset),
