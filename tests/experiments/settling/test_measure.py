@@ -47,7 +47,7 @@ def test_piles_and_flows_are_read(tmp_path):
         made(tmp_path, "pile", pile(contact_duration=0.005), duration=30.0, samples=60),
         *(
             made(
-                tmp_path, f"hopper{width:g}", hopper(width=width), duration=20.0, samples=80,
+                tmp_path, f"hopper{width:g}", hopper(width=width), duration=30.0, samples=120,
                 boxes_per_side=[8, 140], replicas=2,
             )
             for width in (3.0, 4.0, 5.0)
