@@ -35,10 +35,11 @@ def _piles(energies: Axes, contacts: Axes, ds: xr.Dataset) -> None:
             energies.plot(time[moving][-1:], row["kinetic"][moving][-1:], color=colour, marker="x")
         contacts.plot(time, row["contacts"], color=colour)
     energies.set_yscale("log")
+    energies.set_ylim(top=20.0 * float(ds["kinetic"].max()))  # room for the letter of the panel
     energies.set_ylabel("kinetic energy of a disc")
     energies.legend(loc="upper right")
     contacts.set_ylabel("contacts per disc")
-    contacts.set_ylim(0.0)
+    contacts.set_ylim(0.0, 2.4)
     for axis in (energies, contacts):
         axis.set_xlim(0.0, float(ds["time"].max()))
         axis.set_xlabel(r"$t\,\sqrt{g/d}$")
@@ -54,7 +55,7 @@ def _discs_left(axis: Axes, ds: xr.Dataset) -> None:
             label=rf"$D={float(row['width']):.3g}\,d$",
         )
     axis.set_xlim(0.0, float(ds["flow_time"].max()))
-    axis.set_ylim(0.0)
+    axis.set_ylim(0.0, 1.15 * float(ds["left"].max()))
     axis.set_xlabel(r"$t\,\sqrt{g/d}$")
     axis.set_ylabel("discs left in the hopper")
     axis.legend(loc="upper right")

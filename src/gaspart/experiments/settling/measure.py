@@ -61,7 +61,7 @@ def _diameter(radii: np.ndarray) -> float:
 
 
 def _pile(scene: Scene, path: str, gap: float) -> dict:
-    """One pile: see `settling`."""
+    """One pile, gravity along -y: see `settling`."""
     with open_trajectory(path) as trajectory:
         time, radii = trajectory["time"].values, trajectory["radius"].values.astype(float)
         positions = trajectory["coordinates"].values.astype(float)
@@ -95,7 +95,7 @@ def _lasting(scene: Scene, positions: np.ndarray) -> float:
     force m v^2 / s, and meet after s / v = v / (g h).
     """
     height = 2.0 * positions[:, 1].mean()
-    speed = -scene.gravity[1] * height * scene.contact_duration
+    speed = math.hypot(*(scene.gravity or ())) * height * scene.contact_duration
     return scene.species[0].mass * speed**2 / 6.0
 
 
@@ -132,7 +132,8 @@ class Flow:
 def _flow(point: grid.Point, settings: dict) -> Flow:
     """The flow of a point. Raises ValueError if fewer discs leave the hopper than are to be timed."""
     scene = grid.scene(point)
-    height, width = scene.walls[0].start[1], scene.walls[1].start[0] - scene.walls[0].end[0]
+    _, left_end, right_end, _ = sorted(end for wall in scene.walls for end in wall.corners.values())
+    height, width = left_end[1], right_end[0] - left_end[0]
     filled = _FILLED * scene.container.lengths[0]  # area of discs in a unit of height
     intervals, seen = [], []
     for path in point.replica_paths:
