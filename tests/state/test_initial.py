@@ -22,6 +22,17 @@ def test_random_insertion_keeps_particles_apart_and_inside(scene):
         assert (position <= high).all()
 
 
+def test_a_region_holds_its_whole_particles():
+    kinds = [gp.Species(15, r, region=((2.0, 5.0), (6.0, 9.5))) for r in (0.1, 0.3)]
+    scene = gp.Scene(gp.Container((10.0, 10.0), ("periodic", "wall")), [*kinds, gp.Species(20, 0.2)])
+    state = initial_state(scene, 1)
+    inside = state.species < 2
+    low, high = state.positions - state.radii[:, None], state.positions + state.radii[:, None]
+    assert ((low >= (2.0, 5.0)) & (high <= (6.0, 9.5)))[inside].all()
+    assert not ((low >= (2.0, 5.0)) & (high <= (6.0, 9.5)))[~inside].all()
+    assert closest(scene, state) > 0.0
+
+
 @pytest.mark.parametrize("boundary", ["wall", "periodic"])
 @pytest.mark.parametrize(("dimension", "eta"), [(2, 0.3), (2, 0.72), (3, 0.3), (3, 0.58)])
 def test_lattices_hold_any_number(dimension, boundary, eta):

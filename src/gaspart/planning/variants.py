@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _FEW = 8  # particles and walls that a tiny run has of each kind
 _MATTER = {"species.Species", "bodies.Body", "restitution.Restitution"}  # whose properties are features
 # in every kernel, or in none
-_NO_FEATURE = ("container", "count", "radius", "speed", "temperature", "centres_to_walls")
+_NO_FEATURE = ("container", "count", "radius", "speed", "temperature", "centres_to_walls", "region")
 
 
 def variant(point: Point) -> str:

@@ -59,6 +59,18 @@ def vector(dimension: int) -> Rule:
     return Rule(partial(validation.vector, dimension=dimension), _numbers(dimension, dimension))
 
 
+def two_vectors(dimension: int | None = None) -> Rule:
+    """Two lists of `dimension` finite numbers, of 2 or 3 where that is not known."""
+    least, most = (2, 3) if dimension is None else (dimension, dimension)
+
+    def check(name: str, value: Any) -> tuple[tuple[float, ...], ...]:
+        if not isinstance(value, (tuple, list)) or len(value) != 2:
+            raise SceneError(name, value, f"must be two lists of {dimension or '2 or 3'} numbers")
+        return tuple(validation.vector(f"{name}[{n}]", item, dimension) for n, item in enumerate(value))
+
+    return Rule(check, kinds.listed(_numbers(least, most), least=2, most=2))
+
+
 def between(least: float, most: float) -> Rule:
     """A number from `least` to `most`."""
     rule = f"must be from {least:g} to {most:g}"

@@ -6,9 +6,11 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
+from gaspart.scene.validation import vector
 
 if TYPE_CHECKING:
     from gaspart.scene.container import Container
+    from gaspart.scene.species import Species
 
 _RESOLVED = 1e12  # diameters in the longest side, at most: contacts are then accurate to a thousandth
 _ROOM = 1e-6  # of a radius: the least room of a particle between two walls
@@ -30,6 +32,21 @@ def check_room(container: Container, centres_to_walls: bool, key: str, radius: f
     if 2 * radius * _RESOLVED < longest:
         rule = f"too small to resolve its contacts, in a container whose longest side is {longest:g}"
         raise SceneError(key, radius, rule)
+
+
+def check_region(container: Container, key: str, kind: Species) -> None:
+    """Raise SceneError, with `key`, if the region of a species is not a box inside the container that has
+    room for one of its particles."""
+    if kind.region is None:
+        return
+    lower, upper = (
+        vector(f"{key}[{n}]", corner, container.dimension) for n, corner in enumerate(kind.region)
+    )
+    for low, high, length in zip(lower, upper, container.lengths, strict=True):
+        if low < 0.0 or high > length:
+            raise SceneError(key, kind.region, "must lie inside the container")
+        if not high - low > 2.0 * kind.radius:
+            raise SceneError(key, kind.region, f"has no room for a particle of radius {kind.radius:g}")
 
 
 class Nearby:

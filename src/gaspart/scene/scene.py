@@ -19,7 +19,7 @@ from gaspart.scene.faces import SCHEMA as FACES_SCHEMA
 from gaspart.scene.faces import Sticky, Thermal, Well, check_faces, surface_from_dict, surface_to_dict
 from gaspart.scene.geometry import CLOSE_PACKING, ball_volume
 from gaspart.scene.keys import FLAG, VECTOR, checked_by_class, declared, instance_of, list_of, validate
-from gaspart.scene.limits import Nearby, check_room
+from gaspart.scene.limits import Nearby, check_region, check_room
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.species import SHARED, Body, Species
 from gaspart.scene.thermostat import Thermostat, check_thermostat
@@ -101,6 +101,7 @@ class Scene:
         for n, kind in enumerate(self.species):
             if kind.count:
                 self._fits(f"species[{n}].radius", kind)
+            check_region(self.container, f"species[{n}].region", kind)
         arrangements = {kind.arrangement for kind in self.species}
         for shared in arrangements & set(SHARED):
             if self.bodies or arrangements != {shared}:

@@ -16,6 +16,7 @@ from gaspart.scene.keys import (
     choice,
     count,
     declared,
+    two_vectors,
     validate,
 )
 from gaspart.scene.validation import LARGEST, MOST_BODIES, SMALLEST, number, settle, size, vector
@@ -50,10 +51,11 @@ class Species:
     """`count` like particles, placed by the program.
 
     Velocities are isotropic: of one fixed `speed`, or Maxwellian at `temperature`; with neither the particles
-    start at rest. `arrangement` is "random" (sequential insertion), "lattice", "slab": a lattice whose empty
-    sites all lie in one half, so that this half melts, or "compressed": grown to a density beyond that of
-    insertion (see `compression`). A `fixed` particle with a `vibration` or a `temperature` has one mode of
-    vibration: a contact exchanges its energy with the normal energy of the other particle.
+    start at rest. `arrangement` is "random" (sequential insertion, in a `region` if there is one), "lattice",
+    "slab": a lattice whose empty sites all lie in one half, so that this half melts, or "compressed": grown
+    to a density beyond that of insertion (see `compression`). A `fixed` particle with a `vibration` or a
+    `temperature` has one mode of vibration: a contact exchanges its energy with the normal energy of the
+    other particle.
     """
 
     count: int = field(metadata=declared(count(MOST_BODIES), "number of particles"))
@@ -67,6 +69,14 @@ class Species:
         ),
     )
     arrangement: str = field(default="random", metadata=declared(choice(*ARRANGEMENTS), "initial positions"))
+    region: tuple[tuple[float, ...], ...] | None = field(
+        default=None,
+        metadata=declared(
+            two_vectors(),
+            "two opposite corners, (2, d), of the box in which all its particles start, the lower one first; "
+            "default: the container",
+        ),
+    )
     moment_of_inertia: float | None = field(default=None, metadata=_MOMENT)
     fixed: bool = field(default=False, metadata=_FIXED)
     vibration: float | None = field(
@@ -79,6 +89,8 @@ class Species:
     def __post_init__(self) -> None:
         validate(self)
         _check_matter(self)
+        if self.region is not None and self.arrangement != "random":
+            raise SceneError("region", self.region, "needs arrangement: random")
         if self.speed is not None and self.temperature is not None:
             raise SceneError("temperature", self.temperature, "give speed or temperature, not both")
         if self.fixed and self.speed:

@@ -4,22 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
 
 from gaspart.errors import SceneError
-from gaspart.kinds import listed
-from gaspart.scene.keys import Rule, declared, validate
+from gaspart.scene.keys import declared, two_vectors, validate
 from gaspart.scene.keys import vector as vector_of
 from gaspart.scene.validation import positive, vector
-
-
-def _edges(name: str, value: Any) -> tuple[tuple[float, ...], ...]:
-    if not isinstance(value, (tuple, list)) or len(value) != 2:
-        raise SceneError(name, value, "must be two lists of 3 numbers")
-    return tuple(vector(f"{name}[{n}]", edge, 3) for n, edge in enumerate(value))
-
-
-_EDGES = Rule(_edges, listed(vector_of(3).kind, least=2, most=2))
 
 
 @dataclass(frozen=True)
@@ -56,7 +45,7 @@ class Plate:
 
     corner: tuple[float, ...] = field(metadata=declared(vector_of(3), "one corner"))
     edges: tuple[tuple[float, ...], ...] = field(
-        metadata=declared(_EDGES, "the vectors from it to the two neighbouring corners")
+        metadata=declared(two_vectors(3), "the vectors from it to the two neighbouring corners")
     )
 
     def __post_init__(self) -> None:

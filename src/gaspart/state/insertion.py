@@ -9,6 +9,7 @@ import numpy as np
 from gaspart.errors import SceneError
 from gaspart.kernels.memory import aligned
 from gaspart.scene.scene import Scene
+from gaspart.scene.species import Species
 from gaspart.state.boxes import Boxes, make_boxes, sides_for
 from gaspart.state.interior_walls import wall_rows
 from gaspart.state.oversized import largest_in_boxes
@@ -24,6 +25,14 @@ def per_body(scene: Scene, attribute: str) -> np.ndarray:
     """(N,) an attribute of all particles; all of one species have the same."""
     alone = [getattr(body, attribute) for body in scene.bodies]
     return np.concatenate([alone, *(np.full(kind.count, getattr(kind, attribute)) for kind in scene.species)])
+
+
+def range_of_centres(scene: Scene, kind: Species) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """(d,), (d,): the lowest and highest coordinates at which centres of a species are placed."""
+    if kind.region is None:
+        return scene.reach(kind.radius)
+    lower, upper = kind.region
+    return tuple(x + kind.radius for x in lower), tuple(x - kind.radius for x in upper)
 
 
 def empty_arrays(scene: Scene, boxes: Boxes, radii: np.ndarray) -> tuple[Placed, PeriodicBoxes, Block]:
@@ -78,7 +87,7 @@ def random_insertion(
     for n in species:
         kind = scene.species[n]
         stop = done + kind.count
-        lower, upper = scene.reach(kind.radius)
+        lower, upper = range_of_centres(scene, kind)
         failures = 0
         numbers = np.empty((max(256, min(1_000_000, 2 * kind.count)), dimension))
         alone = kind.radius > largest
