@@ -102,9 +102,12 @@ def record_collisions(
     """
     with writing(path, COLLISIONS, overwrite) as scratch:
         data = collision_data(scene, collisions, seed, equilibration)
-        # in memory first: the library itself does not report what keeps it from writing
-        encoding = {name: {"zlib": True} for name in data}
-        scratch.write_bytes(data.to_netcdf(None, engine="netcdf4", encoding=encoding))
+        # In memory first: the library itself does not report what keeps it from writing. As a file, because
+        # without one it stores the time of its creation.
+        with open(os.memfd_create("collisions"), "r+b") as memory:
+            encoding = {name: {"zlib": True} for name in data}
+            data.to_netcdf(descriptor_path(memory), engine="netcdf4", encoding=encoding)
+            scratch.write_bytes(memory.read())
     return data
 
 

@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from gaspart.cli.arguments import Commands, add_command, add_output, integer, print_line, real
+from gaspart.cli.arguments import Parser, add_output, integer, print_line, real, set_command
 from gaspart.cli.progress import clear_line, counted
 from gaspart.errors import SceneError
 from gaspart.files import output_path, writing
@@ -19,16 +19,16 @@ _EXAMPLES = """examples:
   gaspart render run.nc -o run.mp4 --frames-per-second 30 --colour species"""
 
 
-def add_render(commands: Commands) -> None:
-    """Add the command to the others."""
+def add_render(parser: Parser) -> None:
+    """Add the arguments of the command to its parser."""
     text = (
         "A picture (.png) of one frame of a trajectory, or a film (.mp4, .gif) of all: spheres with light "
         "and shadow, discs from above."
     )
-    render = add_command(commands, "render", _render, "a picture or a film", text, _EXAMPLES)
-    add = render.add_argument
+    set_command(parser, _render, text, _EXAMPLES)
+    add = parser.add_argument
     add("trajectory", metavar="FILE")
-    add_output(render, "ends in .png, .mp4 or .gif", "a picture or a film")
+    add_output(parser, "ends in .png, .mp4 or .gif", "a picture or a film")
     add(
         "--frame",
         type=integer(),
