@@ -46,6 +46,16 @@ def test_later_discs_lie_over_earlier_ones_and_lines_over_discs():
     assert (canvas.image != before).any(axis=-1).sum() <= 9
 
 
+def test_a_path_is_dark_with_a_bright_border_on_any_disc():
+    canvas = Canvas(np.array([10.0, 10.0]), (100, 100))
+    canvas.discs(np.array([[5.0, 5.0]]), np.array([4.0]), np.full((1, 3), 0.5))
+    canvas.path([[2.0, 5.0], [8.0, 5.0]])
+    column = canvas.image[40:60, 50].mean(axis=1)  # from above to below
+    assert column.min() < 0.25 and (column > 0.9).sum() >= 2
+    dark, bright = np.flatnonzero(column < 0.25), np.flatnonzero(column > 0.9)
+    assert np.ptp(dark) >= 2 and bright[0] < dark[0] and bright[-1] > dark[-1]
+
+
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_picture_is_the_same_pixels_each_time(dimension):
     scene = gp.Scene(gp.Container((9.0,) * dimension), [gp.Species(30, 0.5, temperature=1.0)])
