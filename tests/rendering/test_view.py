@@ -146,6 +146,26 @@ return {{ prints: [first, later, coloured, dragged, zoomed], again: again === fi
 
 
 @needs_chromium
+def test_it_colours_by_order_where_the_page_has_it(pages):
+    scene = gp.Scene(gp.Container((6.0, 6.0), "periodic"), [gp.Species(14, 0.4, temperature=1.0)])
+    simulation = gp.Simulation(scene, gp.EventDriven(search="direct"), seed=1)
+    simulation.advance(duration=0.5)
+    gp.view(simulation, frames=2, order=True).save(pages / "order.html")
+    script = f"""{PIXELS}
+const first = print(), names = [...get("colour").options].map(option => option.text);
+const ordered = names.length > 2 && set("colour", "change", "order");
+return {{ names, changed: ordered !== first, bar: get("bar").textContent.trim() }};
+"""
+    found = found_on(["order.html", "discs.html"], script, pages, 800)
+    assert found["order.html"] == {
+        "names": ["speed", "species", "order"],
+        "changed": True,
+        "bar": "|ψ6| 0 to 1",
+    }
+    assert found["discs.html"]["names"] == ["speed", "species"]
+
+
+@needs_chromium
 def test_playing_advances_the_frames(pages):
     script = """
 window.eval('get("rate").value = "60"; get("play").click()');
