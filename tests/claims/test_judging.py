@@ -111,6 +111,7 @@ def test_the_joint_test_leaves_out_what_does_not_scatter_as_a_gaussian():
     (joint,) = family_test([*family_of(20), *wide, banded])
     assert joint.measured.value == 0.0
     assert family_test([claim(), banded]) == []
+    assert family_test([claim(1.0, 0.0, text=f"count {k}") for k in range(9)]) == []  # exact
     (nothing,) = family_test(wide)
     assert judge([nothing]) == ["inconclusive"]
 

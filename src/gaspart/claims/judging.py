@@ -32,12 +32,14 @@ def holm(p_values: Sequence[float], level: float = FAMILY_LEVEL) -> list[bool]:
 
 
 def family_test(claims: Sequence[Claim]) -> list[Claim]:
-    """The joint test of a figure's claims: [one claim], or [] if fewer than two of them state a value.
+    """The joint test of a figure's claims: [one claim], or [] if fewer than two of them state a value that
+    is not counted exactly.
 
     Holm's correction notices one deviation that is too large; this chi-square, two-sided, notices many that
     are a little too large, and uncertainties that are too large.
     """
-    if sum(claim.form == "value" and claim.kind == "test" for claim in claims) < 2:
+    tested = [claim for claim in claims if claim.form == "value" and claim.kind == "test"]
+    if sum(claim.measured.error != 0.0 for claim in tested) < 2:
         return []
     deviations = [claim.deviation_sigma for claim in claims if claim.is_scattered]
     text = "deviations of all values without an allowance"

@@ -15,7 +15,7 @@ from gaspart.theory.geometry import number_density
 ERPENBECK_WOOD_UNCERTAINTY = 0.03
 """Relative uncertainty of `erpenbeck_wood_ratio`: the band to draw around it."""
 YEH_HUMMER_CONSTANT = 2.837297
-"""Madelung-like constant of a cubic periodic container (Yeh and Hummer 2004; recalled)."""
+"""Madelung-like constant of a cubic periodic container (Yeh and Hummer 2004, abstract)."""
 
 
 def erpenbeck_wood_ratio(packing_fraction: Numbers) -> Values:
@@ -42,7 +42,7 @@ def erpenbeck_wood_diffusion(
 def yeh_hummer(length: Numbers, viscosity: Numbers, temperature: float = 1.0) -> Values:
     """Spheres: D_infinity - D_L = 2.837297 k_B T / (6 pi viscosity L): to be added to D_L (length^2 / time).
 
-    Yeh and Hummer, J. Phys. Chem. B 108, 15873 (2004); recalled. `length`: side of the cubic periodic
+    Yeh and Hummer, J. Phys. Chem. B 108, 15873 (2004), abstract. `length`: side of the cubic periodic
     container; `viscosity`: shear viscosity, `enskog.enskog_viscosity` will do to eta = 0.3. Hydrodynamics:
     holds where the mean free path is much smaller than L; a dilute gas has less correction than this.
     """

@@ -9,12 +9,12 @@ from gaspart.scene.geometry import CLOSE_PACKING
 from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
 from gaspart.theory.geometry import packing_fraction
 
-COEXISTENCE_PRESSURE = {2: 9.185, 3: 11.573}
+COEXISTENCE_PRESSURE = {2: 9.185, 3: 11.5727}
 """Pressure P sigma^d / k_B T at which fluid and ordered phase coexist, infinite system.
 
 Discs (liquid and hexatic): Bernard and Krauth, Phys. Rev. Lett. 107, 155704 (2011); Engel and others, Phys.
 Rev. E 87, 042134 (2013); there written beta P (2 sigma)^2 with sigma the radius (recalled). Spheres (fluid
-and face-centred cubic): Fernandez and others, Phys. Rev. Lett. 108, 165701 (2012; recalled).
+and face-centred cubic): 11.5727(10), Fernandez and others, Phys. Rev. Lett. 108, 165701 (2012), abstract.
 """
 COEXISTENCE_DENSITY = {2: (0.700 * 4.0 / np.pi, 0.716 * 4.0 / np.pi), 3: (0.939, 1.0375)}
 """Number densities of the fluid that freezes and of the ordered phase that melts; sources as above."""
@@ -47,7 +47,8 @@ def _expansion(eta: Numbers, dimension: int) -> np.ndarray:
 def speedy_crystal(packing_fraction: Numbers) -> Values:
     """Face-centred cubic crystal of spheres: Z = 3/(1-z) - 0.5921 (z - 0.7072)/(z - 0.601), z = eta / eta_c.
 
-    Speedy, J. Phys.: Condens. Matter 10, 4387 (1998; recalled). From LOWEST_CRYSTAL to close packing.
+    Speedy, J. Phys.: Condens. Matter 10, 4387 (1998), by SklogWiki's table of its coefficients. From
+    LOWEST_CRYSTAL to close packing.
     """
     z = 1.0 / (1.0 + _expansion(packing_fraction, 3))
     return 3.0 / (1.0 - z) - 0.5921 * (z - 0.7072) / (z - 0.601)
@@ -56,10 +57,10 @@ def speedy_crystal(packing_fraction: Numbers) -> Values:
 def alder_hoover_young_crystal(packing_fraction: Numbers, dimension: int) -> Values:
     """Z = d/alpha + a_0 + a_1 alpha + ..., alpha = V / V_c - 1: the free-volume limit and a fit beyond it.
 
-    Alder, Hoover and Young, J. Chem. Phys. 49, 3688 (1968; recalled). Discs on the triangular lattice:
-    2/alpha + 1.90 + 0.67 alpha + 1.5 alpha^2; spheres, face-centred cubic: 3/alpha + 2.566 + 0.55 alpha
-    - 1.19 alpha^2 + 5.95 alpha^3. The free-volume term is exact at close packing; the fits are good to some
-    0.3 %.
+    Alder, Hoover and Young, J. Chem. Phys. 49, 3688 (1968). Discs on the triangular lattice: 2/alpha
+    + 1.90(1) + 0.67(7) alpha (by SklogWiki) + 1.5 alpha^2 (recalled); spheres, face-centred cubic: 3/alpha
+    + 2.566 + 0.55 alpha - 1.19 alpha^2 + 5.95 alpha^3 (recalled). The free-volume term is exact at close
+    packing; the fits are good to some 0.3 %.
     """
     alpha = _expansion(packing_fraction, checked_dimension(dimension))
     series = {2: (1.90, 0.67, 1.5), 3: (2.566, 0.55, -1.19, 5.95)}[dimension]

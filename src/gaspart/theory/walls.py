@@ -31,22 +31,29 @@ from gaspart.theory.state import compressibility_factor, compressibility_uncerta
 
 _TABLES = Path(__file__).parent / "data"
 _DENSEST = 0.49
-"""Where the tables of surface tensions end."""
+"""Where the table of the surface tension of spheres ends."""
 # To second order in rho, from the overlap of two centres in a box (exact): gamma = -coefficient rho^2 and
 # tau = coefficient rho^2.
 _SURFACE = {2: 1.0 / 3.0, 3: math.pi / 8.0}
 _EDGE = {2: 1.0 / 16.0, 3: 1.0 / 15.0}
+_THIRD_DISCS = 2.3560
+"""The third order of gamma for discs over the second, over eta: the cluster integral of three centres at a
+wall, by quasi-Monte Carlo (`tests/theory/test_walls.py`; 1e-4)."""
 _STEP = 1e-4  # of the central differences, in packing fraction
 
 
 @cache
 def _shape(dimension: int) -> tuple[np.ndarray, np.ndarray]:
     """Polynomials in eta for gamma (1 - eta)^d over its second-order form, which is 1 at eta = 0, and for its
-    uncertainty: through the table's points to some 1e-4."""
+    uncertainty. Spheres: through the table's points to some 1e-4. Discs: exact to third order, and a tenth of
+    what (1 - eta)^-2 adds to that."""
+    if dimension == 2:
+        beyond = np.array([0.0, 0.0, 2.0 * _THIRD_DISCS - 1.0, -_THIRD_DISCS])
+        return np.array([1.0, _THIRD_DISCS - 2.0]), -0.1 * beyond
     eta, tension, uncertainty = np.loadtxt(
-        _TABLES / f"surface_tension_{dimension}d.csv", delimiter=",", skiprows=1, unpack=True
+        _TABLES / "surface_tension_3d.csv", delimiter=",", skiprows=1, unpack=True
     )
-    scale = -_SURFACE[dimension] * number_density(eta, dimension) ** 2 / (1.0 - eta) ** dimension
+    scale = -_SURFACE[3] * number_density(eta, 3) ** 2 / (1.0 - eta) ** 3
     design = eta[:, None] ** np.arange(1, 6)
     excess = np.linalg.lstsq(design, tension / scale - 1.0, rcond=None)[0]
     spread = np.linalg.lstsq(design, -uncertainty / scale, rcond=None)[0]
@@ -64,14 +71,15 @@ def surface_tension(packing_fraction: Numbers, dimension: int) -> Values:
     """gamma sigma^(d-1) / k_B T of the fluid at a hard wall, its area counted where centres touch (negative).
 
     Spheres: White Bear II, Hansen-Goos and Roth, J. Phys. Condens. Matter 18, 8413 (2006) (table, computed).
-    Discs: the exact second order times (1 + 0.387 eta) / (1 - eta)^2 (computed). Range: eta <= 0.49.
+    Discs: the exact second order times (1 + 0.356 eta) / (1 - eta)^2, exact to third order (computed). Range:
+    eta <= 0.49.
     """
     return _tension(packing_fraction, dimension, 0)
 
 
 def surface_tension_uncertainty(packing_fraction: Numbers, dimension: int) -> Values:
     """Standard uncertainty of `surface_tension`. Spheres: its distance from scaled particle theory, or 1 %;
-    discs: a tenth of all that is beyond the exact second order (an estimate)."""
+    discs: a tenth of all that is beyond the exact third order (an estimate)."""
     return np.abs(_tension(packing_fraction, dimension, 1))
 
 

@@ -85,7 +85,7 @@ def waits(seconds):
 
 
 def test_what_hangs_or_dies_is_ended_and_the_rest_goes_on():
-    assert guarded(waits, [0.0, 60.0, -1.0, 0.01], limit=0.5) == [0.0, None, None, 0.01]
+    assert guarded(waits, [0.0, 60.0, -1.0, 0.01], limit=3.0) == [0.0, None, None, 0.01]
 
 
 def test_steps_that_come_too_late_are_refused_even_if_energy_is_kept():

@@ -23,8 +23,13 @@ def test_spheres_as_the_literature_has_them_agree():
         found.pop("Z of the crystal at packing fraction 0.5, from the crystal") == "no verdict"
     )  # superheated
     assert sum("Z of the fluid" in text for text in found) == 5
-    assert found.pop("pressure of crystal beside fluid, k_B T / sigma^3 (within 11.3415 to 11.8045)")
     assert set(found.values()) == {"agrees"}
+
+
+def test_a_wrong_pressure_of_coexistence_disagrees():
+    data = spheres()
+    data["slab_pressure"] = data["slab_pressure"] * 1.05
+    assert verdict(judged(freezing.freezing_spheres(data)), "k_B T / sigma^3 (within") == "disagrees"
 
 
 def changed(dataset, name, value, **where):
