@@ -73,5 +73,6 @@ def _draw_legend(draw: ImageDraw, legend: Legend, font: Any, letters: int, width
             x = block(start + n * length / len(colours), colour)
         _write(draw, (x + gap // 2, base), legend.texts[1], font, "ls")
         return
-    for colour, text in zip(colours, legend.texts, strict=True):
+    for colour, text in zip(colours, legend.texts, strict=True):  # with paper around each, as on particles
+        draw.rectangle([x - 2, base - 0.7 * letters - 2, x + letters + 2, base + 2], _PAPER)
         x = _write(draw, (block(x + letters, colour) + gap // 2, base), text, font, "ls") + gap
