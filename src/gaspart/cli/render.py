@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import io
 import sys
 from pathlib import Path
 
@@ -87,4 +88,6 @@ def _picture(trajectory: str, output: Path, options: dict, overwrite: bool) -> N
     from gaspart.rendering.pictures import PICTURE
 
     with writing(output, PICTURE, overwrite) as scratch:
-        Image.fromarray(render(trajectory, **options)).save(scratch, "PNG")
+        picture = io.BytesIO()  # first, because Pillow does not report what keeps it from writing
+        Image.fromarray(render(trajectory, **options)).save(picture, "PNG")
+        scratch.write_bytes(picture.getvalue())
