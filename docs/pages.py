@@ -71,7 +71,7 @@ def api():
     pages["api/index.rst"] = (
         heading("Public names")
         + "All names are importable from ``gaspart``, those of theory from ``gaspart.theory``,\n"
-        + "observables from ``gaspart.analysis``.\n\n"
+        + "observables from ``gaspart.analysis``. :doc:`An example of each <../../examples>`.\n\n"
         + f".. toctree::\n   :maxdepth: 2\n\n{listed}"
     )
     return pages

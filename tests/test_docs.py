@@ -1,10 +1,12 @@
 """The pages in docs/: what they show runs as it stands there, and the reference is complete."""
 
+import ast
 import importlib.util
 import re
 import shlex
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import gaspart as gp
@@ -34,6 +36,39 @@ def test_a_page_runs_from_top_to_bottom(name, tmp_path, monkeypatch, capsys):
         else:
             exec(compile(text, name, "exec"), names)
     assert "WRONG" not in capsys.readouterr().out
+
+
+def parts(page):
+    """The statements of the Python blocks of a page, each with the value behind its # (None if there is
+    none)."""
+    for block in re.findall(r"^```python\n(.*?)^```", (DOCS / f"{page}.md").read_text(), re.M | re.S):
+        lines = block.splitlines()
+        for statement in ast.parse(block).body:
+            stated = re.search(
+                r"  # ([-\d.,() \[\]e]+|True|False|\(True, True\))$", lines[statement.end_lineno - 1]
+            )
+            yield statement, stated and ast.literal_eval(stated[1])
+
+
+def test_the_examples_give_what_they_state(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    names, compared = {}, 0
+    for statement, stated in parts("examples"):
+        if stated is None:
+            exec(compile(ast.Module([statement], []), "examples", "exec"), names)
+            continue
+        value = eval(compile(ast.Expression(statement.value), "examples", "eval"), names)
+        assert np.allclose(np.asarray(value, float), stated, rtol=1e-4, atol=0.0), ast.unparse(statement)
+        compared += 1
+    assert compared > 100
+
+
+def test_every_public_name_has_an_example():
+    used = {ast.unparse(node) for statement, _ in parts("examples") for node in ast.walk(statement)}
+    public = {f"gp.{name}" for name in gp.__all__} - {"gp.theory"}
+    public |= {f"gp.analysis.{name}" for name in gp.analysis.__all__}
+    public |= {f"theory.{name}" for name in gp.theory.__all__}
+    assert not public - used
 
 
 def script(name):

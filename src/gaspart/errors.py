@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from importlib import import_module
 from itertools import islice
+from types import ModuleType
 
 _LONGEST = {"value": 120, "key": 200, "rule": 2000, "file": 1000}
 _ITEMS, _DEPTH, _BITS = 12, 4, 256  # shown of a collection; of nested ones; of an integer
@@ -37,6 +39,20 @@ def unknown_word(word: object, known: Iterable[str], what: str = "key") -> str:
     words = list(known)
     near = get_close_matches(str(word), words, n=1)
     return f"unknown {what}; " + (f"did you mean {near[0]}?" if near else f"known are {', '.join(words)}")
+
+
+def optional(module: str, extra: str, purpose: str) -> ModuleType:
+    """Import a package that is needed for one purpose only, and belongs to an `extra` of pyproject.toml.
+
+    Raises SceneError, with the command that installs it, if it is missing.
+    """
+    try:
+        return import_module(module)
+    except ModuleNotFoundError as error:
+        if error.name not in (module, module.partition(".")[0]):  # it is installed; something else is missing
+            raise
+        rule = f"is needed for {purpose} and not installed: pip install 'gaspart[{extra}]'"
+        raise SceneError("package", module.partition(".")[0], rule) from None
 
 
 class SimulationError(RuntimeError):

@@ -1,12 +1,16 @@
 """The data set of collisions: rows that follow from one another, and what kinetic theory says of them."""
 
+from time import sleep
+
 import numpy as np
 import pytest
+import xarray as xr
 from scenes import gas
 from scipy import stats
 
 import gaspart as gp
 from gaspart import theory
+from gaspart.analysis.collisions import record_collisions
 
 
 @pytest.mark.parametrize("boundary", ["periodic", "wall"])
@@ -69,3 +73,12 @@ def test_invalid_input_is_refused():
     mixed = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(5, r, speed=1.0) for r in (0.3, 0.5)])
     with pytest.raises(gp.SceneError, match="equal particles"):
         gp.contact_value(gp.collision_data(mixed, 50))
+
+
+def test_a_file_written_a_second_later_has_the_same_bytes(tmp_path):
+    data = record_collisions(gas(2, 20, 0.2), tmp_path / "one.nc", 100, seed=3)
+    sleep(1.01)  # formats store seconds
+    record_collisions(gas(2, 20, 0.2), tmp_path / "other.nc", 100, seed=3)
+    assert (tmp_path / "one.nc").read_bytes() == (tmp_path / "other.nc").read_bytes()
+    with xr.open_dataset(tmp_path / "one.nc") as read:
+        xr.testing.assert_identical(read.load(), data)

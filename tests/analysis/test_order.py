@@ -1,8 +1,11 @@
+import sys
+
 import numpy as np
 import pytest
 from scenes import gas
 
 from gaspart.analysis import order as structure
+from gaspart.errors import SceneError
 from gaspart.state.initial import initial_state
 
 HEXAGONAL = np.array([16.0, 8.0 * np.sqrt(3.0)])
@@ -64,3 +67,10 @@ def test_structure_factor_of_an_ideal_gas_is_one():
     _, _, factor = structure.structure_factor([fluid(2, k)[0] for k in range(20)], lengths, 6.0)
     assert np.isnan(factor).sum() == 1
     assert np.nanmean(factor) == pytest.approx(1.0, abs=0.03)
+
+
+def test_without_freud_the_message_names_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "freud", None)
+    structure._freud.cache_clear()
+    with pytest.raises(SceneError, match=r"g\(r\) and bond order .*: pip install 'gaspart\[order\]'"):
+        structure.hexatic(triangular(), HEXAGONAL)

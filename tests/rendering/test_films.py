@@ -1,3 +1,5 @@
+import sys
+
 import imageio.v3 as imageio
 import numpy as np
 import pytest
@@ -45,14 +47,15 @@ def test_a_film_of_spheres_is_made_of_their_pictures(runs):
 
 
 @pytest.mark.parametrize("scene", ["discs", "spheres"])
-def test_a_clock_is_written_into_the_lower_corners_and_runs(runs, scene):
+def test_time_scale_and_legend_are_written_into_the_corners_and_the_time_runs(runs, scene):
     plain, timed = runs / f"{scene}-plain.gif", runs / f"{scene}-timed.gif"
     film(runs / f"{scene}.nc", plain, size=(240, 180), colour="species")
     film(runs / f"{scene}.nc", timed, size=(240, 180), colour="species", clock=True)
     without, within = (imageio.imread(path).astype(int) for path in (plain, timed))
     changed = np.abs(within - without).max(axis=-1) > 100
-    assert not changed[:, :150].any() and changed[:, 150:, :80].any(axis=(1, 2)).all()
-    assert changed[:, 150:, 160:].any() == (scene == "discs")
+    assert not changed[:, 30:150].any() and changed[:, 150:, :80].any(axis=(1, 2)).all()
+    assert changed[:, 150:, 160:].any(axis=(1, 2)).all()
+    assert changed[:, :30].any() == (scene == "discs")  # the other has one species
     assert (within[0, 150:, :80] != within[4, 150:, :80]).any()
 
 
@@ -81,9 +84,15 @@ def test_the_command_line_makes_pictures_and_films(runs, capsys):
     assert main(["render", source, "-o", str(runs / "a.png"), "--frame", "2", *size]) == 0
     assert main(["render", source, "-o", str(runs / "b.png"), "--frame", "-3", *size]) == 0
     assert (runs / "a.png").read_bytes() == (runs / "b.png").read_bytes()
+    other = ["--camera", "30,90", "--clock", *size]
+    assert main(["render", str(runs / "spheres.nc"), "-o", str(runs / "c.png"), *other]) == 0
+    wanted = gp.render(runs / "spheres.nc", size=(120, 90), camera=(30.0, 90.0), clock=True)
+    assert (imageio.imread(runs / "c.png") == wanted).all()
     options = ["--colour", "species", "--frames-per-second", "10", "--trail", "0"]
     assert main(["render", source, "-o", str(runs / "a.gif"), *size, *options]) == 0
-    assert capsys.readouterr().out.split() == [str(runs / name) for name in ("a.png", "b.png", "a.gif")]
+    assert capsys.readouterr().out.split() == [
+        str(runs / name) for name in ("a.png", "b.png", "c.png", "a.gif")
+    ]
 
 
 @pytest.mark.parametrize(
@@ -96,6 +105,9 @@ def test_the_command_line_makes_pictures_and_films(runs, capsys):
         (["discs.nc", "-o", "new.png", "--trail", "1"], "trail = 1: has no meaning for a picture"),
         (["discs.nc", "-o", "new.gif", "--trail", "21"], "trail = 21: the trajectory has 21 particles"),
         (["spheres.nc", "-o", "new.gif", "--trail", "0"], "trail = 0: is drawn among discs only"),
+        (["discs.nc", "-o", "new.png", "--camera", "0,90"], "camera = (0.0, 90.0): is for spheres"),
+        (["spheres.nc", "-o", "new.gif", "--camera", "0,91"], "camera = 91.0: an azimuth must be from"),
+        (["spheres.nc", "-o", "new.png", "--camera", "9"], "camera = (9.0,): must be an azimuth and an"),
         (["discs.nc", "-o", "new.png", "--size", "9"], "argument --size: '9' must be of the form 1000x750"),
         (["discs.nc", "-o", "a.mp4", "--size", "9x9"], "size = 9: must be a whole number of at least 16"),
         (["discs.nc", "-o", "new.png", "--colour", "red"], "colour = 'red': must be one of speed, species"),
@@ -118,3 +130,11 @@ def test_a_mistake_costs_one_line(runs, monkeypatch, capsys, options, complaint)
     output = capsys.readouterr().err
     assert complaint in output and output.count("\n") == 1
     assert sorted(runs.iterdir()) == before
+
+
+def test_a_film_as_mp4_names_the_package_that_is_missing(runs, monkeypatch):
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    with pytest.raises(gp.SceneError, match=r"films as .mp4 .* not installed: pip install 'gaspart\[film\]'"):
+        film(runs / "discs.nc", runs / "new.mp4")
+    film(runs / "discs.nc", runs / "without.gif", size=(40, 30))
+    assert not (runs / "new.mp4").exists() and (runs / "without.gif").exists()

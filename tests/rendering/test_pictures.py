@@ -2,9 +2,11 @@ import numpy as np
 import pytest
 
 import gaspart as gp
+from gaspart.rendering.camera import camera_for
 from gaspart.rendering.discs import Canvas
 from gaspart.rendering.frames import particles_of, render
-from gaspart.rendering.particles import colours_of
+from gaspart.rendering.particles import colours_of, legend_of
+from gaspart.rendering.pictures import pixels_per_length
 
 BLACK = np.zeros((1, 3))
 
@@ -42,6 +44,16 @@ def test_later_discs_lie_over_earlier_ones_and_lines_over_discs():
     canvas.discs(np.array([[50.0, -50.0]]), np.array([2.0]), BLACK)  # outside
     canvas.line([[2.0, 2.0], [2.0, 2.0]])  # a point, for paths that stand still
     assert (canvas.image != before).any(axis=-1).sum() <= 9
+
+
+def test_a_path_is_dark_with_a_bright_border_on_any_disc():
+    canvas = Canvas(np.array([10.0, 10.0]), (100, 100))
+    canvas.discs(np.array([[5.0, 5.0]]), np.array([4.0]), np.full((1, 3), 0.5))
+    canvas.path([[2.0, 5.0], [8.0, 5.0]])
+    column = canvas.image[40:60, 50].mean(axis=1)  # from above to below
+    assert column.min() < 0.25 and (column > 0.9).sum() >= 2
+    dark, bright = np.flatnonzero(column < 0.25), np.flatnonzero(column > 0.9)
+    assert np.ptp(dark) >= 2 and bright[0] < dark[0] and bright[-1] > dark[-1]
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -115,3 +127,35 @@ def test_the_sides_of_plates_are_drawn():
         for one in (scene, gp.Scene(scene.container))
     )
     assert 200 < (with_plate != without).any(axis=-1).sum() < 3000
+
+
+def test_the_scale_of_speeds_is_written_beside_its_colours():
+    shown = state([[4.0, 4.0]], [1.0], [8.0, 8.0], [(3.0, 4.0)])
+    without, within = (render(shown, size=(600, 400), clock=clock) for clock in (False, True))
+    row = within[16].astype(float) / 255.0
+    ramp = legend_of(particles_of(shown), "speed").colours
+    assert all(np.abs(row - colour).sum(axis=1).min() < 0.02 for colour in ramp)
+    assert (without[16] != within[16]).any()
+    assert legend_of(particles_of(shown), "speed").texts == ("0", "10")
+    assert legend_of(particles_of(shown), "speed", 3.0).texts == ("0", "3")
+    assert legend_of(particles_of(shown), "species") is None  # of one species
+    assert legend_of(particles_of(shown), np.zeros((1, 3))) is None
+
+
+@pytest.mark.parametrize("camera", [(298.0, 24.0), (0.0, 90.0), (45.0, 0.0)])
+def test_the_bar_of_spheres_is_that_of_the_middle_of_the_container(camera):
+    lengths, size = np.array([8.0, 6.0, 5.0]), (400, 300)
+    view = camera_for(lengths, *size, camera)
+    away = 0.5 * lengths + 0.01 * np.array([view.right, np.zeros(3)]) - view.eye
+    columns = 0.5 * size[0] * (away @ view.right) / (away @ view.forward) / view.half_width
+    assert pixels_per_length(lengths, size, camera) == pytest.approx((columns[0] - columns[1]) / 0.01)
+
+
+def test_spheres_are_seen_from_the_direction_of_the_camera():
+    """From above, x to the right: the upper of two spheres hides the lower one."""
+    one = state([[4.0, 4.0, 1.0], [4.0, 4.0, 7.0]], [1.0, 1.0], [8.0] * 3)
+    colours = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    above = render(one, size=(80, 60), colour=colours, camera=(270.0, 90.0)).astype(int)
+    aside = render(one, size=(80, 60), colour=colours, camera=(270.0, 0.0)).astype(int)
+    red = [(image[..., 0] - image[..., 2] > 80).sum() for image in (above, aside)]
+    assert red[0] == 0 and red[1] > 50

@@ -9,6 +9,7 @@ import pytest
 from site_pages import CHROMIUM, found_on
 
 import gaspart as gp
+from gaspart.analysis import order
 from gaspart.cli import main
 
 needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
@@ -76,10 +77,35 @@ def test_a_simulation_shows_itself_in_a_notebook(pages):
     with pytest.raises(gp.SceneError, match="has not advanced"):
         gp.view(simulation)
     simulation.advance(duration=1.0)
-    shown = gp.view(simulation, frames=10)
+    shown = simulation.show(frames=10)
+    assert shown == gp.view(simulation, frames=10)
     assert len(content(shown.page)["time"]) == 10 and shown._repr_html_().startswith("<iframe srcdoc=")
     with pytest.raises(gp.SceneError, match="a view needs frames"):
         gp.view(simulation.state)
+
+
+@pytest.mark.parametrize(("lengths", "name"), [((6.0, 6.0), "|ψ6|"), ((4.0,) * 3, "q6")])
+def test_the_local_order_of_every_particle_is_in_the_page(lengths, name):
+    scene = gp.Scene(gp.Container(lengths, "periodic"), [gp.Species(14, 0.4, temperature=1.0)])
+    simulation = gp.Simulation(scene, gp.EventDriven(search="direct"), seed=1)
+    simulation.advance(duration=0.5)
+    found = content(gp.view(simulation, frames=2, order=True).page)["order"]
+    values = np.frombuffer(base64.b64decode(found["values"]), "u1").reshape(2, 14) / 255.0 * found["highest"]
+    state = simulation.state
+    measure = order.hexatic if len(lengths) == 2 else order.local_steinhardt
+    expected = abs(measure(state.positions, state.lengths))
+    assert found["name"] == name and np.allclose(values[-1], expected, atol=0.5 / 255.0 * found["highest"])
+    assert content(gp.view(simulation).page)["order"] is None
+
+
+def test_order_of_walls_or_of_few_particles_is_refused(pages):
+    with pytest.raises(gp.SceneError, match="needs a periodic container"):
+        gp.view(pages / "discs.nc", order=True)
+    few = gp.Scene(gp.Container((9.0, 9.0), "periodic"), [gp.Species(12, 0.5, temperature=1.0)])
+    simulation = gp.Simulation(few, gp.EventDriven(search="direct"))
+    simulation.advance(duration=0.1)
+    with pytest.raises(gp.SceneError, match="more than 12 particles"):
+        gp.view(simulation, order=True)
 
 
 def test_the_command_writes_a_page(pages, capsys):
@@ -117,6 +143,26 @@ return {{ prints: [first, later, coloured, dragged, zoomed], again: again === fi
         assert found["again"] and 0.01 < found["share"] < 0.7, (name, found)
         assert found["clock"] == "t = 2.500" and found["bar"].startswith("species 0")
         assert found["label"] == "pause" and found["buttons"] and not found["over"]
+
+
+@needs_chromium
+def test_it_colours_by_order_where_the_page_has_it(pages):
+    scene = gp.Scene(gp.Container((6.0, 6.0), "periodic"), [gp.Species(14, 0.4, temperature=1.0)])
+    simulation = gp.Simulation(scene, gp.EventDriven(search="direct"), seed=1)
+    simulation.advance(duration=0.5)
+    gp.view(simulation, frames=2, order=True).save(pages / "order.html")
+    script = f"""{PIXELS}
+const first = print(), names = [...get("colour").options].map(option => option.text);
+const ordered = names.length > 2 && set("colour", "change", "order");
+return {{ names, changed: ordered !== first, bar: get("bar").textContent.trim() }};
+"""
+    found = found_on(["order.html", "discs.html"], script, pages, 800)
+    assert found["order.html"] == {
+        "names": ["speed", "species", "order"],
+        "changed": True,
+        "bar": "|ψ6| 0 to 1",
+    }
+    assert found["discs.html"]["names"] == ["speed", "species"]
 
 
 @needs_chromium

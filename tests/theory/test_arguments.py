@@ -26,7 +26,7 @@ def cases():
                     yield name, argument
 
 
-@pytest.mark.parametrize(("name", "argument"), cases())
+@pytest.mark.parametrize(("name", "argument"), list(cases()))
 def test_what_is_out_of_range_is_refused(name, argument):
     function = getattr(theory, name)
     parameters = inspect.signature(function).parameters.values()

@@ -1,5 +1,7 @@
 """States for other programs, read back by them."""
 
+import sys
+
 import numpy as np
 import pytest
 from scenes import gas
@@ -62,3 +64,12 @@ def test_invalid_exports_are_refused(state):
         with pytest.raises(gp.SceneError, match=complaint):
             gp.export(folder / "run.nc", folder / path, frame)
     assert not list(folder.glob("a.*"))
+
+
+def test_without_gsd_the_message_names_what_to_install(state, monkeypatch):
+    folder, _ = state
+    monkeypatch.setitem(sys.modules, "gsd", None)
+    monkeypatch.delitem(sys.modules, "gsd.hoomd", raising=False)
+    with pytest.raises(gp.SceneError, match=r"GSD files .*: pip install 'gaspart\[gsd\]'"):
+        gp.export(folder / "run.nc", folder / "a.gsd")
+    assert not (folder / "a.gsd").exists()

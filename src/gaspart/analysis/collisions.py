@@ -95,16 +95,16 @@ def record_collisions(
     equilibration: float = 0.0,
     overwrite: bool = False,
 ) -> xr.Dataset:
-    """Write `collision_data` to a netCDF file; returns the data. A data set of collisions that is there is
+    """Write `collision_data` to a netCDF-3 file; returns the data. A data set of collisions that is there is
     replaced only with `overwrite`, any other file never.
 
     Raises SceneError for such a file, and if it cannot be written; and what `collision_data` raises.
     """
     with writing(path, COLLISIONS, overwrite) as scratch:
         data = collision_data(scene, collisions, seed, equilibration)
-        # in memory first: the library itself does not report what keeps it from writing
-        encoding = {name: {"zlib": True} for name in data}
-        scratch.write_bytes(data.to_netcdf(None, engine="netcdf4", encoding=encoding))
+        # In memory first: the library itself does not report what keeps it from writing. NetCDF-4 made there
+        # has the time of its creation in it, and so never the same bytes.
+        scratch.write_bytes(data.to_netcdf(None, engine="scipy", format="NETCDF3_64BIT"))
     return data
 
 
@@ -112,7 +112,7 @@ def _is_collision_data(path: Path) -> bool:
     """Whether a file was written by `record_collisions`."""
     import netCDF4
 
-    if not begins_with(b"\x89HDF")(path):
+    if not begins_with(b"CDF\x02", b"\x89HDF")(path):  # older versions wrote netCDF-4
         return False
     try:
         with path.open("rb") as opened, netCDF4.Dataset(descriptor_path(opened)) as file:

@@ -2,7 +2,7 @@
 
 Ramasubramani and others, Comput. Phys. Commun. 254, 107275 (2020). Everywhere: positions (N, d) in [0, L]
 of a periodic container of lengths (d,). freud works in single precision, and here on one thread, as the
-workflow assumes of a job.
+workflow assumes of a job. It is an extra: `pip install 'gaspart[order]'`.
 """
 
 from __future__ import annotations
@@ -14,14 +14,15 @@ from typing import Any
 
 import numpy as np
 
+from gaspart.errors import optional
+
 NEIGHBOURS = 12
 """Of a sphere: those of a face-centred cubic crystal."""
 
 
 @cache
 def _freud() -> ModuleType:
-    import freud
-
+    freud = optional("freud", "order", "g(r) and bond order")
     freud.parallel.set_num_threads(1)
     return freud
 

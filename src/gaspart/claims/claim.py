@@ -104,11 +104,11 @@ class Claim:
         a fault as well: error bars too large); the uncertainty sqrt(2 / dof) is the statistic's own scatter.
         others: the remaining fields of the claim.
         """
-        from scipy import stats
+        from scipy.special import chdtr, chdtrc, ndtri
 
-        above = stats.chi2.sf(chi_square, degrees_of_freedom)
-        below = stats.chi2.cdf(chi_square, degrees_of_freedom)
-        deviation = stats.norm.isf(above) if above < below else -stats.norm.isf(below)
+        above = chdtrc(degrees_of_freedom, chi_square)
+        below = chdtr(degrees_of_freedom, chi_square)
+        deviation = -ndtri(above) if above < below else ndtri(below)
         scatter = math.sqrt(2.0 / degrees_of_freedom)
         measured = Estimate(chi_square / degrees_of_freedom, scatter)
         return cls(
@@ -193,7 +193,7 @@ def gaussian_deviation(t: float, freedom: float) -> float:
     """The Gaussian deviation that is as probable as the deviation t of Student's distribution."""
     if math.isinf(freedom) or t == 0.0 or not math.isfinite(t):
         return t
-    from scipy import stats
+    from scipy.special import ndtri, stdtr
 
-    beyond = max(float(stats.t.sf(abs(t), freedom)), 1e-300)
-    return math.copysign(float(stats.norm.isf(beyond)), t)
+    beyond = max(float(stdtr(freedom, -abs(t))), 1e-300)
+    return math.copysign(-float(ndtri(beyond)), t)

@@ -8,42 +8,37 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from importlib import import_module
 from typing import TextIO
 
 from gaspart import __version__
-from gaspart.cli.advise import add_advise
-from gaspart.cli.arguments import Parser, UsageError
-from gaspart.cli.check import CheckFailed, add_check
-from gaspart.cli.collisions import add_collisions
-from gaspart.cli.completion import add_completion
-from gaspart.cli.export import add_export
-from gaspart.cli.info import add_info
-from gaspart.cli.measure import add_measure
-from gaspart.cli.new import add_new
+from gaspart.cli.arguments import CheckFailed, Parser, UsageError
 from gaspart.cli.progress import clear_line
-from gaspart.cli.render import add_render
-from gaspart.cli.run import add_resume, add_run
-from gaspart.cli.theory import add_theory
-from gaspart.cli.view import add_view
 from gaspart.errors import SceneError, SimulationError, unknown_word
 from gaspart.interruption import interrupted, set_note
 
 _COMMANDS = {
-    "new": add_new,
-    "run": add_run,
-    "resume": add_resume,
-    "info": add_info,
-    "measure": add_measure,
-    "render": add_render,
-    "view": add_view,
-    "collisions": add_collisions,
-    "export": add_export,
-    "theory": add_theory,
-    "advise": add_advise,
-    "check": add_check,
-    "completion": add_completion,
+    "new": ("new", "write a scene file from a template"),
+    "run": ("run", "run a scene and write its trajectory"),
+    "resume": ("run", "finish a run that was cut short"),
+    "info": ("info", "contents and quality of a trajectory, and how to repeat it"),
+    "measure": ("measure", "observables of a trajectory, with uncertainties and theory"),
+    "render": ("render", "a picture (.png) or a film (.mp4, .gif) of a trajectory"),
+    "view": ("view", "an interactive page (.html) of a trajectory"),
+    "collisions": ("collisions", "run a scene and write a data set of its collisions"),
+    "export": ("export", "a frame as a state for other programs (.gsd, .data)"),
+    "theory": ("theory", "values of theory, with sources"),
+    "advise": ("advise", "the cheapest engine and settings for an accuracy"),
+    "check": ("check", "validate a scene, a config or a trajectory, also of other programs"),
+    "completion": ("completion", "let a shell complete commands, options and names"),
 }
+"""Name -> module, which has a function add_<name>, and what the list of commands says."""
+_EXAMPLES = """examples:
+  gaspart new gas.yaml
+  gaspart run gas.yaml -o gas.nc --duration 40 --sample-interval 0.4
+  gaspart render gas.nc -o gas.mp4
+  gaspart run --help"""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -51,7 +46,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         set_note("")
         try:
-            given, left = _parser().parse_known_args(arguments)
+            words = sys.argv[1:] if arguments is None else arguments
+            given, left = _parser(words).parse_known_args(words)
             if left:
                 raise UsageError(_unrecognised(left, given.parser))
             given.command(given)
@@ -104,21 +100,26 @@ def _unrecognised(words: list[str], parser: Parser) -> str:
     return f"{' '.join(words)}: too many arguments; see `{parser.prog} --help`"
 
 
-def _parser() -> Parser:
-    parser = Parser(prog="gaspart", description="Hard-sphere and hard-disc gases.")
+def _parser(words: Sequence[str]) -> Parser:
+    """The parser of a command line. Only the command that it names is imported; `completion` needs all."""
+    parser = Parser(prog="gaspart", description="Hard-sphere and hard-disc gases.", epilog=_EXAMPLES)
     parser.add_argument("--version", action="version", version=f"gaspart {__version__}")
-    _add_commands(parser)
+    named = next((word for word in words if word in _COMMANDS), "")
+    _add_commands(parser, _COMMANDS if named == "completion" else (named,))
     parser.set_defaults(program=parser)
     return parser
 
 
-def _add_commands(parser: Parser) -> dict[str, Parser]:
-    added = parser.add_subparsers(required=True, metavar=" | ".join(_COMMANDS))
-    for add in _COMMANDS.values():
-        add(added)
+def _add_commands(parser: Parser, complete: Iterable[str]) -> dict[str, Parser]:
+    """Add all commands; those not in `complete` with their name and brief description only."""
+    added = parser.add_subparsers(required=True, metavar="COMMAND", title="commands", parser_class=Parser)
+    for name, (module, brief) in _COMMANDS.items():
+        its = added.add_parser(name, help=brief)
+        if name in complete:
+            getattr(import_module(f"gaspart.cli.{module}"), f"add_{name}")(its)
     return dict(added.choices)
 
 
 def commands() -> dict[str, Parser]:
     """The parser of each command, by name."""
-    return _add_commands(Parser(prog="gaspart", description=""))
+    return _add_commands(Parser(prog="gaspart"), _COMMANDS)

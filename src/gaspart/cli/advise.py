@@ -6,7 +6,7 @@ import argparse
 import math
 from typing import TYPE_CHECKING
 
-from gaspart.cli.arguments import Commands, UsageError, add_command, print_line, real
+from gaspart.cli.arguments import Parser, UsageError, print_line, real, set_command
 from gaspart.cli.progress import waiting
 from gaspart.scene.scene import Scene
 
@@ -19,14 +19,15 @@ _EXAMPLES = """examples:
   gaspart advise --config config/config.yaml     the cost of a complete grid, in core-hours"""
 
 
-def add_advise(commands: Commands) -> None:
-    """Add the command to the others."""
+def add_advise(parser: Parser) -> None:
+    """Add the arguments of the command to its parser."""
     text = (
         "The cheapest setting for a relative accuracy (half the width of a 95 % interval) of an observable "
         "of a gas of one species, from measured errors and times; or, with --config, the cost of the "
         "simulations of a config. The speed of this machine is measured by a run of a tenth of a second."
     )
-    add = add_command(commands, "advise", _advise, "choose engine and settings", text, _EXAMPLES).add_argument
+    set_command(parser, _advise, text, _EXAMPLES)
+    add = parser.add_argument
     add("scene", nargs="?", help="scene file (YAML)")
     add("--observable", default="Z", metavar="NAME", help="Z (default), collision_rate or D")
     add("--accuracy", type=real(above=0.0), default=1e-2, metavar="X", help="relative, default 0.01")

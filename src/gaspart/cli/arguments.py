@@ -6,30 +6,31 @@ import argparse
 import sys
 from collections.abc import Callable
 from textwrap import fill
-from typing import Any, NoReturn, TypeAlias, TypeVar
+from typing import Any, NoReturn, TypeVar
 
 from gaspart.errors import unknown_word
 from gaspart.scene.validation import number
 
 T = TypeVar("T")
-Commands: TypeAlias = "argparse._SubParsersAction[Parser]"
-"""The object that commands are added to."""
 
 
 class UsageError(Exception):
     """An invalid command line, with the message of argparse."""
 
 
+class CheckFailed(Exception):
+    """A check has failed; its line is printed already."""
+
+
 class Parser(argparse.ArgumentParser):
     """Raises UsageError instead of leaving, accepts complete options only, and keeps line breaks."""
 
     def __init__(self, **settings: Any) -> None:
-        settings["description"] = fill(settings["description"], width=100)
         super().__init__(allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter, **settings)
 
     def error(self, message: str) -> NoReturn:
         """Raise UsageError with a message of argparse."""
-        raise UsageError(message)
+        raise UsageError(message + (f"; see `{self.prog} --help`" if "are required" in message else ""))
 
     def options(self) -> list[str]:
         """All options, such as --seed."""
@@ -69,18 +70,15 @@ def _reader(kind: Callable[[str], T], name: str, limits: dict[str, float]) -> Ca
     return read
 
 
-def add_command(
-    commands: Commands,
-    name: str,
+def set_command(
+    parser: Parser,
     run: Callable[[argparse.Namespace], None],
-    brief: str,
     description: str,
     examples: str | None = None,
-) -> Parser:
-    """Add a command that `run` carries out. brief: its line in the list of commands; returns its parser."""
-    parser = commands.add_parser(name, help=brief, description=description, epilog=examples)
+) -> None:
+    """Describe a command in its parser, and let `run` carry it out."""
+    parser.description, parser.epilog = fill(description, width=100), examples
     parser.set_defaults(command=run, parser=parser)
-    return parser
 
 
 def add_output(parser: argparse.ArgumentParser, what: str, overwrite: str) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from gaspart.cli.arguments import Commands, add_command, print_line, real, several
+from gaspart.cli.arguments import CheckFailed, Parser, print_line, real, set_command, several
 from gaspart.errors import SceneError
 from gaspart.yaml_text import read_yaml
 
@@ -19,18 +19,14 @@ _EXAMPLES = """examples:
 exit code: 0 if all checks pass, 1 if one fails, 2 if the file cannot be read"""
 
 
-class CheckFailed(Exception):
-    """A check has failed; its line is printed already."""
-
-
-def add_check(commands: Commands) -> None:
-    """Add the command to the others."""
+def add_check(parser: Parser) -> None:
+    """Add the arguments of the command to its parser."""
     text = (
         "Judge a scene, a config, or a trajectory of any program (AMBER or LAMMPS netCDF, GSD, XYZ): "
         "overlaps, the container, the speed distribution, g(sigma) and Z, and D; a line each."
     )
-    brief = "validate a scene, config or trajectory"
-    add = add_command(commands, "check", _check, brief, text, _EXAMPLES).add_argument
+    set_command(parser, _check, text, _EXAMPLES)
+    add = parser.add_argument
     add("file", metavar="FILE", help=".yaml, .nc, .gsd or .xyz")
     add("--radius", type=real(above=0.0), metavar="R", help="of all particles, if the file does not state it")
     add(

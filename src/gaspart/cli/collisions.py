@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from gaspart.cli.arguments import Commands, add_command, add_output, integer, print_line, real
+from gaspart.cli.arguments import Parser, add_output, integer, print_line, real, set_command
 from gaspart.cli.progress import waiting
 from gaspart.scene.scene import Scene
 
@@ -14,14 +14,13 @@ example:
 """
 
 
-def add_collisions(commands: Commands) -> None:
-    """Add the command to the others."""
+def add_collisions(parser: Parser) -> None:
+    """Add the arguments of the command to its parser."""
     text = (
         "Run a scene under the event-driven engine and record its collisions (netCDF): the particles, the "
         "normal, the speed of approach, the time and path since each particle's last event."
     )
-    brief = "a data set of collisions"
-    parser = add_command(commands, "collisions", _collisions, brief, text, _EXAMPLE)
+    set_command(parser, _collisions, text, _EXAMPLE)
     add = parser.add_argument
     add("scene", metavar="SCENE")
     add_output(parser, "data set (netCDF)", "a data set of collisions")

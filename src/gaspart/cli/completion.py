@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from gaspart.cli.arguments import Commands, add_command
+from gaspart.cli.arguments import Parser, set_command
 
 SHELLS = ("bash", "zsh", "tcsh")
 _EXAMPLES = """examples:
@@ -12,11 +12,11 @@ _EXAMPLES = """examples:
   gaspart completion bash > ~/.local/share/bash-completion/completions/gaspart    in all to come"""
 
 
-def add_completion(commands: Commands) -> None:
-    """Add the command to the others."""
+def add_completion(parser: Parser) -> None:
+    """Add the arguments of the command to its parser."""
     text = "Print a script by which a shell completes commands, options and names."
-    completion = add_command(commands, "completion", _completion, "completion in a shell", text, _EXAMPLES)
-    completion.add_argument("shell", choices=SHELLS, metavar="SHELL", help=", ".join(SHELLS))
+    set_command(parser, _completion, text, _EXAMPLES)
+    parser.add_argument("shell", choices=SHELLS, metavar="SHELL", help=", ".join(SHELLS))
 
 
 def _completion(given: argparse.Namespace) -> None:

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import argparse
 
-from gaspart.cli.arguments import Commands, add_command, add_output, integer, print_line
+from gaspart.cli.arguments import Parser, add_output, integer, print_line, set_command
 
 _EXAMPLES = """examples:
   gaspart export run.nc -o state.gsd                the last frame, for HOOMD and OVITO
   gaspart export run.nc -o start.data --frame 0     the first, for LAMMPS: read_data start.data"""
 
 
-def add_export(commands: Commands) -> None:
-    """Add the command to the others."""
+def add_export(parser: Parser) -> None:
+    """Add the arguments of the command to its parser."""
     text = "One frame of a trajectory as a state for other programs: GSD, or LAMMPS data (atom_style sphere)."
-    export = add_command(commands, "export", _export, "a state for other programs", text, _EXAMPLES)
-    export.add_argument("trajectory", metavar="FILE")
-    add_output(export, "ends in .gsd or .data", "a state that was exported")
+    set_command(parser, _export, text, _EXAMPLES)
+    parser.add_argument("trajectory", metavar="FILE")
+    add_output(parser, "ends in .gsd or .data", "a state that was exported")
     text = "counted from 0, or from the end if negative; default: -1"
-    export.add_argument("--frame", type=integer(), default=-1, metavar="N", help=text)
+    parser.add_argument("--frame", type=integer(), default=-1, metavar="N", help=text)
 
 
 def _export(given: argparse.Namespace) -> None:

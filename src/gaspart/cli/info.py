@@ -7,7 +7,7 @@ import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaspart.cli.arguments import Commands, add_command, print_line
+from gaspart.cli.arguments import Parser, print_line, set_command
 
 if TYPE_CHECKING:
     from gaspart.trajectory.recipe import Recipe
@@ -17,12 +17,12 @@ _EXAMPLES = """examples:
   gaspart info run.nc --scene > scene.yaml      then the printed command, for the same bits"""
 
 
-def add_info(commands: Commands) -> None:
-    """Add the command to the others."""
+def add_info(parser: Parser) -> None:
+    """Add the arguments of the command to its parser."""
     text = "Contents and quality of a trajectory, and the command that reproduces it."
-    info = add_command(commands, "info", _info, "contents of a trajectory", text, _EXAMPLES)
-    info.add_argument("trajectory", metavar="FILE")
-    info.add_argument("--scene", action="store_true", help="print the scene file and nothing else")
+    set_command(parser, _info, text, _EXAMPLES)
+    parser.add_argument("trajectory", metavar="FILE")
+    parser.add_argument("--scene", action="store_true", help="print the scene file and nothing else")
 
 
 def _info(given: argparse.Namespace) -> None:

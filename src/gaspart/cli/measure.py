@@ -8,7 +8,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from gaspart.cli.arguments import Commands, UsageError, add_command, print_line, real
+from gaspart.cli.arguments import Parser, UsageError, print_line, real, set_command
 from gaspart.cli.progress import waiting
 from gaspart.errors import SceneError
 from gaspart.files import Kind, begins_with, output_path, writing
@@ -39,12 +39,12 @@ _EXAMPLES = """examples:
   gaspart measure run.nc msd -o msd.csv --start 10"""
 
 
-def add_measure(commands: Commands) -> None:
-    """Add the command to the others."""
+def add_measure(parser: Parser) -> None:
+    """Add the arguments of the command to its parser."""
     names = "; ".join(f"{name}: {meaning}" for name, (_, _, meaning) in OBSERVABLES.items())
     text = f"{names}. Uncertainties are one standard deviation; of curves a few rows are printed."
-    measure = add_command(commands, "measure", _measure, "observables of a trajectory", text, _EXAMPLES)
-    add = measure.add_argument
+    set_command(parser, _measure, text, _EXAMPLES)
+    add = parser.add_argument
     add("trajectory", metavar="FILE")
     add("observables", nargs="+", choices=tuple(OBSERVABLES), metavar="NAME", help=", ".join(OBSERVABLES))
     text = "time from which frames count; by default a quarter of the run"

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from gaspart.cli.arguments import Commands, add_command, print_line
+from gaspart.cli.arguments import Parser, print_line, set_command
 from gaspart.errors import SceneError
 from gaspart.files import Kind, output_path, writing
 from gaspart.scene.scene import Scene
@@ -63,11 +63,11 @@ def _read(path: Path) -> Template:
     return Template(path.stem, comments[0], description, notes[0], figure, text)
 
 
-def add_new(commands: Commands) -> None:
-    """Add the command to the others."""
+def add_new(parser: Parser) -> None:
+    """Add the arguments of the command to its parser."""
     text = "Write a scene file from a template. The scenes are in the gallery of the documentation."
-    new = add_command(commands, "new", _new, "write a scene file from a template", text, _EXAMPLES)
-    add = new.add_argument
+    set_command(parser, _new, text, _EXAMPLES)
+    add = parser.add_argument
     add("scene", nargs="?", metavar="FILE", help="ends in .yaml")
     add("--template", choices=tuple(templates()), default="gas", metavar="NAME", help="default: gas")
     add("--list", action="store_true", help="print the names and titles of all templates")

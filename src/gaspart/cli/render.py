@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import io
 import sys
 from pathlib import Path
 
-from gaspart.cli.arguments import Commands, add_command, add_output, integer, print_line, real
+from gaspart.cli.arguments import Parser, add_output, integer, print_line, real, set_command, several
 from gaspart.cli.progress import clear_line, counted
 from gaspart.errors import SceneError
 from gaspart.files import output_path, writing
@@ -16,19 +17,20 @@ PICTURES = (".png",)
 
 _EXAMPLES = """examples:
   gaspart render run.nc -o run.png
-  gaspart render run.nc -o run.mp4 --frames-per-second 30 --colour species"""
+  gaspart render run.nc -o run.mp4 --frames-per-second 30 --colour species
+  gaspart render run.nc -o top.png --camera 0,90 --clock"""
 
 
-def add_render(commands: Commands) -> None:
-    """Add the command to the others."""
+def add_render(parser: Parser) -> None:
+    """Add the arguments of the command to its parser."""
     text = (
         "A picture (.png) of one frame of a trajectory, or a film (.mp4, .gif) of all: spheres with light "
         "and shadow, discs from above."
     )
-    render = add_command(commands, "render", _render, "a picture or a film", text, _EXAMPLES)
-    add = render.add_argument
+    set_command(parser, _render, text, _EXAMPLES)
+    add = parser.add_argument
     add("trajectory", metavar="FILE")
-    add_output(render, "ends in .png, .mp4 or .gif", "a picture or a film")
+    add_output(parser, "ends in .png, .mp4 or .gif", "a picture or a film")
     add(
         "--frame",
         type=integer(),
@@ -44,7 +46,10 @@ def add_render(commands: Commands) -> None:
         metavar="N",
         help="film of discs: draw the path of particle N, counted from 0",
     )
-    add("--clock", action="store_true", default=None, help="film: write the time and the scale into it")
+    text = "write the time, the scale and the meaning of the colours into it"
+    add("--clock", action="store_true", default=None, help=text)
+    text = "from where spheres are seen: azimuth and elevation in degrees; default: 298,24"
+    add("--camera", type=several(real()), metavar="A,E", help=text)
 
 
 def _size(text: str) -> tuple[int, int]:
@@ -57,10 +62,10 @@ def _size(text: str) -> tuple[int, int]:
 
 def _render(given: argparse.Namespace) -> None:
     output = output_path(given.output)
-    named = ("size", "colour", "frame", "frames_per_second", "trail", "clock")
+    named = ("size", "colour", "frame", "frames_per_second", "trail", "clock", "camera")
     options = {key: getattr(given, key) for key in named if getattr(given, key) is not None}
     if output.suffix in PICTURES:
-        for key in ("frames_per_second", "trail", "clock"):
+        for key in ("frames_per_second", "trail"):
             if key in options:
                 raise SceneError(key, options[key], "has no meaning for a picture")
         _picture(given.trajectory, output, options, given.force)
@@ -77,10 +82,12 @@ def _render(given: argparse.Namespace) -> None:
 
 
 def _picture(trajectory: str, output: Path, options: dict, overwrite: bool) -> None:
+    from PIL import Image
+
     from gaspart.rendering.frames import render
     from gaspart.rendering.pictures import PICTURE
 
     with writing(output, PICTURE, overwrite) as scratch:
-        import imageio.v3 as imageio
-
-        scratch.write_bytes(imageio.imwrite("<bytes>", render(trajectory, **options), extension=".png"))
+        picture = io.BytesIO()  # first, because Pillow does not report what keeps it from writing
+        Image.fromarray(render(trajectory, **options)).save(picture, "PNG")
+        scratch.write_bytes(picture.getvalue())

@@ -7,7 +7,7 @@ import shlex
 import sys
 from pathlib import Path
 
-from gaspart.cli.arguments import Commands, UsageError, add_command, print_line, several
+from gaspart.cli.arguments import Parser, UsageError, print_line, set_command, several
 from gaspart.cli.progress import clear_line, progress, waiting
 from gaspart.errors import SceneError, shown
 from gaspart.interruption import set_note
@@ -25,14 +25,14 @@ _EXAMPLES = """examples:
   gaspart info run.nc"""
 
 
-def add_run(commands: Commands) -> None:
-    """Add `run` to the other commands."""
+def add_run(parser: Parser) -> None:
+    """Add the arguments of the command to its parser."""
     text = (
         "Run a scene and write its trajectory. A run of the same settings that was cut short is continued, "
         "and a complete one is not changed; another one is replaced only with --force."
     )
-    run = add_command(commands, "run", _run, "run a scene", text, _EXAMPLES)
-    add, integers = run.add_argument, several(int)
+    set_command(parser, _run, text, _EXAMPLES)
+    add, integers = parser.add_argument, several(int)
     add("scene", help="scene file (YAML)")
     add("-o", "--output", required=True, metavar="FILE", help="trajectory (AMBER NetCDF)")
     add("--engine", default="event", metavar="NAME", help="event (exact; the default) or step")
@@ -67,16 +67,16 @@ def add_run(commands: Commands) -> None:
     add("--threads", type=int, metavar="N", help="step engine: number of threads (1)")
     add("--search", metavar="NAME", help="event engine: automatic (default), boxes, lists, direct or pairs")
     add("--force", action="store_true", help="replace a trajectory of another run")
-    _add_progress(run)
+    _add_progress(parser)
 
 
-def add_resume(commands: Commands) -> None:
-    """Add `resume` to the other commands."""
+def add_resume(parser: Parser) -> None:
+    """Add the arguments of the command to its parser."""
     text = "Finish a run that was cut short, from FILE.partial and FILE.checkpoint.npz."
     examples = "example:\n  gaspart resume run.nc"
-    resume = add_command(commands, "resume", _resume, "finish a run that was cut short", text, examples)
-    resume.add_argument("trajectory", metavar="FILE", help="the trajectory of the run")
-    _add_progress(resume)
+    set_command(parser, _resume, text, examples)
+    parser.add_argument("trajectory", metavar="FILE", help="the trajectory of the run")
+    _add_progress(parser)
 
 
 def _add_progress(parser: argparse.ArgumentParser) -> None:

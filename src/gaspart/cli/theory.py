@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from dataclasses import dataclass
 
-from gaspart.cli.arguments import Commands, add_command, real, several
+from gaspart.cli.arguments import Parser, real, set_command, several
 from gaspart.errors import SceneError
 
 _PARTICLE = ("diameter", "temperature", "mass")
@@ -44,11 +44,12 @@ _EXAMPLES = """examples:
   gaspart theory collision_rate --eta 0.1,0.2,0.3 --dimension 2 --diameter 0.1"""
 
 
-def add_theory(commands: Commands) -> None:
-    """Add the command to the others."""
+def add_theory(parser: Parser) -> None:
+    """Add the arguments of the command to its parser."""
     names = "; ".join(f"{name}: {quantity.meaning}" for name, quantity in _QUANTITIES.items())
     text = f"{names}. Units: k_B = 1."
-    add = add_command(commands, "theory", _theory, "values of theory", text, _EXAMPLES).add_argument
+    set_command(parser, _theory, text, _EXAMPLES)
+    add = parser.add_argument
     add("quantity", choices=tuple(_QUANTITIES), metavar="QUANTITY", help=", ".join(_QUANTITIES))
     add("--eta", type=several(real(least=0.0)), required=True, metavar="X[,X...]", help="packing fraction")
     add("--dimension", type=int, choices=(2, 3), default=3, help="default: 3")

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from gaspart.errors import SceneError
+from gaspart.errors import SceneError, optional
 from gaspart.files import descriptor_path
 from gaspart.inspection.frames import Frames, complete_frames
 from gaspart.trajectory.amber import BOOKKEEPING
@@ -116,9 +116,8 @@ def _constant(cells: np.ndarray, path: Path) -> np.ndarray:
 
 def _gsd(path: Path) -> dict:
     """HOOMD's format: the origin is the middle of the box, and a frame states its step."""
-    import gsd.hoomd
-
-    with path.open("rb") as opened_file, gsd.hoomd.open(descriptor_path(opened_file), "r") as file:
+    hoomd = optional("gsd.hoomd", "gsd", "GSD files")
+    with path.open("rb") as opened_file, hoomd.open(descriptor_path(opened_file), "r") as file:
         frames = list(file)
     boxes = np.array([frame.configuration.box for frame in frames], dtype=float)
     if np.any(boxes[:, 3:] != 0.0):

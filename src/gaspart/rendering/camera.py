@@ -7,8 +7,8 @@ from itertools import product
 
 import numpy as np
 
-AZIMUTH, ELEVATION = -62.0, 24.0
-"""Degrees: from the x axis about the z axis, and above the horizon."""
+CAMERA = (298.0, 24.0)
+"""Azimuth and elevation of the camera in degrees: from the x axis about the z axis, and above the horizon."""
 HALF_WIDTH = 0.26
 """Tangent of half the angle of view across the picture's longer side."""
 MARGIN = 1.04
@@ -30,6 +30,10 @@ class Camera:
     far: float
     light: np.ndarray
 
+    def pixels_per_length(self, point: np.ndarray, width: int) -> float:
+        """Of a short length across the view at a point (3,), in a picture `width` pixels wide."""
+        return 0.5 * width / (self.half_width * float((point - self.eye) @ self.forward))
+
     def ray(self, column: float, row: float, width: int, height: int) -> np.ndarray:
         """(3,) the direction of a point in the picture, in pixels from its upper left corner."""
         across = (2.0 * column / width - 1.0) * self.half_width
@@ -38,9 +42,12 @@ class Camera:
         return direction / np.linalg.norm(direction)
 
 
-def camera_for(lengths: np.ndarray, width: int, height: int) -> Camera:
-    """The camera for which a container of `lengths` (3,) just fills a picture of so many pixels."""
-    azimuth, elevation = np.radians(AZIMUTH), np.radians(ELEVATION)
+def camera_for(
+    lengths: np.ndarray, width: int, height: int, direction: tuple[float, float] = CAMERA
+) -> Camera:
+    """The camera for which a container of `lengths` (3,) just fills a picture of so many pixels, seen from a
+    direction (azimuth, elevation)."""
+    azimuth, elevation = np.radians(direction)
     outward = np.array(
         [np.cos(azimuth) * np.cos(elevation), np.sin(azimuth) * np.cos(elevation), np.sin(elevation)]
     )

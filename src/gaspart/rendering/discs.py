@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 
 from gaspart.kernels.rasterizing import draw_discs, draw_segments
 
 _MARGIN = 0.02  # of the picture's shorter side
-INK = (0.16, 0.16, 0.16)
+INK, PAPER = (0.16, 0.16, 0.16), (1.0, 1.0, 1.0)
 
 
 def scale_of(lengths: np.ndarray, size: tuple[int, int]) -> tuple[float, np.ndarray]:
@@ -37,7 +39,14 @@ class Canvas:
         """Discs, later ones over earlier ones; none smaller than half a pixel in radius."""
         draw_discs(self.image, self._pixels(positions), np.maximum(self.scale * radii, 0.5), colours)
 
-    def line(self, points: np.ndarray, colour: tuple[float, float, float] = INK) -> None:
-        """A line through points (N, 2)."""
-        places = self._pixels(points)
-        draw_segments(self.image, places[:-1], places[1:], np.array(colour, dtype=float))
+    def line(self, points: np.ndarray, colour: tuple[float, float, float] = INK, width: int = 1) -> None:
+        """A line through points (N, 2), `width` pixels wide (odd)."""
+        half = width // 2
+        for shift in product(range(-half, half + 1), repeat=2):
+            places = self._pixels(points) + np.array(shift)
+            draw_segments(self.image, places[:-1], places[1:], np.array(colour, dtype=float))
+
+    def path(self, points: np.ndarray) -> None:
+        """A line through points (N, 2) that is seen on discs of any colour: dark, with a bright border."""
+        self.line(points, PAPER, 5)
+        self.line(points, INK, 3)

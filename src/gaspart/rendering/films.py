@@ -5,15 +5,17 @@ from __future__ import annotations
 import errno
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.errors import SceneError
+from gaspart.errors import SceneError, optional
 from gaspart.files import Kind, begins_with, output_path, writing
 from gaspart.rendering.frames import opened, particles_of
-from gaspart.rendering.particles import FASTEST, colours_of
-from gaspart.rendering.pictures import SIZE, checked_size, picture
+from gaspart.rendering.labels import labelled
+from gaspart.rendering.particles import FASTEST, colours_of, legend_of
+from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
 from gaspart.scene.validation import count_of, number
 from gaspart.simulation.simulation import Simulation
 from gaspart.state.state import State
@@ -40,16 +42,16 @@ def film(
     frames_per_second: float = 25.0,
     trail: int | None = None,
     clock: bool = False,
+    camera: tuple[float, float] | None = None,
     overwrite: bool = False,
     progress: Callable[[int, int], None] | None = None,
 ) -> Path:
     """Write all frames of a trajectory (a path, or an open one) as a film, .mp4 or .gif; returns its path.
 
-    size, colour as in `render`; all frames have one scale of speeds. For .mp4 the size is rounded down to
-    even numbers. trail: the index of a disc whose path is drawn (interrupted where it crosses a periodic
-    face). clock: whether the time is written into the pictures, and for discs a bar of a round length. A
-    film at `path` is replaced only with `overwrite`, any other file never. progress: is called with the
-    number of pictures so far and of all.
+    An .mp4 needs the extra `film`, and its size is rounded down to even numbers. size, colour, clock and
+    camera as in `render`; all frames have one scale of speeds. trail: the index of a disc whose path is drawn
+    (interrupted where it crosses a periodic face). A film at `path` is replaced only with `overwrite`, any
+    other file never. progress: is called with the number of pictures so far and of all.
 
     Raises SceneError for another suffix, a file that cannot be read or written, and for arguments that
     `render` refuses.
@@ -63,32 +65,19 @@ def film(
     size = checked_size(size)
     if path.suffix == ".mp4":
         size = (size[0] // 2 * 2, size[1] // 2 * 2)
+        _ffmpeg()  # before a picture is drawn
     to = _gif if path.suffix == ".gif" else _mp4
     with opened(trajectory) as source:
         if isinstance(source, Simulation | State):
             raise SceneError(
                 "trajectory", source, "must be a path or an open trajectory: a film needs frames"
             )
-        shown = _pictures(source, size, colour, trail)
-        if clock:
-            shown = _labelled(shown, source, size)
+        shown = _pictures(source, size, colour, trail, clock, camera)
         if progress is not None:
             shown = _reported(shown, source.sizes["frame"], progress)
         with writing(path, KINDS[path.suffix], overwrite) as scratch:
             to(scratch, shown, size, rate)
     return path
-
-
-def _labelled(
-    shown: Iterator[np.ndarray], trajectory: xr.Dataset, size: tuple[int, int]
-) -> Iterator[np.ndarray]:
-    from gaspart.rendering.discs import scale_of
-    from gaspart.rendering.labels import labelled
-
-    lengths = particles_of(trajectory, 0).lengths
-    pixels = scale_of(lengths, size)[0] if len(lengths) == 2 else None
-    for image, time in zip(shown, trajectory["time"].values, strict=True):
-        yield labelled(image, float(time), pixels)
 
 
 def _reported(
@@ -100,38 +89,48 @@ def _reported(
 
 
 def _pictures(
-    trajectory: xr.Dataset, size: tuple[int, int], colour: str | np.ndarray, trail: int | None
+    trajectory: xr.Dataset,
+    size: tuple[int, int],
+    colour: str | np.ndarray,
+    trail: int | None,
+    clock: bool,
+    camera: tuple[float, float] | None,
 ) -> Iterator[np.ndarray]:
     """The pictures in order; all arguments are checked before the first."""
-    frames = trajectory.sizes["frame"]
-    if frames == 0:
+    if trajectory.sizes["frame"] == 0:
         raise SceneError("frame", 0, "the trajectory has no frame yet")
     first = particles_of(trajectory, 0)
     colours_of(first, colour)
+    direction = checked_camera(camera, first.dimension)
     if trail is not None:
         if count_of("trail", trail) >= len(first.radii):
             raise SceneError("trail", trail, f"the trajectory has {len(first.radii)} particles")
         if first.dimension != 2:
             raise SceneError("trail", trail, "is drawn among discs only")
-    return _shown(trajectory, frames, size, colour, trail)
+    return _shown(trajectory, size, colour, trail, clock, direction)
 
 
 def _shown(
     trajectory: xr.Dataset,
-    frames: int,
     size: tuple[int, int],
     colour: str | np.ndarray,
     trail: int | None,
+    clock: bool,
+    direction: tuple[float, float],
 ) -> Iterator[np.ndarray]:
     """The pictures in order."""
+    frames = trajectory.sizes["frame"]
     fastest = FASTEST * max(particles_of(trajectory, n).root_mean_square_speed for n in range(frames))
+    scale = pixels_per_length(particles_of(trajectory, 0).lengths, size, direction)
     path = []
-    for n in range(frames):
+    for n, time in enumerate(trajectory["time"].values):
         particles = particles_of(trajectory, n)
         if trail is not None:
             path.append(particles.positions[trail])
-        lines = _pieces(path, particles.lengths)
-        yield picture(particles, size, colours_of(particles, colour, fastest), lines)
+        paths = _pieces(path, particles.lengths)
+        image = picture(particles, size, colours_of(particles, colour, fastest), paths, direction)
+        legend = legend_of(particles, colour, fastest)
+        yield labelled(image, float(time), scale, legend) if clock else image
 
 
 def _pieces(path: list[np.ndarray], lengths: np.ndarray) -> list[np.ndarray]:
@@ -151,11 +150,14 @@ def _gif(scratch: Path, shown: Iterator[np.ndarray], size: tuple[int, int], rate
     first.save(scratch, "GIF", save_all=True, append_images=images, duration=1000.0 / rate, loop=0)
 
 
-def _mp4(scratch: Path, shown: Iterator[np.ndarray], size: tuple[int, int], rate: float) -> None:
-    from imageio_ffmpeg import write_frames
+def _ffmpeg() -> ModuleType:
+    return optional("imageio_ffmpeg", "film", "films as .mp4 (.gif needs nothing more)")
 
+
+def _mp4(scratch: Path, shown: Iterator[np.ndarray], size: tuple[int, int], rate: float) -> None:
     options = ["-f", "mp4", "-fflags", "+bitexact", "-flags:v", "+bitexact"]  # no date, no program in it
     quiet = {"ffmpeg_log_level": "quiet"}  # gaspart prints the one line of an error
+    write_frames = _ffmpeg().write_frames
     writer = write_frames(str(scratch), size, fps=rate, macro_block_size=2, output_params=options, **quiet)
     try:
         writer.send(None)

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.rendering.particles import DrawnParticles, colours_of
-from gaspart.rendering.pictures import SIZE, checked_size, picture
+from gaspart.rendering.labels import labelled
+from gaspart.rendering.particles import DrawnParticles, colours_of, legend_of
+from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of
 from gaspart.scene.walls import Plate, Wall
@@ -34,6 +35,8 @@ def render(
     size: tuple[int, int] = SIZE,
     colour: str | np.ndarray = "speed",
     fastest: float | None = None,
+    clock: bool = False,
+    camera: tuple[float, float] | None = None,
 ) -> np.ndarray:
     """A picture of a frame of a trajectory (a path or an open one; the last frame), of a `Simulation` or of a
     `State`: uint8, (H, W, 3).
@@ -42,13 +45,22 @@ def render(
     above, with their periodic images at periodic faces. Interior walls of a state are not drawn.
     size: (W, H) pixels. colour: "speed", from dark at rest to bright at the speed
     `fastest` (twice the root-mean-square one) and above; "species"; or an array (N, 3) of red, green and
-    blue from 0 to 1. The same particles give the same pixels.
+    blue from 0 to 1. clock: whether the time, a bar of a round length (of spheres: in the middle of the
+    container) and the meaning of the colours are written into the picture. camera: azimuth and elevation in
+    degrees from which spheres are seen, (298, 24). The same particles give the same pixels.
 
-    Raises SceneError for a missing frame, an impossible size or an unknown colouring.
+    Raises SceneError for a missing frame, an impossible size or camera, or an unknown colouring.
     """
+    size = checked_size(size)
     with opened(source) as open_source:
         particles = particles_of(open_source, frame)
-    return picture(particles, checked_size(size), colours_of(particles, colour, fastest))
+        time = _time_of(open_source, frame)
+    direction = checked_camera(camera, particles.dimension)
+    image = picture(particles, size, colours_of(particles, colour, fastest), direction=direction)
+    if not clock:
+        return image
+    scale = pixels_per_length(particles.lengths, size, direction)
+    return labelled(image, time, scale, legend_of(particles, colour, fastest))
 
 
 @contextmanager
@@ -87,6 +99,10 @@ def particles_of(source: State | Simulation | xr.Dataset, frame: int = -1) -> Dr
         walls=_sides(scene.walls, scene.dimension),
         periodic=scene.container.periodic,
     )
+
+
+def _time_of(source: State | Simulation | xr.Dataset, frame: int) -> float:
+    return float(source.time if isinstance(source, State | Simulation) else source["time"].values[frame])
 
 
 def _of_state(state: State, scene: Scene | None) -> DrawnParticles:

@@ -39,6 +39,53 @@ class DrawnParticles:
         return float(np.sqrt((self.speeds**2).mean())) if len(self.speeds) else 0.0
 
 
+@dataclass(frozen=True)
+class Legend:
+    """What the colours of a picture mean: a title, colours (M, 3), and texts, one for each colour or for the
+    two ends of a continuous scale."""
+
+    title: str
+    colours: np.ndarray
+    texts: tuple[str, ...]
+
+    @property
+    def continuous(self) -> bool:
+        """Whether the colours are those of a scale."""
+        return len(self.texts) < len(self.colours)
+
+
+def legend_of(
+    particles: DrawnParticles, colour: str | np.ndarray, fastest: float | None = None
+) -> Legend | None:
+    """The legend of `colours_of`; None for given colours, and for one species."""
+    if not isinstance(colour, str):
+        return None
+    if colour == "species":
+        used = np.unique(particles.species)
+        if len(used) < 2:
+            return None
+        return Legend("species", _palette()[used % len(COLOURS)], tuple(map(str, used)))
+    end = _fastest(particles, fastest)
+    return Legend("speed", _ramp(np.linspace(0.0, 1.0, 64)), ("0", f"{end:.3g}"))
+
+
+def _palette() -> np.ndarray:
+    from matplotlib.colors import to_rgb
+
+    return np.array([to_rgb(name) for name in COLOURS])
+
+
+def _ramp(parts: np.ndarray) -> np.ndarray:
+    import matplotlib
+
+    return matplotlib.colormaps["viridis"](parts)[:, :3]
+
+
+def _fastest(particles: DrawnParticles, fastest: float | None) -> float:
+    """The end of the scale of speeds."""
+    return (FASTEST * particles.root_mean_square_speed if fastest is None else fastest) or 1.0
+
+
 def colours_of(
     particles: DrawnParticles, colour: str | np.ndarray, fastest: float | None = None
 ) -> np.ndarray:
@@ -51,14 +98,8 @@ def colours_of(
         if colour not in COLOURINGS:
             raise SceneError("colour", colour, f"must be one of {', '.join(COLOURINGS)}")
         if colour == "species":
-            from matplotlib.colors import to_rgb
-
-            palette = np.array([to_rgb(name) for name in COLOURS])
-            return palette[particles.species % len(palette)]
-        import matplotlib
-
-        end = FASTEST * particles.root_mean_square_speed if fastest is None else fastest
-        return matplotlib.colormaps["viridis"](particles.speeds / (end or 1.0))[:, :3]
+            return _palette()[particles.species % len(COLOURS)]
+        return _ramp(particles.speeds / _fastest(particles, fastest))
     given = np.asarray(colour, dtype=float)
     if given.shape != (len(particles.radii), 3):
         raise SceneError(

@@ -9,9 +9,9 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.files import Kind, begins_with
-from gaspart.rendering.camera import camera_for
+from gaspart.rendering.camera import CAMERA, camera_for
 from gaspart.rendering.particles import DrawnParticles
-from gaspart.scene.validation import count_of
+from gaspart.scene.validation import count_of, number
 
 PICTURE = Kind("a PNG picture", begins_with(b"\x89PNG\r\n\x1a\n"))
 SIZE = (1000, 750)
@@ -28,24 +28,50 @@ def checked_size(size: tuple[int, int]) -> tuple[int, int]:
     return int(size[0]), int(size[1])
 
 
+def checked_camera(camera: tuple[float, float] | None, dimension: int) -> tuple[float, float]:
+    """Azimuth and elevation in degrees, the default ones for None, or a SceneError."""
+    if camera is None:
+        return CAMERA
+    if dimension == 2:
+        raise SceneError("camera", camera, "is for spheres: discs are seen from above")
+    if not isinstance(camera, (tuple, list)) or len(camera) != 2:
+        raise SceneError("camera", camera, "must be an azimuth and an elevation in degrees")
+    rule = "an azimuth must be from -360 to 360, an elevation from 0 to 90 degrees"
+    azimuth = number("camera", camera[0], rule, least=-360.0, most=360.0)
+    return azimuth, number("camera", camera[1], rule, least=0.0, most=90.0)
+
+
+def pixels_per_length(lengths: np.ndarray, size: tuple[int, int], camera: tuple[float, float]) -> float:
+    """The scale of a picture; of spheres, in the middle of the container."""
+    if len(lengths) == 2:
+        from gaspart.rendering.discs import scale_of
+
+        return scale_of(lengths, size)[0]
+    return camera_for(lengths, *size, camera).pixels_per_length(0.5 * lengths, size[0])
+
+
 def picture(
-    particles: DrawnParticles, size: tuple[int, int], colours: np.ndarray, lines: Sequence[np.ndarray] = ()
+    particles: DrawnParticles,
+    size: tuple[int, int],
+    colours: np.ndarray,
+    paths: Sequence[np.ndarray] = (),
+    direction: tuple[float, float] = CAMERA,
 ) -> np.ndarray:
-    """The pixels, uint8 (H, W, 3), of particles in these colours (N, 3); lines, (M, 2) each, lie over
-    discs."""
+    """The pixels, uint8 (H, W, 3), of particles in these colours (N, 3); paths, (M, 2) each, lie over
+    discs; direction: azimuth and elevation of the camera that sees spheres, in degrees."""
     if particles.dimension == 3:
         from gaspart.rendering.tracer import trace
 
-        camera = camera_for(particles.lengths, *size)
+        camera = camera_for(particles.lengths, *size, direction)
         lengths, walls = particles.lengths, particles.walls
         image, _ = trace(particles.positions, particles.radii, colours, lengths, camera, size, walls)
     else:
-        image = _plane(particles, size, colours, lines)
+        image = _plane(particles, size, colours, paths)
     return np.rint(255.0 * image).astype(np.uint8)
 
 
 def _plane(
-    particles: DrawnParticles, size: tuple[int, int], colours: np.ndarray, lines: Sequence[np.ndarray]
+    particles: DrawnParticles, size: tuple[int, int], colours: np.ndarray, paths: Sequence[np.ndarray]
 ) -> np.ndarray:
     from gaspart.rendering.discs import Canvas
 
@@ -54,8 +80,10 @@ def _plane(
     canvas.discs(particles.positions[shown] + shifts, particles.radii[shown], colours[shown])
     x, y = particles.lengths
     canvas.line(np.array([[0.0, 0.0], [x, 0.0], [x, y], [0.0, y], [0.0, 0.0]]))
-    for line in (*particles.walls, *lines):
-        canvas.line(line)
+    for wall in particles.walls:
+        canvas.line(wall)
+    for path in paths:
+        canvas.path(path)
     return canvas.image
 
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+import gaspart
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.engines.arrays import EventLog
 from gaspart.errors import SceneError, SimulationError
@@ -18,6 +19,9 @@ from gaspart.scene.walls import Plate, Wall, box_of_walls
 from gaspart.state.initial import initial_state
 from gaspart.state.state import State
 from gaspart.state.tally import Tally
+
+if TYPE_CHECKING:
+    from gaspart.rendering.view import View
 
 ENERGY_DRIFT = {"float64": 1e-9, "float32": 1e-3}
 """Drift of the energy at which a run is stopped, relative to that of the gas, by the engine's precision."""
@@ -264,6 +268,11 @@ class Simulation:
             raise SimulationError(
                 f"at time {self.time:g} the energy has drifted by {drift:g} from {self._energy:g}"
             )
+
+    def show(self, frames: int = 200) -> View:
+        """An interactive view of the run so far, `gaspart.view(self, frames)`, which shows itself in a
+        notebook. Raises SceneError for a simulation that has not advanced."""
+        return gaspart.view(self, frames)  # its public name, because views are made of simulations
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         """Arrays from which `restore` continues to the same bits."""

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gaspart.errors import SceneError
+from gaspart.errors import SceneError, optional
 from gaspart.files import Kind, begins_with, descriptor_path, output_path, writing
 from gaspart.state.insertion import per_body
 from gaspart.trajectory.recipe import opened, read_recipe
@@ -75,10 +75,9 @@ def _snapshot(path: Path, frame: int) -> Snapshot:
 
 def _write_gsd(path: Path, snapshot: Snapshot) -> None:
     """A frame of HOOMD's schema: the origin in the middle of the box, discs in a box without thickness."""
-    import gsd.hoomd
-
+    hoomd = optional("gsd.hoomd", "gsd", "GSD files")
     flat = snapshot.dimension == 2
-    frame = gsd.hoomd.Frame()
+    frame = hoomd.Frame()
     frame.configuration.dimensions = snapshot.dimension
     sides = np.where([False, False, flat], 0.0, snapshot.lengths)
     frame.configuration.box = [*sides, 0.0, 0.0, 0.0]
@@ -89,7 +88,7 @@ def _write_gsd(path: Path, snapshot: Snapshot) -> None:
     frame.particles.velocity = snapshot.velocities
     frame.particles.diameter = snapshot.diameters
     frame.particles.mass = snapshot.masses
-    with path.open("rb") as scratch, gsd.hoomd.open(descriptor_path(scratch), "w") as file:
+    with path.open("rb") as scratch, hoomd.open(descriptor_path(scratch), "w") as file:
         file.append(frame)
 
 

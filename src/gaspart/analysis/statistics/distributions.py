@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import stats
+from scipy.special import chdtrc
 
 from gaspart.analysis.statistics.inputs import series_of
 
@@ -33,4 +33,4 @@ def histogram_chi_square(samples: ArrayLike, cdf: Callable[[np.ndarray], Any], b
     counts = np.bincount(np.minimum((cdf(samples) * bins).astype(int), bins - 1), minlength=bins)
     expected = samples.size / bins
     chi_square = float(np.sum((counts - expected) ** 2) / expected)
-    return Histogram(chi_square, bins - 1, float(stats.chi2.sf(chi_square, bins - 1)), counts, expected)
+    return Histogram(chi_square, bins - 1, float(chdtrc(bins - 1, chi_square)), counts, expected)

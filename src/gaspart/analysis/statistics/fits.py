@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import stats
+from scipy.special import chdtrc
 
 from gaspart.analysis.statistics.inputs import positive_errors, series_of
 
@@ -69,7 +69,7 @@ def fit_linear(design: ArrayLike, y: ArrayLike, errors: ArrayLike | None = None)
     chi_square = float(np.sum((residuals / scale) ** 2))
     if errors is None:
         return Fit(values, covariance * chi_square / freedom, math.nan, freedom, math.nan, residuals)
-    p_value = float(stats.chi2.sf(chi_square, freedom)) if freedom else math.nan
+    p_value = float(chdtrc(freedom, chi_square)) if freedom else math.nan
     return Fit(values, covariance, chi_square, freedom, p_value, residuals)
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import stats
+from scipy.special import chdtrc
 
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics.fits import fit_linear
@@ -59,7 +59,7 @@ def combine(values: ArrayLike, errors: ArrayLike) -> Combination:
     mean = float(np.sum(weights * values) / weights.sum())
     chi_square = float(np.sum(weights * (values - mean) ** 2))
     freedom = values.size - 1
-    p_value = float(stats.chi2.sf(chi_square, freedom)) if freedom else math.nan
+    p_value = float(chdtrc(freedom, chi_square)) if freedom else math.nan
     return Combination(mean, float(weights.sum() ** -0.5), chi_square, freedom, p_value)
 
 

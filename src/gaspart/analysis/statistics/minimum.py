@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import stats
+from scipy.special import ndtri, stdtrit
 
 from gaspart.analysis.statistics.fits import fit_linear
 from gaspart.analysis.statistics.inputs import positive_errors, series_of
@@ -56,7 +56,7 @@ def optimum(x: ArrayLike, cost: ArrayLike, errors: ArrayLike | None = None, with
         return Optimum(float(x[least]), 0.0, math.inf, float(cost[least]), False, 0.0, math.inf)
     gradient = np.array([0.0, 0.5 / falling, -0.5 / rising])  # of ln location
     freedom = fit.degrees_of_freedom
-    quantile = stats.t.ppf(0.975, freedom) if errors is None else stats.norm.ppf(0.975)
+    quantile = stdtrit(freedom, 0.975) if errors is None else ndtri(0.975)
     spread = math.exp(quantile * math.sqrt(gradient @ covariance @ gradient))
     middle = math.sqrt(falling * rising)
     most = FLAT * (constant + 2.0 * middle) + 2.0 * middle  # of b / x + c x

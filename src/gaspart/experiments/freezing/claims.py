@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 import xarray as xr
-from scipy import stats
+from scipy.special import bdtrc, ndtri
 
 from gaspart import theory
 from gaspart.claims import UNVERIFIED, Claim, Estimate
@@ -163,7 +163,7 @@ def _equilibrium(dataset: xr.Dataset) -> Claim:
     number = differences.size
     found = int((differences > EQUILIBRIUM_LIMIT).sum())
     chance = 1.0 - (1.0 - math.erfc(EQUILIBRIUM_LIMIT / math.sqrt(2.0))) ** COMPARED
-    deviation = float(stats.norm.isf(stats.binom.sf(found - 1, number, chance)))
+    deviation = float(-ndtri(bdtrc(found - 1, number, chance)))
     return Claim(
         claim=f"packing fractions of {number} up to {melting:.3g} whose starts or halves differ by more "
         f"than {EQUILIBRIUM_LIMIT:g} standard errors",

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from scipy import stats
+from scipy.special import ndtr
 
 from gaspart.claims import read
 
@@ -36,7 +36,7 @@ def claims_scatter(tables: Sequence[str | Path], settings: dict) -> xr.Dataset:
     )
     scattered = scattered.astype(bool)
     own = [deviation[scattered & (figure == n)] for n in range(len(found))]
-    counts = np.histogram(stats.norm.cdf(deviation[scattered]), BINS, (0.0, 1.0))[0]
+    counts = np.histogram(ndtr(deviation[scattered]), BINS, (0.0, 1.0))[0]
     units = {"units": "1"}
     return xr.Dataset(
         {
