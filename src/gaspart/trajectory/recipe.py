@@ -90,8 +90,9 @@ class Recipe:
 
     @property
     def samples_per_frame(self) -> int:
-        """Samples of the correlations in an interval of frames, in a recipe that has correlations."""
-        assert self.correlations
+        """Samples in an interval of frames: 1, the frame, unless those of the correlations are closer."""
+        if self.correlations is None:
+            return 1
         return multiple(
             "sample_interval", self.sample_interval, "correlations.interval", self.correlations.interval
         )

@@ -83,10 +83,9 @@ class Recording:
     def _finish_frame(self, signals: Deferral) -> None:
         """Take the samples until the next frame that are missing, and write the frame."""
         frame, correlator = self._frames.count, self._correlator
-        if correlator:
-            last = frame * self._recipe.samples_per_frame
-            while correlator.next < last:
-                correlator.add(self._reach(correlator.next, correlator.interval, signals))
+        last = frame * self._recipe.samples_per_frame
+        while correlator and correlator.next < last:
+            correlator.add(self._reach(correlator.next, correlator.interval, signals))
         state = self._reach(frame, self._recipe.sample_interval, signals)
         if correlator and correlator.next == last:
             correlator.add(state)
