@@ -103,7 +103,7 @@ def _run(given: argparse.Namespace) -> None:
     settings = {key: getattr(given, key) for key in _ENGINE_SETTINGS if getattr(given, key) is not None}
     if "boxes_per_side" in settings:
         settings["boxes_per_side"] = _alone(settings["boxes_per_side"])
-    scene = Scene.from_file(given.scene)
+    scene, correlations = Scene.from_file(given.scene), _correlations(given.correlations)
     try:
         engine = engine_from_dict({"name": given.engine, **settings})
     except SceneError as error:
@@ -119,7 +119,7 @@ def _run(given: argparse.Namespace) -> None:
             path=given.output,
             displacements=given.displacements,
             follow=given.follow,
-            correlations=_correlations(given.correlations),
+            correlations=correlations,
             checkpoint_seconds=given.checkpoint_seconds,
             progress=progress(given.quiet, started),
             overwrite=given.force,
