@@ -155,7 +155,15 @@ class Layout:
             file.createVariable(name, kind[1:], ("frame", *dimensions), fill_value=False).setncatts(extra)
         for name, (kind, _, values) in fixed.items():
             file[name][:] = np.array(values, dtype=kind)
-        return bytes(file.close())
+        written = bytes(file.close())
+        return written[: _frames_begin(written)]  # the library may return more memory than it has used
+
+
+def _frames_begin(header: bytes) -> int:
+    """Offset of the first variable of a frame, time: the last value before the name of the next one."""
+    after = b"cell_lengths"
+    (begin,) = struct.unpack_from(">Q", header, header.index(struct.pack(">I", len(after)) + after) - 8)
+    return int(begin)
 
 
 def _value_at(header: bytes | bytearray, name: str) -> int:
