@@ -87,8 +87,6 @@ def test_xarray_reads_it_as_it_is(written):
 
 
 def test_it_is_netcdf_3_of_64_bit_offsets_with_the_units_that_readers_insist_on(written):
-    import netCDF4
-
     with netCDF4.Dataset(written[0]) as file:
         assert file.data_model == "NETCDF3_64BIT_OFFSET"
         units = {
