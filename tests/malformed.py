@@ -208,6 +208,7 @@ def planned_configs(draw):
         "samples": whole,
         "replicas": st.integers(1, 3),
         "follow": whole,
+        "lags": whole,
     }
     others |= {"boundary": st.sampled_from(["wall", "periodic"]), "centres_to_walls": st.booleans()}
     for key in draw(st.lists(st.sampled_from(list(others)), max_size=3)):

@@ -16,6 +16,7 @@ __version__ = "0.2.0"
 _HOMES = {
     "Body": "scene.species",
     "Container": "scene.container",
+    "Correlations": "trajectory.correlator",
     "EventDriven": "engines",
     "Plate": "scene.walls",
     "Restitution": "scene.restitution",

@@ -49,6 +49,7 @@ def test_run_info_and_the_command_that_reproduces_it(folder, capsys):
     for options in (
         ["--engine", "event", "--boxes-per-side", "3,4", "--seed", "1,2", "--displacements", "--follow", "9"],
         ["--engine", "step", "--time-step", "0.1", "--precision", "float32", "--no-rewind"],
+        ["--boxes-per-side", "3,4", "--seed", "1,2", "--correlations", "0.125,3,0.25"],
     ):
         assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY, *options, "--force"]) == 0
         capsys.readouterr()

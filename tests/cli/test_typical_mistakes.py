@@ -73,6 +73,8 @@ MISTAKES = {
     ),
     "too many boxes": (line(*RUN, "--boxes-per-side", "13"), "boxes_per_side = 13"),
     "following too many": (line(*RUN, "--follow", "21"), "follow = 21: there are 20 particles"),
+    "correlations without lags": (line(*RUN, "--correlations", "0.5"), "--correlations: must be an interval"),
+    "half a lag": (line(*RUN, "--correlations", "0.5,1.5"), "--correlations: must be an interval"),
     "no such scene": (line("check", "gas.yaml"), "gas.yaml"),
     "no such folder": (line(*RUN, "-o", "out/run.nc"), "must be a file in an existing folder"),
     "output is the scene": (line(*RUN, "-o", "scene.yaml"), "scene.yaml"),

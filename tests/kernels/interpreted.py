@@ -21,6 +21,7 @@ from gaspart.kernels.event import prefetch as ahead
 from gaspart.kernels.obstacles import distance
 from gaspart.kernels.step import neighbour_list as step_list
 from gaspart.kernels.step import resolve as step_contacts
+from gaspart.trajectory.correlator import Correlator
 
 PYTHON = bool(numba.config.DISABLE_JIT)
 ROUGH, METAL = gp.Restitution(0.95, 0.4), gp.Restitution(1.0, 0.5)
@@ -113,6 +114,7 @@ def ends():
                 engine = gp.TimeStepped(0.01, **settings)
                 found[f"{name} in steps{how}"] = end_of(event_scenes()[name], engine, duration=1.0)
     found["order"] = order_of_contacts()
+    found["correlations"] = np.append(correlations(False), correlations(True))
     packing = gp.compress(gas(2, 12, 0.6), seed=1)
     found["growth"] = np.append(packing.positions.ravel(), packing.pressure)
     state = gp.Simulation(gas(3, 6, 0.2, "wall"), gp.EventDriven(), seed=2).state
@@ -132,6 +134,15 @@ def order_of_contacts():
     else:
         order = np.lexsort((pairs[:, 1], pairs[:, 0], times))
     return np.column_stack([times, pairs])[order].ravel()
+
+
+def correlations(displacements):
+    """The sums of 9 samples of random particles, up to a lag of 5."""
+    scene, rng = gas(3, 4, 0.1), np.random.default_rng(2)
+    correlator = Correlator(gp.Correlations(1.0, 5), scene, np.array([1.0, 2.0, 3.0, 0.1]), displacements)
+    for velocities, unwrapped in rng.normal(size=(9, 2, 4, 3)):
+        correlator.add(SimpleNamespace(velocities=velocities, unwrapped=unwrapped))
+    return np.concatenate([np.ravel(values) for values in correlator.sums().values()])
 
 
 def read_fields():

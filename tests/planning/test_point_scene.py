@@ -47,6 +47,16 @@ def test_a_point_is_the_scene_of_its_file(scene_file):
     assert grid.extents(point) == (70, 0.5, (20.0, 40.0))
 
 
+def test_a_point_with_lags_keeps_two_frames_of_its_run(scene_file):
+    (plain,) = points(scene_file, equilibration=3)
+    assert grid.recipe(plain)["correlations"] is None
+    for lags, kept in ((1, 1), (100, 2)):  # at most half the length, of 4 intervals
+        (point,) = points(scene_file, equilibration=3, lags=lags)
+        recipe = grid.recipe(point)
+        assert recipe["correlations"] == {"interval": 2.0, "lags": kept, "start": 4.0}
+        assert recipe["duration"] == recipe["sample_interval"] == grid.recipe(plain)["duration"] == 12.0
+
+
 def test_dotted_keys_replace_values_and_add_what_a_mapping_lacks(scene_file):
     varied = {"scene.gravity.1": [-0.5, -2], "scene.species.1.mass": 8, "scene.restitution.normal": [0.5]}
     first, second = points(scene_file, varied)

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import netCDF4
 import numpy as np
 import pytest
 from scenes import gas
@@ -86,8 +87,6 @@ def test_xarray_reads_it_as_it_is(written):
 
 
 def test_it_is_netcdf_3_of_64_bit_offsets_with_the_units_that_readers_insist_on(written):
-    import netCDF4
-
     with netCDF4.Dataset(written[0]) as file:
         assert file.data_model == "NETCDF3_64BIT_OFFSET"
         units = {
@@ -150,3 +149,15 @@ def test_a_file_states_its_recipe(tmp_path):
         again.scene, again.engine, again.seed, again.duration, again.sample_interval, tmp_path / "2.nc"
     )
     assert other.read_bytes() == path.read_bytes()
+
+
+@pytest.mark.parametrize("length", range(1000, 9000, 500))
+def test_frames_begin_where_the_header_ends(tmp_path, length):
+    """Whatever its length: the library returns memory by the page, with more than the header."""
+    layout = amber.Layout(3, 2, [], 0, "event", [], 0)
+    header = layout.header({"note": "x" * length}, np.ones(3), np.zeros(3, int))
+    frame = np.zeros(1, layout.frame)
+    frame["time"] = 7.0
+    (tmp_path / "one.nc").write_bytes(header[:4] + bytes([0, 0, 0, 1]) + header[8:] + frame.tobytes())
+    with netCDF4.Dataset(tmp_path / "one.nc") as file:
+        assert file["time"][:].tolist() == [7.0]

@@ -107,8 +107,11 @@ def cores_of(wildcards):
 
 
 def memory_of(wildcards):
-    """MB for one simulation: the interpreter, and the memory of each particle."""
-    return 800 + grid.extents(point_of(wildcards))[0] // 1000
+    """MB for one simulation: the interpreter, the memory of each particle, and that of correlated samples."""
+    point = point_of(wildcards)
+    count, _, lengths = grid.extents(point)
+    vectors = point.settings.get("lags", 0) * (2 if point.settings.get("displacements") else 1)
+    return 800 + count // 1000 + count * len(lengths) * vectors * 8 // 10**6
 
 
 def caption_of(wildcards):

@@ -10,6 +10,7 @@ with job(snakemake):
     load_numba(ours=True)
     from gaspart.engines import engine_from_dict
     from gaspart.scene.scene import Scene
+    from gaspart.trajectory.correlator import Correlations
     from gaspart.trajectory.run import run
 
     recipe = snakemake.params.recipe
@@ -28,6 +29,7 @@ with job(snakemake):
             path=path,
             displacements=recipe["displacements"],
             follow=recipe["follow"],
+            correlations=recipe["correlations"] and Correlations(**recipe["correlations"]),
             overwrite=True,  # the remainder of another recipe
         )
     for leftover in set(partial.iterdir()) - set(paths):

@@ -1,4 +1,5 @@
-"""Time correlations of one run's displacements and velocities, averaged over particles and time origins."""
+"""Time correlations of one run's displacements and velocities, averaged over particles and time origins:
+computed from frames, or accumulated by the run."""
 
 from __future__ import annotations
 
@@ -6,6 +7,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
+
+from gaspart.trajectory.correlator import SUMS
 
 
 @dataclass(frozen=True)
@@ -46,6 +50,20 @@ def correlate(displacements: np.ndarray, velocities: np.ndarray, interval: float
         crossed = np.diag(rv, -lag) - np.diag(rv, lag)
         running[lag] = (product[late] - product[early] + crossed).sum() / (2 * dimension * pairs)
     return Curves(interval * np.arange(lags), msd, autocorrelation(velocities, lags), running)
+
+
+def accumulated(trajectory: xr.Dataset) -> Curves:
+    """The averages of a run with correlations, as it has accumulated them to its last frame.
+
+    At lags in the scene's time, with velocities as they are; msd and running are NaN without displacements.
+    """
+    last, dimension = trajectory.isel(frame=-1), trajectory.sizes["spatial"]
+    lags = trajectory.sizes["lag"]
+    pairs = float(last["correlated_samples"]) - np.arange(lags)
+    velocity, square, crossed = (
+        last[name].values / pairs if name in last else np.full(lags, math.nan) for name in SUMS
+    )
+    return Curves(last["lag"].values, square, velocity / dimension, crossed / (2 * dimension))
 
 
 def autocorrelation(values: np.ndarray, lags: int) -> np.ndarray:

@@ -82,6 +82,9 @@ def _run_options(path: Path, recipe: Recipe, stored: dict) -> list[str]:
         options.append("--displacements")
     if recipe.follow is not None:
         options += ["--follow", str(recipe.follow)]
+    if recipe.correlations is not None:
+        asked = recipe.correlations
+        options += ["--correlations", f"{asked.interval!r},{asked.lags},{asked.start!r}"]
     return options
 
 

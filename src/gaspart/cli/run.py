@@ -6,6 +6,7 @@ import argparse
 import shlex
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from gaspart.cli.arguments import Parser, UsageError, print_line, set_command, several
 from gaspart.cli.progress import clear_line, progress, waiting
@@ -13,6 +14,9 @@ from gaspart.errors import SceneError, shown
 from gaspart.interruption import set_note
 from gaspart.kernels.numba_loading import load_numba
 from gaspart.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from gaspart.trajectory.correlator import Correlations
 
 _ENGINE_SETTINGS: tuple[str, ...] = ("time_step", "boxes_per_side", "precision", "rewind", "search")
 _PREPARING = "placing particles, compiling kernels (once for each kind of scene)"
@@ -45,6 +49,12 @@ def add_run(parser: Parser) -> None:
         help="write unwrapped float64 displacements since time 0 as well",
     )
     add("--follow", type=int, metavar="N", help="write the first N particles only")
+    add(
+        "--correlations",
+        type=several(float),
+        metavar="T,L[,START]",
+        help="accumulate time correlations of samples every T, up to L of them apart, from START on",
+    )
     add("--time-step", type=float, metavar="T", help="step engine: the sample interval is a multiple of it")
     add(
         "--boxes-per-side",
@@ -93,7 +103,7 @@ def _run(given: argparse.Namespace) -> None:
     settings = {key: getattr(given, key) for key in _ENGINE_SETTINGS if getattr(given, key) is not None}
     if "boxes_per_side" in settings:
         settings["boxes_per_side"] = _alone(settings["boxes_per_side"])
-    scene = Scene.from_file(given.scene)
+    scene, correlations = Scene.from_file(given.scene), _correlations(given.correlations)
     try:
         engine = engine_from_dict({"name": given.engine, **settings})
     except SceneError as error:
@@ -109,6 +119,7 @@ def _run(given: argparse.Namespace) -> None:
             path=given.output,
             displacements=given.displacements,
             follow=given.follow,
+            correlations=correlations,
             checkpoint_seconds=given.checkpoint_seconds,
             progress=progress(given.quiet, started),
             overwrite=given.force,
@@ -122,6 +133,16 @@ def _as_option(error: SceneError, engine: str) -> str:
     option = {"name": "--engine", "rewind": "--no-rewind"}.get(name, f"--{name.replace('_', '-')}")
     rule = f"has no meaning with --engine {engine}" if "unknown key" in error.rule else error.rule
     return f"{option}: {'is required' if error.value is None else f'{shown(error.value)}: {rule}'}"
+
+
+def _correlations(given: tuple[float, ...] | None) -> Correlations | None:
+    if given is None:
+        return None
+    if len(given) not in (2, 3) or not given[1].is_integer():
+        raise UsageError("--correlations: must be an interval, a whole number of lags and perhaps a start")
+    from gaspart.trajectory.correlator import Correlations
+
+    return Correlations(given[0], int(given[1]), *given[2:])
 
 
 def _alone(numbers: tuple[int, ...]) -> int | tuple[int, ...]:

@@ -194,13 +194,18 @@ def recipe(point: Point) -> dict:
             "interval": times.sample_interval,
             "samples": times.samples,
         }
+    correlations = None
+    if "lags" in point.settings:
+        lags = min(point.settings["lags"], (times.samples + 1) // 2)
+        correlations = {"interval": times.sample_interval, "lags": lags, "start": times.equilibration}
     return {
         **made,
         "engine": engine_to_dict(engine(point)),
         "duration": times.duration,
-        "sample_interval": times.sample_interval,
+        "sample_interval": times.duration if correlations else times.sample_interval,
         "displacements": point.settings.get("displacements", False),
         "follow": follow,
+        "correlations": correlations,
     }
 
 

@@ -171,6 +171,11 @@ RUN: dict[str, Kind] = {
     "displacements": flag(
         "`simulate`: keep displacements in float64, for mean-squared displacements", default=False
     ),
+    "lags": count(
+        "`simulate`: accumulate time correlations of all samples up to so many intervals apart, but at most "
+        "half the length, and keep the first and the last frame only; with `displacements` of these too",
+        default=None,
+    ),
     "follow": count(
         "`simulate`: keep only the first so many particles (single `bodies` come first, then `species`); "
         "counters and energies are those of all",

@@ -13,12 +13,14 @@ from __future__ import annotations
 import os
 import struct
 import zlib
+from collections.abc import Collection
 from dataclasses import fields
 from typing import BinaryIO
 
 import numpy as np
 
 from gaspart.state.tally import Tally
+from gaspart.trajectory.correlator import SUMS
 
 NOTE = (
     "Reduced units: lengths and times are in the scene's own units, masses relative to the reference "
@@ -33,6 +35,17 @@ _FRAME_COUNT_AT = 4  # where a netCDF-3 header keeps the number of frames, as a 
 _WORD = 4  # bytes of a checksum, and of all that a netCDF-3 header counts
 _HEAD = 1024  # bytes from the start of a file within which the attributes of `BOOKKEEPING` lie
 _CHUNK = 1 << 24  # bytes that are read at once
+_VECTORS = ("atom", "spatial")
+_EXTRA: dict[str, tuple[str, tuple[str, ...], dict[str, str]]] = {
+    "spins": (
+        ">f4",
+        _VECTORS,
+        {"units": "1/picosecond", "long_name": "angular velocity, in two dimensions along z"},
+    ),
+    "vibrations": (">f4", ("atom",), {"long_name": "energy of a body's vibration"}),
+    "displacements": (">f8", _VECTORS, {"units": "angstrom", "long_name": "way since time 0, unwrapped"}),
+}
+"""The variables that only some files have, as in `Layout`, in their order."""
 BOOKKEEPING = ("header_bytes", "header_crc32", "frame_bytes")
 """Attributes by which a file is checked: sizes of the header and of a frame, and the header's checksum."""
 MOST_FRAMES = 2**31 - 1
@@ -53,19 +66,20 @@ def face_names(dimension: int, walls: int = 0) -> list[str]:
 class Layout:
     """The variables of one frame, in their order in the file: name -> (type, dimensions, attributes).
 
-    count: particles in the file; displacements, spins, vibrations: whether the file has these; walls: the
-    number of interior walls; engine: by whose name the counters are chosen.
+    count: particles in the file; extra: which of spins, vibrations and displacements the file has; walls: the
+    number of interior walls; engine: by whose name the counters are chosen; sums: of the correlations, from
+    lag 0 to `lags`.
     """
 
     def __init__(
         self,
         count: int,
         dimension: int,
-        displacements: bool,
-        walls: int = 0,
-        spins: bool = False,
-        vibrations: bool = False,
-        engine: str = "step",
+        extra: Collection[str],
+        walls: int,
+        engine: str,
+        sums: Collection[str],
+        lags: int,
     ) -> None:
         self.sizes = {
             "spatial": 3,
@@ -74,8 +88,8 @@ class Layout:
             "cell_angular": 3,
             "label": 5,
             "face": 2 * dimension + walls,
+            **({"lag": lags + 1} if sums else {}),
         }
-        vectors = ("atom", "spatial")
         faces = {"faces": ", ".join(face_names(dimension, walls))}
         self.variables = {
             "time": (">f8", (), {"units": "picosecond"}),
@@ -86,17 +100,16 @@ class Layout:
                 name: (">f8", ("face",) if name in _PER_FACE else (), faces if name in _PER_FACE else {})
                 for name in counters(engine)
             },
-            "coordinates": (">f4", vectors, {"units": "angstrom"}),
-            "velocities": (">f4", vectors, {"units": "angstrom/picosecond"}),
+            "coordinates": (">f4", _VECTORS, {"units": "angstrom"}),
+            "velocities": (">f4", _VECTORS, {"units": "angstrom/picosecond"}),
         }
-        if spins:
-            meaning = "angular velocity, in two dimensions along z"
-            self.variables["spins"] = (">f4", vectors, {"units": "1/picosecond", "long_name": meaning})
-        if vibrations:
-            self.variables["vibrations"] = (">f4", ("atom",), {"long_name": "energy of a body's vibration"})
-        if displacements:
-            meaning = "way since time 0, unwrapped"
-            self.variables["displacements"] = (">f8", vectors, {"units": "angstrom", "long_name": meaning})
+        self.variables |= {name: _EXTRA[name] for name in extra}
+        if sums:
+            meaning = "samples that are correlated, so far"
+            self.variables["correlated_samples"] = (">f8", (), {"long_name": meaning})
+        for name in sums:
+            meaning = f"mean over moving particles of {SUMS[name]}, summed over pairs of samples so far"
+            self.variables[name] = (">f8", ("lag",), {"long_name": meaning})
         meaning = (
             "CRC-32 of the bytes of this frame before it, which begins with those of the header and frame"
         )
@@ -142,7 +155,15 @@ class Layout:
             file.createVariable(name, kind[1:], ("frame", *dimensions), fill_value=False).setncatts(extra)
         for name, (kind, _, values) in fixed.items():
             file[name][:] = np.array(values, dtype=kind)
-        return bytes(file.close())
+        written = bytes(file.close())
+        return written[: _frames_begin(written)]  # the library may return more memory than it has used
+
+
+def _frames_begin(header: bytes) -> int:
+    """Offset of the first variable of a frame, time: the last value before the name of the next one."""
+    after = b"cell_lengths"
+    (begin,) = struct.unpack_from(">Q", header, header.index(struct.pack(">I", len(after)) + after) - 8)
+    return int(begin)
 
 
 def _value_at(header: bytes | bytearray, name: str) -> int:

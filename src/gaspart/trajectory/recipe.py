@@ -20,6 +20,7 @@ from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of, number
 from gaspart.state.random import stream
 from gaspart.trajectory import amber, provenance
+from gaspart.trajectory.correlator import Correlations, sums_of
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ class Recipe:
 
     duration and sample_interval are in the scene's time; duration is an integer multiple of sample_interval,
     and that, for the time-stepped engine, of time_step. follow: how many particles, from the first on, are in
-    the file; None: all.
+    the file; None: all. correlations: sample_interval is an integer multiple of their interval.
     """
 
     scene: Scene
@@ -55,6 +56,7 @@ class Recipe:
     sample_interval: float
     displacements: bool = False
     follow: int | None = None
+    correlations: Correlations | None = None
 
     def __post_init__(self) -> None:
         stream(self.seed)  # raises SceneError for an invalid seed
@@ -71,6 +73,29 @@ class Recipe:
         if self.frames > amber.MOST_FRAMES:
             rule = "makes more frames than a file can hold"
             raise SceneError("sample_interval", self.sample_interval, rule)
+        if self.correlations:
+            self._check_correlations(self.correlations)
+
+    def _check_correlations(self, asked: Correlations) -> None:
+        """Refuse correlations that this run cannot have, with SceneError."""
+        interval = "correlations.interval", asked.interval
+        if isinstance(self.engine, TimeStepped):
+            multiple(*interval, "time_step", self.engine.time_step)
+        if asked.start > 0.0:
+            multiple("correlations.start", asked.start, *interval)
+        samples = (self.frames - 1) * self.samples_per_frame - asked.first
+        if asked.lags > samples:
+            rule = f"there are {max(0, samples)} intervals of {asked.interval:g} from {asked.start:g} on"
+            raise SceneError("correlations.lags", asked.lags, rule)
+
+    @property
+    def samples_per_frame(self) -> int:
+        """Samples in an interval of frames: 1, the frame, unless those of the correlations are closer."""
+        if self.correlations is None:
+            return 1
+        return multiple(
+            "sample_interval", self.sample_interval, "correlations.interval", self.correlations.interval
+        )
 
     @property
     def frames(self) -> int:
@@ -86,8 +111,12 @@ class Recipe:
     def layout(self) -> amber.Layout:
         """The variables of a frame."""
         scene, walls = self.scene, len(self.scene.walls)
-        kept = self.displacements, walls, scene.rough, scene.vibrates
-        return amber.Layout(self.stored_count, scene.dimension, *kept, self.engine.name)
+        names = ("spins", scene.rough), ("vibrations", scene.vibrates), ("displacements", self.displacements)
+        extra = [name for name, present in names if present]
+        sums, lags = [], 0
+        if self.correlations:
+            sums, lags = sums_of(self.displacements), self.correlations.lags
+        return amber.Layout(self.stored_count, scene.dimension, extra, walls, self.engine.name, sums, lags)
 
     def attributes(self) -> dict:
         """The recipe as the file's attributes, from which `read_recipe` restores it."""
@@ -100,6 +129,7 @@ class Recipe:
             "sample_interval": self.sample_interval,
             "displacements": np.int32(self.displacements),
             **({} if self.follow is None else {"follow": np.int32(self.follow)}),
+            **({} if self.correlations is None else {"correlations": self.correlations.to_json()}),
         }
 
     def header(self, revision: str) -> bytes:
@@ -206,6 +236,7 @@ def read_recipe(path: str | Path) -> Recipe:
             sample_interval=float(stored["sample_interval"]),
             displacements=bool(stored["displacements"]),
             follow=int(stored["follow"]) if "follow" in stored else None,
+            correlations=Correlations.from_json(stored["correlations"]) if "correlations" in stored else None,
         )
     except SceneError:
         raise

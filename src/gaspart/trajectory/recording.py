@@ -17,6 +17,7 @@ from gaspart.simulation.simulation import Simulation
 from gaspart.state.state import State
 from gaspart.trajectory import amber
 from gaspart.trajectory.checkpoint import checkpoint_path, write_checkpoint
+from gaspart.trajectory.correlator import Correlator
 from gaspart.trajectory.recipe import Recipe, multiple
 
 Progress = Callable[[float, float, int], None]
@@ -47,9 +48,19 @@ class Recording:
         self._recipe, self._simulation, self._frames = recipe, simulation, frames
         self._header, self._path, self._every, self._progress = header, path, every, progress
         self._origin = simulation.initial_state.unwrapped
+        self._correlator: Correlator | None = None
+        if recipe.correlations:
+            masses = simulation.initial_state.masses
+            self._correlator = Correlator(recipe.correlations, recipe.scene, masses, recipe.displacements)
         self._stretch = _FIRST_STRETCH[recipe.engine.name]
         self._saved = self._reported = time.monotonic()
-        if simulation.time > 0.0:  # restored
+
+    def restore(self, arrays: dict[str, np.ndarray]) -> None:
+        """Continue from the arrays of a checkpoint."""
+        self._simulation.restore(arrays)
+        if self._correlator:
+            self._correlator.restore(arrays)
+        if self._simulation.time > 0.0:
             self._note()
 
     def finish(self) -> None:
@@ -61,19 +72,34 @@ class Recording:
         try:
             with deferred() as signals:
                 while self._frames.count < self._recipe.frames:
-                    for _ in self._approach(self._frames.count):
-                        signals.unsaved = True
-                        self._between_stretches(signals)
-                    state = self._simulation.state
-                    self._simulation.check_invariants(state)
-                    self._frames.append(self._frame(state))
-                    self._between_stretches(signals)
+                    self._finish_frame(signals)
         except SimulationError as error:
             failed = self._path.with_name(self._path.name + ".failed.npz")
-            write_checkpoint(failed, self._header, self._frames.count, self._simulation.checkpoint())
+            write_checkpoint(failed, self._header, self._frames.count, self._arrays())
             raise SimulationError(f"{error}; its state is kept in {failed}") from None
         self._frames.sync()
         set_note("")
+
+    def _finish_frame(self, signals: Deferral) -> None:
+        """Take the samples until the next frame that are missing, and write the frame."""
+        frame, correlator = self._frames.count, self._correlator
+        last = frame * self._recipe.samples_per_frame
+        while correlator and correlator.next < last:
+            correlator.add(self._reach(correlator.next, correlator.interval, signals))
+        state = self._reach(frame, self._recipe.sample_interval, signals)
+        if correlator and correlator.next == last:
+            correlator.add(state)
+        self._frames.append(self._frame(state))
+        self._between_stretches(signals)
+
+    def _reach(self, number: int, interval: float, signals: Deferral) -> State:
+        """The state at the time number x interval."""
+        for _ in self._approach(number, interval):
+            signals.unsaved = True
+            self._between_stretches(signals)
+        state = self._simulation.state
+        self._simulation.check_invariants(state)
+        return state
 
     def _between_stretches(self, signals: Deferral) -> None:
         """Report progress, write a checkpoint and let a signal take effect, if one of these is due."""
@@ -92,27 +118,31 @@ class Recording:
         """Write a checkpoint, from which the run can continue to the same bits."""
         self._simulation.check_invariants()
         self._frames.sync()  # before the checkpoint, which counts them
-        arrays = self._simulation.checkpoint()
-        write_checkpoint(checkpoint_path(self._path), self._header, self._frames.count, arrays)
+        write_checkpoint(checkpoint_path(self._path), self._header, self._frames.count, self._arrays())
         self._note()
         self._saved = time.monotonic()
+
+    def _arrays(self) -> dict[str, np.ndarray]:
+        """The arrays of a checkpoint."""
+        own = self._correlator.checkpoint() if self._correlator else {}
+        return {**self._simulation.checkpoint(), **own}
 
     def _note(self) -> None:
         command = f"gaspart resume {shlex.quote(str(self._path))}"
         set_note(f"`{command}` continues it from time {self._simulation.time:g} of {self._recipe.duration:g}")
 
-    def _approach(self, frame: int) -> Iterator[None]:
-        """Advance to the time of a frame, frame x sample_interval, by stretches."""
+    def _approach(self, number: int, interval: float) -> Iterator[None]:
+        """Advance to the time number x interval by stretches."""
         simulation, recipe = self._simulation, self._recipe
         if isinstance(recipe.engine, TimeStepped):
             step = recipe.engine.time_step
-            goal = frame * multiple("sample_interval", recipe.sample_interval, "time_step", step)
+            goal = number * multiple("interval", interval, "time_step", step)
             while (done := simulation.tally.steps) < goal:
                 # half a step more than required, so that rounding does not cost a step
                 self._advance(goal * step, until=(min(goal, done + self._stretch) + 0.5) * step)
                 yield
             return
-        until = frame * recipe.sample_interval
+        until = number * interval
         while simulation.time < until:
             self._advance(until, until=until, max_work=self._stretch)
             yield
@@ -150,5 +180,6 @@ class Recording:
             **{name: getattr(tally, name) for name in amber.counters(self._recipe.engine.name)},
             "coordinates": state.positions[followed],
             "velocities": state.velocities[followed],
+            **(self._correlator.sums() if self._correlator else {}),
             **{name: values[followed] for name, values in inner.items()},
         }

@@ -13,6 +13,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
+import numpy as np
+
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SceneError
 from gaspart.files import Kind, may_replace, output_path, place
@@ -21,6 +23,7 @@ from gaspart.scene.validation import number
 from gaspart.simulation.simulation import Simulation
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.checkpoint import checkpoint_path, read_checkpoint, remove_checkpoint
+from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.recipe import (
     PARTIAL,
     Recipe,
@@ -42,7 +45,12 @@ _REDUCED = {
     "1/picosecond": "1/time",
 }
 _ENERGIES = ("kinetic_energy", "wall_energy", "virial_sum", "dissipated_energy", "vibrations")
-_UNITS = dict.fromkeys(_ENERGIES, "mass length^2/time^2") | {"wall_impulse": "mass length/time"}
+_UNITS = dict.fromkeys(_ENERGIES, "mass length^2/time^2") | {
+    "wall_impulse": "mass length/time",
+    "velocity_product_sum": "length^2/time^2",
+    "squared_displacement_sum": "length^2",
+    "displacement_velocity_sum": "length^2/time",
+}
 
 
 def partial_path(path: Path) -> Path:
@@ -56,7 +64,7 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     """A trajectory, or the finished part of a `.partial` one, as an xarray.Dataset, read as it is used.
 
     Dimensions frame, atom, spatial (d) and face (2d); time (frame), radius and type (atom) are coordinates,
-    and plots over frames have the time as their axis.
+    and plots over frames have the time as their axis. A run with correlations has the dimension lag.
     Of discs that spin, `spins` is (frame, atom); of spheres (frame, atom, spatial).
     Lengths and times are in the scene's units, counters cumulative since time 0. Attributes state the scene
     (YAML), engine and seed (JSON), and what follows from the scene: count, dimension, packing_fraction,
@@ -68,7 +76,8 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     import xarray as xr
 
     path = Path(path)
-    scene = read_recipe(path).scene
+    recipe = read_recipe(path)
+    scene = recipe.scene
     store = xr.backends.NetCDF4DataStore(open_netcdf(path))
     data = opened = xr.open_dataset(store, decode_times=False)
     attributes = {**data.attrs, "count": scene.count, "dimension": scene.dimension}
@@ -79,6 +88,9 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     data = data.drop_vars(["cell_spatial", "cell_angular", "checksum"])
     faces = amber.face_names(scene.dimension, len(scene.walls))
     data = data.assign_coords(spatial=list("xyz"[: scene.dimension]), face=faces)
+    if recipe.correlations:
+        lags = recipe.correlations.interval * np.arange(data.sizes["lag"])
+        data = data.assign_coords(lag=("lag", lags, {"units": "time"}))
     data = data.assign_coords(frame=("frame", data["time"].values, {"long_name": "time", "units": "time"}))
     for key, variable in data.variables.items():
         name = str(key)
@@ -100,6 +112,7 @@ def run(
     *,
     displacements: bool = False,
     follow: int | None = None,
+    correlations: Correlations | None = None,
     checkpoint_seconds: float = 30.0,
     progress: Progress | None = None,
     overwrite: bool = False,
@@ -108,10 +121,12 @@ def run(
 
     A frame at time 0 and at every sample_interval to the duration, which must be an integer multiple of it;
     with `displacements` also each particle's float64 way since time 0, unwrapped; with rough contacts also
-    the spins; with `follow` only so many particles, from the first on (counters are still those of all). A
-    run of the same recipe and program that was cut short is continued, and a complete one is not changed.
-    Another trajectory at `path`, or unfinished next to it, is replaced only with `overwrite`; a file of
-    another kind never.
+    the spins; with `follow` only so many particles, from the first on (counters are still those of all).
+    With `correlations` each frame has the sums so far of the velocities' correlations, and with
+    `displacements` of the mean-squared displacement, over all pairs of samples, which may lie much closer
+    than frames. A run of the same recipe and program that was cut short is continued, and a complete one is
+    not changed. Another trajectory at `path`, or unfinished next to it, is replaced only with `overwrite`; a
+    file of another kind never.
 
     `progress(time, duration, collisions)` is called about twice a second.
 
@@ -121,7 +136,7 @@ def run(
     Raises SceneError for invalid settings, and for a file that cannot be written; SimulationError
     if the run breaks an invariant, with its state kept in `path.failed.npz`.
     """
-    wanted = Recipe(scene, engine, seed, duration, sample_interval, displacements, follow)
+    wanted = Recipe(scene, engine, seed, duration, sample_interval, displacements, follow, correlations)
     return _carry_out(wanted, output_path(path), checkpoint_seconds, progress, overwrite)
 
 
@@ -239,12 +254,13 @@ def _record(
     continued = begun_as(partial, wanted)
     header = wanted.header(stored_revision(partial) if continued else provenance.git_revision())
     found = read_checkpoint(checkpoint_path(path), header) if continued else None
-    kept = 0
-    if found and found.frames <= amber.frame_count(file) and _can_keep(partial, found.frames, overwrite):
-        simulation.restore(found.arrays)
-        kept = found.frames
-    frames = amber.Frames(file, wanted.layout, header, kept)
-    Recording(wanted, simulation, frames, header, path, every, progress).finish()
+    if found and (found.frames > amber.frame_count(file) or not _can_keep(partial, found.frames, overwrite)):
+        found = None
+    frames = amber.Frames(file, wanted.layout, header, kept=found.frames if found else 0)
+    recording = Recording(wanted, simulation, frames, header, path, every, progress)
+    if found:
+        recording.restore(found.arrays)
+    recording.finish()
 
 
 @contextmanager

@@ -6,7 +6,9 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
+from gaspart.analysis.correlations import centred, correlate
 from gaspart.planning import grid
+from gaspart.trajectory.correlator import SUMS
 
 
 def point(dimension=3, count=100, packing_fraction=0.02, experiment="msd", name="single", **more):
@@ -23,16 +25,22 @@ def point(dimension=3, count=100, packing_fraction=0.02, experiment="msd", name=
         "collisions_per_body": 120,
         "samples": 120,
         "displacements": True,
+        "lags": 120,
         "replicas": 4,
     }
     return grid.Point(experiment, name, "simulate", settings | more, "results/points", 1)
 
 
-def langevin(rng, frames, count, dimension, interval, rate, drift=0.0, length=1.0, speed=1.0):
-    """Independent bodies with <v(0).v(t)> / d = exp(-rate t): exact steps of the Ornstein-Uhlenbeck process.
+def langevin(rng, one, drift=0.0, length=1.0, speed=1.0):
+    """What a run of `one` accumulates of independent bodies with <v(0).v(t)> / d = exp(-rate t), at Enskog's
+    D: exact steps of the Ornstein-Uhlenbeck process.
 
     Their D is speed^2 / rate. drift: a velocity that all share; length: unit of the displacements.
     """
+    times, asked = grid.schedule(one), grid.recipe(one)["correlations"]
+    frames, interval = times.samples + 1, times.sample_interval
+    count, dimension = one.settings["count"], one.settings["dimension"]
+    rate = enskog_rate(one.settings["packing_fraction"], dimension)
     decay = math.exp(-rate * interval)
     velocity_variance = 1.0 - decay**2
     place_variance = (2.0 * rate * interval - 3.0 + 4.0 * decay - decay**2) / rate**2
@@ -47,14 +55,16 @@ def langevin(rng, frames, count, dimension, interval, rate, drift=0.0, length=1.
         kicks = np.einsum("ij,jnd->ind", noise, rng.standard_normal((2, count, dimension)))
         place = place + velocity * (1.0 - decay) / rate + kicks[1]
         velocity = velocity * decay + kicks[0]
-    time = interval * np.arange(frames)
-    moved = length * (np.array(places) + drift * time[:, None, None])
+    shared = drift * interval * np.arange(frames)[:, None, None]
+    moved, velocities = length * (np.array(places) + shared), speed * (np.array(velocities) + drift)
+    lags = asked["lags"] + 1
+    curves = correlate(centred(moved), centred(velocities), interval * length / speed, lags)
+    pairs = frames - np.arange(lags)
+    sums = (dimension * curves.correlation, curves.msd, 2 * dimension * curves.running)
     return xr.Dataset(
-        {
-            "displacements": (("frame", "atom", "spatial"), moved),
-            "velocities": (("frame", "atom", "spatial"), speed * (np.array(velocities) + drift)),
-        },
-        coords={"time": ("frame", time * length / speed)},
+        {name: (("frame", "lag"), (values * pairs)[None]) for name, values in zip(SUMS, sums, strict=True)}
+        | {"correlated_samples": ("frame", [float(frames)])},
+        coords={"lag": curves.time, "spatial": list("xyz"[:dimension])},
     )
 
 

@@ -3,13 +3,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from experiments.displacement.data import enskog_rate, langevin, point
+from experiments.displacement.data import langevin, point
 
 import gaspart as gp
 from gaspart import theory
 from gaspart.analysis.correlations import Curves, between, centred, correlate, line
 from gaspart.errors import SceneError
 from gaspart.experiments.displacement import measure as displacement
+from gaspart.experiments.shared import curves
 from gaspart.planning import grid
 
 
@@ -17,38 +18,27 @@ from gaspart.planning import grid
 def stored(monkeypatch):
     """Stands in for the files: `stored[path] = dataset`."""
     files = {}
-    monkeypatch.setattr(displacement, "open_trajectory", files.__getitem__)
+    monkeypatch.setattr(curves, "open_trajectory", files.__getitem__)
     return files
 
 
 def fill(stored, one, seed, **unit):
     """Langevin bodies with Enskog's D, sampled as the point says, in the place of its trajectories."""
     rng = np.random.default_rng(seed)
-    times, settings = grid.schedule(one), one.settings
-    frames = times.equilibration_frames + times.samples + 1
-    eta, dimension = settings["packing_fraction"], settings["dimension"]
     for path in one.replica_paths:
-        stored[path] = langevin(
-            rng,
-            frames,
-            settings["count"],
-            dimension,
-            times.sample_interval,
-            enskog_rate(eta, dimension),
-            **unit,
-        )
+        stored[path] = langevin(rng, one, **unit)
 
 
 def test_correlations_are_the_averages_they_are_said_to_be():
     rng = np.random.default_rng(1)
     r, v = rng.normal(size=(30, 5, 3)).cumsum(axis=0), rng.normal(size=(30, 5, 3))
-    curves = correlate(r, v, 0.5, 9)
-    assert curves.time == pytest.approx(0.5 * np.arange(9))
+    found = correlate(r, v, 0.5, 9)
+    assert found.time == pytest.approx(0.5 * np.arange(9))
     for lag in range(9):
         moved, late, early = r[lag:] - r[: 30 - lag], v[lag:], v[: 30 - lag]
-        assert curves.msd[lag] == pytest.approx((moved**2).sum(axis=-1).mean(), abs=1e-10)
-        assert curves.correlation[lag] == pytest.approx((late * early).sum(axis=-1).mean() / 3)
-        assert curves.running[lag] == pytest.approx(
+        assert found.msd[lag] == pytest.approx((moved**2).sum(axis=-1).mean(), abs=1e-10)
+        assert found.correlation[lag] == pytest.approx((late * early).sum(axis=-1).mean() / 3)
+        assert found.running[lag] == pytest.approx(
             (moved * (late + early)).sum(axis=-1).mean() / 6, abs=1e-10
         )
     with pytest.raises(ValueError):
@@ -59,10 +49,10 @@ def test_free_flight_is_ballistic_at_any_distance():
     """Displacements 1e6 times the msd's root at the shortest lag lose no digit that matters."""
     v = np.random.default_rng(2).normal(size=(1, 50, 3))
     r = np.arange(1000.0)[:, None, None] * v
-    curves = correlate(r, np.repeat(v, 1000, axis=0), 1.0, 4)
+    found = correlate(r, np.repeat(v, 1000, axis=0), 1.0, 4)
     square = (v**2).sum() / 50
-    assert curves.msd[1:] == pytest.approx(square * np.arange(1, 4) ** 2, rel=1e-8)
-    assert curves.running == pytest.approx(square / 3 * np.arange(4), rel=1e-8, abs=1e-9)
+    assert found.msd[1:] == pytest.approx(square * np.arange(1, 4) ** 2, rel=1e-8)
+    assert found.running == pytest.approx(square / 3 * np.arange(4), rel=1e-8, abs=1e-9)
 
 
 def test_centred_takes_the_drift_away():
@@ -128,11 +118,11 @@ def test_the_slope_against_the_logarithm_is_found(monkeypatch):
     time = np.linspace(0.0, 60.0, 200)
     ramps = np.array([0.055, 0.06, 0.065])
 
-    def curves(*_):
+    def ramp(*_):
         logarithm = np.log(np.maximum(time, 0.1))
         return [Curves(time, time, time, 0.4 + b * logarithm - time / 4096) for b in ramps]
 
-    monkeypatch.setattr(displacement, "replicas", curves)
+    monkeypatch.setattr(displacement, "replicas", ramp)
     ds = displacement.msd_discs([one], {}).isel(point=0)
     assert float(ds["logarithmic_slope"]) == pytest.approx(0.06, rel=1e-9)
     assert float(ds["logarithmic_slope_error"]) == pytest.approx(0.005 / np.sqrt(3))
@@ -142,12 +132,20 @@ def test_the_slope_against_the_logarithm_is_found(monkeypatch):
     assert float(ds["fit_to"]) == pytest.approx(float(ds["sound_time"]))
 
 
+def test_a_point_without_lags_is_refused():
+    one = point()
+    del one.settings["lags"]
+    with pytest.raises(SceneError, match="experiments.msd.lags.*is required"):
+        displacement.msd_spheres([one], {})
+
+
 @pytest.mark.parametrize(
     ("change", "key"),
     [
         ({"displacements": False}, "displacements"),
         ({"replicas": 1}, "replicas"),
         ({"collisions_per_body": 30, "samples": 30}, "collisions per body"),
+        ({"lags": 10}, "collisions per body.*`lags` reach half of it"),
     ],
 )
 def test_runs_that_cannot_tell_are_refused(stored, change, key):
@@ -159,11 +157,12 @@ def test_runs_that_cannot_tell_are_refused(stored, change, key):
 
 def test_a_real_gas_diffuses_as_enskog_says(tmp_path):
     one = replace(point(count=108, packing_fraction=0.03, equilibration=10, replicas=3), root=str(tmp_path))
-    times = grid.schedule(one)
+    recipe = grid.recipe(one)
+    given = {key: recipe[key] for key in ("duration", "sample_interval", "displacements")}
+    given["correlations"] = gp.Correlations(**recipe["correlations"])
     for k, path in enumerate(one.replica_paths):
         Path(path).parent.mkdir(parents=True, exist_ok=True)
-        scene, engine = grid.scene(one), grid.engine(one)
-        gp.run(scene, engine, one.seed(k), times.duration, times.sample_interval, path, displacements=True)
+        gp.run(grid.scene(one), grid.engine(one), one.seed(k), **given, path=path)
     ds = displacement.msd_spheres([one], {}).isel(point=0)
     assert float(ds["diffusion"]) == pytest.approx(float(theory.enskog_diffusion(0.03, 3)), rel=0.15)
     theoretical = theory.enskog_mean_squared_displacement(ds["time"].values, 0.03, 3)

@@ -19,7 +19,7 @@ def test_the_start_of_a_gas_is_enskogs_and_momentum_is_put_back(tmp_path):
     settings = {
         "dimension": 3, "count": 256, "radius": 0.5, "boundary": "periodic", "packing_fraction": 0.2,
         "temperature": 2.0, "arrangement": "lattice", "collisions_per_body": 12, "equilibration": 20,
-        "samples": 240, "replicas": 3,
+        "samples": 240, "lags": 120, "replicas": 3,
     }  # fmt: skip
     point = grid.Point("memory", "single", "simulate", settings, str(tmp_path), 3)
     recipe = grid.recipe(point)
@@ -32,6 +32,7 @@ def test_the_start_of_a_gas_is_enskogs_and_momentum_is_put_back(tmp_path):
             recipe["duration"],
             recipe["sample_interval"],
             path,
+            correlations=gp.Correlations(**recipe["correlations"]),
         )
     fitted = {"start_to": 0.4, "tail": [2.0, 4.0]}
     ds = velocity.velocity_autocorrelation([point], fitted).isel(point=0)

@@ -14,11 +14,11 @@ import xarray as xr
 from scipy.integrate import cumulative_simpson
 
 from gaspart import theory
-from gaspart.analysis.correlations import Curves, between, centred, correlate, line
+from gaspart.analysis.correlations import Curves, between, line
 from gaspart.analysis.statistics import fit_polynomial
 from gaspart.errors import SceneError
+from gaspart.experiments.shared.curves import reduced_curves
 from gaspart.planning import grid
-from gaspart.trajectory.run import open_trajectory
 
 SETTLE_COLLISIONS, SETTLE_SHEAR_TIMES = 12.0, 3.0
 """D is the slope of the msd from this many collisions per particle, or decay times of the container's slowest
@@ -33,28 +33,16 @@ LOGARITHM_FROM = 30.0
 
 
 def replicas(point: grid.Point, longest: float) -> list[Curves]:
-    """The curves of each replica, to the lag `longest` (reduced time) but at most half the run.
+    """The curves of each replica, to the lag `longest` (reduced time) or to the last one that they have.
 
-    Raises SceneError for a point without displacements, or a single replica.
+    Raises SceneError for a point without displacements or lags, or a single replica.
     """
     where = f"experiments.{point.experiment}"
     if not point.settings.get("displacements", False):
         raise SceneError(f"{where}.displacements", False, "must be true")
     if point.replicas < 2:
         raise SceneError(f"{where}.replicas", point.replicas, "must be at least 2")
-    dimension, drop = point.settings["dimension"], grid.schedule(point).equilibration_frames
-    _, radius, _ = grid.extents(point)
-    found = []
-    for path in point.replica_paths:
-        with open_trajectory(path) as dataset:
-            moved = centred(dataset["displacements"].values[drop:, :, :dimension])
-            velocities = centred(dataset["velocities"].values[drop:, :, :dimension].astype(float))
-            time = dataset["time"].values[drop:].astype(float)
-        frames, count, _ = moved.shape
-        thermal_speed = math.sqrt((velocities**2).sum() / (frames * dimension * (count - 1)))
-        interval = (time[-1] - time[0]) / (frames - 1) * thermal_speed / (2.0 * radius)
-        lags = min(frames // 2, math.ceil(longest / interval)) + 1
-        found.append(correlate(moved / (2.0 * radius), velocities / thermal_speed, interval, lags))
+    found = [reduced_curves(point, path, longest) for path in point.replica_paths]
     # Temperatures differ a little, so the last lag may.
     shortest = min(len(one.time) for one in found)
     return [Curves(*(array[:shortest] for array in vars(one).values())) for one in found]
@@ -162,7 +150,7 @@ def _spheres(point: grid.Point) -> dict:
     if time[-1] + time[1] < 2.0 * start:
         where = f"experiments.{point.experiment}[{point.name}]: collisions per body"
         needed = math.ceil(4.0 * start * state["collision_rate"])
-        rule = f"must be {needed} or more for a straight stretch of the msd"
+        rule = f"must be {needed} or more, and `lags` reach half of it, for a straight stretch of the msd"
         raise SceneError(where, round(grid.schedule(point).samples * rows["interval"]), rule)
     slopes = []
     for one in curves:

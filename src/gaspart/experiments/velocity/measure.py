@@ -18,10 +18,10 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis.correlations import autocorrelation, between, centred
+from gaspart.analysis.correlations import between
 from gaspart.analysis.statistics import fit_polynomial, mean_of
+from gaspart.experiments.shared.curves import reduced_curves
 from gaspart.planning import grid
-from gaspart.trajectory.run import open_trajectory
 
 
 def velocity_autocorrelation(points: list[grid.Point], settings: dict) -> xr.Dataset:
@@ -55,10 +55,11 @@ def _row(point: grid.Point, settings: dict) -> dict:
     rate *= float(theory.collision_rate_finite_size_factor(eta, dimension, count))
     side = min(scene.container.lengths) / (2.0 * scene.largest_radius)
     sound = side / float(theory.speed_of_sound(eta, dimension)) * rate
-    runs = [_replica(point, path, settings["tail"][1] / rate) for path in point.replica_paths]
-    shortest = min(len(values) for _, values in runs)
-    time = np.mean([times[:shortest] for times, _ in runs], axis=0)
-    samples = np.stack([values[:shortest] for _, values in runs])
+    longest = settings["tail"][1] / rate
+    runs = [reduced_curves(point, path, longest) for path in point.replica_paths]
+    shortest = min(len(one.time) for one in runs)
+    time = np.mean([one.time[:shortest] for one in runs], axis=0)
+    samples = np.stack([one.correlation[:shortest] for one in runs]) + 1.0 / count
     row = {
         "dimension": dimension,
         "packing_fraction": eta,
@@ -85,19 +86,6 @@ def _row(point: grid.Point, settings: dict) -> dict:
         row |= {"tail_from": start, "tail_to": stop, "tail_ratio": ratio.value}
         row["tail_ratio_error"] = ratio.error
     return row
-
-
-def _replica(point: grid.Point, path: str, longest: float) -> tuple[np.ndarray, np.ndarray]:
-    """Times and C at them, to the lag `longest` (reduced time) but at most half the run."""
-    scene, drop = grid.scene(point), grid.schedule(point).equilibration_frames
-    with open_trajectory(path) as trajectory:
-        velocities = centred(trajectory["velocities"].values[drop:].astype(float))
-        time = trajectory["time"].values[drop:].astype(float)
-    frames, count, dimension = velocities.shape
-    thermal = math.sqrt((velocities**2).sum() / (frames * dimension * (count - 1)))
-    interval = (time[-1] - time[0]) / (frames - 1) * thermal / (2.0 * scene.largest_radius)
-    lags = min(frames // 2, math.ceil(longest / interval)) + 1
-    return interval * np.arange(lags), autocorrelation(velocities, lags) / thermal**2 + 1.0 / count
 
 
 def _initial_rate(collisions: np.ndarray, values: np.ndarray) -> float:
