@@ -14,15 +14,11 @@ from gaspart.rendering import style
 
 def equipartition(ds: xr.Dataset) -> Figure:
     """Three panels: both temperatures against collisions, their difference minus theory's, steady ratios."""
-    figure, (upper, middle, lower) = style.new(
-        rows=3, height=6.6, height_ratios=(2.0, 1.0, 1.8), share_x=False
-    )
+    figure, (upper, middle, lower) = style.new((2.3, 1.2), (2.4,))
     _temperatures(upper, ds)
     _differences(middle, ds)
-    style.share_x(upper, middle)
     _ratios(lower, ds)
     style.letters(upper, middle, lower)
-    figure.align_ylabels()
     return figure
 
 
@@ -87,17 +83,17 @@ def _ratios(axis: Axes, ds: xr.Dataset) -> None:
     axis.set_ylim(0.0, 1.08)
     axis.set_xlabel(r"tangential restitution $\epsilon_\mathrm{t}$")
     axis.set_ylabel(r"steady $T_\mathrm{rot}/T_\mathrm{tr}$")
-    axis.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
+    axis.legend(loc="upper left")
 
 
 def cooling(ds: xr.Dataset) -> Figure:
     """Four panels: Haff's law, its rate, how a large gas leaves it, and the final state."""
-    figure, axes = style.new(rows=2, columns=2, height=5.6, share_x=False)
-    _haff(axes[0, 0], ds)
-    _rates(axes[0, 1], ds)
-    _leaving(axes[1, 0], ds)
-    _picture(axes[1, 1], ds)
-    style.letters(*axes.flat)
+    figure, axes = style.new((2.6,), (2.4,), (2.4,), (2.8,))
+    _haff(axes[0], ds)
+    _rates(axes[1], ds)
+    _leaving(axes[2], ds)
+    _picture(axes[3], ds)
+    style.letters(*axes)
     return figure
 
 
@@ -127,7 +123,7 @@ def _haff(axis: Axes, ds: xr.Dataset) -> None:
     axis.set_xlim(0.85)
     axis.set_xlabel(r"$1+t/t_\mathrm{H}$")
     axis.set_ylabel(r"$T/T_0$")
-    axis.legend(loc="lower left", fontsize=6.5)
+    axis.legend(loc="lower left")
 
 
 def _rates(axis: Axes, ds: xr.Dataset) -> None:
@@ -177,7 +173,7 @@ def _leaving(axis: Axes, ds: xr.Dataset) -> None:
     axis.set_xlim(0.0)
     axis.set_xlabel(r"$(1-\epsilon^2)\, s$")
     axis.set_ylabel("over the homogeneous gas")
-    axis.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
+    axis.legend(loc="upper left")
 
 
 def _picture(axis: Axes, ds: xr.Dataset) -> None:
