@@ -81,7 +81,7 @@ def film(
 
 
 def poster(source: str | Path, path: str | Path) -> None:
-    """Write the picture in the middle of an MP4 film as a JPEG file, which a page shows until it is played."""
+    """Write the picture in the middle of an MP4 film as a JPEG file, for a page to show until it plays."""
     from imageio_ffmpeg import count_frames_and_secs, read_frames
     from PIL import Image
 

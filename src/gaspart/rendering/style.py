@@ -105,15 +105,14 @@ def new(*groups: Sequence[float]) -> tuple[Figure, list[Axes]]:
     figure = Figure(figsize=(width(), height), layout="constrained")
     outer = figure.add_gridspec(1, len(columns))
     axes: list[Axes] = []
-    for place, column in zip(outer, columns, strict=True):
-        grid = place.subgridspec(
-            sum(map(len, column)), 1, height_ratios=[high for group in column for high in group]
-        )
-        places = iter(grid)
+    for n, column in enumerate(columns):
+        heights = [high for group in column for high in group]
+        grid = outer[n].subgridspec(len(heights), 1, height_ratios=heights)
+        panels = [figure.add_subplot(grid[row]) for row in range(len(heights))]
+        axes += panels
         for group in column:
-            panels = [figure.add_subplot(next(places)) for _ in group]
-            _share_x(panels)
-            axes += panels
+            _share_x(panels[: len(group)])
+            panels = panels[len(group) :]
     return figure, axes
 
 

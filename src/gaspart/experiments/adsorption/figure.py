@@ -141,7 +141,7 @@ def _leaving(axis: Axes, wells: xr.Dataset, ds: xr.Dataset) -> None:
         style.points(axis, speed, value, error, kind=kind, hollow=not kind, label=label)
     axis.axvline(float(dense["slow_speed"]), color=style.GREY, ls=":")
     axis.set_ylim(bottom=0.0)
-    axis.set_ylabel("share of leaving particles")
+    axis.set_ylabel("share leaving")
     axis.set_xlabel(r"normal speed $v\sqrt{m/kT}$")
     axis.legend(loc="upper right")
 

@@ -35,7 +35,7 @@ def freezing_discs(dataset: xr.Dataset) -> Figure:
     end = float(dataset["distance"].max())
     shells.set(xlim=(0.0, end), xlabel=r"distance $r/\sigma$", ylabel="$g(r)$, shifted by 2")
     shells.legend(ncols=shown, loc="upper right", title=r"$\eta$")
-    style.letters(loop, order, shells)
+    style.letters(loop, order, shells, pairs[0, 0])
     return figure
 
 

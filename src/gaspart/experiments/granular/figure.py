@@ -93,37 +93,28 @@ def cooling(ds: xr.Dataset) -> Figure:
     _rates(axes[1], ds)
     _leaving(axes[2], ds)
     _picture(axes[3], ds)
-    style.letters(*axes)
+    style.letters(*axes[:3])
+    last = ds.isel(clusters=int(ds["cluster_restitution"].argmin()))
+    e, s = float(last["cluster_restitution"]), float(last["cluster_collisions"][-1])
+    style.letter(axes[3], rf"(d) $\epsilon={e:g}$, $s={s:.0f}$")
     return figure
 
 
 def _haff(axis: Axes, ds: xr.Dataset) -> None:
-    """T against 1 + t / t_H; spheres are shifted by a factor 3 for legibility."""
-    line = np.array([1.0, 1.1 * (1.0 + float(ds["time"].max()))])
-    for dimension, factor in ((2, 1.0), (3, 1.0 / 3.0)):
+    """T over Haff's T_0 / (1 + t / t_H)^2, against 1 + t / t_H."""
+    style.level(axis, 1.0)
+    for dimension in (2, 3):
         gases = ds.isel(gas=(ds["dimension"] == dimension).values).sortby("restitution", ascending=False)
-        axis.plot(line, factor * line**-2.0, color=style.GREY, zorder=1)
         for kind in range(gases.sizes["gas"]):
             row = gases.isel(gas=kind)
-            name = PARTICLES[dimension] + (r" $\div\,3$" if dimension == 3 else "")
-            style.points(
-                axis,
-                1.0 + row["time"],
-                factor * row["temperature"],
-                factor * row["temperature_error"],
-                kind,
-                hollow=dimension == 3,
-                label=rf"{name}, $\epsilon={float(row['restitution']):g}$",
-            )
+            since = 1.0 + row["time"]
+            value, error = row["temperature"] * since**2, row["temperature_error"] * since**2
+            label = rf"{PARTICLES[dimension]}, $\epsilon={float(row['restitution']):g}$"
+            style.points(axis, since, value, error, kind, hollow=dimension == 3, label=label)
     axis.set_xscale("log")
-    axis.set_yscale("log")
-    ticks = (1, 2, 3, 5, 7)
-    axis.set_xticks(ticks, [str(tick) for tick in ticks])
-    axis.minorticks_off()
-    axis.set_xlim(0.85)
     axis.set_xlabel(r"$1+t/t_\mathrm{H}$")
-    axis.set_ylabel(r"$T/T_0$")
-    axis.legend(loc="lower left")
+    axis.set_ylabel(r"$T/T_\mathrm{Haff}$")
+    axis.legend(loc="lower left", ncols=2)
 
 
 def _rates(axis: Axes, ds: xr.Dataset) -> None:

@@ -63,7 +63,7 @@ def _fluxes(axis: Axes, ds: xr.Dataset) -> None:
     axis.set_ylim(0.2, 12.0)
     axis.tick_params(axis="x", which="minor", labelbottom=False)
     axis.set_xlabel(r"number density $n\sigma^3$")
-    axis.set_ylabel(r"heat flux $10^3\,q$")
+    axis.set_ylabel(r"heat flux $q$ ($10^{-3}$ reduced units)")
     axis.legend(loc="lower right", ncol=2, columnspacing=0.8)
 
 

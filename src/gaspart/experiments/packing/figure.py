@@ -42,5 +42,6 @@ def densest_fill(ds: xr.Dataset) -> Figure:
         axis.imshow(picture(bodies, (side, side), colours_of(bodies, "species")))
         axis.set_axis_off()
         fraction, error = float(one["packing_fraction"]), float(one["error"])
+        style.letter(axis, f"({'ab'[shown.index(k)]})")
         axis.set_title(f"{NAMES[str(one['rule'].values)]}\nη = {concise(fraction, error)}")
     return figure

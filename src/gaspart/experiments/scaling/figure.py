@@ -33,6 +33,7 @@ def naive_scaling(ds: xr.Dataset) -> Figure:
     style.points(bottom, count, ds.seconds * each, ds.seconds_error * each, color=style.DATA)
     bottom.set(xlabel="number of particles $N$", ylabel="per test (ns)")
     bottom.set_ylim(0.0, 1.6 * float((ds.seconds * each).max()))
+    style.letters(top, bottom)
     return figure
 
 
@@ -152,6 +153,7 @@ def ideal_boxes(ds: xr.Dataset) -> Figure:
     bottom.axvspan(7.0, 10.0, color=_SOURCE, alpha=0.4, lw=0)
     bottom.set(xscale="log", xlabel="boxes per particle", ylabel="time over the least", ylim=(0.9, 4.5))
     bottom.legend(loc="upper center")
+    style.letters(top, bottom)
     return figure
 
 
@@ -227,6 +229,7 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
     bottom.set(yscale="log", ylabel="per particle", xlabel="number of particles $N$", ylim=(0.02, 100.0))
     bottom.text(0.02, 0.85, "boxes searched", transform=bottom.transAxes)
     bottom.text(0.02, 0.06, "pair tests (hollow)", transform=bottom.transAxes)
+    style.letters(top, middle, bottom)
     return figure
 
 

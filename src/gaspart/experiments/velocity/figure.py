@@ -52,6 +52,7 @@ def _tails(axis: Axes, ds: xr.Dataset) -> None:
             markersize=2.5,
             label=rf"{PARTICLES[dimension]}, $\eta={eta:.2g}$",
         )
+    axis.plot([], [], color=style.DATA, label="mode coupling")
     axis.set_xscale("log")
     axis.set_yscale("log")
     axis.set_xlim(0.8, 65.0)
