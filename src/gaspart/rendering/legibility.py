@@ -17,8 +17,10 @@ if TYPE_CHECKING:
 
 _STEP = 3.0
 """Pixels between the places of a line that are looked at."""
-_GAP = 4.0
-"""Pixels between a legend and the frame of its panel."""
+_GAP = 5.5
+"""Pixels between a legend and the frame of its panel: matplotlib's, half of the letters' size."""
+_CLEAR = 2.0
+"""Pixels between a legend and data, at least, where a legend is moved to."""
 _PLACES = {
     "upper right": (1.0, 1.0),
     "upper left": (0.0, 1.0),
@@ -58,7 +60,8 @@ def _moved(axis: Axes) -> bool:
     if (room > 0.0).all():
         for place, part in _PLACES.items():
             x, y = np.array(part) * room + (frame.x0 + _GAP, frame.y0 + _GAP)
-            if not _inside(data, x, y, x + box.width, y + box.height).any():
+            far = x + box.width + _CLEAR, y + box.height + _CLEAR
+            if not _inside(data, x - _CLEAR, y - _CLEAR, *far).any():
                 legend.set_bbox_to_anchor(None)
                 legend.set_loc(place)
                 return True
@@ -85,12 +88,14 @@ def _extended(axis: Axes, data: np.ndarray, box: Bbox, free: float) -> bool:
     assert legend
     left = {place: frame.x0 + _GAP + _PLACES[place][0] * free for place in _PLACES if place[0] == "u"}
     tops = {
-        place: data[_inside(data, x, -np.inf, x + box.width, np.inf), 1].max(initial=frame.y0)
+        place: data[_inside(data, x - _CLEAR, -np.inf, x + box.width + _CLEAR, np.inf), 1].max(
+            initial=frame.y0
+        )
         for place, x in left.items()
     }
     place = min(tops, key=tops.__getitem__)
     factor = (tops[place] - frame.y0) / (frame.height - box.height - 3.0 * _GAP)
-    if factor > _MOST_ROOM:
+    if not 1.0 < factor <= _MOST_ROOM:
         return False
     top = axis.transData.inverted().transform((frame.x0, frame.y0 + factor * frame.height))[1]
     axis.set_ylim(top=top)
@@ -132,7 +137,8 @@ def _marks(axis: Axes, lines: bool) -> np.ndarray:
             found += [_along(axis.transData.transform(part)) for part in collection.get_segments()]
     for patch in axis.patches:
         if patch.get_data_transform() is axis.transData:
-            found.append(_along(patch.get_transform().transform_path(patch.get_path()).vertices))
+            outline = patch.get_transform().transform_path(patch.get_path()).vertices
+            found.append(_along(np.asarray(outline, dtype=float)))
     places = np.concatenate(found)
     return places[np.isfinite(places).all(axis=1)]
 
