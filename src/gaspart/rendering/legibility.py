@@ -32,6 +32,9 @@ _PLACES = {
     "lower center": (0.5, 0.0),
 }
 """Of a legend in its panel: parts of the free width and height at its left and below."""
+_NARROW, _LETTER = 0.8, 16.0
+"""Part of a panel's width up to which a legend above it has room beside the letter; else it is so many pixels
+higher."""
 _MOST_ROOM = 1.6
 """A vertical axis is extended by this factor at most to make room for a legend."""
 _PASSES = 5
@@ -67,7 +70,8 @@ def _moved(axis: Axes) -> bool:
                 return True
         if _extended(axis, everything, box, room[0]):
             return True
-    legend.set_bbox_to_anchor((1.0, 1.0), transform=axis.transAxes)
+    above = 1.0 if box.width < _NARROW * frame.width else 1.0 + _LETTER / frame.height
+    legend.set_bbox_to_anchor((1.0, above), transform=axis.transAxes)
     legend.set_loc("lower right")
     return True
 
@@ -145,6 +149,7 @@ def _marks(axis: Axes, lines: bool) -> np.ndarray:
 
 def _along(places: np.ndarray) -> np.ndarray:
     """Places (m, 2) along the line through places (n, 2), a few pixels from each other."""
+    places = np.reshape(places, (-1, 2))  # an error bar without a value has none
     begin, way = places[:-1], np.diff(places, axis=0)
     known = np.isfinite(way).all(axis=1)
     begin, way = begin[known], way[known]

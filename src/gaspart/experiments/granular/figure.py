@@ -94,7 +94,7 @@ def cooling(ds: xr.Dataset) -> Figure:
     _leaving(axes[2], ds)
     _picture(axes[3], ds)
     style.letters(*axes[:3])
-    last = ds.isel(clusters=int(ds["cluster_restitution"].argmin()))
+    last = ds.isel(clusters=int(np.argmin(ds["cluster_restitution"].values)))
     e, s = float(last["cluster_restitution"]), float(last["cluster_collisions"][-1])
     style.letter(axes[3], rf"(d) $\epsilon={e:g}$, $s={s:.0f}$")
     return figure
