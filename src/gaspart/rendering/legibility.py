@@ -48,6 +48,7 @@ def place_legends(figure: Figure) -> None:
         moved = [_moved(axis) for axis in figure.axes if axis.get_legend()]
         if not any(moved):
             break
+    figure.draw_without_rendering()  # ticks follow the size of a panel, and the layout follows them
     figure.set_layout_engine("none")
 
 

@@ -45,6 +45,7 @@ twice and five times a power of ten."""
 RULES: dict[Any, Any] = {
     "figure.dpi": 100,
     "figure.constrained_layout.use": True,
+    "figure.constrained_layout.w_pad": 0.08,
     "savefig.dpi": 300,
     "font.size": 8,
     "axes.labelsize": 9,
@@ -205,7 +206,7 @@ def save(figure: Figure, path: str | Path) -> None:
 
 
 def finish(figure: Figure) -> None:
-    """Choose the ticks of logarithmic axes, align the labels of each column, and place the legends."""
+    """Choose the ticks of logarithmic axes, and place the legends."""
     from gaspart.rendering.legibility import place_legends
 
     if not figure.get_constrained_layout():
@@ -213,8 +214,6 @@ def finish(figure: Figure) -> None:
     for panel in figure.axes:
         for axis in (panel.xaxis, panel.yaxis):
             _number_ticks(axis)
-    for column in {panel.get_gridspec() for panel in figure.axes}:
-        figure.align_ylabels([panel for panel in figure.axes if panel.get_gridspec() is column])
     place_legends(figure)
 
 
