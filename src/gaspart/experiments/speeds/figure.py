@@ -76,7 +76,7 @@ def _histograms(axis: Axes, ds: xr.Dataset) -> None:
     )
     peak = float(ds["density"].max())
     axis.annotate(
-        "never hit", (0.97, 0.8 * peak), (0.05, 0.8 * peak), arrowprops={"arrowstyle": "-", "lw": 0.6}
+        "never hit", (0.97, 0.8 * peak), (0.05, 9.0), arrowprops={"arrowstyle": "-", "lw": 0.6}
     )
     axis.set_yscale("log")
     axis.set_ylim(2e-3, 20.0)
