@@ -162,6 +162,8 @@ def _along(places: np.ndarray) -> np.ndarray:
 def flaws(figure: Figure) -> list[str]:
     """What is wrong with a figure that has been saved, a sentence each: text that overlaps other text or
     leaves the canvas; a legend on data; a text in a panel on a point."""
+    from matplotlib.text import Text
+
     figure.draw_without_rendering()  # labels have the places of the last drawing, of another resolution
     texts = list(_texts(figure))
     found = [
@@ -177,7 +179,8 @@ def flaws(figure: Figure) -> list[str]:
     ]
     for axis in figure.axes:
         legend, points = axis.get_legend(), _seen(axis, _marks(axis, lines=False))
-        covers = [(repr(text.get_text()), text.get_window_extent(), points) for text in axis.texts]
+        # Without the arrow of an annotation, which points at data.
+        covers = [(repr(text.get_text()), Text.get_window_extent(text), points) for text in axis.texts]
         if legend:
             covers.append(("a legend", legend.get_window_extent(), _seen(axis, _marks(axis, lines=True))))
         found += [

@@ -75,9 +75,7 @@ def _histograms(axis: Axes, ds: xr.Dataset) -> None:
         u, theory.maxwell_pdf(u, dimension, 1.0 / dimension), color=style.DATA, label="Maxwell", zorder=4
     )
     peak = float(ds["density"].max())
-    axis.annotate(
-        "never hit", (0.97, 0.8 * peak), (0.05, 9.0), arrowprops={"arrowstyle": "-", "lw": 0.6}
-    )
+    axis.annotate("never hit", (0.97, 0.8 * peak), (0.05, 9.0), arrowprops={"arrowstyle": "-", "lw": 0.6})
     axis.set_yscale("log")
     axis.set_ylim(2e-3, 20.0)
     axis.set_xlim(0.0, edges[-1])
