@@ -2,6 +2,8 @@
 #
 #   snakemake --cores all                                      everything
 #   snakemake --cores all results/figures/virial_discs.png     one figure (.png or .svg)
+#   snakemake --cores all results/figures/journal/virial_discs.pdf  the same for a column of a journal (.pdf or .png)
+#   snakemake --cores all journal                              results/figures/journal/*.pdf
 #   snakemake --cores all claims                               results/tables/claims.csv
 #   snakemake --cores all report                               results/report.html
 #   snakemake --cores all animations                           results/animations/*.mp4
@@ -44,12 +46,18 @@ onsuccess:
 localrules:
     all,
     animations,
+    journal,
     points,
 
 
 rule animations:
     input:
         expand("results/animations/{animation}.mp4", animation=ANIMATIONS),
+
+
+rule journal:
+    input:
+        expand("results/figures/journal/{figure}.{kind}", figure=FIGURES, kind=["pdf", "png"]),
 
 
 rule points:
@@ -64,3 +72,4 @@ rule all:
         "results/tables/claims.csv",
         "results/report.html",
         rules.animations.input,
+        rules.journal.input,

@@ -62,7 +62,7 @@ def _row(one: dict, machine: dict) -> dict:
 
 def draw(frame: pd.DataFrame):
     """Collisions a second against the packing fraction, with the peers'; and what a step costs a body."""
-    figure, axes = style.new(3, 1, height=6.8, share_x=False)
+    figure, axes = style.new((2.4,), (2.2,), (2.2,))
     plain = frame[(frame["engine"] == "event") & (frame["feature"] == "plain")]
     _events(axes[0], plain[plain["dimension"] == 3], "spheres (dashed: Smallenburg, C)")
     _events(axes[1], plain[plain["dimension"] == 2], "discs between walls (dashed: Spencer, C++)")
@@ -102,12 +102,7 @@ def _finish(axis, frame: pd.DataFrame, title: str) -> None:
     axis.set_title(title)
     if len(frame):
         axis.set_yscale("log")
-        labels = axis.get_legend_handles_labels()[1]
-        columns = 2 if max(map(len, labels)) < 20 else 1
-        low, high = axis.get_ylim()
-        rows = -(-len(labels) // columns)
-        axis.set_ylim(low, high * (high / low) ** (0.12 * rows))  # room above the points
-        axis.legend(fontsize=6.5, loc="upper right", ncol=columns)
+        axis.legend(loc="upper right")
 
 
 def main(source: str, csv: str, png: str) -> None:

@@ -6,12 +6,25 @@ import numpy as np
 from matplotlib.container import ErrorbarContainer
 
 from gaspart.rendering import style
+from gaspart.rendering.legibility import flaws
+
+HIGHEST = 1.8
+"""Of a figure on a page: its height over its width."""
 
 
 def draw(function, dataset, folder):
-    """The figure of a data set, saved once."""
+    """The figure of a data set as drawn for a page, saved once; legible there and in a journal's column."""
+    drawn = {}
+    for layout in reversed(style.LAYOUTS):
+        with style.applied(layout):
+            figure = drawn[layout] = function(dataset)
+            style.finish(figure)
+        found = flaws(figure)
+        assert not found, f"{layout}: {found}"
+        assert figure.get_figwidth() == style.LAYOUTS[layout]
+    width, height = figure.get_size_inches()
+    assert height <= HIGHEST * width
     with style.applied():
-        figure = function(dataset)
         style.save(figure, folder / "figure.svg")
     return figure
 

@@ -6,7 +6,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.cli import main
-from gaspart.rendering.films import _pieces, film
+from gaspart.rendering.films import _pieces, film, poster
 from gaspart.rendering.labels import round_length
 
 
@@ -35,6 +35,16 @@ def test_a_film_has_a_picture_for_every_frame(runs, suffix):
     assert images.shape == (5, *shape, 3)
     assert (images[0] != images[-1]).any()
     assert not list(runs.glob("*.partial"))
+
+
+def test_the_poster_of_a_film_is_its_middle_picture(runs):
+    path = runs / "shown.mp4"
+    film(runs / "discs.nc", path, size=(120, 90))
+    poster(path, runs / "shown.jpg")
+    still = imageio.imread(runs / "shown.jpg").astype(int)
+    images = imageio.imread(path, plugin="FFMPEG").astype(int)
+    assert still.shape == (90, 120, 3)
+    assert np.argmin(np.abs(images - still).mean(axis=(1, 2, 3))) == 2
 
 
 def test_a_film_of_spheres_is_made_of_their_pictures(runs):

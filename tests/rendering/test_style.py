@@ -4,11 +4,11 @@ import pytest
 from gaspart.rendering import style
 
 
-@pytest.mark.parametrize("suffix", ["png", "svg"])
+@pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
 def test_the_same_figure_gives_the_same_bytes(tmp_path, suffix):
     def draw(path):
         with style.applied():
-            figure, (upper, lower) = style.new(rows=2, height_ratios=(3, 1))
+            figure, (upper, lower) = style.new((2.0, 1.0))
             style.points(upper, [1, 2, 3], [1.0, 4.0, 9.0], [0.1, 0.2, 0.3], label="$\\eta$")
             style.residuals(lower, [1, 2, 3], np.array([0.5, -1.0, 2.0]))
             upper.legend()
@@ -19,17 +19,47 @@ def test_the_same_figure_gives_the_same_bytes(tmp_path, suffix):
     assert draw(tmp_path / f"a.{suffix}") == draw(tmp_path / f"b.{suffix}")
 
 
-def test_text_is_legible_in_a_column():
-    with style.applied():
-        figure, _ = style.new()
-    assert figure.get_figwidth() == style.COLUMN
-    sizes = [value for key, value in style.RULES.items() if key.endswith(("size", "labelsize"))]
-    assert min(size for size in sizes if isinstance(size, int) and size > 4) >= 8
+def columns(figure):
+    """The panels of each column, from left to right, and from above."""
+    places = {}
+    for panel in figure.axes:
+        box = panel.get_position()
+        places.setdefault(round(box.x0, 1), []).append((-box.y1, panel))
+    return [[panel for _, panel in sorted(own, key=lambda one: one[0])] for _, own in sorted(places.items())]
+
+
+def test_a_page_has_two_columns_of_panels_and_a_journal_one(tmp_path):
+    drawn = {}
+    for layout in style.LAYOUTS:
+        with style.applied(layout):
+            figure, (a, b, c, d) = style.new((2.0, 1.0), (1.5,), (1.0,))
+            style.save(figure, tmp_path / "one.png")
+        assert figure.get_figwidth() == style.LAYOUTS[layout]
+        assert a.get_shared_x_axes().joined(a, b) and not a.get_shared_x_axes().joined(b, c)
+        drawn[layout] = figure.get_figheight(), columns(figure), [a, b, c, d]
+    height, panels, (a, b, c, d) = drawn["page"]
+    assert (height, panels) == (3.0, [[a, b], [c, d]])
+    height, panels, (a, b, c, d) = drawn["journal"]
+    assert (height, panels) == (5.5, [[a, b, c, d]])
+
+
+def test_the_parts_of_a_split_panel_take_its_place():
+    with style.applied("journal"):
+        figure, (_, below) = style.new((1.0,), (2.0,))
+        parts = style.split(below, 2, 3)
+    assert parts.shape == (2, 3) and below not in figure.axes and len(figure.axes) == 7
+
+
+def test_letters_are_of_8_points_at_least():
+    sizes = [
+        value for key, value in style.RULES.items() if key.endswith(("font.size", "labelsize", "fontsize"))
+    ]
+    assert len(sizes) >= 4 and min(sizes) >= 8
 
 
 def test_residuals_keep_an_innocent_scale():
     with style.applied():
-        _, axis = style.new()
+        _, (axis,) = style.new((2.6,))
         style.residuals(axis, [1, 2], np.array([0.1, -0.2]))
         assert axis.get_ylim()[1] >= 3.9
         style.residuals(axis, [1, 2], np.array([0.1, -20.0]))
@@ -39,7 +69,7 @@ def test_residuals_keep_an_innocent_scale():
 def test_numbers_of_a_short_logarithmic_axis_do_not_run_into_each_other(tmp_path):
     """3 to 40 and 1e-9 to 1: plain numbers on the one, powers of ten on the other, none of another kind."""
     with style.applied():
-        figure, axis = style.new()
+        figure, (axis,) = style.new((2.6,))
         axis.loglog([3.0, 40.0], [1e-9, 1.0])
         style.save(figure, tmp_path / "one.png")
         for one, most in ((axis.xaxis, 4), (axis.yaxis, 12)):

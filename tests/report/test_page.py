@@ -39,11 +39,15 @@ def test_the_first_screen_counts_kinds_apart_and_names_what_disagrees():
 
 def test_pictures_lie_beside_the_page_or_are_in_it(tmp_path):
     path = tmp_path / "figures" / "one.png"
-    path.parent.mkdir()
+    (path.parent / "journal").mkdir(parents=True)
     Image.fromarray(np.zeros((60, 100, 3), dtype=np.uint8)).save(path, dpi=(144, 144))
+    column = Image.fromarray(np.zeros((300, 150, 3), dtype=np.uint8))
+    column.save(path.parent / "journal/one.png", dpi=(288, 288))
     beside, within = picture(path, False), picture(path, True)
     assert (beside.large, beside.small) == ("figures/one.svg", "figures/one.png")
-    assert (beside.width, beside.height) == (within.width, within.height) == (100, 60)
-    assert within.large.startswith("data:image/webp;base64,")
+    assert beside.narrow == "figures/journal/one.png"
+    assert beside.size == within.size == (100, 60)
+    assert beside.narrow_size == within.narrow_size == (75, 150)
+    assert within.large.startswith("data:image/webp;base64,") and within.narrow != within.large
     (tmp_path / "film.mp4").write_bytes(b"film")
     assert address(tmp_path / "film.mp4", True) == "data:video/mp4;base64,ZmlsbQ=="

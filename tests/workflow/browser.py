@@ -10,9 +10,9 @@ CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", 
 _REPORT = "parent.document.body.dataset.found = JSON.stringify(found);"
 
 
-def found_by(script, page, folder, width):
+def found_by(script, page, folder, width, dark=False):
     """What the body `script` of an asynchronous JavaScript function returns on the page, in a frame of this
-    width.
+    width, with light or dark colours.
 
     In a frame, because a window of the browser has a width below which it does not go.
     """
@@ -25,6 +25,7 @@ def found_by(script, page, folder, width):
     outer.write_text(f"<!doctype html><html><body>{frame}</body></html>", encoding="utf-8")
     command = [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder}/profile"]
     command += ["--allow-file-access-from-files", "--virtual-time-budget=20000"]
+    command += [f"--blink-settings=preferredColorScheme={0 if dark else 1}"]
     done = subprocess.run(
         [*command, "--dump-dom", outer.as_uri()], capture_output=True, text=True, timeout=120
     )

@@ -40,12 +40,22 @@ def test_every_figure_is_drawn_twice_and_has_a_claim_with_a_verdict(smoke, figur
         assert claim["fails_if"]
 
 
+def test_every_figure_is_drawn_for_a_column_of_a_journal_and_is_legible(smoke):
+    results = smoke.path / "results"
+    for figure in FIGURES:
+        assert (results / f"figures/journal/{figure}.pdf").read_bytes().startswith(b"%PDF")
+        assert (results / f"figures/journal/{figure}.png").stat().st_size > 5_000
+    logs = [*(results / "logs/draw").iterdir(), *(results / "logs/draw_for_journal").iterdir()]
+    assert len(logs) == 2 * len(FIGURES)
+    assert not [line for log in logs for line in log.read_text().splitlines() if "not legible" in line]
+
+
 def test_the_report_holds_every_figure_and_its_pictures_lie_beside_it(smoke):
     path = smoke.path / "results/report.html"
     page = path.read_text()
     for figure in FIGURES:
         assert f'<section class="figure" id="{figure}"' in page
-    files = set(re.findall(r'(?:src|href)="([^"#:]+)"', page))
+    files = set(re.findall(r'(?:src|srcset|href|poster)="([^"#:]+)"', page))
     assert len(files) >= 4 * len(FIGURES)
     assert not [file for file in files if not (path.parent / file).exists()]
     assert path.stat().st_size < 1.5e6 and 'name="viewport"' in page
@@ -59,7 +69,7 @@ def test_the_report_in_one_file_needs_no_other(smoke):
         "results/report-in-one-file.html", "--cores", "1", "--configfile", "config/smoke.yaml"
     )
     assert made.returncode == 0, made.stdout
-    addresses = re.findall(r'src="([^"]+)"', path.read_text())
+    addresses = re.findall(r'(?:src|srcset|poster)="([^"]+)"', path.read_text())
     assert len(addresses) > 2 * len(FIGURES) and all(one.startswith("data:") for one in addresses)
     assert path.stat().st_size < 10e6
 
@@ -92,6 +102,8 @@ return {
     return box.right <= innerWidth && box.width > 0;
   }),
   images: images.map(image => image.naturalWidth),
+  references: document.querySelectorAll(".references li").length,
+  posters: [...document.querySelectorAll("video")].every(film => film.poster !== ""),
   films: document.querySelectorAll(".beside video").length,
   font: Math.min(...[...document.querySelectorAll("p, td, figcaption")].map(
     one => parseFloat(getComputedStyle(one).fontSize))),
@@ -114,14 +126,15 @@ def test_the_report_reads_and_clicks_on_a_phone_and_on_a_desk(smoke, tmp_path, w
     assert found["verdicts"] and found["folded"] and found["unfolded"]
     assert found["dots"] == sum(row["kind"] != "family" for row in claims)
     assert len(found["images"]) >= 2 * len(FIGURES) and min(found["images"]) > 0
-    assert found["films"] == len(list((smoke.path / "results/animations").iterdir()))
+    assert found["films"] == len(list((smoke.path / "results/animations").glob("*.mp4")))
     assert found["width"] <= width and found["font"] >= 12.0
-    assert found["broken"] == 0
+    assert found["broken"] == 0 and found["references"] >= 30 and found["posters"]
 
 
 def test_films_are_made(smoke):
-    (film,) = (smoke.path / "results/animations").iterdir()
-    assert film.name == "relaxation.mp4" and film.stat().st_size > 5_000
+    poster, film = sorted((smoke.path / "results/animations").iterdir())
+    assert (poster.name, film.name) == ("relaxation.jpg", "relaxation.mp4")
+    assert min(film.stat().st_size, poster.stat().st_size) > 5_000
 
 
 def test_nothing_half_written_is_left(smoke):

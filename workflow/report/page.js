@@ -31,6 +31,9 @@ buttons.forEach(button => button.addEventListener("click", () => {
 }));
 words.addEventListener("input", select);
 
+// A formula that is wider than its column can be moved with the keys too.
+document.querySelectorAll("figcaption div:has(> math), .details div:has(> math)").forEach(wide => { wide.tabIndex = 0; });
+
 // The gallery: words of a figure's name or finding select it.
 const search = document.getElementById("search");
 search.addEventListener("input", () => document.querySelectorAll(".cards li").forEach(card => {

@@ -5,7 +5,8 @@ rule animate:
     input:
         trajectories=lambda wildcards: animated(wildcards).path,
     output:
-        "results/animations/{animation}.mp4",
+        film="results/animations/{animation}.mp4",
+        poster="results/animations/{animation}.jpg",
     log:
         "results/logs/animate/{animation}.log",
     benchmark:

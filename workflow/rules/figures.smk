@@ -20,23 +20,42 @@ rule draw:
     params:
         modules=lambda wildcards: digest(*sources("draw", family(wildcards))),
         family=family,
+        layout="page",
         caption=caption_of,
     script:
         "../scripts/draw.py"
+
+
+# The same for a column of a journal. The report shows these pictures on narrow screens.
+use rule draw as draw_for_journal with:
+    output:
+        pdf="results/figures/journal/{figure}.pdf",
+        png="results/figures/journal/{figure}.png",
+    log:
+        "results/logs/draw_for_journal/{figure}.log",
+    benchmark:
+        "results/benchmarks/draw_for_journal/{figure}.tsv"
+    params:
+        modules=lambda wildcards: digest(*sources("draw", family(wildcards))),
+        family=family,
+        layout="journal",
 
 
 rule report:
     input:
         pictures=expand("results/figures/{figure}.png", figure=FIGURES),
         vectors=expand("results/figures/{figure}.svg", figure=FIGURES),
+        columns=expand("results/figures/journal/{figure}.png", figure=FIGURES),
         datasets=expand("results/measurements/{figure}.nc", figure=FIGURES),
         captions=expand(str(FOLDER / "workflow/report/{figure}.rst"), figure=FIGURES),
         claims="results/tables/claims.csv",
         films=expand("results/animations/{animation}.mp4", animation=ANIMATIONS),
+        posters=expand("results/animations/{animation}.jpg", animation=ANIMATIONS),
         template=str(FOLDER / "workflow/report/report.html.j2"),
         style=str(FOLDER / "workflow/report/page.css"),
         behaviour=[str(FOLDER / "workflow/report" / name) for name in ("page.js", "explore.js")],
         findings=str(FOLDER / "workflow/report/findings.yaml"),
+        references=str(FOLDER / "workflow/report/references.yaml"),
     output:
         "results/report.html",
     log:

@@ -1,13 +1,10 @@
-"""One film of a scene."""
+"""One film of a scene, and the picture that stands for it until it is played."""
 
 from _job import job
 
 with job(snakemake):
-    from gaspart.rendering.films import film
+    from gaspart.rendering.films import film, poster
 
-    film(
-        snakemake.params.trajectory,
-        snakemake.output[0],
-        **snakemake.params.settings,
-        overwrite=True,
-    )
+    output = snakemake.output
+    film(snakemake.params.trajectory, output.film, **snakemake.params.settings, overwrite=True)
+    poster(output.film, output.poster)

@@ -49,11 +49,12 @@ def explanations(datasets):
 
 with job(snakemake):
     import jinja2
+    from markupsafe import Markup, escape
 
     from gaspart import __version__
     from gaspart.claims import table
     from gaspart.files import whole_file
-    from gaspart.report import page
+    from gaspart.report import page, references
     from gaspart.trajectory import provenance
     from gaspart.yaml_text import read_yaml
 
@@ -79,13 +80,18 @@ with job(snakemake):
             )
         )
     of_chapter = page.by_chapter(sections)
-    films = {Path(film).stem: page.address(Path(film), params.one_file) for film in given.films}
+    films, posters = (
+        {Path(path).stem: page.address(Path(path), params.one_file) for path in paths}
+        for paths in (given.films, given.posters)
+    )
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(Path(given.template).parent),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
     )
     environment.filters["number"] = "{:.5g}".format
+    sources = references.read_references(given.references)
+    environment.filters["cite"] = lambda text: Markup(references.linked(str(escape(text)), sources))
     text = environment.get_template(Path(given.template).name).render(
         title=params.title,
         one_file=params.one_file,
@@ -93,6 +99,7 @@ with job(snakemake):
         chapters=of_chapter,
         pictures=pictures,
         films=films,
+        posters=posters,
         opening=next(iter(films), None),
         other_films=[film for film, beside in params.films.items() if beside not in of_figure],
         claims=claims,
@@ -100,6 +107,7 @@ with job(snakemake):
         headline=page.headline(claims),
         verdicts=page.verdicts(claims),
         explore=explanations(dict(zip(params.figures, given.datasets, strict=True))),
+        references=sources,
         words=table.COUNTED,
         kinds=table.PLURALS,
         times=run_times("results/benchmarks"),

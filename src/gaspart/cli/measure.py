@@ -126,8 +126,8 @@ def _write_plot(path: Any, overwrite: bool, found: Observable) -> None:
     from gaspart.rendering import style
     from gaspart.rendering.pictures import PICTURE
 
-    with writing(path, PICTURE, overwrite) as scratch, style.applied():
-        figure, axis = style.new()
+    with writing(path, PICTURE, overwrite) as scratch, style.applied("journal"):
+        figure, (axis,) = style.new((2.6,))
         found.plot(theory=found.theory is not None, axis=axis)
         picture = io.BytesIO()
         figure.savefig(picture, format="png", metadata={"Software": None})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 from collections.abc import Callable, Iterator
+from itertools import islice
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.errors import SceneError, optional
-from gaspart.files import Kind, begins_with, output_path, writing
+from gaspart.files import Kind, begins_with, output_path, whole_file, writing
 from gaspart.rendering.frames import opened, particles_of
 from gaspart.rendering.labels import labelled
 from gaspart.rendering.particles import FASTEST, colours_of, legend_of
@@ -78,6 +79,22 @@ def film(
         with writing(path, KINDS[path.suffix], overwrite) as scratch:
             to(scratch, shown, size, rate)
     return path
+
+
+def poster(source: str | Path, path: str | Path) -> None:
+    """Write the picture in the middle of an MP4 film as a JPEG file, for a page to show until it plays."""
+    from imageio_ffmpeg import count_frames_and_secs, read_frames
+    from PIL import Image
+
+    number, _ = count_frames_and_secs(str(source))
+    frames = read_frames(str(source))
+    size = next(frames)["size"]
+    try:
+        image = next(islice(frames, number // 2, None))
+    finally:
+        frames.close()
+    with whole_file(path) as partial:
+        Image.frombytes("RGB", size, image).save(partial, "JPEG", quality=85)
 
 
 def _reported(

@@ -1,4 +1,4 @@
-"""The style sheet of all figures: sizes of a journal's column, colours that the colour-blind distinguish."""
+"""The style sheet of all figures: layouts, sizes of letters, colours that the colour-blind distinguish."""
 
 from __future__ import annotations
 
@@ -23,7 +23,9 @@ if TYPE_CHECKING:  # the colours are used without matplotlib
 COLUMN = 3.4
 """Width of one column of a journal, in inches."""
 PAGE = 7.0
-"""Width of two columns."""
+"""Width of two columns, in inches."""
+LAYOUTS = {"page": PAGE, "journal": COLUMN}
+"""Width of a figure by its layout: two columns of panels for a page, one for a journal."""
 
 # Okabe and Ito, "Color universal design" (2008), in an order whose neighbours differ in lightness too.
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"]
@@ -34,20 +36,24 @@ REFERENCE = "#0072b2"
 """Colour of the curve that the measurement is compared with."""
 GREY = "#8c8c8c"
 """For guides: zero lines, bands, limits."""
+_DATED = {"svg": "Date", "pdf": "CreationDate", "png": "Software"}
+"""What a file of each format says about its making by default, and here does not."""
 _SHORTEST, _SHORT = 0.5, 2.2
 """Decades of a logarithmic axis: below the first it has ticks like a linear one, up to the second also at
 twice and five times a power of ten."""
 
 RULES: dict[Any, Any] = {
-    "figure.figsize": (COLUMN, 2.6),
     "figure.dpi": 100,
     "figure.constrained_layout.use": True,
+    "figure.constrained_layout.w_pad": 0.08,
     "savefig.dpi": 300,
     "font.size": 8,
     "axes.labelsize": 9,
     "axes.titlesize": 8,
     "legend.fontsize": 8,
-    "legend.frameon": False,
+    "legend.facecolor": "white",
+    "legend.edgecolor": "none",
+    "legend.framealpha": 0.8,
     "legend.handlelength": 1.6,
     "legend.labelspacing": 0.25,
     "legend.borderpad": 0.2,
@@ -62,45 +68,70 @@ RULES: dict[Any, Any] = {
     "lines.markersize": 3.5,
     "errorbar.capsize": 1.5,
     "svg.fonttype": "path",
+    "pdf.fonttype": 42,
     "svg.hashsalt": "gaspart",
 }
 
 
 @contextmanager
-def applied() -> Iterator[None]:
-    """Draw in this style, without a display, inside the ``with`` block."""
+def applied(layout: str = "page") -> Iterator[None]:
+    """Draw in this style and one of LAYOUTS, without a display, inside the ``with`` block."""
     import matplotlib
     from cycler import cycler
 
     matplotlib.use("Agg")
-    with matplotlib.rc_context({**RULES, "axes.prop_cycle": cycler(color=COLOURS)}):
+    size = {"figure.figsize": (LAYOUTS[layout], COLUMN)}
+    with matplotlib.rc_context({**RULES, **size, "axes.prop_cycle": cycler(color=COLOURS)}):
         yield
 
 
-def new(
-    rows: int = 1,
-    columns: int = 1,
-    height: float | None = None,
-    height_ratios: Sequence[float] | None = None,
-    share_x: bool = True,
-) -> tuple[Figure, Any]:
-    """A figure one column wide (two, if it has several columns of panels), and its axes.
+def width() -> float:
+    """Of a figure in the layout that is applied, in inches."""
+    import matplotlib
 
-    height: in inches. height_ratios: (rows,). share_x: panels above each other have one x axis.
-    Returns (figure, axes): one Axes if there is one panel, else an array of shape (rows,), (columns,) or
-    (rows, columns).
+    return float(matplotlib.rcParams["figure.figsize"][0])
+
+
+def new(*groups: Sequence[float]) -> tuple[Figure, list[Axes]]:
+    """A figure of groups of panels, in the layout that is applied.
+
+    groups: the heights in inches of the panels of each, which lie above each other and share their x axis.
+    On a page the first groups fill the left column and the others the right one, with columns of about the
+    same height; in a journal they all lie above each other. Returns (figure, panels in the order given).
     """
     from matplotlib.figure import Figure
 
-    width = COLUMN if columns == 1 else PAGE
-    figure = Figure(figsize=(width, 0.4 + 2.2 * rows if height is None else height), layout="constrained")
-    axes = figure.subplots(
-        rows,
-        columns,
-        sharex="col" if share_x and rows > 1 else False,
-        gridspec_kw={} if height_ratios is None else {"height_ratios": height_ratios},
-    )
+    columns = _columns(groups) if width() > COLUMN else [groups]
+    height = max(sum(map(sum, column)) for column in columns)
+    figure = Figure(figsize=(width(), height), layout="constrained")
+    outer = figure.add_gridspec(1, len(columns))
+    axes: list[Axes] = []
+    for n, column in enumerate(columns):
+        heights = [high for group in column for high in group]
+        grid = outer[n].subgridspec(len(heights), 1, height_ratios=heights)
+        panels = [figure.add_subplot(grid[row]) for row in range(len(heights))]
+        axes += panels
+        for group in column:
+            _share_x(panels[: len(group)])
+            panels = panels[len(group) :]
     return figure, axes
+
+
+def _columns(groups: Sequence[Sequence[float]]) -> list[Sequence[Sequence[float]]]:
+    """The groups in two columns, one after the other, so that the higher column is as low as possible."""
+    if len(groups) == 1:
+        return [groups]
+    cuts = [(groups[:n], groups[n:]) for n in range(1, len(groups))]
+    return list(min(cuts, key=lambda cut: max(sum(map(sum, column)) for column in cut)))
+
+
+def split(axis: Axes, rows: int, columns: int) -> np.ndarray:
+    """Panels (rows, columns) in place of one."""
+    figure, place = axis.get_figure(), axis.get_subplotspec()
+    axis.remove()
+    assert figure and place
+    parts = place.subgridspec(rows, columns)
+    return np.array([[figure.add_subplot(parts[n, k]) for k in range(columns)] for n in range(rows)])
 
 
 def points(
@@ -146,22 +177,18 @@ def level(axis: Axes, value: float, **options: Any) -> Line2D:
     return axis.axhline(value, color=GREY, linewidth=0.6, zorder=1, **options)
 
 
-def letter(axis: Axes, text: str, x: float = 0.02, y: float = 0.97) -> Text:
-    """(a), (b) ... or a short title in a panel's upper left corner; x, y: in parts of the panel."""
-    from matplotlib.patheffects import withStroke
-
-    halo = [withStroke(linewidth=2.0, foreground="white")]  # legible over points too
-    where: dict[str, Any] = {"transform": axis.transAxes, "ha": "left", "va": "top", "zorder": 10}
-    return axis.text(x, y, text, fontweight="bold", path_effects=halo, **where)
+def letter(axis: Axes, text: str) -> Text:
+    """(a), (b) ... and perhaps a short title, above a panel's left corner, where no data are."""
+    return axis.set_title(text, loc="left", fontweight="bold", pad=3.0)
 
 
 def letters(*axes: Axes) -> None:
-    """(a), (b) ... in the upper left corners of these panels."""
+    """(a), (b) ... above these panels."""
     for axis, text in zip(axes, "abcdefgh", strict=False):
-        letter(axis, text)
+        letter(axis, f"({text})")
 
 
-def share_x(*panels: Axes) -> None:
+def _share_x(panels: Sequence[Axes]) -> None:
     """One x axis for panels above each other, labelled below the last."""
     for panel in panels[:-1]:
         panel.sharex(panels[-1])
@@ -172,13 +199,22 @@ def save(figure: Figure, path: str | Path) -> None:
     """Write a figure atomically, in the format of its suffix; the same figure gives the same bytes."""
     from gaspart.files import whole_file
 
+    finish(figure)
     kind = Path(path).suffix.lstrip(".")
-    metadata = {"Date": None} if kind == "svg" else {"Software": None}
+    with whole_file(path) as partial:
+        figure.savefig(partial, format=kind, metadata={_DATED[kind]: None})
+
+
+def finish(figure: Figure) -> None:
+    """Choose the ticks of logarithmic axes, and place the legends."""
+    from gaspart.rendering.legibility import place_legends
+
+    if not figure.get_constrained_layout():
+        return  # done before
     for panel in figure.axes:
         for axis in (panel.xaxis, panel.yaxis):
             _number_ticks(axis)
-    with whole_file(path) as partial:
-        figure.savefig(partial, format=kind, metadata=metadata)
+    place_legends(figure)
 
 
 def _number_ticks(axis: Axis) -> None:

@@ -101,32 +101,41 @@ def verdicts(rows: Iterable[dict[str, Any]]) -> dict[str, int]:
 
 @dataclass(frozen=True)
 class Picture:
-    """Addresses of a figure's picture, as it is read and as a thumbnail, and its size in pixels of the page,
-    which so does not move while it is loaded."""
+    """Addresses of a figure's picture, as it is read, in one column for narrow screens, and as a thumbnail;
+    and the sizes of the first two in pixels of the page, which so does not move while they are loaded."""
 
     large: str
+    narrow: str
     small: str
-    width: int
-    height: int
+    size: tuple[int, int]
+    narrow_size: tuple[int, int]
 
 
 def picture(path: Path, one_file: bool) -> Picture:
-    """The picture of a figure, of which `path` is the PNG; an SVG lies beside it.
+    """The picture of a figure, of which `path` is the PNG. The SVG lies beside it, and the picture in one
+    column below in journal/.
 
     one_file: the page is to hold its pictures; they are then WebP, a third of their size.
     """
+    column = path.parent / "journal" / path.name
+    size, narrow = _size(path), _size(column)
+    if one_file:
+        addresses = _webp(path, 2 * size[0]), _webp(column, 2 * narrow[0]), _webp(path, _THUMBNAIL)
+    else:
+        addresses = address(path.with_suffix(".svg")), f"figures/journal/{path.name}", address(path)
+    return Picture(*addresses, size, narrow)
+
+
+def _size(path: Path) -> tuple[int, int]:
+    """Width and height of a PNG, in pixels of the page."""
     from PIL import Image
 
     with Image.open(path) as image:
-        width, height = image.size
         scale = _PIXELS_PER_INCH / float(image.info["dpi"][0])
-    size = round(width * scale), round(height * scale)
-    if one_file:
-        return Picture(_webp(path, 2 * size[0]), _webp(path, _THUMBNAIL), *size)
-    return Picture(address(path.with_suffix(".svg"), one_file), address(path, one_file), *size)
+        return round(image.width * scale), round(image.height * scale)
 
 
-def address(path: Path, one_file: bool) -> str:
+def address(path: Path, one_file: bool = False) -> str:
     """The address of a file of results/: relative to the page, or one that holds the file."""
     if one_file:
         return _data(mimetypes.guess_type(path.name)[0] or "", path.read_bytes())

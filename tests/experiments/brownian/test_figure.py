@@ -64,4 +64,4 @@ def test_paths_are_drawn_from_above_and_start_in_the_middle(tmp_path):
         (sphere,) = axis.patches
         assert sphere.get_radius() == 10.0
         assert (axis.get_xlabel(), axis.get_ylabel()) == ("$x$ (length)", "$y$ (length)")
-        assert ("M=100", "M=1\\")[index] in axis.texts[0].get_text()
+        assert ("M=100", "M=1\\")[index] in axis.get_title(loc="left")

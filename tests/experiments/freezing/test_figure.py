@@ -37,7 +37,7 @@ def test_discs_with_plateau_order_and_structure(tmp_path):
         follows(one, ds["distance"], ds["g"][k] + 2.0 * k)
         assert one.get_label() == f"{float(ds['shown'][k]):.3g}"
     for k in range(3):
-        at, (snapshot, scattering) = ds.isel(shown=k), (pictures[k], pictures[3 + k])
+        at, (snapshot, scattering) = ds.isel(shown=k), pictures[2 * k : 2 * k + 2]
         (bodies,) = snapshot.collections
         assert bodies.get_offsets() == pytest.approx(np.stack([at["x"], at["y"]], axis=1))
         assert np.asarray(bodies.get_array()) == pytest.approx(np.mod(at["angle"].values / np.pi + 0.5, 2.0))

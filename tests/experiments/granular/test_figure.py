@@ -38,13 +38,14 @@ def test_cooling_rates_clusters_and_their_picture(tmp_path):
     ds = varied(inelastic(), "cluster_restitution")
     haff, rates, leaving, picture = draw(granular.cooling, ds, tmp_path).axes
     gases = []
-    for dimension, name, factor in ((2, "discs", 1.0), (3, "spheres", 1.0 / 3.0)):
+    for dimension, name in ((2, "discs"), (3, "spheres")):
         own = ds.isel(gas=(ds["dimension"] == dimension).values).sortby("restitution", ascending=False)
         for k in range(own.sizes["gas"]):
             row = own.isel(gas=k)
-            row = row.assign(since=1.0 + row["time"])
-            gases.append(column(row, name, "since", "temperature", factor))
-    shows(haff, "t_\\mathrm{H}", "T/T_0", *gases)
+            since = 1.0 + row["time"]
+            ratio, error = (row[name] * since**2 for name in ("temperature", "temperature_error"))
+            gases.append(Points(name, since, ratio, error))
+    shows(haff, "t_\\mathrm{H}", "Haff", *gases)
     expected = []
     for dimension, name in ((2, "discs"), (3, "spheres")):
         own = ds.isel(gas=(ds["dimension"] == dimension).values)
@@ -60,4 +61,5 @@ def test_cooling_rates_clusters_and_their_picture(tmp_path):
     follows(line(leaving, "Haff"), lost, row["cluster_excess"])
     (discs,) = picture.collections
     assert discs.get_offsets() == pytest.approx(np.stack([ds["x"], ds["y"]], axis=1))
+    assert "epsilon=0.8$" in picture.get_title(loc="left")
     assert picture.get_xlim() == picture.get_ylim() == (0.0, ds.attrs["side"])

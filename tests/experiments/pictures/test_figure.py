@@ -19,10 +19,10 @@ def dataset():
 
 
 @pytest.mark.parametrize("function", [pictures.gas_render, pictures.brownian_render])
-def test_the_picture_fills_a_column(tmp_path, dataset, function):
+def test_the_picture_is_drawn_with_a_pixel_for_each_dot(tmp_path, dataset, function):
     figure = draw(function, dataset, tmp_path)
     image = figure.axes[0].images[0].get_array()
-    assert image.shape == (765, 1020, 3)
+    assert image.shape == (1260, 1680, 3)
     saturated = np.ptp(image.astype(int), axis=-1) > 60
     assert 0.002 < saturated.mean() < 0.5
 
@@ -40,8 +40,8 @@ def test_the_particles_of_the_data_set_are_drawn(tmp_path, monkeypatch, dataset,
     monkeypatch.setattr(pictures, "picture", picture)
     monkeypatch.setattr(pictures, "colours_of", lambda bodies, by: coloured.append(by))
     figure = draw(function, dataset, tmp_path)
-    (bodies,) = drawn
-    assert coloured == [colour]
+    bodies = drawn[-1]
+    assert coloured == 2 * [colour]
     columns = {"positions": "position", "radii": "radius", "species": "species", "speeds": "speed"}
     for name, column in {**columns, "lengths": "length"}.items():
         assert np.array_equal(getattr(bodies, name), dataset[column])

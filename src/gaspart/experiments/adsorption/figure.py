@@ -18,7 +18,7 @@ from gaspart.theory.adsorption import (
 
 def adsorption(ds: xr.Dataset) -> Figure:
     """Ratio and prefactor of ideal gases, isotherms of a layer and of a sticky wall, speeds of desorption."""
-    figure, axes = style.new(rows=6, height=10.2, height_ratios=(2.6, 1.2, 1.9, 2.6, 1.7, 2.2), share_x=False)
+    figure, axes = style.new((2.2, 1.1), (1.7,), (2.0,), (1.4,), (1.9,))
     ideal, layer, sticky = (
         ds.isel(point=np.flatnonzero(ds["kind"] == kind)) for kind in ("ideal", "layer", "sticky")
     )
@@ -27,7 +27,12 @@ def adsorption(ds: xr.Dataset) -> Figure:
     _isotherm(axes[3], layer)
     _sticky_coverage(axes[4], sticky)
     _leaving(axes[5], ideal, sticky)
-    style.letters(axes[0], *axes[2:])
+    for axis, title in zip(
+        (axes[0], *axes[2:]),
+        ("(a) wells", "(b) wells", "(c) a hard layer", "(d) sticky wall", "(e) well, sticky wall"),
+        strict=True,
+    ):
+        style.letter(axis, title)
     return figure
 
 
@@ -55,8 +60,7 @@ def _ratios(top: Axes, bottom: Axes, ds: xr.Dataset) -> None:
         )
     top.set_yscale("log")
     top.set_ylabel(r"$N_\mathrm{ads}/N_\mathrm{gas}$")
-    top.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
-    style.share_x(top, bottom)
+    top.legend(loc="upper left")
     bottom.set_xlim(inverse[0], inverse[-1])
     bottom.set_ylabel("deviation from\nexact (%)")
     bottom.set_xlabel(r"inverse temperature $1/kT$")
@@ -137,7 +141,7 @@ def _leaving(axis: Axes, wells: xr.Dataset, ds: xr.Dataset) -> None:
         style.points(axis, speed, value, error, kind=kind, hollow=not kind, label=label)
     axis.axvline(float(dense["slow_speed"]), color=style.GREY, ls=":")
     axis.set_ylim(bottom=0.0)
-    axis.set_ylabel("share of leaving particles")
+    axis.set_ylabel("share leaving")
     axis.set_xlabel(r"normal speed $v\sqrt{m/kT}$")
     axis.legend(loc="upper right")
 

@@ -7,7 +7,7 @@ import xarray as xr
 from gaspart.claims import Claim, Estimate
 from gaspart.experiments.shared.claims import rows
 
-LANGEVIN = "the Langevin equation with the friction of a dilute gas (Chapman and Cowling)"
+LANGEVIN = "the Langevin equation with the friction of a dilute gas (Chapman and Cowling 1970)"
 NOT_MAXWELLS = (
     "the source's gas has equal speeds, and its particles hardly collide with each other: it is not in "
     "equilibrium, which theory assumes"

@@ -17,8 +17,8 @@ def brownian_paths(ds: xr.Dataset) -> Figure:
     """Paths from above, a panel for each point; in the middle, the sphere to scale."""
     from matplotlib.patches import Circle
 
-    figure, axes = style.new(rows=ds.sizes["point"], height=3.1 * ds.sizes["point"], share_x=False)
-    for index, axis in enumerate(np.atleast_1d(axes)):
+    figure, axes = style.new(*((3.4,),) * ds.sizes["point"])
+    for index, axis in enumerate(axes):
         row = ds.isel(point=index)
         axis.add_patch(Circle((0.0, 0.0), float(row["radius"]), color=style.GREY, alpha=0.35, lw=0))
         for path in range(ds.sizes["path"]):
@@ -36,13 +36,13 @@ def brownian_paths(ds: xr.Dataset) -> Figure:
         axis.set_ylabel("$y$ (length)")
         masses = float(row["mass"] / row["gas_mass"])
         collisions = float(row["duration"] * row["friction"])
-        style.letter(axis, f"{'ab'[index]}  $M={masses:g}\\,m$, {collisions:.0f} friction times")
+        style.letter(axis, f"({'ab'[index]}) $M={masses:g}\\,m$, {collisions:.0f} friction times")
     return figure
 
 
 def brownian_msd(ds: xr.Dataset) -> Figure:
     """Mean-squared displacement and velocity autocorrelation, with those of the Langevin equation."""
-    figure, axes = style.new(rows=4, height=6.4, height_ratios=(3, 1.2, 3, 1.2), share_x=False)
+    figure, axes = style.new((2.4, 1.1), (2.4, 1.1))
     t = np.geomspace(0.05, 1.05 * float(ds["time"].max()), 300)
     axes[0].loglog(t, theory.langevin_msd(t, 1.0 / 6.0, 1.0), color=style.DATA, label="Langevin", zorder=2)
     axes[2].semilogy(t, np.exp(-t), color=style.DATA, label=r"$e^{-\gamma t}$", zorder=2)
@@ -68,7 +68,6 @@ def brownian_msd(ds: xr.Dataset) -> Figure:
     axes[1].set_ylabel("ratio $-$ 1")
     axes[3].set_ylabel("difference")
     for top, bottom, place in ((axes[0], axes[1], "lower right"), (axes[2], axes[3], "lower left")):
-        top.tick_params(labelbottom=False)
         bottom.set_ylim(-0.25, 0.25)
         bottom.set_xlabel(r"time $\gamma t$")
         top.legend(loc=place)
@@ -78,6 +77,5 @@ def brownian_msd(ds: xr.Dataset) -> Figure:
     for axis in axes[2:]:
         axis.set_xlim(-0.05, LONGEST)
     axes[2].set_ylim(0.02, 1.4)
-    style.letter(axes[0], "a")
-    style.letter(axes[2], "b", x=0.95)
+    style.letters(axes[0], axes[2])
     return figure

@@ -17,9 +17,7 @@ METHODS = (("force", "force", "from the force"), ("missing", "count", "small dis
 
 def buoyancy(ds: xr.Dataset) -> Figure:
     """Force against density, the radius that counts as displaced, and the heights of free discs."""
-    figure, (top, middle, bottom) = style.new(
-        rows=3, height=6.4, height_ratios=(1.0, 1.0, 1.1), share_x=False
-    )
+    figure, (top, middle, bottom) = style.new((2.1, 2.1), (2.6,))
     ratio = ds.attrs["size_ratio"]
     packing = ds["fixed_packing_fraction"].values
     eta = np.linspace(0.0, 1.1 * packing.max(), 200)
@@ -39,8 +37,7 @@ def buoyancy(ds: xr.Dataset) -> Figure:
             look["label"] = label if axis is top else None
             style.points(axis, packing, value, error, **look)
     top.set_ylabel(r"mass displaced $F/mg$")
-    top.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
-    style.share_x(top, middle)
+    top.legend(loc="upper left")
     middle.set_ylabel(r"$(R_\mathrm{eff} - R)/r$")
     middle.set_ylim(-0.15, 1.35)
     middle.set_xlabel(r"packing fraction $\eta$ of the fluid at that height")

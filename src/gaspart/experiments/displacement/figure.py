@@ -15,7 +15,7 @@ from gaspart.rendering import style
 
 def msd_spheres(ds: xr.Dataset) -> Figure:
     """The msd; D(t) from displacements and from velocities; D against packing fraction; D against 1/L."""
-    figure, axes = style.new(rows=4, height=8.6, share_x=False)
+    figure, axes = style.new((2.4,), (2.4,), (2.3,), (2.3,))
     _displacement(axes[0], ds, 3)
     _running(axes[1], ds.isel(point=_shown(ds, ds["largest"].values)), 3)
     _density(axes[2], ds)
@@ -26,7 +26,7 @@ def msd_spheres(ds: xr.Dataset) -> Figure:
 
 def msd_discs(ds: xr.Dataset) -> Figure:
     """The msd; D(t), which does not converge; its slope against ln t, by packing fraction."""
-    figure, axes = style.new(rows=3, height=7.0, share_x=False)
+    figure, axes = style.new((2.6,), (2.2,), (2.2,))
     long = np.isfinite(ds["logarithmic_slope"].values)
     _displacement(axes[0], ds, 2)
     _running(axes[1], ds, 2)
@@ -190,7 +190,7 @@ def _size(axis: Axes, ds: xr.Dataset) -> None:
         axis, inverse, row["diffusion"], row["diffusion_error"], color=style.DATA, label=rf"$\eta={eta:g}$"
     )
     for one, count, value in zip(inverse, row["count"].values, row["diffusion"].values, strict=True):
-        axis.annotate(f"{int(count)}", (one, value), (3, 5), textcoords="offset points", fontsize=7)
+        axis.annotate(f"{int(count)}", (one, value), (3, 5), textcoords="offset points")
     axis.set_xlim(0.0, x[-1])
     axis.set_xlabel(r"$\sigma/L$")
     axis.set_ylabel(r"$D_L\ (\sigma\sqrt{k_\mathrm{B}T/m})$")

@@ -13,7 +13,7 @@ from gaspart.rendering import style
 
 def driven_gas(ds: xr.Dataset) -> Figure:
     """Two panels over the restitution: steady temperature over the energy balance's, and fourth cumulant."""
-    figure, (upper, lower) = style.new(rows=2, height=4.4)
+    figure, (upper, lower) = style.new((2.5,), (2.5,))
     curve = np.linspace(0.95 * float(ds["restitution"].min()), 1.0, 200)
     style.level(upper, 1.0)
     style.level(lower, 0.0)
@@ -31,7 +31,8 @@ def driven_gas(ds: xr.Dataset) -> Figure:
         lower.plot(curve, cooling, color=colour, linestyle=":", zorder=1)
     upper.set_ylabel(r"$T$ / energy balance")
     lower.set_ylabel(r"fourth cumulant $a_2$")
-    lower.set_xlabel(r"restitution $\epsilon$")
+    for axis in (upper, lower):
+        axis.set_xlabel(r"restitution $\epsilon$")
     lower.legend(loc="upper right")
     style.letters(upper, lower)
     return figure

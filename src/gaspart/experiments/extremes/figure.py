@@ -26,23 +26,23 @@ FLOOR = 1e-17
 def stability_extremes(dataset: xr.Dataset) -> Figure:
     """A line per row, a column per engine: the drift of the energy, or that the row was refused or failed."""
     rows, engines = dataset.sizes["row"], dataset.sizes["engine"]
-    figure, axis = style.new(height=0.8 + 0.135 * rows)
+    figure, (axis,) = style.new((0.8 + 0.165 * rows,))
     colours, norm = colormaps["YlGnBu"], Normalize(-18.0, 2.0)
     verdicts, energies = dataset["verdict"].values, dataset["energy"].values
     for n in range(rows):
         for k in range(engines):
             text, colour, ink = _cell(verdicts[n, k], energies[n, k], colours, norm)
             axis.add_patch(_box(k, n, colour))
-            axis.text(k + 0.5, n + 0.53, text, ha="center", va="center", fontsize=6.5, color=ink)
+            axis.text(k + 0.5, n + 0.53, text, ha="center", va="center", color=ink)
     groups = dataset["group"].values
     for n in np.flatnonzero(groups[1:] != groups[:-1]) + 1:
         axis.axhline(n, color="black", linewidth=0.6)
     axis.set_xlim(0, engines)
     axis.set_ylim(rows, 0)
-    axis.set_xticks(np.arange(engines) + 0.5, [HEADS[name] for name in dataset["engine"].values], fontsize=7)
-    axis.set_yticks(np.arange(rows) + 0.5, [str(name) for name in dataset["row"].values], fontsize=6.5)
+    axis.set_xticks(np.arange(engines) + 0.5, [HEADS[name] for name in dataset["engine"].values])
+    axis.set_yticks(np.arange(rows) + 0.5, [str(name) for name in dataset["row"].values])
     axis.tick_params(length=0, labeltop=True, labelbottom=False)
-    axis.set_xlabel("drift of the energy\n(– is refused)", fontsize=7)
+    axis.set_xlabel("drift of the energy\n(– is refused)")
     return figure
 
 

@@ -12,15 +12,11 @@ from gaspart.rendering import style
 
 def thin_film(dataset: xr.Dataset) -> Figure:
     """Density above a wall, the contact theorem at every width, and the pressure against the width."""
-    figure, (profile, contact, pressure) = style.new(
-        rows=3, height=6.2, height_ratios=(2.0, 1.0, 2.0), share_x=False
-    )
+    figure, (profile, contact, pressure) = style.new((2.8,), (1.3, 2.1))
     _profile(profile, dataset)
     _contact(contact, dataset)
     _solvation(pressure, dataset)
-    style.share_x(contact, pressure)
     style.letters(profile, contact, pressure)
-    figure.align_ylabels()
     return figure
 
 
@@ -67,9 +63,10 @@ def _solvation(axis: Axes, dataset: xr.Dataset) -> None:
     axis.annotate(
         f"{widest:g}",
         (_shown(dataset)[-1], excess.values[-1]),
-        (0, 6),
+        (-6, 0),
         textcoords="offset points",
-        ha="center",
+        ha="right",
+        va="center",
     )
     axis.set(xlabel="width of the slit $H/\\sigma$", ylabel="$(P-P_\\mathrm{bulk})\\sigma^3/k_\\mathrm{B}T$")
     axis.legend(loc="upper right")

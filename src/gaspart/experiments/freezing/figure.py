@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -22,49 +21,36 @@ EQUILIBRATED = 3.0
 def freezing_discs(dataset: xr.Dataset) -> Figure:
     """Pressure with the plateau, psi_6, g(r), and three snapshots with their structure factors."""
     shown = dataset.sizes["shown"]
-    rows: list[Any] = [[name] * shown for name in "abc"] + [
-        [f"{name}{k}" for k in range(shown)] for name in "de"
-    ]
-    figure = Figure(figsize=(style.COLUMN, 7.9), layout="constrained")
-    axes = figure.subplot_mosaic(rows, gridspec_kw={"height_ratios": (2.2, 1.4, 1.5, 1.1, 1.1)})
-    _loop(axes["a"], dataset)
-    _order(axes["b"], dataset, "$|\\langle\\psi_6\\rangle|$")
-    axes["b"].sharex(axes["a"])
-    axes["a"].tick_params(labelbottom=False)
-    axes["b"].set_ylim(0.0, 1.0)
-    for k in range(shown):
+    figure, (loop, order, shells, below) = style.new((2.4, 1.5), (2.0,), (1.65 * shown,))
+    _loop(loop, dataset)
+    _order(order, dataset, r"$|\langle\psi_6\rangle|$")
+    order.set_ylim(0.0, 1.0)
+    pairs = style.split(below, shown, 2)
+    for k, (left, right) in enumerate(pairs):
         at = dataset.isel(shown=k)
         label = f"{float(at['shown']):.3g}"
-        axes["c"].plot(at["distance"], at["g"] + 2.0 * k, color=style.COLOURS[k], label=label)
-        _snapshot(axes[f"d{k}"], at, label)
-        _scattering(axes[f"e{k}"], at)
-    axes["c"].set(
-        xlim=(0.0, float(dataset["distance"].max())),
-        xlabel="distance $r/\\sigma$",
-        ylabel="$g(r)$, shifted by 2",
-    )
-    axes["c"].legend(ncols=shown, loc="upper right", title="$\\eta$")
-    axes["e0"].set_ylabel("$k_y\\sigma$")
-    for k in range(1, shown):
-        axes[f"e{k}"].tick_params(labelleft=False)
-    style.letters(axes["a"], axes["b"], axes["c"])
+        shells.plot(at["distance"], at["g"] + 2.0 * k, color=style.COLOURS[k], label=label)
+        _snapshot(left, at, label)
+        _scattering(right, at)
+    end = float(dataset["distance"].max())
+    shells.set(xlim=(0.0, end), xlabel=r"distance $r/\sigma$", ylabel="$g(r)$, shifted by 2")
+    shells.legend(ncols=shown, loc="upper right", title=r"$\eta$")
+    style.letters(loop, order, shells, pairs[0, 0])
     return figure
 
 
 def freezing_spheres(dataset: xr.Dataset) -> Figure:
     """Pressure of both branches, its residuals, Q_6, and the profiles of coexisting crystal and fluid."""
-    figure, axes = style.new(rows=4, height=7.6, height_ratios=(2.0, 1.2, 1.2, 1.4), share_x=False)
+    figure, axes = style.new((2.4, 1.2), (1.5,), (2.0,))
     upper, middle, order, slab = axes
     _branches(upper, dataset)
     _residuals(middle, dataset)
     _order(order, dataset, "global $Q_6$")
     order.set_ylim(0.0, 0.6)
-    for axis in (upper, middle):
-        axis.tick_params(labelbottom=False)
-        axis.sharex(order)
+    order.set_xlim(upper.get_xlim())
+    middle.set_xlabel(r"packing fraction $\eta$")
     _profiles(slab, dataset)
     style.letters(*axes)
-    figure.align_ylabels()
     return figure
 
 
@@ -192,7 +178,7 @@ def _branches(axis: Axes, dataset: xr.Dataset) -> None:
         axis, [mean], [dataset["slab_pressure"]], [dataset["slab_error"]], kind=6, label="coexistence"
     )
     axis.set_ylabel("pressure $P\\sigma^3/k_\\mathrm{B}T$")
-    axis.legend(loc="upper left", bbox_to_anchor=(0.05, 1.0))
+    axis.legend(loc="upper left")
 
 
 def _residuals(axis: Axes, dataset: xr.Dataset) -> None:

@@ -14,15 +14,11 @@ from gaspart.rendering import style
 
 def equipartition(ds: xr.Dataset) -> Figure:
     """Three panels: both temperatures against collisions, their difference minus theory's, steady ratios."""
-    figure, (upper, middle, lower) = style.new(
-        rows=3, height=6.6, height_ratios=(2.0, 1.0, 1.8), share_x=False
-    )
+    figure, (upper, middle, lower) = style.new((2.3, 1.2), (2.4,))
     _temperatures(upper, ds)
     _differences(middle, ds)
-    style.share_x(upper, middle)
     _ratios(lower, ds)
     style.letters(upper, middle, lower)
-    figure.align_ylabels()
     return figure
 
 
@@ -91,47 +87,38 @@ def _ratios(axis: Axes, ds: xr.Dataset) -> None:
     axis.set_ylim(0.0, 1.08)
     axis.set_xlabel(r"tangential restitution $\epsilon_\mathrm{t}$")
     axis.set_ylabel(r"steady $T_\mathrm{rot}/T_\mathrm{tr}$")
-    axis.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
+    axis.legend(loc="upper left")
 
 
 def cooling(ds: xr.Dataset) -> Figure:
     """Four panels: Haff's law, its rate, how a large gas leaves it, and the final state."""
-    figure, axes = style.new(rows=2, columns=2, height=5.6, share_x=False)
-    _haff(axes[0, 0], ds)
-    _rates(axes[0, 1], ds)
-    _leaving(axes[1, 0], ds)
-    _picture(axes[1, 1], ds)
-    style.letters(*axes.flat)
+    figure, axes = style.new((2.6,), (2.4,), (2.4,), (2.8,))
+    _haff(axes[0], ds)
+    _rates(axes[1], ds)
+    _leaving(axes[2], ds)
+    _picture(axes[3], ds)
+    style.letters(*axes[:3])
+    last = ds.isel(clusters=int(np.argmin(ds["cluster_restitution"].values)))
+    e, s = float(last["cluster_restitution"]), float(last["cluster_collisions"][-1])
+    style.letter(axes[3], rf"(d) $\epsilon={e:g}$, $s={s:.0f}$")
     return figure
 
 
 def _haff(axis: Axes, ds: xr.Dataset) -> None:
-    """T against 1 + t / t_H; spheres are shifted by a factor 3 for legibility."""
-    line = np.array([1.0, 1.1 * (1.0 + float(ds["time"].max()))])
-    for dimension, factor in ((2, 1.0), (3, 1.0 / 3.0)):
+    """T over Haff's T_0 / (1 + t / t_H)^2, against 1 + t / t_H."""
+    style.level(axis, 1.0)
+    for dimension in (2, 3):
         gases = ds.isel(gas=(ds["dimension"] == dimension).values).sortby("restitution", ascending=False)
-        axis.plot(line, factor * line**-2.0, color=style.GREY, zorder=1)
         for kind in range(gases.sizes["gas"]):
             row = gases.isel(gas=kind)
-            name = PARTICLES[dimension] + (r" $\div\,3$" if dimension == 3 else "")
-            style.points(
-                axis,
-                1.0 + row["time"],
-                factor * row["temperature"],
-                factor * row["temperature_error"],
-                kind,
-                hollow=dimension == 3,
-                label=rf"{name}, $\epsilon={float(row['restitution']):g}$",
-            )
+            since = 1.0 + row["time"]
+            value, error = row["temperature"] * since**2, row["temperature_error"] * since**2
+            label = rf"{PARTICLES[dimension]}, $\epsilon={float(row['restitution']):g}$"
+            style.points(axis, since, value, error, kind, hollow=dimension == 3, label=label)
     axis.set_xscale("log")
-    axis.set_yscale("log")
-    ticks = (1, 2, 3, 5, 7)
-    axis.set_xticks(ticks, [str(tick) for tick in ticks])
-    axis.minorticks_off()
-    axis.set_xlim(0.85)
     axis.set_xlabel(r"$1+t/t_\mathrm{H}$")
-    axis.set_ylabel(r"$T/T_0$")
-    axis.legend(loc="lower left", fontsize=6.5)
+    axis.set_ylabel(r"$T/T_\mathrm{Haff}$")
+    axis.legend(loc="lower left", ncols=2)
 
 
 def _rates(axis: Axes, ds: xr.Dataset) -> None:
@@ -181,7 +168,7 @@ def _leaving(axis: Axes, ds: xr.Dataset) -> None:
     axis.set_xlim(0.0)
     axis.set_xlabel(r"$(1-\epsilon^2)\, s$")
     axis.set_ylabel("over the homogeneous gas")
-    axis.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
+    axis.legend(loc="upper left")
 
 
 def _picture(axis: Axes, ds: xr.Dataset) -> None:

@@ -17,7 +17,7 @@ KNOWN = 0.1
 
 def barometric(ds: xr.Dataset) -> Figure:
     """Density and temperature against height, and the equation of state from the weight of the column."""
-    figure, axes = style.new(rows=5, height=7.8, height_ratios=(3, 1.3, 1.3, 2.6, 1.3), share_x=False)
+    figure, axes = style.new((2.4, 1.1, 1.1), (2.6, 1.2))
     top, ratio, warm, state, off = axes
     for kind in range(ds.sizes["point"]):
         row = ds.isel(point=kind)
@@ -54,19 +54,17 @@ def barometric(ds: xr.Dataset) -> Figure:
     ratio.set_ylabel(r"$\rho/\rho_\mathrm{th} - 1$ (%)")
     warm.set_ylabel(r"$T(z)/T - 1$ (%)")
     state.set_ylabel(r"$Z = P/\rho kT$")
-    state.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
+    state.legend(loc="upper left")
     off.set_ylabel(r"$Z/Z_\mathrm{ref} - 1$ (%)")
     warm.set_xlabel("height $z$ (length)")
     off.set_xlabel(r"packing fraction $\eta$")
-    style.share_x(top, ratio, warm)
-    style.share_x(state, off)
     style.letters(top, ratio, warm, state)
     return figure
 
 
 def separation(ds: xr.Dataset) -> Figure:
     """Heavy and light discs: densities, dilute and dense, and the ratio of the two."""
-    figure, axes = style.new(rows=4, height=7.0, height_ratios=(2.6, 2.6, 2.6, 1.2))
+    figure, axes = style.new((2.2,), (2.2,), (2.4, 1.2))
     names = ("light", "heavy")
     for n, axis in enumerate(axes[:2]):
         row = ds.isel(point=n)
@@ -84,9 +82,8 @@ def separation(ds: xr.Dataset) -> Figure:
         axis.set_yscale("log")
         axis.set_ylim(0.01, 20.0)
         axis.set_ylabel(r"density $\rho_i/\bar\rho$")
+        axis.set_xlabel("height $z$ (length)")
         axis.legend(loc="upper right", ncol=2, columnspacing=0.8)
-    style.letter(axes[0], "a  dilute")
-    style.letter(axes[1], "b  dense")
     style.band(axes[3], -3.0, 3.0)
     style.level(axes[3], 0.0)
     for n, name in enumerate(("dilute", "dense")):
@@ -105,13 +102,14 @@ def separation(ds: xr.Dataset) -> Figure:
     axes[3].set_ylim(-4.5, 4.5)
     axes[3].set_yticks([-3, 0, 3])
     axes[3].set_xlabel("height $z$ (length)")
-    style.letter(axes[2], "c", y=0.13)
+    for axis, title in zip(axes, ("(a) dilute", "(b) dense", "(c)"), strict=False):
+        style.letter(axis, title)
     return figure
 
 
 def heat_capacity(ds: xr.Dataset) -> Figure:
     """Heat capacity against x, from neighbouring energies and from fluctuations, and its deviation."""
-    figure, (top, bottom) = style.new(rows=2, height=3.8, height_ratios=(3, 1.2))
+    figure, (top, bottom) = style.new((2.6, 1.2))
     end = 1.15 * float(max(ds["x"].max(), ds["run_x"].max()))
     x = np.linspace(0.0, end, 300)
     top.plot(x, ideal_heat_capacity(x, 2), color=style.DATA, label="canonical, ideal gas")
@@ -137,13 +135,12 @@ def heat_capacity(ds: xr.Dataset) -> Figure:
         )
     top.set_ylabel(r"heat capacity $C_V/Nk$")
     top.set_ylim(0.9, 2.1)
-    top.legend(loc="lower right", bbox_to_anchor=(1.0, 0.08))
+    top.legend(loc="lower right")
     bottom.set_ylabel("deviation from\nexact (%)")
     bottom.set_xlim(-0.03 * end, end)
     bottom.set_ylim(-4.5, 4.5)
     bottom.set_xlabel(r"height of the box $x = mgH/kT$")
-    style.letter(top, "a")
-    style.letter(bottom, "b")
+    style.letters(top, bottom)
     return figure
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ FREE_MOLECULAR = 100.0
 
 def heat_conduction_gas(ds: xr.Dataset) -> Figure:
     """Flux against density, and over that of free flight; profiles of temperature and of density."""
-    figure, axes = style.new(rows=5, height=8.4, height_ratios=(2.6, 2.4, 2.4, 1.1, 2.0), share_x=False)
+    figure, axes = style.new((2.4,), (2.4,), (2.0, 1.0, 1.8))
     flux, share, warm, off, dense = axes
     _fluxes(flux, ds.isel(point=np.flatnonzero(ds["knudsen"] < FREE_MOLECULAR)))
     _shares(share, ds)
@@ -35,7 +36,6 @@ def heat_conduction_gas(ds: xr.Dataset) -> Figure:
     off.set_ylim(-2.5, 2.5)
     dense.set_ylabel(r"density $n/\bar n$")
     dense.set_xlabel("position between the walls $x/L$")
-    style.share_x(warm, off, dense)
     style.letters(flux, share, warm, dense)
     return figure
 
@@ -51,8 +51,8 @@ def _fluxes(axis: Axes, ds: xr.Dataset) -> None:
     axis.plot(number, 1e3 / (1.0 / free + 1.0 / fourier), color=style.GREY, ls=":", label="guide")
     fluid = ds["number"].values[np.isfinite(ds["slab_flux"].values)]
     if fluid.size:
-        line = np.geomspace(fluid.min(), fluid.max(), 8)
-        theory = [1e3 * conducting_slab(length, n, hot, cold).flux for n in line]
+        line = np.geomspace(fluid.min(), fluid.max(), 5)
+        theory = [1e3 * _conducted(length, n, hot, cold) for n in line.tolist()]
         axis.plot(line, theory, color=style.DATA, label="with jumps", zorder=4)
     for kind, name in enumerate(("all components", "normal only")):
         own = ds.isel(point=np.flatnonzero(ds["normal"] == kind))
@@ -63,8 +63,14 @@ def _fluxes(axis: Axes, ds: xr.Dataset) -> None:
     axis.set_ylim(0.2, 12.0)
     axis.tick_params(axis="x", which="minor", labelbottom=False)
     axis.set_xlabel(r"number density $n\sigma^3$")
-    axis.set_ylabel(r"heat flux $10^3\,q$")
+    axis.set_ylabel(r"heat flux $q$ ($10^{-3}$ reduced units)")
     axis.legend(loc="lower right", ncol=2, columnspacing=0.8)
+
+
+@cache
+def _conducted(length: float, number: float, hot: float, cold: float) -> float:
+    """Flux of `conducting_slab`, which takes a second."""
+    return conducting_slab(length, number, hot, cold).flux
 
 
 def _shares(axis: Axes, ds: xr.Dataset) -> None:
@@ -113,7 +119,7 @@ def _profiles(warm: Axes, off: Axes, dense: Axes, row: xr.Dataset, kind: int) ->
 
 def heat_conduction_metal(ds: xr.Dataset) -> Figure:
     """Temperatures of electrons and modes between two walls; energy against temperature."""
-    figure, (top, bottom, off) = style.new(rows=3, height=5.6, height_ratios=(2.6, 2.4, 1.1), share_x=False)
+    figure, (top, bottom, off) = style.new((3.0,), (2.2, 1.2))
     for n in np.flatnonzero(ds["hot"] != ds["cold"]):
         row = ds.isel(point=n)
         for kind, (name, label) in enumerate((("electrons", "electrons"), ("modes", "modes"))):
@@ -123,7 +129,7 @@ def heat_conduction_metal(ds: xr.Dataset) -> Figure:
             top.axhline(float(row[wall]), color=style.GREY, lw=0.6, ls=":")
     top.set_xlabel("position between the walls $x/L$")
     top.set_ylabel(r"$T$ of electrons, $\langle E\rangle$ of modes")
-    top.legend(loc="upper right", bbox_to_anchor=(1.0, 0.93))
+    top.legend(loc="upper right")
     still = ds.isel(point=np.flatnonzero(ds["hot"] == ds["cold"]))
     warm, capacity = still["hot"].values, float(ds["expected"][0])
     line = np.array([0.0, 1.1 * warm.max()])
@@ -133,7 +139,7 @@ def heat_conduction_metal(ds: xr.Dataset) -> Figure:
     electrons = float(ds["electrons_part"][0])
     bottom.plot(line, electrons * line, color=style.GREY, ls="--", label="frozen modes")
     bottom.set_ylabel(rf"energy / {capacity:g}")
-    bottom.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
+    bottom.legend(loc="upper left")
     style.level(off, 0.0)
     style.points(off, warm, 100.0 * (level - 1.0), 100.0 * error, kind=1)
     modes = (100.0 * (still["mode_ratio"] - 1.0), 100.0 * still["mode_ratio_error"])
@@ -141,6 +147,5 @@ def heat_conduction_metal(ds: xr.Dataset) -> Figure:
     off.set_ylim(-3.5, 3.5)
     off.set_ylabel("deviation (%)")
     off.set_xlabel("temperature of both walls $kT$")
-    style.share_x(bottom, off)
     style.letters(top, bottom)
     return figure

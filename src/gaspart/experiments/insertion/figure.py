@@ -23,7 +23,7 @@ SOURCE = 0.52
 
 def fill_failures(dataset: xr.Dataset) -> Figure:
     """Failures per particle, to saturation and at low density; packing fraction against attempts^(-1/d)."""
-    figure, (upper, middle, lower) = style.new(rows=3, height=7.4, height_ratios=(1.5, 0.7, 1), share_x=False)
+    figure, (upper, middle, lower) = style.new((3.4,), (1.6,), (2.2,))
     for kind, (key, label) in enumerate(SERIES.items()):
         for k in range(dataset.sizes["container"]):
             one = dataset.isel(container=k)
@@ -41,9 +41,7 @@ def fill_failures(dataset: xr.Dataset) -> Figure:
     lower.set_ylim(0.2, 0.58)
     lower.set_xlabel("(attempts $\\times\\ v/V)^{-1/d}$")
     lower.set_ylabel("packing fraction $\\eta$")
-    style.letters(upper, middle)
-    style.letter(lower, "c", x=0.94)
-    figure.align_ylabels()
+    style.letters(upper, middle, lower)
     return figure
 
 

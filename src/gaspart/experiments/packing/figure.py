@@ -23,7 +23,7 @@ NAMES = {
 
 def densest_fill(ds: xr.Dataset) -> Figure:
     """The source's fill (first packing) and the compressed one (last), with their packing fractions."""
-    figure, axes = style.new(1, 2, height=3.3)
+    figure, axes = style.new((3.4,), (3.4,))
     shown = [0, ds.sizes["packing"] - 1]
     for axis, k in zip(np.ravel(axes), shown, strict=True):
         one = ds.isel(packing=k)
@@ -42,5 +42,6 @@ def densest_fill(ds: xr.Dataset) -> Figure:
         axis.imshow(picture(bodies, (side, side), colours_of(bodies, "species")))
         axis.set_axis_off()
         fraction, error = float(one["packing_fraction"]), float(one["error"])
+        style.letter(axis, f"({'ab'[shown.index(k)]})")
         axis.set_title(f"{NAMES[str(one['rule'].values)]}\nη = {concise(fraction, error)}")
     return figure

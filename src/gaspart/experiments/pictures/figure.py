@@ -15,6 +15,8 @@ DOTS = 300
 """Pixels per inch of the pictures, as those of a saved figure."""
 HEIGHT = 0.75
 """Of a picture, over its width."""
+HIGHEST = 4.2
+"""Of a picture, in inches."""
 
 
 def gas_render(ds: xr.Dataset) -> Figure:
@@ -22,7 +24,7 @@ def gas_render(ds: xr.Dataset) -> Figure:
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-    figure, axis = _shown(ds, "speed", height=3.1)
+    figure, axis = _shown(ds, "speed", bar=0.5)
     fastest = FASTEST * float(np.sqrt((ds["speed"] ** 2).mean()))
     scale = ScalarMappable(Normalize(0.0, fastest), cmap="viridis")
     bar = figure.colorbar(
@@ -34,11 +36,11 @@ def gas_render(ds: xr.Dataset) -> Figure:
 
 def brownian_render(ds: xr.Dataset) -> Figure:
     """The large sphere and its gas, coloured by species."""
-    return _shown(ds, "species", height=style.COLUMN * HEIGHT)[0]
+    return _shown(ds, "species")[0]
 
 
-def _shown(ds: xr.Dataset, colour: str, height: float) -> tuple[Figure, Axes]:
-    """A figure filled by a picture of the particles of a dataset."""
+def _shown(ds: xr.Dataset, colour: str, bar: float = 0.0) -> tuple[Figure, Axes]:
+    """A figure filled by a picture of the particles of a dataset; bar: height in inches of what is below."""
     bodies = DrawnParticles(
         positions=ds["position"].values,
         radii=ds["radius"].values,
@@ -47,8 +49,9 @@ def _shown(ds: xr.Dataset, colour: str, height: float) -> tuple[Figure, Axes]:
         lengths=ds["length"].values,
         walls=np.zeros((0, 2, 2)),
     )
-    size = (round(DOTS * style.COLUMN), round(DOTS * style.COLUMN * HEIGHT))
-    figure, axis = style.new(height=height)
+    height = min(HIGHEST, HEIGHT * style.width())
+    size = (round(DOTS * height / HEIGHT), round(DOTS * height))
+    figure, (axis,) = style.new((height + bar,))
     axis.imshow(picture(bodies, size, colours_of(bodies, colour)))
     axis.set_axis_off()
     return figure, axis

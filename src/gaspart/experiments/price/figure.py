@@ -17,7 +17,7 @@ WORK = {"pair_tests": "pair tests", "crossings": "crossings"}
 
 def price_of_features(ds: xr.Dataset) -> Figure:
     """Time per event over the plain scene's, and the counted work per event, for each feature."""
-    figure, (left, right) = style.new(columns=2, height=2.9)
+    figure, (left, right) = style.new((2.9,), (2.9,))
     names = list(dict.fromkeys(ds["feature"].values))
     place = {name: -k for k, name in enumerate(names)}
     left.axvline(1.0, color=style.GREY, linewidth=0.6, zorder=1)
@@ -38,7 +38,7 @@ def price_of_features(ds: xr.Dataset) -> Figure:
         axis.set_yticks(list(place.values()), names)
         axis.set_ylim(-len(names) + 0.4, 1.6)
         axis.tick_params(axis="y", which="both", length=0)
-        axis.legend(loc="upper right", fontsize=7, ncols=2 if axis is right else 1)
+        axis.legend(loc="upper right", ncols=2 if axis is right else 1)
     most = float((ds["ratio"] + ds["ratio_error"]).max())
     left.set_xlim(0.0, max(1.6, 1.1 * most))
     left.set_xlabel("time per event over the plain scene's")

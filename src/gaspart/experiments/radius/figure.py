@@ -17,7 +17,7 @@ SERIES = ("packing fraction", "count")
 
 def radius_grid(dataset: xr.Dataset) -> Figure:
     """Z, its residuals, and the counted work, against the radius."""
-    figure, (upper, middle, lower) = style.new(rows=3, height=6.6, height_ratios=(1.5, 0.8, 1.9))
+    figure, (upper, middle, lower) = style.new((2.2, 1.2), (2.8,))
     event = dataset.isel(point=dataset["engine"].values == "event")
     step = dataset.isel(point=dataset["engine"].values == "step")
     style.band(middle, -3.0, 3.0)
@@ -33,15 +33,15 @@ def radius_grid(dataset: xr.Dataset) -> Figure:
         _step_costs(lower, step.isel(point=step["series"].values == name).sortby("radius"), kind)
     middle.set_ylim(-max(4.0, widest + 1.5), max(4.0, widest + 1.5))
     upper.set_ylabel("compressibility factor $Z$")
-    upper.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
+    upper.legend(loc="upper left")
     middle.set_ylabel("$(Z-Z_\\mathrm{ref})/\\sigma$")
     lower.set_yscale("log")
     lower.set_ylim(0.2, 6e2)
     lower.set_ylabel("counted work")
-    lower.set_xlabel("radius (container: side 16)")
+    for axis in (middle, lower):
+        axis.set_xlabel("radius (container: side 16)")
     _labels(lower, event, step)
     style.letters(upper, middle, lower)
-    figure.align_ylabels()
     return figure
 
 
@@ -77,9 +77,13 @@ def _step_costs(axis: Axes, one: xr.Dataset, kind: int) -> None:
 
 def _labels(axis: Axes, event: xr.Dataset, step: xr.Dataset) -> None:
     """The counted quantity, above each group of points."""
+    highest = 1.2 * float(event["pair_tests"].max())
     texts = (
-        (1.2 * float(event["pair_tests"].max()), "event-driven: pair tests per collision"),
-        (1.25 * float(step["pair_tests"].max()), "time-stepped: pair tests per particle and step"),
+        (highest, "event-driven: pair tests per collision"),
+        (
+            min(1.25 * float(step["pair_tests"].max()), 0.4 * highest),
+            "time-stepped: pair tests per particle and step",
+        ),
         (0.23, "event-driven: boundaries crossed per collision"),
     )
     for height, text in texts:

@@ -20,7 +20,7 @@ ENGINES = {
 
 def reversibility(ds: xr.Dataset) -> Figure:
     """Echoes against collisions, their growth against density, and the memory of each engine."""
-    figure, axes = style.new(rows=3, height=7.0, height_ratios=(1.3, 1, 1), share_x=False)
+    figure, axes = style.new((2.8,), (2.1,), (2.1,))
     gases = sorted(set(zip(ds.dimension.values.tolist(), ds.packing_fraction.values.tolist(), strict=True)))
     for n in range(ds.sizes["row"]):
         row = ds.isel(row=n)
@@ -38,7 +38,7 @@ def reversibility(ds: xr.Dataset) -> Figure:
         ylabel=r"echo: distance / $\sigma$",
     )
     axes[0].set_ylim(1e-20, 1e3)
-    axes[0].legend(title=r"$\eta$", ncols=2, fontsize=6.5, loc="lower right")
+    axes[0].legend(title=r"$\eta$", ncols=2, loc="lower right")
     _growth(axes[1], ds)
     _memory(axes[2], ds)
     style.letters(*axes)
@@ -67,7 +67,7 @@ def _growth(axis: Axes, ds: xr.Dataset) -> None:
         at, value, error = np.array(known).T
         axis.errorbar(at, value, error, color=style.GREY, zorder=1, label="known" if kind else None)
     axis.set(xscale="log", yscale="log", xlabel=r"packing fraction $\eta$", ylabel="growth per collision")
-    axis.legend(fontsize=6.5)
+    axis.legend()
 
 
 def _memory(axis: Axes, ds: xr.Dataset) -> None:
@@ -85,4 +85,4 @@ def _memory(axis: Axes, ds: xr.Dataset) -> None:
                 label=label if dimension == 3 else None,
             )
     axis.set(xscale="log", yscale="log", xlabel=r"packing fraction $\eta$", ylabel="memory (collisions)")
-    axis.legend(fontsize=6.5, title="spheres; discs hollow", title_fontsize=6.5)
+    axis.legend(title="spheres; discs hollow")

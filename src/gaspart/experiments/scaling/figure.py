@@ -17,7 +17,7 @@ _SCAN = 27  # source A's program scans its one box once for each of the boxes ar
 
 def naive_scaling(ds: xr.Dataset) -> Figure:
     """Time of a step against N, and per pair test."""
-    figure, (top, bottom) = style.new(rows=2, height=3.8, height_ratios=(2.2, 1))
+    figure, (top, bottom) = style.new((2.4, 1.3))
     count = ds["count"].values
     line = np.geomspace(count.min(), count.max(), 50)
     law = 0.5 * line * (line - 1.0) * float(ds.test_seconds)
@@ -33,21 +33,20 @@ def naive_scaling(ds: xr.Dataset) -> Figure:
     style.points(bottom, count, ds.seconds * each, ds.seconds_error * each, color=style.DATA)
     bottom.set(xlabel="number of particles $N$", ylabel="per test (ns)")
     bottom.set_ylim(0.0, 1.6 * float((ds.seconds * each).max()))
+    style.letters(top, bottom)
     return figure
 
 
 def box_count(ds: xr.Dataset) -> Figure:
     """Time and work against the number of boxes; round widths; the event-driven engine's sectors."""
-    figure, axes = style.new(rows=4, height=8.4, share_x=False, height_ratios=(1.2, 1.2, 1, 1.2))
+    figure, axes = style.new((2.3, 2.3), (1.9,), (2.5,))
     boxes = ds.boxes_per_side.values.astype(float) ** 3
     _scan_time(axes[0], ds, boxes)
     _scan_work(axes[1], ds, boxes)
-    axes[1].sharex(axes[0])
     axes[1].set(xscale="log", xlabel="number of boxes")
     _round_widths(axes[2], ds)
     _sectors(axes[3], ds)
-    for axis, name in zip(axes, "abcd", strict=True):
-        axis.set_title(f"({name})", loc="left", fontweight="bold", pad=3)
+    style.letters(*axes)
     return figure
 
 
@@ -81,7 +80,7 @@ def _scan_work(axis: Axes, ds: xr.Dataset, boxes: np.ndarray) -> None:
     shown += axis.plot(boxes, ds.in_reach, color=colour, linestyle="--", label="boxes within a diameter")
     shown += axis.plot(boxes, ds.touched, color=colour, linestyle=":", label="boxes touched (F & M)")
     axis.set(yscale="log", ylabel="per particle and step", ylim=(0.01, 1e8))
-    axis.legend(handles=shown, loc="upper right", fontsize=7)
+    axis.legend(handles=shown, loc="upper right")
 
 
 def _round_widths(axis: Axes, ds: xr.Dataset) -> None:
@@ -122,7 +121,7 @@ def _sectors(axis: Axes, ds: xr.Dataset) -> None:
 
 def ideal_boxes(ds: xr.Dataset) -> Figure:
     """The ideal number of boxes against N; and the time around its minimum."""
-    figure, (top, bottom) = style.new(rows=2, height=5.4, share_x=False)
+    figure, (top, bottom) = style.new((2.8,), (2.8,))
     count = ds["count"].values.astype(float)
     line = np.geomspace(0.7 * count.min(), 1.5 * count.max(), 50)
     top.fill_between(
@@ -136,7 +135,7 @@ def ideal_boxes(ds: xr.Dataset) -> Figure:
         top.annotate(
             f"boxes of a diameter, $r = {radius:g}$", (line[0 if kind else -1], limit),
             xytext=(0, 2 if kind else -9), textcoords="offset points", ha="left" if kind else "right",
-            fontsize=7, color=style.COLOURS[kind],
+            color=style.COLOURS[kind],
         )  # fmt: skip
     top.set(xscale="log", yscale="log", xlabel="number of particles $N$", ylabel="ideal number of boxes")
     top.set_ylim(2e3, 1e8)
@@ -154,6 +153,7 @@ def ideal_boxes(ds: xr.Dataset) -> Figure:
     bottom.axvspan(7.0, 10.0, color=_SOURCE, alpha=0.4, lw=0)
     bottom.set(xscale="log", xlabel="boxes per particle", ylabel="time over the least", ylim=(0.9, 4.5))
     bottom.legend(loc="upper center")
+    style.letters(top, bottom)
     return figure
 
 
@@ -180,7 +180,7 @@ def _ideal(axis: Axes, of: xr.Dataset, kind: int, label: str) -> None:
 
 def linear_scaling(ds: xr.Dataset) -> Figure:
     """Time of a step with one box, the cheapest partition and a neighbour list; time, work per particle."""
-    figure, (top, middle, bottom) = style.new(rows=3, height=6.4, height_ratios=(2, 1.2, 1))
+    figure, (top, middle, bottom) = style.new((3.0,), (1.9, 1.7))
     count = ds["count"].values.astype(float)
     far = float(ds.extrapolated_count)
     naive = ds.naive_count.values
@@ -221,15 +221,15 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
             xytext=(-4, offset),
             textcoords="offset points",
             ha="right",
-            fontsize=7,
             color=colour,
         )
-    top.set(xscale="log", yscale="log", ylabel="time per step (s)", ylim=(None, 3e10))
+    top.set(xscale="log", yscale="log", ylabel="time per step (s)", xlabel="number of particles $N$")
     top.legend(loc="upper left")
-    middle.set(yscale="log", ylabel="time per particle (ns)", ylim=(1.0, None))
+    middle.set(xscale="log", yscale="log", ylabel="time per particle (ns)", ylim=(1.0, None))
     bottom.set(yscale="log", ylabel="per particle", xlabel="number of particles $N$", ylim=(0.02, 100.0))
-    bottom.text(0.02, 0.85, "boxes searched", transform=bottom.transAxes, fontsize=7)
-    bottom.text(0.02, 0.06, "pair tests (hollow)", transform=bottom.transAxes, fontsize=7)
+    bottom.text(0.02, 0.85, "boxes searched", transform=bottom.transAxes)
+    bottom.text(0.02, 0.06, "pair tests (hollow)", transform=bottom.transAxes)
+    style.letters(top, middle, bottom)
     return figure
 
 
@@ -248,7 +248,7 @@ def _duration(seconds: float) -> str:
 
 def event_scaling(ds: xr.Dataset) -> Figure:
     """Pair tests and time of an event against N, by each search."""
-    figure, (top, bottom) = style.new(rows=2, height=4.8)
+    figure, (top, bottom) = style.new((2.6,), (2.6,))
     names = {"pairs": "all pairs", "direct": "queue, all particles", "boxes": "queue and sectors"}
     methods = zip(ds.method_search.values, ds.method_dimension.values, strict=True)
     for kind, (search, dimension) in enumerate(methods):
@@ -261,12 +261,10 @@ def event_scaling(ds: xr.Dataset) -> Figure:
         _guide(top, count, of.pair_tests.values, power, kind)
         if str(search) != "boxes":
             _guide(bottom, count, of.seconds.values * _US, power, kind)
-    top.set(xscale="log", yscale="log", ylabel="pair tests per event")
-    top.set_ylim(top=3e6)
-    top.legend(loc="upper right")
-    bottom.set(yscale="log", xlabel="number of particles $N$", ylabel="time per event (µs)")
-    style.letter(top, "a", y=0.12)
-    style.letter(bottom, "b", y=0.12)
+    for axis, label in ((top, "pair tests per event"), (bottom, "time per event (µs)")):
+        axis.set(xscale="log", yscale="log", xlabel="number of particles $N$", ylabel=label)
+    top.legend(loc="upper left")
+    style.letters(top, bottom)
     return figure
 
 

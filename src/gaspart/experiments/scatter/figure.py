@@ -18,12 +18,10 @@ def claims_scatter(ds: xr.Dataset) -> Figure:
     """Two panels: the distribution of the deviations, with the Gaussian; and those of each figure."""
     shown = ds.isel(name=np.unique(ds["figure"].values))
     rows = max(1, shown.sizes["name"])
-    figure, (upper, lower) = style.new(
-        rows=2, height=2.6 + 0.155 * rows, height_ratios=(2.0, 0.155 * rows + 0.2)
-    )
+    figure, (upper, lower) = style.new((2.2,), (0.5 + 0.155 * rows,))
     _distribution(upper, ds)
     _figures(lower, ds, shown)
-    style.letters(upper)
+    style.letters(upper, lower)
     return figure
 
 
@@ -44,6 +42,7 @@ def _distribution(axis: Axes, ds: xr.Dataset) -> None:
             label=f"{alone.size} claims, rms {rms:.2f}",
         )
     axis.set_ylabel("density")
+    axis.set_xlabel("deviation / standard deviations")
     axis.set_ylim(0.0, 0.6)
     axis.legend(loc="upper right")
 
@@ -64,10 +63,9 @@ def _figures(axis: Axes, ds: xr.Dataset, shown: xr.Dataset) -> None:
             chance = stats.chi2.cdf(float(at["chi_square"]), int(at["number"]))
             axis.annotate(
                 f"{chance:.3f}", (1.0, row), xycoords=("axes fraction", "data"), xytext=(3, 0),
-                textcoords="offset points", va="center", fontsize=6,
+                textcoords="offset points", va="center",
             )  # fmt: skip
-    axis.set_yticks(range(len(names)), names, fontsize=6)
+    axis.set_yticks(range(len(names)), names)
     axis.set_ylim(max(1, len(names)) - 0.5, -0.5)
     axis.set_xlim(-FURTHEST - 0.2, FURTHEST + 0.2)
     axis.set_xlabel("deviation / standard deviations")
-    style.letter(axis, "b", y=1.0)

@@ -14,11 +14,11 @@ from gaspart.theory.granular import DISCHARGE_EXPONENT
 def settling(ds: xr.Dataset) -> Figure:
     """Four panels: energy and contacts of piles against time, the discs left in the hopper, the rate of
     flow."""
-    figure, axes = style.new(rows=2, columns=2, height=5.2, share_x=False)
-    _piles(axes[0, 0], axes[0, 1], ds)
-    _discs_left(axes[1, 0], ds)
-    _rates(axes[1, 1], ds)
-    style.letters(*axes.flat)
+    figure, axes = style.new((2.4,), (2.4,), (2.4,), (2.4,))
+    _piles(axes[0], axes[1], ds)
+    _discs_left(axes[2], ds)
+    _rates(axes[3], ds)
+    style.letters(*axes)
     return figure
 
 
@@ -35,7 +35,6 @@ def _piles(energies: Axes, contacts: Axes, ds: xr.Dataset) -> None:
             energies.plot(time[moving][-1:], row["kinetic"][moving][-1:], color=colour, marker="x")
         contacts.plot(time, row["contacts"], color=colour)
     energies.set_yscale("log")
-    energies.set_ylim(top=20.0 * float(ds["kinetic"].max()))  # room for the letter of the panel
     energies.set_ylabel("kinetic energy of a disc")
     energies.legend(loc="upper right")
     contacts.set_ylabel("contacts per disc")
@@ -78,4 +77,4 @@ def _rates(axis: Axes, ds: xr.Dataset) -> None:
     axis.set_yscale("log")
     axis.set_xlabel(rf"$D/d-k$, $k={offset:.2f}$")
     axis.set_ylabel(r"rate of flow / $\sqrt{g/d}$")
-    axis.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0))
+    axis.legend(loc="upper left")

@@ -20,7 +20,7 @@ KOLMOGOROV_BAND = 1.36
 
 def speed_relaxation(ds: xr.Dataset) -> Figure:
     """Histograms at the source's three times; kurtosis and fraction never hit against collisions."""
-    figure, axes = style.new(rows=5, height=7.6, height_ratios=(3.2, 2.3, 1, 2.3, 1), share_x=False)
+    figure, axes = style.new((2.8,), (1.9, 1.0), (1.9, 1.0))
     _histograms(axes[0], ds)
     relaxation = theory.relaxation(ds.attrs["dimension"])
     longest = float(ds["collisions"].max())
@@ -42,16 +42,13 @@ def speed_relaxation(ds: xr.Dataset) -> Figure:
         _compare(top, bottom, ds, name, curve)
         for axis in (top, bottom):
             axis.set_xlim(0.0, 1.04 * longest)
-        top.tick_params(labelbottom=False)
         bottom.set_ylabel(r"residual ($\sigma$)")
         bottom.set_yticks([-3, 0, 3])
-    axes[4].set_xlabel(r"collisions per particle $s = 2N_\mathrm{coll}/N$")
+        bottom.set_xlabel(r"collisions per particle $s = 2N_\mathrm{coll}/N$")
     axes[1].set_ylim(0.97, 1.76)
     axes[1].legend(loc="lower right")
     axes[3].legend(loc="lower left")
-    style.letter(axes[0], "a")
-    style.letter(axes[1], "b")
-    style.letter(axes[3], "c", x=0.95)
+    style.letters(axes[0], axes[1], axes[3])
     return figure
 
 
@@ -78,9 +75,7 @@ def _histograms(axis: Axes, ds: xr.Dataset) -> None:
         u, theory.maxwell_pdf(u, dimension, 1.0 / dimension), color=style.DATA, label="Maxwell", zorder=4
     )
     peak = float(ds["density"].max())
-    axis.annotate(
-        "never hit", (0.97, 0.8 * peak), (0.5, 1.2 * peak), arrowprops={"arrowstyle": "-", "lw": 0.6}
-    )
+    axis.annotate("never hit", (0.97, 0.8 * peak), (0.05, 9.0), arrowprops={"arrowstyle": "-", "lw": 0.6})
     axis.set_yscale("log")
     axis.set_ylim(2e-3, 20.0)
     axis.set_xlim(0.0, edges[-1])
@@ -116,9 +111,7 @@ def speed_distribution_discs(ds: xr.Dataset) -> Figure:
 
 def _distribution(ds: xr.Dataset) -> Figure:
     dimension = ds.attrs["dimension"]
-    figure, (density, residual, tail, difference) = style.new(
-        rows=4, height=6.4, height_ratios=(3, 1.3, 2.2, 1.3)
-    )
+    figure, (density, residual, tail, difference) = style.new((2.3, 1.1), (2.3, 1.1))
     end = float(ds["upper"][-1])
     u = np.linspace(0.0, end, 401)[1:]
     for axis, label in ((density, "Maxwell"), (tail, None)):
@@ -146,14 +139,16 @@ def _distribution(ds: xr.Dataset) -> Figure:
     residual.set_ylabel(r"residual ($\sigma$)")
     tail.set_ylabel("probability density")
     difference.set_ylabel(r"$\sqrt{n}\times$ difference")
-    difference.set_xlabel(r"speed $v/\sqrt{\langle v^2\rangle}$")
+    for axis in (residual, difference):
+        axis.set_xlabel(r"speed $v/\sqrt{\langle v^2\rangle}$")
+        axis.set_xlim(0.0, end)
     residual.set_ylim(-4.5, 4.5)
     residual.set_yticks([-3, 0, 3])
     tail.set_yscale("log")
     smallest = float(ds["density"].where(ds["density"] > 0.0).min())
     tail.set_ylim(0.2 * smallest, 3.0 * float(ds["density"].max()))
     difference.set_ylim(-2.0, 2.0)
-    difference.set_xlim(0.0, end)
+    difference.set_yticks([-1, 0, 1])
     density.set_ylim(0.0, 1.5 * float(ds["density"].max()))
     density.legend(loc="upper right")
     style.letters(density, tail, difference)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -11,107 +9,75 @@ from matplotlib.figure import Figure
 
 from gaspart.rendering import style
 
-SETTINGS = ("4 passes", "4 passes, float32", "1 pass", "1 pass, no rewinding")
+SHOWN = {"4 passes": "-", "1 pass, no rewinding": "--"}
+"""Line of each setting that is drawn: the default one, and the source's. The claims have the others."""
 
 
 def speed_accuracy(ds: xr.Dataset) -> Figure:
-    """Errors of the collision rate and of Z against the time step, and time against the error of Z."""
-    fractions = sorted(set(ds.packing_fraction.values[ds.dimension.values == 3]))
-    figure, axes = style.new(rows=3, columns=len(fractions), height=7.2, share_x=False)
-    axes = np.reshape(axes, (3, len(fractions)))
-    for column, fraction in zip(axes.T, fractions, strict=True):
-        rows = [ds.isel(row=n) for n in np.flatnonzero(ds.packing_fraction.values == fraction)]
-        for axis, observable in zip(column, ("collision_rate", "Z"), strict=False):
-            _errors(axis, rows, observable)
-        _costs(column[2], rows)
-        column[0].set_title(rf"$\eta = {fraction:g}$")
-        column[1].set_xlabel(r"time step $\Delta t\,v_\mathrm{th}/\sigma$")
-        column[2].set_xlabel("error of $Z$ (%)")
-    axes[0, 0].set_ylabel("error of collision rate (%)")
-    axes[1, 0].set_ylabel("error of $Z$ (%)")
-    axes[2, 0].set_ylabel(r"time per collision ($\mu$s)")
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    handles += axes[2, 0].get_legend_handles_labels()[0][-1:]
-    figure.legend(handles, [*labels, "event-driven"], loc="outside upper center", ncols=3)
-    style.letters(*axes[:, 0])
+    """Errors of the collision rate, Z and D of spheres against the time step; time against the error of Z."""
+    figure, axes = style.new((2.3,), (2.3,), (2.3,), (2.3,))
+    spheres = ds.isel(row=(ds.dimension == 3).values)
+    fractions = sorted(set(spheres.packing_fraction.values))
+    titles = {"collision_rate": "collision rate", "Z": "$Z$", "D": "$D$"}
+    for kind, fraction in enumerate(fractions):
+        rows = spheres.isel(row=(spheres.packing_fraction == fraction).values)
+        for setting, line in SHOWN.items():
+            chosen = rows.isel(row=(rows.setting == setting).values)
+            if not chosen.sizes["row"]:
+                continue
+            row = chosen.isel(row=0)
+            for axis, observable in zip(axes, titles, strict=False):
+                _errors(axis, row.sel(observable=observable), kind, line)
+            if setting == "4 passes":
+                _costs(axes[3], row, kind, rf"$\eta={fraction:g}$")
+    for axis, (observable, title) in zip(axes, titles.items(), strict=False):
+        axis.set(xscale="log", yscale="log", xlabel=r"time step $\Delta t\,v_\mathrm{th}/\sigma$")
+        axis.set(ylabel=f"error of {title} (%)", ylim=(1e-4 if observable != "D" else 1e-2, 100.0))
+    axes[3].set(xscale="log", yscale="log", xlabel="error of $Z$ (%)", ylabel=r"time per collision (µs)")
+    for name, line in SHOWN.items():
+        axes[0].plot([], [], color=style.GREY, ls=line, label=name)
+    axes[3].plot([], [], color=style.GREY, ls=":", label="event-driven")
+    axes[0].legend(loc="lower right")
+    axes[3].legend(loc="upper right")
+    style.letters(*axes)
     return figure
 
 
-def _errors(axis: Axes, rows: list[xr.Dataset], observable: str) -> None:
-    """Sizes of errors: filled if more than two standard errors, else hollow at that bound."""
-    axis.set(xscale="log", yscale="log")
-    for row in sorted(rows, key=lambda row: (-int(row.dimension), _kind(row))):
-        flat = int(row.dimension) == 2
-        at = row.sel(observable=observable)
-        size, error = 100.0 * np.abs(at.bias.values), 100.0 * at.bias_error.values
-        seen = size > 2.0 * error
-        options = {"color": style.GREY, "marker": "P"} if flat else {"kind": _kind(row)}
-        label = "discs, 4 passes" if flat else str(row.setting.values)
-        style.points(axis, row.time_step.values[seen], size[seen], error[seen], label=label, **options)
-        unseen = ~seen & np.isfinite(size)
-        style.points(
-            axis, row.time_step.values[unseen], 2.0 * error[unseen], hollow=True, alpha=0.5, **options
-        )
-        if not flat and str(row.setting.values) == "4 passes":
-            axis.fill_between(
-                row.time_step.values, 1e-4, np.maximum(error, 1e-4), color=style.GREY, alpha=0.18, lw=0
-            )
-        if np.isfinite(at.order) and seen.any():
-            x = row.time_step.values[seen]
-            y = np.exp(np.log(size[seen]).mean() + float(at.order) * (np.log(x) - np.log(x).mean()))
-            axis.plot(x, y, color=options.get("color", style.COLOURS[_kind(row)]), lw=0.7)
-    axis.set_ylim(1e-4, 100.0)
+def _errors(axis: Axes, at: xr.Dataset, kind: int, line: str) -> None:
+    """Sizes of errors of one observable, filled if more than two standard errors, else hollow at that bound;
+    and the fitted order."""
+    size, error = 100.0 * np.abs(at.bias.values), 100.0 * at.bias_error.values
+    step, seen = at.time_step.values, size > 2.0 * error
+    style.points(axis, step[seen], size[seen], error[seen], kind=kind)
+    unseen = ~seen & np.isfinite(size)
+    style.points(axis, step[unseen], 2.0 * error[unseen], kind=kind, hollow=True, alpha=0.5)
+    if np.isfinite(at.order) and seen.any():
+        x = step[seen]
+        y = np.exp(np.log(size[seen]).mean() + float(at.order) * (np.log(x) - np.log(x).mean()))
+        axis.plot(x, y, color=style.COLOURS[kind], ls=line, lw=0.7)
 
 
-def _costs(axis: Axes, rows: list[xr.Dataset]) -> None:
+def _costs(axis: Axes, row: xr.Dataset, kind: int, label: str) -> None:
     """Time per collision against the size of the error, or its bound; the event-driven engine as a line."""
-    axis.set(xscale="log", yscale="log")
-    for row in rows:
-        if int(row.dimension) == 2:
-            continue
-        z = row.sel(observable="Z")
-        error = 100.0 * np.maximum(np.abs(z.bias), 2.0 * z.bias_error).values
-        timed = np.isfinite(row.seconds.values) & np.isfinite(error)
-        options: dict[str, Any] = {"kind": _kind(row), "linestyle": "-", "linewidth": 0.5}
-        style.points(
-            axis,
-            error[timed],
-            1e6 * row.seconds.values[timed],
-            1e6 * row.seconds_error.values[timed],
-            **options,
-        )
-        event = 1e6 * float(row.event_seconds)
-    axis.axhline(event, color=style.DATA, ls="--", label="event-driven")
-    axis.set_xlim(1e-4, 100.0)
-
-
-def _kind(row: xr.Dataset) -> int:
-    return SETTINGS.index(str(row.setting.values))
+    z = row.sel(observable="Z")
+    error = 100.0 * np.maximum(np.abs(z.bias), 2.0 * z.bias_error).values
+    timed = np.isfinite(row.seconds.values) & np.isfinite(error)
+    seconds, bars = 1e6 * row.seconds.values[timed], 1e6 * row.seconds_error.values[timed]
+    style.points(axis, error[timed], seconds, bars, kind=kind, linestyle="-", linewidth=0.5, label=label)
+    axis.axhline(1e6 * float(row.event_seconds), color=style.COLOURS[kind], ls=":")
 
 
 def time_to_accuracy(ds: xr.Dataset) -> Figure:
-    """Cost against accuracy by engine, measured and predicted; and the excess cost of the model's choice."""
-    figure, axes = style.new(rows=3, columns=max(2, ds.sizes["gas"]), height=6.6, height_ratios=(2, 2, 1))
-    for column, g in zip(axes.T, range(ds.sizes["gas"]), strict=False):
-        gas = ds.isel(gas=g)
-        for axis, observable in zip(column, ("Z", "D"), strict=False):
+    """Cost against accuracy of Z and of D by engine, measured and by the model, for each gas."""
+    figure, axes = style.new(*((2.3, 2.3),) * ds.sizes["gas"])
+    for g in range(ds.sizes["gas"]):
+        gas, panels = ds.isel(gas=g), axes[2 * g : 2 * g + 2]
+        for axis, observable in zip(panels, ("Z", "D"), strict=True):
             _times(axis, gas.sel(observable=observable))
-        for kind, observable in enumerate(("Z", "D")):
-            for count, hollow in zip(ds["count"].values, (False, True), strict=False):
-                at = gas.sel(observable=observable, count=count)
-                style.points(
-                    column[2], 100 * ds.accuracy, at.regret, at.regret_error, kind=2 + kind, hollow=hollow
-                )
-        column[2].axhline(1.5, color=style.GREY, ls=":")
-        column[2].set(ylim=(0.8, 2.0), xlabel="accuracy (%)")
-        column[0].set_title(rf"spheres, $\eta = {float(gas.gas_packing_fraction):g}$")
-    for axis in axes.T[ds.sizes["gas"] :].flat:
-        axis.set_visible(False)
-    for axis, label in zip(
-        axes[:, 0], ("time for $Z$ (s)", "time for $D$ (s)", "choice / best"), strict=True
-    ):
-        axis.set_ylabel(label)
-    axes[0, 0].legend(fontsize=6.5)
+            axis.set_ylabel(f"time for ${observable}$ (s)")
+        panels[1].set_xlabel("required accuracy (%)")
+        style.letter(panels[0], rf"({'abcd'[g]}) spheres, $\eta = {float(gas.gas_packing_fraction):g}$")
+    axes[0].legend(loc="upper right")
     return figure
 
 

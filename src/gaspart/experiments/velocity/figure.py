@@ -14,16 +14,12 @@ from gaspart.rendering import style
 
 def velocity_autocorrelation(ds: xr.Dataset) -> Figure:
     """Three panels: C against collisions per particle, log-log; its start; C - 1/N over the modes."""
-    figure, (upper, middle, lower) = style.new(
-        rows=3, height=6.8, height_ratios=(2.2, 1.5, 1.5), share_x=False
-    )
+    figure, (upper, middle, lower) = style.new((2.6,), (2.0,), (2.2,))
     long = ds.isel(point=np.isfinite(ds["tail_ratio"].values)).sortby(["dimension", "packing_fraction"])
     _tails(upper, long)
     _starts(middle, ds.isel(point=np.isfinite(ds["start_rate"].values)))
     _ratios(lower, long)
-    for axis, text, y in ((upper, "a", 0.97), (middle, "b", 0.15), (lower, "c", 0.97)):
-        style.letter(axis, text, y=y)
-    figure.align_ylabels()
+    style.letters(upper, middle, lower)
     return figure
 
 
@@ -56,11 +52,13 @@ def _tails(axis: Axes, ds: xr.Dataset) -> None:
             markersize=2.5,
             label=rf"{PARTICLES[dimension]}, $\eta={eta:.2g}$",
         )
+    axis.plot([], [], color=style.DATA, label="mode coupling")
     axis.set_xscale("log")
     axis.set_yscale("log")
     axis.set_xlim(0.8, 65.0)
     axis.set_ylim(1e-3, 1.0)
     _integer_ticks(axis)
+    axis.set_xlabel(r"collisions per particle $s=\nu t$")
     axis.set_ylabel(r"$C=\langle v(0)v(t)\rangle/\langle v^2\rangle$")
     axis.legend(loc="lower left")
 

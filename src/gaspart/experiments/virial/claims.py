@@ -19,7 +19,7 @@ REFERENCE = {
     3: "Kolafa, Labík and Malijevský 2004",
 }
 REFERENCE_ERROR = {
-    2: "of the virial coefficients (Clisby and McCoy), and the tail's distance from Liu's equation",
+    2: "of the virial coefficients (Clisby and McCoy 2006), and the tail's distance from Liu's equation",
     3: "stated by Kolafa, Labík and Malijevský, or the distance from the virial series, if less",
 }
 EXACT = {

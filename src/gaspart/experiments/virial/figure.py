@@ -32,20 +32,16 @@ def _draw(dataset: xr.Dataset, name: str, curves: dict, ceiling: float, percent:
     dimension = int(dataset.attrs["dimension"])
     eta = dataset["packing_fraction"].values
     grid = np.linspace(1e-3, 1.04 * eta.max(), 300)
-    figure, (upper, middle, lower) = style.new(
-        rows=3, height=6.6, height_ratios=(2.6, 1.7, 1.4), share_x=False
-    )
+    figure, (upper, middle, lower) = style.new((2.6, 1.7), (2.2,))
     lines = _equations(grid, dimension, curves)
     reference = theory.compressibility_factor(grid, dimension)
 
     upper.plot(grid, reference, color=style.REFERENCE, label=name, zorder=2)
     _state(upper, dataset, grid, lines, dimension, ceiling)
     _residuals(middle, dataset, grid, reference, lines, dimension, percent)
-    style.share_x(upper, middle)
     upper.set_xlim(0.0, grid[-1])
     _coefficients(lower, dataset)
     style.letters(upper, middle, lower)
-    figure.align_ylabels()
     return figure
 
 
@@ -74,9 +70,13 @@ def _state(
 ) -> None:
     for name, (curve, look) in lines.items():
         axis.plot(grid, curve, label=name, **look)
+    labelled = 0.0
     for order in SERIES:
         curve = theory.partial_sum(grid, order, dimension)
         axis.plot(grid, curve, color=_shade(order), linewidth=0.8, zorder=1)
+        if curve[-1] - labelled < 0.06 * ceiling:
+            continue  # the labels of neighbours would overlap
+        labelled = curve[-1]
         axis.annotate(
             f"$B_{{{order}}}$", (grid[-1], curve[-1]), xytext=(2, 0), textcoords="offset points",
             va="center", color=_shade(order), annotation_clip=True,
@@ -84,7 +84,7 @@ def _state(
     style.points(axis, dataset["packing_fraction"], dataset["Z"], color=style.DATA, label="measured")
     axis.set_ylim(0.8, ceiling)
     axis.set_ylabel("compressibility factor $Z$")
-    axis.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0), frameon=True, framealpha=0.9, edgecolor="none")
+    axis.legend(loc="upper left")
 
 
 def _residuals(
@@ -139,7 +139,7 @@ def _coefficients(axis: Axes, dataset: xr.Dataset) -> None:
     axis.tick_params(axis="x", length=0)
     axis.set_ylabel("deviation / required")
     axis.set_xlabel("free coefficients, largest $\\eta$, higher coefficients")
-    axis.legend(ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.0), columnspacing=1.0, handletextpad=0.1)
+    axis.legend(ncols=3, loc="upper center", columnspacing=1.0, handletextpad=0.1)
 
 
 def _name(fit: xr.Dataset) -> str:

@@ -14,14 +14,11 @@ from gaspart.rendering import style
 
 def wall_pressure(ds: xr.Dataset) -> Figure:
     """Three panels: P/(n k T) against T; the same against packing fraction, raw and corrected; residuals."""
-    figure, (upper, middle, lower) = style.new(
-        rows=3, height=6.6, height_ratios=(1.6, 2.2, 1.5), share_x=False
-    )
+    figure, (upper, middle, lower) = style.new((2.0,), (2.4, 1.7))
     _temperatures(upper, ds)
     _densities(middle, ds)
     _residuals(lower, ds)
     style.letters(upper, middle, lower)
-    figure.align_ylabels()
     return figure
 
 
@@ -46,7 +43,7 @@ def _temperatures(axis: Axes, ds: xr.Dataset) -> None:
         axis.plot(line, np.ones(2), color=style.GREY, linestyle=":", label="ideal gas")
         axis.set_xlim(0.0, float(line[1]))
         axis.legend(loc="lower right")
-    axis.set_ylim(0.0, 1.2 * axis.get_ylim()[1])
+    axis.set_ylim(bottom=0.8)
     axis.set_xlabel(r"temperature $T$")
     axis.set_ylabel(r"$P/(n k_\mathrm{B}T)$")
 
@@ -66,8 +63,6 @@ def _densities(axis: Axes, ds: xr.Dataset) -> None:
         error = part["pressure_error"] / part["expected"] * part["bulk_pressure"] / part["density"]
         style.points(axis, eta, corrected, error, kind=kind, label=f"{name}, corrected")
     style.level(axis, 1.0)
-    axis.set_xlim(0.0, 0.43)
-    axis.set_xlabel(r"packing fraction $\eta$ of the container")
     axis.set_ylabel(r"$P/(n k_\mathrm{B}T)$")
     axis.legend(loc="lower right")
 
@@ -92,4 +87,4 @@ def _residuals(axis: Axes, ds: xr.Dataset) -> None:
     axis.set_xlim(0.0, 0.43)
     axis.set_xlabel(r"packing fraction $\eta$ of the container")
     axis.set_ylabel(r"$P/P_\mathrm{theory}-1$  (%)")
-    axis.legend(loc="upper left", bbox_to_anchor=(0.06, 1.0), ncols=2)
+    axis.legend(loc="upper left", ncols=2)

@@ -1,0 +1,225 @@
+"""Whether a figure can be read: legends that cover no data, and what overlaps or leaves the canvas."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
+    from matplotlib.figure import Figure
+    from matplotlib.text import Text
+    from matplotlib.transforms import Bbox
+
+_STEP = 3.0
+"""Pixels between the places of a line that are looked at."""
+_GAP = 5.5
+"""Pixels between a legend and the frame of its panel: matplotlib's, half of the letters' size."""
+_CLEAR = 2.0
+"""Pixels between a legend and data, at least, where a legend is moved to."""
+_PLACES = {
+    "upper right": (1.0, 1.0),
+    "upper left": (0.0, 1.0),
+    "lower right": (1.0, 0.0),
+    "lower left": (0.0, 0.0),
+    "center right": (1.0, 0.5),
+    "center left": (0.0, 0.5),
+    "upper center": (0.5, 1.0),
+    "lower center": (0.5, 0.0),
+}
+"""Of a legend in its panel: parts of the free width and height at its left and below."""
+_NARROW, _LETTER = 0.8, 16.0
+"""Part of a panel's width up to which a legend above it has room beside the letter; else it is so many pixels
+higher."""
+_MOST_ROOM = 1.6
+"""A vertical axis is extended by this factor at most to make room for a legend."""
+_PASSES = 5
+
+
+def place_legends(figure: Figure) -> None:
+    """Move each legend that covers data: to a free place of its panel, or to room made by extending the
+    vertical axis, or else above the panel. The figure then keeps its layout."""
+    for _ in range(_PASSES):
+        figure.draw_without_rendering()
+        moved = [_moved(axis) for axis in figure.axes if axis.get_legend()]
+        if not any(moved):
+            break
+    figure.draw_without_rendering()  # ticks follow the size of a panel, and the layout follows them
+    figure.set_layout_engine("none")
+
+
+def _moved(axis: Axes) -> bool:
+    """Whether the legend of this panel covered data, and so was moved."""
+    legend, frame = axis.get_legend(), axis.bbox
+    assert legend
+    box, everything = legend.get_window_extent(), _marks(axis, lines=True)
+    data = np.concatenate([_seen(axis, everything), *map(_filled, axis.texts)])
+    if not _inside(data, box.x0, box.y0, box.x1, box.y1).any():
+        return False
+    room = np.array([frame.width - box.width, frame.height - box.height]) - 2.0 * _GAP
+    if (room > 0.0).all():
+        for place, part in _PLACES.items():
+            x, y = np.array(part) * room + (frame.x0 + _GAP, frame.y0 + _GAP)
+            far = x + box.width + _CLEAR, y + box.height + _CLEAR
+            if not _inside(data, x - _CLEAR, y - _CLEAR, *far).any():
+                legend.set_bbox_to_anchor(None)
+                legend.set_loc(place)
+                return True
+        if _extended(axis, everything, box, room[0]):
+            return True
+    above = 1.0 if box.width < _NARROW * frame.width else 1.0 + _LETTER / frame.height
+    legend.set_bbox_to_anchor((1.0, above), transform=axis.transAxes)
+    legend.set_loc("lower right")
+    return True
+
+
+def _filled(text: Text) -> np.ndarray:
+    """Places (n, 2) in pixels all over a text."""
+    box = text.get_window_extent()
+    x, y = (np.linspace(*ends, 9) for ends in (box.intervalx, box.intervaly))
+    return np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+
+
+def _extended(axis: Axes, data: np.ndarray, box: Bbox, free: float) -> bool:
+    """Whether the vertical axis was extended so that the legend has room at the top.
+
+    free: width of the panel, in pixels, beside the legend.
+    """
+    legend, frame = axis.get_legend(), axis.bbox
+    assert legend
+    left = {place: frame.x0 + _GAP + _PLACES[place][0] * free for place in _PLACES if place[0] == "u"}
+    tops = {
+        place: data[_inside(data, x - _CLEAR, -np.inf, x + box.width + _CLEAR, np.inf), 1].max(
+            initial=frame.y0
+        )
+        for place, x in left.items()
+    }
+    place = min(tops, key=tops.__getitem__)
+    factor = (tops[place] - frame.y0) / (frame.height - box.height - 3.0 * _GAP)
+    if not 1.0 < factor <= _MOST_ROOM:
+        return False
+    top = axis.transData.inverted().transform((frame.x0, frame.y0 + factor * frame.height))[1]
+    axis.set_ylim(top=top)
+    legend.set_bbox_to_anchor(None)
+    legend.set_loc(place)
+    return True
+
+
+def _inside(places: np.ndarray, left: float, below: float, right: float, above: float) -> np.ndarray:
+    """Which of the places (n, 2) are in a rectangle."""
+    x, y = places.T
+    return (x > left) & (x < right) & (y > below) & (y < above)
+
+
+def _seen(axis: Axes, places: np.ndarray) -> np.ndarray:
+    """The places (n, 2) that are inside a panel."""
+    frame = axis.bbox
+    return places[_inside(places, frame.x0 - 1.0, frame.y0 - 1.0, frame.x1 + 1.0, frame.y1 + 1.0)]
+
+
+def _marks(axis: Axes, lines: bool) -> np.ndarray:
+    """Places (n, 2) in pixels of a panel's points and error bars, and of its curves if `lines`.
+
+    Guides across the whole panel are no data.
+    """
+    from matplotlib.collections import LineCollection
+
+    found = [np.zeros((0, 2))]
+    for line in axis.lines:
+        if line.get_transform() is not axis.transData or not line.get_visible():
+            continue
+        places = axis.transData.transform(np.asarray(line.get_xydata(), dtype=float))
+        if line.get_marker() not in ("None", None, "", " "):
+            found.append(places)
+        if lines and line.get_linestyle() != "None":
+            found.append(_along(places))
+    for collection in axis.collections:
+        if isinstance(collection, LineCollection) and collection.get_transform() is axis.transData:
+            found += [_along(axis.transData.transform(part)) for part in collection.get_segments()]
+    for patch in axis.patches:
+        if patch.get_data_transform() is axis.transData:
+            outline = patch.get_transform().transform_path(patch.get_path()).vertices
+            found.append(_along(np.asarray(outline, dtype=float)))
+    places = np.concatenate(found)
+    return places[np.isfinite(places).all(axis=1)]
+
+
+def _along(places: np.ndarray) -> np.ndarray:
+    """Places (m, 2) along the line through places (n, 2), a few pixels from each other."""
+    places = np.reshape(places, (-1, 2))  # an error bar without a value has none
+    begin, way = places[:-1], np.diff(places, axis=0)
+    known = np.isfinite(way).all(axis=1)
+    begin, way = begin[known], way[known]
+    steps = 1 + np.minimum(np.hypot(*way.T) / _STEP, 1000.0).astype(int)
+    part = (np.arange(steps.sum()) - np.repeat(np.cumsum(steps) - steps, steps)) / np.repeat(steps, steps)
+    return np.repeat(begin, steps, axis=0) + part[:, None] * np.repeat(way, steps, axis=0)
+
+
+def flaws(figure: Figure) -> list[str]:
+    """What is wrong with a figure that has been saved, a sentence each: text that overlaps other text or
+    leaves the canvas; a legend on data; a text in a panel on a point."""
+    from matplotlib.text import Text
+
+    figure.draw_without_rendering()  # labels have the places of the last drawing, of another resolution
+    texts = list(_texts(figure))
+    found = [
+        f"{first!r} overlaps {second!r}"
+        for (first, box), (second, other) in combinations(texts, 2)
+        if box.overlaps(other)
+    ]
+    width, height = figure.bbox.max
+    found += [
+        f"{text!r} leaves the canvas"
+        for text, box in texts
+        if box.x0 < -1.0 or box.y0 < -1.0 or box.x1 > width + 1.0 or box.y1 > height + 1.0
+    ]
+    for axis in figure.axes:
+        legend, points = axis.get_legend(), _seen(axis, _marks(axis, lines=False))
+        # Without the arrow of an annotation, which points at data.
+        covers = [(repr(text.get_text()), Text.get_window_extent(text), points) for text in axis.texts]
+        if legend:
+            covers.append(("a legend", legend.get_window_extent(), _seen(axis, _marks(axis, lines=True))))
+        found += [
+            f"{text} lies on data"
+            for text, box, data in covers
+            if _inside(data, box.x0, box.y0, box.x1, box.y1).any()
+        ]
+    return found
+
+
+def _texts(figure: Figure) -> Iterator[tuple[str, Bbox]]:
+    """Every text that is drawn, and its rectangle in pixels; a legend as one."""
+    from matplotlib.legend import Legend
+    from matplotlib.text import Text
+
+    drawn = [one for one in figure.findobj(Text) if one.get_visible() and one.get_text().strip()]
+    ticks = {text for panel in figure.axes for axis in (panel.xaxis, panel.yaxis) for text in _ticks(axis)}
+    shown = {text for text, seen in ticks if seen}
+    others = {text for text, _ in ticks}
+    for legend in figure.findobj(Legend):
+        yield "legend", _smaller(legend.get_window_extent())
+        others |= set(legend.get_texts()) | {legend.get_title()}
+    for text in drawn:
+        if text in shown or text not in others:
+            yield text.get_text(), _smaller(text.get_window_extent())
+
+
+def _ticks(axis: Axis) -> Iterator[tuple[object, bool]]:
+    """The labels of an axis' ticks, and whether each is drawn."""
+    low, high = sorted(map(float, axis.get_view_interval()))
+    panel = axis.axes.axison and axis.axes.get_visible()
+    for minor in (False, True):
+        places = axis.get_ticklocs(minor=minor)
+        ticks = axis.get_minor_ticks() if minor else axis.get_major_ticks()
+        for tick, place in zip(ticks, places, strict=False):
+            for label in (tick.label1, tick.label2):
+                yield label, bool(panel and label.get_visible() and low <= place <= high)
+
+
+def _smaller(box: Bbox) -> Bbox:
+    """A rectangle without its outermost pixels: letters do not fill theirs."""
+    return box.padded(-2.0)
