@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,7 +21,7 @@ _GAP = 5.5
 """Pixels between a legend and the frame of its panel: matplotlib's, half of the letters' size."""
 _CLEAR = 2.0
 """Pixels between a legend and data, at least, where a legend is moved to."""
-_PLACES = {
+_PLACES: dict[Any, tuple[float, float]] = {
     "upper right": (1.0, 1.0),
     "upper left": (0.0, 1.0),
     "lower right": (1.0, 0.0),
@@ -80,7 +80,7 @@ def _moved(axis: Axes) -> bool:
 def _filled(text: Text) -> np.ndarray:
     """Places (n, 2) in pixels all over a text."""
     box = text.get_window_extent()
-    x, y = (np.linspace(*ends, 9) for ends in (box.intervalx, box.intervaly))
+    x, y = np.linspace(box.x0, box.x1, 9), np.linspace(box.y0, box.y1, 9)
     return np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
 
 

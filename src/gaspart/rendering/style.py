@@ -80,7 +80,7 @@ def applied(layout: str = "page") -> Iterator[None]:
     from cycler import cycler
 
     matplotlib.use("Agg")
-    size = {"figure.figsize": (LAYOUTS[layout], COLUMN)}
+    size: dict[Any, Any] = {"figure.figsize": (LAYOUTS[layout], COLUMN)}
     with matplotlib.rc_context({**RULES, **size, "axes.prop_cycle": cycler(color=COLOURS)}):
         yield
 

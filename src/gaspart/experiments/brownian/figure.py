@@ -67,10 +67,11 @@ def brownian_msd(ds: xr.Dataset) -> Figure:
     axes[2].set_ylabel(r"$\langle V(0)\!\cdot\!V(t)\rangle\,M/3k_\mathrm{B}T$")
     axes[1].set_ylabel("ratio $-$ 1")
     axes[3].set_ylabel("difference")
-    for top, bottom, place in ((axes[0], axes[1], "lower right"), (axes[2], axes[3], "lower left")):
+    for bottom in (axes[1], axes[3]):
         bottom.set_ylim(-0.25, 0.25)
         bottom.set_xlabel(r"time $\gamma t$")
-        top.legend(loc=place)
+    axes[0].legend(loc="lower right")
+    axes[2].legend(loc="lower left")
     for axis in axes[:2]:
         axis.set_xscale("log")
         axis.set_xlim(0.07, t[-1])

@@ -36,7 +36,7 @@ def stability_extremes(dataset: xr.Dataset) -> Figure:
             axis.text(k + 0.5, n + 0.53, text, ha="center", va="center", color=ink)
     groups = dataset["group"].values
     for n in np.flatnonzero(groups[1:] != groups[:-1]) + 1:
-        axis.axhline(n, color="black", linewidth=0.6)
+        axis.axhline(float(n), color="black", linewidth=0.6)
     axis.set_xlim(0, engines)
     axis.set_ylim(rows, 0)
     axis.set_xticks(np.arange(engines) + 0.5, [HEADS[name] for name in dataset["engine"].values])

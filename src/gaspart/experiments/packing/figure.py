@@ -25,7 +25,7 @@ def densest_fill(ds: xr.Dataset) -> Figure:
     """The source's fill (first packing) and the compressed one (last), with their packing fractions."""
     figure, axes = style.new((3.4,), (3.4,))
     shown = [0, ds.sizes["packing"] - 1]
-    for axis, k in zip(np.ravel(axes), shown, strict=True):
+    for axis, k in zip(axes, shown, strict=True):
         one = ds.isel(packing=k)
         places = one["position"].values
         places = places[np.isfinite(places).all(axis=1)]
