@@ -198,11 +198,21 @@ def _size(axis: Axes, ds: xr.Dataset) -> None:
 
 
 def _slopes(axis: Axes, ds: xr.Dataset) -> None:
-    """Slope of D(t) against ln t over packing fraction, with mode coupling's."""
+    """Slope of D(t) against ln t over packing fraction, with mode coupling's: of an infinite system, and of
+    the modes that fit into the container."""
     row = ds.sortby("packing_fraction")
     eta = row["packing_fraction"].values
     curve = np.linspace(0.5 * eta.min(), 1.1 * eta.max(), 100)
-    axis.plot(curve, theory.logarithmic_slope(curve), color=style.REFERENCE, label="mode coupling, Enskog")
+    axis.plot(curve, theory.logarithmic_slope(curve), color=style.REFERENCE, label="infinite system")
+    known = row.isel(point=np.isfinite(row["slope_expected"].values))
+    axis.plot(
+        known["packing_fraction"],
+        known["slope_expected"],
+        "x",
+        color=style.REFERENCE,
+        label="this container",
+        zorder=4,
+    )
     style.points(
         axis,
         eta,
