@@ -29,11 +29,12 @@ def stability_extremes(dataset: xr.Dataset) -> Figure:
     figure, (axis,) = style.new((0.8 + 0.165 * rows,))
     colours, norm = colormaps["YlGnBu"], Normalize(-18.0, 2.0)
     verdicts, energies = dataset["verdict"].values, dataset["energy"].values
+    size = 6 if style.width() <= style.COLUMN else 8  # a power of ten must fit into a cell
     for n in range(rows):
         for k in range(engines):
             text, colour, ink = _cell(verdicts[n, k], energies[n, k], colours, norm)
             axis.add_patch(_box(k, n, colour))
-            axis.text(k + 0.5, n + 0.53, text, ha="center", va="center", color=ink)
+            axis.text(k + 0.5, n + 0.53, text, ha="center", va="center", color=ink, size=size)
     groups = dataset["group"].values
     for n in np.flatnonzero(groups[1:] != groups[:-1]) + 1:
         axis.axhline(float(n), color="black", linewidth=0.6)
@@ -42,6 +43,7 @@ def stability_extremes(dataset: xr.Dataset) -> Figure:
     axis.set_xticks(np.arange(engines) + 0.5, [HEADS[name] for name in dataset["engine"].values])
     axis.set_yticks(np.arange(rows) + 0.5, [str(name) for name in dataset["row"].values])
     axis.tick_params(length=0, labeltop=True, labelbottom=False)
+    axis.tick_params("x", labelsize=size)
     axis.set_xlabel("drift of the energy\n(– is refused)")
     return figure
 
