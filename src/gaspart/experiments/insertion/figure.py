@@ -36,7 +36,10 @@ def fill_failures(dataset: xr.Dataset) -> Figure:
                 _failures(middle, one, kind, label)
     _limits(upper)
     _low_density(middle)
-    figure.legend(*upper.get_legend_handles_labels(), loc="outside upper center", ncols=2, columnspacing=1.0)
+    columns = 2 if style.width() > style.COLUMN else 1
+    figure.legend(
+        *upper.get_legend_handles_labels(), loc="outside upper center", ncols=columns, columnspacing=1.0
+    )
     lower.set_xlim(-0.008, 0.47)
     lower.set_ylim(0.2, 0.58)
     lower.set_xlabel("(attempts $\\times\\ v/V)^{-1/d}$")
@@ -76,7 +79,7 @@ def _low_density(axis: Axes) -> None:
     for dimension in (2, 3):
         axis.plot(eta, theory.failures_per_body(eta, dimension), color="black", linewidth=0.8, zorder=4)
     axis.text(0.036, 0.48, "$2^3\\eta+\\ldots$", ha="right")
-    axis.text(0.047, 0.10, "$2^2\\eta+\\ldots$", ha="left")
+    axis.text(0.058, 0.03, "$2^2\\eta+\\ldots$", ha="right")
     axis.set_xlim(0.0, 0.06)
     axis.set_ylim(0.0, 0.85)
     axis.set_xlabel("packing fraction $\\eta$")
