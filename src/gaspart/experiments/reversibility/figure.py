@@ -38,7 +38,7 @@ def reversibility(ds: xr.Dataset) -> Figure:
         ylabel=r"echo: distance / $\sigma$",
     )
     axes[0].set_ylim(1e-20, 1e3)
-    axes[0].legend(title=r"$\eta$", ncols=2, loc="lower right")
+    axes[0].legend(title=r"$\eta$", ncols=2, loc="lower right", columnspacing=0.6, handletextpad=0.4)
     _growth(axes[1], ds)
     _memory(axes[2], ds)
     style.letters(*axes)
