@@ -131,12 +131,8 @@ def ideal_boxes(ds: xr.Dataset) -> Figure:
         of = ds.isel(gas=np.flatnonzero(ds.radius.values == radius))
         _ideal(top, of, kind, f"ideal, $r = {radius:g}$")
         limit = float((of.most * of["count"])[0])
-        top.axhline(limit, color=style.COLOURS[kind], linestyle=":", lw=0.8)
-        top.annotate(
-            f"boxes of a diameter, $r = {radius:g}$", (line[0 if kind else -1], limit),
-            xytext=(0, 2 if kind else -9), textcoords="offset points", ha="left" if kind else "right",
-            color=style.COLOURS[kind],
-        )  # fmt: skip
+        label = f"boxes of a diameter, $r = {radius:g}$"
+        top.axhline(limit, color=style.COLOURS[kind], linestyle=":", lw=0.8, label=label)
     top.set(xscale="log", yscale="log", xlabel="number of particles $N$", ylabel="ideal number of boxes")
     top.set_ylim(2e3, 1e8)
     top.legend(loc="lower right")

@@ -28,7 +28,7 @@ def claims_scatter(ds: xr.Dataset) -> Figure:
 def _distribution(axis: Axes, ds: xr.Dataset) -> None:
     """Density of the deviations without an allowance, and the standard Gaussian."""
     z = np.linspace(-FURTHEST, FURTHEST, 400)
-    axis.plot(z, stats.norm.pdf(z), color=style.REFERENCE, label="standard Gaussian")
+    axis.plot(z, stats.norm.pdf(z), color=style.REFERENCE, label="Gaussian")
     alone = ds["deviation"].values[ds["scattered"].values]
     if alone.size:
         inside = np.clip(alone, -FURTHEST, FURTHEST)
@@ -39,7 +39,7 @@ def _distribution(axis: Axes, ds: xr.Dataset) -> None:
             density=True,
             color=style.GREY,
             alpha=0.5,
-            label=f"{alone.size} claims, rms {rms:.2f}",
+            label=f"{alone.size}, rms {rms:.2f}",
         )
     axis.set_ylabel("density")
     axis.set_xlabel("deviation / standard deviations")
