@@ -71,10 +71,6 @@ def _ratios(axis: Axes, ds: xr.Dataset) -> None:
     for kind, q in enumerate(sorted(set(ds["equilibrium_inertia"].values))):
         theoretical = [theory.rough_ratio(q, tangential) for tangential in curve]
         axis.plot(curve, theoretical, color=style.COLOURS[kind], label=f"$q={q:g}$", zorder=1)
-        known = theory.rough_cooling()
-        known = known[np.isclose(known[:, 0], q) & (known[:, 2] == 1.0)]
-        label = "Boltzmann equation" if len(known) else None
-        axis.plot(known[:, 1], known[:, 3], "x", color=style.DATA, zorder=5, label=label)
         cooled = ds.isel(cooling=np.isclose(ds["cooling_inertia"].values, q))
         style.points(axis, cooled["tangential"], cooled["steady_ratio"], cooled["steady_ratio_error"], kind)
         still = ds.isel(equilibrium=np.isclose(ds["equilibrium_inertia"].values, q))
@@ -87,6 +83,9 @@ def _ratios(axis: Axes, ds: xr.Dataset) -> None:
             hollow=True,
             clip_on=False,
         )
+    known = theory.rough_cooling()
+    known = known[np.isin(known[:, 0], ds["cooling_inertia"].values)]
+    axis.plot(known[:, 1], known[:, 3], "x", color=style.DATA, zorder=5, label="Boltzmann equation")
     axis.set_xlim(-1.0, 1.0)
     axis.set_ylim(0.0, 1.08)
     axis.set_xlabel(r"tangential restitution $\epsilon_\mathrm{t}$")
