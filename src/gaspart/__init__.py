@@ -31,6 +31,7 @@ _HOMES = {
     "Thermal": "scene.faces",
     "TimeStepped": "engines",
     "Wall": "scene.walls",
+    "Vibrating": "scene.faces",
     "Well": "scene.faces",
     "collision_data": "analysis.collisions",
     "compress": "state.compression",
