@@ -14,7 +14,7 @@ from gaspart.kinds import described
 from gaspart.scene.geometry import CLOSE_PACKING
 from gaspart.scene.keys import POSITIVE, declared, schema_of, validate
 from gaspart.scene.keys import choice as choice_of
-from gaspart.scene.validation import choice, from_mapping, size
+from gaspart.scene.validation import choice, from_mapping, size, vector
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -188,7 +188,7 @@ def _check_vibrating(scene: Scene, name: str, surface: Vibrating) -> None:
             rule = f"must not be true where {name} vibrates: give fixed particles positions, as bodies"
             raise SceneError(f"species[{n}].fixed", True, rule)
     for n, body in enumerate(scene.bodies):
-        x = body.position[axis]
+        x = vector(f"bodies[{n}].position", body.position, scene.dimension)[axis]
         if body.fixed and (length - x if upper else x) < clear + body.radius:
             rule = f"leaves less than a largest diameter between the particle and {name}, which vibrates"
             raise SceneError(f"bodies[{n}].position", body.position, rule)
