@@ -30,7 +30,14 @@ def motion_of(scene: Scene) -> Motion | None:
     moving = vibrating_faces(scene)
     if not moving:
         return None
-    motion = Motion(*(np.zeros(2 * scene.dimension, kind) for kind in (float, float, bool, float, float)))
+    shape = (2 * scene.dimension,)
+    motion = Motion(
+        stroke=np.zeros(shape),
+        period=np.zeros(shape),
+        sine=np.zeros(shape, dtype=bool),
+        begun=np.zeros(shape),
+        slowest=np.zeros(shape),
+    )
     for n, face in moving:
         motion.stroke[n], motion.period[n] = 2.0 * face.amplitude, face.period
         motion.sine[n] = face.waveform == "sine"
