@@ -51,7 +51,8 @@ def next_bounce(face, time, height, velocity, pull):
     step, late = face.period / 400.0, face.period / 400.0
     while gap(time + late) > 0.0:
         late += step
-    hit = brentq(gap, time + late - step + _PARTED, time + late, xtol=1e-15, rtol=1e-15)
+    before = time + max(late - step, _PARTED)
+    hit = brentq(gap, before, time + late, xtol=1e-15, rtol=1e-15)
     return hit, velocity - pull * (hit - time)
 
 
