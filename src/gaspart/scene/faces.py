@@ -217,7 +217,7 @@ def _check_room(scene: Scene) -> None:
     for axis in range(scene.dimension):
         own = {name: face for name, face in moving.items() if FACES.index(name) // 2 == axis}
         stroke = sum(2.0 * face.amplitude for face in own.values())
-        if stroke >= high[axis] - low[axis]:
+        if own and stroke >= high[axis] - low[axis]:
             name, face = next(iter(own.items()))
             rule = "leaves no room for the largest particle"
             raise SceneError(f"faces.{name}.amplitude", face.amplitude, rule)
