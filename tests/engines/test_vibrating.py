@@ -165,9 +165,10 @@ def deepest(sim):
 def test_energy_is_what_faces_give_and_contacts_take_and_all_searches_agree(scene, seed):
     sim = events_of(scene, "boxes", 200, seed)
     sim.check_invariants()
-    tally, before, after = sim.tally, sim.initial_state.energy, sim.state.energy
-    given_, scale = -tally.wall_energy.sum(), np.abs(tally.wall_energy).sum() + before + after
-    assert after - before == pytest.approx(given_ - tally.dissipated_energy, abs=1e-11 * scale)
+    tally, before, after = sim.tally, sim.initial_state, sim.state
+    flows = tally.dissipated_energy, *tally.wall_energy
+    scale = np.abs([*flows, before.energy, after.energy, before.kinetic_energy, after.kinetic_energy]).sum()
+    assert after.energy - before.energy == pytest.approx(-sum(flows), abs=1e-11 * scale)
     assert deepest(sim) > -1e-9
     for search in ("direct", "pairs") if scene.dimension == 2 else ("direct",):
         assert same_bits(sim, events_of(scene, search, 200, seed))
