@@ -39,6 +39,7 @@ SCENES = [
         "faces": {
             "z_low": {"kind": "well", "depth": 1.0, "width": 0.5, "temperature": 1.0},
             "z_high": {"kind": "sticky", "momentum": 0.1},
+            "y_low": {"kind": "vibrating", "amplitude": 0.3, "period": 2.0, "waveform": "sawtooth"},
         },
     },
     {

@@ -41,6 +41,7 @@ def event_scenes():
     warm = {"x_low": gp.Thermal(2.0), "x_high": gp.Thermal(0.5, "normal"), "y_low": gp.Thermal(1.0)}
     low = {"x_low": gp.Well(1.0, 0.5), "z_low": gp.Well(0.5, 0.3, 1.0)}
     high = {"x_high": gp.Sticky(1.0), "z_high": gp.Thermal(1.5)}
+    shaking = {"y_low": gp.Vibrating(0.2, 1.3), "y_high": gp.Vibrating(0.1, 0.5, "sawtooth")}
     electrons = [
         gp.Species(6, 0.2, 0.5, temperature=1.0),
         gp.Species(4, 0.3, fixed=True, temperature=2.0),
@@ -59,6 +60,7 @@ def event_scenes():
         "plates": gp.Scene(room, two[:1], gravity=(0.0, 0.0, -1.0), walls=plates),
         "thermal": gp.Scene(box, two, gravity=(0.0, -0.5), restitution=ROUGH, faces=warm),
         "holding": gp.Scene(room, two, faces=low | high),
+        "vibrating": gp.Scene(box, two, gravity=down, restitution=ROUGH, faces=shaking),
         "metal": gp.Scene(box, electrons, restitution=METAL, faces=heat),
         "big": gp.Scene(room, [small, large]),
         "big and rough": gp.Scene(box, [small, large], gravity=down, restitution=METAL, walls=cross),

@@ -6,17 +6,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaspart.engines.vibration import motion_of
 from gaspart.kernels.model import (
     HARD,
     STICKY,
     THERMAL,
     THERMAL_NORMAL,
+    VIBRATING,
     ContactDuration,
     ContactLaw,
     Faces,
     InteriorWalls,
 )
-from gaspart.scene.faces import FACES, Sticky, Thermal, Well
+from gaspart.scene.faces import FACES, Sticky, Thermal, Vibrating, Well
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene
 from gaspart.state.insertion import per_body
@@ -82,6 +84,8 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
                 kind, level = THERMAL, temperature
             case Sticky(momentum):
                 kind, level = STICKY, momentum
+            case Vibrating():
+                kind, level = VIBRATING, 0.0
             case _:
                 kind, level = HARD, 0.0
         kinds.append(kind)
@@ -96,6 +100,7 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
         held=np.zeros(state.positions.shape),
         draws=np.zeros(state.count, dtype=np.int64),
         key=key_of(seed, _WALL_DRAWS),
+        motion=motion_of(scene),
     )
 
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from gaspart.engines.arrays import face_energy
+from gaspart.engines.vibration import greatest_speed
 from gaspart.scene.scene import Scene
 
 _LENGTH = 10  # an epoch of the clocks is some 2^10 times of flight over a diameter
@@ -17,13 +18,13 @@ QUIET = 64
 
 
 def _speed(scene: Scene, velocities: np.ndarray, lightest: float) -> float:
-    """The speed for times of flight: the rms speed, with the largest gain by gravity and thermal walls."""
+    """The speed for times of flight: the rms speed, with the largest gain by gravity and walls."""
     square = float((velocities**2).sum(axis=1).mean()) if len(velocities) else 0.0
     if scene.gravity is not None:  # the square of the speed gained in a fall
         lengths = scene.container.lengths
         square += 2.0 * sum(abs(g) * length for g, length in zip(scene.gravity, lengths, strict=True))
     if scene.faces and len(velocities):  # and of the speed gained at a wall
-        square += face_energy(scene) / lightest
+        square += face_energy(scene) / lightest + (2.0 * greatest_speed(scene)) ** 2
     return math.sqrt(square)
 
 

@@ -14,6 +14,7 @@ from gaspart.engines.event_search import chosen_search, make_lists, neighbour_li
 from gaspart.engines.kicks import kicks
 from gaspart.engines.rest import rest_watch
 from gaspart.engines.stalling import MANY, check_progress
+from gaspart.engines.vibration import begin_epoch
 from gaspart.errors import SimulationError
 from gaspart.kernels.memory import aligned
 from gaspart.scene.scene import Scene
@@ -76,9 +77,9 @@ class EventDynamics:
         self._lightest = float(state.masses.min(initial=np.inf))
         self._lost = np.zeros(2)  # net and gross, before the tally began
         self._base, self._quiet = epoch_length(scene, state.velocities, self._lightest), 0
+        epochs, self._clock = divmod(state.time, self._base)
+        self._start = epochs * self._base
         self._begin_epoch(self._base)
-        epochs, self._clock = divmod(state.time, self._epoch)
-        self._start = epochs * self._epoch
         self._rest = rest_watch(scene, state, self._clock)
         self._kicks = kicks(scene, seed, self._unit_mass)
         self._scheduled = self._rest or self._kicks  # no scene has both
@@ -224,6 +225,8 @@ class EventDynamics:
         if self._model.gravity:
             gravity = self._model.gravity._replace(shortest_bounce=_SHORTEST_BOUNCE * length)
             self._model = self._model._replace(gravity=gravity)
+        if self._model.faces and self._model.faces.motion:
+            begin_epoch(self._model.faces.motion, self._scene, self._start, length)
         if self._monitors.collapse:
             collapse = self._monitors.collapse._replace(interval=self._interval * length)
             self._monitors = self._monitors._replace(collapse=collapse)

@@ -60,6 +60,7 @@ def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
         ("restitution.contact_duration", law.contact_duration or None if law else None, none),
         ("thermostat", scene.thermostat, none),
         ("walls", scene.walls or None, none),
+        ("faces", next((face for face in scene.faces.values() if face.kind == "vibrating"), None), none),
         ("fixed", True if fixed and falls else None, "this one has no fixed particles under gravity"),
     ):
         if value is not None:

@@ -16,7 +16,7 @@ BOX_FACES = 6  # face codes: 2 axis + side for the container's faces, BOX_FACES 
 WELL_EDGES = 12  # WELL_EDGES more for the edges of the wells at the container's faces,
 WALLS = 18  # and from here on the rows of interior walls
 LISTED_BITS = 26  # of a particle's number in a neighbour list
-HARD, THERMAL, THERMAL_NORMAL, STICKY = range(4)  # kinds of faces
+HARD, THERMAL, THERMAL_NORMAL, STICKY, VIBRATING = range(5)  # kinds of faces
 
 
 def flight_dtype(dimension: int) -> np.dtype:
@@ -124,11 +124,23 @@ class ContactLaw(NamedTuple):
     duration: ContactDuration | None
 
 
+class Motion(NamedTuple):
+    """Vibrating faces. Of the container's faces (2d,): stroke, how far each moves inwards, 0 if it does not;
+    period; sine, or else a sawtooth; begun, the time of its period at which the clocks are at zero; slowest,
+    the speed at which particles part from it at least."""
+
+    stroke: np.ndarray
+    period: np.ndarray
+    sine: np.ndarray
+    begun: np.ndarray
+    slowest: np.ndarray
+
+
 class Faces(NamedTuple):
     """Faces with a kind. Of the container's faces (2d,): kind; level, the temperature, or the momentum that
     sticks; depth and width of the well, 0 if there is none. Of the particles: place (N, d), -1 or 1 in the
     well of an axis' low or high face, or stuck to it; held (N, d), the energy kept there as vibration; draws
-    (N,), how often random numbers were taken for it, under `key` (2,)."""
+    (N,), how often random numbers were taken for it, under `key` (2,). motion: None if no face moves."""
 
     kind: np.ndarray
     level: np.ndarray
@@ -138,6 +150,7 @@ class Faces(NamedTuple):
     held: np.ndarray
     draws: np.ndarray
     key: np.ndarray
+    motion: Motion | None
 
 
 class InteriorWalls(NamedTuple):

@@ -5,20 +5,24 @@ A face without a kind is hard and follows the scene's law of contacts.
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 from gaspart.errors import SceneError
 from gaspart.kinds import described
+from gaspart.scene.geometry import CLOSE_PACKING
 from gaspart.scene.keys import POSITIVE, declared, schema_of, validate
 from gaspart.scene.keys import choice as choice_of
-from gaspart.scene.validation import choice, from_mapping
+from gaspart.scene.validation import choice, from_mapping, size, vector
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
+    from gaspart.scene.walls import Plate, Wall
 
 FACES = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
 COMPONENTS = ("all", "normal")
+WAVEFORMS = ("sine", "sawtooth")
 
 
 @dataclass(frozen=True)
@@ -80,9 +84,39 @@ class Sticky:
         validate(self)
 
 
-KINDS: dict[str, type[Thermal | Well | Sticky]] = {
-    surface.kind: surface for surface in (Thermal, Well, Sticky)
-}
+@dataclass(frozen=True)
+class Vibrating:
+    """A hard wall that moves in a prescribed way, whatever hits it, and gives or takes energy.
+
+    It is at the side of the container at time 0, and moves inwards from there by twice the amplitude A at
+    most: the sine is at A (1 - cos(2 pi t / period)), the sawtooth moves in at the speed 2 A / period and is
+    back at once at the end of each period. Contacts follow the scene's law in the frame of the wall.
+    """
+
+    amplitude: float = field(metadata=declared(POSITIVE, "half the distance that the wall moves"))
+    period: float = field(metadata=declared(POSITIVE, "duration of one vibration"))
+    waveform: str = field(default="sine", metadata=declared(choice_of(*WAVEFORMS), "how the wall moves"))
+
+    kind: ClassVar[Literal["vibrating"]] = "vibrating"
+
+    def __post_init__(self) -> None:
+        validate(self)
+        size("period", self.greatest_speed)
+        size("period", self.greatest_acceleration)
+
+    @property
+    def greatest_speed(self) -> float:
+        """The greatest speed of the wall, apart from the return of the sawtooth."""
+        return (2.0 * math.pi if self.waveform == "sine" else 2.0) * self.amplitude / self.period
+
+    @property
+    def greatest_acceleration(self) -> float:
+        """The greatest acceleration of the wall, apart from the return of the sawtooth."""
+        return 2.0 * math.pi * self.greatest_speed / self.period if self.waveform == "sine" else 0.0
+
+
+Surface = Thermal | Well | Sticky | Vibrating
+KINDS: dict[str, type[Surface]] = {surface.kind: surface for surface in (Thermal, Well, Sticky, Vibrating)}
 SCHEMA = {
     "type": "object",
     "propertyNames": {"enum": list(FACES)},
@@ -96,8 +130,8 @@ SCHEMA = {
 """The JSON schema of the faces of a scene, by name."""
 
 
-def surface_from_dict(mapping: object, where: str) -> Thermal | Well | Sticky:
-    """The face that {"kind": "thermal" | "well" | "sticky", setting: value, ...} describes."""
+def surface_from_dict(mapping: object, where: str) -> Surface:
+    """The face that {"kind": one of `KINDS`, setting: value, ...} describes."""
     if not isinstance(mapping, dict):
         raise SceneError(where, mapping, "must be a mapping with a kind")
     settings = dict(mapping)
@@ -105,7 +139,7 @@ def surface_from_dict(mapping: object, where: str) -> Thermal | Well | Sticky:
     return from_mapping(KINDS[kind], settings, where)
 
 
-def surface_to_dict(surface: Thermal | Well | Sticky) -> dict:
+def surface_to_dict(surface: Surface) -> dict:
     """The inverse of `surface_from_dict`."""
     return {"kind": surface.kind, **asdict(surface)}
 
@@ -127,11 +161,11 @@ def check_faces(scene: Scene) -> None:
         if name not in known:
             raise SceneError(f"faces.{name}", surface, f"unknown face; known are {', '.join(known)}")
         if type(surface) not in KINDS.values():
-            raise SceneError(f"faces.{name}", surface, "must be Thermal, Well or Sticky")
+            raise SceneError(f"faces.{name}", surface, "must be Thermal, Well, Sticky or Vibrating")
         axis = known.index(name) // 2
         if scene.container.periodic[axis]:
             raise SceneError(f"faces.{name}", surface.kind, "a periodic axis has no faces")
-        if surface.kind != "thermal" and scene.gravity is not None and scene.gravity[axis] != 0.0:
+        if surface.kind in ("well", "sticky") and scene.gravity is not None and scene.gravity[axis] != 0.0:
             raise SceneError(f"faces.{name}", surface.kind, "needs an axis without gravity")
         if surface.kind == "well":
             low, high = scene.reach(scene.largest_radius)
@@ -139,3 +173,55 @@ def check_faces(scene: Scene) -> None:
             if sum(face.width for face in both if isinstance(face, Well)) >= high[axis] - low[axis]:
                 rule = "leaves no room outside the wells of this axis for the largest particle"
                 raise SceneError(f"faces.{name}.width", surface.width, rule)
+        if isinstance(surface, Vibrating):
+            _check_vibrating(scene, name, surface)
+    _check_room(scene)
+
+
+def _check_vibrating(scene: Scene, name: str, surface: Vibrating) -> None:
+    """Raise SceneError for obstacles against which a vibrating face would press a particle."""
+    axis, upper = FACES.index(name) // 2, FACES.index(name) % 2 == 1
+    length = scene.container.lengths[axis]
+    clear = 2.0 * (surface.amplitude + scene.largest_radius)
+    for n, thing in enumerate(scene.species):
+        if thing.fixed and thing.count:
+            rule = f"must not be true where {name} vibrates: give fixed particles positions, as bodies"
+            raise SceneError(f"species[{n}].fixed", True, rule)
+    for n, body in enumerate(scene.bodies):
+        x = vector(f"bodies[{n}].position", body.position, scene.dimension)[axis]
+        if body.fixed and (length - x if upper else x) < clear + body.radius:
+            rule = f"leaves less than a largest diameter between the particle and {name}, which vibrates"
+            raise SceneError(f"bodies[{n}].position", body.position, rule)
+    for n, wall in enumerate(scene.walls):
+        heights = [length - corner[axis] if upper else corner[axis] for corner in wall.corners.values()]
+        if min(heights) < clear and not (min(heights) <= 0.0 and _is_upright(wall, axis)):
+            rule = f"leaves less than a largest diameter between the wall and {name}, which vibrates"
+            raise SceneError(f"walls[{n}]", wall, rule)
+
+
+def _is_upright(wall: Wall | Plate, axis: int) -> bool:
+    """Whether a wall stands upright on a face across this axis."""
+    corners = list(wall.corners.values())
+    edges = [[b - a for a, b in zip(corners[0], corner, strict=True)] for corner in corners[1:3]]
+    upright = [not any(edge[:axis] + edge[axis + 1 :]) for edge in edges]
+    return any(upright) and all(
+        stands or edge[axis] == 0.0 for stands, edge in zip(upright, edges, strict=True)
+    )
+
+
+def _check_room(scene: Scene) -> None:
+    """Raise SceneError where vibrating faces leave too little room."""
+    moving = {name: face for name, face in scene.faces.items() if isinstance(face, Vibrating)}
+    low, high = scene.reach(scene.largest_radius)
+    left = 1.0
+    for axis in range(scene.dimension):
+        own = {name: face for name, face in moving.items() if FACES.index(name) // 2 == axis}
+        stroke = sum(2.0 * face.amplitude for face in own.values())
+        if own and stroke >= high[axis] - low[axis]:
+            name, face = next(iter(own.items()))
+            rule = "leaves no room for the largest particle"
+            raise SceneError(f"faces.{name}.amplitude", face.amplitude, rule)
+        left *= 1.0 - stroke / scene.container.lengths[axis]
+    if moving and scene.packing_fraction > left * CLOSE_PACKING[scene.dimension]:
+        rule = "exceeds close packing where the faces have moved inwards"
+        raise SceneError("packing_fraction", scene.packing_fraction, rule)

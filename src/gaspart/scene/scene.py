@@ -16,7 +16,7 @@ from typing import Any
 from gaspart.errors import SceneError
 from gaspart.scene.container import Container
 from gaspart.scene.faces import SCHEMA as FACES_SCHEMA
-from gaspart.scene.faces import Sticky, Thermal, Well, check_faces, surface_from_dict, surface_to_dict
+from gaspart.scene.faces import Sticky, Surface, check_faces, surface_from_dict, surface_to_dict
 from gaspart.scene.geometry import CLOSE_PACKING, ball_volume
 from gaspart.scene.keys import FLAG, VECTOR, checked_by_class, declared, instance_of, list_of, validate
 from gaspart.scene.limits import Nearby, check_region, check_room
@@ -71,7 +71,7 @@ class Scene:
     walls: Sequence[Wall | Plate] = field(
         default=(), metadata=declared(list_of(Wall, Plate, rule=_WALLS), "walls inside the container")
     )
-    faces: dict[str, Thermal | Well | Sticky] = field(
+    faces: dict[str, Surface] = field(
         default_factory=dict,
         hash=False,
         metadata=declared(checked_by_class(FACES_SCHEMA), "kinds of the container's faces; others are hard"),

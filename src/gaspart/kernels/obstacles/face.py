@@ -4,16 +4,16 @@ there."""
 from math import inf
 
 from gaspart.kernels.ballistic import time_against, time_along
-from gaspart.kernels.collision import collide_wall_by_law
 from gaspart.kernels.compilation import inner_helper, inner_kernel
 from gaspart.kernels.contact import time_to_plane
 from gaspart.kernels.flight import acceleration_of, advance, face_plane
-from gaspart.kernels.model import BOX_FACES, NONE, STICKY, THERMAL, THERMAL_NORMAL
-from gaspart.kernels.obstacles.interior_wall import mass_in
+from gaspart.kernels.model import BOX_FACES, NONE, STICKY, THERMAL, THERMAL_NORMAL, VIBRATING
+from gaspart.kernels.obstacles.hard import bounce
 from gaspart.kernels.obstacles.resting import come_to_rest, release, release_after
 from gaspart.kernels.obstacles.short_bounce import longest_rest, rest_on_floor
 from gaspart.kernels.obstacles.sticky import collide_sticky
 from gaspart.kernels.obstacles.thermal import collide_thermal
+from gaspart.kernels.obstacles.vibrating import collide_moving, find_vibrating, moves
 from gaspart.kernels.obstacles.well import mass_of, time_to_edge
 from gaspart.kernels.running_sum import add
 
@@ -48,6 +48,11 @@ def next_face(particles, i, boxes, space, now, gravity, faces, oversized):
     face = NONE
     for k in range(len(space.lengths)):
         v = flights[i].velocity[k]
+        if faces is not None:
+            time, code = find_vibrating(particles, i, k, boxes, space, gravity, faces.motion)
+            if time < soon:
+                soon = time
+                face = code
         if gravity is not None:
             pull = acceleration_of(flights, i, k, space, gravity)
             if pull != 0.0:
@@ -110,6 +115,8 @@ def collide_special(flights, i, face, model, tally, law, faces):
         collide_thermal(flights, i, face, model, tally, law, faces)
     elif kind == STICKY:
         collide_sticky(flights, i, face, model, tally, law, faces)
+    elif kind == VIBRATING:
+        collide_moving(flights, i, face, model, tally, law, faces.motion)
     else:
         return False
     return True
@@ -118,20 +125,11 @@ def collide_special(flights, i, face, model, tally, law, faces):
 @inner_helper
 def collide_face(flights, i, face, model, tally, law, faces):
     """Let a wall act on a particle that has come to it. Returns whether it is a hard one."""
-    axis = face // 2
     tally.wall_hits[face] += 1
     if faces is not None:
         if collide_special(flights, i, face, model, tally, law, faces):
             return False
-    if law is None:
-        mass = mass_in(model.masses, i)
-        add(tally.wall_impulse, face, 2.0 * mass * abs(flights[i].velocity[axis]))
-        flights[i].velocity[axis] = -flights[i].velocity[axis]
-    else:
-        side = 1.0 if face % 2 else -1.0
-        normal = side if axis == 0 else 0.0, side if axis == 1 else 0.0, side if axis == 2 else 0.0
-        impulse = collide_wall_by_law(flights, i, normal, 0.0, model.space, tally, law)
-        add(tally.wall_impulse, face, impulse)
+    add(tally.wall_impulse, face, bounce(flights, i, face, model, tally, law))
     return True
 
 
@@ -171,6 +169,18 @@ def rest_after(flights, i, face, hard, model, tally, gravity):
 
 
 @inner_helper
+def place_at(flights, i, face, space, faces):
+    """Place a particle that has come to a face exactly there. One that moves is anywhere inside."""
+    axis, upper = face // 2, face % 2 == 1
+    plane = face_plane(flights, i, axis, upper, space)
+    if faces is not None:
+        if moves(face, faces.motion):
+            x = flights[i].position[axis]
+            plane = min(x, plane) if upper else max(x, plane)
+    flights[i].position[axis] = plane
+
+
+@inner_helper
 def meet_face(particles, i, face, time, model, tally):
     """Reflect a particle at a wall, or take it from a periodic face to the opposite one. True if a wall."""
     flights, space = particles.flights, model.space
@@ -184,7 +194,7 @@ def meet_face(particles, i, face, time, model, tally):
         flights[i].position[axis] = 0.0 if upper else space.lengths[axis]
         particles.images[i, axis] += 1 if upper else -1
         return False
-    flights[i].position[axis] = face_plane(flights, i, axis, upper, space)
+    place_at(flights, i, face, space, model.faces)
     hard = reflect(flights, i, face, model, tally, model.law, model.faces)
     rest_after(flights, i, face, hard, model, tally, model.gravity)
     return True

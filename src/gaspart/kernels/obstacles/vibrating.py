@@ -1,0 +1,167 @@
+"""Vibrating faces: the container's side is where such a face is at time 0, and it moves inwards from there.
+
+A particle meets it where its height above that place, h(t) = x + v t + a t^2 / 2, falls to that of the face,
+s(t). In each period a sawtooth moves up at one speed and is back at once; a sine is at
+stroke (1 - cos(2 pi t / period)) / 2. Heights and velocities count from the container's side inwards. The
+remainder of a division (%) is exact, and so the same on every machine.
+"""
+
+from math import inf, sqrt
+
+from gaspart.kernels.ballistic import flown, time_to_side
+from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
+from gaspart.kernels.flight import acceleration_of, face_plane
+from gaspart.kernels.model import NONE
+from gaspart.kernels.obstacles.hard import bounce
+from gaspart.kernels.obstacles.well import mass_of
+from gaspart.kernels.running_sum import add
+from gaspart.kernels.sine import TURN, sine_cosine
+
+_RESOLVED = 2.0**-52  # of clocks and of the period: the shortest step of a search
+_SLACK = 1.0 + 2.0**-20  # of the stroke: a particle further away needs no search
+
+
+@kernel
+def place_and_velocity(time, sine, stroke, period):
+    """Where a face is at a time of its period, and how fast it moves inwards."""
+    if not sine:
+        speed = stroke / period
+        return speed * time, speed
+    s, c = sine_cosine(time / period)
+    return 0.5 * stroke * (1.0 - c), 0.5 * stroke * TURN / period * s
+
+
+@inner_helper
+def time_to_sawtooth(gap, closing, pull, left):
+    """Time until a particle touches a face that moves evenly for the time `left`, and whether it does;
+    otherwise that time."""
+    time = time_to_side(gap, closing, pull)
+    return (time, True) if time < left else (left, False)
+
+
+@inner_helper
+def time_to_sine(gap, closing, most):
+    """A time up to which a particle cannot touch a face to which it comes nearer with an acceleration of at
+    most `most`, the root for this acceleration; and whether it touches it now."""
+    if gap <= 0.0 and closing > 0.0:
+        return 0.0, True
+    gap = max(gap, 0.0)
+    root = sqrt(closing * closing + 2.0 * most * gap)
+    return (2.0 * gap / (root + closing) if closing > 0.0 else (root - closing) / most), False
+
+
+@kernel
+def time_to_vibrating(x, v, a, clock, at, sine, stroke, period):
+    """Time until a particle of height x, inward velocity v and acceleration a touches a vibrating face, and
+    approaches it; inf if it never does. clock: the time since that of the clocks' epoch began; at: the time
+    of the face's period; both are those of x and v.
+
+    Above the stroke the particle flies on to it. Within it, each step of the search ends before the first
+    contact, however the face moves, so that none is passed over: one with the largest acceleration of the
+    face converges to the contact quadratically, as Newton's steps do.
+    """
+    largest = 0.5 * stroke * (TURN / period) * (TURN / period) + abs(a)
+    time = 0.0
+    while True:
+        height, velocity = flown(x, v, a, time), v + a * time
+        if height > stroke:
+            step, meets = time_to_side(height - stroke, -velocity, -a), False
+        else:
+            place, speed = place_and_velocity(at, sine, stroke, period)
+            if sine:
+                step, meets = time_to_sine(height - place, speed - velocity, largest)
+            else:
+                step, meets = time_to_sawtooth(height - place, speed - velocity, -a, period - at)
+        if meets:
+            return time + step
+        if not step < inf:
+            return inf
+        if step < _RESOLVED * (clock + time + period):
+            step = _RESOLVED * (clock + time + period)
+        time += step
+        at = (at + step) % period
+
+
+@inner_helper
+def moves(face, motion):
+    """Whether a face moves."""
+    if motion is None:
+        return False
+    return motion.stroke[face] > 0.0
+
+
+@inner_helper
+def is_near(particles, i, face, boxes, space, motion):
+    """Whether a particle in this box may touch the face."""
+    axis, upper = face // 2, face % 2 == 1
+    at, width = particles.predictions[i].box[axis], boxes.widths[axis]
+    inset = face_plane(particles.flights, i, axis, False, space)
+    reach = inset + _SLACK * motion.stroke[face]
+    return space.lengths[axis] - (at + 1) * width <= reach if upper else at * width <= reach
+
+
+@inner_kernel
+def next_vibrating(particles, i, axis, boxes, space, gravity, motion):
+    """When a particle touches a vibrating face of an axis: (time, face code)."""
+    flights, soon, code = particles.flights, inf, NONE
+    for face in range(2 * axis, 2 * axis + 2):
+        if motion.stroke[face] > 0.0 and is_near(particles, i, face, boxes, space, motion):
+            flight = flights[i]
+            upper = face % 2 == 1
+            a = 0.0
+            if gravity is not None:
+                a = acceleration_of(flights, i, axis, space, gravity)
+            plane = face_plane(flights, i, axis, upper, space)
+            x, v = flight.position[axis] - plane, flight.velocity[axis]
+            if upper:
+                x, v, a = -x, -v, -a
+            period = motion.period[face]
+            at = (motion.begun[face] + flight.clock) % period
+            sine, stroke = motion.sine[face], motion.stroke[face]
+            time = flight.clock + time_to_vibrating(x, v, a, flight.clock, at, sine, stroke, period)
+            if time < soon:
+                soon, code = time, face
+    return soon, code
+
+
+@inner_helper
+def find_vibrating(particles, i, axis, boxes, space, gravity, motion):
+    """The same where no face may vibrate."""
+    if motion is None:
+        return inf, NONE
+    return next_vibrating(particles, i, axis, boxes, space, gravity, motion)
+
+
+@inner_kernel
+def collide_vibrating(flights, i, face, model, tally, law, motion):
+    """Reflect a particle in the frame of a vibrating face, whose work is its velocity times the momentum.
+
+    Particles part from it so fast that the clocks resolve the next contact: a push, whose energy is counted
+    as well.
+    """
+    axis, period = face // 2, motion.period[face]
+    inwards = -1.0 if face % 2 else 1.0
+    at = (motion.begun[face] + flights[i].clock) % period
+    _, speed = place_and_velocity(at, motion.sine[face], motion.stroke[face], period)
+    mass = mass_of(i, model.masses, law)
+    flights[i].velocity[axis] -= inwards * speed
+    impulse = 0.0
+    if inwards * flights[i].velocity[axis] < 0.0:
+        impulse = bounce(flights, i, face, model, tally, law)
+    work = speed * impulse
+    parting = inwards * flights[i].velocity[axis]
+    push = motion.slowest[face] - parting
+    if push > 0.0:
+        flights[i].velocity[axis] += inwards * push
+        impulse += mass * push
+        work += mass * push * (speed + parting + 0.5 * push)
+    flights[i].velocity[axis] += inwards * speed
+    add(tally.wall_impulse, face, impulse)
+    add(tally.wall_energy, face, -work)
+
+
+@inner_helper
+def collide_moving(flights, i, face, model, tally, law, motion):
+    """The same where no face may vibrate."""
+    if motion is not None:
+        collide_vibrating(flights, i, face, model, tally, law, motion)

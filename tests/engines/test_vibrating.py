@@ -1,0 +1,235 @@
+"""Vibrating faces: bounces of one ball that are known, the energy of many, and the same bits throughout."""
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from referee import events_of, same_bits
+from scipy.optimize import brentq
+
+import gaspart as gp
+
+SINE, SAWTOOTH = gp.Vibrating(0.2, 1.3), gp.Vibrating(0.15, 0.7, "sawtooth")
+DOWN = (0.0, -1.0)
+_PARTED = 1e-5  # time after a bounce at which the ball is clear of the face: less than any bounce lasts
+
+
+def ball(faces, height=2.0, velocity=0.0, law=None, gravity=DOWN, side=40.0):
+    """One ball between a floor and a ceiling."""
+    body = gp.Body((2.0, 0.5 + height), (0.0, velocity), 0.5)
+    container = gp.Container((4.0, side), ("periodic", "wall"))
+    return gp.Scene(container, bodies=[body], faces=faces, gravity=gravity, restitution=law)
+
+
+def place(face, time):
+    """How far a face has moved inwards, by the library's cosine."""
+    turns = time / face.period % 1.0
+    if face.waveform == "sawtooth":
+        return 2.0 * face.amplitude * turns
+    return face.amplitude * (1.0 - math.cos(2.0 * math.pi * turns))
+
+
+def speed(face, time):
+    """How fast it moves inwards then."""
+    if face.waveform == "sawtooth":
+        return 2.0 * face.amplitude / face.period
+    turn = 2.0 * math.pi / face.period
+    return face.amplitude * turn * math.sin(turn * time)
+
+
+def next_bounce(face, time, height, velocity, pull):
+    """(time, velocity) of the next bounce on the floor: by bisection of what small steps enclose."""
+
+    def gap(t):
+        late = t - time
+        return height + velocity * late - 0.5 * pull * late * late - place(face, t)
+
+    step, late = face.period / 400.0, face.period / 400.0
+    while gap(time + late) > 0.0:
+        late += step
+    before = time + max(late - step, _PARTED)
+    hit = brentq(gap, before, time + late, xtol=1e-15, rtol=1e-15)
+    return hit, velocity - pull * (hit - time)
+
+
+def bounces(sim, count):
+    """Time, face, height and velocity after each of the next events."""
+    sim.record_events = True
+    before = len(sim.events["time"])
+    sim.advance(max_events=count)
+    events = {key: array[before:] for key, array in sim.events.items()}
+    sim.record_events = False
+    faces = -1 - events["bodies"][:, 1]
+    height, velocity = events["positions"][:, 0, 1] - 0.5, events["velocities"][:, 0, 1]
+    return list(zip(events["time"], faces, height, velocity, strict=True))
+
+
+@pytest.mark.parametrize("face", [SINE, SAWTOOTH], ids=["sine", "sawtooth"])
+@pytest.mark.parametrize("law", [None, gp.Restitution(0.8)], ids=["elastic", "lossy"])
+def test_a_ball_bounces_on_a_vibrating_floor_as_computed_otherwise(face, law):
+    """Each bounce from the one before: when it comes, how fast, and how fast the ball leaves. The second
+    lot of bounces is many epochs of the clocks later. A bounce within the duration of a contact, 0.01 in
+    these units, is elastic."""
+    sim = gp.Simulation(ball({"y_low": face}, law=law, side=1e4), gp.EventDriven())
+    for start in (0.0, 2000.0):
+        sim.advance(until=start)
+        known = bounces(sim, 25)
+        for (time, _, height, velocity), (then, code, there, after) in itertools.pairwise(known):
+            assert code == 2
+            hit, arrives = next_bounce(face, time, height, velocity, 1.0)
+            assert then == pytest.approx(hit, abs=1e-9)
+            assert there == pytest.approx(place(face, hit), abs=1e-9)
+            wall, lasts = speed(face, hit), then - time < 0.01
+            restitution = law.normal if law and not lasts else 1.0
+            assert after == pytest.approx(wall + restitution * (wall - arrives), abs=1e-8)
+    sim.check_invariants()
+
+
+def test_each_bounce_on_a_small_sawtooth_adds_twice_its_speed():
+    """The amplitude is nothing compared with the height, so the ball arrives as fast as it has left."""
+    face = gp.Vibrating(1e-10, 1e-9, "sawtooth")
+    known = bounces(gp.Simulation(ball({"y_low": face}, side=1e3), gp.EventDriven()), 60)
+    after = [velocity for _, _, _, velocity in known]
+    assert after == pytest.approx(math.sqrt(4.0) + 2.0 * 0.2 * np.arange(1, 61), rel=1e-8)
+
+
+@pytest.mark.parametrize("face", [SINE, SAWTOOTH], ids=["sine", "sawtooth"])
+def test_a_ball_between_a_vibrating_and_a_fixed_face(face):
+    """Fermi's accelerator without gravity: the ball flies straight from one face to the other."""
+    sim = gp.Simulation(ball({"y_high": face}, 1.0, 0.7, gravity=None, side=4.0), gp.EventDriven())
+    known = bounces(sim, 40)
+    for (time, code, height, velocity), (then, other, there, after) in itertools.pairwise(known):
+        assert {code, other} == {2, 3} or (code == other == 3)
+        if other == 2:
+            assert then - time == pytest.approx(height / -velocity, rel=1e-12)
+            assert after == -velocity
+        else:
+            hit, arrives = next_bounce(face, time, 3.0 - height, -velocity, 0.0)
+            assert then == pytest.approx(hit, abs=1e-9)
+            assert 3.0 - there == pytest.approx(place(face, hit), abs=1e-9)
+            assert -after == pytest.approx(2.0 * speed(face, hit) - arrives, abs=1e-8)
+    energy = 0.5 * known[-1][3] ** 2 - 0.5 * 0.7**2
+    assert sim.tally.wall_energy[3] == pytest.approx(-energy, rel=1e-12)
+
+
+def test_a_ball_without_bounce_follows_a_slow_floor_and_leaves_a_fast_one():
+    """The floor's largest acceleration is A (2 pi / P)^2, over or under that of gravity."""
+    law = gp.Restitution(0.0)
+    for period, leaves in ((4.0, False), (1.0, True)):
+        face = gp.Vibrating(0.1, period)
+        sim = gp.Simulation(ball({"y_low": face}, 0.0, law=law), gp.EventDriven())
+        highest = 0.0
+        for n in range(1, 60):
+            sim.advance(until=n * period / 19.0)
+            height = sim.state.positions[0, 1] - 0.5 - place(face, sim.time)
+            assert height > -1e-12
+            highest = max(highest, height)
+        assert (highest > 0.05) == leaves
+        assert leaves or highest < 1e-3
+        sim.check_invariants()
+
+
+@st.composite
+def shaken(draw, most=10):
+    """Rough inelastic discs that fall, or elastic spheres, between faces that vibrate."""
+    dimension = draw(st.sampled_from([2, 3]))
+    lengths = draw(st.lists(st.floats(4.5, 9.0), min_size=dimension, max_size=dimension))
+    face = st.builds(
+        gp.Vibrating, st.floats(1e-4, 0.5), st.floats(0.05, 8.0), st.sampled_from(["sine", "sawtooth"])
+    )
+    faces = draw(st.dictionaries(st.sampled_from(["x_high", "y_low", "y_high"]), face, min_size=1))
+    species = [gp.Species(draw(st.integers(1, most)), draw(st.floats(0.1, 0.4)), temperature=1.0)]
+    container = gp.Container(lengths, ("wall",) * dimension)
+    if dimension == 3:
+        return gp.Scene(container, species, faces=faces)
+    law = gp.Restitution(draw(st.sampled_from([0.0, 0.7, 0.95])), draw(st.sampled_from([-1.0, 0.5])))
+    gravity = (0.0, draw(st.sampled_from([-1.0, 0.3])))
+    return gp.Scene(container, species, faces=faces, gravity=gravity, restitution=law)
+
+
+def deepest(sim):
+    """The least gap between any particle and any face that vibrates."""
+    state, gaps = sim.state, []
+    for name, face in sim.scene.faces.items():
+        axis, x = "xyz".index(name[0]), place(face, sim.time)
+        centre = state.positions[:, axis]
+        gaps.append((state.lengths[axis] - centre if "high" in name else centre) - state.radii - x)
+    return np.min(gaps)
+
+
+@given(shaken(), st.integers(0, 2**32))
+def test_energy_is_what_faces_give_and_contacts_take_and_all_searches_agree(scene, seed):
+    sim = events_of(scene, "boxes", 200, seed)
+    sim.check_invariants()
+    tally, before, after = sim.tally, sim.initial_state, sim.state
+    flows = tally.dissipated_energy, *tally.wall_energy
+    scale = np.abs([*flows, before.energy, after.energy, before.kinetic_energy, after.kinetic_energy]).sum()
+    assert after.energy - before.energy == pytest.approx(-sum(flows), abs=1e-11 * scale)
+    assert deepest(sim) > -1e-9
+    for search in ("direct", "pairs") if scene.dimension == 2 else ("direct",):
+        assert same_bits(sim, events_of(scene, search, 200, seed))
+
+
+def test_splits_and_checkpoints_change_no_bit():
+    container = gp.Container((9.0, 12.0), ("periodic", "wall"))
+    scene = gp.Scene(
+        container,
+        [gp.Species(20, 0.05, temperature=1.0)],
+        gravity=DOWN,
+        restitution=gp.Restitution(0.9, 0.5),
+        faces={"y_low": SINE, "y_high": SAWTOOTH},
+    )
+    whole, split = (gp.Simulation(scene, gp.EventDriven(), seed=3) for _ in range(2))
+    for end in (0.1, 0.37, 5.0, 40.0, 100.0):
+        split.advance(until=end)
+        again = gp.Simulation(scene, gp.EventDriven(), seed=3)
+        again.restore(split.checkpoint())
+        split = again
+    whole.advance(until=100.0)
+    whole.check_invariants()
+    for key in ("positions", "velocities", "spins"):
+        assert np.array_equal(getattr(whole.state, key), getattr(split.state, key))
+    assert np.array_equal(whole.tally.wall_energy, split.tally.wall_energy)
+
+
+def test_what_cannot_vibrate_is_refused():
+    scene = ball({"y_low": SINE})
+    with pytest.raises(gp.SceneError, match='faces.*needs the "event" engine'):
+        gp.Simulation(scene, gp.TimeStepped(0.01))
+    with pytest.raises(gp.SceneError, match="hard or thermal"):
+        replace(ball({"y_low": SINE}, gravity=None), thermostat=gp.Thermostat(1.0, 0.1))
+    with pytest.raises(gp.SceneError, match="periodic axis"):
+        replace(scene, faces={"x_low": SINE})
+    with pytest.raises(gp.SceneError, match=r"y_low\.amplitude.*no room"):
+        replace(scene, faces={"y_low": gp.Vibrating(10.0, 1.0), "y_high": gp.Vibrating(9.6, 1.0)})
+    with pytest.raises(gp.SceneError, match="close packing"):
+        replace(scene, bodies=(), species=[gp.Species(120, 0.5)], faces={"y_low": gp.Vibrating(10.0, 1.0)})
+    for wrong in ((0.0, 1.0), (1.0, 0.0), (1e50, 1e-50)):
+        with pytest.raises(gp.SceneError, match="amplitude|period"):
+            gp.Vibrating(*wrong)
+    with pytest.raises(gp.SceneError, match="waveform"):
+        gp.Vibrating(1.0, 1.0, "square")
+
+
+def test_obstacles_against_which_a_face_would_press_are_refused():
+    scene = ball({"y_low": SINE})
+    post = gp.Body((1.0, 1.5), (0.0, 0.0), 0.2, fixed=True)
+    with pytest.raises(gp.SceneError, match="bodies.*less than a largest diameter"):
+        replace(scene, bodies=(post,), species=[gp.Species(1, 0.5)])
+    with pytest.raises(gp.SceneError, match="species.*fixed"):
+        replace(scene, species=[gp.Species(1, 0.1, fixed=True)])
+    for ends in (((0.0, 1.0), (1.0, 1.0)), ((1.0, 0.5), (1.0, 9.0)), ((1.0, 0.0), (1.1, 9.0))):
+        with pytest.raises(gp.SceneError, match="walls.*less than a largest diameter"):
+            replace(scene, walls=[gp.Wall(*ends)])
+    for wall in (gp.Wall((0.0, 1.5), (1.0, 1.5)), gp.Wall((1.0, 0.0), (1.0, 9.0))):
+        assert replace(scene, walls=[wall]).walls == (wall,)
+
+
+def test_a_scene_file_has_it(tmp_path):
+    scene = ball({"y_low": SINE, "y_high": SAWTOOTH})
+    scene.to_file(tmp_path / "scene.yaml")
+    assert gp.Scene.from_file(tmp_path / "scene.yaml") == scene
