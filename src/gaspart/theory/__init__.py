@@ -121,6 +121,7 @@ from gaspart.theory.state import (
     speed_of_sound,
     virial_with_tail,
 )
+from gaspart.theory.vibrated import bed_loss, sawtooth_temperature, sine_temperature
 from gaspart.theory.virial import (
     HIGHEST_ORDER,
     linear_tail,
@@ -153,6 +154,7 @@ __all__ = [
     "Relaxation",
     "alder_hoover_young_crystal",
     "available_fraction",
+    "bed_loss",
     "body_volume",
     "carnahan_starling",
     "coexistence_packing_fractions",
@@ -220,7 +222,9 @@ __all__ = [
     "rough_ratio",
     "rough_temperatures",
     "santos_haro_yuste",
+    "sawtooth_temperature",
     "scaled_particle",
+    "sine_temperature",
     "sound_attenuation",
     "speed_of_sound",
     "speedy_crystal",

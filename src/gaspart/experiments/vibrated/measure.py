@@ -1,0 +1,92 @@
+"""Steady beds of inelastic discs over a vibrating floor."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gaspart.analysis.statistics import mean_of
+from gaspart.planning import grid
+from gaspart.scene.faces import Vibrating
+from gaspart.trajectory.run import open_trajectory
+
+_FLOOR = 2  # the number of the face y_low
+
+
+def vibrated_bed(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Temperature, energy flows and density of vibrated beds of one kind of discs, of mass 1.
+
+    settings: `bins` of the density profile, and `highest`, the height up to which it reaches, over T/g.
+    Returns over `bed`: sine, 1 if the floor is one, 0 for a sawtooth; restitution; layers, N d / width;
+    speed, that of the sawtooth or the rms speed of the sine; temperature, of both components; given and
+    lost, the energies per time that the floor gives and contacts take, over the weight; height, the mean
+    height above the floor's lowest place times g over the vertical temperature; and over (bed, bin) density,
+    the share of discs in a bin over its width, in units of T/g, at `place`. All with errors from replicas.
+    """
+    rows = [_bed(point, settings) for point in points]
+    edges = _edges(settings)
+    units = {"temperature": "energy", **dict.fromkeys(("speed", "given", "lost"), "length / time")}
+    columns = {
+        key: (
+            ("bed", "bin") if np.ndim(rows[0][key]) else ("bed",),
+            np.array([row[key] for row in rows]),
+            {"units": units.get(key.removesuffix("_error"), "1")},
+        )
+        for key in rows[0]
+    }
+    return xr.Dataset(columns, coords={"place": ("bin", 0.5 * (edges[1:] + edges[:-1]))})
+
+
+def _edges(settings: dict) -> np.ndarray:
+    return np.linspace(0.0, settings["highest"], settings["bins"] + 1)
+
+
+def _bed(point: grid.Point, settings: dict) -> dict[str, Any]:
+    scene = grid.scene(point)
+    floor, species, law = scene.faces["y_low"], scene.species[0], scene.restitution
+    assert isinstance(floor, Vibrating) and law is not None
+    sine = floor.waveform == "sine"
+    row: dict[str, Any] = {
+        "sine": int(sine),
+        "restitution": law.normal,
+        "layers": species.count * 2.0 * species.radius / scene.container.lengths[0],
+        "speed": floor.greatest_speed / math.sqrt(2.0) if sine else floor.greatest_speed,
+    }
+    runs = [read_run(point, path, settings) for path in point.replica_paths]
+    for name in runs[0]:
+        values = np.array([run[name] for run in runs])
+        if values.ndim == 1:
+            mean = mean_of(values)
+            row[name], row[f"{name}_error"] = mean.value, mean.error
+        else:
+            row[name] = values.mean(axis=0)
+            row[f"{name}_error"] = values.std(axis=0, ddof=1) / math.sqrt(len(values))
+    return row
+
+
+def read_run(point: grid.Point, path: str, settings: dict) -> dict[str, Any]:
+    """The means of one trajectory without its equilibration, by the names of `vibrated_bed`."""
+    scene, first = grid.scene(point), grid.schedule(point).equilibration_frames
+    assert scene.gravity is not None
+    gravity, radius = -scene.gravity[1], scene.species[0].radius
+    with open_trajectory(path) as trajectory:
+        velocities = trajectory["velocities"].values[first:].astype(float)
+        heights = trajectory["positions"].values[first:, :, 1].astype(float) - radius
+        time = trajectory["time"].values[first:]
+        given = -trajectory["wall_energy"].values[first:, _FLOOR]
+        lost = trajectory["dissipated_energy"].values[first:]
+    across, along = (velocities**2).mean(axis=(0, 1))
+    temperature = 0.5 * (across + along)
+    weight = scene.count * gravity * (time[-1] - time[0])
+    edges = _edges(settings)
+    counts, _ = np.histogram(heights * gravity / temperature, edges)
+    return {
+        "temperature": temperature,
+        "given": (given[-1] - given[0]) / weight,
+        "lost": (lost[-1] - lost[0]) / weight,
+        "height": heights.mean() * gravity / along,
+        "density": counts / (heights.size * np.diff(edges)),
+    }
