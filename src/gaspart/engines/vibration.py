@@ -37,6 +37,7 @@ def motion_of(scene: Scene) -> Motion | None:
         sine=np.zeros(shape, dtype=bool),
         begun=np.zeros(shape),
         slowest=np.zeros(shape),
+        epoch=np.zeros(1),
     )
     for n, face in moving:
         motion.stroke[n], motion.period[n] = 2.0 * face.amplitude, face.period
@@ -47,6 +48,7 @@ def motion_of(scene: Scene) -> Motion | None:
 def begin_epoch(motion: Motion, scene: Scene, start: float, epoch: float) -> None:
     """Let the clocks count from the time `start`, for an epoch of this length. The remainder of a division
     is exact, so that phases do not drift."""
+    motion.epoch[0] = epoch
     for n, face in vibrating_faces(scene):
         pull = abs(scene.gravity[n // 2]) if scene.gravity is not None else 0.0
         hop = max(_OF_EPOCH * epoch, _OF_DURATION * scene.contact_duration)

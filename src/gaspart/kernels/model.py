@@ -127,13 +127,14 @@ class ContactLaw(NamedTuple):
 class Motion(NamedTuple):
     """Vibrating faces. Of the container's faces (2d,): stroke, how far each moves inwards, 0 if it does not;
     period; sine, or else a sawtooth; begun, the time of its period at which the clocks are at zero; slowest,
-    the speed at which particles part from it at least."""
+    the speed at which particles part from it at least. epoch (1,): the length of the clocks' epoch."""
 
     stroke: np.ndarray
     period: np.ndarray
     sine: np.ndarray
     begun: np.ndarray
     slowest: np.ndarray
+    epoch: np.ndarray
 
 
 class Faces(NamedTuple):

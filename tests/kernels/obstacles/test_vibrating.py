@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from gaspart.kernels.obstacles.vibrating import place_and_velocity, time_to_vibrating
 
 _SEARCHED, _FINE = 6, 2000  # periods of the search by brute force, and its steps in each
+LONG = 0.0, 1e6  # clocks that have just begun
 sines, phases = st.booleans(), st.floats(0.0, 0.999)
 
 
@@ -41,7 +42,7 @@ def test_contacts_are_the_first_of_a_fine_search(sine, phase, scale, share, v, a
     stroke, period = 0.7, 1.3
     at = phase * period
     x = float(places(np.array(at), sine, stroke, period)) + scale * share
-    found = time_to_vibrating(x, v, a, 0.0, at, sine, stroke, period)
+    found = time_to_vibrating(x, v, a, LONG, at, sine, stroke, period)
     times = np.arange(_SEARCHED * _FINE) * (period / _FINE)
     gaps = x + v * times + 0.5 * a * times**2 - places(at + times, sine, stroke, period)
     assert found <= times[gaps < -1e-12].min(initial=math.inf)
@@ -58,17 +59,24 @@ def test_a_particle_that_has_just_bounced_parts_from_the_face(sine, phase, parti
     at = phase * period
     place, speed = place_and_velocity(at, sine, stroke, period)
     for error in (-1e-15, 0.0, 1e-15):
-        found = time_to_vibrating(place + error, speed + parting, a, 0.0, at, sine, stroke, period)
+        found = time_to_vibrating(place + error, speed + parting, a, LONG, at, sine, stroke, period)
         assert found > 1e-2 * parting
 
 
 def test_a_particle_out_of_reach_is_never_met():
     for sine in (True, False):
-        assert time_to_vibrating(1.0, 0.0, 0.0, 0.0, 0.3, sine, 0.5, 1.0) == math.inf
-        assert time_to_vibrating(1.0, 2.0, 0.5, 0.0, 0.3, sine, 0.5, 1.0) == math.inf
-        assert time_to_vibrating(math.nan, 0.0, 0.0, 0.0, 0.3, sine, 0.5, 1.0) >= 0.0  # it ends
+        assert time_to_vibrating(1.0, 0.0, 0.0, LONG, 0.3, sine, 0.5, 1.0) == math.inf
+        assert time_to_vibrating(1.0, 2.0, 0.5, LONG, 0.3, sine, 0.5, 1.0) == math.inf
+        assert time_to_vibrating(math.nan, 0.0, 0.0, LONG, 0.3, sine, 0.5, 1.0) >= 0.0  # it ends
 
 
 def test_a_particle_at_rest_on_a_face_that_begins_to_rise_is_met_at_once():
-    assert time_to_vibrating(0.0, 0.0, 0.0, 0.0, 0.0, True, 0.5, 1.0) < 1e-14
-    assert time_to_vibrating(0.0, 0.0, -1.0, 0.0, 0.0, False, 0.5, 1.0) == 0.0
+    assert time_to_vibrating(0.0, 0.0, 0.0, LONG, 0.0, True, 0.5, 1.0) < 1e-14
+    assert time_to_vibrating(0.0, 0.0, -1.0, LONG, 0.0, False, 0.5, 1.0) == 0.0
+
+
+@pytest.mark.parametrize("v", [-1e-18, -1e-15, -1e-12])
+def test_a_search_ends_with_the_epoch_of_the_clocks(v):
+    """It would take 1e11 to 1e17 periods to the face."""
+    for sine in (True, False):
+        assert time_to_vibrating(1.0, v, 0.0, (3.0, 500.0), 0.3, sine, 0.5, 1.0) == math.inf

@@ -51,18 +51,22 @@ def time_to_sine(gap, closing, most):
 
 
 @kernel
-def time_to_vibrating(x, v, a, clock, at, sine, stroke, period):
+def time_to_vibrating(x, v, a, clocks, at, sine, stroke, period):
     """Time until a particle of height x, inward velocity v and acceleration a touches a vibrating face, and
-    approaches it; inf if it never does. clock: the time since that of the clocks' epoch began; at: the time
-    of the face's period; both are those of x and v.
+    approaches it; inf if it never does, or not before the clocks' epoch ends. clocks: the time since that
+    epoch began, and its length; at: the time of the face's period; both times are those of x and v.
+
+    All is predicted anew in the next epoch. Without that end, a particle that comes to the stroke at 1e-16
+    of its former speed would be searched for in 1e16 periods, whose phases rounding decides.
 
     Above the stroke the particle flies on to it. Within it, each step of the search ends before the first
     contact, however the face moves, so that none is passed over: one with the largest acceleration of the
     face converges to the contact quadratically, as Newton's steps do.
     """
     largest = 0.5 * stroke * (TURN / period) * (TURN / period) + abs(a)
+    clock, epoch = clocks
     time = 0.0
-    while True:
+    while clock + time <= epoch:
         height, velocity = flown(x, v, a, time), v + a * time
         if height > stroke:
             step, meets = time_to_side(height - stroke, -velocity, -a), False
@@ -80,6 +84,7 @@ def time_to_vibrating(x, v, a, clock, at, sine, stroke, period):
             step = _RESOLVED * (clock + time + period)
         time += step
         at = (at + step) % period
+    return inf
 
 
 @inner_helper
@@ -118,7 +123,8 @@ def next_vibrating(particles, i, axis, boxes, space, gravity, motion):
             period = motion.period[face]
             at = (motion.begun[face] + flight.clock) % period
             sine, stroke = motion.sine[face], motion.stroke[face]
-            time = flight.clock + time_to_vibrating(x, v, a, flight.clock, at, sine, stroke, period)
+            clocks = flight.clock, motion.epoch[0]
+            time = flight.clock + time_to_vibrating(x, v, a, clocks, at, sine, stroke, period)
             if time < soon:
                 soon, code = time, face
     return soon, code
