@@ -249,8 +249,8 @@ def test_an_overlay_changes_no_other_experiment_that_an_alias_shares(tmp_path):
 
 
 def test_all_that_gaspart_imports_and_reads_comes_with_it():
-    """`pip install .` alone, without the extra of the workflow, gives every command all it needs; only the
-    report, which no command makes, needs that extra."""
+    """`pip install .` and the extras of single features, without that of the workflow, give every command all
+    it needs; only the report, which no command makes, needs that extra."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     distributions = packages_distributions()
     own = {*sys.stdlib_module_names, "gaspart", "_typeshed"}
@@ -263,7 +263,9 @@ def test_all_that_gaspart_imports_and_reads_comes_with_it():
                 needed |= {alias.name.split(".")[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
                 needed.add(node.module.split(".")[0])
-    names = {re.split("[<>=]", name)[0].lower() for name in project["project"]["dependencies"]}
+    extras = project["project"]["optional-dependencies"]
+    required = sum((extras[name] for name in ("film", "order", "gsd")), project["project"]["dependencies"])
+    names = {re.split("[<>=]", name)[0].lower() for name in required}
     for module in needed - own - {"coverage", "cycler", "PIL"}:  # the last two come with matplotlib
         assert {name.lower() for name in distributions[module]} & names, module
     packed = project["tool"]["setuptools"]["package-data"]

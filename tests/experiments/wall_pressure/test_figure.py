@@ -41,7 +41,7 @@ def test_pressures_against_temperature_and_density_and_their_deviation(tmp_path)
                 own["pressure_error"] * corrected,
             ),
         ]  # fmt: skip
-    shows(densities, "packing fraction", "P/", *expected)
+    shows(densities, "", "P/", *expected)  # the label is below the residuals
     obeys(lines(densities)[0], lambda eta: theory.compressibility_factor(eta, 2))
     obeys(lines(densities)[1], lambda eta: theory.compressibility_factor(eta, 3))
     shows(
