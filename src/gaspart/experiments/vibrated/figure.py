@@ -17,7 +17,7 @@ from gaspart.rendering import style
 
 def vibrated_bed(ds: xr.Dataset) -> Figure:
     """Two panels: temperature over theory's, with fits, and density profiles of the most elastic beds."""
-    figure, (upper, lower) = style.new(rows=2, height=4.6, share_x=False)
+    figure, (upper, lower) = style.new((2.4,), (2.4,))
     style.level(upper, 1.0)
     heights = np.linspace(0.0, float(ds["place"].max()), 100)
     lower.plot(heights, np.exp(-heights), color=style.REFERENCE, label=r"$e^{-gz/T}$")
