@@ -202,7 +202,7 @@ JOB = """
     folder, script = Path(sys.argv[1]), sys.argv[2]
     scene = {"container": {"lengths": [9.0, 9.0]}, "species": [{"count": 9, "radius": 0.5, "speed": 1.0}]}
     recipe = {"scene": scene, "engine": {"name": "event"}, "seeds": [[1], [2]], "duration": 1e9}
-    recipe |= {"sample_interval": 1e6, "displacements": False, "follow": None}
+    recipe |= {"sample_interval": 1e6, "displacements": False, "follow": None, "correlations": None}
     snakemake = SimpleNamespace(
         rule="simulate", wildcards=["gas"], log=[str(folder / "log")], output=[str(folder / "point")],
         params=SimpleNamespace(recipe=recipe),
@@ -217,7 +217,8 @@ def test_a_job_of_the_workflow_ends_with_a_checkpoint(tmp_path):
     process = subprocess.Popen(
         [sys.executable, "-c", textwrap.dedent(JOB), tmp_path, script], text=True, stderr=subprocess.PIPE
     )
-    wait_for((tmp_path / "point.partial/replica-0.nc.partial").exists)
+    begun = tmp_path / "point.partial/replica-0.nc.partial"
+    wait_for(lambda: begun.exists() or process.poll() is not None)
     time.sleep(3.0)
     process.send_signal(signal.SIGTERM)
     printed = process.communicate(timeout=120)[1]

@@ -7,6 +7,9 @@ rule draw:
     output:
         png=flagged("results/figures/{figure}.png", "png"),
         svg=flagged("results/figures/{figure}.svg", "svg"),
+        # The same for a column of a journal. The report shows these pictures on narrow screens.
+        journal_png="results/figures/journal/{figure}.png",
+        journal_pdf="results/figures/journal/{figure}.pdf",
     log:
         "results/logs/draw/{figure}.log",
     benchmark:
@@ -20,25 +23,9 @@ rule draw:
     params:
         modules=lambda wildcards: digest(*sources("draw", family(wildcards))),
         family=family,
-        layout="page",
         caption=caption_of,
     script:
         "../scripts/draw.py"
-
-
-# The same for a column of a journal. The report shows these pictures on narrow screens.
-use rule draw as draw_for_journal with:
-    output:
-        pdf="results/figures/journal/{figure}.pdf",
-        png="results/figures/journal/{figure}.png",
-    log:
-        "results/logs/draw_for_journal/{figure}.log",
-    benchmark:
-        "results/benchmarks/draw_for_journal/{figure}.tsv"
-    params:
-        modules=lambda wildcards: digest(*sources("draw", family(wildcards))),
-        family=family,
-        layout="journal",
 
 
 rule report:

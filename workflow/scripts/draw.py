@@ -1,4 +1,4 @@
-"""One figure in one layout, in the format of each output; the log states what cannot be read in it."""
+"""One figure in both layouts; the log states what cannot be read in it."""
 
 from _job import function, job
 
@@ -8,11 +8,14 @@ with job(snakemake):
     from gaspart.rendering import style
     from gaspart.rendering.legibility import flaws
 
-    figure, params = snakemake.wildcards.figure, snakemake.params
+    figure, output = snakemake.wildcards.figure, snakemake.output
+    draw = function(f"gaspart.experiments.{snakemake.params.family}.figure", figure)
     dataset = xr.load_dataset(snakemake.input.dataset)
-    with style.applied(params.layout):
-        picture = function(f"gaspart.experiments.{params.family}.figure", figure)(dataset)
-        for path in snakemake.output:
-            style.save(picture, path)
-    for flaw in flaws(picture):
-        print(f"not legible: {figure}, {params.layout}: {flaw}")
+    pictures = {"page": (output.png, output.svg), "journal": (output.journal_png, output.journal_pdf)}
+    for layout, paths in pictures.items():
+        with style.applied(layout):
+            picture = draw(dataset)
+            for path in paths:
+                style.save(picture, path)
+        for flaw in flaws(picture):
+            print(f"not legible: {figure}, {layout}: {flaw}")

@@ -43,12 +43,14 @@ _PASSES = 5
 def place_legends(figure: Figure) -> None:
     """Move each legend that covers data: to a free place of its panel, or to room made by extending the
     vertical axis, or else above the panel. The figure then keeps its layout."""
+    layout = figure.get_layout_engine()
+    assert layout
     for _ in range(_PASSES):
-        figure.draw_without_rendering()
+        layout.execute(figure)
         moved = [_moved(axis) for axis in figure.axes if axis.get_legend()]
         if not any(moved):
             break
-    figure.draw_without_rendering()  # ticks follow the size of a panel, and the layout follows them
+    layout.execute(figure)  # ticks follow the size of a panel, and the layout follows them
     figure.set_layout_engine("none")
 
 
