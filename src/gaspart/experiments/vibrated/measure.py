@@ -74,7 +74,7 @@ def read_run(point: grid.Point, path: str, settings: dict) -> dict[str, Any]:
     gravity, radius = -scene.gravity[1], scene.species[0].radius
     with open_trajectory(path) as trajectory:
         velocities = trajectory["velocities"].values[first:].astype(float)
-        heights = trajectory["positions"].values[first:, :, 1].astype(float) - radius
+        heights = trajectory["coordinates"].values[first:, :, 1].astype(float) - radius
         time = trajectory["time"].values[first:]
         given = -trajectory["wall_energy"].values[first:, _FLOOR]
         lost = trajectory["dissipated_energy"].values[first:]
