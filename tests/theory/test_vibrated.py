@@ -29,6 +29,23 @@ def test_the_loss_is_that_of_the_contacts_of_an_exponential_atmosphere():
     assert lost == pytest.approx(theory.bed_loss(LAYERS, E) * LAYERS * GRAVITY * math.sqrt(TEMPERATURE))
 
 
+def test_the_first_order_in_the_density_is_that_of_discs_in_hydrostatic_equilibrium():
+    """Heights follow from dP = -n g dz with P = n T (1 + 2 eta); contacts are as frequent as n^2 g(d)."""
+    eta = 1e-4
+
+    def over_heights(function):
+        """Integral over the bed of f(x), x the packing fraction at a height; dz = -dP / n, g = T = 1."""
+        bottom = 0.5 * (math.sqrt(1.0 + 8.0 * eta) - 1.0) / 2.0  # x (1 + 2 x) = eta
+        return quad(lambda x: function(x) * (1.0 + 4.0 * x) / x, 0.0, bottom, epsabs=0.0)[0]
+
+    contact = 0.5 * theory.virial_coefficients(2)[0][2]
+    pairs = over_heights(lambda x: x * x * (1.0 + contact * x)) / (0.5 * eta**2)
+    dense, dilute = (theory.bed_loss(LAYERS, E, x) - theory.bed_loss(0.0, E) for x in (eta, 0.0))
+    assert dense / dilute - 1.0 == pytest.approx(pairs - 1.0, rel=1e-3)
+    mean = over_heights(lambda x: x * (1.0 + 2.0 * x)) / eta  # of z n: the integral of P over the weight
+    assert theory.bed_height(eta) - 1.0 == pytest.approx(mean - 1.0, rel=1e-3)
+
+
 def test_the_power_of_a_sine_is_that_of_particles_that_meet_it_at_random():
     """A floor of velocity u is met at the rate n (u - v) f(v), and gives 2 u (u - v) each time."""
     amplitude = 0.02

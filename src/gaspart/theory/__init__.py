@@ -121,7 +121,7 @@ from gaspart.theory.state import (
     speed_of_sound,
     virial_with_tail,
 )
-from gaspart.theory.vibrated import bed_loss, sawtooth_temperature, sine_temperature
+from gaspart.theory.vibrated import bed_height, bed_loss, sawtooth_temperature, sine_temperature
 from gaspart.theory.virial import (
     HIGHEST_ORDER,
     linear_tail,
@@ -154,6 +154,7 @@ __all__ = [
     "Relaxation",
     "alder_hoover_young_crystal",
     "available_fraction",
+    "bed_height",
     "bed_loss",
     "body_volume",
     "carnahan_starling",

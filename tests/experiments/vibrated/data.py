@@ -13,7 +13,7 @@ def beds(limit=1.0, given=1.0, lost=1.0, height=1.0, restitutions=(0.99, 0.98, 0
     sine = np.repeat([0, 1], len(restitutions))
     place = np.arange(0.25, 4.0, 0.5)
     known = {"sine": sine, "restitution": e, "layers": np.full(e.size, 2.0), "speed": 0.3 + 0.1 * sine}
-    known["temperature"] = np.ones(e.size)
+    known["packing_fraction"] = np.full(e.size, 0.008)
     ds = xr.Dataset({key: ("bed", values) for key, values in known.items()}, {"place": ("bin", place)})
     x, unit = small_parameter(ds), expected_temperature(ds)
     columns = {
@@ -23,7 +23,7 @@ def beds(limit=1.0, given=1.0, lost=1.0, height=1.0, restitutions=(0.99, 0.98, 0
         "given_error": 0.001 * known["speed"],
         "lost": lost * given * known["speed"],
         "lost_error": 0.002 * known["speed"],
-        "height": np.full(e.size, height),
+        "height": np.full(e.size, 1.008 * height),
         "height_error": np.full(e.size, 0.004),
     }
     density = np.tile(np.exp(-place), (e.size, 1))

@@ -27,7 +27,8 @@ def test_the_flows_of_energy_and_the_profile_of_a_bed(tmp_path):
     """A sawtooth gives its speed times the weight; what it gives is lost in contacts."""
     point = made(tmp_path, "bed", bed("sawtooth"), duration=600.0, samples=60, equilibration=200.0)
     ds = measure.vibrated_bed([point], SETTINGS).isel(bed=0)
-    assert (ds["sine"], ds["restitution"], ds["layers"], ds["speed"]) == (0, 0.9, 2.0, pytest.approx(1.0))
+    assert (ds["sine"], ds["restitution"], ds["layers"], ds["speed"]) == (0, 0.9, 1.9, pytest.approx(1.0))
+    assert ds["packing_fraction"] == pytest.approx(0.25 * np.pi * 2.0 / ds["temperature"])
     assert ds["given"] == pytest.approx(1.0, abs=4.0 * float(ds["given_error"]) + 1e-3)
     assert ds["given_error"] < 0.05
     assert ds["lost"] == pytest.approx(float(ds["given"]), abs=0.1)

@@ -20,7 +20,8 @@ def vibrated_bed(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """Temperature, energy flows and density of vibrated beds of one kind of discs, of mass 1.
 
     settings: `bins` of the density profile, and `highest`, the height up to which it reaches, over T/g.
-    Returns over `bed`: sine, 1 if the floor is one, 0 for a sawtooth; restitution; layers, N d / width;
+    Returns over `bed`: sine, 1 if the floor is one, 0 for a sawtooth; restitution; layers, (N - 1) d /
+    width; packing_fraction that an ideal gas of the measured temperature has at the floor;
     speed, that of the sawtooth or the rms speed of the sine; temperature, of both components; given and
     lost, the energies per time that the floor gives and contacts take, over the weight; height, the mean
     height above the floor's lowest place times g over the vertical temperature; and over (bed, bin) density,
@@ -47,12 +48,12 @@ def _edges(settings: dict) -> np.ndarray:
 def _bed(point: grid.Point, settings: dict) -> dict[str, Any]:
     scene = grid.scene(point)
     floor, species, law = scene.faces["y_low"], scene.species[0], scene.restitution
-    assert isinstance(floor, Vibrating) and law is not None
-    sine = floor.waveform == "sine"
+    assert isinstance(floor, Vibrating) and law is not None and scene.gravity is not None
+    width, sine = scene.container.lengths[0], floor.waveform == "sine"
     row: dict[str, Any] = {
         "sine": int(sine),
         "restitution": law.normal,
-        "layers": species.count * 2.0 * species.radius / scene.container.lengths[0],
+        "layers": (species.count - 1) * 2.0 * species.radius / width,
         "speed": floor.greatest_speed / math.sqrt(2.0) if sine else floor.greatest_speed,
     }
     runs = [read_run(point, path, settings) for path in point.replica_paths]
@@ -64,6 +65,8 @@ def _bed(point: grid.Point, settings: dict) -> dict[str, Any]:
         else:
             row[name] = values.mean(axis=0)
             row[f"{name}_error"] = values.std(axis=0, ddof=1) / math.sqrt(len(values))
+    weight = species.count * -scene.gravity[1] / width
+    row["packing_fraction"] = math.pi * species.radius**2 * weight / row["temperature"]
     return row
 
 
