@@ -31,9 +31,9 @@ def _bed_of(ds: xr.Dataset) -> tuple[np.ndarray, ...]:
 
 def expected_temperature(ds: xr.Dataset) -> np.ndarray:
     """The temperature of each bed where that parameter is small."""
-    sawtooth, sine = theory.sawtooth_temperature(*_bed_of(ds)), theory.sine_temperature(*_bed_of(ds))
-    of_square: np.ndarray = np.where(ds["sine"].values == 1, sine, sawtooth)
-    return of_square * ds["speed"].values ** 2
+    sawtooth = np.asarray(theory.sawtooth_temperature(*_bed_of(ds)))
+    sine = np.asarray(theory.sine_temperature(*_bed_of(ds)))
+    return np.where(ds["sine"].values == 1, sine, sawtooth) * ds["speed"].values ** 2
 
 
 def extrapolation(ds: xr.Dataset) -> Fit:
