@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
@@ -14,9 +14,10 @@ from gaspart.errors import SceneError
 from gaspart.rendering.labels import labelled
 from gaspart.rendering.particles import DrawnParticles, colours_of, legend_of
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
+from gaspart.scene.faces import Vibrating
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of
-from gaspart.scene.walls import Plate, Wall
+from gaspart.scene.walls import Wall
 from gaspart.simulation.simulation import Simulation
 from gaspart.state.state import State
 from gaspart.trajectory.run import open_trajectory
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
 
 Source: TypeAlias = "str | Path | xr.Dataset | Simulation | State"
 """What pictures are made of: a trajectory, by its path or open, a simulation or a state."""
+_CORNERS = {2: ((0,), (1,)), 3: ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))}
+"""Of a face, in a container whose sides are 1, along the outline."""
 
 
 def render(
@@ -96,7 +99,7 @@ def particles_of(source: State | Simulation | xr.Dataset, frame: int = -1) -> Dr
         species=source["type"].values,
         speeds=np.sqrt((velocities**2).sum(axis=1)),
         lengths=shown["cell_lengths"].values[: positions.shape[1]],
-        walls=_sides(scene.walls, scene.dimension),
+        walls=_walls(scene, float(shown["time"])),
         periodic=scene.container.periodic,
     )
 
@@ -106,20 +109,28 @@ def _time_of(source: State | Simulation | xr.Dataset, frame: int) -> float:
 
 
 def _of_state(state: State, scene: Scene | None) -> DrawnParticles:
-    walls = _sides(scene.walls if scene else (), state.dimension)
+    walls = _walls(scene, state.time) if scene else np.zeros((0, 2, state.dimension))
     periodic = scene.container.periodic if scene else (False,) * state.dimension
     return DrawnParticles(
         state.positions, state.radii, state.species, state.speeds, state.lengths, walls, periodic
     )
 
 
-def _sides(walls: Iterable[Wall | Plate], dimension: int) -> np.ndarray:
-    """(M, 2, d) the segments, and the four sides of each plate."""
+def _walls(scene: Scene, time: float) -> np.ndarray:
+    """(M, 2, d) the segments, the four sides of each plate, and those of the faces that vibrate."""
     found: list[tuple] = []
-    for wall in walls:
+    for wall in scene.walls:
         if isinstance(wall, Wall):
             found.append((wall.start, wall.end))
         else:
             corner, one, other, far = wall.corners.values()
             found += pairwise((corner, one, far, other, corner))
-    return np.array(found, dtype=float).reshape(-1, 2, dimension)
+    lengths = np.array(scene.container.lengths)
+    for name, face in scene.faces.items():
+        if isinstance(face, Vibrating):
+            axis = "xyz".index(name[0])
+            place = face.place(time)
+            corners = np.array(_CORNERS[scene.dimension]) * np.delete(lengths, axis)
+            corners = np.insert(corners, axis, lengths[axis] - place if "high" in name else place, axis=1)
+            found += pairwise(corners)
+    return np.array(found, dtype=float).reshape(-1, 2, scene.dimension)

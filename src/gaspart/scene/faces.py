@@ -114,6 +114,13 @@ class Vibrating:
         """The greatest acceleration of the wall, apart from the return of the sawtooth."""
         return 2.0 * math.pi * self.greatest_speed / self.period if self.waveform == "sine" else 0.0
 
+    def place(self, time: float) -> float:
+        """How far the wall has moved inwards at a time, for pictures."""
+        turns = math.fmod(time, self.period) / self.period
+        if self.waveform == "sawtooth":
+            return 2.0 * self.amplitude * turns
+        return self.amplitude * (1.0 - math.cos(2.0 * math.pi * turns))
+
 
 Surface = Thermal | Well | Sticky | Vibrating
 KINDS: dict[str, type[Surface]] = {surface.kind: surface for surface in (Thermal, Well, Sticky, Vibrating)}
