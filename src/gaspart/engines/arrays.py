@@ -30,6 +30,7 @@ from gaspart.state.wells import places_in_wells, well_energies, wells_of
 if TYPE_CHECKING:
     from gaspart.state.boxes import Boxes
 
+_BISECTIONS = 100  # until neighbouring numbers enclose the damping of viscoelastic particles
 _ROOM = 4096  # capacity of the record, in events
 _WALL_DRAWS = 2  # the purpose of the random numbers of thermal walls, after those of the initial state
 
@@ -56,7 +57,25 @@ def contact_law(scene: Scene, state: State) -> ContactLaw | None:
     if modes.any() and state.vibrations is not None:
         vibrations = np.where(modes, state.vibrations, -1.0)
     inverses = 1 / state.masses, 1 / state.moments_of_inertia
-    return ContactLaw(rule.normal, rule.tangential, *inverses, spins, vibrations, None)
+    return ContactLaw(rule.normal, rule.tangential, _viscous(scene), *inverses, spins, vibrations, None)
+
+
+def _viscous(scene: Scene) -> float | None:
+    """The constant of viscoelastic particles, from the restitution of two of the first species, or else of
+    the first body; None if the restitution is constant."""
+    rule = scene.restitution
+    if rule is None or rule.reference_speed is None:
+        return None
+    from gaspart.kernels.viscoelastic import fifth_root, restitution_of
+
+    first = (scene.species or scene.bodies)[0]
+    least, most = 0.0, 1.0
+    while restitution_of(most) > rule.normal:
+        most *= 2.0
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (least + most)
+        least, most = (middle, most) if restitution_of(middle) > rule.normal else (least, middle)
+    return most / fifth_root(rule.reference_speed * 0.5 * first.radius * (2.0 / first.mass) ** 2)
 
 
 def contact_duration(scene: Scene) -> ContactDuration | None:

@@ -57,6 +57,7 @@ def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
     falls, none = scene.gravity is not None, "this one has none"
     for key, value, what in (
         ("restitution", law if law and law.normal < 1.0 and falls else None, "with gravity, " + none),
+        ("restitution.reference_speed", law.reference_speed if law else None, none),
         ("restitution.contact_duration", law.contact_duration or None if law else None, none),
         ("thermostat", scene.thermostat, none),
         ("walls", scene.walls or None, none),

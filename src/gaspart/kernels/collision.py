@@ -12,6 +12,7 @@ from gaspart.kernels.contact_duration import keep, restitution_at_wall, restitut
 from gaspart.kernels.model import LOSS
 from gaspart.kernels.periodic import nearest
 from gaspart.kernels.running_sum import add
+from gaspart.kernels.viscoelastic import normal_restitution
 
 LEAST = (
     2.0**-48
@@ -96,11 +97,11 @@ def slip(velocity, spin, normal):
 
 
 @inner_helper
-def lose(approach, mobility, normal, law, tally):
-    """Count the energy that the normal part of a contact takes, with this restitution; and what that of the
-    law would have taken more."""
+def lose(approach, mobility, normal, usual, law, tally):
+    """Count the energy that the normal part of a contact takes, with this restitution; and what the `usual`
+    one would have taken more."""
     add(tally.sums, LOSS, 0.5 * (1.0 - normal * normal) * approach * approach / mobility)
-    keep(0.5 * (normal * normal - law.normal * law.normal) * approach * approach / mobility, law.duration)
+    keep(0.5 * (normal * normal - usual * usual) * approach * approach / mobility, law.duration)
 
 
 @inner_helper
@@ -157,19 +158,21 @@ def collide_by_law(flights, i, j, rr, rv, space, tally, law):
     )
     least = LEAST * max(fastest_component(flights, i, space), fastest_component(flights, j, space))
     approach = -rv / length
-    normal_part, tangential_part = restitution_of_pair(flights, i, j, law, law.duration)
+    radius_i, radius_j = flights[i].radius, flights[j].radius
+    radius = radius_i * radius_j / (radius_i + radius_j)
+    usual = normal_restitution(approach, radius, mobility, law.normal, law.viscous)
+    normal_part, tangential_part = restitution_of_pair(flights, i, j, usual, law, law.duration)
     parting = exchange_with_vibration(i, j, approach, mobility, law.vibrations)
     if parting >= 0.0:
         impulse = (approach + max(parting, least)) / mobility
     else:
         impulse = normal_change(approach, normal_part, least) / mobility
-    lose(approach, mobility, normal_part, law, tally)
+    lose(approach, mobility, normal_part, usual, law, tally)
     if law.tangential > -1.0:
         a, b = velocity_of(flights, i, space), velocity_of(flights, j, space)
         s, t = spin_of(flights, i, law), spin_of(flights, j, law)
         velocity = (a[0] - b[0], a[1] - b[1], a[2] - b[2])
         sliding = slip(velocity, (s[0] + t[0], s[1] + t[1], s[2] + t[2]), normal)
-        radius_i, radius_j = flights[i].radius, flights[j].radius
         lever = radius_i * radius_i * law.inverse_inertia[i] + radius_j * radius_j * law.inverse_inertia[j]
         friction = rub(sliding, mobility, lever, tangential_part, law, tally)
         push(flights, i, mobility_i, friction, space)
@@ -188,11 +191,12 @@ def collide_wall_by_law(flights, i, normal, least, space, tally, law):
     mobility = law.inverse_mass[i]
     velocity = velocity_of(flights, i, space)
     approach = normal[0] * velocity[0] + normal[1] * velocity[1] + normal[2] * velocity[2]
-    normal_part, tangential_part = restitution_at_wall(flights, i, law, law.duration)
+    radius = flights[i].radius
+    usual = normal_restitution(approach, radius, mobility, law.normal, law.viscous)
+    normal_part, tangential_part = restitution_at_wall(flights, i, usual, law, law.duration)
     change = normal_change(approach, normal_part, least)
-    lose(approach, mobility, normal_part, law, tally)
+    lose(approach, mobility, normal_part, usual, law, tally)
     if law.tangential > -1.0:
-        radius = flights[i].radius
         lever = radius * radius * law.inverse_inertia[i]
         sliding = slip(velocity, spin_of(flights, i, law), normal)
         friction = rub(sliding, mobility, lever, tangential_part, law, tally)

@@ -24,8 +24,11 @@ def _elastic(law, duration):
 
 
 @inner_helper
-def restitution_of_pair(flights, i, j, law, duration):
-    """The (normal, tangential) restitution of a contact of two particles that have been advanced to it."""
+def restitution_of_pair(flights, i, j, normal, law, duration):
+    """The (normal, tangential) restitution of a contact of two particles that have been advanced to it.
+
+    normal: what the law alone gives.
+    """
     if duration is not None:
         time = flights[i].clock
         lasts = False
@@ -36,11 +39,11 @@ def restitution_of_pair(flights, i, j, law, duration):
             duration.met[particle] = time
         if lasts:
             return _elastic(law, duration)
-    return law.normal, law.tangential
+    return normal, law.tangential
 
 
 @inner_helper
-def restitution_at_wall(flights, i, law, duration):
+def restitution_at_wall(flights, i, normal, law, duration):
     """The same of a particle and a wall."""
     if duration is not None:
         time = flights[i].clock
@@ -48,7 +51,7 @@ def restitution_at_wall(flights, i, law, duration):
         duration.latest[i] = time
         if lasts:
             return _elastic(law, duration)
-    return law.normal, law.tangential
+    return normal, law.tangential
 
 
 @inner_helper

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from gaspart.scene.keys import NOT_NEGATIVE, between, declared, validate
+from gaspart.errors import SceneError
+from gaspart.scene.keys import NOT_NEGATIVE, POSITIVE, between, declared, validate
 
 
 @dataclass(frozen=True)
@@ -35,8 +36,20 @@ class Restitution:
         ),
     )
 
+    reference_speed: float | None = field(
+        default=None,
+        metadata=declared(
+            POSITIVE,
+            "with it particles are viscoelastic: `normal` is the restitution of two particles of the first "
+            "species that approach at this normal speed; slower contacts take less",
+        ),
+    )
+
     def __post_init__(self) -> None:
         validate(self)
+        if self.reference_speed is not None and not 0.0 < self.normal < 1.0:
+            rule = "must be between 0 and 1, both excluded, with a reference_speed"
+            raise SceneError("normal", self.normal, rule)
 
     @property
     def smooth_and_elastic(self) -> bool:

@@ -1,0 +1,113 @@
+"""Viscoelastic particles: single contacts, their scaling, and the energy of many."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from referee import events_of, same_bits
+
+import gaspart as gp
+from gaspart.kernels.viscoelastic import fifth_root, restitution_of
+
+LAW = gp.Restitution(0.8, -0.5, reference_speed=2.0)
+ROOM = gp.Container((40.0, 40.0))
+
+
+def damping_of(restitution):
+    """The damping that has this restitution, by bisection."""
+    low, high = 0.0, 100.0
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if restitution_of(middle) > restitution else (low, middle)
+    return low
+
+
+def pair(speed, radii=(0.5, 0.5), masses=(1.0, 1.0)):
+    """Two discs that approach each other centrally; the first species only sets the scale."""
+    bodies = [
+        gp.Body((20.0 - 2.0, 20.0), (speed, 0.0), radii[0], masses[0]),
+        gp.Body((20.0 + 2.0, 20.0), (0.0, 0.0), radii[1], masses[1]),
+    ]
+    return gp.Scene(ROOM, [gp.Species(0, 0.5)], bodies=bodies, restitution=LAW)
+
+
+def parted(scene):
+    """Relative speed after the first contact over that before."""
+    sim = gp.Simulation(scene, gp.EventDriven())
+    before = sim.state.velocities[1, 0] - sim.state.velocities[0, 0]
+    sim.advance(max_events=1)
+    return -(sim.state.velocities[1, 0] - sim.state.velocities[0, 0]) / before
+
+
+@pytest.mark.parametrize(("factor", "damped"), [(1.0, 1.0), (32.0, 2.0), (1 / 32.0, 0.5), (1e-10, 0.01)])
+def test_the_damping_grows_as_the_fifth_root_of_the_speed(factor, damped):
+    expected = restitution_of(damped * damping_of(0.8))
+    assert parted(pair(2.0 * factor)) == pytest.approx(expected, rel=1e-13)
+
+
+def test_the_damping_depends_on_radii_and_masses():
+    """As (R_eff / m_eff^2)^(1/5); a particle at a wall has its own radius and mass."""
+    radius, mass = 0.3 * 1.2 / 1.5, 2.0 * 5.0 / 7.0
+    factor = fifth_root(radius / mass**2 / (0.25 / 0.5**2))
+    found = parted(pair(2.0, (0.3, 1.2), (2.0, 5.0)))
+    assert found == pytest.approx(restitution_of(factor * damping_of(0.8)), rel=1e-13)
+    body = gp.Body((20.0, 2.0), (0.0, -2.0), 0.3, mass=2.0)
+    sim = gp.Simulation(
+        gp.Scene(ROOM, [gp.Species(0, 0.5)], bodies=[body], restitution=LAW), gp.EventDriven()
+    )
+    sim.advance(max_events=1)
+    factor = fifth_root(0.3 / 2.0**2 / (0.25 / 0.5**2))
+    expected = 2.0 * restitution_of(factor * damping_of(0.8))
+    assert sim.state.velocities[0, 1] == pytest.approx(expected, rel=1e-13)
+
+
+@st.composite
+def lossy(draw):
+    """Discs of two sizes, rough and viscoelastic, between walls."""
+    species = [
+        gp.Species(draw(st.integers(1, 12)), radius, mass, temperature=1.0)
+        for radius, mass in ((0.4, 1.0), (draw(st.floats(0.1, 0.5)), draw(st.floats(0.1, 10.0))))
+    ]
+    normal, speed = draw(st.floats(0.5, 0.99)), draw(st.sampled_from([1.0, 30.0, 1e3]))
+    law = gp.Restitution(normal, draw(st.sampled_from([-0.5, 0.5])), reference_speed=speed)
+    return gp.Scene(gp.Container((8.0, 9.0)), species, restitution=law)
+
+
+@given(lossy(), st.integers(0, 2**32))
+def test_contacts_take_what_is_lost_and_all_searches_agree(scene, seed):
+    sim = events_of(scene, "boxes", 300, seed)
+    sim.check_invariants()
+    lost = sim.initial_state.energy - sim.state.energy
+    assert sim.tally.dissipated_energy == pytest.approx(lost, rel=1e-9, abs=1e-12)
+    assert lost > 0.0
+    assert same_bits(sim, events_of(scene, "direct", 300, seed))
+
+
+def test_splits_and_checkpoints_change_no_bit():
+    scene = gp.Scene(ROOM, [gp.Species(60, 0.5, temperature=1.0)], restitution=LAW)
+    whole, split = (gp.Simulation(scene, gp.EventDriven(), seed=3) for _ in range(2))
+    for end in (0.1, 5.0, 40.0):
+        split.advance(until=end)
+        again = gp.Simulation(scene, gp.EventDriven(), seed=3)
+        again.restore(split.checkpoint())
+        split = again
+    whole.advance(until=40.0)
+    assert np.array_equal(whole.state.velocities, split.state.velocities)
+    assert math.isfinite(whole.state.energy)
+
+
+def test_what_has_no_meaning_is_refused():
+    for normal in (0.0, 1.0):
+        with pytest.raises(gp.SceneError, match="normal.*between 0 and 1, both excluded"):
+            gp.Restitution(normal, reference_speed=1.0)
+    with pytest.raises(gp.SceneError, match="reference_speed.*must be positive"):
+        gp.Restitution(0.9, reference_speed=0.0)
+    with pytest.raises(gp.SceneError, match=r'restitution.reference_speed.*needs the "event" engine'):
+        gp.Simulation(pair(1.0), gp.TimeStepped(0.01))
+
+
+def test_a_scene_file_has_it(tmp_path):
+    pair(1.0).to_file(tmp_path / "scene.yaml")
+    assert gp.Scene.from_file(tmp_path / "scene.yaml") == pair(1.0)
