@@ -42,7 +42,7 @@ def add_run(parser: Parser) -> None:
     add("--engine", default="event", metavar="NAME", help="event (exact; the default) or step")
     add("--duration", type=float, required=True, metavar="T", help="in the scene's time")
     add("--sample-interval", type=float, required=True, metavar="T", help="the duration is a multiple of it")
-    add("--seed", type=integers, default=(1,), metavar="N[,N...]", help="default: 1")
+    add("--seed", type=integers, default=(0,), metavar="N[,N...]", help="default: 0")
     add(
         "--displacements",
         action="store_true",

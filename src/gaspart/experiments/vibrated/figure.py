@@ -35,7 +35,7 @@ def vibrated_bed(ds: xr.Dataset) -> Figure:
         e = float(bed["restitution"])
         label = rf"{name}, $\epsilon={e:g}$"
         style.points(lower, bed["place"], bed["density"], bed["density_error"], kind, label=label)
-    upper.set_xlim(left=0.0)
+    upper.set_xlim(0.0, 1.08 * small_parameter(ds).max())
     upper.set_xlabel(r"$(1-\epsilon^2)(\sqrt{\pi}\,(N-1)d/2W+1/\sqrt{2\pi})$")
     upper.set_ylabel(r"$T$ / energy balance")
     upper.legend()
