@@ -40,7 +40,7 @@ def bed_height(packing_fraction: Numbers) -> Values:
 
 
 def sawtooth_temperature(layers: Numbers, restitution: Numbers, packing_fraction: Numbers = 0.0) -> Values:
-    """T / V^2 over a floor that always moves up at the speed V: 1 / `bed_loss`^2.
+    """T / V^2 over a floor that always moves up at the speed V: the inverse square of `bed_loss`.
 
     Its power is N g V exactly, V times the mean force, which is the weight. The next order is V / sqrt(T) =
     `bed_loss`.
