@@ -24,6 +24,7 @@ from gaspart.kernels.step import resolve as step_contacts
 from gaspart.trajectory.correlator import Correlator
 
 PYTHON = bool(numba.config.DISABLE_JIT)
+VISCOUS = gp.Restitution(0.8, 0.4, reference_speed=1.0)
 ROUGH, METAL = gp.Restitution(0.95, 0.4), gp.Restitution(1.0, 0.5)
 FINE = {"big": (6, 6, 5), "big and rough": (12, 10)}  # boxes too narrow for the big particles
 
@@ -61,6 +62,7 @@ def event_scenes():
         "thermal": gp.Scene(box, two, gravity=(0.0, -0.5), restitution=ROUGH, faces=warm),
         "holding": gp.Scene(room, two, faces=low | high),
         "vibrating": gp.Scene(box, two, gravity=down, restitution=ROUGH, faces=shaking),
+        "viscoelastic": gp.Scene(box, [*two, fixed], restitution=VISCOUS),
         "metal": gp.Scene(box, electrons, restitution=METAL, faces=heat),
         "big": gp.Scene(room, [small, large]),
         "big and rough": gp.Scene(box, [small, large], gravity=down, restitution=METAL, walls=cross),
