@@ -5,8 +5,8 @@ the time. In the TC model (Luding & McNamara, Granular Matter 1, 113 (1998)) a c
 particles have had no other for a time t_c, the duration of a contact of real particles; otherwise it is
 elastic. Contacts with walls count as well; a fixed particle is a wall.
 
-Elastic here means: normal restitution 1, and no friction, unless the particles are perfectly rough, which is
-elastic too.
+Elastic here means: normal restitution 1, and no friction, not even of perfectly rough particles, which would
+lose nothing: in a corner those exchange spin and velocity for ever, without leaving it (no-slip billiards).
 """
 
 from gaspart.kernels.compilation import inner_helper
@@ -17,10 +17,10 @@ SHORTEST = 2.0**-7
 
 
 @inner_helper
-def _elastic(law, duration):
+def _elastic(duration):
     """Count an elastic contact. Returns its (normal, tangential) restitution."""
     duration.elastic[0] += 1
-    return 1.0, (1.0 if law.tangential == 1.0 else -1.0)
+    return 1.0, -1.0
 
 
 @inner_helper
@@ -38,7 +38,7 @@ def restitution_of_pair(flights, i, j, normal, law, duration):
                 duration.latest[particle] = time
             duration.met[particle] = time
         if lasts:
-            return _elastic(law, duration)
+            return _elastic(duration)
     return normal, law.tangential
 
 
@@ -50,7 +50,7 @@ def restitution_at_wall(flights, i, normal, law, duration):
         lasts = time - duration.latest[i] < duration.length
         duration.latest[i] = time
         if lasts:
-            return _elastic(law, duration)
+            return _elastic(duration)
     return normal, law.tangential
 
 
