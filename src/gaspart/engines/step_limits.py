@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaspart.engines.vibration import vibrating_faces
 from gaspart.errors import SceneError, SimulationError
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.scene import Scene
@@ -61,7 +62,7 @@ def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
         ("restitution.contact_duration", law.contact_duration or None if law else None, none),
         ("thermostat", scene.thermostat, none),
         ("walls", scene.walls or None, none),
-        ("faces", next((face for face in scene.faces.values() if face.kind == "vibrating"), None), none),
+        ("faces", next((face for _, face in vibrating_faces(scene)), None), none),
         ("fixed", True if fixed and falls else None, "this one has no fixed particles under gravity"),
     ):
         if value is not None:

@@ -1,16 +1,8 @@
 import pytest
 from experiments.driven_gas.data import driven
+from experiments.judged import verdicts
 
-from gaspart.claims import judge
 from gaspart.experiments.driven_gas.claims import driven_gas
-
-
-def verdicts(claims, beginning=""):
-    return {
-        verdict
-        for claim, verdict in zip(claims, judge(claims), strict=True)
-        if claim.claim.startswith(beginning)
-    }
 
 
 def test_right_data_agree():

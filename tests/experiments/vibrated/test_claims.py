@@ -1,16 +1,8 @@
 import pytest
+from experiments.judged import verdicts
 from experiments.vibrated.data import beds
 
-from gaspart.claims import judge
 from gaspart.experiments.vibrated.claims import vibrated_bed
-
-
-def verdicts(claims, beginning=""):
-    return {
-        verdict
-        for claim, verdict in zip(claims, judge(claims), strict=True)
-        if claim.claim.startswith(beginning)
-    }
 
 
 def test_right_data_agree():
