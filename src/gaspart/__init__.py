@@ -31,6 +31,7 @@ _HOMES = {
     "Thermostat": "scene.thermostat",
     "Thermal": "scene.faces",
     "TimeStepped": "engines",
+    "Piston": "scene.faces",
     "Vibrating": "scene.faces",
     "Wall": "scene.walls",
     "Well": "scene.faces",

@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaspart.engines.piston import piston_of
 from gaspart.engines.vibration import motion_of
 from gaspart.kernels.model import (
     HARD,
+    PISTON,
     STICKY,
     THERMAL,
     THERMAL_NORMAL,
@@ -18,7 +20,7 @@ from gaspart.kernels.model import (
     Faces,
     InteriorWalls,
 )
-from gaspart.scene.faces import FACES, Sticky, Thermal, Vibrating, Well
+from gaspart.scene.faces import FACES, Piston, Sticky, Thermal, Vibrating, Well
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene
 from gaspart.state.insertion import per_body
@@ -105,6 +107,8 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
                 kind, level = STICKY, momentum
             case Vibrating():
                 kind, level = VIBRATING, 0.0
+            case Piston():
+                kind, level = PISTON, 0.0
             case _:
                 kind, level = HARD, 0.0
         kinds.append(kind)
@@ -120,6 +124,7 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
         draws=np.zeros(state.count, dtype=np.int64),
         key=key_of(seed, _WALL_DRAWS),
         motion=motion_of(scene),
+        piston=piston_of(scene, state, unit_mass),
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from gaspart.engines.arrays import face_energy
 from gaspart.engines.vibration import greatest_speed
+from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 
 _LENGTH = 10  # an epoch of the clocks is some 2^10 times of flight over a diameter
@@ -18,13 +19,15 @@ QUIET = 64
 
 
 def _speed(scene: Scene, velocities: np.ndarray, lightest: float) -> float:
-    """The speed for times of flight: the rms speed, with the largest gain by gravity and walls."""
+    """The speed for times of flight: the rms speed, with the largest gain by gravity and walls, among them
+    twice the speed that its load gives a piston."""
     square = float((velocities**2).sum(axis=1).mean()) if len(velocities) else 0.0
     if scene.gravity is not None:  # the square of the speed gained in a fall
         lengths = scene.container.lengths
         square += 2.0 * sum(abs(g) * length for g, length in zip(scene.gravity, lengths, strict=True))
     if scene.faces and len(velocities):  # and of the speed gained at a wall
         square += face_energy(scene) / lightest + (2.0 * greatest_speed(scene)) ** 2
+        square += sum(8.0 * face.pressure * scene.container.volume / face.mass for _, face in pistons(scene))
     return math.sqrt(square)
 
 

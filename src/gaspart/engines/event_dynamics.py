@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaspart.engines import piston
 from gaspart.engines.arrays import EventLog, write_internal
 from gaspart.engines.clock_epochs import QUIET, epoch_length, quiet_epoch
 from gaspart.engines.event_model import event_model, monitors
@@ -73,12 +74,15 @@ class EventDynamics:
             self._event_count = self._queue.cursor[EVENT_COUNT:]
         self._model, self._unit_mass = event_model(scene, state, seed, boxes, largest)
         self._duration = self._model.law.duration if self._model.law else None
+        self._piston = self._model.faces.piston if self._model.faces else None
         self._monitors, self._interval = monitors(self._model, n)
         self._lightest = float(state.masses.min(initial=np.inf))
         self._lost = np.zeros(2)  # net and gross, before the tally began
         self._base, self._quiet = epoch_length(scene, state.velocities, self._lightest), 0
         epochs, self._clock = divmod(state.time, self._base)
         self._start = epochs * self._base
+        if self._piston:
+            piston.set_clock(self._piston, self._clock)
         self._begin_epoch(self._base)
         self._rest = rest_watch(scene, state, self._clock)
         self._kicks = kicks(scene, seed, self._unit_mass)
@@ -213,6 +217,8 @@ class EventDynamics:
             self._duration.met[:] -= self._epoch
         if self._scheduled:
             self._scheduled.begin_epoch(self._epoch)
+        if self._piston:
+            piston.next_epoch(self._piston, self._epoch)
         self._quiet += 1
         velocities = self._flights["velocity"]
         self._base = epoch_length(self._scene, velocities, self._lightest, self._base)
@@ -227,6 +233,8 @@ class EventDynamics:
             self._model = self._model._replace(gravity=gravity)
         if self._model.faces and self._model.faces.motion:
             begin_epoch(self._model.faces.motion, self._scene, self._start, length)
+        if self._piston:
+            piston.begin_epoch(self._piston, length)
         if self._monitors.collapse:
             collapse = self._monitors.collapse._replace(interval=self._interval * length)
             self._monitors = self._monitors._replace(collapse=collapse)
@@ -293,6 +301,8 @@ class EventDynamics:
             images=images,
         )
         write_internal(state, self._scene, self._model.law, self._model.faces, self._unit_mass)
+        if self._piston:
+            state.piston = piston.motion_at(self._piston, self._clock, space.lengths)
         return state
 
     def _arrays(self) -> dict[str, np.ndarray]:
@@ -316,6 +326,8 @@ class EventDynamics:
             arrays.update({f"support_{key}": support[key] for key in support if key != "height"})
         if faces:
             arrays.update({key: getattr(faces, key) for key in ("place", "held", "draws")})
+        if self._piston:
+            arrays["piston"] = self._piston.motion
         return arrays
 
     def checkpoint(self) -> dict[str, np.ndarray]:

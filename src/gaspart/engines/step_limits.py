@@ -11,6 +11,7 @@ import numpy as np
 from gaspart.engines.vibration import vibrating_faces
 from gaspart.errors import SceneError, SimulationError
 from gaspart.scene.geometry import ball_volume
+from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
@@ -62,7 +63,7 @@ def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
         ("restitution.contact_duration", law.contact_duration or None if law else None, none),
         ("thermostat", scene.thermostat, none),
         ("walls", scene.walls or None, none),
-        ("faces", next((face for _, face in vibrating_faces(scene)), None), none),
+        ("faces", next((face for _, face in (*vibrating_faces(scene), *pistons(scene))), None), none),
         ("fixed", True if fixed and falls else None, "this one has no fixed particles under gravity"),
     ):
         if value is not None:

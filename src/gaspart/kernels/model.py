@@ -16,7 +16,8 @@ BOX_FACES = 6  # face codes: 2 axis + side for the container's faces, BOX_FACES 
 WELL_EDGES = 12  # WELL_EDGES more for the edges of the wells at the container's faces,
 WALLS = 18  # and from here on the rows of interior walls
 LISTED_BITS = 26  # of a particle's number in a neighbour list
-HARD, THERMAL, THERMAL_NORMAL, STICKY, VIBRATING = range(5)  # kinds of faces
+HARD, THERMAL, THERMAL_NORMAL, STICKY, VIBRATING, PISTON = range(6)  # kinds of faces
+PISTON_PLACE, PISTON_VELOCITY, PISTON_CLOCK = range(3)  # of Piston.motion
 
 
 def flight_dtype(dimension: int) -> np.dtype:
@@ -139,11 +140,24 @@ class Motion(NamedTuple):
     epoch: np.ndarray
 
 
+class Piston(NamedTuple):
+    """The face that is a piston: its number; mass, in the kernel's unit; push, its acceleration inwards by its
+    load; motion (3,), how far inwards it is and how fast it moves inwards at the time of its clock; slowest
+    (1,), the speed at which particles part from it at least."""
+
+    face: int
+    mass: float
+    push: float
+    motion: np.ndarray
+    slowest: np.ndarray
+
+
 class Faces(NamedTuple):
     """Faces with a kind. Of the container's faces (2d,): kind; level, the temperature, or the momentum that
     sticks; depth and width of the well, 0 if there is none. Of the particles: place (N, d), -1 or 1 in the
     well of an axis' low or high face, or stuck to it; held (N, d), the energy kept there as vibration; draws
-    (N,), how often random numbers were taken for it, under `key` (2,). motion: None if no face moves."""
+    (N,), how often random numbers were taken for it, under `key` (2,). motion: None if no face vibrates; piston: None if none is
+    one."""
 
     kind: np.ndarray
     level: np.ndarray
@@ -154,6 +168,7 @@ class Faces(NamedTuple):
     draws: np.ndarray
     key: np.ndarray
     motion: Motion | None
+    piston: Piston | None
 
 
 class InteriorWalls(NamedTuple):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 from gaspart.errors import SceneError
 from gaspart.kinds import described
 from gaspart.scene.geometry import CLOSE_PACKING
-from gaspart.scene.keys import POSITIVE, declared, schema_of, validate
+from gaspart.scene.keys import NOT_NEGATIVE, POSITIVE, declared, schema_of, validate
 from gaspart.scene.keys import choice as choice_of
 from gaspart.scene.validation import choice, from_mapping, size, vector
 
@@ -122,8 +122,37 @@ class Vibrating:
         return self.amplitude * (1.0 - math.cos(2.0 * math.pi * turns))
 
 
-Surface = Thermal | Well | Sticky | Vibrating
-KINDS: dict[str, type[Surface]] = {surface.kind: surface for surface in (Thermal, Well, Sticky, Vibrating)}
+@dataclass(frozen=True)
+class Piston:
+    """A smooth wall of finite mass, pushed inwards by a constant external pressure and outwards by particles.
+
+    It starts at rest at the side of the container, which is as far outwards as it comes: it bounces off there
+    without loss. Its kinetic energy and `pressure` times the volume, together with the energy of the
+    particles, are conserved: with a light piston this is the ensemble of constant pressure and enthalpy
+    (Andersen, J. Chem. Phys. 72, 2384 (1980)), and a heavy one compresses a gas adiabatically. Particles are
+    smooth and elastic, and nothing else is in the container.
+    """
+
+    mass: float = field(metadata=declared(POSITIVE, "mass of the piston"))
+    pressure: float = field(
+        metadata=declared(NOT_NEGATIVE, "external pressure: the force on the piston over its area")
+    )
+
+    kind: ClassVar[Literal["piston"]] = "piston"
+
+    def __post_init__(self) -> None:
+        validate(self)
+
+    def acceleration(self, scene: Scene, axis: int) -> float:
+        """That by which its load pushes it inwards."""
+        container = scene.container
+        return self.pressure / self.mass * (container.volume / container.lengths[axis])
+
+
+Surface = Thermal | Well | Sticky | Vibrating | Piston
+KINDS: dict[str, type[Surface]] = {
+    surface.kind: surface for surface in (Thermal, Well, Sticky, Vibrating, Piston)
+}
 SCHEMA = {
     "type": "object",
     "propertyNames": {"enum": list(FACES)},
@@ -151,6 +180,12 @@ def surface_to_dict(surface: Surface) -> dict:
     return {"kind": surface.kind, **asdict(surface)}
 
 
+def pistons(scene: Scene) -> list[tuple[int, Piston]]:
+    """The faces that are pistons, one at most, with their number."""
+    found = ((n, scene.faces.get(name)) for n, name in enumerate(FACES[: 2 * scene.dimension]))
+    return [(n, face) for n, face in found if isinstance(face, Piston)]
+
+
 def thermal_face(scene: Scene, name: str) -> Thermal:
     """The face of this name, which must be at a temperature. Raises SceneError."""
     face = scene.faces.get(name)
@@ -168,7 +203,7 @@ def check_faces(scene: Scene) -> None:
         if name not in known:
             raise SceneError(f"faces.{name}", surface, f"unknown face; known are {', '.join(known)}")
         if type(surface) not in KINDS.values():
-            raise SceneError(f"faces.{name}", surface, "must be Thermal, Well, Sticky or Vibrating")
+            raise SceneError(f"faces.{name}", surface, "must be Thermal, Well, Sticky, Vibrating or Piston")
         axis = known.index(name) // 2
         if scene.container.periodic[axis]:
             raise SceneError(f"faces.{name}", surface.kind, "a periodic axis has no faces")
@@ -182,7 +217,25 @@ def check_faces(scene: Scene) -> None:
                 raise SceneError(f"faces.{name}.width", surface.width, rule)
         if isinstance(surface, Vibrating):
             _check_vibrating(scene, name, surface)
+        if isinstance(surface, Piston):
+            _check_piston(scene, name, surface)
     _check_room(scene)
+
+
+def _check_piston(scene: Scene, name: str, surface: Piston) -> None:
+    """Raise SceneError for what cannot be in a container with a piston."""
+    moving = [other for other, face in scene.faces.items() if isinstance(face, Piston | Vibrating)]
+    for key, value in (
+        ("gravity", scene.gravity if scene.gravity and any(scene.gravity) else None),
+        ("restitution", scene.restitution),
+        ("thermostat", scene.thermostat),
+        ("walls", scene.walls or None),
+        ("fixed", True if any(kind.fixed for kind in scene.kinds) else None),
+        ("faces", moving if len(moving) > 1 else None),
+    ):
+        if value is not None:
+            raise SceneError(key, value, f"not with a piston, which {name} is: must be absent")
+    size(f"faces.{name}.mass", surface.acceleration(scene, FACES.index(name) // 2))
 
 
 def _check_vibrating(scene: Scene, name: str, surface: Vibrating) -> None:

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import LATTICES
 from gaspart.state.compression import compressed
@@ -63,7 +64,15 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
         gravity=None if scene.gravity is None else np.array(scene.gravity),
         well_energies=well_energies(scene, places_in_wells(scene, positions, radii)) if scene.faces else None,
         vibrations=_vibrations(scene, stream(seed, _VIBRATIONS)) if scene.vibrates else None,
+        piston=_piston(scene),
     )
+
+
+def _piston(scene: Scene) -> np.ndarray | None:
+    """(2,) where the piston is along its axis and its velocity, if there is one: at rest at its side."""
+    for n, _ in pistons(scene):
+        return np.array([scene.container.lengths[n // 2] if n % 2 else 0.0, 0.0])
+    return None
 
 
 def _vibrations(scene: Scene, rng: np.random.Generator) -> np.ndarray:

@@ -17,7 +17,7 @@ class State:
     the particle's species, explicit particles being one more species after the others; lengths (d,); spins,
     angular velocities, (N,) in 2D and (N, 3) in 3D; moments_of_inertia (N,); gravity (d,) or None;
     well_energies (N,), the potential energy in the wells of the faces, and vibrations (N,), the energy of
-    each particle's vibration, or None. The mass and moment of inertia of a fixed particle are infinite; they
+    each particle's vibration, or None; piston (2,), its place along its axis and its velocity, or None. The mass and moment of inertia of a fixed particle are infinite; they
     count in no sum.
     """
 
@@ -34,6 +34,7 @@ class State:
     gravity: np.ndarray | None = None
     well_energies: np.ndarray | None = None
     vibrations: np.ndarray | None = None
+    piston: np.ndarray | None = None
 
     @property
     def count(self) -> int:

@@ -44,6 +44,7 @@ _EXTRA: dict[str, tuple[str, tuple[str, ...], dict[str, str]]] = {
     ),
     "vibrations": (">f4", ("atom",), {"long_name": "energy of a body's vibration"}),
     "displacements": (">f8", _VECTORS, {"units": "angstrom", "long_name": "way since time 0, unwrapped"}),
+    "piston": (">f8", ("motion",), {"long_name": "place along its axis, and velocity, of the piston"}),
 }
 """The variables that only some files have, as in `Layout`, in their order."""
 BOOKKEEPING = ("header_bytes", "header_crc32", "frame_bytes")
@@ -66,8 +67,7 @@ def face_names(dimension: int, walls: int = 0) -> list[str]:
 class Layout:
     """The variables of one frame, in their order in the file: name -> (type, dimensions, attributes).
 
-    count: particles in the file; extra: which of spins, vibrations and displacements the file has; walls: the
-    number of interior walls; engine: by whose name the counters are chosen; sums: of the correlations, from
+    count: particles in the file; extra: which variables of `_EXTRA` the file has; walls: the number of interior walls; engine: by whose name the counters are chosen; sums: of the correlations, from
     lag 0 to `lags`.
     """
 
@@ -89,6 +89,7 @@ class Layout:
             "label": 5,
             "face": 2 * dimension + walls,
             **({"lag": lags + 1} if sums else {}),
+            **({"motion": 2} if "piston" in extra else {}),
         }
         faces = {"faces": ", ".join(face_names(dimension, walls))}
         self.variables = {

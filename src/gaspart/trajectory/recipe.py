@@ -16,6 +16,7 @@ import numpy as np
 from gaspart.engines import EventDriven, TimeStepped, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.files import descriptor_path
+from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of, number
 from gaspart.state.random import stream
@@ -111,8 +112,13 @@ class Recipe:
     def layout(self) -> amber.Layout:
         """The variables of a frame."""
         scene, walls = self.scene, len(self.scene.walls)
-        names = ("spins", scene.rough), ("vibrations", scene.vibrates), ("displacements", self.displacements)
-        extra = [name for name, present in names if present]
+        names = {
+            "spins": scene.rough,
+            "vibrations": scene.vibrates,
+            "displacements": self.displacements,
+            "piston": bool(pistons(scene)),
+        }
+        extra = [name for name, present in names.items() if present]
         sums, lags = [], 0
         if self.correlations:
             sums, lags = sums_of(self.displacements), self.correlations.lags

@@ -182,4 +182,5 @@ class Recording:
             "velocities": state.velocities[followed],
             **(self._correlator.sums() if self._correlator else {}),
             **{name: values[followed] for name, values in inner.items()},
+            **({} if state.piston is None else {"piston": state.piston}),
         }

@@ -15,7 +15,7 @@ from math import inf
 
 from numpy import int64
 
-from gaspart.kernels.compilation import inner_helper, kernel
+from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
 from gaspart.kernels.event.all_pairs import first_of_all
 from gaspart.kernels.event.box_lists import move, sort_in
 from gaspart.kernels.event.box_search import find_contact
@@ -38,6 +38,7 @@ from gaspart.kernels.flight import mark_resting
 from gaspart.kernels.model import BOX_FACES, CROSSINGS, NONE, OUTDATED, WALLS, WELL_EDGES
 from gaspart.kernels.obstacles.face import meet_face, next_face
 from gaspart.kernels.obstacles.interior_wall import find_wall, meet_wall
+from gaspart.kernels.obstacles.piston import is_piston
 from gaspart.kernels.obstacles.well import meet_edge
 from gaspart.kernels.prefetch import fetch
 
@@ -60,10 +61,21 @@ def predict_contact(particles, i, boxes, model, tally, crossed, lists):
 
 
 @inner_helper
+def predict_face(particles, i, boxes, model, now):
+    """Predict when a particle comes to a face or an interior wall, or its neighbour list must be renewed."""
+    predictions, space, gravity = particles.predictions, model.space, model.gravity
+    time, face = next_face(particles, i, boxes, space, now, gravity, model.faces, model.oversized)
+    time, face = find_wall(particles, i, boxes, space, gravity, model.walls, time, face)
+    time, face = next_renewal(particles.flights, i, boxes.lists, time, face)
+    predictions[i].face_time = time
+    predictions[i].face = face
+
+
+@inner_helper
 def predict(particles, i, boxes, model, tally, now, number, crossed):
     """Predict the next events of a particle anew; or, if it has just `crossed` (3,) into the next box, search
     the boxes that have become neighbours. number: of the present event."""
-    predictions, space, gravity = particles.predictions, model.space, model.gravity
+    predictions = particles.predictions
     if crossed[0] == 0 and crossed[1] == 0 and crossed[2] == 0:
         predictions[i].contact_time = inf
         predictions[i].partner = NONE
@@ -71,11 +83,7 @@ def predict(particles, i, boxes, model, tally, now, number, crossed):
     predict_contact(particles, i, boxes, model, tally, crossed, boxes.lists)
     if predictions[i].contact_time != time or predictions[i].partner != partner:
         predictions[i].predicted = number
-    time, face = next_face(particles, i, boxes, space, now, gravity, model.faces, model.oversized)
-    time, face = find_wall(particles, i, boxes, space, gravity, model.walls, time, face)
-    time, face = next_renewal(particles.flights, i, boxes.lists, time, face)
-    predictions[i].face_time = time
-    predictions[i].face = face
+    predict_face(particles, i, boxes, model, now)
 
 
 @inner_helper
@@ -140,6 +148,26 @@ def predict_after(particles, pair, queue, boxes, model, tally, event, crossed):
         reschedule(queue, predictions, second)
 
 
+@inner_kernel
+def predict_faces(particles, time, queue, boxes, model):
+    """Predict anew when each particle comes to a face."""
+    predictions = particles.predictions
+    for i in range(len(predictions)):
+        soon, face = predictions[i].face_time, predictions[i].face
+        predict_face(particles, i, boxes, model, time)
+        if predictions[i].face_time != soon or predictions[i].face != face:
+            reschedule(queue, predictions, i)
+
+
+@inner_helper
+def predict_after_piston(particles, partner, time, queue, boxes, model, faces):
+    """After a contact with a piston, whose motion it has changed, predict that of all others with it anew.
+    partner: -1 - the number of the face met."""
+    if faces is not None:
+        if is_piston(-1 - partner, faces.piston):
+            predict_faces(particles, time, queue, boxes, model)
+
+
 @inner_helper
 def leave_box(particles, i, face, time, boxes, model, tally, lists):
     """Let a particle cross into the next box, or renew its neighbour list. Returns the step (3,) into the
@@ -191,6 +219,7 @@ def process(particles, i, time, queue, boxes, model, tally):
         collide(particles.flights, i, partner, time, model, tally)
     event = time, number, changes
     predict_after(particles, (first, second), queue, boxes, model, tally, event, crossed)
+    predict_after_piston(particles, partner, time, queue, boxes, model, model.faces)
     return i, partner, happens
 
 

@@ -7,8 +7,9 @@ from gaspart.kernels.ballistic import time_against, time_along
 from gaspart.kernels.compilation import inner_helper, inner_kernel
 from gaspart.kernels.contact import time_to_plane
 from gaspart.kernels.flight import acceleration_of, advance, face_plane
-from gaspart.kernels.model import BOX_FACES, NONE, STICKY, THERMAL, THERMAL_NORMAL, VIBRATING
+from gaspart.kernels.model import BOX_FACES, NONE, PISTON, STICKY, THERMAL, THERMAL_NORMAL, VIBRATING
 from gaspart.kernels.obstacles.hard import bounce
+from gaspart.kernels.obstacles.piston import collide_piston, find_piston, is_piston
 from gaspart.kernels.obstacles.resting import come_to_rest, release, release_after
 from gaspart.kernels.obstacles.short_bounce import longest_rest, rest_on_floor
 from gaspart.kernels.obstacles.sticky import collide_sticky
@@ -50,6 +51,10 @@ def next_face(particles, i, boxes, space, now, gravity, faces, oversized):
         v = flights[i].velocity[k]
         if faces is not None:
             time, code = find_vibrating(particles, i, k, boxes, space, gravity, faces.motion)
+            if time < soon:
+                soon = time
+                face = code
+            time, code = find_piston(particles, i, k, space, faces.piston)
             if time < soon:
                 soon = time
                 face = code
@@ -117,6 +122,8 @@ def collide_special(flights, i, face, model, tally, law, faces):
         collide_sticky(flights, i, face, model, tally, law, faces)
     elif kind == VIBRATING:
         collide_moving(flights, i, face, model, tally, law, faces.motion)
+    elif kind == PISTON:
+        collide_piston(flights, i, face, model, tally, faces.piston)
     else:
         return False
     return True
@@ -174,7 +181,7 @@ def place_at(flights, i, face, space, faces):
     axis, upper = face // 2, face % 2 == 1
     plane = face_plane(flights, i, axis, upper, space)
     if faces is not None:
-        if moves(face, faces.motion):
+        if moves(face, faces.motion) or is_piston(face, faces.piston):
             x = flights[i].position[axis]
             plane = min(x, plane) if upper else max(x, plane)
     flights[i].position[axis] = plane

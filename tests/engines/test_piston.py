@@ -1,0 +1,223 @@
+"""A piston: contacts of one ball that are computed otherwise, what is conserved, and the same bits throughout."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from referee import events_of, same_bits
+
+import gaspart as gp
+
+SIDE, RADIUS = 12.0, 0.5
+_PARTED = 1e-9  # time after a contact from which the next one is looked for
+
+
+def ball(piston, x, velocity, face="y_high", masses=1.0):
+    """One ball between a piston and a wall, and a species of no particle."""
+    body = gp.Body((2.0, x), (0.0, velocity), RADIUS, mass=masses)
+    container = gp.Container((4.0, SIDE), ("periodic", "wall"))
+    return gp.Scene(container, bodies=[body], faces={face: piston})
+
+
+def roots(*coefficients):
+    """The real roots after `_PARTED` of a polynomial, by the eigenvalues of its companion matrix."""
+    found = np.roots(np.trim_zeros(coefficients, "f"))
+    return [root.real for root in found if abs(root.imag) < 1e-12 and root.real > _PARTED]
+
+
+def bounces(piston, height, velocity, count):
+    """(time, height, velocity of the ball afterwards) of its contacts with the piston. Heights count from the
+    piston's side: the far wall is at SIDE."""
+    mass, push = piston.mass, piston.pressure * 4.0 / piston.mass
+    time = place = speed = 0.0
+    found = []
+    while len(found) < count:
+        meets = roots(0.5 * push, speed - velocity, place - height)
+        stops = roots(0.5 * push, speed, place) if speed < 0.0 else []
+        walls = roots(velocity, height - SIDE + 2.0 * RADIUS) if velocity > 0.0 else []
+        late, what = min(
+            [(t, "meets") for t in meets] + [(t, "stops") for t in stops] + [(t, "walls") for t in walls]
+        )
+        time, height = time + late, height + velocity * late
+        place, speed = place + (speed + 0.5 * push * late) * late, speed + push * late
+        if what == "walls":
+            velocity = -velocity
+        elif what == "stops":
+            place, speed = 0.0, -speed
+        else:
+            while speed > velocity:  # at its side it bounces back at once, perhaps onto the ball again
+                centre = (velocity + mass * speed) / (1.0 + mass)
+                velocity, speed = 2.0 * centre - velocity, 2.0 * centre - speed
+                if place < 1e-12:
+                    place, speed = 0.0, abs(speed)
+                found.append((time, height, velocity))
+    return found
+
+
+@pytest.mark.parametrize("face", ["y_low", "y_high"])
+@pytest.mark.parametrize(
+    ("mass", "pressure", "height", "velocity"),
+    [(5.0, 0.02, 7.0, -1.1), (30.0, 0.5, 3.0, 0.4), (0.3, 0.01, 5.0, -0.8), (2.3, 0.0, 4.0, -1.0)],
+)
+def test_a_ball_and_a_piston_meet_as_computed_otherwise(face, mass, pressure, height, velocity):
+    """A light and a heavy piston, one that is thrown back to its side, and one without a load."""
+    piston, inwards = gp.Piston(mass, pressure), 1.0 if face == "y_low" else -1.0
+    x = height + RADIUS if face == "y_low" else SIDE - RADIUS - height
+    sim = gp.Simulation(ball(piston, x, inwards * velocity, face), gp.EventDriven())
+    sim.record_events = True
+    sim.advance(max_events=60)
+    number = 2 if face == "y_low" else 3
+    hits = sim.events["bodies"][:, 1] == -1 - number
+    places = sim.events["positions"][hits, 0, 1]
+    heights = places - RADIUS if face == "y_low" else SIDE - RADIUS - places
+    after = inwards * sim.events["velocities"][hits, 0, 1]
+    known = bounces(piston, height, velocity, 12)
+    measured = list(zip(sim.events["time"][hits], heights, after, strict=True))[: len(known)]
+    assert np.array(measured) == pytest.approx(np.array(known), abs=1e-8)
+    sim.check_invariants()
+
+
+def test_a_piston_that_lies_on_a_particle_at_rest_takes_it_along():
+    sim = gp.Simulation(ball(gp.Piston(10.0, 0.5), SIDE - RADIUS, 0.0), gp.EventDriven())
+    sim.advance(until=3.0, max_events=1_000_000)
+    assert sim.time == 3.0
+    fallen = 0.5 * (4.0 * 0.5 / 11.0) * 9.0
+    assert SIDE - sim.state.piston[0] == pytest.approx(fallen, rel=1e-3)
+    assert sim.state.positions[0, 1] + RADIUS < sim.state.piston[0] + 1e-9
+
+
+@st.composite
+def pressed(draw):
+    """Some discs or spheres of one or two kinds behind a piston on one of the walls."""
+    dimension = draw(st.sampled_from([2, 3]))
+    lengths = draw(st.lists(st.floats(4.5, 9.0), min_size=dimension, max_size=dimension))
+    boundary = ["wall", *draw(st.lists(st.sampled_from(["wall", "periodic"]), min_size=1, max_size=2))]
+    species = [gp.Species(draw(st.integers(1, 12)), draw(st.floats(0.1, 0.4)), temperature=1.0)]
+    if draw(st.booleans()):
+        species.append(gp.Species(3, 0.3, draw(st.floats(0.01, 100.0)), temperature=1.0))
+    piston = gp.Piston(draw(st.floats(1e-3, 1e4)), draw(st.sampled_from([0.0, 0.01, 0.5, 20.0])))
+    boundary = (boundary * 2)[:dimension] if dimension == 3 else boundary[:2]
+    return gp.Scene(
+        gp.Container(lengths, boundary), species, faces={draw(st.sampled_from(["x_low", "x_high"])): piston}
+    )
+
+
+def enthalpy(scene, state):
+    """The energy of the particles and the piston, and pressure times volume."""
+    ((name, piston),) = scene.faces.items()
+    place, velocity = state.piston
+    depth = scene.container.lengths[0] - place if name == "x_low" else place
+    area = scene.container.volume / scene.container.lengths[0]
+    return state.energy + 0.5 * piston.mass * velocity**2 + piston.pressure * area * depth
+
+
+def deepest(scene, state):
+    """The least gap between any particle and the piston."""
+    gap = state.positions[:, 0] - state.piston[0]
+    return ((gap if "x_low" in scene.faces else -gap) - state.radii).min()
+
+
+@given(pressed(), st.integers(0, 2**32))
+def test_enthalpy_is_conserved_and_all_searches_agree(scene, seed):
+    sim = events_of(scene, "boxes", 300, seed)
+    sim.check_invariants()
+    before, after = enthalpy(scene, sim.initial_state), enthalpy(scene, sim.state)
+    assert after == pytest.approx(before, rel=1e-11)
+    assert deepest(scene, sim.state) > -1e-9
+    for search in ("direct", "pairs") if scene.dimension == 2 else ("direct",):
+        assert same_bits(sim, events_of(scene, search, 300, seed))
+
+
+def gas(piston, dimension=2, count=60):
+    lengths = (30.0, 8.0, 8.0)[:dimension]
+    container = gp.Container(lengths, ("wall", "periodic", "periodic")[:dimension])
+    return gp.Scene(container, [gp.Species(count, 0.5, temperature=1.0)], faces={"x_high": piston})
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_momentum_of_the_piston_is_that_of_its_load_less_that_of_its_contacts(dimension):
+    scene = gas(gp.Piston(40.0, 1.0), dimension)
+    sim = gp.Simulation(scene, gp.EventDriven(), seed=4)
+    sim.advance(until=400.0)  # its oscillation has come to an end, so that it does not meet its side
+    sim.reset_tally()
+    start, before = sim.time, sim.state.piston[1]
+    for stop in (407.0, 430.0, 5000.0):
+        sim.advance(until=stop)
+        load = 8.0 ** (dimension - 1) * (stop - start)
+        gained = -40.0 * (sim.state.piston[1] - before)
+        assert sim.tally.wall_impulse[1] == pytest.approx(load - gained, rel=1e-10)
+    assert sim.state.piston[0] < 30.0
+
+
+def test_an_ideal_gas_follows_its_adiabat():
+    """Discs too small to meet, which keep their velocities across the piston: along it the gas is of one
+    dimension, and a heavy piston keeps the action of each, speed times length."""
+    container = gp.Container((10.0, 10.0), ("wall", "periodic"))
+    scene = gp.Scene(
+        container, [gp.Species(200, 1e-7, temperature=1.0)], faces={"x_high": gp.Piston(1e6, 100.0)}
+    )
+    sim = gp.Simulation(scene, gp.EventDriven(), seed=2)
+    energy = 0.5 * (sim.state.velocities[:, 0] ** 2).sum()
+    for until in (60.0, 120.0):
+        sim.advance(until=until)
+        state = sim.state
+        along = 0.5 * (state.velocities[:, 0] ** 2).sum()
+        assert along / energy == pytest.approx((10.0 / state.piston[0]) ** 2, rel=0.01)
+    assert state.piston[0] < 7.0
+
+
+def test_splits_and_checkpoints_change_no_bit(tmp_path):
+    scene = gas(gp.Piston(20.0, 0.6))
+    whole, split = (gp.Simulation(scene, gp.EventDriven(), seed=3) for _ in range(2))
+    for end in (0.1, 0.37, 5.0, 40.0, 100.0, 900.0):
+        split.advance(until=end)
+        again = gp.Simulation(scene, gp.EventDriven(), seed=3)
+        again.restore(split.checkpoint())
+        split = again
+    whole.advance(until=900.0)
+    for key in ("positions", "velocities", "piston"):
+        assert np.array_equal(getattr(whole.state, key), getattr(split.state, key))
+    assert np.array_equal(whole.tally.wall_energy, split.tally.wall_energy)
+
+    gp.run(scene, gp.EventDriven(), 3, 900.0, 100.0, tmp_path / "gas.nc")
+    with gp.open_trajectory(tmp_path / "gas.nc") as run:
+        assert run["piston_position"].values[-1] == whole.state.piston[0]
+        assert run["piston_velocity"].values[-1] == whole.state.piston[1]
+        assert run["piston_position"].attrs["units"] == "length"
+        assert run["piston_position"].values[0] == 30.0
+
+
+def test_what_a_piston_does_not_go_with_is_refused():
+    scene = gas(gp.Piston(20.0, 0.6))
+    with pytest.raises(gp.SceneError, match='faces.*needs the "event" engine'):
+        gp.Simulation(scene, gp.TimeStepped(0.01))
+    for key, value in (
+        ("gravity", (-1.0, 0.0)),
+        ("restitution", gp.Restitution(0.9)),
+        ("walls", [gp.Wall((1.0, 1.0), (2.0, 2.0))]),
+        ("thermostat", gp.Thermostat(1.0, 0.1)),
+    ):
+        with pytest.raises(gp.SceneError, match=rf"{key}.*piston|thermostat.*hard or thermal"):
+            replace(scene, **{key: value})
+    with pytest.raises(gp.SceneError, match="fixed.*piston"):
+        replace(scene, species=[gp.Species(3, 0.5, fixed=True)])
+    for other in (gp.Piston(1.0, 1.0), gp.Vibrating(0.1, 1.0)):
+        with pytest.raises(gp.SceneError, match="faces.*piston"):
+            replace(scene, faces={**scene.faces, "x_low": other})
+    for mass, pressure in ((0.0, 1.0), (1.0, -1.0), (math.nan, 1.0)):
+        with pytest.raises(gp.SceneError, match="mass|pressure"):
+            gp.Piston(mass, pressure)
+    with pytest.raises(gp.SceneError, match="faces.x_high.*choose other units"):
+        gas(gp.Piston(1e-59, 1e59))
+
+
+def test_a_thermal_wall_may_stand_opposite(tmp_path):
+    scene = replace(gas(gp.Piston(20.0, 0.6)), faces={"x_low": gp.Thermal(2.0), "x_high": gp.Piston(20.0, 0.6)})
+    scene.to_file(tmp_path / "scene.yaml")
+    assert gp.Scene.from_file(tmp_path / "scene.yaml") == scene
+    sim = gp.Simulation(scene, gp.EventDriven(), seed=1)
+    sim.advance(until=200.0)
+    sim.check_invariants()
