@@ -173,3 +173,20 @@ def test_a_face_that_vibrates_is_drawn_where_it_is(name, at):
         assert walls.shape == (sides, 2, len(lengths))
         assert np.allclose(walls[..., 1], at)
         assert np.ptp(walls[..., 0]) == 8.0
+
+
+def test_a_piston_is_drawn_where_it_is(tmp_path):
+    """It falls freely: nobody is in its way."""
+    for lengths, sides in (((8.0, 6.0), 1), ((8.0, 6.0, 7.0), 4)):
+        container = gp.Container(lengths, ("periodic", "wall", "wall")[: len(lengths)])
+        body = gp.Body((1.0,) * len(lengths), (0.0,) * len(lengths), 0.5)
+        push = lengths[0] * (1.0 if sides == 1 else 7.0) / 56.0
+        scene = gp.Scene(container, bodies=[body], faces={"y_high": gp.Piston(56.0, 1.0)})
+        path = gp.run(scene, gp.EventDriven(), 0, 2.0, 2.0, tmp_path / f"{sides}.nc")
+        sim = gp.Simulation(scene, gp.EventDriven())
+        sim.advance(until=2.0)
+        with gp.open_trajectory(path) as run:
+            for walls in (particles_of(sim).walls, particles_of(run).walls):
+                assert walls.shape == (sides, 2, len(lengths))
+                assert np.allclose(walls[..., 1], 6.0 - 0.5 * push * 4.0)
+                assert np.ptp(walls[..., 0]) == 8.0

@@ -68,7 +68,23 @@ def test_the_page_has_the_positions_of_every_frame_and_needs_no_other_file(pages
         assert np.array_equal(np.frombuffer(base64.b64decode(data["species"]), "u1"), run["type"])
     assert not re.search(r"(?:src|href)=|https?://|@import|fetch\(", page)
     lines = np.frombuffer(base64.b64decode(data["lines"]), "<f4").reshape(-1, 2, 3)
-    assert len(lines) == (12 if name == "discs" else 16)
+    assert len(lines) == data["ends"] / 2 == (12 if name == "discs" else 16)
+
+
+@pytest.mark.parametrize("face", [gp.Vibrating(0.5, 1.0), gp.Piston(20.0, 1.0)], ids=["vibrating", "piston"])
+def test_a_wall_that_moves_is_in_every_frame(face):
+    scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.3, temperature=1.0)], faces={"x_high": face})
+    simulation = gp.Simulation(scene, gp.EventDriven(), seed=1)
+    simulation.advance(duration=0.75)
+    data = content(gp.view(simulation, frames=4).page)
+    lines = np.frombuffer(base64.b64decode(data["lines"]), "<f4").reshape(4, -1, 2, 3)
+    assert data["ends"] == 2 * 13 and lines.shape[1] == 13
+    again = gp.Simulation(scene, gp.EventDriven(), seed=1)
+    for time, wall in zip(data["time"], lines[:, -1], strict=True):
+        again.advance(until=time)
+        piston = again.state.piston
+        expected = 9.0 - face.place(time) if piston is None else piston[0]
+        assert wall[:, 0] == pytest.approx([expected] * 2, rel=1e-6)
 
 
 def test_a_simulation_shows_itself_in_a_notebook(pages):

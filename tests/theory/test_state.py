@@ -5,6 +5,7 @@ import sys
 import numpy as np
 import pytest
 
+import gaspart as gp
 from gaspart import theory
 
 EQUATIONS = {
@@ -179,3 +180,18 @@ def test_sound_in_a_dilute_gas():
     """sqrt(5/3) and sqrt(2) in units of the thermal speed."""
     assert theory.speed_of_sound(1e-4, 3) == pytest.approx((5 / 3) ** 0.5, rel=1e-3)
     assert theory.speed_of_sound(1e-4, 2) == pytest.approx(2**0.5, rel=1e-3)
+
+
+def test_an_adiabat_is_that_of_the_ideal_gas_and_of_each_small_step():
+    """Dilute: (V0/V)^(2/d). Otherwise each small step obeys dT / T = 2/d Z d eta / eta."""
+    for dimension in (2, 3):
+        dilute = theory.adiabatic_temperature(np.array([1e-6, 4e-6]), 1e-6, dimension)
+        assert dilute == pytest.approx([1.0, 4.0 ** (2.0 / dimension)], rel=1e-4)
+        eta = np.geomspace(0.01, 0.4, 20_001)
+        middle = np.sqrt(eta[1:] * eta[:-1])
+        steps = theory.compressibility_factor(middle, dimension) * np.diff(np.log(eta))
+        expected = np.exp(2.0 / dimension * steps.sum())
+        assert theory.adiabatic_temperature(0.4, 0.01, dimension) == pytest.approx(expected, rel=1e-7)
+        assert theory.adiabatic_temperature(0.01, 0.4, dimension) == pytest.approx(1.0 / expected, rel=1e-7)
+    with pytest.raises(gp.SceneError, match="packing_fraction"):
+        theory.adiabatic_temperature(0.9, 0.1, 2)

@@ -183,16 +183,19 @@ def repeated(simulation: Simulation) -> xr.Dataset:
         steps = max(1, round(simulation.time / engine.time_step) // (frames - 1))
         times = np.append(0.0, (steps * np.arange(1, frames) + 0.5) * engine.time_step)
         times = times[times < simulation.time + engine.time_step]
-    again, rows = Simulation(scene, engine, simulation.seed), []
+    again, rows, pistons = Simulation(scene, engine, simulation.seed), [], []
     for time in times:
         again.advance(until=time)
         state, tally = again.state, again.tally
         counters = [getattr(tally, name) for name in _COUNTERS]
+        pistons += [] if state.piston is None else [state.piston[0]]
         rows.append((again.time, state.positions, state.velocities, state.unwrapped, *counters))
     names = ("time", "coordinates", "velocities", "displacements", *_COUNTERS)
     columns = dict(zip(names, map(np.array, zip(*rows, strict=True)), strict=True))
     columns["displacements"] = columns["displacements"] - columns["displacements"][0]
     dims = {3: ("frame", "atom", "spatial"), 2: ("frame", "face"), 1: ("frame",)}
+    if pistons:
+        columns["piston_position"] = np.array(pistons)
     return xr.Dataset(
         {name: (dims[values.ndim], values) for name, values in columns.items()},
         attrs={"scene": dump_yaml(scene.to_dict())},

@@ -14,7 +14,7 @@ from gaspart.errors import SceneError
 from gaspart.rendering.labels import labelled
 from gaspart.rendering.particles import DrawnParticles, colours_of, legend_of
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
-from gaspart.scene.faces import Vibrating
+from gaspart.scene.faces import Piston, Vibrating
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of
 from gaspart.scene.walls import Wall
@@ -99,7 +99,7 @@ def particles_of(source: State | Simulation | xr.Dataset, frame: int = -1) -> Dr
         species=source["type"].values,
         speeds=np.sqrt((velocities**2).sum(axis=1)),
         lengths=shown["cell_lengths"].values[: positions.shape[1]],
-        walls=_walls(scene, float(shown["time"])),
+        walls=_walls(scene, float(shown["time"]), shown.get("piston_position")),
         periodic=scene.container.periodic,
     )
 
@@ -109,15 +109,18 @@ def _time_of(source: State | Simulation | xr.Dataset, frame: int) -> float:
 
 
 def _of_state(state: State, scene: Scene | None) -> DrawnParticles:
-    walls = _walls(scene, state.time) if scene else np.zeros((0, 2, state.dimension))
+    walls = np.zeros((0, 2, state.dimension))
+    if scene:
+        walls = _walls(scene, state.time, None if state.piston is None else state.piston[0])
     periodic = scene.container.periodic if scene else (False,) * state.dimension
     return DrawnParticles(
         state.positions, state.radii, state.species, state.speeds, state.lengths, walls, periodic
     )
 
 
-def _walls(scene: Scene, time: float) -> np.ndarray:
-    """(M, 2, d) the segments, the four sides of each plate, and those of the faces that vibrate."""
+def _walls(scene: Scene, time: float, piston: float | xr.DataArray | None) -> np.ndarray:
+    """(M, 2, d) the segments, the four sides of each plate, and those of the faces that move. piston: the
+    place of one along its axis, if there is one."""
     found: list[tuple] = []
     for wall in scene.walls:
         if isinstance(wall, Wall):
@@ -127,10 +130,13 @@ def _walls(scene: Scene, time: float) -> np.ndarray:
             found += pairwise((corner, one, far, other, corner))
     lengths = np.array(scene.container.lengths)
     for name, face in scene.faces.items():
+        axis, upper = "xyz".index(name[0]), "high" in name
         if isinstance(face, Vibrating):
-            axis = "xyz".index(name[0])
-            place = face.place(time)
-            corners = np.array(_CORNERS[scene.dimension]) * np.delete(lengths, axis)
-            corners = np.insert(corners, axis, lengths[axis] - place if "high" in name else place, axis=1)
-            found += pairwise(corners)
+            place = lengths[axis] - face.place(time) if upper else face.place(time)
+        elif isinstance(face, Piston) and piston is not None:
+            place = float(piston)
+        else:
+            continue
+        corners = np.array(_CORNERS[scene.dimension]) * np.delete(lengths, axis)
+        found += pairwise(np.insert(corners, axis, place, axis=1))
     return np.array(found, dtype=float).reshape(-1, 2, scene.dimension)

@@ -105,6 +105,7 @@ def _content(data: xr.Dataset, chosen: np.ndarray, order: bool) -> dict:
     speeds = np.rint(255.0 * np.clip([one.speeds / fastest for one in shown], 0.0, 1.0)).astype(np.uint8)
     lengths = np.zeros(3)
     lengths[:d] = first.lengths
+    lines = _lines(lengths, [one.walls for one in shown])
     colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 1.0, 256))[:, :3]
     return {
         "dimension": d,
@@ -118,7 +119,8 @@ def _content(data: xr.Dataset, chosen: np.ndarray, order: bool) -> dict:
         "order": _order(shown) if order else None,
         "radii": _text(first.radii.astype("<f4")),
         "species": _text((first.species % 256).astype(np.uint8)),
-        "lines": _text(_lines(lengths, first.walls).astype("<f4")),
+        "lines": _text(lines.astype("<f4")),
+        "ends": lines.shape[1],
         "map": _text(np.rint(255.0 * colours).astype(np.uint8)),
         "ramp": colours[:: 256 // _RAMP].round(3).tolist(),
         "palette": [list(matplotlib.colors.to_rgb(colour)) for colour in COLOURS],
@@ -138,13 +140,17 @@ def _order(shown: list[DrawnParticles]) -> dict:
     return {"values": _text(parts), "name": name, "highest": highest}
 
 
-def _lines(lengths: np.ndarray, walls: np.ndarray) -> np.ndarray:
-    """(2M, 3) ends of the container's edges and of the sides of interior walls."""
+def _lines(lengths: np.ndarray, walls: list[np.ndarray]) -> np.ndarray:
+    """(frames, 2M, 3) ends of the container's edges and of the sides of walls (M, 2, d); of one frame if they
+    are in the same place in all."""
+    if all(np.array_equal(walls[0], one) for one in walls):
+        walls = walls[:1]
     edges = edges_of(lengths)
     ends = np.stack([edges[:, :3], edges[:, :3] + edges[:, 3:6] * edges[:, 6:]], axis=1)
-    interior = np.zeros((len(walls), 2, 3))
-    interior[..., : walls.shape[-1]] = walls
-    return np.concatenate([ends, interior]).reshape(-1, 3)
+    found = np.zeros((len(walls), len(ends) + len(walls[0]), 2, 3))
+    found[:, : len(ends)] = ends
+    found[:, len(ends) :, :, : walls[0].shape[-1]] = walls
+    return found.reshape(len(walls), -1, 3)
 
 
 def _text(values: np.ndarray) -> str:

@@ -114,6 +114,7 @@ from gaspart.theory.speeds import (
 )
 from gaspart.theory.state import (
     HIGHEST_PACKING_FRACTION,
+    adiabatic_temperature,
     compressibility_factor,
     compressibility_uncertainty,
     contact_value,
@@ -161,6 +162,7 @@ __all__ = [
     "coexistence_packing_fractions",
     "collision_rate",
     "collision_rate_finite_size_factor",
+    "adiabatic_temperature",
     "compressibility_factor",
     "compressibility_uncertainty",
     "conducting_slab",

@@ -28,6 +28,7 @@ _NEAR_FREEZING = 0.036, 0.6478, 45
 # Step of the central differences of `_slope_and_curvature`: truncation and rounding both below 1e-6 of the
 # result.
 _STEP = 1e-4
+_NODES = 32  # of an integral over ln(eta), whose integrand is a polynomial in eta
 
 
 def virial_with_tail(packing_fraction: Numbers, dimension: int = 2) -> Values:
@@ -98,6 +99,19 @@ def speed_of_sound(packing_fraction: Numbers, dimension: int) -> Values:
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     slope, _ = _slope_and_curvature(eta, dimension)
     return np.sqrt(slope + 2.0 / dimension * compressibility_factor(eta, dimension) ** 2)
+
+
+def adiabatic_temperature(packing_fraction: Numbers, initial: Numbers, dimension: int) -> Values:
+    """T / T_0 after adiabatic compression from the packing fraction `initial`: exp(2/d times the integral of
+    Z over ln eta), since d/2 N k_B dT = -P dV (exact); (V_0 / V)^(2/d) where Z is 1."""
+    highest = HIGHEST_PACKING_FRACTION[checked_dimension(dimension)]
+    start = np.log(checked_packing_fraction(initial, highest))
+    stop = np.log(checked_packing_fraction(packing_fraction, highest))
+    places, weights = np.polynomial.legendre.leggauss(_NODES)
+    half = 0.5 * (stop - start)
+    eta = np.exp(np.multiply.outer(places, half) + 0.5 * (start + stop))
+    integral = half * np.tensordot(weights, compressibility_factor(eta, dimension), 1)
+    return np.exp(2.0 / dimension * integral)
 
 
 @checked

@@ -1,0 +1,98 @@
+"""Gases behind a piston: along an adiabat, at constant pressure, and without one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gaspart.planning import grid
+from gaspart.scene.faces import pistons
+from gaspart.scene.scene import Scene
+from gaspart.theory.speeds import mean_speed
+from gaspart.trajectory.run import open_trajectory
+
+
+def piston(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Three kinds of points, all of particles of mass 1 in containers whose first axis has walls.
+
+    With a piston and without an equilibration, over (path, replica, frame): volume over that at first;
+    temperature over that at first; over `path` dimension and packing_fraction at first.
+    With a piston and an equilibration, over (state, replica): density, the packing fraction in the middle
+    half of the volume; factor, the external pressure over that density and the temperature; fluctuation, the
+    number of particles times the relative variance of the volume; energy, twice the kinetic energy of the
+    piston over the temperature; over `state` dimension and count.
+    Without a piston, over (expansion, replica): heat, the final kinetic energy over the first; speed, the
+    final mean speed over that of Maxwell's distribution at the first temperature; share of the particles in
+    the half of the container that was empty; over `expansion` dimension.
+    Final are means over the second half of the frames.
+    """
+    kinds: dict[str, list[dict]] = {"path": [], "state": [], "expansion": []}
+    for point in points:
+        scene, equilibration = grid.scene(point), grid.schedule(point).equilibration_frames
+        kind = "expansion" if not pistons(scene) else "state" if equilibration else "path"
+        read = {"path": _path, "state": _state, "expansion": _expansion}[kind]
+        runs = [read(scene, path, equilibration) for path in point.replica_paths]
+        row: dict[str, Any] = {name: np.stack([run[name] for run in runs]) for name in runs[0]}
+        row["dimension"] = scene.dimension
+        if kind == "state":
+            row["count"] = scene.count
+        if kind == "path":
+            row["packing_fraction"] = scene.packing_fraction
+        kinds[kind].append(row)
+    return xr.Dataset(
+        {
+            f"{kind}_{name}": (
+                (kind, "replica", "frame")[: 1 + np.ndim(rows[0][name])],
+                np.array([row[name] for row in rows]),
+                {"units": "1"},
+            )
+            for kind, rows in kinds.items()
+            for name in (rows[0] if rows else ())
+        }
+    )
+
+
+def _path(scene: Scene, path: str, _: int) -> dict[str, np.ndarray]:
+    with open_trajectory(path) as run:
+        volume, energy = _length(scene, run), run["kinetic_energy"].values
+    return {"volume": volume / volume[0], "temperature": energy / energy[0]}
+
+
+def _length(scene: Scene, run: xr.Dataset) -> np.ndarray:
+    """(frame,) the distance of the piston from the wall opposite."""
+    ((number, _),) = pistons(scene)
+    place = run["piston_position"].values
+    return place if number % 2 else scene.container.lengths[number // 2] - place
+
+
+def _state(scene: Scene, path: str, first: int) -> dict[str, np.ndarray]:
+    ((_, face),) = pistons(scene)
+    area = scene.container.volume / scene.container.lengths[0]
+    with open_trajectory(path) as run:
+        length, velocity = _length(scene, run)[first:], run["piston_velocity"].values[first:]
+        energy = run["kinetic_energy"].values[first:]
+        places = run["coordinates"].values[first:, :, 0] / length[:, None]
+    temperature = 2.0 * energy.mean() / (scene.dimension * scene.count)
+    middle = ((places > 0.25) & (places < 0.75)).sum() / (0.5 * area * length.sum())
+    return {
+        "density": middle * scene.packing_fraction * scene.container.volume / scene.count,
+        "factor": face.pressure / (middle * temperature),
+        "fluctuation": scene.count * length.var() / length.mean() ** 2,
+        "energy": face.mass * np.mean(velocity**2) / temperature,
+    }
+
+
+def _expansion(scene: Scene, path: str, _: int) -> dict[str, np.ndarray]:
+    with open_trajectory(path) as run:
+        energy = run["kinetic_energy"].values
+        half = len(energy) // 2
+        speeds = np.linalg.norm(run["velocities"].values[half:].astype(float), axis=2)
+        beyond = run["coordinates"].values[half:, :, 0] > 0.5 * scene.container.lengths[0]
+    first = 2.0 * energy[0] / (scene.dimension * scene.count)
+    return {
+        "heat": energy[half:].mean() / energy[0],
+        "speed": speeds.mean() / mean_speed(scene.dimension, first),
+        "share": beyond.mean(),
+    }
