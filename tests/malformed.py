@@ -43,6 +43,11 @@ SCENES = [
         },
     },
     {
+        "container": {"lengths": [8.0, 9.0], "boundary": ["wall", "periodic"]},
+        "species": [{"count": 5, "radius": 0.3, "speed": 1.0}],
+        "faces": {"x_low": {"kind": "piston", "mass": 20.0, "pressure": 0.5}},
+    },
+    {
         "container": {"lengths": [8.0, 9.0, 10.0], "boundary": "periodic"},
         "species": [{"count": 2, "radius": 0.2, "fixed": True, "vibration": 0.1}],
         "bodies": [{"position": [4, 4, 4], "velocity": [0, 0, 1], "radius": 0.3, "spin": [0, 0, 1]}],

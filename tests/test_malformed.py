@@ -12,7 +12,7 @@ import gaspart as gp
 from gaspart.engines import engine_from_dict
 from gaspart.errors import SceneError
 from gaspart.experiments.config import check
-from gaspart.scene.faces import Sticky, Thermal, Vibrating, Well
+from gaspart.scene.faces import Piston, Sticky, Thermal, Vibrating, Well
 from gaspart.scene.walls import Plate, box_of_walls
 from gaspart.yaml_text import dump_yaml
 
@@ -26,6 +26,7 @@ VALID = {
     Thermal: {"temperature": 1.0, "components": "all"},
     Well: {"depth": 1.0, "width": 0.5},
     Sticky: {"momentum": 1.0},
+    Piston: {"mass": 10.0, "pressure": 1.0},
     Vibrating: {"amplitude": 0.1, "period": 1.0, "waveform": "sawtooth"},
     gp.Scene: {"container": gp.Container((8.0, 9.0)), "species": [gp.Species(3, 0.5)]},
     gp.EventDriven: {"search": "boxes"},

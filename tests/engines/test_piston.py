@@ -1,4 +1,4 @@
-"""A piston: contacts of one ball that are computed otherwise, what is conserved, and the same bits throughout."""
+"""A piston: contacts of one ball that are computed otherwise, what is conserved, the same bits throughout."""
 
 import math
 from dataclasses import replace
@@ -215,7 +215,9 @@ def test_what_a_piston_does_not_go_with_is_refused():
 
 
 def test_a_thermal_wall_may_stand_opposite(tmp_path):
-    scene = replace(gas(gp.Piston(20.0, 0.6)), faces={"x_low": gp.Thermal(2.0), "x_high": gp.Piston(20.0, 0.6)})
+    scene = replace(
+        gas(gp.Piston(20.0, 0.6)), faces={"x_low": gp.Thermal(2.0), "x_high": gp.Piston(20.0, 0.6)}
+    )
     scene.to_file(tmp_path / "scene.yaml")
     assert gp.Scene.from_file(tmp_path / "scene.yaml") == scene
     sim = gp.Simulation(scene, gp.EventDriven(), seed=1)

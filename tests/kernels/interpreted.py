@@ -62,6 +62,7 @@ def event_scenes():
         "thermal": gp.Scene(box, two, gravity=(0.0, -0.5), restitution=ROUGH, faces=warm),
         "holding": gp.Scene(room, two, faces=low | high),
         "vibrating": gp.Scene(box, two, gravity=down, restitution=ROUGH, faces=shaking),
+        "piston": gp.Scene(room, two, faces={"x_low": gp.Piston(5.0, 0.1)}),
         "viscoelastic": gp.Scene(box, [*two, fixed], restitution=VISCOUS),
         "metal": gp.Scene(box, electrons, restitution=METAL, faces=heat),
         "big": gp.Scene(room, [small, large]),

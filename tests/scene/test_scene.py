@@ -166,7 +166,7 @@ HOLED = {"x_low": gp.Well(1.0, 2.0), "x_high": gp.Well(1.0, 2.0)}
         (lambda: gp.Scene(ROOM, walls=[gp.Wall((1.0, 1.0), (2.0, 2.0))]), "a Wall needs a container of two"),
         (lambda: gp.Scene(FLAT, BALL, faces=HOLED), "faces.x_low.width = 2.0: leaves no room outside"),
         (lambda: gp.Scene(FLAT, faces={"y_low": HOLED["x_low"]}, gravity=(0.0, -1.0)), "without gravity"),
-        (lambda: gp.Scene(FLAT, faces={"x_low": 3}), "must be Thermal, Well, Sticky or Vibrating"),
+        (lambda: gp.Scene(FLAT, faces={"x_low": 3}), "must be Thermal, Well, Sticky, Vibrating or Piston"),
         (lambda: gp.Scene(FLAT, faces=["x_low"]), "must be a mapping of faces"),
         (lambda: gp.Scene(FLAT, restitution=0.9), "restitution = 0.9: must be a Restitution"),
         (lambda: gp.Scene(FLAT, gravity=(0.0, -1.0, 0.0)), "must be a list of 2 finite numbers"),
@@ -208,6 +208,7 @@ def test_a_mistake_in_python_is_refused_in_one_line_too(make, complaint):
         gp.Well,
         gp.Sticky,
         gp.Vibrating,
+        gp.Piston,
     ],
 )
 def test_every_field_of_a_scene_has_a_rule_and_a_meaning(kind):

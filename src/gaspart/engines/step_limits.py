@@ -10,8 +10,8 @@ import numpy as np
 
 from gaspart.engines.vibration import vibrating_faces
 from gaspart.errors import SceneError, SimulationError
-from gaspart.scene.geometry import ball_volume
 from gaspart.scene.faces import pistons
+from gaspart.scene.geometry import ball_volume
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 

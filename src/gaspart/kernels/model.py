@@ -141,9 +141,9 @@ class Motion(NamedTuple):
 
 
 class Piston(NamedTuple):
-    """The face that is a piston: its number; mass, in the kernel's unit; push, its acceleration inwards by its
-    load; motion (3,), how far inwards it is and how fast it moves inwards at the time of its clock; slowest
-    (1,), the speed at which particles part from it at least."""
+    """The face that is a piston: its number; mass, in the kernel's unit; push, its acceleration inwards by
+    its load; motion (3,), how far inwards it is and how fast it moves inwards at the time of its clock;
+    slowest (1,), the speed at which particles part from it at least."""
 
     face: int
     mass: float
@@ -156,8 +156,8 @@ class Faces(NamedTuple):
     """Faces with a kind. Of the container's faces (2d,): kind; level, the temperature, or the momentum that
     sticks; depth and width of the well, 0 if there is none. Of the particles: place (N, d), -1 or 1 in the
     well of an axis' low or high face, or stuck to it; held (N, d), the energy kept there as vibration; draws
-    (N,), how often random numbers were taken for it, under `key` (2,). motion: None if no face vibrates; piston: None if none is
-    one."""
+    (N,), how often random numbers were taken for it, under `key` (2,). motion, piston: None if no face
+    vibrates, and if none is a piston."""
 
     kind: np.ndarray
     level: np.ndarray

@@ -67,8 +67,9 @@ def face_names(dimension: int, walls: int = 0) -> list[str]:
 class Layout:
     """The variables of one frame, in their order in the file: name -> (type, dimensions, attributes).
 
-    count: particles in the file; extra: which variables of `_EXTRA` the file has; walls: the number of interior walls; engine: by whose name the counters are chosen; sums: of the correlations, from
-    lag 0 to `lags`.
+    count: particles in the file; extra: which variables of `_EXTRA` the file has; walls: the number of
+    interior walls; engine: by whose name the counters are chosen; sums: of the correlations, from lag 0 to
+    `lags`.
     """
 
     def __init__(

@@ -30,5 +30,5 @@ def test_wrong_data_disagree(wrong, claim):
 
 
 def test_the_variance_of_an_ideal_gas_at_constant_temperature():
-    """That of Poisson's distribution, 1/N of the volume squared; at constant enthalpy it is 1 / gamma of it."""
+    """That of Poisson's distribution, 1/N of the volume squared; at constant enthalpy 1 / gamma of it."""
     assert isothermal_variance(1e-3, 2) == pytest.approx(1.0 - 4e-3, rel=1e-4)

@@ -10,7 +10,7 @@ from gaspart.analysis.statistics import mean_of
 from gaspart.claims import Claim, Estimate
 from gaspart.experiments.shared.claims import PARTICLES, rows
 
-ENSEMBLE = "the ensemble of constant pressure and enthalpy (Andersen 1980; Haile and Graben 1980)"
+ENSEMBLE = "the ensemble of constant pressure and enthalpy (Andersen 1980)"
 
 
 def exponents(path: xr.Dataset) -> np.ndarray:
@@ -119,7 +119,7 @@ def _of_expansion(gas: xr.Dataset) -> list[Claim]:
             measured=mean_of(gas["expansion_speed"].values),
             expected=1.0,
             required=0.005,
-            source="the energy of hard particles does not depend on the volume, so that the temperature stays",
+            source="the energy of hard particles does not depend on the volume: the temperature stays",
             fails_if="a gas whose flow has not become heat, or that has cooled",
         ),
         Claim(
