@@ -30,11 +30,11 @@ def gases(exponent=1.0, back=1.0, factor=1.0, fluctuation=1.0, energy=1.0, heat=
         for eta, d in zip(density, kinds, strict=True)
     ]
     factors, variances = np.array(known).T
-    state, gas = ("state", "replica"), ("expansion", "replica")
+    state, gas = ("state", "state_replica"), ("expansion", "expansion_replica")
     return xr.Dataset(
         {
-            "path_volume": (("path", "replica", "frame"), np.tile(volume, (2, REPLICAS.size, 1))),
-            "path_temperature": (("path", "replica", "frame"), np.array(paths)),
+            "path_volume": (("path", "path_replica", "frame"), np.tile(volume, (2, REPLICAS.size, 1))),
+            "path_temperature": (("path", "path_replica", "frame"), np.array(paths)),
             "path_dimension": ("path", dimensions),
             "path_packing_fraction": ("path", [0.005, 0.005]),
             "state_density": (state, scattered(density, 0.0)),

@@ -18,7 +18,7 @@ def test_paths_states_and_an_expansion(tmp_path):
     for n, name in enumerate(("discs", "spheres")):
         own = ds.isel(path=n)
         measured = of_replicas(own["path_temperature"].values.T)
-        paths.append(Points(name, own["path_volume"].mean("replica"), *measured))
+        paths.append(Points(name, own["path_volume"].mean("path_replica"), *measured))
         states = ds.isel(state=slice(2 * n, 2 * n + 2))
         eta = states["state_density"].values
         factor = states["state_factor"].values / theory.compressibility_factor(eta, n + 2)

@@ -21,13 +21,13 @@ def test_one_disc_and_its_piston(tmp_path):
     )
     push = 0.01 * 10.0 / 10.0
     point = made(tmp_path, "fall", scene, duration=20.0, samples=2, replicas=2)
-    path = measure.piston([point], {}).isel(path=0, replica=1)
+    path = measure.piston([point], {}).isel(path=0, path_replica=1)
     assert path["path_volume"].values == pytest.approx(1.0 - 0.5 * push * np.array([0, 10, 20]) ** 2 / 20.0)
     assert np.array_equal(path["path_temperature"], np.ones(3))
     assert (path["path_dimension"], path["path_packing_fraction"]) == (2, pytest.approx(0.5 * np.pi / 200))
 
     point = made(tmp_path, "steady", scene, duration=20.0, samples=2, equilibration=10.0, replicas=2)
-    state = measure.piston([point], {}).isel(state=0, replica=0)
+    state = measure.piston([point], {}).isel(state=0, state_replica=0)
     time = np.array([10.0, 20.0, 30.0])
     length = 20.0 - 0.5 * push * time**2
     # the disc at 8 is in the middle half in all frames, the other one in none

@@ -45,9 +45,10 @@ def piston(ds: xr.Dataset) -> Figure:
 
 def _draw_path(axis: Axes, path: xr.Dataset) -> None:
     dimension, first = int(path["path_dimension"]), float(path["path_packing_fraction"])
-    volume, temperature = path["path_volume"].mean("replica"), path["path_temperature"]
-    kind, error = dimension - 2, temperature.std("replica", ddof=1) / np.sqrt(temperature.sizes["replica"])
-    style.points(axis, volume, temperature.mean("replica"), error, kind, label=PARTICLES[dimension])
+    volume, temperature = path["path_volume"].mean("path_replica"), path["path_temperature"]
+    scatter, replicas = temperature.std("path_replica", ddof=1), temperature.sizes["path_replica"]
+    kind, error = dimension - 2, scatter / np.sqrt(replicas)
+    style.points(axis, volume, temperature.mean("path_replica"), error, kind, label=PARTICLES[dimension])
     fine = np.geomspace(float(volume.min()), 1.0, 60)
     expected = theory.adiabatic_temperature(first / fine, first, dimension)
     label = rf"adiabat, $\gamma={2 * dimension + 4}/{2 * dimension}$"
@@ -55,13 +56,13 @@ def _draw_path(axis: Axes, path: xr.Dataset) -> None:
 
 
 def _draw_states(middle: Axes, lower: Axes, states: xr.Dataset, dimension: int) -> None:
-    eta, kind = states["state_density"].mean("replica").values, dimension - 2
+    eta, kind = states["state_density"].mean("state_replica").values, dimension - 2
     factor = states["state_factor"] / theory.compressibility_factor(states["state_density"].values, dimension)
     sound = np.asarray(theory.speed_of_sound(eta, dimension))
     variance = states["state_fluctuation"] * sound[:, None] ** 2
-    root = np.sqrt(states.sizes["replica"])
+    root = np.sqrt(states.sizes["state_replica"])
     for axis, ratio in ((middle, factor), (lower, variance)):
-        mean, error = ratio.mean("replica"), ratio.std("replica", ddof=1) / root
+        mean, error = ratio.mean("state_replica"), ratio.std("state_replica", ddof=1) / root
         style.points(axis, eta, mean, error, kind, label=PARTICLES[dimension])
     fine = np.linspace(0.0, eta.max(), 60)
     isothermal = [

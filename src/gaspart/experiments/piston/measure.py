@@ -17,15 +17,15 @@ from gaspart.trajectory.run import open_trajectory
 def piston(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """Three kinds of points, all of particles of mass 1 in containers whose first axis has walls.
 
-    With a piston and without an equilibration, over (path, replica, frame): volume over that at first;
+    With a piston and without an equilibration, over (path, path_replica, frame): volume over that at first;
     temperature over that at first; over `path` dimension and packing_fraction at first.
-    With a piston and an equilibration, over (state, replica): density, the packing fraction in the middle
-    half of the volume; factor, the external pressure over that density and the temperature; fluctuation, the
-    number of particles times the relative variance of the volume; energy, twice the kinetic energy of the
-    piston over the temperature; over `state` dimension and count.
-    Without a piston, over (expansion, replica): heat, the final kinetic energy over the first; speed, the
-    final mean speed over that of Maxwell's distribution at the first temperature; share of the particles in
-    the half of the container that was empty; over `expansion` dimension.
+    With a piston and an equilibration, over (state, state_replica): density, the packing fraction in the
+    middle half of the volume; factor, the external pressure over that density and the temperature;
+    fluctuation, the number of particles times the relative variance of the volume; energy, twice the kinetic
+    energy of the piston over the temperature; over `state` dimension and count.
+    Without a piston, over (expansion, expansion_replica): heat, the final kinetic energy over the first;
+    speed, the final mean speed over that of Maxwell's distribution at the first temperature; share of the
+    particles in the half of the container that was empty; over `expansion` dimension.
     Final are means over the second half of the frames.
     """
     kinds: dict[str, list[dict]] = {"path": [], "state": [], "expansion": []}
@@ -44,7 +44,7 @@ def piston(points: list[grid.Point], settings: dict) -> xr.Dataset:
     return xr.Dataset(
         {
             f"{kind}_{name}": (
-                (kind, "replica", "frame")[: 1 + np.ndim(rows[0][name])],
+                (kind, f"{kind}_replica", "frame")[: 1 + np.ndim(rows[0][name])],
                 np.array([row[name] for row in rows]),
                 {"units": "1"},
             )
