@@ -12,6 +12,10 @@ from gaspart.experiments.piston.claims import isothermal_variance
 from gaspart.experiments.shared.claims import PARTICLES, rows
 from gaspart.rendering import style
 
+_DOUBLED = 2.0
+"""The volume after free expansion, over that before."""
+_EXPONENTS = {2: "2", 3: "5/3"}
+
 
 def piston(ds: xr.Dataset) -> Figure:
     """Three panels: temperature along adiabats, factors at constant pressure, variances of the volume."""
@@ -21,14 +25,15 @@ def piston(ds: xr.Dataset) -> Figure:
     for gas in rows(ds, "expansion")[:1]:
         speed = gas["expansion_speed"].values ** 2
         error = speed.std(ddof=1) / np.sqrt(speed.size)
-        style.points(upper, 2.0, speed.mean(), error, 4, label="free expansion, doubled")
+        style.points(upper, _DOUBLED, speed.mean(), error, 4, label="free expansion")
     upper.set_xscale("log")
     upper.set_yscale("log")
     upper.set_xlabel(r"volume $V/V_0$")
     upper.set_ylabel(r"temperature $T/T_0$")
     upper.legend()
-    for axis in (middle, lower):
-        style.level(axis, 1.0)
+    style.level(lower, 1.0)
+    if "state_count" in ds:
+        style.level(middle, 1.0 + 1.0 / float(ds["state_count"][0]), label="$1+1/N$")
     for dimension in (2, 3):
         states = ds.isel(state=(ds["state_dimension"] == dimension).values)
         if states.sizes["state"]:
@@ -49,9 +54,9 @@ def _draw_path(axis: Axes, path: xr.Dataset) -> None:
     scatter, replicas = temperature.std("path_replica", ddof=1), temperature.sizes["path_replica"]
     kind, error = dimension - 2, scatter / np.sqrt(replicas)
     style.points(axis, volume, temperature.mean("path_replica"), error, kind, label=PARTICLES[dimension])
-    fine = np.geomspace(float(volume.min()), 1.0, 60)
+    fine = np.geomspace(float(volume.min()), _DOUBLED, 60)
     expected = theory.adiabatic_temperature(first / fine, first, dimension)
-    label = rf"adiabat, $\gamma={2 * dimension + 4}/{2 * dimension}$"
+    label = rf"adiabat, $\gamma={_EXPONENTS[dimension]}$"
     axis.plot(fine, expected, color=style.COLOURS[kind], zorder=1, label=label)
 
 
