@@ -12,6 +12,21 @@ def test_erpenbeck_wood_reproduces_the_table(table):
     assert theory.erpenbeck_wood_ratio(0.0) == 1.0
 
 
+# rho sigma^3 and D of Pieprzyk and others, Phys. Chem. Chem. Phys. 21, 6886 (2019), by a public script.
+PIEPRZYK = np.array(
+    [
+        *[(0.10, 1.94786), (0.20, 0.89989), (0.30, 0.55523), (0.40, 0.37845), (0.50, 0.265009)],
+        *[(0.60, 0.183259), (0.70, 0.121081), (0.75, 0.095425), (0.80, 0.072934), (0.85, 0.053298)],
+    ]
+)
+
+
+def test_erpenbeck_wood_differs_from_a_later_table_by_its_uncertainty():
+    density, diffusion = PIEPRZYK.T
+    ratio = theory.erpenbeck_wood_diffusion(theory.packing_fraction(density, 3)) / diffusion
+    assert 0.9 < np.abs(ratio - 1.0).max() / theory.ERPENBECK_WOOD_UNCERTAINTY < 1.01
+
+
 def test_yeh_hummer_at_the_stated_scene():
     # 15 % of D at N = 256, rho = 0.7.
     density, count = 0.7, 256
