@@ -47,7 +47,8 @@ def yeh_hummer(length: Numbers, viscosity: Numbers, temperature: float = 1.0) ->
 
     Yeh and Hummer, J. Phys. Chem. B 108, 15873 (2004), abstract. `length`: side of the cubic periodic
     container; `viscosity`: shear viscosity, `enskog.enskog_viscosity` will do to eta = 0.3. Hydrodynamics:
-    holds where the mean free path is much smaller than L; a dilute gas has less correction than this.
+    holds where the mean free path is much smaller than L. Modes of the velocity field that decay with nu + D
+    instead of nu, as in a gas, are those of a viscosity larger by rho D.
     """
     return YEH_HUMMER_CONSTANT * temperature / (6.0 * math.pi * viscosity * length)
 
