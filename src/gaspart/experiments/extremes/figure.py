@@ -57,7 +57,7 @@ def stability_extremes(dataset: xr.Dataset) -> Figure:
     for name, left in starts.items():
         sizes = _sizes(dataset, name)
         for n, k in np.ndindex(rows, engines):
-            cell = _cell(dataset.isel(row=n, engine=k), name, sizes[n, k], wide)
+            cell = _cell(dataset.isel(row=n, engine=k), name, float(sizes[n, k]), wide)
             _draw_cell(axis, left + k, n, cell, letters[0])
     groups = dataset["group"].values
     for n in np.flatnonzero(groups[1:] != groups[:-1]) + 1:

@@ -47,7 +47,7 @@ def expected_approach(time: np.ndarray, slab: Slab, eta: float, diameter: float)
     """The same by the heat equation, which ends at the difference of the steady `slab`; eta: mean packing
     fraction. Conductivity and density are those of the mean; jumps at the walls lengthen the gap."""
     hot = slab.position < 0.5 * slab.position[-1]
-    steady = np.subtract(*(_average(slab, side) for side in (hot, ~hot)))
+    steady = _average(slab, hot) - _average(slab, ~hot)
     temperature = 0.5 * (slab.temperature[0] + slab.temperature[-1])
     conductivity = enskog_conductivity(eta, 3, diameter, temperature)
     diffusivity = conductivity / (HEAT_CAPACITY * number_density(eta, 3, diameter))

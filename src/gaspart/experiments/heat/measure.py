@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import fit_polynomial, jackknife, steady_mean
@@ -140,7 +141,7 @@ def heat_conduction_gas(points: list[grid.Point], settings: dict) -> xr.Dataset:
     )
 
 
-def _dimensions(name: str, value: object) -> tuple[str, ...]:
+def _dimensions(name: str, value: ArrayLike) -> tuple[str, ...]:
     """Of a variable of `heat_conduction_gas`."""
     if not np.ndim(value):
         return ("point",)
