@@ -7,7 +7,7 @@ import gaspart as gp
 from gaspart.experiments.heat import measure as heat
 from gaspart.experiments.heat.approach import FRAMES, approach
 from gaspart.planning import grid
-from gaspart.theory.heat import free_molecular_flux
+from gaspart.theory.heat import conducting_slab, free_molecular_flux
 
 
 def run(tmp_path, scene, **settings):
@@ -76,7 +76,8 @@ def test_a_dense_gas_is_compared_with_fourier(tmp_path):
 def test_the_start_of_a_run_is_shown_from_one_temperature_on(tmp_path):
     """Halves at one temperature; of a run with fewer frames the others are missing."""
     point = run(tmp_path, gas(100, 0.5), duration=20.0, equilibration=5.0, samples=8, boxes_per_side=1)
-    found = approach(point, 5.5)
+    slab = conducting_slab(10.0, 100 / 360, 2.0, 1.0)
+    found = approach(point, slab)
     frames = int(np.isfinite(found["approach_time"]).sum())
     assert 8 < frames < FRAMES and np.isnan(found["approach"][frames:]).all()
     assert abs(found["approach"][0]) < 4.0 * found["approach_error"][0]

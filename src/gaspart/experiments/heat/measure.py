@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import fit_polynomial, jackknife, steady_mean
-from gaspart.experiments.heat.approach import FRAMES, approach, expected_approach
+from gaspart.experiments.heat.approach import NO_APPROACH, approach
 from gaspart.planning import grid
 from gaspart.scene.faces import thermal_face
 from gaspart.scene.scene import Scene
@@ -184,18 +184,13 @@ def _gas(point: grid.Point, settings: dict) -> dict:
         "slab_temperature": np.full(position.shape, np.nan),
         "slab_density": np.full(position.shape, np.nan),
         "used": (position > settings["clear"] * path) & (position < gap.length - settings["clear"] * path),
-    }
+    } | NO_APPROACH
     made |= dict.fromkeys(("profile_ratio", "jump"), (np.nan, np.nan))
-    names = ("approach_time", "approach", "approach_error", "expected_approach")
-    row |= dict.fromkeys(names, np.full(FRAMES, np.nan))
     if gap.dimension == 3:
         row["fourier"] = dilute_fourier_flux(gap.length, gap.hot, gap.cold, diameter)
     if row["knudsen"] < FLUID and gap.dimension == 3 and components == "all":
         slab = conducting_slab(gap.length, number, gap.hot, gap.cold, diameter)
-        row["slab_flux"] = slab.flux
-        row |= approach(point, scene.smallest_radius + 0.5 * gap.length)
-        eta = float(packing_fraction(number, 3, diameter))
-        row["expected_approach"] = expected_approach(row["approach_time"], slab, eta, diameter)
+        row |= {"slab_flux": slab.flux, **approach(point, slab)}
         for name in ("temperature", "density"):
             row[f"slab_{name}"] = np.interp(position, slab.position, getattr(slab, name))
         used = row["used"]
