@@ -37,6 +37,20 @@ def test_yeh_hummer_at_the_stated_scene():
     assert theory.yeh_hummer(2 * length, 1.0) == pytest.approx(0.5 * theory.yeh_hummer(length, 1.0))
 
 
+def test_diffusion_in_a_cube_has_the_units_of_its_particles():
+    """Half of Yeh and Hummer's shift in a dilute gas, nearly all of it in a dense one; of length^2 / time."""
+    for eta, part in ((0.01, 0.47), (0.4, 0.96)):
+        inside, unsure = theory.diffusion_in_cube(eta, 20.0)
+        infinite = float(theory.erpenbeck_wood_diffusion(eta))
+        shift = infinite - inside
+        whole = float(theory.yeh_hummer(20.0, theory.enskog_viscosity(eta, 3)))
+        assert shift / whole == pytest.approx(part, abs=0.02)
+        assert unsure == pytest.approx(np.hypot(0.007 * infinite, 0.5 * shift))
+        other = theory.diffusion_in_cube(eta, 40.0, diameter=2.0, temperature=3.0, mass=12.0)
+        assert other == pytest.approx((inside, unsure))
+    assert theory.diffusion_in_cube(0.46, 1e6)[1] > 0.02 * theory.diffusion_in_cube(0.46, 1e6)[0]
+
+
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_decay_rate_is_the_first_sonine_approximation_of_diffusion(dimension):
     rate = theory.velocity_decay_rate(0.2, dimension, diameter=0.5, temperature=2.0, mass=3.0)

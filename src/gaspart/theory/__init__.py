@@ -19,6 +19,7 @@ from gaspart.theory.buoyancy import (
 from gaspart.theory.diffusion import (
     ERPENBECK_WOOD_UNCERTAINTY,
     YEH_HUMMER_CONSTANT,
+    diffusion_in_cube,
     enskog_mean_squared_displacement,
     erpenbeck_wood_diffusion,
     erpenbeck_wood_ratio,
@@ -169,6 +170,7 @@ __all__ = [
     "contact_value",
     "cooling_rate",
     "crystal_finite_size_correction",
+    "diffusion_in_cube",
     "diffusion_modes",
     "dilute_fourier_flux",
     "displaced_area",

@@ -13,8 +13,10 @@ from gaspart.theory.enskog import collision_rate, enskog_diffusion, enskog_visco
 from gaspart.theory.geometry import number_density
 
 ERPENBECK_WOOD_UNCERTAINTY = 0.007
-"""Relative uncertainty of `erpenbeck_wood_ratio`: the largest difference from the table of Pieprzyk and
-others (2019) up to eta = 0.45."""
+"""Relative uncertainty of `erpenbeck_wood_ratio` up to eta = 0.45: the largest difference from the table of
+Pieprzyk and others (2019)."""
+_DENSE = 0.45, 0.03
+# Packing fraction from which on the uncertainty is larger, and which; the difference is 2 % at 0.487.
 YEH_HUMMER_CONSTANT = 2.837297
 """Madelung-like constant of a cubic periodic container (Yeh and Hummer 2004, abstract)."""
 
@@ -51,6 +53,28 @@ def yeh_hummer(length: Numbers, viscosity: Numbers, temperature: float = 1.0) ->
     instead of nu, as in a gas, are those of a viscosity larger by rho D.
     """
     return YEH_HUMMER_CONSTANT * temperature / (6.0 * math.pi * viscosity * length)
+
+
+@checked
+def diffusion_in_cube(
+    packing_fraction: float,
+    length: float,
+    diameter: float = 1.0,
+    temperature: float = 1.0,
+    mass: float = 1.0,
+) -> tuple[float, float]:
+    """Spheres: D in a periodic cube of side `length`, and its standard uncertainty (length^2 / time).
+
+    `erpenbeck_wood_diffusion` less `yeh_hummer`, of modes that decay with nu + D by Enskog's viscosity. The
+    latter is taken as uncertain by half of it, for containers that are not long beside a mean free path.
+    """
+    infinite = float(erpenbeck_wood_diffusion(packing_fraction, diameter, temperature, mass))
+    viscosity = float(enskog_viscosity(packing_fraction, 3, diameter, temperature, mass))
+    carried = mass * float(number_density(packing_fraction, 3, diameter)) * infinite
+    shift = float(yeh_hummer(length, viscosity + carried, temperature))
+    dense, large = _DENSE
+    relative = ERPENBECK_WOOD_UNCERTAINTY if packing_fraction <= dense else large
+    return infinite - shift, math.hypot(relative * infinite, 0.5 * shift)
 
 
 @checked
