@@ -7,7 +7,9 @@ import pytest
 import gaspart as gp
 from gaspart.cli import main
 from gaspart.rendering.films import _pieces, film, poster
-from gaspart.rendering.labels import round_length
+from gaspart.rendering.frames import particles_of
+from gaspart.rendering.labels import Labels, round_length, time_format
+from gaspart.rendering.particles import legend_of
 
 
 @pytest.fixture(scope="module")
@@ -57,16 +59,50 @@ def test_a_film_of_spheres_is_made_of_their_pictures(runs):
 
 
 @pytest.mark.parametrize("scene", ["discs", "spheres"])
-def test_time_scale_and_legend_are_written_into_the_corners_and_the_time_runs(runs, scene):
-    plain, timed = runs / f"{scene}-plain.gif", runs / f"{scene}-timed.gif"
-    film(runs / f"{scene}.nc", plain, size=(240, 180), colour="species")
-    film(runs / f"{scene}.nc", timed, size=(240, 180), colour="species", clock=True)
-    without, within = (imageio.imread(path).astype(int) for path in (plain, timed))
-    changed = np.abs(within - without).max(axis=-1) > 100
-    assert not changed[:, 30:150].any() and changed[:, 150:, :80].any(axis=(1, 2)).all()
-    assert changed[:, 150:, 160:].any(axis=(1, 2)).all()
-    assert changed[:, :30].any() == (scene == "discs")  # the other has one species
-    assert (within[0, 150:, :80] != within[4, 150:, :80]).any()
+def test_labels_are_above_and_below_the_picture_and_the_time_runs(runs, scene):
+    timed, size = runs / f"{scene}-timed.gif", (240, 180)
+    film(runs / f"{scene}.nc", timed, size=size, colour="species", clock=True)
+    images = imageio.imread(timed).astype(int)
+    with gp.open_trajectory(runs / f"{scene}.nc") as trajectory:
+        shown = particles_of(trajectory, -1)
+    labels = Labels(size, shown.parameters, legend_of(shown, "species"))
+    width, height = labels.inner
+    inside = slice(labels.top, labels.top + height)
+    alone = gp.render(runs / f"{scene}.nc", size=(width, height), colour="species")
+    assert np.abs(images[-1, inside] - alone).mean() < 4.0
+    above, below = images[:, : labels.top], images[:, labels.top + height :]
+    assert (above < 100).any(axis=(1, 2, 3)).all()
+    assert (below[:, :, :80] < 100).any(axis=(1, 2, 3)).all() and (below[:, :, 160:] < 100).any()
+    assert (below[0, :, :80] != below[4, :, :80]).any()
+    assert shown.parameters[0] == {"discs": "21 discs", "spheres": "20 spheres"}[scene]
+    assert (legend_of(shown, "species") is None) == (scene == "spheres")
+
+
+def test_the_colours_of_species_are_named_by_what_differs(runs):
+    with gp.open_trajectory(runs / "discs.nc") as trajectory:
+        legend = legend_of(particles_of(trajectory), "species")
+    assert (legend.title, legend.texts) == ("radius, mass", ("0.5, 1", "1.5, 10"))
+    scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(2, 0.5), gp.Species(2, 0.5)])
+    legend = legend_of(particles_of(gp.Simulation(scene, gp.EventDriven())), "species")
+    assert (legend.title, legend.texts) == ("species", ("0", "1"))
+
+
+def test_parameters_are_in_lines_that_fit():
+    texts = ("240 discs", "packing fraction 0.198", "gravity 1", "restitution 0.8")
+    narrow, wide = Labels((200, 400), texts), Labels((640, 480), texts)
+    assert len(narrow.lines) > len(wide.lines) == 1
+    assert all(narrow.font.getlength(line) < 200 for line in narrow.lines)
+    assert ", ".join(narrow.lines) == ", ".join(texts)
+    assert Labels((200, 60), texts).lines == []
+    with pytest.raises(gp.SceneError, match="too small for a clock"):
+        Labels((200, 30), texts)
+
+
+@pytest.mark.parametrize(
+    ("times", "text"), [([0, 5], ".0f"), ([0, 0.25, 0.5], ".2f"), ([0, 1 / 3], ".4g"), ([1e-9], ".4g")]
+)
+def test_all_times_of_a_film_have_as_many_decimals(times, text):
+    assert time_format(np.array(times)) == text
 
 
 @pytest.mark.parametrize(("longest", "length"), [(37.0, 20.0), (0.7, 0.5), (1.0, 1.0), (9.99, 5.0)])

@@ -12,6 +12,21 @@ def test_erpenbeck_wood_reproduces_the_table(table):
     assert theory.erpenbeck_wood_ratio(0.0) == 1.0
 
 
+# rho sigma^3 and D of Pieprzyk and others, Phys. Chem. Chem. Phys. 21, 6886 (2019), by a public script.
+PIEPRZYK = np.array(
+    [
+        *[(0.10, 1.94786), (0.20, 0.89989), (0.30, 0.55523), (0.40, 0.37845), (0.50, 0.265009)],
+        *[(0.60, 0.183259), (0.70, 0.121081), (0.75, 0.095425), (0.80, 0.072934), (0.85, 0.053298)],
+    ]
+)
+
+
+def test_erpenbeck_wood_differs_from_a_later_table_by_its_uncertainty():
+    density, diffusion = PIEPRZYK.T
+    ratio = theory.erpenbeck_wood_diffusion(theory.packing_fraction(density, 3)) / diffusion
+    assert 0.9 < np.abs(ratio - 1.0).max() / theory.ERPENBECK_WOOD_UNCERTAINTY < 1.01
+
+
 def test_yeh_hummer_at_the_stated_scene():
     # 15 % of D at N = 256, rho = 0.7.
     density, count = 0.7, 256
@@ -20,6 +35,20 @@ def test_yeh_hummer_at_the_stated_scene():
     shift = theory.yeh_hummer(length, theory.enskog_viscosity(eta, 3))
     assert shift / theory.erpenbeck_wood_diffusion(eta) == pytest.approx(0.15, abs=0.02)
     assert theory.yeh_hummer(2 * length, 1.0) == pytest.approx(0.5 * theory.yeh_hummer(length, 1.0))
+
+
+def test_diffusion_in_a_cube_has_the_units_of_its_particles():
+    """Half of Yeh and Hummer's shift in a dilute gas, nearly all of it in a dense one; of length^2 / time."""
+    for eta, part in ((0.01, 0.47), (0.4, 0.96)):
+        inside, unsure = theory.diffusion_in_cube(eta, 20.0)
+        infinite = float(theory.erpenbeck_wood_diffusion(eta))
+        shift = infinite - inside
+        whole = float(theory.yeh_hummer(20.0, theory.enskog_viscosity(eta, 3)))
+        assert shift / whole == pytest.approx(part, abs=0.02)
+        assert unsure == pytest.approx(np.hypot(0.007 * infinite, 0.5 * shift))
+        other = theory.diffusion_in_cube(eta, 40.0, diameter=2.0, temperature=3.0, mass=12.0)
+        assert other == pytest.approx((inside, unsure))
+    assert theory.diffusion_in_cube(0.46, 1e6)[1] > 0.02 * theory.diffusion_in_cube(0.46, 1e6)[0]
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -35,8 +35,17 @@ def test_free_volume_rules_at_close_packing(dimension):
 
 
 def test_the_virial_series_is_too_high_for_a_dense_liquid_of_discs():
-    eta, z = theory.DENSE_LIQUID_DISCS
-    assert theory.compressibility_factor(eta, 2) / z == pytest.approx(1.004, abs=1e-3)
+    eta, pressure, _ = theory.LIQUID_OF_1024_DISCS
+    assert theory.compressibility_factor(eta, 2) * eta * 4.0 / np.pi / pressure == pytest.approx(
+        1.028, abs=1e-3
+    )
+
+
+def test_the_crystal_of_discs_has_the_pressure_of_a_simulation():
+    eta, pressure, error = theory.CRYSTAL_OF_1024_DISCS
+    z = theory.alder_hoover_young_crystal(eta, 2)
+    z += theory.crystal_finite_size_correction(z, 1024)
+    assert abs(z * eta * 4.0 / np.pi - pressure) < 2.0 * error
 
 
 def test_a_finite_crystal_is_softer():

@@ -53,3 +53,24 @@ def test_the_slab_has_its_particles_and_its_jumps():
 def test_a_thin_gas_is_no_fluid():
     with pytest.raises(ValueError, match="Knudsen"):
         heat.conducting_slab(200.0, 0.005, 2.0, 1.0)
+
+
+def test_the_approach_to_conduction_is_the_solution_of_the_heat_equation():
+    """Explicit differences from a uniform start between walls that then have other temperatures."""
+    cells, diffusivity, length = 200, 3.0, 50.0
+    width = length / cells
+    step = 0.2 * width**2 / diffusivity
+    temperature = np.full(cells + 2, 1.2)
+    temperature[[0, -1]] = 2.0, 1.0
+    found, times = [], []
+    for n in range(24_001):
+        if n % 6000 == 0:
+            inside = temperature[1:-1]
+            found.append(inside[: cells // 2].mean() - inside[cells // 2 :].mean())
+            times.append(n * step)
+        wall = 2.0 * temperature[[0, -1]] - temperature[[1, -2]]  # the wall is half a cell away
+        around = np.concatenate([wall[:1], temperature[1:-1], wall[1:]])
+        temperature[1:-1] += 0.2 * np.diff(around, 2)
+    expected = 0.5 * heat.steady_part(np.array(times), length, diffusivity)
+    assert found == pytest.approx(expected, abs=2e-3)
+    assert 0.2 < expected[1] < 0.4 < expected[-1] < 0.5

@@ -73,8 +73,10 @@ def test_uncertainty_covers_the_virial_series_where_that_is_sharp(dimension):
 
 
 def test_uncertainty_covers_what_the_series_of_discs_lacks_near_freezing():
-    """Z = 8.306 at 0.6478 (Erpenbeck and Luban 1985), and the coexistence pressure, 9.185 kT/sigma^2."""
-    for eta, expected in ((0.6478, 8.306), (0.70, 9.185 * math.pi / 4 / 0.70)):
+    """P sigma^2 / kT = 7.9893 and 8.5209 at 0.67 and 0.68 (224 and 870 discs of Li and others 2022,
+    continued to infinity as 1/N), and that of coexistence, 9.185."""
+    for eta, pressure in ((0.67, 7.9893), (0.68, 8.5209), (0.70, 9.185)):
+        expected = pressure * math.pi / 4 / eta
         lacking = theory.compressibility_factor(eta, 2) - expected
         assert 0.0 < lacking <= 1.1 * theory.compressibility_uncertainty(eta, 2)
 

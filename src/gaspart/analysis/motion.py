@@ -144,12 +144,8 @@ def _theory_of_d(run: Run) -> dict[str, Any]:
     eta, sides = run.scene.packing_fraction, np.array(run.scene.container.lengths)
     if not run.bulk or run.dimension == 2 or eta > _DENSEST or np.ptp(sides) > 1e-6 * sides[0]:
         return {}
-    own = run.particle
-    infinite = float(theory.erpenbeck_wood_diffusion(eta, **own))
-    viscosity = float(theory.enskog_viscosity(eta, 3, **own))
-    shift = float(theory.yeh_hummer(sides[0], viscosity, own["temperature"]))
-    unsure = math.hypot(theory.ERPENBECK_WOOD_UNCERTAINTY * infinite, 0.5 * shift)
-    return {"theory": (infinite - shift, unsure), "source": "Erpenbeck and Wood, Yeh and Hummer"}
+    expected = theory.diffusion_in_cube(eta, float(sides[0]), **run.particle)
+    return {"theory": expected, "source": "Erpenbeck and Wood, Yeh and Hummer"}
 
 
 def _has_theory(run: Run) -> bool:

@@ -46,7 +46,7 @@ def add_render(parser: Parser) -> None:
         metavar="N",
         help="film of discs: draw the path of particle N, counted from 0",
     )
-    text = "write the time, the scale and the meaning of the colours into it"
+    text = "write the parameters, the meaning of the colours, the time and the scale above and below it"
     add("--clock", action="store_true", default=None, help=text)
     text = "from where spheres are seen: azimuth and elevation in degrees; default: 298,24"
     add("--camera", type=several(real()), metavar="A,E", help=text)

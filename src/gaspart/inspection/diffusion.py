@@ -55,16 +55,9 @@ def diffusion(frames: Frames) -> tuple[float, float]:
 
 
 def expected_diffusion(frames: Frames) -> tuple[float, float]:
-    """D in this cube and its uncertainty: Enskog's, Erpenbeck and Wood's ratio, Yeh and Hummer's shift.
-
-    The shift is taken as uncertain by half its value, because hydrodynamics overestimates that of a dilute
-    gas.
-    """
-    eta, sigma, temperature = frames.packing_fraction, _diameter(frames), _thermal_speed(frames) ** 2
-    infinite = float(theory.erpenbeck_wood_diffusion(eta, sigma, temperature))
-    viscosity = float(theory.enskog_viscosity(eta, 3, sigma, temperature))
-    shift = float(theory.yeh_hummer(frames.lengths[0], viscosity, temperature))
-    return infinite - shift, math.hypot(theory.ERPENBECK_WOOD_UNCERTAINTY * infinite, 0.5 * shift)
+    """D in this cube and its uncertainty: Enskog's, Erpenbeck and Wood's ratio, Yeh and Hummer's shift."""
+    sigma, temperature = _diameter(frames), _thermal_speed(frames) ** 2
+    return theory.diffusion_in_cube(frames.packing_fraction, float(frames.lengths[0]), sigma, temperature)
 
 
 def _steps(frames: Frames) -> np.ndarray:

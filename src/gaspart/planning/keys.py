@@ -238,7 +238,10 @@ ANIMATION: dict[str, Kind] = {
     "colour": choice("what the colour of a particle shows", "speed", "species", default="speed"),
     "frames_per_second": positive("pictures per second", default=25.0),
     "trail": count("number of a disc whose path is drawn", 0, default=None),
-    "clock": flag("write time, scale and the meaning of the colours into the pictures", default=False),
+    "clock": flag(
+        "write parameters, the meaning of the colours, time and scale above and below the pictures",
+        default=False,
+    ),
     "figure": described(TEXT, "the figure beside which the report shows the film", default=None),
 }
 

@@ -43,10 +43,14 @@ class Camera:
 
 
 def camera_for(
-    lengths: np.ndarray, width: int, height: int, direction: tuple[float, float] = CAMERA
+    lengths: np.ndarray,
+    width: int,
+    height: int,
+    direction: tuple[float, float] = CAMERA,
+    reach: float = 0.0,
 ) -> Camera:
-    """The camera for which a container of `lengths` (3,) just fills a picture of so many pixels, seen from a
-    direction (azimuth, elevation)."""
+    """The camera for which a container of `lengths` (3,), and what is within `reach` around it, just fills a
+    picture of so many pixels, seen from a direction (azimuth, elevation)."""
     azimuth, elevation = np.radians(direction)
     outward = np.array(
         [np.cos(azimuth) * np.cos(elevation), np.sin(azimuth) * np.cos(elevation), np.sin(elevation)]
@@ -54,7 +58,7 @@ def camera_for(
     forward, right = -outward, np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
     up = np.cross(right, forward)
     half = HALF_WIDTH * np.array([width, height]) / max(width, height)
-    corners = (np.array(list(product((0.0, 1.0), repeat=3))) - 0.5) * lengths
+    corners = (np.array(list(product((0.0, 1.0), repeat=3))) - 0.5) * (np.asarray(lengths) + 2.0 * reach)
     depth = corners @ forward
 
     def seen(distance: float) -> np.ndarray:

@@ -14,7 +14,7 @@ import numpy as np
 from gaspart.errors import SceneError, optional
 from gaspart.files import Kind, begins_with, output_path, whole_file, writing
 from gaspart.rendering.frames import opened, particles_of
-from gaspart.rendering.labels import labelled
+from gaspart.rendering.labels import Labels, time_format
 from gaspart.rendering.particles import FASTEST, colours_of, legend_of
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
 from gaspart.scene.validation import count_of, number
@@ -138,16 +138,17 @@ def _shown(
     """The pictures in order."""
     frames = trajectory.sizes["frame"]
     fastest = FASTEST * max(particles_of(trajectory, n).root_mean_square_speed for n in range(frames))
-    scale = pixels_per_length(particles_of(trajectory, 0).lengths, size, direction)
-    path = []
-    for n, time in enumerate(trajectory["time"].values):
+    first, times, path = particles_of(trajectory, 0), trajectory["time"].values, []
+    labels = Labels(size, first.parameters, legend_of(first, colour, fastest)) if clock else None
+    inner = labels.inner if labels else size
+    scale, decimals = pixels_per_length(first, inner, direction), time_format(times)
+    for n, time in enumerate(times):
         particles = particles_of(trajectory, n)
         if trail is not None:
             path.append(particles.positions[trail])
         paths = _pieces(path, particles.lengths)
-        image = picture(particles, size, colours_of(particles, colour, fastest), paths, direction)
-        legend = legend_of(particles, colour, fastest)
-        yield labelled(image, float(time), scale, legend) if clock else image
+        image = picture(particles, inner, colours_of(particles, colour, fastest), paths, direction)
+        yield labels.around(image, f"{time:{decimals}}", scale) if labels else image
 
 
 def _pieces(path: list[np.ndarray], lengths: np.ndarray) -> list[np.ndarray]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import pairwise
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.rendering.labels import labelled
+from gaspart.rendering.labels import Labels
 from gaspart.rendering.particles import DrawnParticles, colours_of, legend_of
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
 from gaspart.scene.faces import Piston, Vibrating
@@ -19,6 +20,7 @@ from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of
 from gaspart.scene.walls import Wall
 from gaspart.simulation.simulation import Simulation
+from gaspart.state.insertion import per_body
 from gaspart.state.state import State
 from gaspart.trajectory.run import open_trajectory
 from gaspart.yaml_text import parse_yaml
@@ -48,9 +50,9 @@ def render(
     above, with their periodic images at periodic faces. Interior walls of a state are not drawn.
     size: (W, H) pixels. colour: "speed", from dark at rest to bright at the speed
     `fastest` (twice the root-mean-square one) and above; "species"; or an array (N, 3) of red, green and
-    blue from 0 to 1. clock: whether the time, a bar of a round length (of spheres: in the middle of the
-    container) and the meaning of the colours are written into the picture. camera: azimuth and elevation in
-    degrees from which spheres are seen, (298, 24). The same particles give the same pixels.
+    blue from 0 to 1. clock: whether the scene's parameters and the meaning of the colours are written above,
+    the time and a bar of a round length (of spheres: in the middle of the container) below. camera: azimuth
+    and elevation in degrees from which spheres are seen, (298, 24). The same particles give the same pixels.
 
     Raises SceneError for a missing frame, an impossible size or camera, or an unknown colouring.
     """
@@ -59,11 +61,12 @@ def render(
         particles = particles_of(open_source, frame)
         time = _time_of(open_source, frame)
     direction = checked_camera(camera, particles.dimension)
-    image = picture(particles, size, colours_of(particles, colour, fastest), direction=direction)
+    colours = colours_of(particles, colour, fastest)
     if not clock:
-        return image
-    scale = pixels_per_length(particles.lengths, size, direction)
-    return labelled(image, time, scale, legend_of(particles, colour, fastest))
+        return picture(particles, size, colours, direction=direction)
+    labels = Labels(size, particles.parameters, legend_of(particles, colour, fastest))
+    image = picture(particles, labels.inner, colours, direction=direction)
+    return labels.around(image, f"{time:.4g}", pixels_per_length(particles, labels.inner, direction))
 
 
 @contextmanager
@@ -101,7 +104,24 @@ def particles_of(source: State | Simulation | xr.Dataset, frame: int = -1) -> Dr
         lengths=shown["cell_lengths"].values[: positions.shape[1]],
         walls=_walls(scene, float(shown["time"]), shown.get("piston_position")),
         periodic=scene.container.periodic,
+        masses=per_body(scene, "mass")[: len(source["radius"])].astype(float),
+        parameters=parameters_of(scene),
     )
+
+
+def parameters_of(scene: Scene) -> tuple[str, ...]:
+    """The parameters of a scene that a picture of it does not show, as short texts."""
+    kind = {2: "disc", 3: "sphere"}[scene.dimension]
+    texts = [f"{scene.count} {kind}{'s' if scene.count != 1 else ''}"]
+    texts.append(f"packing fraction {scene.packing_fraction:.3g}")
+    if scene.gravity is not None:
+        texts.append(f"gravity {math.hypot(*scene.gravity):.3g}")
+    if scene.restitution is not None:
+        texts.append(f"restitution {scene.restitution.normal:.3g}")
+    for name, face in scene.faces.items():
+        if isinstance(face, Vibrating):
+            texts.append(f"{name} vibrates: amplitude {face.amplitude:.3g}, period {face.period:.3g}")
+    return tuple(texts)
 
 
 def _time_of(source: State | Simulation | xr.Dataset, frame: int) -> float:
@@ -113,9 +133,9 @@ def _of_state(state: State, scene: Scene | None) -> DrawnParticles:
     if scene:
         walls = _walls(scene, state.time, None if state.piston is None else state.piston[0])
     periodic = scene.container.periodic if scene else (False,) * state.dimension
-    return DrawnParticles(
-        state.positions, state.radii, state.species, state.speeds, state.lengths, walls, periodic
-    )
+    parameters = parameters_of(scene) if scene else ()
+    looks = state.positions, state.radii, state.species, state.speeds
+    return DrawnParticles(*looks, state.lengths, walls, periodic, state.masses, parameters)
 
 
 def _walls(scene: Scene, time: float, piston: float | xr.DataArray | None) -> np.ndarray:

@@ -17,7 +17,8 @@ FASTEST = 2.0
 @dataclass(frozen=True)
 class DrawnParticles:
     """positions (N, d), radii (N,), species (N,), speeds (N,); lengths (d,) of the container; walls
-    (M, 2, d), the ends of the interior ones, of plates those of their sides; periodic, whether each axis is.
+    (M, 2, d), the ends of the interior ones, of plates those of their sides; periodic, whether each axis is;
+    masses (N,), if they are known; parameters: short texts on the scene.
     """
 
     positions: np.ndarray
@@ -27,11 +28,20 @@ class DrawnParticles:
     lengths: np.ndarray
     walls: np.ndarray
     periodic: tuple[bool, ...] = (False, False, False)
+    masses: np.ndarray | None = None
+    parameters: tuple[str, ...] = ()
 
     @property
     def dimension(self) -> int:
         """2 or 3."""
         return self.positions.shape[1]
+
+    @property
+    def reach(self) -> float:
+        """How far particles may reach out of the container: the radius of the largest that does."""
+        places, radii = self.positions, self.radii[:, None]
+        out = (np.maximum(radii - places, places + radii - self.lengths) > 1e-9 * self.lengths).any(axis=1)
+        return float(self.radii[out].max(initial=0.0))
 
     @property
     def root_mean_square_speed(self) -> float:
@@ -64,9 +74,27 @@ def legend_of(
         used = np.unique(particles.species)
         if len(used) < 2:
             return None
-        return Legend("species", _palette()[used % len(COLOURS)], tuple(map(str, used)))
+        title, texts = _differences(particles, used)
+        return Legend(title, _palette()[used % len(COLOURS)], texts)
     end = _fastest(particles, fastest)
     return Legend("speed", _ramp(np.linspace(0.0, 1.0, 64)), ("0", f"{end:.3g}"))
+
+
+def _differences(particles: DrawnParticles, used: np.ndarray) -> tuple[str, tuple[str, ...]]:
+    """In what these species differ, and its value in each; their numbers where one has several values."""
+    titles, columns = [], []
+    for title, values in (("radius", particles.radii), ("mass", particles.masses)):
+        if values is None:
+            continue
+        found = [np.unique(values[particles.species == kind]) for kind in used]
+        if any(len(one) > 1 for one in found):
+            return "species", tuple(map(str, used))
+        if len({float(one[0]) for one in found}) > 1:
+            titles.append(title)
+            columns.append([f"{one[0]:.3g}" for one in found])
+    if not titles:
+        return "species", tuple(map(str, used))
+    return ", ".join(titles), tuple(map(", ".join, zip(*columns, strict=True)))
 
 
 def _palette() -> np.ndarray:

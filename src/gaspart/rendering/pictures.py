@@ -41,13 +41,15 @@ def checked_camera(camera: tuple[float, float] | None, dimension: int) -> tuple[
     return azimuth, number("camera", camera[1], rule, least=0.0, most=90.0)
 
 
-def pixels_per_length(lengths: np.ndarray, size: tuple[int, int], camera: tuple[float, float]) -> float:
+def pixels_per_length(particles: DrawnParticles, size: tuple[int, int], camera: tuple[float, float]) -> float:
     """The scale of a picture; of spheres, in the middle of the container."""
+    lengths = particles.lengths
     if len(lengths) == 2:
         from gaspart.rendering.discs import scale_of
 
         return scale_of(lengths, size)[0]
-    return camera_for(lengths, *size, camera).pixels_per_length(0.5 * lengths, size[0])
+    view = camera_for(lengths, *size, camera, particles.reach)
+    return view.pixels_per_length(0.5 * lengths, size[0])
 
 
 def picture(
@@ -62,7 +64,7 @@ def picture(
     if particles.dimension == 3:
         from gaspart.rendering.tracer import trace
 
-        camera = camera_for(particles.lengths, *size, direction)
+        camera = camera_for(particles.lengths, *size, direction, particles.reach)
         lengths, walls = particles.lengths, particles.walls
         image, _ = trace(particles.positions, particles.radii, colours, lengths, camera, size, walls)
     else:

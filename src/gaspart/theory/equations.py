@@ -10,7 +10,7 @@ from gaspart.scene.geometry import CLOSE_PACKING
 from gaspart.theory._arguments import Numbers, Values, checked_dimension, checked_packing_fraction
 
 STABLE_DISCS = 0.70
-"""Highest packing fraction of the disc fluid (Bernard and Krauth 2011; recalled)."""
+"""Highest packing fraction of the disc fluid, by Bernard and Krauth (2011): see `freezing`."""
 METASTABLE_SPHERES = 0.539
 """Packing fraction of rho sigma^3 = 1.03, where the data behind `kolafa_labik_malijevsky` end."""
 
@@ -76,7 +76,7 @@ def scaled_particle(packing_fraction: Numbers) -> Values:
 
 
 def henderson(packing_fraction: Numbers) -> Values:
-    """Discs: Z = (1 + eta^2 / 8) / (1 - eta)^2 (Henderson 1975; recalled).
+    """Discs: Z = (1 + eta^2 / 8) / (1 - eta)^2 (Henderson 1975, by SklogWiki).
 
     Against the reference: 0.5 % high at eta = 0.5, 1 % at 0.6, 2.5 % at 0.7.
     """

@@ -13,19 +13,25 @@ COEXISTENCE_PRESSURE = {2: 9.185, 3: 11.5727}
 """Pressure P sigma^d / k_B T at which fluid and ordered phase coexist, infinite system.
 
 Discs (liquid and hexatic): Bernard and Krauth, Phys. Rev. Lett. 107, 155704 (2011); Engel and others, Phys.
-Rev. E 87, 042134 (2013); there written beta P (2 sigma)^2 with sigma the radius (recalled). Spheres (fluid
-and face-centred cubic): 11.5727(10), Fernandez and others, Phys. Rev. Lett. 108, 165701 (2012), abstract.
+Rev. E 87, 042134 (2013); there written beta P (2 sigma)^2 with sigma the radius. The equal-area
+construction of their pressures of 1024^2 discs, which are in the repository of LIQUID_OF_1024_DISCS, gives
+9.1850. Spheres (fluid and face-centred cubic): 11.5727(10), Fernandez and others, Phys. Rev. Lett. 108,
+165701 (2012), abstract.
 """
 COEXISTENCE_DENSITY = {2: (0.700 * 4.0 / np.pi, 0.716 * 4.0 / np.pi), 3: (0.939, 1.0375)}
 """Number densities of the fluid that freezes and of the ordered phase that melts; sources as above."""
 LIQUID_DISCS = (0.698, 9.1708)
-"""Packing fraction and pressure of the disc liquid just before freezing, at 65 536 discs: Anderson and
-others, J. Comput. Phys. 254, 27 (2013) and Engel and others (2013), as HOOMD-blue's validation suite quotes
-them."""
-DENSE_LIQUID_DISCS = (CLOSE_PACKING[2] / 1.4, 8.306)
-"""Packing fraction and Z of the disc liquid at 1.4 times the closest area: molecular dynamics of Erpenbeck
-and Luban, Phys. Rev. A 32, 2920 (1985; recalled). The virial series with its tail is 0.4 % higher there
-already."""
+"""Packing fraction and pressure of the disc liquid just before freezing, at 65 536 discs: 9.17080(25),
+Bernard and Krauth (2011), and 9.17078(5), Engel and others (2013), in jellyfysh/HistoricDisks."""
+LIQUID_OF_1024_DISCS = (0.68, 8.5144, 0.0006)
+"""Packing fraction, pressure and its uncertainty of 1024 discs in the liquid: 8.51325(4) for 870 discs and
+8.49105(19) for 224, Li and others, J. Chem. Phys. 157, 234111 (2022), in their repository
+jellyfysh/HistoricDisks, continued to 1024 as 1/N; the uncertainty is half of that step. The virial series
+with its tail is 2.7 % higher there."""
+CRYSTAL_OF_1024_DISCS = (0.725, 9.382, 0.024)
+"""Packing fraction, pressure and its uncertainty of 1024 discs in a crystal, in a periodic container of
+sides 1 to sqrt(3) / 2: P V_0 / N k_B T = 8.125(21), Zollweg and Chester, Phys. Rev. B 46, 11186 (1992),
+figure 1, as read in jellyfysh/HistoricDisks."""
 LOWEST_CRYSTAL = {2: 0.70, 3: 0.49}
 """Packing fraction below which the crystals' equations are not drawn: no crystal lives there for long."""
 
@@ -58,8 +64,9 @@ def alder_hoover_young_crystal(packing_fraction: Numbers, dimension: int) -> Val
     """Z = d/alpha + a_0 + a_1 alpha + ..., alpha = V / V_c - 1: the free-volume limit and a fit beyond it.
 
     Alder, Hoover and Young, J. Chem. Phys. 49, 3688 (1968). Discs on the triangular lattice: 2/alpha
-    + 1.90(1) + 0.67(7) alpha (by SklogWiki) + 1.5 alpha^2 (recalled); spheres, face-centred cubic: 3/alpha
-    + 2.566 + 0.55 alpha - 1.19 alpha^2 + 5.95 alpha^3 (recalled). The free-volume term is exact at close
+    + 1.90(1) + 0.67(7) alpha (by SklogWiki) + 1.5 alpha^2 (recalled; 0.4 % below CRYSTAL_OF_1024_DISCS, 1.2 %
+    without it); spheres, face-centred cubic: 3/alpha + 2.566 + 0.55 alpha (2.56 and 0.56 by SklogWiki) - 1.19
+    alpha^2 + 5.95 alpha^3 (recalled; within 0.15 % of Speedy's fit). The free-volume term is exact at close
     packing; the fits are good to some 0.3 %.
     """
     alpha = _expansion(packing_fraction, checked_dimension(dimension))

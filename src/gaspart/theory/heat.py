@@ -46,6 +46,21 @@ def dilute_fourier_flux(length: float, hot: float, cold: float, diameter: float 
     return 2.0 / 3.0 * conductivity * (hot**1.5 - cold**1.5) / length
 
 
+@checked
+def steady_part(time: Numbers, length: float, diffusivity: float) -> Values:
+    """1 - (8 / pi^2) sum exp(-(2 pi k)^2 diffusivity time / length^2) / k^2 over k = 1, 3, 5, ...: the
+    difference of temperature between the halves of a slab, over its steady value, after its walls have taken
+    different temperatures.
+
+    From one temperature everywhere; what that differs from the walls' mean is the same in both halves. The
+    heat equation with constant coefficients, its diffusivity at constant pressure (exact).
+    """
+    odd = np.arange(1.0, 200.0, 2.0)
+    decay = (2.0 * np.pi * odd) ** 2 * diffusivity / length**2
+    modes = np.exp(-np.multiply.outer(np.asarray(time, dtype=float), decay)) / odd**2
+    return 1.0 - 8.0 / np.pi**2 * modes.sum(axis=-1)
+
+
 @dataclass(frozen=True)
 class Slab:
     """A steady gas between walls: position (P,) from the hot one, temperature and number density there (P,);

@@ -22,8 +22,9 @@ HIGHEST_PACKING_FRACTION = {2: STABLE_DISCS, 3: METASTABLE_SPHERES}
 # Relative standard uncertainty of the sphere data behind the fit: half of the 4e-5 stated for 95 %
 # confidence.
 _SPHERE_DATA_ERROR = 2e-5
-# What the series of discs lacks near freezing: 0.036 at eta = 0.6478 (Erpenbeck and Luban, Phys. Rev. A 32,
-# 2920 (1985), recalled: Z = 8.306; our own runs 8.301(3)), and 1.2 at 0.70, the pressure of coexistence.
+# What the series of discs lacks near freezing, or a little more: 0.140 at eta = 0.67 and 0.267 at 0.68, by
+# the pressures of 224 and 870 discs of Li and others, J. Chem. Phys. 157, 234111 (2022), continued to
+# infinity as 1/N, and 1.2 at 0.70, the pressure of coexistence.
 _NEAR_FREEZING = 0.036, 0.6478, 45
 # Step of the central differences of `_slope_and_curvature`: truncation and rounding both below 1e-6 of the
 # result.

@@ -108,7 +108,8 @@ def test_sizes_at_one_packing_fraction_make_a_series(stored):
     enskog = float(theory.enskog_diffusion(0.3, 3))
     assert abs(float(ds["size_intercept"]) - enskog) < 4 * float(ds["size_intercept_error"])
     side = ds["side"].values
-    expected = theory.yeh_hummer(side[0], float(theory.enskog_viscosity(0.3, 3)))
+    carried = float(theory.number_density(0.3, 3)) * float(ds["diffusion"][0])
+    expected = theory.yeh_hummer(side[0], float(theory.enskog_viscosity(0.3, 3)) + carried)
     assert float(ds["correction"][0]) == pytest.approx(float(expected))
 
 

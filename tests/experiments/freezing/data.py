@@ -6,7 +6,7 @@ import xarray as xr
 from gaspart import theory
 from gaspart.experiments.freezing.measure import STARTS, _disagreement
 
-DISCS = np.array([theory.DENSE_LIQUID_DISCS[0], 0.69, 0.70, 0.71, 0.72, 0.73])
+DISCS = np.array([theory.LIQUID_OF_1024_DISCS[0], 0.69, 0.70, 0.71, 0.72, theory.CRYSTAL_OF_1024_DISCS[0]])
 SPHERES = np.array([0.4, 0.45, 0.5, 0.56, 0.6])
 
 
@@ -37,11 +37,8 @@ def _table(eta, pressure, order, error, seed):
 def discs(error=0.005, seed=1):
     """A loop about 9.1 with both branches as the literature has them."""
     area = np.pi / 4.0
-    ends = (
-        DISCS[0] / area * theory.DENSE_LIQUID_DISCS[1],
-        DISCS[-1] / area * theory.alder_hoover_young_crystal(0.73, 2),
-    )
-    pressure = np.array([ends[0], 8.98, 9.13, 9.06, 9.1, ends[1]])
+    liquid, crystal = theory.LIQUID_OF_1024_DISCS[1], theory.CRYSTAL_OF_1024_DISCS[1]
+    pressure = np.array([liquid, 8.98, 9.13, 9.06, 9.1, crystal])
     dataset = _table(DISCS, pressure, np.array([0.08, 0.2, 0.4, 0.65, 0.76, 0.8]), error, seed)
     dataset["density"] = "packing_fraction", DISCS / area
     for name, value in (

@@ -3,11 +3,14 @@
 import numpy as np
 import xarray as xr
 
+from gaspart.experiments.heat.approach import FRAMES
+from gaspart.experiments.heat.measure import _dimensions
 from gaspart.theory.heat import (
     TEMPERATURE_JUMP,
     conducting_slab,
     dilute_fourier_flux,
     free_molecular_flux,
+    steady_part,
 )
 
 
@@ -32,10 +35,14 @@ def gases(error=0.002):
         row |= {"position": position, "used": position > 20.0}
         row |= {"temperature": np.full(bins, 1.4), "density": np.full(bins, number)}
         row |= dict.fromkeys(("slab_temperature", "slab_density"), np.full(bins, np.nan))
+        row["approach_time"] = 40.0 * np.arange(FRAMES)
+        row |= dict.fromkeys(("approach", "approach_error", "expected_approach"), np.full(FRAMES, np.nan))
         if knudsen < 0.1:
             slab = conducting_slab(length, number, 2.0, 1.0)
             row |= {"flux": slab.flux, "slab_flux": slab.flux}
             row |= {"profile_ratio": 1.0, "jump": TEMPERATURE_JUMP}
+            row["approach"] = row["expected_approach"] = 0.45 * steady_part(row["approach_time"], length, 7.0)
+            row["approach_error"] = np.full(FRAMES, 0.05)
             for name in ("temperature", "density"):
                 row[name] = np.interp(position, slab.position, getattr(slab, name))
                 row[f"slab_{name}"] = row[name]
@@ -44,7 +51,7 @@ def gases(error=0.002):
         rows.append(row)
     return xr.Dataset(
         {
-            name: (("point", "bin") if np.ndim(value) else "point", np.stack([row[name] for row in rows]))
+            name: (_dimensions(name, value), np.stack([row[name] for row in rows]))
             for name, value in rows[0].items()
         }
     )

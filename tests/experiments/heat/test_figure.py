@@ -8,7 +8,7 @@ from gaspart.theory.heat import conducting_slab
 
 def test_fluxes_and_profiles_of_a_gas(tmp_path):
     ds = varied(gases(), "knudsen", "number")
-    flux, share, warm, deviation, dense = draw(heat.heat_conduction_gas, ds, tmp_path).axes
+    flux, share, start, warm, deviation, dense = draw(heat.heat_conduction_gas, ds, tmp_path).axes
     row = ds.isel(point=0)
     all_components = Points("all components", [row["number"]], [1e3 * row["flux"]], [1e3 * row["flux_error"]])
     nothing = Points("normal only", [], [], [])
@@ -32,6 +32,8 @@ def test_fluxes_and_profiles_of_a_gas(tmp_path):
         ]
         shares.append(Points(label, x, own["flux"] / own["full"], own["flux_error"] / own["full"]))
     shows(share, "Knudsen", "flux", *shares)
+    shows(start, "time", "T_", Points("0.03", row["approach_time"], row["approach"], row["approach_error"]))
+    follows(line(start, "heat equation"), row["approach_time"], row["expected_approach"])
     position = row["position"] / length
     temperature, expected = row["temperature"], row["slab_temperature"]
     shows(warm, "", "temperature", Points("0.03", position, temperature, row["temperature_error"]))
@@ -45,6 +47,13 @@ def test_fluxes_and_profiles_of_a_gas(tmp_path):
     density = Points(None, position, row["density"] / number, row["density_error"] / number)
     shows(dense, "position", "density", density)
     follows(lines(dense)[0], position, row["slab_density"] / number)
+
+
+def test_a_noisy_density_is_not_drawn(tmp_path):
+    ds = gases()
+    ds["density_error"] = 0.05 * ds["density"]
+    dense = draw(heat.heat_conduction_gas, ds, tmp_path).axes[-1]
+    assert not dense.containers and lines(dense)
 
 
 def test_temperatures_and_energies_of_a_metal(tmp_path):

@@ -5,8 +5,9 @@ import pytest
 
 import gaspart as gp
 from gaspart.experiments.heat import measure as heat
+from gaspart.experiments.heat.approach import FRAMES, approach
 from gaspart.planning import grid
-from gaspart.theory.heat import free_molecular_flux
+from gaspart.theory.heat import conducting_slab, free_molecular_flux
 
 
 def run(tmp_path, scene, **settings):
@@ -41,7 +42,7 @@ def test_a_thin_gas_carries_what_free_flight_does(tmp_path):
     sigma = ds["density_error"].values.mean()
     assert np.abs(ds["density"].values / (40 / 360) - 1.0).max() < 4.0 * sigma / (40 / 360)
     assert ds["temperature"].values == pytest.approx(np.full(5, np.sqrt(2.0)), rel=0.05)
-    assert np.isnan(ds["slab_flux"])
+    assert np.isnan(ds["slab_flux"]) and np.isnan(ds["approach"]).all()
 
 
 def test_the_jump_of_a_made_up_profile_comes_back():
@@ -64,8 +65,24 @@ def test_a_dense_gas_is_compared_with_fourier(tmp_path):
     assert float(ds["knudsen"]) < heat.FLUID
     assert float(ds["density"].mean()) == pytest.approx(100 / 360, rel=1e-3)
     assert float(ds["profile_ratio"]) == pytest.approx(1.0, abs=0.1)
+    assert ds["approach_time"].values == pytest.approx(5.0 * np.arange(FRAMES))
+    deviation = (ds["approach"] - ds["expected_approach"]) / ds["approach_error"]
+    assert abs(float(deviation.mean())) < 1.0 and float(abs(deviation).max()) < 5.0
+    assert float(ds["expected_approach"][-1]) == pytest.approx(0.35, abs=0.1)
     with pytest.raises(ValueError, match="blocks"):
         heat.heat_conduction_gas([point], {"bins": 5, "blocks": 1000, "clear": 1})
+
+
+def test_the_start_of_a_run_is_shown_from_one_temperature_on(tmp_path):
+    """Halves at one temperature; of a run with fewer frames the others are missing."""
+    point = run(tmp_path, gas(100, 0.5), duration=20.0, equilibration=5.0, samples=8, boxes_per_side=1)
+    slab = conducting_slab(10.0, 100 / 360, 2.0, 1.0)
+    found = approach(point, slab)
+    frames = int(np.isfinite(found["approach_time"]).sum())
+    assert 8 < frames < FRAMES and np.isnan(found["approach"][frames:]).all()
+    assert abs(found["approach"][0]) < 4.0 * found["approach_error"][0]
+    # two halves of 50 spheres at 1.4, the squares of whose components vary by 2
+    assert found["approach_error"][0] == pytest.approx(1.4 * np.sqrt(2.0 * 2.0 / (3.0 * 50.0)), rel=0.15)
 
 
 def test_modes_and_electrons_have_the_temperature_of_the_walls(tmp_path):

@@ -141,7 +141,7 @@ def _density(axis: Axes, ds: xr.Dataset) -> None:
     curve = np.linspace(0.0, 1.08 * eta.max(), 200)
     ratio, band = theory.erpenbeck_wood_ratio(curve), theory.ERPENBECK_WOOD_UNCERTAINTY
     axis.fill_between(curve, ratio * (1 - band), ratio * (1 + band), color=style.REFERENCE, alpha=0.2, lw=0)
-    axis.plot(curve, ratio, color=style.REFERENCE, label=r"Erpenbeck & Wood, $\pm3\,\%$")
+    axis.plot(curve, ratio, color=style.REFERENCE, label=rf"Erpenbeck & Wood, $\pm{100.0 * band:g}\,\%$")
     axis.axhline(1.0, color=style.DATA, lw=0.8, label="Enskog")
     raw, error = row["diffusion"] / enskog, row["diffusion_error"] / enskog
     both = np.hypot(row["diffusion_error"], row["correction_uncertainty"]) / enskog

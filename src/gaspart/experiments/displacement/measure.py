@@ -132,7 +132,9 @@ def _spheres(point: grid.Point) -> dict:
     Of N particles whose total momentum is zero, D is (N - 1) / N of that of N particles without this
     condition (exact for a dilute gas, where the others carry -1 / (N - 1) of a particle's momentum each): all
     curves are multiplied by N / (N - 1). The rest of the finite size is hydrodynamic: Yeh and Hummer's
-    correction with Enskog's viscosity. Its uncertainty is that of the viscosity, 5 % (15 % above packing
+    correction with Enskog's viscosity, to which rho D is added, because a particle leaves a vortex by its own
+    diffusion too: each mode decays with nu + D, as in the long-time tail (Ernst, Hauge and van Leeuwen 1970);
+    half of it in a dilute gas. Its uncertainty is that of the viscosity, 5 % (15 % above packing
     fraction 0.3), and (2 pi mean free path / side)^2 of it, the next order of hydrodynamics in the slowest
     mode, but not more than all of it.
     """
@@ -156,12 +158,14 @@ def _spheres(point: grid.Point) -> dict:
     for one in curves:
         inside = between(one.time, start, 2.0 * start)
         slopes.append(line(one.time[inside], one.msd[inside]) / 6.0)
-    correction = float(theory.yeh_hummer(state["side"], state["viscosity"]))
+    diffusion = _mean("diffusion", slopes)
+    carried = float(theory.number_density(state["packing_fraction"], 3)) * diffusion["diffusion"]
+    correction = float(theory.yeh_hummer(state["side"], state["viscosity"] + carried))
     rough = 0.05 if state["packing_fraction"] <= 0.3 + 1e-9 else 0.15
     next_order = (2.0 * math.pi * state["mean_free_path"] / state["side"]) ** 2
     return {
         **rows,
-        **_mean("diffusion", slopes),
+        **diffusion,
         "correction": correction,
         "correction_uncertainty": correction * min(1.0, math.hypot(rough, next_order)),
         "fit_from": start,

@@ -1,4 +1,4 @@
-"""The table of extremes as a figure: rows against engines, the drift of the energy in each cell."""
+"""The table of extremes as a figure: rows against engines, for four errors; reasons of refusals."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib import colormaps
-from matplotlib.colors import Colormap, Normalize
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
@@ -15,50 +17,112 @@ from gaspart.rendering import style
 
 HEADS = {
     "event": "event",
-    "event, all pairs": "all\npairs",
-    "step": "step\nf8",
-    "step, float32": "step\nf4",
+    "event, all pairs": "all pairs",
+    "step": "step f8",
+    "step, float32": "step f4",
 }
+BLOCKS = {
+    "energy": "drift of\nenergy",
+    "momentum": "drift of\nmomentum",
+    "overlap": "overlap",
+    "missed": "missed\ncontacts",
+}
+"""What is drawn, and the head of its columns."""
+GAP = 0.5
+"""Between blocks, in columns."""
 FLOOR = 1e-17
-"""Drifts below this are drawn as 0."""
+"""Errors below this are drawn as 0."""
+MAP, NORM = colormaps["YlGnBu"], LogNorm(FLOOR, 1.0, clip=True)
+"""Colours of errors."""
+REASONS = (
+    ("a", "step too long: contacts late or missed", ("step too late", "misses")),
+    ("b", "step too short for float32", ("than float32 resolves",)),
+    ("c", "lengths or speeds beyond float32", ("float32 needs", "float32 does not")),
+    ("d", "speeds whose squares overflow", ("of a size from",)),
+    ("e", "particles too small for the container", ("too small to resolve",)),
+    ("f", "no room to move", ("no room",)),
+    ("g", "inelastic collapse", ("inelastic collapse",)),
+)
+"""Why a scene is refused: a letter, the reason, and parts of the messages that state it."""
+OTHER = "?", "another reason, in the data"
 
 
 def stability_extremes(dataset: xr.Dataset) -> Figure:
-    """A line per row, a column per engine: the drift of the energy, or that the row was refused or failed."""
+    """A line per row; in each block a column per engine, with an error or the letter of a refusal."""
     rows, engines = dataset.sizes["row"], dataset.sizes["engine"]
-    figure, (axis,) = style.new((0.8 + 0.165 * rows,))
-    colours, norm = colormaps["YlGnBu"], Normalize(-18.0, 2.0)
-    verdicts, energies = dataset["verdict"].values, dataset["energy"].values
-    size = 6 if style.width() <= style.COLUMN else 8  # a power of ten must fit into a cell
-    for n in range(rows):
-        for k in range(engines):
-            text, colour, ink = _cell(verdicts[n, k], energies[n, k], colours, norm)
-            axis.add_patch(_box(k, n, colour))
-            axis.text(k + 0.5, n + 0.53, text, ha="center", va="center", color=ink, size=size)
+    wide = style.width() > style.COLUMN
+    letters = (6.0, 7.0, 8.0) if wide else (4.5, 5.5, 6.0)  # in cells, of rows and keys, of heads
+    figure, (axis,) = style.new((2.1 + (0.165 if wide else 0.11) * rows,))
+    starts = {name: n * (engines + GAP) for n, name in enumerate(BLOCKS)}
+    for name, left in starts.items():
+        sizes = _sizes(dataset, name)
+        for n, k in np.ndindex(rows, engines):
+            cell = _cell(dataset.isel(row=n, engine=k), name, float(sizes[n, k]), wide)
+            _draw_cell(axis, left + k, n, cell, letters[0])
     groups = dataset["group"].values
     for n in np.flatnonzero(groups[1:] != groups[:-1]) + 1:
         axis.axhline(float(n), color="black", linewidth=0.6)
-    axis.set_xlim(0, engines)
-    axis.set_ylim(rows, 0)
-    axis.set_xticks(np.arange(engines) + 0.5, [HEADS[name] for name in dataset["engine"].values])
-    axis.set_yticks(np.arange(rows) + 0.5, [str(name) for name in dataset["row"].values])
-    axis.tick_params(length=0, labeltop=True, labelbottom=False)
-    axis.tick_params("x", labelsize=size)
-    axis.set_xlabel("drift of the energy\n(– is refused)")
+    axis.set(xlim=(0, starts["missed"] + engines), ylim=(rows, 0))
+    heads = [HEADS[name] for name in dataset["engine"].values] * len(BLOCKS)
+    ticks = [left + k + 0.5 for left in starts.values() for k in range(engines)]
+    axis.set_xticks(ticks, heads, rotation=90, size=letters[1])
+    names = [str(name) for name in dataset["row"].values]
+    axis.set_yticks(np.arange(rows) + 0.5, names, size=letters[1])
+    axis.tick_params(length=0, labeltop=True, labelbottom=False, pad=2)
+    above = axis.secondary_xaxis(1.0)
+    above.set_xticks([left + 0.5 * engines for left in starts.values()], [*BLOCKS.values()], size=letters[2])
+    above.tick_params(length=0, pad=34 if wide else 28)
+    for part in (*axis.spines.values(), *above.spines.values()):
+        part.set_visible(False)
+    axis.set_xlabel(_key(dataset, 3 if wide else 1), size=letters[1])
+    bar = figure.colorbar(ScalarMappable(NORM, MAP), ax=axis, location="bottom", aspect=50, pad=0.01)
+    bar.set_label("relative to energy, momenta,\ncontact distance, number of contacts", size=letters[1])
+    bar.ax.tick_params(labelsize=letters[1])
     return figure
 
 
-def _cell(verdict: str, energy: float, colours: Colormap, norm: Normalize) -> tuple[str, object, str]:
-    """Text, background and ink of one cell."""
+def _sizes(dataset: xr.Dataset, name: str) -> np.ndarray:
+    """An error of each row and engine as a number below 1; of contacts the missed or spurious part."""
+    values = np.abs(dataset[name].values.astype(float))
+    if name == "missed":
+        values /= np.maximum(1, dataset["contacts"].values + dataset["missed"].values)
+    return values
+
+
+def _draw_cell(axis: Axes, left: float, top: int, cell: tuple[str, Any, str], letters: float) -> None:
+    """A cell, (text, background, ink), with its upper left corner at a place."""
+    text, colour, ink = cell
+    axis.add_patch(Rectangle((left, top), 1, 1, facecolor=colour, edgecolor="white", linewidth=0.4))
+    if text:
+        axis.text(left + 0.5, top + 0.53, text, ha="center", va="center", color=ink, size=letters)
+
+
+def _cell(outcome: xr.Dataset, name: str, size: float, wide: bool) -> tuple[str, Any, str]:
+    """Text, background and ink of a cell: an error's power of ten, of contacts their number, if there is
+    room; a dot where walls take momentum up."""
+    verdict = str(outcome["verdict"].values)
     if verdict == "refused":
-        return "–", "#e6e6e6", "black"
+        return _reason(str(outcome["message"].values))[0], "#e6e6e6", "black"
     if verdict != "passes":
         return verdict, style.COLOURS[1], "white"
-    if not energy > FLOOR:
-        return "0", "white", "black"
-    power = np.log10(energy)
-    return f"$10^{{{power:.0f}}}$", colours(norm(power)), "black" if power < -6.5 else "white"
+    if not size > FLOOR:
+        return ("·" if np.isnan(size) else "0" if wide else ""), "white", style.GREY
+    power = np.log10(size)
+    text = f"{int(outcome['missed']):d}" if name == "missed" else f"$10^{{{power:.0f}}}$"
+    return text if wide else "", MAP(NORM(size)), "black" if power < -6.5 else "white"
 
 
-def _box(left: float, top: float, colour: Any) -> Rectangle:
-    return Rectangle((left, top), 1, 1, facecolor=colour, edgecolor="white", linewidth=0.4)
+def _reason(message: str) -> tuple[str, str]:
+    """The letter and the text of a refusal's reason."""
+    return next(
+        ((letter, text) for letter, text, parts in REASONS if any(part in message for part in parts)), OTHER
+    )
+
+
+def _key(dataset: xr.Dataset, columns: int) -> str:
+    """The reasons that occur, with their letters, a few in a line."""
+    refused = dataset["verdict"].values == "refused"
+    found = sorted({_reason(str(message)) for message in dataset["message"].values[refused]})
+    texts = [f"{letter}: {text}" for letter, text in found]
+    lines = ["; ".join(texts[n : n + columns]) for n in range(0, len(texts), columns)]
+    return "\n".join(["Refused" if texts else "None refused", *lines])

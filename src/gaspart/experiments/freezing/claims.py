@@ -13,7 +13,7 @@ import xarray as xr
 from scipy.special import bdtrc, ndtri
 
 from gaspart import theory
-from gaspart.claims import UNVERIFIED, Claim, Estimate
+from gaspart.claims import Claim, Estimate
 from gaspart.experiments.shared.claims import rows
 
 TOLERANCE = 0.02
@@ -47,7 +47,7 @@ def freezing_discs(dataset: xr.Dataset) -> list[Claim]:
         )
     low, high = (dataset.isel(packing_fraction=k) for k in (0, -1))
     orders = [_orientation(low, melted=True), _orientation(high, melted=False)]
-    return [*claims, *orders, *_liquid(low), _crystal(high), _equilibrium(dataset)]
+    return [*claims, *orders, *_branches_of_discs(dataset), _equilibrium(dataset)]
 
 
 def freezing_spheres(dataset: xr.Dataset) -> list[Claim]:
@@ -72,7 +72,6 @@ def _plateau(side: xr.Dataset, expected: float) -> Claim:
         expected=expected,
         half_width=TOLERANCE * expected,
         source=DISCS_SOURCE,
-        no_verdict=UNVERIFIED,
         fails_if="runs not in equilibrium, a loop too coarse, or far too few discs (the pressure falls with "
         "1/N)",
     )
@@ -121,38 +120,28 @@ def _with_drift(side: xr.Dataset, name: str) -> Estimate:
     return Estimate(measured.value, math.hypot(measured.error, 0.5 * drift.value if significant else 0.0))
 
 
-def _liquid(at: xr.Dataset) -> list[Claim]:
-    """Only at the packing fraction of the reference: the virial series is not accurate near freezing."""
-    known, z = theory.DENSE_LIQUID_DISCS
-    if abs(float(at["packing_fraction"]) - known) > 1e-4:
-        return []
-    return [
-        Claim(
-            claim=f"Z of the disc liquid at packing fraction {known:.4g}",
-            measured=_with_drift(at.isel(start=0), "pressure") / at["density"],
-            expected=z,
-            required=0.003 * z,
-            source="Erpenbeck and Luban 1985",
-            no_verdict=UNVERIFIED,
-            fails_if="the crystal has not melted, or contacts are missed",
-        )
-    ]
-
-
-def _crystal(at: xr.Dataset) -> Claim:
-    eta = float(at["packing_fraction"])
-    z = float(theory.alder_hoover_young_crystal(eta, 2))
-    finite = float(theory.crystal_finite_size_correction(z, int(at["count"])))
-    expected = float(at["density"]) * (z + finite)
-    return Claim(
-        claim=f"pressure of the crystal at packing fraction {eta:.4g}, k_B T / sigma^2",
-        measured=_with_drift(at.isel(start=0), "pressure"),
-        expected=expected,
-        required=0.005 * expected,
-        source="Alder, Hoover and Young 1968",
-        no_verdict=UNVERIFIED,
-        fails_if="the crystal is strained or defective, or contacts are missed",
-    )
+def _branches_of_discs(dataset: xr.Dataset) -> list[Claim]:
+    """Both branches where the literature has as many discs; the virial series is not accurate here."""
+    claims = []
+    for phase, (eta, expected, allowance), source, allowance_source in (
+        ("liquid", theory.LIQUID_OF_1024_DISCS, "Li and others 2022", "half of the step from 870 discs"),
+        ("crystal", theory.CRYSTAL_OF_1024_DISCS, "Zollweg and Chester 1992, figure 1", "its statement"),
+    ):
+        same = np.abs(dataset["packing_fraction"].values - eta) < 1e-4
+        claims += [
+            Claim(
+                claim=f"pressure of the {phase} of 1024 discs at packing fraction {eta:g}, k_B T / sigma^2",
+                measured=_with_drift(at.isel(start=0), "pressure"),
+                expected=Estimate(expected, allowance),
+                required=0.005 * expected,
+                source=source,
+                allowance_source=allowance_source,
+                fails_if="contacts are missed, a crystal is strained, or the other phase remains or grows",
+            )
+            for at in rows(dataset.isel(packing_fraction=same), "packing_fraction")
+            if int(at["count"]) == 1024
+        ]
+    return claims
 
 
 def _equilibrium(dataset: xr.Dataset) -> Claim:

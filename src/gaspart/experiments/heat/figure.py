@@ -15,18 +15,22 @@ from gaspart.theory.heat import conducting_slab
 
 FREE_MOLECULAR = 100.0
 """Knudsen number above which points are drawn at a separate place, as infinity."""
+NOISY = 0.03
+"""Relative error from which on a density profile is not drawn."""
 
 
 def heat_conduction_gas(ds: xr.Dataset) -> Figure:
-    """Flux against density, and over that of free flight; profiles of temperature and of density."""
-    figure, axes = style.new((2.4,), (2.4,), (2.0, 1.0, 1.8))
-    flux, share, warm, off, dense = axes
+    """Flux against density, and over that of free flight; the approach to the steady state; profiles of
+    temperature and of density."""
+    figure, axes = style.new((2.5,), (2.3,), (1.8,), (2.7, 1.3, 2.6))
+    flux, share, start, warm, off, dense = axes
     _fluxes(flux, ds.isel(point=np.flatnonzero(ds["knudsen"] < FREE_MOLECULAR)))
     _shares(share, ds)
     spheres = ds.isel(point=np.flatnonzero((ds["knudsen"] < FREE_MOLECULAR) & ~ds["normal"].astype(bool)))
     order = np.argsort(spheres["knudsen"].values)
     for kind, n in enumerate(dict.fromkeys((order[0], order[len(order) // 2], order[-1]))):
         _profiles(warm, off, dense, spheres.isel(point=n), kind)
+    _approach(start, spheres.isel(point=order[0]))
     style.level(off, 0.0)
     for wall in ("hot", "cold"):
         warm.axhline(float(ds[wall][0]), color=style.GREY, lw=0.6, ls=":")
@@ -36,7 +40,7 @@ def heat_conduction_gas(ds: xr.Dataset) -> Figure:
     off.set_ylim(-2.5, 2.5)
     dense.set_ylabel(r"density $n/\bar n$")
     dense.set_xlabel("position between the walls $x/L$")
-    style.letters(flux, share, warm, dense)
+    style.letters(flux, share, start, warm, dense)
     return figure
 
 
@@ -97,6 +101,20 @@ def _shares(axis: Axes, ds: xr.Dataset) -> None:
     axis.legend(loc="upper right", ncol=2, columnspacing=0.8)
 
 
+def _approach(axis: Axes, row: xr.Dataset) -> None:
+    """The difference of temperature between the halves of one gas, from the start on."""
+    values = (row["approach_time"], row["approach"], row["approach_error"])
+    style.points(
+        axis, *values, kind=0, hollow=True, markersize=2.5, label=rf"$l/L = {float(row['knudsen']):.2g}$"
+    )
+    axis.plot(
+        row["approach_time"], row["expected_approach"], color=style.DATA, zorder=4, label="heat equation"
+    )
+    axis.set_xlabel("time $t$ (reduced units)")
+    axis.set_ylabel(r"$T_\mathrm{hot\,half}-T_\mathrm{cold\,half}$")
+    axis.legend(loc="lower right")
+
+
 def _profiles(warm: Axes, off: Axes, dense: Axes, row: xr.Dataset, kind: int) -> None:
     """One gas's temperature, its deviation from theory, and its density."""
     position = row["position"].values / float(row["length"])
@@ -106,7 +124,8 @@ def _profiles(warm: Axes, off: Axes, dense: Axes, row: xr.Dataset, kind: int) ->
     small: dict[str, Any] = {"kind": kind, "hollow": True, "markersize": 2.5}
     style.points(warm, position, temperature, error, label=label, **small)
     values = (row["density"].values / number, row["density_error"].values / number)
-    style.points(dense, position, *values, **small)
+    if np.median(values[1]) < NOISY:
+        style.points(dense, position, *values, **small)
     if not np.isfinite(row["slab_flux"]):
         return
     theory = row["slab_temperature"].values

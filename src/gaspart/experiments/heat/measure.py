@@ -10,9 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import fit_polynomial, jackknife, steady_mean
+from gaspart.experiments.heat.approach import NO_APPROACH, approach
 from gaspart.planning import grid
 from gaspart.scene.faces import thermal_face
 from gaspart.scene.scene import Scene
@@ -127,16 +129,23 @@ def heat_conduction_gas(points: list[grid.Point], settings: dict) -> xr.Dataset:
     number is below FLUID, three dimensions, walls of full accommodation: `slab_flux` of Fourier's law with
     jumps, its profiles, `profile_ratio` the mean of T over it, and `jump`, the temperature jumps in units of
     the mean free path times the slope: T^(3/2), a straight line away from the walls, continued to both of
-    them.
+    them. Of these gases, over `frame`, how they come to the steady state (see `approach`): approach_time,
+    approach, and expected_approach.
     """
     rows = [_gas(point, settings) for point in points]
-    long = {name for name, value in rows[0].items() if np.ndim(value)}
     return xr.Dataset(
         {
-            name: (("point", "bin") if name in long else "point", np.stack([row[name] for row in rows]))
-            for name in rows[0]
+            name: (_dimensions(name, value), np.stack([row[name] for row in rows]))
+            for name, value in rows[0].items()
         }
     )
+
+
+def _dimensions(name: str, value: ArrayLike) -> tuple[str, ...]:
+    """Of a variable of `heat_conduction_gas`."""
+    if not np.ndim(value):
+        return ("point",)
+    return ("point", "frame" if "approach" in name else "bin")
 
 
 def _gas(point: grid.Point, settings: dict) -> dict:
@@ -175,13 +184,13 @@ def _gas(point: grid.Point, settings: dict) -> dict:
         "slab_temperature": np.full(position.shape, np.nan),
         "slab_density": np.full(position.shape, np.nan),
         "used": (position > settings["clear"] * path) & (position < gap.length - settings["clear"] * path),
-    }
+    } | NO_APPROACH
     made |= dict.fromkeys(("profile_ratio", "jump"), (np.nan, np.nan))
     if gap.dimension == 3:
         row["fourier"] = dilute_fourier_flux(gap.length, gap.hot, gap.cold, diameter)
     if row["knudsen"] < FLUID and gap.dimension == 3 and components == "all":
         slab = conducting_slab(gap.length, number, gap.hot, gap.cold, diameter)
-        row["slab_flux"] = slab.flux
+        row |= {"slab_flux": slab.flux, **approach(point, slab)}
         for name in ("temperature", "density"):
             row[f"slab_{name}"] = np.interp(position, slab.position, getattr(slab, name))
         used = row["used"]
