@@ -38,7 +38,7 @@ from gaspart.kernels.flight import mark_resting
 from gaspart.kernels.model import BOX_FACES, CROSSINGS, NONE, OUTDATED, WALLS, WELL_EDGES
 from gaspart.kernels.obstacles.face import meet_face, next_face
 from gaspart.kernels.obstacles.interior_wall import find_wall, meet_wall
-from gaspart.kernels.obstacles.piston import is_piston
+from gaspart.kernels.obstacles.piston import is_piston, next_piston
 from gaspart.kernels.obstacles.well import meet_edge
 from gaspart.kernels.prefetch import fetch
 
@@ -149,13 +149,13 @@ def predict_after(particles, pair, queue, boxes, model, tally, event, crossed):
 
 
 @inner_kernel
-def predict_faces(particles, time, queue, boxes, model):
-    """Predict anew when each particle comes to a face."""
+def predict_faces(particles, time, queue, boxes, model, piston):
+    """Predict anew when particles come to a face, if that was the piston or may be now."""
     predictions = particles.predictions
     for i in range(len(predictions)):
-        soon, face = predictions[i].face_time, predictions[i].face
-        predict_face(particles, i, boxes, model, time)
-        if predictions[i].face_time != soon or predictions[i].face != face:
+        was = predictions[i].face == piston.face
+        if was or next_piston(particles, i, model.space, piston) <= predictions[i].face_time:
+            predict_face(particles, i, boxes, model, time)
             reschedule(queue, predictions, i)
 
 
@@ -165,7 +165,7 @@ def predict_after_piston(particles, partner, time, queue, boxes, model, faces):
     partner: -1 - the number of the face met."""
     if faces is not None:
         if is_piston(-1 - partner, faces.piston):
-            predict_faces(particles, time, queue, boxes, model)
+            predict_faces(particles, time, queue, boxes, model, faces.piston)
 
 
 @inner_helper
