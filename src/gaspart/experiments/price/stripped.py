@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Any
 
 FEATURES = {
-    "collapse", "duration", "faces", "gravity", "law", "masses", "motion", "oversized", "piston", "record", "rules",
-    "support", "vibrations", "viscous", "walls",
+    "collapse", "duration", "faces", "gravity", "law", "masses", "motion", "oversized", "piston", "record",
+    "rules", "support", "vibrations", "viscous", "walls",
 }  # fmt: skip
 """Arguments of the kernels that are None for a plain gas."""
 ENGINES = ("event", "step")
