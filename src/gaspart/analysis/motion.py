@@ -60,7 +60,7 @@ def mean_squared_displacement(
         time = groups.interval * np.arange(number)
         values, errors = grouped(found * _free(run))
         expected: dict[str, Any] = {}
-        if _has_theory(run):
+        if run.fluid:
             eta, d = run.scene.packing_fraction, run.dimension
             curve = theory.enskog_mean_squared_displacement(time, eta, d, **run.particle)
             expected = {"theory": (curve, math.nan), "source": "Enskog, exponential velocity correlation"}
@@ -84,7 +84,7 @@ def velocity_autocorrelation(
         time = groups.interval * np.arange(number)
         values, errors = grouped(found * _free(run))
         expected: dict[str, Any] = {}
-        if _has_theory(run):
+        if run.fluid:
             eta, d, own = run.scene.packing_fraction, run.dimension, run.particle
             rate = float(theory.velocity_decay_rate(eta, d, **own))
             curve = own["temperature"] / own["mass"] * np.exp(-rate * time)
@@ -150,10 +150,6 @@ def _theory_of_d(run: Run) -> dict[str, Any]:
     shift = float(theory.yeh_hummer(sides[0], viscosity, own["temperature"]))
     unsure = math.hypot(theory.ERPENBECK_WOOD_UNCERTAINTY * infinite, 0.5 * shift)
     return {"theory": (infinite - shift, unsure), "source": "Erpenbeck and Wood, Yeh and Hummer"}
-
-
-def _has_theory(run: Run) -> bool:
-    return run.bulk and run.scene.packing_fraction <= theory.HIGHEST_PACKING_FRACTION[run.dimension]
 
 
 def _free(run: Run) -> float:

@@ -36,9 +36,9 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
 
 
 def _theory_of_z(run: Run) -> dict[str, Any]:
-    eta, d = run.scene.packing_fraction, run.dimension
-    if not run.bulk or eta > theory.HIGHEST_PACKING_FRACTION[d]:
+    if not run.fluid:
         return {}
+    eta, d = run.scene.packing_fraction, run.dimension
     value = float(theory.compressibility_factor(eta, d))
     value += float(theory.finite_size_correction(eta, d, run.count, "canonical"))
     source = "reference equation of state of the fluid, corrected for the number of particles"
@@ -111,9 +111,9 @@ def collision_rate(source: Source, start: float | None = None) -> Observable:
 
 
 def _theory_of_rate(run: Run) -> dict[str, Any]:
-    eta, d = run.scene.packing_fraction, run.dimension
-    if not run.bulk or eta > theory.HIGHEST_PACKING_FRACTION[d]:
+    if not run.fluid:
         return {}
+    eta, d = run.scene.packing_fraction, run.dimension
     rate = float(theory.collision_rate(eta, d, **run.particle))
     # the run's temperature is that of d (N - 1) degrees of freedom, theory's factor is relative to d N
     rate *= math.sqrt((run.count - 1) / run.count)

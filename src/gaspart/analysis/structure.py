@@ -77,9 +77,8 @@ def rdf(
         values, errors = grouped(np.array([g for _, g in found]))
         distance = np.asarray(found[0][0], dtype=float)
         expected: dict[str, Any] = {}
-        eta = run.scene.packing_fraction
-        if run.bulk and eta <= theory.HIGHEST_PACKING_FRACTION[run.dimension]:
-            contact = float(theory.contact_value(eta, run.dimension))
+        if run.fluid:
+            contact = float(theory.contact_value(run.scene.packing_fraction, run.dimension))
             near = (distance > diameter) & (distance < diameter + 1.5 * end / bins)
             expected = {"theory": (np.where(near, contact, np.nan), np.nan), "source": "g at contact, from Z"}
         along = {"distance": (distance, {"units": "length", "long_name": "distance"})}
