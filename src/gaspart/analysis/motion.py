@@ -13,8 +13,9 @@ import numpy as np
 
 from gaspart import theory
 from gaspart.analysis.correlations import autocorrelation, correlate
-from gaspart.analysis.observable import Observable, grouped, observable
+from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.source import Run, Source, measured
+from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.scene.validation import count_of
 
@@ -58,7 +59,7 @@ def mean_squared_displacement(
             ]
         )
         time = groups.interval * np.arange(number)
-        values, errors = grouped(found * _free(run))
+        values, errors = means_of(found * _free(run))
         expected: dict[str, Any] = {}
         if run.fluid:
             eta, d = run.scene.packing_fraction, run.dimension
@@ -82,7 +83,7 @@ def velocity_autocorrelation(
         number = _lags(groups, lags)
         found = np.array([autocorrelation(velocity, number) for velocity in groups.velocities])
         time = groups.interval * np.arange(number)
-        values, errors = grouped(found * _free(run))
+        values, errors = means_of(found * _free(run))
         expected: dict[str, Any] = {}
         if run.fluid:
             eta, d, own = run.scene.packing_fraction, run.dimension, run.particle
@@ -118,7 +119,7 @@ def diffusion_coefficient(source: Source, start: float | None = None) -> Observa
                 float(((path[lag:] - path[:-lag]) ** 2).sum(axis=2).mean()) for lag in (first, last)
             )
             rises.append((late - early) / (2 * run.dimension * time))
-        value, error = grouped(np.array(rises) * _free(run))
+        value, error = means_of(np.array(rises) * _free(run))
         about: dict[str, Any] = {
             "units": "length^2 / time",
             "long_name": "diffusion coefficient D",

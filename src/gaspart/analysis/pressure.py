@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis.observable import Observable, grouped, observable, scalar
+from gaspart.analysis.observable import Observable, observable, scalar
 from gaspart.analysis.source import Run, Source, measured, require_elastic, require_periodic
+from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 
 _BLOCKS = 16
@@ -67,7 +68,7 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
         series = impulse / np.diff(run.time[ends])[:, None] / areas
         faces = np.array([f"{axis} {end}" for axis in "xyz"[:d] for end in ("low", "high")])
         chosen = np.repeat(walled, 2)
-        values, errors = grouped(np.abs(series[:, chosen]))
+        values, errors = means_of(np.abs(series[:, chosen]))
         return observable(
             "wall_pressure",
             {"face": (faces[chosen], {"long_name": "face of the container"})},
