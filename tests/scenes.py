@@ -229,6 +229,11 @@ def measured_heat(sim, duration, blocks=20):
     return np.mean(found), np.std(found, ddof=1) / math.sqrt(blocks)
 
 
+def centred(values):
+    """(T, N, d) about the mean over the N particles of each frame."""
+    return values - values.mean(axis=1, keepdims=True)
+
+
 def closest(scene, state):
     """The smallest gap between two surfaces, by all pairs and the nearest image."""
     gaps = []
