@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import strategies as st
 
 import gaspart as gp
@@ -182,6 +183,55 @@ def partitioned(draw, most=10):
     species = [gp.Species(draw(st.integers(1, most)), draw(st.floats(0.1, 0.4)), temperature=1.0)]
     gravity = (0.0, 0.0, draw(st.sampled_from([-0.5, -2.0])))
     return gp.Scene(gp.Container(lengths, boundary), species, gravity=gravity, walls=walls)
+
+
+def check_inside(scene, state, tolerance):
+    """All particles are as far inside the container as the scene states."""
+    for position, radius in zip(state.positions, state.radii, strict=True):
+        low, high = scene.reach(radius)
+        assert (position >= np.array(low) - tolerance).all()
+        assert (position <= np.array(high) + tolerance).all()
+
+
+def check_outside_walls(scene, state, tolerance):
+    """No particle overlaps an interior wall by more than a fraction of its radius."""
+    for position, radius in zip(state.positions, state.radii, strict=True):
+        assert scene.wall_at(tuple(position), radius * (1 - tolerance)) is None
+
+
+def measured_compressibility(sim, blocks, **duration):
+    """Z = 1 + virial / (d N k_B T t) of a periodic gas, and its standard error, from `blocks` runs in turn.
+
+    duration: of each, as of `Simulation.advance`.
+    """
+    velocities = sim.state.velocities
+    twice_energy = ((velocities - velocities.mean(axis=0)) ** 2).sum()
+    found = []
+    for _ in range(blocks):
+        sim.reset_tally()
+        sim.advance(**duration)
+        found.append(1 + sim.tally.virial_sum / (twice_energy * sim.tally.time))
+    return np.mean(found), np.std(found, ddof=1) / math.sqrt(blocks)
+
+
+def measured_heat(sim, duration, blocks=20):
+    """Heat that flows from the low to the high face of the first axis in `duration`, the mean of what the
+    two transfer, and its standard error; no other face transfers any, and the gas keeps the rest."""
+    found = []
+    for _ in range(blocks):
+        before = sim.state.energy
+        sim.reset_tally()
+        sim.advance(duration=duration)
+        heat = sim.tally.wall_energy
+        assert sim.state.energy - before == pytest.approx(-heat.sum(), rel=1e-9, abs=1e-7)
+        assert (heat[2:] == 0.0).all()
+        found.append((heat[1] - heat[0]) / 2)
+    return np.mean(found), np.std(found, ddof=1) / math.sqrt(blocks)
+
+
+def centred(values):
+    """(T, N, d) about the mean over the N particles of each frame."""
+    return values - values.mean(axis=1, keepdims=True)
 
 
 def closest(scene, state):

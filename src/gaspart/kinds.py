@@ -16,7 +16,6 @@ NOT_NEGATIVE: Kind = {"type": "number", "minimum": 0}
 COUNT: Kind = {"type": "integer", "minimum": 1}
 FLAG: Kind = {"type": "boolean"}
 TEXT: Kind = {"type": "string"}
-ANY: Kind = {}
 
 
 def described(kind: Kind, meaning: str, **more: Any) -> Kind:

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from referee import events_of, same_bits
-from scenes import gas, mixtures
+from referee import WHOLE_TALLY, check_same, check_searches, events_of, restored, same_bits
+from scenes import check_inside, gas, measured_compressibility, mixtures
 
 import gaspart as gp
 from gaspart import theory
@@ -16,27 +16,19 @@ from gaspart import theory
 
 @given(mixtures(), st.integers(0, 2**32))
 def test_all_searches_give_the_same_events_bit_for_bit(scene, seed):
-    referee = events_of(scene, "pairs", 150, seed)
-    for search in ("boxes", "direct"):
-        assert same_bits(referee, events_of(scene, search, 150, seed))
+    check_searches(scene, 150, seed)
 
 
 @given(mixtures(most=40), st.integers(0, 2**32))
 def test_invariants_hold_in_any_scene(scene, seed):
-    sim = gp.Simulation(scene, gp.EventDriven(), seed=seed)
-    sim.record_events = True  # with the kernels that the test above has compiled
-    before = sim.initial_state
-    sim.advance(max_events=3000, duration=1e4)
-    state, tally = sim.state, sim.tally
+    sim = events_of(scene, "automatic", 3000, seed)
+    before, state, tally = sim.initial_state, sim.state, sim.tally
     assert state.kinetic_energy == pytest.approx(before.kinetic_energy, rel=1e-12)
     if all(scene.container.periodic):
         scale = (state.masses[:, None] * abs(state.velocities)).sum()
         assert np.allclose(state.momentum, before.momentum, rtol=0, atol=1e-13 * scale)
     assert tally.worst_contact < 1e-9
-    for position, radius in zip(state.positions, state.radii, strict=True):
-        low, high = scene.reach(radius)
-        assert (position >= np.array(low) - 1e-12).all()
-        assert (position <= np.array(high) + 1e-12).all()
+    check_inside(scene, state, 1e-12)
 
 
 @pytest.mark.parametrize("boundary", ["wall", "periodic"])
@@ -61,24 +53,16 @@ def test_energy_over_a_million_collisions():
 @pytest.mark.parametrize("eta", [0.1, 0.2, 0.3])
 def test_compressibility_factor(dimension, eta):
     """Z within 3 sigma of the reference, sigma at most 0.2 %; the finite-size shift is theory's."""
-    count, blocks = 500, 16
+    count = 500
     sim = gp.Simulation(
         gas(dimension, count, eta, arrangement="lattice"), gp.EventDriven(), seed=(11, dimension)
     )
     sim.advance(max_events=30 * count)
-    velocities = sim.state.velocities
-    twice_energy = ((velocities - velocities.mean(axis=0)) ** 2).sum()
-    found = []
-    for _ in range(blocks):
-        sim.reset_tally()
-        sim.advance(max_events=100 * count)
-        tally = sim.tally
-        found.append(1 + tally.virial_sum / (twice_energy * tally.time))
-    error = np.std(found, ddof=1) / math.sqrt(blocks)
+    found, error = measured_compressibility(sim, blocks=16, max_events=100 * count)
     expected = theory.compressibility_factor(eta, dimension)
     expected += theory.finite_size_correction(eta, dimension, count)
     assert error < 2e-3 * expected
-    assert abs(np.mean(found) - expected) < 3 * error
+    assert abs(found - expected) < 3 * error
 
 
 def test_a_head_on_collision_is_exact():
@@ -195,13 +179,10 @@ def test_a_checkpoint_goes_on_to_the_same_bits_and_counts():
     scene = gas(2, 200, 0.3)
     whole = gp.Simulation(scene, gp.EventDriven(), seed=2)
     whole.advance(until=5.0)
-    kept = {key: value.copy() for key, value in whole.checkpoint().items()}
-    whole.advance(until=12.0)
-    again = gp.Simulation(scene, gp.EventDriven(), seed=2)
-    again.restore(kept)
-    again.advance(until=12.0)
-    assert np.array_equal(whole.state.unwrapped, again.state.unwrapped)
-    assert str(whole.tally) == str(again.tally)
+    again = restored(whole)
+    for sim in (whole, again):
+        sim.advance(until=12.0)
+    check_same(whole, again, "state.unwrapped", *WHOLE_TALLY)
 
 
 def test_clocks_that_start_again_lose_nothing():

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from referee import events_of, same_bits
-from scenes import falling, gas
+from referee import check_same, check_searches, events_of, restored, same_bits
+from scenes import check_inside, falling, gas
 
 import gaspart as gp
 
@@ -25,25 +25,18 @@ def thrown(
 
 @given(falling(), st.integers(0, 2**32))
 def test_all_searches_give_the_same_events_bit_for_bit(scene, seed):
-    referee = events_of(scene, "pairs", 150, seed)
-    for search in ("boxes", "direct"):
-        assert same_bits(referee, events_of(scene, search, 150, seed))
+    check_searches(scene, 150, seed)
 
 
 @given(falling(most=40), st.integers(0, 2**32))
 def test_invariants_hold_in_any_scene(scene, seed):
-    sim = gp.Simulation(scene, gp.EventDriven(), seed=seed)
-    sim.record_events = True  # with the kernels that the test above has compiled
-    sim.advance(max_events=3000, duration=1e3)
+    sim = events_of(scene, "automatic", 3000, seed)
     state = sim.state
     scale = sim.initial_state.kinetic_energy + state.masses.sum() * (abs(state.gravity) @ state.lengths)
     assert abs(state.energy - sim.initial_state.energy) < 1e-11 * scale
     sim.check_invariants()
     assert sim.tally.worst_contact < 1e-9
-    for position, radius in zip(state.positions, state.radii, strict=True):
-        low, high = scene.reach(radius)
-        assert (position >= np.array(low) - 1e-11).all()
-        assert (position <= np.array(high) + 1e-11).all()
+    check_inside(scene, state, 1e-11)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -216,11 +209,9 @@ def test_stopping_and_checkpoints_change_no_bit():
     for n in range(1, 36):
         parts.advance(until=n / 7)
         parts.state  # noqa: B018 - looking must change nothing
-    again = gp.Simulation(scene, gp.EventDriven(), seed=2)
-    again.restore(parts.checkpoint())
+    again = restored(parts)
     again.advance(until=10.0)
-    assert np.array_equal(whole.state.positions, again.state.positions)
-    assert np.array_equal(whole.state.velocities, again.state.velocities)
+    check_same(whole, again, "state.positions", "state.velocities")
 
 
 def test_what_is_refused():

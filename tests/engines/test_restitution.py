@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from referee import events_of, same_bits
+from referee import WHOLE_TALLY, check_same, check_searches, events_of, restored
 from scenes import gas, granular
 
 import gaspart as gp
@@ -16,23 +16,13 @@ from gaspart import theory
 
 @given(granular(), st.integers(0, 2**32))
 def test_all_searches_give_the_same_events_bit_for_bit(scene, seed):
-    referee = events_of(scene, "pairs", 150, seed, may_collapse=True)
-    for search in ("boxes", "direct"):
-        other = events_of(scene, search, 150, seed, may_collapse=True)
-        assert same_bits(referee, other)
-        assert np.array_equal(referee.state.spins, other.state.spins)
+    check_searches(scene, 150, seed, "state.spins", may_collapse=True)
 
 
 @given(granular(most=30), st.integers(0, 2**32))
 def test_invariants_hold_in_any_scene(scene, seed):
-    sim = gp.Simulation(scene, gp.EventDriven(), seed=seed)
-    sim.record_events = True  # with the kernels that the test above has compiled
-    before = sim.initial_state
-    try:
-        sim.advance(max_events=2000, duration=1e3)
-    except gp.SimulationError as error:
-        assert "collapse" in str(error)
-    state = sim.state
+    sim = events_of(scene, "automatic", 2000, seed, may_collapse=True)
+    before, state = sim.initial_state, sim.state
     sim.check_invariants()
     assert sim.tally.dissipated_energy >= 0
     if scene.restitution.normal == 1.0 and abs(scene.restitution.tangential) == 1.0:
@@ -252,9 +242,7 @@ def test_a_collapse_comes_at_the_same_event_however_often_the_run_is_resumed():
     with pytest.raises(gp.SimulationError, match="collapse"):
         while resumed.tally.collisions <= whole.tally.collisions:
             resumed.advance(max_events=1)
-            kept = resumed.checkpoint()
-            resumed = gp.Simulation(scene, gp.EventDriven())
-            resumed.restore(kept)
+            resumed = restored(resumed)
     assert (resumed.time, resumed.tally.collisions) == (whole.time, whole.tally.collisions)
 
 
@@ -328,13 +316,10 @@ def test_checkpoints_keep_spins_and_losses():
     whole = gp.Simulation(scene, gp.EventDriven(), seed=2)
     whole.advance(until=2.0)
     whole.reset_tally()
-    kept = {key: value.copy() for key, value in whole.checkpoint().items()}
-    whole.advance(until=4.0)
-    again = gp.Simulation(scene, gp.EventDriven(), seed=2)
-    again.restore(kept)
-    again.advance(until=4.0)
-    assert np.array_equal(whole.state.spins, again.state.spins)
-    assert str(whole.tally) == str(again.tally)
+    again = restored(whole)
+    for sim in (whole, again):
+        sim.advance(until=4.0)
+    check_same(whole, again, "state.spins", *WHOLE_TALLY)
     again.check_invariants()
 
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scenes import gas, mixtures
+from referee import WHOLE_TALLY, check_restored
+from scenes import gas, measured_compressibility, mixtures
 
 import gaspart as gp
 from gaspart import theory
@@ -123,22 +124,14 @@ def test_rewinding_buys_accuracy():
 
 
 def test_compressibility_factor_at_a_small_step():
-    count, eta, dimension, blocks = 400, 0.1, 3, 12
+    count, eta, dimension = 400, 0.1, 3
     sim = gp.Simulation(gas(dimension, count, eta, arrangement="lattice"), gp.TimeStepped(0.01), seed=13)
     sim.advance(duration=20.0)
-    velocities = sim.state.velocities
-    twice_energy = ((velocities - velocities.mean(axis=0)) ** 2).sum()
-    found = []
-    for _ in range(blocks):
-        sim.reset_tally()
-        sim.advance(duration=20.0)
-        tally = sim.tally
-        found.append(1 + tally.virial_sum / (twice_energy * tally.time))
-    error = np.std(found, ddof=1) / math.sqrt(blocks)
+    found, error = measured_compressibility(sim, blocks=12, duration=20.0)
     expected = theory.compressibility_factor(eta, dimension)
     expected += theory.finite_size_correction(eta, dimension, count)
     assert error < 4e-3 * expected
-    assert abs(np.mean(found) - expected) < 3 * error
+    assert abs(found - expected) < 3 * error
 
 
 def test_walls_reflect_exactly():
@@ -209,16 +202,7 @@ def test_time_is_a_whole_number_of_steps():
 
 def test_splitting_changes_no_bit_and_checkpoints_go_on():
     scene, engine = gas(2, 100, 0.2, ("wall", "periodic")), gp.TimeStepped(0.02, precision="float32")
-    whole = gp.Simulation(scene, engine, seed=1)
-    whole.advance(until=10.0)
-    parts = gp.Simulation(scene, engine, seed=1)
-    parts.advance(until=3.0)
-    kept = parts.checkpoint()
-    again = gp.Simulation(scene, engine, seed=1)
-    again.restore(kept)
-    again.advance(until=10.0)
-    assert np.array_equal(whole.state.unwrapped, again.state.unwrapped)
-    assert str(whole.tally) == str(again.tally)
+    check_restored(scene, (3.0, 10.0), "state.unwrapped", *WHOLE_TALLY, engine=engine, seed=1)
 
 
 @pytest.mark.parametrize(

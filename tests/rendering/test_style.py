@@ -1,4 +1,3 @@
-import numpy as np
 import pytest
 
 from gaspart.rendering import style
@@ -10,7 +9,7 @@ def test_the_same_figure_gives_the_same_bytes(tmp_path, suffix):
         with style.applied():
             figure, (upper, lower) = style.new((2.0, 1.0))
             style.points(upper, [1, 2, 3], [1.0, 4.0, 9.0], [0.1, 0.2, 0.3], label="$\\eta$")
-            style.residuals(lower, [1, 2, 3], np.array([0.5, -1.0, 2.0]))
+            style.band(lower, -3.0, 3.0)
             upper.legend()
             style.letter(upper, "a")
             style.save(figure, path)
@@ -55,15 +54,6 @@ def test_letters_are_of_8_points_at_least():
         value for key, value in style.RULES.items() if key.endswith(("font.size", "labelsize", "fontsize"))
     ]
     assert len(sizes) >= 4 and min(sizes) >= 8
-
-
-def test_residuals_keep_an_innocent_scale():
-    with style.applied():
-        _, (axis,) = style.new((2.6,))
-        style.residuals(axis, [1, 2], np.array([0.1, -0.2]))
-        assert axis.get_ylim()[1] >= 3.9
-        style.residuals(axis, [1, 2], np.array([0.1, -20.0]))
-        assert axis.get_ylim()[0] < -20.0
 
 
 def test_numbers_of_a_short_logarithmic_axis_do_not_run_into_each_other(tmp_path):

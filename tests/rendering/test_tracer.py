@@ -20,7 +20,10 @@ def picture(positions, radii):
 
 def rays(camera):
     """(H, W, 3) directions through the middles of the pixels."""
-    return np.array([[camera.ray(c + 0.5, r + 0.5, *SIZE) for c in range(SIZE[0])] for r in range(SIZE[1])])
+    across = (2.0 * (np.arange(SIZE[0]) + 0.5) / SIZE[0] - 1.0) * camera.half_width
+    along = (1.0 - 2.0 * (np.arange(SIZE[1]) + 0.5) / SIZE[1]) * camera.half_height
+    directions = camera.forward + across[:, None] * camera.right + along[:, None, None] * camera.up
+    return directions / np.linalg.norm(directions, axis=-1, keepdims=True)
 
 
 def entries(origins, directions, positions, radii):

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from referee import WHOLE_TALLY, check_restored
 from scenes import gas
 
 import gaspart as gp
@@ -80,16 +81,8 @@ def test_checkpoints_change_no_bit(tmp_path, engine):
 def test_restored_again_and_again_to_the_same_counts(engine):
     """Large enough for both particles of a pair to plan one contact at one time, one of them out of date."""
     scene = gas(3, 1000, 0.2)
-    undisturbed, simulation = (gp.Simulation(scene, engine, 3) for _ in range(2))
-    for n in range(1, 41):
-        simulation.advance(until=0.25 * n)
-        parts = simulation.checkpoint()
-        simulation = gp.Simulation(scene, engine, 3)
-        simulation.restore(parts)
-    undisturbed.advance(until=10.0)
-    assert np.array_equal(simulation.state.positions, undisturbed.state.positions)
-    for name, value in vars(undisturbed.tally).items():
-        assert np.array_equal(getattr(simulation.tally, name), value), name
+    ends = [0.25 * n for n in range(1, 41)]
+    check_restored(scene, ends, "state.positions", *WHOLE_TALLY, engine=engine)
 
 
 @every_engine

@@ -4,10 +4,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scenes import gas
+from scenes import centred, gas
 
 import gaspart as gp
-from gaspart.analysis.correlations import accumulated, centred, correlate
+from gaspart.analysis.correlations import accumulated, correlate
 from gaspart.trajectory.correlator import SUMS, Correlations, Correlator
 from gaspart.trajectory.recipe import read_recipe
 from gaspart.trajectory.run import partial_path

@@ -12,7 +12,7 @@ _FINE = 2000
 
 
 def plateau(
-    volume: np.ndarray, pressure: np.ndarray, error: np.ndarray, seed: int = 0
+    volume: np.ndarray, pressure: np.ndarray, error: np.ndarray
 ) -> tuple[float, float, tuple[float, float]]:
     """Pressure of the horizontal line that cuts off equal areas of the loop, its error, and the volumes at
     its ends.
@@ -27,7 +27,7 @@ def plateau(
     order = np.argsort(volume)
     volume, pressure, error = (np.asarray(values, dtype=float)[order] for values in (volume, pressure, error))
     value, ends = _equal_areas(volume, pressure)
-    noise = error * np.random.default_rng(seed).standard_normal((REPEATS, error.size))
+    noise = error * np.random.default_rng(0).standard_normal((REPEATS, error.size))
     redrawn = np.array([_equal_areas(volume, pressure + shift)[0] for shift in noise])
     found = redrawn[np.isfinite(redrawn)]
     if math.isnan(value) or found.size < REPEATS / 2:

@@ -74,11 +74,6 @@ def autocorrelation(values: np.ndarray, lags: int) -> np.ndarray:
     return np.array([np.diag(products, lag).mean() for lag in range(lags)]) / flat.shape[1]
 
 
-def centred(values: np.ndarray) -> np.ndarray:
-    """(T, N, d) about the mean over the N particles of each frame."""
-    return values - values.mean(axis=1, keepdims=True)
-
-
 def between(time: np.ndarray, start: float, stop: float) -> np.ndarray:
     """Mask of the times from `start` to `stop`, both included."""
     return (time >= start * (1.0 - 1e-9)) & (time <= stop * (1.0 + 1e-9))

@@ -13,8 +13,9 @@ import numpy as np
 
 from gaspart import theory
 from gaspart.analysis.correlations import autocorrelation, correlate
-from gaspart.analysis.observable import Observable, grouped, observable
+from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.source import Run, Source, measured
+from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.scene.validation import count_of
 
@@ -58,9 +59,9 @@ def mean_squared_displacement(
             ]
         )
         time = groups.interval * np.arange(number)
-        values, errors = grouped(found * _free(run))
+        values, errors = means_of(found * _free(run))
         expected: dict[str, Any] = {}
-        if _has_theory(run):
+        if run.fluid:
             eta, d = run.scene.packing_fraction, run.dimension
             curve = theory.enskog_mean_squared_displacement(time, eta, d, **run.particle)
             expected = {"theory": (curve, math.nan), "source": "Enskog, exponential velocity correlation"}
@@ -82,9 +83,9 @@ def velocity_autocorrelation(
         number = _lags(groups, lags)
         found = np.array([autocorrelation(velocity, number) for velocity in groups.velocities])
         time = groups.interval * np.arange(number)
-        values, errors = grouped(found * _free(run))
+        values, errors = means_of(found * _free(run))
         expected: dict[str, Any] = {}
-        if _has_theory(run):
+        if run.fluid:
             eta, d, own = run.scene.packing_fraction, run.dimension, run.particle
             rate = float(theory.velocity_decay_rate(eta, d, **own))
             curve = own["temperature"] / own["mass"] * np.exp(-rate * time)
@@ -118,7 +119,7 @@ def diffusion_coefficient(source: Source, start: float | None = None) -> Observa
                 float(((path[lag:] - path[:-lag]) ** 2).sum(axis=2).mean()) for lag in (first, last)
             )
             rises.append((late - early) / (2 * run.dimension * time))
-        value, error = grouped(np.array(rises) * _free(run))
+        value, error = means_of(np.array(rises) * _free(run))
         about: dict[str, Any] = {
             "units": "length^2 / time",
             "long_name": "diffusion coefficient D",
@@ -146,10 +147,6 @@ def _theory_of_d(run: Run) -> dict[str, Any]:
         return {}
     expected = theory.diffusion_in_cube(eta, float(sides[0]), **run.particle)
     return {"theory": expected, "source": "Erpenbeck and Wood, Yeh and Hummer"}
-
-
-def _has_theory(run: Run) -> bool:
-    return run.bulk and run.scene.packing_fraction <= theory.HIGHEST_PACKING_FRACTION[run.dimension]
 
 
 def _free(run: Run) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -152,8 +151,3 @@ def observable(
         coords={key: (key, place, attributes) for key, (place, attributes) in along.items()},
         attrs={"quantity": name} | ({"source": source} if source else {}),
     )
-
-
-def grouped(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Mean and standard error over axis 0 of values of independent groups (G, ...)."""
-    return values.mean(axis=0), values.std(axis=0, ddof=1) / math.sqrt(len(values))

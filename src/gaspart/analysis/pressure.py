@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis.observable import Observable, grouped, observable, scalar
+from gaspart.analysis.observable import Observable, observable, scalar
 from gaspart.analysis.source import Run, Source, measured, require_elastic, require_periodic
+from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 
 _BLOCKS = 16
@@ -36,9 +37,9 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
 
 
 def _theory_of_z(run: Run) -> dict[str, Any]:
-    eta, d = run.scene.packing_fraction, run.dimension
-    if not run.bulk or eta > theory.HIGHEST_PACKING_FRACTION[d]:
+    if not run.fluid:
         return {}
+    eta, d = run.scene.packing_fraction, run.dimension
     value = float(theory.compressibility_factor(eta, d))
     value += float(theory.finite_size_correction(eta, d, run.count, "canonical"))
     source = "reference equation of state of the fluid, corrected for the number of particles"
@@ -67,7 +68,7 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
         series = impulse / np.diff(run.time[ends])[:, None] / areas
         faces = np.array([f"{axis} {end}" for axis in "xyz"[:d] for end in ("low", "high")])
         chosen = np.repeat(walled, 2)
-        values, errors = grouped(np.abs(series[:, chosen]))
+        values, errors = means_of(np.abs(series[:, chosen]))
         return observable(
             "wall_pressure",
             {"face": (faces[chosen], {"long_name": "face of the container"})},
@@ -111,9 +112,9 @@ def collision_rate(source: Source, start: float | None = None) -> Observable:
 
 
 def _theory_of_rate(run: Run) -> dict[str, Any]:
-    eta, d = run.scene.packing_fraction, run.dimension
-    if not run.bulk or eta > theory.HIGHEST_PACKING_FRACTION[d]:
+    if not run.fluid:
         return {}
+    eta, d = run.scene.packing_fraction, run.dimension
     rate = float(theory.collision_rate(eta, d, **run.particle))
     # the run's temperature is that of d (N - 1) degrees of freedom, theory's factor is relative to d N
     rate *= math.sqrt((run.count - 1) / run.count)

@@ -12,6 +12,7 @@ from typing import TypeAlias
 import numpy as np
 import xarray as xr
 
+from gaspart import theory
 from gaspart.engines import TimeStepped
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
@@ -34,8 +35,7 @@ _COUNTERS = ("collisions", "virial_sum", "wall_impulse")
 class Run:
     """T frames of N particles in d dimensions: the measured part of a run.
 
-    time (T,); positions, velocities (T, N, d); unwrapped (T, N, d) or None where the file does not have them;
-    counters: cumulative, (T,) or (T, walls), by name.
+    time (T,); data: the frames, with cumulative counters (T,) or (T, walls).
     """
 
     scene: Scene
@@ -121,6 +121,11 @@ class Run:
     def bulk(self) -> bool:
         """Whether it is such a gas in a periodic container."""
         return self.simple and bool(self.periodic.all())
+
+    @property
+    def fluid(self) -> bool:
+        """Whether it is such a gas within the range of the fluid's equation of state."""
+        return self.bulk and self.scene.packing_fraction <= theory.HIGHEST_PACKING_FRACTION[self.dimension]
 
     @property
     def particle(self) -> dict[str, float]:

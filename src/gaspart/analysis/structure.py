@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis.observable import Observable, grouped, observable, scalar
+from gaspart.analysis.observable import Observable, observable, scalar
 from gaspart.analysis.source import Run, Source, measured, require_periodic
+from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.scene.validation import choice, count_of, number
 
@@ -42,7 +43,7 @@ def speed_distribution(source: Source, bins: int = 40, start: float | None = Non
         # every group has a share of each species, which come one after the other
         groups = [speeds[:, first::STRETCHES] for first in range(STRETCHES)]
         found = np.array([np.histogram(part, edges)[0] / part.size / np.diff(edges) for part in groups])
-        values, errors = grouped(found)
+        values, errors = means_of(found)
         expected: dict[str, Any] = {}
         if np.ptp(masses) == 0.0:
             share = np.diff(theory.maxwell_cdf(edges, run.dimension, temperature, masses[0]))
@@ -74,12 +75,11 @@ def rdf(
         end = number("furthest", end, rule, above=0.0, most=half)
         frames = _chosen(run, run.positions)
         found = [radial_distribution(part, lengths, bins, end) for part in np.array_split(frames, STRETCHES)]
-        values, errors = grouped(np.array([g for _, g in found]))
+        values, errors = means_of(np.array([g for _, g in found]))
         distance = np.asarray(found[0][0], dtype=float)
         expected: dict[str, Any] = {}
-        eta = run.scene.packing_fraction
-        if run.bulk and eta <= theory.HIGHEST_PACKING_FRACTION[run.dimension]:
-            contact = float(theory.contact_value(eta, run.dimension))
+        if run.fluid:
+            contact = float(theory.contact_value(run.scene.packing_fraction, run.dimension))
             near = (distance > diameter) & (distance < diameter + 1.5 * end / bins)
             expected = {"theory": (np.where(near, contact, np.nan), np.nan), "source": "g at contact, from Z"}
         along = {"distance": (distance, {"units": "length", "long_name": "distance"})}
@@ -111,7 +111,7 @@ def profile(
         if len(parts) < STRETCHES:
             raise SceneError("frames", len(run.time), f"an error needs {STRETCHES} or more")
         measure = _density if of == "density" else _temperature
-        values, errors = grouped(np.array([measure(run, part, k, edges) for part in parts]))
+        values, errors = means_of(np.array([measure(run, part, k, edges) for part in parts]))
         middle = 0.5 * (edges[1:] + edges[:-1])
         expected = _theory_of_density(run, k, edges) if of == "density" else _theory_of_temperature(run)
         along = {"position": (middle, {"units": "length", "long_name": names[k]})}

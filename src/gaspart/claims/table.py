@@ -15,11 +15,7 @@ from gaspart.files import whole_file
 if TYPE_CHECKING:
     import pandas
 
-COLUMNS = (
-    "figure",
-    "claim",
-    "kind",
-    "form",
+_STATED = (
     "measured",
     "uncertainty",
     "degrees_of_freedom",
@@ -28,10 +24,13 @@ COLUMNS = (
     "allowance",
     "lowest",
     "highest",
-    "source",
-    "allowance_source",
-    "deviation_sigma",
-    "scattered",
+)
+_JUDGED = ("deviation_sigma", "scattered")
+COLUMNS = (
+    *("figure", "claim", "kind", "form"),
+    *_STATED,
+    *("source", "allowance_source"),
+    *_JUDGED,
     "verdict",
     "why",
     "fails_if",
@@ -39,18 +38,6 @@ COLUMNS = (
 """Columns of a claims table, in this order. allowance: the uncertainty of the expected value; lowest,
 highest: the stated bounds, NaN for a value; scattered: 1 where `deviation_sigma` is a standard Gaussian
 number if the claim is true (`Claim.is_scattered`), else 0."""
-_NUMBERS = (
-    "measured",
-    "uncertainty",
-    "degrees_of_freedom",
-    "required_uncertainty",
-    "expected",
-    "allowance",
-    "lowest",
-    "highest",
-    "deviation_sigma",
-    "scattered",
-)
 PLURALS = {"test": "tests", "identity": "identities", "reproduction": "reproductions", "family": "families"}
 COUNTED = {"agrees": "agree", "disagrees": "disagree"}
 
@@ -108,9 +95,10 @@ def read(path: str | Path) -> list[dict[str, Any]]:
         if tuple(table.fieldnames or ()) != COLUMNS:
             raise ValueError(f"{path}: not a claims table (its columns must be {', '.join(COLUMNS)})")
         rows = list(table)
+    numbers = (*_STATED, *_JUDGED)
     for row in rows:
         try:
-            row.update({name: math.nan if row[name] == "" else float(row[name]) for name in _NUMBERS})
+            row.update({name: math.nan if row[name] == "" else float(row[name]) for name in numbers})
         except (TypeError, ValueError) as error:
             raise ValueError(f"{path}: {error} in the row {row['claim']!r}") from None
         if row["verdict"] not in VERDICTS:

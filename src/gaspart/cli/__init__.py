@@ -22,7 +22,7 @@ _COMMANDS = {
     "new": ("new", "write a scene file from a template"),
     "run": ("run", "run a scene and write its trajectory"),
     "resume": ("run", "finish a run that was cut short"),
-    "info": ("info", "contents and quality of a trajectory, and how to repeat it"),
+    "info": ("info", "contents and quality of a trajectory, and how to reproduce it"),
     "measure": ("measure", "observables of a trajectory, with uncertainties and theory"),
     "render": ("render", "a picture (.png) or a film (.mp4, .gif) of a trajectory"),
     "view": ("view", "an interactive page (.html) of a trajectory"),
@@ -33,7 +33,7 @@ _COMMANDS = {
     "check": ("check", "validate a scene, a config or a trajectory, also of other programs"),
     "completion": ("completion", "let a shell complete commands, options and names"),
 }
-"""Name -> module, which has a function add_<name>, and what the list of commands says."""
+"""Name -> module, which has a function add_<name>, and the line in the list of commands."""
 _EXAMPLES = """examples:
   gaspart new gas.yaml
   gaspart run gas.yaml -o gas.nc --duration 40 --sample-interval 0.4
@@ -102,7 +102,11 @@ def _unrecognised(words: list[str], parser: Parser) -> str:
 
 def _parser(words: Sequence[str]) -> Parser:
     """The parser of a command line. Only the command that it names is imported; `completion` needs all."""
-    parser = Parser(prog="gaspart", description="Hard-sphere and hard-disc gases.", epilog=_EXAMPLES)
+    parser = Parser(
+        prog="gaspart",
+        description="Simulate hard-sphere and hard-disc gases, measure and draw them.",
+        epilog=_EXAMPLES,
+    )
     parser.add_argument("--version", action="version", version=f"gaspart {__version__}")
     named = next((word for word in words if word in _COMMANDS), "")
     _add_commands(parser, _COMMANDS if named == "completion" else (named,))

@@ -30,8 +30,8 @@ def add_advise(parser: Parser) -> None:
     add = parser.add_argument
     add("scene", nargs="?", help="scene file (YAML)")
     add("--observable", default="Z", metavar="NAME", help="Z (default), collision_rate or D")
-    add("--accuracy", type=real(above=0.0), default=1e-2, metavar="X", help="relative, default 0.01")
-    add("--budget", type=_seconds, metavar="S", help="processor time that may be spent, in s (60 or 60s)")
+    add("--accuracy", type=real(above=0.0), default=1e-2, metavar="X", help="relative; default: 0.01")
+    add("--budget", type=_seconds, metavar="S", help="largest processor time, in s (60 or 60s)")
     add("--config", metavar="FILE", help="a config instead of a scene")
 
 

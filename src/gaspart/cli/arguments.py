@@ -87,6 +87,11 @@ def add_output(parser: argparse.ArgumentParser, what: str, overwrite: str) -> No
     parser.add_argument("--force", action="store_true", help=f"replace {overwrite}")
 
 
+def add_trajectory(parser: argparse.ArgumentParser) -> None:
+    """Add the argument of a command that reads a trajectory."""
+    parser.add_argument("trajectory", metavar="FILE", help="trajectory of gaspart (.nc)")
+
+
 def print_line(text: object) -> None:
     """Print a line. If the standard output cannot encode it, as some file names, characters are escaped."""
     try:

@@ -22,15 +22,18 @@ exit code: 0 if all checks pass, 1 if one fails, 2 if the file cannot be read"""
 def add_check(parser: Parser) -> None:
     """Add the arguments of the command to its parser."""
     text = (
-        "Judge a scene, a config, or a trajectory of any program (AMBER or LAMMPS netCDF, GSD, XYZ): "
-        "overlaps, the container, the speed distribution, g(sigma) and Z, and D; a line each."
+        "Validate a scene, a config, or a trajectory of any program (AMBER or LAMMPS netCDF, GSD, XYZ): "
+        "overlaps, the container, the speed distribution, g(sigma) and Z, and D, with a line for each."
     )
     set_command(parser, _check, text, _EXAMPLES)
     add = parser.add_argument
     add("file", metavar="FILE", help=".yaml, .nc, .gsd or .xyz")
-    add("--radius", type=real(above=0.0), metavar="R", help="of all particles, if the file does not state it")
+    add("--radius", type=real(above=0.0), metavar="R", help="radius of all particles, if the file has none")
     add(
-        "--lengths", type=several(real(above=0.0)), metavar="X,Y[,Z]", help="sides of the container, likewise"
+        "--lengths",
+        type=several(real(above=0.0)),
+        metavar="X,Y[,Z]",
+        help="sides of the container, if the file has none",
     )
     add("--boundary", metavar="NAME", help="periodic (default for other programs' files) or wall")
     add("--time-step", type=real(above=0.0), metavar="T", help="time of a step (GSD) or of a frame (XYZ)")

@@ -8,10 +8,8 @@ from gaspart.cli.arguments import Parser, add_output, integer, print_line, real,
 from gaspart.cli.progress import waiting
 from gaspart.scene.scene import Scene
 
-_EXAMPLE = """
-example:
-    gaspart collisions scene.yaml -o collisions.nc --count 100000 --equilibration 10
-"""
+_EXAMPLE = """example:
+  gaspart collisions scene.yaml -o collisions.nc --count 100000 --equilibration 10"""
 
 
 def add_collisions(parser: Parser) -> None:
@@ -22,10 +20,10 @@ def add_collisions(parser: Parser) -> None:
     )
     set_command(parser, _collisions, text, _EXAMPLE)
     add = parser.add_argument
-    add("scene", metavar="SCENE")
+    add("scene", help="scene file (YAML)")
     add_output(parser, "data set (netCDF)", "a data set of collisions")
-    add("--count", type=integer(least=1), required=True, metavar="M", help="collisions, at least")
-    text = "time before the first; default: 0"
+    add("--count", type=integer(least=1), required=True, metavar="M", help="least number of collisions")
+    text = "time before the first of them; default: 0"
     add("--equilibration", type=real(least=0.0), default=0.0, metavar="T", help=text)
     add("--seed", type=integer(least=0), default=0, metavar="N", help="default: 0")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from gaspart.cli.arguments import Parser, add_output, integer, print_line, set_command
+from gaspart.cli.arguments import Parser, add_output, add_trajectory, integer, print_line, set_command
 
 _EXAMPLES = """examples:
   gaspart export run.nc -o state.gsd                the last frame, for HOOMD and OVITO
@@ -15,8 +15,8 @@ def add_export(parser: Parser) -> None:
     """Add the arguments of the command to its parser."""
     text = "One frame of a trajectory as a state for other programs: GSD, or LAMMPS data (atom_style sphere)."
     set_command(parser, _export, text, _EXAMPLES)
-    parser.add_argument("trajectory", metavar="FILE")
-    add_output(parser, "ends in .gsd or .data", "a state that was exported")
+    add_trajectory(parser)
+    add_output(parser, "ends in .gsd or .data", "an exported state")
     text = "counted from 0, or from the end if negative; default: -1"
     parser.add_argument("--frame", type=integer(), default=-1, metavar="N", help=text)
 

@@ -7,7 +7,7 @@ import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaspart.cli.arguments import Parser, print_line, set_command
+from gaspart.cli.arguments import Parser, add_trajectory, print_line, set_command
 
 if TYPE_CHECKING:
     from gaspart.trajectory.recipe import Recipe
@@ -21,7 +21,7 @@ def add_info(parser: Parser) -> None:
     """Add the arguments of the command to its parser."""
     text = "Contents and quality of a trajectory, and the command that reproduces it."
     set_command(parser, _info, text, _EXAMPLES)
-    parser.add_argument("trajectory", metavar="FILE")
+    add_trajectory(parser)
     parser.add_argument("--scene", action="store_true", help="print the scene file and nothing else")
 
 

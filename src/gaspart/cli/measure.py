@@ -8,7 +8,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from gaspart.cli.arguments import Parser, UsageError, print_line, real, set_command
+from gaspart.cli.arguments import Parser, UsageError, add_trajectory, print_line, real, set_command
 from gaspart.cli.progress import waiting
 from gaspart.errors import SceneError
 from gaspart.files import Kind, begins_with, output_path, writing
@@ -45,9 +45,9 @@ def add_measure(parser: Parser) -> None:
     text = f"{names}. Uncertainties are one standard deviation; of curves a few rows are printed."
     set_command(parser, _measure, text, _EXAMPLES)
     add = parser.add_argument
-    add("trajectory", metavar="FILE")
+    add_trajectory(parser)
     add("observables", nargs="+", choices=tuple(OBSERVABLES), metavar="NAME", help=", ".join(OBSERVABLES))
-    text = "time from which frames count; by default a quarter of the run"
+    text = "time from which frames count; default: a quarter of the run"
     add("--start", type=real(least=0.0), metavar="T", help=text)
     add("-o", "--output", metavar="FILE", help="all rows of one observable as .csv, or a plot as .png")
     add("--force", action="store_true", help="replace a table or a picture")

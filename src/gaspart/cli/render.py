@@ -7,7 +7,16 @@ import io
 import sys
 from pathlib import Path
 
-from gaspart.cli.arguments import Parser, add_output, integer, print_line, real, set_command, several
+from gaspart.cli.arguments import (
+    Parser,
+    add_output,
+    add_trajectory,
+    integer,
+    print_line,
+    real,
+    set_command,
+    several,
+)
 from gaspart.cli.progress import clear_line, counted
 from gaspart.errors import SceneError
 from gaspart.files import output_path, writing
@@ -29,7 +38,7 @@ def add_render(parser: Parser) -> None:
     )
     set_command(parser, _render, text, _EXAMPLES)
     add = parser.add_argument
-    add("trajectory", metavar="FILE")
+    add_trajectory(parser)
     add_output(parser, "ends in .png, .mp4 or .gif", "a picture or a film")
     add(
         "--frame",
@@ -48,7 +57,7 @@ def add_render(parser: Parser) -> None:
     )
     text = "write the parameters, the meaning of the colours, the time and the scale above and below it"
     add("--clock", action="store_true", default=None, help=text)
-    text = "from where spheres are seen: azimuth and elevation in degrees; default: 298,24"
+    text = "direction from which spheres are seen: azimuth and elevation in degrees; default: 298,24"
     add("--camera", type=several(real()), metavar="A,E", help=text)
 
 

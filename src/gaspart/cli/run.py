@@ -18,10 +18,11 @@ from gaspart.scene.scene import Scene
 if TYPE_CHECKING:
     from gaspart.trajectory.correlator import Correlations
 
-_ENGINE_SETTINGS: tuple[str, ...] = ("time_step", "boxes_per_side", "precision", "rewind", "search")
+_ENGINE_SETTINGS = (
+    *("time_step", "boxes_per_side", "precision", "rewind", "search"),
+    *("passes", "skin", "near_boxes", "threads"),
+)
 _PREPARING = "placing particles, compiling kernels (once for each kind of scene)"
-_ENGINE_SETTINGS += ("passes", "skin", "near_boxes", "threads")
-
 
 _EXAMPLES = """examples:
   gaspart run scene.yaml -o run.nc --duration 100 --sample-interval 1 --seed 1
@@ -39,28 +40,30 @@ def add_run(parser: Parser) -> None:
     add, integers = parser.add_argument, several(int)
     add("scene", help="scene file (YAML)")
     add("-o", "--output", required=True, metavar="FILE", help="trajectory (AMBER NetCDF)")
-    add("--engine", default="event", metavar="NAME", help="event (exact; the default) or step")
-    add("--duration", type=float, required=True, metavar="T", help="in the scene's time")
-    add("--sample-interval", type=float, required=True, metavar="T", help="the duration is a multiple of it")
+    add("--engine", default="event", metavar="NAME", help="event (default; exact) or step")
+    add("--duration", type=float, required=True, metavar="T", help="duration of the run, in the scene's unit")
+    text = "time between frames, of which the duration is a multiple"
+    add("--sample-interval", type=float, required=True, metavar="T", help=text)
     add("--seed", type=integers, default=(0,), metavar="N[,N...]", help="default: 0")
     add(
         "--displacements",
         action="store_true",
-        help="write unwrapped float64 displacements since time 0 as well",
+        help="also write unwrapped displacements since time 0, in float64",
     )
-    add("--follow", type=int, metavar="N", help="write the first N particles only")
+    add("--follow", type=int, metavar="N", help="write only the first N particles")
     add(
         "--correlations",
         type=several(float),
         metavar="T,L[,START]",
         help="accumulate time correlations of samples every T, up to L of them apart, from START on",
     )
-    add("--time-step", type=float, metavar="T", help="step engine: the sample interval is a multiple of it")
+    text = "step engine: duration of a step, of which the sample interval is a multiple"
+    add("--time-step", type=float, metavar="T", help=text)
     add(
         "--boxes-per-side",
         type=integers,
         metavar="N[,N...]",
-        help="one number for all sides, or one per side",
+        help="boxes of the partition: one number for all sides, or one for each",
     )
     add("--precision", metavar="TYPE", help="step engine: float64 (default) or float32")
     text = "step engine: collide pairs at their positions after the step, not at contact"
@@ -69,12 +72,12 @@ def add_run(parser: Parser) -> None:
         "--passes",
         type=int,
         metavar="N",
-        help="step engine: largest number of searches for overlaps in a step (4)",
+        help="step engine: largest number of searches for overlaps in a step; default: 4",
     )
-    add("--skin", type=float, metavar="L", help="step engine: of its neighbour list; automatic by default")
+    add("--skin", type=float, metavar="L", help="step engine: skin of the neighbour list; default: automatic")
     text = "step engine: search only boxes within reach of a contact"
     add("--near-boxes", action="store_true", default=None, help=text)
-    add("--threads", type=int, metavar="N", help="step engine: number of threads (1)")
+    add("--threads", type=int, metavar="N", help="step engine: number of threads; default: 1")
     add("--search", metavar="NAME", help="event engine: automatic (default), boxes, lists, direct or pairs")
     add("--force", action="store_true", help="replace a trajectory of another run")
     _add_progress(parser)
@@ -85,12 +88,12 @@ def add_resume(parser: Parser) -> None:
     text = "Finish a run that was cut short, from FILE.partial and FILE.checkpoint.npz."
     examples = "example:\n  gaspart resume run.nc"
     set_command(parser, _resume, text, examples)
-    parser.add_argument("trajectory", metavar="FILE", help="the trajectory of the run")
+    parser.add_argument("trajectory", metavar="FILE", help="trajectory of the run")
     _add_progress(parser)
 
 
 def _add_progress(parser: argparse.ArgumentParser) -> None:
-    text = "time between checkpoints, default 30: the most that a kill can cost"
+    text = "seconds between checkpoints, the most that is lost if the run is killed; default: 30"
     parser.add_argument("--checkpoint-seconds", type=float, default=30.0, metavar="S", help=text)
     parser.add_argument("--quiet", action="store_true", help="show no progress")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from gaspart.cli.arguments import Parser, add_output, integer, print_line, set_command
+from gaspart.cli.arguments import Parser, add_output, add_trajectory, integer, print_line, set_command
 from gaspart.cli.progress import waiting
 
 _EXAMPLES = """examples:
@@ -20,9 +20,9 @@ def add_view(parser: Parser) -> None:
         "and zoom, colours by speed, species or bond order, time and scale."
     )
     set_command(parser, _view, text, _EXAMPLES)
-    parser.add_argument("trajectory", metavar="FILE")
-    add_output(parser, "ends in .html", "a page of this command")
-    text = "how many are shown, evenly spaced; default: 200"
+    add_trajectory(parser)
+    add_output(parser, "ends in .html", "a page written by this command")
+    text = "number of frames shown, evenly spaced; default: 200"
     parser.add_argument("--frames", type=integer(least=1), default=200, metavar="N", help=text)
     text = "also colours by local bond order (periodic containers; needs the extra `order`)"
     parser.add_argument("--order", action="store_true", help=text)

@@ -34,13 +34,6 @@ class Camera:
         """Of a short length across the view at a point (3,), in a picture `width` pixels wide."""
         return 0.5 * width / (self.half_width * float((point - self.eye) @ self.forward))
 
-    def ray(self, column: float, row: float, width: int, height: int) -> np.ndarray:
-        """(3,) the direction of a point in the picture, in pixels from its upper left corner."""
-        across = (2.0 * column / width - 1.0) * self.half_width
-        along = (1.0 - 2.0 * row / height) * self.half_height
-        direction = self.forward + across * self.right + along * self.up
-        return direction / np.linalg.norm(direction)
-
 
 def camera_for(
     lengths: np.ndarray,

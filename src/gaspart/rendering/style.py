@@ -153,20 +153,6 @@ def points(
     return axis.errorbar(x, y, yerr=error, color=colour, markerfacecolor=face, markeredgewidth=0.8, **options)
 
 
-def residuals(
-    axis: Axes, x: ArrayLike, sigmas: ArrayLike, kind: int = 0, gate: float = 3.0, **options: Any
-) -> None:
-    """A panel of deviations in standard deviations: one series, the zero line and the band of ± `gate`.
-
-    The scale is at least ±1.3 gate, so that an innocent panel looks innocent.
-    """
-    band(axis, -gate, gate)
-    level(axis, 0.0)
-    points(axis, x, sigmas, np.ones(np.shape(sigmas)), kind=kind, **options)
-    widest = max(1.3 * gate, *(1.0 + 1.1 * np.abs(np.atleast_1d(sigmas))))
-    axis.set_ylim(-widest, widest)
-
-
 def band(axis: Axes, low: float, high: float, **options: Any) -> Rectangle:
     """A horizontal grey band, behind everything."""
     return axis.axhspan(low, high, color=GREY, alpha=0.18, linewidth=0, zorder=0, **options)

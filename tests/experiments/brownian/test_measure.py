@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import xarray as xr
 
 import gaspart as gp
 from gaspart.experiments.brownian import measure as brownian
@@ -111,8 +110,3 @@ def test_what_cannot_be_measured_is_refused(made_up):
         brownian.brownian_msd([made_up(short, found)], {})
     with pytest.raises(gp.SceneError, match="one entry of bodies and one species"):
         brownian.setting_of(point(scene="config/scenes/brownian.yaml", **{"scene.bodies": []}))
-
-
-def test_points_of_different_length_stand_side_by_side():
-    ds = brownian._dataset([{"a": 1.0, "b": np.ones(3)}, {"a": 2.0, "b": np.zeros(2)}], {"b": ("lag",)})
-    assert isinstance(ds, xr.Dataset) and ds["b"].shape == (2, 3) and np.isnan(ds["b"][1, 2])

@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 import xarray as xr
+from scenes import centred
 
 from gaspart import theory
-from gaspart.analysis.correlations import centred, correlate
+from gaspart.analysis.correlations import correlate
 from gaspart.planning import grid
 from gaspart.trajectory.correlator import SUMS
 

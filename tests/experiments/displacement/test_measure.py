@@ -7,7 +7,7 @@ from experiments.displacement.data import langevin, point
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.analysis.correlations import Curves, between, centred, correlate, line
+from gaspart.analysis.correlations import Curves, between, correlate, line
 from gaspart.errors import SceneError
 from gaspart.experiments.displacement import measure as displacement
 from gaspart.experiments.shared import curves
@@ -53,13 +53,6 @@ def test_free_flight_is_ballistic_at_any_distance():
     square = (v**2).sum() / 50
     assert found.msd[1:] == pytest.approx(square * np.arange(1, 4) ** 2, rel=1e-8)
     assert found.running == pytest.approx(square / 3 * np.arange(4), rel=1e-8, abs=1e-9)
-
-
-def test_centred_takes_the_drift_away():
-    values = np.random.default_rng(3).normal(size=(4, 6, 2))
-    drift = np.arange(4.0)[:, None, None]
-    assert centred(values + drift) == pytest.approx(centred(values))
-    assert centred(values).sum(axis=1) == pytest.approx(np.zeros((4, 2)))
 
 
 def test_a_line_needs_four_points():

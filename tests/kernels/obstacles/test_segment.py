@@ -7,35 +7,24 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from referee import events_of, same_bits
-from scenes import sent, walled
+from referee import check_searches, events_of
+from scenes import check_inside, check_outside_walls, sent, walled
 
 import gaspart as gp
 
 
 @given(walled(), st.integers(0, 2**32))
 def test_all_searches_give_the_same_events_bit_for_bit(scene, seed):
-    referee = events_of(scene, "pairs", 120, seed, may_collapse=True)
-    for search in ("boxes", "direct"):
-        assert same_bits(referee, events_of(scene, search, 120, seed, may_collapse=True))
+    check_searches(scene, 120, seed, may_collapse=True)
 
 
 @given(walled(most=20), st.integers(0, 2**32))
 def test_nobody_passes_through_a_wall(scene, seed):
-    sim = gp.Simulation(scene, gp.EventDriven(), seed=seed)
-    sim.record_events = True  # with the kernels that the test above has compiled
-    try:
-        sim.advance(max_events=2000, duration=100.0)
-    except gp.SimulationError as error:
-        assert "collapse" in str(error)
+    sim = events_of(scene, "automatic", 2000, seed, may_collapse=True)
     sim.check_invariants()
     assert sim.tally.worst_contact < 1e-8
-    state = sim.state
-    for position, radius in zip(state.positions, state.radii, strict=True):
-        assert scene.wall_at(tuple(position), radius * (1 - 1e-8)) is None
-        low, high = scene.reach(radius)
-        assert (position >= np.array(low) - 1e-9).all()
-        assert (position <= np.array(high) + 1e-9).all()
+    check_inside(scene, sim.state, 1e-9)
+    check_outside_walls(scene, sim.state, 1e-8)
 
 
 @pytest.mark.parametrize("search", ["boxes", "direct", "pairs"])

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from referee import events_of, same_bits
-from scenes import surfaced
+from referee import check_same, check_searches, events_of, restored
+from scenes import check_inside, measured_heat, surfaced
 
 import gaspart as gp
 
@@ -22,29 +22,15 @@ def between(hot, cold, dimension=3, components="all", count=200, temperature=1.0
 
 @given(surfaced(), st.integers(0, 2**32))
 def test_all_searches_give_the_same_events_bit_for_bit_and_keep_the_energy(scene, seed):
-    referee = events_of(scene, "pairs", 150, seed, may_collapse=True)
-    referee.check_invariants()
-    for search in ("boxes", "direct"):
-        other = events_of(scene, search, 150, seed, may_collapse=True)
-        assert same_bits(referee, other)
-        assert np.array_equal(referee.state.vibrations, other.state.vibrations)
-        assert np.array_equal(referee.state.well_energies, other.state.well_energies)
+    internal = ("state.vibrations", "state.well_energies")
+    check_searches(scene, 150, seed, *internal, may_collapse=True).check_invariants()
 
 
 @given(surfaced(most=20), st.integers(0, 2**32))
 def test_nobody_leaves_and_no_energy_is_lost(scene, seed):
-    sim = gp.Simulation(scene, gp.EventDriven(), seed=seed)
-    sim.record_events = True  # with the kernels that the test above has compiled
-    try:
-        sim.advance(max_events=3000, duration=100.0)
-    except gp.SimulationError as error:
-        assert "collapse" in str(error)
+    sim = events_of(scene, "automatic", 3000, seed, may_collapse=True)
     sim.check_invariants()
-    state = sim.state
-    for position, radius in zip(state.positions, state.radii, strict=True):
-        low, high = scene.reach(radius)
-        assert (position >= np.array(low) - 1e-9).all()
-        assert (position <= np.array(high) + 1e-9).all()
+    check_inside(scene, sim.state, 1e-9)
 
 
 @pytest.mark.parametrize("components", ["all", "normal"])
@@ -81,20 +67,11 @@ def test_heat_between_the_walls_of_a_thin_gas(components, share):
     scene = between(4.0, 1.0, components=components, count=1000)
     sim = gp.Simulation(scene, gp.EventDriven(), seed=5)
     sim.advance(duration=30.0)
-    into = []
-    for _ in range(20):
-        before = sim.state.energy
-        sim.reset_tally()
-        sim.advance(duration=10.0)
-        heat = sim.tally.wall_energy
-        assert sim.state.energy - before == pytest.approx(-heat.sum(), rel=1e-9, abs=1e-7)
-        assert (heat[2:] == 0.0).all()
-        into.append((heat[1] - heat[0]) / 2)  # from hot to cold, the mean of both faces
+    heat, sigma = measured_heat(sim, 10.0)
     density = 1000 / (4.0 * 4.0 * (4.0 - 2e-3))
     expected = share * density * math.sqrt(8 / math.pi) * 2.0 * (2.0 - 1.0) * 16.0 * 10.0
-    sigma = np.std(into, ddof=1) / math.sqrt(len(into))
     assert sigma < 0.01 * expected
-    assert np.mean(into) == pytest.approx(expected, abs=3 * sigma)
+    assert heat == pytest.approx(expected, abs=3 * sigma)
 
 
 def test_a_gas_takes_the_temperature_of_its_walls():
@@ -126,14 +103,10 @@ def test_splits_kills_and_replays_change_no_bit():
     whole.advance(until=9.0)
     parts = gp.Simulation(scene, gp.EventDriven(), seed=7)
     parts.advance(until=3.3)
-    saved = parts.checkpoint()
-    again = gp.Simulation(scene, gp.EventDriven(), seed=7)
-    again.restore(saved)
+    again = restored(parts)
     for sim in (parts, again, *([again.advance(until=5.0)] and [again])):
         sim.advance(until=9.0)
-        assert np.array_equal(sim.state.velocities, whole.state.velocities)
-        assert np.array_equal(sim.state.positions, whole.state.positions)
-        assert np.array_equal(sim.tally.wall_energy, whole.tally.wall_energy)
+        check_same(sim, whole, "state.velocities", "state.positions", "tally.wall_energy")
     *_, last = whole.replay(interval=3.0)
     assert np.array_equal(last.velocities, whole.state.velocities)
     other = gp.Simulation(scene, gp.EventDriven(), seed=8)

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scenes import granular, metals, surfaced
+from referee import WHOLE_TALLY, check_restored
+from scenes import granular, measured_heat, metals, surfaced
 
 import gaspart as gp
 
@@ -97,37 +98,20 @@ def test_any_search_and_any_threads_give_the_same_bits(boundary):
 
 def test_splits_and_kills_change_no_bit():
     scene, engine = rough_gas(), gp.TimeStepped(0.02)
-    whole = gp.Simulation(scene, engine, seed=1)
-    whole.advance(until=6.0)
-    parts = gp.Simulation(scene, engine, seed=1)
-    parts.advance(until=2.0)
-    again = gp.Simulation(scene, engine, seed=1)
-    again.restore(parts.checkpoint())
-    again.advance(until=6.0)
-    assert np.array_equal(whole.state.positions, again.state.positions)
-    assert np.array_equal(whole.state.spins, again.state.spins)
-    assert np.array_equal(whole.state.vibrations, again.state.vibrations)
-    assert str(whole.tally) == str(again.tally)
+    kept = ("state.positions", "state.spins", "state.vibrations", *WHOLE_TALLY)
+    check_restored(scene, (2.0, 6.0), *kept, engine=engine, seed=1)
 
 
 def test_heat_through_a_gas_is_that_of_the_event_driven_engine():
     """What the walls give the gas has, and what flows from the hot to the cold one is the same in both."""
     scene = rough_gas(("wall", "periodic"), {"x_low": gp.Thermal(4.0), "x_high": gp.Thermal(1.0)})
     scene = replace(scene, restitution=gp.Restitution(1.0, 1.0))  # which loses nothing
-    flux, sigma = [], []
+    found = []
     for engine in (gp.EventDriven(), gp.TimeStepped(0.02)):
         sim = gp.Simulation(scene, engine, seed=5)
         sim.advance(duration=50.0)
-        found = []
-        for _ in range(20):
-            before = sim.state.energy
-            sim.reset_tally()
-            sim.advance(duration=20.0)
-            heat = sim.tally.wall_energy
-            assert sim.state.energy - before == pytest.approx(-heat.sum(), rel=1e-9, abs=1e-7)
-            found.append((heat[1] - heat[0]) / 2)
-        flux.append(np.mean(found))
-        sigma.append(np.std(found, ddof=1) / math.sqrt(len(found)))
+        found.append(measured_heat(sim, 20.0))
+    flux, sigma = np.transpose(found)
     assert max(sigma) < 0.05 * flux[0]
     assert flux[1] == pytest.approx(flux[0], abs=3 * math.hypot(*sigma))
 

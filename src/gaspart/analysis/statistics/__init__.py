@@ -15,6 +15,7 @@ from gaspart.analysis.statistics.means import (
     combine,
     jackknife,
     mean_of,
+    means_of,
     steady_mean,
 )
 from gaspart.analysis.statistics.minimum import Optimum, optimum
@@ -36,6 +37,7 @@ __all__ = [
     "histogram_chi_square",
     "jackknife",
     "mean_of",
+    "means_of",
     "optimum",
     "steady_mean",
 ]

@@ -65,11 +65,11 @@ def block_average(series: ArrayLike, minimum_blocks: int = 16) -> BlockAverage:
     )
 
 
-def autocorrelation_time(series: ArrayLike, window: float = 6.0) -> float:
+def autocorrelation_time(series: ArrayLike) -> float:
     """Integrated autocorrelation time 1/2 + sum of rho(k), in samples: 1/2 for independent ones.
 
-    The sum ends at the first k >= window * time (Sokal's self-consistent window; Madras and Sokal 1988). A
-    series of n samples holds n / (2 time) independent ones. A constant series has none of its own: 1/2.
+    The sum ends at the first k >= 6 times the result (Sokal's self-consistent window; Madras and Sokal 1988).
+    A series of n samples holds n / (2 time) independent ones. A constant series has none of its own: 1/2.
     """
     series = series_of("series", series, 4)
     centred = series - series.mean()
@@ -79,5 +79,5 @@ def autocorrelation_time(series: ArrayLike, window: float = 6.0) -> float:
     if correlation[0] <= 0.0:
         return 0.5
     times = 0.5 + np.concatenate([[0.0], np.cumsum(correlation[1:] / correlation[0])])
-    reached = np.flatnonzero(np.arange(series.size) >= window * times)
+    reached = np.flatnonzero(np.arange(series.size) >= 6.0 * times)
     return float(max(0.5, times[reached[0] if reached.size else -1]))

@@ -33,6 +33,12 @@ def mean_of(values: ArrayLike) -> Estimate:
     return Estimate(float(values.mean()), error, values.size - 1)
 
 
+def means_of(samples: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    """Means over axis 0 of N independent samples (N, ...), and their standard errors from the scatter."""
+    values = np.asarray(samples)
+    return values.mean(axis=0), values.std(axis=0, ddof=1) / math.sqrt(len(values))
+
+
 def steady_mean(series: ArrayLike, *changes: ArrayLike) -> Estimate:
     """Mean of a current into and out of a store, from its averages in K blocks of time.
 
@@ -63,12 +69,10 @@ def combine(values: ArrayLike, errors: ArrayLike) -> Combination:
     return Combination(mean, float(weights.sum() ** -0.5), chi_square, freedom, p_value)
 
 
-def bootstrap(
-    function: Callable[..., float], samples: ArrayLike, repeats: int = 1000, seed: int = 0
-) -> Estimate:
+def bootstrap(function: Callable[..., float], samples: ArrayLike, repeats: int = 1000) -> Estimate:
     """function(samples) with its standard error from resampled data (with replacement, along axis 0).
 
-    `seed`: of the resampling; the same seed gives the same error. `function` returns one number. Resampled
+    The same samples give the same error. `function` returns one number. Resampled
     means of n samples scatter by the fraction sqrt(1 - 1/n) of the standard error, which is divided by it;
     the error has n - 1 degrees of freedom (Efron and Tibshirani, An introduction to the bootstrap (1993),
     section 5.3).
@@ -76,7 +80,7 @@ def bootstrap(
     samples = np.asarray(samples)
     if samples.shape[0] < 2:
         raise ValueError(f"samples: {samples.shape[0]} (must be at least 2)")
-    generator = np.random.default_rng(seed)
+    generator = np.random.default_rng(0)
     draws = generator.integers(0, samples.shape[0], size=(repeats, samples.shape[0]))
     scatter = np.std([function(samples[draw]) for draw in draws], ddof=1)
     number = samples.shape[0]

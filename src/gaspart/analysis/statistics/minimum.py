@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import ndtri, stdtrit
+from scipy.special import stdtrit
 
 from gaspart.analysis.statistics.fits import fit_linear
-from gaspart.analysis.statistics.inputs import positive_errors, series_of
+from gaspart.analysis.statistics.inputs import series_of
 
 FLAT = 0.05
 """Part of the least cost by which that of a flat minimum may be exceeded."""
@@ -28,12 +28,12 @@ class Optimum:
     flat_high: float
 
 
-def optimum(x: ArrayLike, cost: ArrayLike, errors: ArrayLike | None = None, within: float = 3.0) -> Optimum:
+def optimum(x: ArrayLike, cost: ArrayLike, within: float = 3.0) -> Optimum:
     """Where the cost a + b / x + c x is least, which falls steeply and rises slowly: at sqrt(b / c).
 
     The three parts are fitted to the points near the minimum: those whose cost is below `within` times the
-    least one (at least four, the cheapest first). The interval is that of the logarithm, by propagation.
-    errors: of the cost; without, the scatter about the curve. `interior`: b and c are positive and the
+    least one (at least four, the cheapest first). The interval is that of the logarithm, by propagation, from
+    the relative scatter about the curve. `interior`: b and c are positive and the
     minimum lies between the points. If it does not, the location is the cheapest point's, the intervals are
     from 0 to inf: no minimum was measured.
     """
@@ -46,17 +46,15 @@ def optimum(x: ArrayLike, cost: ArrayLike, errors: ArrayLike | None = None, with
     at, seen = x[near], cost[near]
     if np.unique(at).size < 3:
         raise ValueError("x: needs at least three different values near the minimum")
-    scale = seen if errors is None else positive_errors(errors, cost.size)[near]
-    design = np.stack([np.ones(at.size), 1.0 / at, at], axis=1) / scale[:, None]
-    fit = fit_linear(design, seen / scale, None if errors is None else 1.0)
+    design = np.stack([np.ones(at.size), 1.0 / at, at], axis=1) / seen[:, None]
+    fit = fit_linear(design, np.ones(at.size))
     (constant, falling, rising), covariance = fit.values, fit.covariance
     best = math.sqrt(falling / rising) if min(falling, rising) > 0.0 else math.nan
     if not at.min() < best < at.max():
         least = cheapest[0]
         return Optimum(float(x[least]), 0.0, math.inf, float(cost[least]), False, 0.0, math.inf)
     gradient = np.array([0.0, 0.5 / falling, -0.5 / rising])  # of ln location
-    freedom = fit.degrees_of_freedom
-    quantile = stdtrit(freedom, 0.975) if errors is None else ndtri(0.975)
+    quantile = stdtrit(fit.degrees_of_freedom, 0.975)
     spread = math.exp(quantile * math.sqrt(gradient @ covariance @ gradient))
     middle = math.sqrt(falling * rising)
     most = FLAT * (constant + 2.0 * middle) + 2.0 * middle  # of b / x + c x

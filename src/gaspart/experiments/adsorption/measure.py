@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.statistics import jackknife
+from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
 from gaspart.scene.faces import Sticky, Well, thermal_face
 from gaspart.theory.adsorption import length_in_langmuirs_formula
@@ -117,18 +118,10 @@ def adsorption(points: list[grid.Point], settings: dict) -> xr.Dataset:
     the coverage over that of hard discs in equilibrium with it; filling_by_activity, the same with the gas'
     activity in the place of its pressure. `_freedom` are the degrees of freedom of the errors.
     """
-    rows = [_measured(point, settings) for point in points]
-    values = {}
-    for name in rows[0]:
-        axes = ("point", "bin") if name.removesuffix("_error") == "flux" else ("point",)
-        values[name] = axes, np.stack([row[name] for row in rows])
     edges = np.linspace(0.0, _REACH, settings["bins"] + 1)
-    return xr.Dataset(
-        values,
-        coords={
-            "experiment": ("point", [point.experiment for point in points]),
-            "speed": ("bin", 0.5 * (edges[1:] + edges[:-1])),
-        },
+    return from_rows("point", [_measured(point, settings) for point in points], ("bin",)).assign_coords(
+        experiment=("point", [point.experiment for point in points]),
+        speed=("bin", 0.5 * (edges[1:] + edges[:-1])),
     )
 
 

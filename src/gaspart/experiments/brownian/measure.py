@@ -15,8 +15,9 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.correlations import correlate
-from gaspart.analysis.statistics import bootstrap
+from gaspart.analysis.statistics import bootstrap, means_of
 from gaspart.errors import SceneError
+from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
 from gaspart.trajectory.run import open_trajectory
 
@@ -114,7 +115,7 @@ def brownian_paths(points: list[grid.Point], settings: dict) -> xr.Dataset:
                 "end_freedom": ends.size,
             }
         )
-    return _dataset(rows, {"way": ("path", "frame", "axis")})
+    return from_rows("point", rows, ("path", "frame", "axis"))
 
 
 def brownian_msd(points: list[grid.Point], settings: dict) -> xr.Dataset:
@@ -131,8 +132,7 @@ def brownian_msd(points: list[grid.Point], settings: dict) -> xr.Dataset:
     Dimensions point, lag: `time` in 1 / g', `vacf` in (1 - s) k_B T / M, `msd` in 6 (1 - s) k_B T / (M g'^2).
     Errors: standard errors over replicas (bootstrap for the numbers).
     """
-    rows = [_statistics(point) for point in points]
-    return _dataset(rows, dict.fromkeys(("time", "msd", "msd_error", "vacf", "vacf_error"), ("lag",)))
+    return from_rows("point", [_statistics(point) for point in points], ("lag",))
 
 
 def _statistics(point: grid.Point) -> dict:
@@ -169,15 +169,15 @@ def _statistics(point: grid.Point) -> dict:
         "measured_diffusion": lambda x: x[:, -1].mean() / langevin * setting.diffusion,
     }
     estimates = {name: bootstrap(function, both) for name, function in derived.items()}
-    root = math.sqrt(len(curves))
-    vacf, msd = vacf / (rest * equilibrium), msd * rate**2 / (6.0 * rest * equilibrium)
+    vacf, vacf_error = means_of(vacf / (rest * equilibrium))
+    msd, msd_error = means_of(msd * rate**2 / (6.0 * rest * equilibrium))
     return {
         **_facts(point, setting),
         "time": time,
-        "msd": msd.mean(axis=0),
-        "msd_error": msd.std(axis=0, ddof=1) / root,
-        "vacf": vacf.mean(axis=0),
-        "vacf_error": vacf.std(axis=0, ddof=1) / root,
+        "msd": msd,
+        "msd_error": msd_error,
+        "vacf": vacf,
+        "vacf_error": vacf_error,
         **{name: one.value for name, one in estimates.items()},
         **{f"{name}_error": one.error for name, one in estimates.items()},
     }
@@ -186,22 +186,3 @@ def _statistics(point: grid.Point) -> dict:
 def _facts(point: grid.Point, setting: Setting) -> dict:
     """The columns of every row."""
     return {"experiment": point.experiment, "replicas": point.replicas, **vars(setting)}
-
-
-def _dataset(rows: list[dict], axes: dict) -> xr.Dataset:
-    """Rows side by side; arrays of different lengths are filled up with NaN."""
-    columns = {}
-    for name in rows[0]:
-        values = [np.asarray(row[name]) for row in rows]
-        shape = np.max([value.shape for value in values], axis=0).astype(int)
-        if len(shape):
-            values = [
-                np.pad(
-                    value,
-                    [(0, most - n) for most, n in zip(shape, value.shape, strict=True)],
-                    constant_values=np.nan,
-                )
-                for value in values
-            ]
-        columns[name] = (("point", *axes.get(name, ())), np.array(values))
-    return xr.Dataset(columns)

@@ -15,9 +15,10 @@ from scipy.integrate import cumulative_simpson
 
 from gaspart import theory
 from gaspart.analysis.correlations import Curves, between, line
-from gaspart.analysis.statistics import fit_polynomial
+from gaspart.analysis.statistics import fit_polynomial, means_of
 from gaspart.errors import SceneError
 from gaspart.experiments.shared.curves import reduced_curves
+from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
 
 SETTLE_COLLISIONS, SETTLE_SHEAR_TIMES = 12.0, 3.0
@@ -115,7 +116,7 @@ def _common(point: grid.Point, state: dict, curves: list[Curves]) -> dict:
         return {
             **rows,
             **_absent("integral_difference"),
-            **_absent("correlation", "integral", empty=np.empty(0)),
+            **_absent("correlation", "integral", empty=np.full(time.size, np.nan)),
         }
     return {**rows, **_green_kubo(curves, state["collision_rate"], point.settings["dimension"])}
 
@@ -232,9 +233,8 @@ def _green_kubo(curves: list[Curves], rate: float, dimension: int) -> dict:
 
 def _mean(name: str, samples: list) -> dict:
     """Mean over replicas, its standard error and the degrees of freedom of that, as three entries."""
-    values = np.array(samples)
-    error = values.std(axis=0, ddof=1) / math.sqrt(len(values))
-    return {name: values.mean(axis=0), f"{name}_error": error, f"{name}_freedom": len(values) - 1}
+    mean, error = means_of(samples)
+    return {name: mean, f"{name}_error": error, f"{name}_freedom": len(samples) - 1}
 
 
 UNITS = {
@@ -243,7 +243,8 @@ UNITS = {
     "msd": "diameter^2",
     **dict.fromkeys(("time", "fit_from", "fit_to", "shear_time", "sound_time"), "reduced time"),
     **dict.fromkeys(
-        ("running", "integral", "diffusion", "correction", "logarithmic_slope"), "diameter^2 / reduced time"
+        ("running", "integral", "diffusion", "correction", "correction_uncertainty", "logarithmic_slope"),
+        "diameter^2 / reduced time",
     ),
     "collision_rate": "1 / reduced time",
     "interval": "collisions per body",
@@ -252,19 +253,5 @@ UNITS = {
 
 def _dataset(rows: list[dict], dimension: int) -> xr.Dataset:
     """One dataset of all points; what a point does not have is NaN."""
-    names = dict.fromkeys(name for row in rows for name in row)
-    lags = max(len(row["time"]) for row in rows)
-    dataset = xr.Dataset(attrs={"dimension": dimension, "reduced_time": "diameter sqrt(mass / temperature)"})
-    for name in names:
-        unit = UNITS.get(name.removesuffix("_error").removesuffix("_uncertainty"), "1")
-        if name == "experiment":
-            dataset[name] = ("point", [row[name] for row in rows])
-        elif any(np.ndim(row.get(name, 0.0)) for row in rows):
-            padded = np.full((len(rows), lags), np.nan)
-            for index, row in enumerate(rows):
-                values = row.get(name, ())
-                padded[index, : len(values)] = values
-            dataset[name] = (("point", "lag"), padded, {"units": unit})
-        else:
-            dataset[name] = ("point", np.array([row.get(name, np.nan) for row in rows]), {"units": unit})
-    return dataset
+    about = {"dimension": dimension, "reduced_time": "diameter sqrt(mass / temperature)"}
+    return from_rows("point", rows, ("lag",), UNITS).assign_attrs(about)

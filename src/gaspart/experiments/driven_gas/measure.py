@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import xarray as xr
 
 from gaspart.analysis.statistics import mean_of
+from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
 from gaspart.trajectory.run import open_trajectory
 
@@ -49,12 +50,8 @@ def driven_gas(points: list[grid.Point], settings: dict) -> xr.Dataset:
     Returns over `gas`: dimension, restitution, packing_fraction, count, power; temperature, cumulant, given
     and lost (see `Run`), with their errors from replicas.
     """
-    rows = [_gas(point) for point in points]
     units = {"temperature": "energy", **dict.fromkeys(("power", "given", "lost"), "energy / time")}
-    return xr.Dataset({
-        key: ("gas", [row[key] for row in rows], {"units": units.get(key.removesuffix("_error"), "1")})
-        for key in rows[0]
-    })  # fmt: skip
+    return from_rows("gas", [_gas(point) for point in points], units=units)
 
 
 def _gas(point: grid.Point) -> dict[str, float]:

@@ -9,7 +9,8 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis.statistics import block_average, fit_polynomial, mean_of
+from gaspart.analysis.statistics import block_average, fit_polynomial, mean_of, means_of
+from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
 from gaspart.state.random import stream
 from gaspart.trajectory.run import open_trajectory
@@ -63,17 +64,14 @@ def thin_film(points: list[grid.Point], settings: dict) -> xr.Dataset:
         functional.append(density[0])
         rows.append(_estimates(slits, settings["insertions"] // len(slits), point))
         truncation.append(_truncation(place, density) * rows[-1]["contact"])
-    columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    dataset = from_rows("width", rows).assign_coords(width=widths)
     # The chemical potentials differ slightly from the bulk's.
-    lacking, response = potential - columns["chemical_potential"], _responses(bulk, widths)
-    columns["at_bulk"] = columns["pressure"] + response * lacking
-    uncertain = response * columns["chemical_potential_error"]
-    columns["at_bulk_error"] = np.hypot(columns["pressure_error"], uncertain)
-    columns |= {"truncation": np.array(truncation), "functional_pressure": np.array(functional)}
-    columns["count"] = np.array([grid.extents(point)[0] for point in points])
-    dataset = xr.Dataset(
-        {name: ("width", values) for name, values in columns.items()}, coords={"width": widths}
-    )
+    lacking, response = potential - dataset["chemical_potential"], _responses(bulk, widths)
+    dataset["at_bulk"] = dataset["pressure"] + response * lacking
+    uncertain = response * dataset["chemical_potential_error"]
+    dataset["at_bulk_error"] = np.hypot(dataset["pressure_error"], uncertain)
+    dataset["truncation"], dataset["functional_pressure"] = ("width", truncation), ("width", functional)
+    dataset["count"] = "width", [grid.extents(point)[0] for point in points]
     first, last, number = settings["theory_widths"]
     curve = np.linspace(first, last, int(number))
     dataset["curve"] = "theory_width", np.array([theory.white_bear_slit(bulk, w, 0.02)[1][0] for w in curve])
@@ -195,13 +193,13 @@ def _profile(slits: list[Slit], place: np.ndarray, functional: np.ndarray) -> xr
             blocks.append(counts / (len(frames) * 2.0 * slit.area * edges[1]))
             inner = frames > edges[-1] - 1.0
             middle.append(inner.sum() / (len(frames) * 2.0 * slit.area))
-    estimate = mean_of(middle)
+    estimate, (density, error) = mean_of(middle), means_of(blocks)
     centre = edges[:-1] + 0.5 * edges[1]
     return xr.Dataset(
         {
             "place": ("bin", centre),
-            "density": ("bin", np.mean(blocks, axis=0)),
-            "density_error": ("bin", np.std(blocks, axis=0, ddof=1) / math.sqrt(len(blocks))),
+            "density": ("bin", density),
+            "density_error": ("bin", error),
             "functional": ("bin", np.interp(centre, place, functional)),
             "middle": estimate.value,
             "middle_error": estimate.error,

@@ -13,7 +13,8 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis.statistics import block_average, bootstrap, fit_polynomial, mean_of
+from gaspart.analysis.statistics import block_average, bootstrap, fit_polynomial, mean_of, means_of
+from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene
@@ -84,18 +85,10 @@ def equipartition(points: list[grid.Point], settings: dict) -> xr.Dataset:
     still = [point for point in rough if grid.schedule(point).equilibration_frames]
     cooled = [_cooling(point, settings["steady_from"]) for point in points if point not in rough]
     return xr.merge([
-        _table("start", [_start(point) for point in rough if point not in still], "frame"),
-        _table("equilibrium", [_equilibrium(point) for point in still]),
-        _table("cooling", cooled, "step"),
+        from_rows("start", [_start(point) for point in rough if point not in still], ("frame",), units={}),
+        from_rows("equilibrium", [_equilibrium(point) for point in still], units={}),
+        from_rows("cooling", cooled, ("step",), units={}),
     ])  # fmt: skip
-
-
-def _table(name: str, rows: list[dict], inner: str = "") -> xr.Dataset:
-    """One variable of every key over `name`, and over `inner` too if its values are arrays."""
-    columns = {key: np.array([row[key] for row in rows]) for key in rows[0]}
-    return xr.Dataset({
-        key: ((name, inner)[: values.ndim], values, {"units": "1"}) for key, values in columns.items()
-    })  # fmt: skip
 
 
 def inertia(point: grid.Point) -> float:
@@ -106,18 +99,12 @@ def inertia(point: grid.Point) -> float:
     return kind.moment_of_inertia / (kind.mass * kind.radius**2)
 
 
-def _spread(values: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Mean over replicas and its standard error, elementwise."""
-    stacked = np.stack(values)
-    return stacked.mean(axis=0), stacked.std(axis=0, ddof=1) / np.sqrt(len(stacked))
-
-
 def _start(point: grid.Point) -> dict:
     runs = read_runs(point)
     samples = np.stack([[run.collisions, run.translation, run.rotation] for run in runs])
     rate = bootstrap(lambda chosen: _initial_decay(*chosen.mean(axis=0)), samples, repeats=200)
-    translation, translation_error = _spread([run.translation for run in runs])
-    rotation, rotation_error = _spread([run.rotation for run in runs])
+    translation, translation_error = means_of([run.translation for run in runs])
+    rotation, rotation_error = means_of([run.rotation for run in runs])
     return {
         "collisions": samples[:, 0].mean(axis=0),
         "translation": translation,
@@ -191,9 +178,9 @@ def cooling(points: list[grid.Point], settings: dict) -> xr.Dataset:
     one run of the least restitution; attrs side, radius.
     """
     apart = [point for point in points if point.experiment in settings["clustering"]]
-    gases = _table("gas", [_gas(point) for point in points if point not in apart], "frame")
+    gases = from_rows("gas", [_gas(point) for point in points if point not in apart], ("frame",), units={})
     cells = settings["cells_per_side"]
-    clusters = _table("clusters", [_clusters(point, cells) for point in apart], "step")
+    clusters = from_rows("clusters", [_clusters(point, cells) for point in apart], ("step",), units={})
     shown = min(apart, key=lambda point: law(point).normal)
     return xr.merge([gases, clusters, _picture(shown)], combine_attrs="drop_conflicts")
 
@@ -212,7 +199,7 @@ def _gas(point: grid.Point) -> dict:
         rates.append((logarithm[first] - logarithm[-1]) / (run.collisions[-1] - run.collisions[first]))
         exponents.append(np.polyfit(np.log1p(times[-1][late]), logarithm[late], 1)[0])
     rate, exponent = mean_of(rates), mean_of(exponents)
-    temperature, error = _spread([run.translation for run in runs])
+    temperature, error = means_of([run.translation for run in runs])
     return {
         "dimension": dimension,
         "count": scene.count,
@@ -236,8 +223,8 @@ def _clusters(point: grid.Point, cells: int) -> dict:
     restitution = law(point).normal
     rate = theory.cooling_rate(restitution, scene.dimension)
     # Of logarithms: after so many collisions replicas differ by factors.
-    excess, relative = _spread([np.log(run.translation) + rate * run.collisions for run in runs])
-    variance, error = _spread([_number_variance(path, scene, cells) for path in point.replica_paths])
+    excess, relative = means_of([np.log(run.translation) + rate * run.collisions for run in runs])
+    variance, error = means_of([_number_variance(path, scene, cells) for path in point.replica_paths])
     return {
         "cluster_restitution": restitution,
         "cluster_collisions": collisions,

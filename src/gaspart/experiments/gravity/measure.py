@@ -13,6 +13,7 @@ import xarray as xr
 
 from gaspart.analysis.statistics import jackknife
 from gaspart.experiments.shared.columns import Field, field, profile, stretches, temperature
+from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
 from gaspart.state.initial import initial_state
 from gaspart.theory.geometry import body_volume
@@ -50,37 +51,22 @@ def profiles(points: list[grid.Point], settings: dict) -> xr.Dataset:
     one size is exact at any density: given their places, which of them is heavy has no other energy.
     """
     rows = [_column(point, settings) for point in points]
+    by_bin = ("temperature_ratio", "packing_fraction", "compressibility", "pressure_ratio")
+    by_bin += ("height", "used", "log_ratio", "log_ratio_expected")
+    by_species = ("mass", "slope_ratio", "mean_height_ratio", "species_temperature_ratio")
     axes = {
-        "density": ("species", "bin"),
-        "hydrostatic": ("species", "bin"),
-        "temperature_ratio": ("bin",),
-        "packing_fraction": ("bin",),
-        "compressibility": ("bin",),
-        "pressure_ratio": ("bin",),
+        **dict.fromkeys(("density", "hydrostatic"), ("species", "bin")),
+        **dict.fromkeys(by_bin, ("bin",)),
+        **dict.fromkeys(by_species, ("species",)),
         "range_ratio": ("range",),
-        "height": ("bin",),
-        "used": ("bin",),
-        "mass": ("species",),
-        "slope_ratio": ("species",),
-        "mean_height_ratio": ("species",),
-        "species_temperature_ratio": ("species",),
-        "log_ratio": ("bin",),
-        "log_ratio_expected": ("bin",),
     }
-    values = {}
-    for name in rows[0]:
-        own = axes.get(name.removesuffix("_error"), ())
-        values[name] = (("point", *own), np.stack([row[name] for row in rows]))
     low, high = np.array(settings["ranges"], dtype=float).T
-    return xr.Dataset(
-        values,
-        coords={
-            "experiment": ("point", [point.experiment for point in points]),
-            "range_low": ("range", low),
-            "range_high": ("range", high),
-        },
-        attrs={"clear": settings["clear"]},
+    dataset = from_rows("point", rows, axes).assign_coords(
+        experiment=("point", [point.experiment for point in points]),
+        range_low=("range", low),
+        range_high=("range", high),
     )
+    return dataset.assign_attrs(clear=settings["clear"])
 
 
 @dataclass(frozen=True)

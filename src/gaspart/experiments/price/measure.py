@@ -11,6 +11,7 @@ import xarray as xr
 
 from gaspart.analysis.statistics import mean_of
 from gaspart.experiments.price.stripped import instructions
+from gaspart.experiments.shared.rows import from_rows
 from gaspart.experiments.shared.timings import per_event
 from gaspart.planning import grid
 from gaspart.scene.scene import Scene
@@ -35,7 +36,7 @@ def price_of_features(points: list[grid.Point], settings: dict) -> xr.Dataset:
     for job in jobs:
         groups.setdefault((job["engine"], job["feature"]), []).append(job)
     rows = [_together(group) for group in groups.values()]
-    dataset = xr.Dataset({name: ("point", [row[name] for row in rows]) for name in rows[0]})
+    dataset = from_rows("point", rows)
     if settings["count_instructions"]:
         counted = instructions()
         dataset = dataset.assign_coords(kernel=list(counted)).assign(

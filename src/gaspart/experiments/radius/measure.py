@@ -26,6 +26,7 @@ import xarray as xr
 from gaspart import theory
 from gaspart.analysis.statistics import block_average
 from gaspart.experiments.shared.pressure import Run, combine_runs, read_run, totals
+from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
 from gaspart.scene.scene import Scene
 
@@ -43,18 +44,13 @@ def radius_grid(points: list[grid.Point], settings: dict) -> xr.Dataset:
     and crossings_counted, per collision; crossings_expected, the same from kinetic theory and Enskog's rate.
     Time-stepped points: pair_tests and box_visits per particle and step, pair_tests_expected. NaN elsewhere.
     """
-    rows = [_row(point) for point in points]
     experiments = {point.experiment for point in points}
     fixed = {
         name: len({round(grid.scene(p).packing_fraction, 9) for p in points if p.experiment == name}) == 1
         for name in experiments
     }
-    names = dict.fromkeys(name for row in rows for name in row)
-    dataset = xr.Dataset(
-        {name: ("point", np.array([row.get(name, np.nan) for row in rows])) for name in names}
-    )
     series = ["packing fraction" if fixed[point.experiment] else "count" for point in points]
-    return dataset.assign(
+    return from_rows("point", [_row(point) for point in points]).assign(
         series=("point", series),
         engine=("point", [point.settings.get("engine", "event") for point in points]),
     )

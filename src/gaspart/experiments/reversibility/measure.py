@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.statistics import mean_of
+from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
 
 WINDOW = {"float64": (1e-13, 1e-2), "float32": (1e-5, 1e-2)}
@@ -29,18 +30,7 @@ def reversibility(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """
     rows = [_row(xr.load_dataset(point.path)) for point in points]
     rows = sorted(rows, key=lambda row: (row["dimension"], row["packing_fraction"]))
-    longest = max(row["echo"].size for row in rows)
-    padded = lambda values: np.pad(values, (0, longest - values.size), constant_values=np.nan)  # noqa: E731
-    return xr.Dataset(
-        {
-            name: (
-                (("row", "sample"), np.array([padded(row[name]) for row in rows]))
-                if name in ("collisions", "echo")
-                else ("row", np.array([row[name] for row in rows]))
-            )
-            for name in rows[0]
-        }
-    )
+    return from_rows("row", rows, ("sample",))
 
 
 def _row(run: xr.Dataset) -> dict:

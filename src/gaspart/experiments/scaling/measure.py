@@ -288,13 +288,13 @@ def _source(
     }
 
 
-def _advantage(fine: xr.Dataset, per_side: int, around: float = 0.1) -> tuple[float, float]:
-    """By how much (ln of time) `per_side` is quicker than the partitions within the part `around` of it, in
+def _advantage(fine: xr.Dataset, per_side: int) -> tuple[float, float]:
+    """By how much (ln of time) `per_side` is quicker than the partitions within 10 % of it, in
     the container of the lower side (round widths), less the same in the other; and its standard error.
 
     Both scans have the same work, so what does not depend on round numbers cancels."""
     n = fine.fine_boxes_per_side.values[0]
-    near = (n != per_side) & (np.abs(n / per_side - 1.0) <= around)
+    near = (n != per_side) & (np.abs(n / per_side - 1.0) <= 0.1)
     difference = np.log(fine.fine_seconds.values[1]) - np.log(fine.fine_seconds.values[0])
     variance = ((fine.fine_seconds_error / fine.fine_seconds).values ** 2).sum(axis=0)
     at = n == per_side

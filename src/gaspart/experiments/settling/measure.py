@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
 from gaspart.scene.scene import Scene
 from gaspart.theory.granular import DISCHARGE_EXPONENT
@@ -40,20 +41,7 @@ def settling(points: list[grid.Point], settings: dict) -> xr.Dataset:
         for path in point.replica_paths
     ]
     flows = [_flow(point, settings) for point, flows in zip(points, walls, strict=True) if flows]
-    series = {"time", "kinetic", "contacts"}
-    columns = {
-        name: (("pile", "frame") if name in series else "pile", _padded([pile[name] for pile in piles]))
-        for name in piles[0]
-    }
-    return xr.Dataset({**columns, **_flows(flows)})
-
-
-def _padded(rows: list) -> np.ndarray:
-    """Rows of unequal lengths as one array, filled with NaN."""
-    longest = max(np.size(row) for row in rows)
-    if longest == 1:
-        return np.array(rows, dtype=float)
-    return np.array([np.pad(row, (0, longest - len(row)), constant_values=np.nan) for row in rows])
+    return from_rows("pile", piles, ("frame",)).merge(_flows(flows))
 
 
 def _diameter(radii: np.ndarray) -> float:
@@ -165,7 +153,7 @@ def _flow(point: grid.Point, settings: dict) -> Flow:
     )
 
 
-def _flows(flows: list[Flow]) -> dict:
+def _flows(flows: list[Flow]) -> xr.Dataset:
     """The variables over `orifice`, the narrowest first, and those of the fits.
 
     The relative variance of a rate is taken to be inversely proportional to the number of discs, by one
@@ -177,7 +165,7 @@ def _flows(flows: list[Flow]) -> dict:
     ratio = np.array([np.exp(np.log(flow.ratios).mean()) for flow in flows])
     ratio_error, _ = _relative_errors(flows, "ratios")
     degrees = np.full(len(flows), freedom)
-    return {
+    columns = {
         "width": ("orifice", width, {"units": "diameters"}),
         "rate": ("orifice", rate, {"units": "sqrt(g / d)"}),
         "rate_error": ("orifice", rate * error),
@@ -185,11 +173,13 @@ def _flows(flows: list[Flow]) -> dict:
         "head_ratio": ("orifice", ratio),
         "head_ratio_error": ("orifice", ratio * ratio_error),
         "head_ratio_freedom": ("orifice", degrees),
-        "liquid_ratio": ("orifice", [flow.liquid for flow in flows]),
-        "flow_time": (("orifice", "flow_frame"), _padded([flow.time for flow in flows])),
-        "left": (("orifice", "flow_frame"), _padded([flow.left.astype(float) for flow in flows])),
         **_fit(width, rate, error, freedom),
     }
+    series = [
+        {"liquid_ratio": flow.liquid, "flow_time": flow.time, "left": flow.left.astype(float)}
+        for flow in flows
+    ]
+    return from_rows("orifice", series, ("flow_frame",)).assign(columns)
 
 
 def _relative_errors(flows: list[Flow], name: str) -> tuple[np.ndarray, int]:

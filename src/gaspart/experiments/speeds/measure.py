@@ -14,6 +14,7 @@ import xarray as xr
 from gaspart import theory
 from gaspart.analysis.statistics import histogram_chi_square, mean_of
 from gaspart.errors import SceneError
+from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.run import open_trajectory
@@ -183,9 +184,9 @@ def _density(speeds: np.ndarray, edges: np.ndarray) -> np.ndarray:
     return np.histogram(speeds, edges)[0] / speeds.size / np.diff(edges)
 
 
-def _initial_slope(s: np.ndarray, values: np.ndarray, longest: float = 1.5) -> float:
-    """dK/ds at s = 0 of the cubic through K(0) = 1 and, by least squares, the frames up to s = `longest`."""
-    early = (s > 0.0) & (s <= longest)
+def _initial_slope(s: np.ndarray, values: np.ndarray) -> float:
+    """dK/ds at s = 0 of the cubic through K(0) = 1 and, by least squares, the frames up to s = 1.5."""
+    early = (s > 0.0) & (s <= 1.5)
     design = s[early, None] ** np.arange(1, 4)
     return float(np.linalg.lstsq(design, values[early] - 1.0, rcond=None)[0][0])
 
@@ -217,28 +218,13 @@ def distribution(points: list[grid.Point], settings: dict) -> xr.Dataset:
     edges = np.linspace(0.0, settings["highest"], settings["bins"] + 1)
     steps = np.linspace(0.0, settings["highest"], 201)
     rows = [_distribution(point, dimension, edges, steps, settings["classes"]) for point in points]
-    axes = {
-        "density": "bin",
-        "density_error": "bin",
-        "expected": "bin",
-        "residual": "bin",
-        "difference": "step",
-    }
-    dataset = xr.Dataset(
-        {
-            name: (("point", axes[name]) if name in axes else "point", np.array([row[name] for row in rows]))
-            for name in rows[0]
-        },
-        coords={
-            "lower": ("bin", edges[:-1], {"units": "root-mean-square speed"}),
-            "upper": ("bin", edges[1:], {"units": "root-mean-square speed"}),
-            "speed": ("step", steps, {"units": "root-mean-square speed"}),
-        },
-        attrs={"dimension": dimension},
+    inner = {**dict.fromkeys(("density", "expected", "residual"), ("bin",)), "difference": ("step",)}
+    dataset = from_rows("point", rows, inner, units={}).assign_coords(
+        lower=("bin", edges[:-1], {"units": "root-mean-square speed"}),
+        upper=("bin", edges[1:], {"units": "root-mean-square speed"}),
+        speed=("step", steps, {"units": "root-mean-square speed"}),
     )
-    for variable in dataset.data_vars.values():
-        variable.attrs["units"] = "1"
-    return dataset
+    return dataset.assign_attrs(dimension=dimension)
 
 
 def _distribution(

@@ -14,6 +14,7 @@ from gaspart import theory
 from gaspart.analysis import statistics
 from gaspart.experiments.shared.accuracy import add_costs, costs, errors, setting_name
 from gaspart.experiments.shared.pressure import pressure
+from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
 from gaspart.tradeoff import table
 from gaspart.tradeoff.table import EQUILIBRATION, LEAST, PRECISIONS, QUANTILE, REFERENCE, STEP
@@ -45,38 +46,15 @@ def speed_accuracy(points: list[grid.Point], settings: dict) -> xr.Dataset:
     timed = [costs(point) for point in points if point.job == "measure_cost"]
     for row in rows:
         add_costs(row, timed)
-    longest = max(len(row["time_step"]) for row in rows)
-    over_steps = ("time_step", "missed", "made_up", "energy_drift", "deepest_overlap", "pair_tests")
-    over_steps += ("seconds", "seconds_error")
-    dataset = xr.Dataset(
-        {
-            name: (("row", "step"), np.array([_padded(row[name], longest) for row in rows]))
-            for name in over_steps
-        }
-        | {
-            name: (("row", "observable", "step"), np.array([_padded(row[name], longest) for row in rows]))
-            for name in ("bias", "bias_error")
-        }
-        | {
-            name: ("row", np.array([row[name] for row in rows]))
-            for name in (
-                "dimension",
-                "packing_fraction",
-                "setting",
-                "contacts",
-                "event_seconds",
-                "event_error",
-            )
-        },
-        coords={"observable": list(OBSERVABLES), "accuracy": settings["accuracies"]},
+    inner = {name: ("observable", "step")[2 - np.ndim(value) :] for name, value in rows[0].items()}
+    dataset = from_rows("row", rows, inner).assign_coords(
+        observable=list(OBSERVABLES), accuracy=settings["accuracies"]
     )
     orders = np.array([_orders(row, settings["order_up_to"]) for row in rows])
     dataset["order"] = (("row", "observable"), orders[..., 0])
     dataset["order_error"] = (("row", "observable"), orders[..., 1])
     steady = [_steady(point, rows) for point in points if point.job == "simulate"]
-    for name in steady[0] if steady else ():
-        dataset[name] = ("steady", np.array([one[name] for one in steady]))
-    return dataset.merge(frontier(dataset))
+    return dataset.assign(from_rows("steady", steady)).merge(frontier(dataset))
 
 
 def frontier(dataset: xr.Dataset) -> xr.Dataset:
@@ -221,13 +199,6 @@ def _total_costs(rows: list[dict], observable: int, count: int, accuracy: float,
             spread = row["seconds_error"][n] / row["seconds"][n]
             found.append((1, cost(bounds[n], row["seconds"][n]), cost(bias, each), spread))
     return np.array(found)
-
-
-def _padded(values: np.ndarray, length: int) -> np.ndarray:
-    """With NaN at the end of the last axis."""
-    return np.pad(
-        values, [(0, 0)] * (values.ndim - 1) + [(0, length - values.shape[-1])], constant_values=np.nan
-    )
 
 
 def _orders(row: dict, largest: float) -> list[tuple[float, float]]:

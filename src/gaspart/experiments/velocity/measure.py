@@ -19,8 +19,9 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.correlations import between
-from gaspart.analysis.statistics import fit_polynomial, mean_of
+from gaspart.analysis.statistics import fit_polynomial, mean_of, means_of
 from gaspart.experiments.shared.curves import reduced_curves
+from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
 
 
@@ -36,16 +37,7 @@ def velocity_autocorrelation(points: list[grid.Point], settings: dict) -> xr.Dat
     (C - 1/N over the sum of the container's hydrodynamic modes); NaN where a point has none.
     """
     rows = [_row(point, settings) for point in points]
-    lags = max(len(row["collisions"]) for row in rows)
-    dataset = xr.Dataset()
-    for name in rows[0]:
-        units = {"units": "sigma sqrt(m / k_B T)" if name == "time" else "1"}
-        if np.ndim(rows[0][name]):
-            padded = [np.pad(row[name], (0, lags - len(row[name])), constant_values=np.nan) for row in rows]
-            dataset[name] = (("point", "lag"), np.array(padded), units)
-        else:
-            dataset[name] = ("point", np.array([row[name] for row in rows]), units)
-    return dataset
+    return from_rows("point", rows, ("lag",), units={"time": "sigma sqrt(m / k_B T)"})
 
 
 def _row(point: grid.Point, settings: dict) -> dict:
@@ -60,6 +52,7 @@ def _row(point: grid.Point, settings: dict) -> dict:
     shortest = min(len(one.time) for one in runs)
     time = np.mean([one.time[:shortest] for one in runs], axis=0)
     samples = np.stack([one.correlation[:shortest] for one in runs]) + 1.0 / count
+    correlation, error = means_of(samples)
     row = {
         "dimension": dimension,
         "packing_fraction": eta,
@@ -67,8 +60,8 @@ def _row(point: grid.Point, settings: dict) -> dict:
         "sound": sound,
         "collisions": time * rate,
         "time": time,
-        "correlation": samples.mean(axis=0),
-        "correlation_error": samples.std(axis=0, ddof=1) / math.sqrt(len(samples)),
+        "correlation": correlation,
+        "correlation_error": error,
         **dict.fromkeys(("start_rate_freedom", "tail_ratio_freedom"), len(samples) - 1),
         **dict.fromkeys(("start_rate", "start_rate_error", "tail_from", "tail_to"), math.nan),
         **dict.fromkeys(("tail_ratio", "tail_ratio_error"), math.nan),

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.statistics import mean_of
+from gaspart.analysis.statistics import means_of
+from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
 from gaspart.scene.faces import Vibrating
 from gaspart.trajectory.run import open_trajectory
@@ -27,18 +28,10 @@ def vibrated_bed(points: list[grid.Point], settings: dict) -> xr.Dataset:
     height above the floor's lowest place times g over the vertical temperature; and over (bed, bin) density,
     the share of discs in a bin over its width, in units of T/g, at `place`. All with errors from replicas.
     """
-    rows = [_bed(point, settings) for point in points]
     edges = _edges(settings)
     units = {"temperature": "energy", **dict.fromkeys(("speed", "given", "lost"), "length / time")}
-    columns = {
-        key: (
-            ("bed", "bin") if np.ndim(rows[0][key]) else ("bed",),
-            np.array([row[key] for row in rows]),
-            {"units": units.get(key.removesuffix("_error"), "1")},
-        )
-        for key in rows[0]
-    }
-    return xr.Dataset(columns, coords={"place": ("bin", 0.5 * (edges[1:] + edges[:-1]))})
+    beds = from_rows("bed", [_bed(point, settings) for point in points], ("bin",), units)
+    return beds.assign_coords(place=("bin", 0.5 * (edges[1:] + edges[:-1])))
 
 
 def _edges(settings: dict) -> np.ndarray:
@@ -58,13 +51,7 @@ def _bed(point: grid.Point, settings: dict) -> dict[str, Any]:
     }
     runs = [read_run(point, path, settings) for path in point.replica_paths]
     for name in runs[0]:
-        values = np.array([run[name] for run in runs])
-        if values.ndim == 1:
-            mean = mean_of(values)
-            row[name], row[f"{name}_error"] = mean.value, mean.error
-        else:
-            row[name] = values.mean(axis=0)
-            row[f"{name}_error"] = values.std(axis=0, ddof=1) / math.sqrt(len(values))
+        row[name], row[f"{name}_error"] = means_of([run[name] for run in runs])
     weight = species.count * -scene.gravity[1] / width
     row["packing_fraction"] = math.pi * species.radius**2 * weight / row["temperature"]
     return row

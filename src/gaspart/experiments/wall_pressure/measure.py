@@ -13,6 +13,7 @@ import xarray as xr
 from gaspart import theory
 from gaspart.analysis.statistics import block_average
 from gaspart.errors import SceneError
+from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
 from gaspart.trajectory.run import open_trajectory
 
@@ -27,15 +28,10 @@ def wall_pressure(points: list[grid.Point], settings: dict) -> xr.Dataset:
     pressure in the scene's own units, and its error; hits; count, dimension, axes with walls, length along
     them. Raises SceneError for containers without walls, or with walled sides of several lengths.
     """
-    rows = [_row(point) for point in points]
-    dataset = xr.Dataset({name: ("point", np.array([row[name] for row in rows])) for name in rows[0]})
-    reduced = "k_B T / sigma^d"
     units = {"length": "diameters", "density": "1 / sigma^d", "temperature": "scene's energy"}
-    for key, variable in dataset.data_vars.items():
-        name = str(key)
-        pressures = "pressure" in name or name.startswith("expected")
-        variable.attrs["units"] = reduced if pressures else units.get(name, "1")
-    return dataset
+    pressures = ("pressure", "whole_pressure", "bulk_pressure", "expected")
+    units |= dict.fromkeys(pressures, "k_B T / sigma^d")
+    return from_rows("point", [_row(point) for point in points], units=units)
 
 
 def _row(point: grid.Point) -> dict:
