@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
 from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
@@ -41,16 +42,10 @@ def piston(points: list[grid.Point], settings: dict) -> xr.Dataset:
         if kind == "path":
             row["packing_fraction"] = scene.packing_fraction
         kinds[kind].append(row)
-    return xr.Dataset(
-        {
-            f"{kind}_{name}": (
-                (kind, f"{kind}_replica", "frame")[: 1 + np.ndim(rows[0][name])],
-                np.array([row[name] for row in rows]),
-                {"units": "1"},
-            )
-            for kind, rows in kinds.items()
-            for name in (rows[0] if rows else ())
-        }
+    parts = [from_rows(kind, rows, (f"{kind}_replica", "frame"), {}) for kind, rows in kinds.items()]
+    return xr.merge(
+        part.rename({name: f"{kind}_{name}" for name in part})
+        for kind, part in zip(kinds, parts, strict=True)
     )
 
 
