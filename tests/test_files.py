@@ -13,6 +13,7 @@ from machine import WITHOUT_RIGHTS, why_not
 
 import gaspart as gp
 from gaspart import files
+from gaspart.analysis.collisions import record_collisions
 from gaspart.cli import main
 from gaspart.files import Kind, begins_with, writing
 from gaspart.trajectory import run as trajectory
@@ -282,6 +283,17 @@ def test_a_run_that_another_process_finished_meanwhile_is_not_replaced(folder, m
         assert path.read_bytes() == (folder / "run.nc").read_bytes()
         assert contents(folder).keys() == {"scene.yaml", "run.nc", "late.nc"}
         path.unlink()
+
+
+def test_a_run_does_not_replace_a_data_set_of_collisions(folder, scene):
+    """Both are NetCDF files and name gaspart."""
+    path = folder / "met.nc"
+    record_collisions(scene, path, 3)
+    before = path.read_bytes()
+    with pytest.raises(gp.SceneError, match="exists and is not a trajectory"):
+        gp.run(scene, gp.EventDriven(), 1, 1.0, 0.5, path, overwrite=True)
+    assert path.read_bytes() == before
+    path.unlink()
 
 
 def test_a_result_that_appears_during_a_run_is_kept(folder, monkeypatch, scene):

@@ -240,7 +240,7 @@ def _is_blank(path: Path) -> bool:
 def _is_trajectory(path: Path) -> bool:
     with path.open("rb") as file:
         head = file.read(4096)
-    return head.startswith(b"CDF") and b"gaspart" in head
+    return head.startswith(b"CDF") and b"AMBER" in head and b"gaspart" in head
 
 
 TRAJECTORY = Kind("a trajectory written by gaspart", _is_trajectory)
