@@ -16,9 +16,10 @@ from gaspart.kernels.flight import advance
 from gaspart.kernels.model import NONE, WALLS
 from gaspart.kernels.obstacles.distance import to_wall
 from gaspart.kernels.obstacles.plate import time_to_plate
-from gaspart.kernels.obstacles.resting import come_to_rest, is_resting_on, leave, release
+from gaspart.kernels.obstacles.resting import come_to_rest, leave
 from gaspart.kernels.obstacles.segment import time_to_segment
 from gaspart.kernels.obstacles.short_bounce import longest_rest
+from gaspart.kernels.obstacles.support import is_resting_on, release
 from gaspart.kernels.obstacles.well import mass_of
 from gaspart.kernels.running_sum import add
 
