@@ -9,6 +9,7 @@ import numpy as np
 from gaspart.engines.vibration import motion_of
 from gaspart.kernels.model import (
     HARD,
+    NONE,
     STICKY,
     THERMAL,
     THERMAL_NORMAL,
@@ -87,6 +88,7 @@ def contact_duration(scene: Scene) -> ContactDuration | None:
         length=scene.contact_duration,
         latest=never,
         met=never.copy(),
+        island=np.full(scene.count, NONE),
         elastic=np.zeros(1, dtype=np.int64),
         kept=np.zeros((1, 2)),
     )

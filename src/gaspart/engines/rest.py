@@ -2,8 +2,10 @@
 
 With a contact duration, a pile that has settled goes on with tiny elastic contacts for ever. A scene is taken
 for being at rest, and nothing happens in it any more, if for the time sqrt(d/g) of a fall each particle has
-stayed within 2^-8 of the smallest diameter d, and then lies on a wall or has contacts that last. The kinetic
-energy of flight is then counted as dissipated; spins, on which elastic contacts do not act, are kept.
+stayed within 2^-8 of the smallest diameter d, and then lies on a wall or has contacts that last. The same
+holds for a part of it, all particles that are within 2^-8 d of one another, until another particle meets one
+of them. The kinetic energy of flight is then counted as dissipated; spins, on which elastic contacts do not
+act, are kept.
 """
 
 from __future__ import annotations
@@ -38,6 +40,7 @@ class RestWatch:
             "next": np.array([clock + self._window]),
             "rests": np.zeros(1, dtype=bool),
         }
+        self._axis = int(np.argmax(np.abs(scene.gravity or ())))
 
     @property
     def next(self) -> float:
@@ -54,16 +57,24 @@ class RestWatch:
         self.arrays["next"] -= last
 
     def happen(self, particles: Particles, model: Model, tally: Tally) -> bool:
-        """Look whether all particles rest at the time `next`, and stop them if they do. Returns that no event
-        need be predicted anew."""
-        from gaspart.kernels.event.scene_at_rest import at_rest, stop_all
+        """Look which particles rest at the time `next`, and stop them. Returns whether events must be
+        predicted anew: not if all rest."""
+        from gaspart.kernels.event.islands import hold, join
+        from gaspart.kernels.event.scene_at_rest import MOVES, TOUCHES, find_resting, stop_all
 
-        flights, before, time = particles.flights, self.arrays["before"], self.next
-        if at_rest(flights, before, time, self._most, model):
+        flights, places, time = particles.flights, self.arrays["before"], self.next
+        self.arrays["next"] += self._window
+        resting, parent = np.empty((2, len(flights)), dtype=np.int64)
+        find_resting(flights, places, time, self._most, model, resting)
+        if not np.any(resting == MOVES):
             stop_all(flights, time, model, tally)
             self.arrays["rests"][0] = True
-        self.arrays["next"] += self._window
-        return False
+            return False
+        if not np.any(resting == TOUCHES):
+            return False
+        order = np.argsort(places[:, self._axis], kind="stable")
+        join(flights, places, self._axis, order, self._most, model, parent)
+        return hold(flights, time, resting, parent, np.empty_like(parent), model, tally)
 
 
 def rest_watch(scene: Scene, state: State, clock: float) -> RestWatch | None:

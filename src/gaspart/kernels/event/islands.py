@@ -1,0 +1,85 @@
+"""Islands: particles that lean on one another and are at rest, while others move elsewhere.
+
+With a contact duration a pile that has settled goes on with tiny elastic contacts for ever. An island has no
+events: gravity does not act on it until another particle meets one of it.
+"""
+
+from math import sqrt
+
+from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
+from gaspart.kernels.event.scene_at_rest import MOVES, TOUCHES, stop
+from gaspart.kernels.flight import mark_resting
+from gaspart.kernels.periodic import nearest
+
+
+@inner_helper
+def _root(parent, i):
+    """The root of a particle's tree, with shorter ways to it for the next search."""
+    while parent[i] != i:
+        parent[i] = parent[parent[i]]
+        i = parent[i]
+    return i
+
+
+@inner_kernel
+def _gap(flights, places, i, j, space):
+    """Between the surfaces of two particles at their places (N, d)."""
+    square = 0.0
+    for k in range(len(space.lengths)):
+        part = nearest(places[j, k] - places[i, k], space.lengths[k], space.periodic[k])
+        square += part * part
+    return sqrt(square) - flights[i].radius - flights[j].radius
+
+
+@kernel
+def join(flights, places, axis, order, reach, model, parent):
+    """Join the particles that can move, and whose gaps are at most `reach`, in trees with the parents (N,).
+    order (N,): by their coordinate along an axis that is not periodic."""
+    largest = 0.0
+    for i in range(len(flights)):
+        parent[i] = i
+        largest = max(largest, flights[i].radius)
+    for first in range(len(order)):
+        i = order[first]
+        if model.law.inverse_mass[i] == 0.0:
+            continue
+        furthest = places[i, axis] + flights[i].radius + largest + reach
+        for second in range(first + 1, len(order)):
+            j = order[second]
+            if places[j, axis] > furthest:
+                break
+            if model.law.inverse_mass[j] > 0.0 and _gap(flights, places, i, j, model.space) <= reach:
+                parent[_root(parent, j)] = _root(parent, i)
+
+
+@kernel
+def hold(flights, time, resting, parent, touches, model, tally):
+    """Hold the particles of each tree of which all rest (`scene_at_rest.find_resting`), and some have
+    contacts. touches (N,): room for a number. Returns whether there are such trees."""
+    island, found = model.law.duration.island, False
+    touches[:] = 0
+    for i in range(len(flights)):
+        root = _root(parent, i)
+        if resting[i] == MOVES:
+            touches[root] = -1
+        elif resting[i] == TOUCHES and touches[root] == 0:
+            touches[root] = 1
+    for i in range(len(flights)):
+        root = _root(parent, i)
+        if touches[root] > 0:
+            stop(flights, i, time, model, tally)
+            island[i] = root
+            model.gravity.fixed[i] = True
+            found = True
+    return found
+
+
+@inner_kernel
+def wake_island(flights, number, time, boxes, model, gravity, island):
+    """Let gravity act again on the particles of an island."""
+    if gravity is not None:
+        for i in range(len(flights)):
+            if island[i] == number:
+                gravity.fixed[i] = False
+                flights[i].clock = time
+                mark_resting(flights, i, model.space, gravity, boxes.resting)
