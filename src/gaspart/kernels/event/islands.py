@@ -7,7 +7,7 @@ events: gravity does not act on it until another particle meets one of it.
 from math import sqrt
 
 from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
-from gaspart.kernels.event.scene_at_rest import MOVES, TOUCHES, stop
+from gaspart.kernels.event.scene_at_rest import stop
 from gaspart.kernels.flight import mark_resting
 from gaspart.kernels.periodic import nearest
 
@@ -32,41 +32,38 @@ def _gap(flights, places, i, j, space):
 
 
 @kernel
-def join(flights, places, axis, order, reach, model, parent):
-    """Join the particles that can move, and whose gaps are at most `reach`, in trees with the parents (N,).
-    order (N,): by their coordinate along an axis that is not periodic."""
+def join(flights, order, places, axis, reach, space, parent):
+    """Join particles whose gaps are at most `reach` in trees with the parents (N,). order (M,): these
+    particles, by their coordinate along an axis that is not periodic."""
     largest = 0.0
-    for i in range(len(flights)):
+    for i in order:
         parent[i] = i
         largest = max(largest, flights[i].radius)
     for first in range(len(order)):
         i = order[first]
-        if model.law.inverse_mass[i] == 0.0:
-            continue
         furthest = places[i, axis] + flights[i].radius + largest + reach
         for second in range(first + 1, len(order)):
             j = order[second]
             if places[j, axis] > furthest:
                 break
-            if model.law.inverse_mass[j] > 0.0 and _gap(flights, places, i, j, model.space) <= reach:
+            if _gap(flights, places, i, j, space) <= reach:
                 parent[_root(parent, j)] = _root(parent, i)
 
 
 @kernel
-def hold(flights, time, resting, parent, touches, model, tally):
-    """Hold the particles of each tree of which all rest (`scene_at_rest.find_resting`), and some have
-    contacts. touches (N,): room for a number. Returns whether there are such trees."""
+def hold(flights, order, time, marks, parent, model, tally):
+    """Hold those of these particles that belong to a tree of which all rest, and some touch others: `marks`
+    (2, N), see `scene_at_rest.find_resting`, which become those of the trees. Returns whether there are any.
+    """
+    touches, rests = marks
     island, found = model.law.duration.island, False
-    touches[:] = 0
-    for i in range(len(flights)):
+    for i in order:
         root = _root(parent, i)
-        if resting[i] == MOVES:
-            touches[root] = -1
-        elif resting[i] == TOUCHES and touches[root] == 0:
-            touches[root] = 1
-    for i in range(len(flights)):
+        touches[root] |= touches[i]
+        rests[root] &= rests[i]
+    for i in order:
         root = _root(parent, i)
-        if touches[root] > 0:
+        if rests[root] and touches[root]:
             stop(flights, i, time, model, tally)
             island[i] = root
             model.gravity.fixed[i] = True

@@ -5,7 +5,6 @@ from gaspart.kernels.flight import acceleration_of, advance, flown
 from gaspart.kernels.model import LOSS
 from gaspart.kernels.running_sum import add
 
-MOVES, TOUCHES, LIES = range(3)  # may not rest; has contacts that last; is without a velocity and events
 _PAUSE = 4.0  # contact durations: the longest time without a contact of a particle that others support
 
 
@@ -19,13 +18,13 @@ def _lies(flights, i, space, gravity):
 
 
 @kernel
-def find_resting(flights, before, time, most, model, resting):
-    """Determine whether each particle lies on a wall, or has contacts that last, in `resting` (N,); neither
-    if it is further than `most` from its place `before` (N, d), which becomes its place now."""
+def find_resting(flights, before, time, most, model, touches, rests):
+    """Determine whether each particle has contacts that last, `touches` (N,); and whether it rests (N,): it
+    has such contacts, or lies on a wall, and is not further than `most` from its place `before` (N, d), which
+    becomes its place now."""
     space, gravity, duration = model.space, model.gravity, model.law.duration
     for i in range(len(flights)):
-        lasts = time - duration.latest[i] < _PAUSE * duration.length
-        resting[i] = LIES if _lies(flights, i, space, gravity) else TOUCHES if lasts else MOVES
+        touches[i] = time - duration.latest[i] < _PAUSE * duration.length
         square = 0.0
         for k in range(len(space.lengths)):
             pull = acceleration_of(flights, i, k, space, gravity)
@@ -33,8 +32,7 @@ def find_resting(flights, before, time, most, model, resting):
             x = flown(flights[i].position[k], flights[i].velocity[k], pull, late)
             square += (x - before[i, k]) * (x - before[i, k])
             before[i, k] = x
-        if square > most * most:
-            resting[i] = MOVES
+        rests[i] = (touches[i] or _lies(flights, i, space, gravity)) and square <= most * most
 
 
 @inner_kernel
