@@ -3,9 +3,9 @@
 With a contact duration, a pile that has settled goes on with tiny elastic contacts for ever. A scene is taken
 for being at rest, and nothing happens in it any more, if for the time sqrt(d/g) of a fall each particle has
 stayed within 2^-8 of the smallest diameter d, and then lies on a wall or has contacts that last. The same
-holds for a part of it, particles with such contacts and what lies within 2^-8 d of them, until another
-particle meets one of them. The kinetic energy of flight is then counted as dissipated; spins, on which
-elastic contacts do not act, are kept.
+holds for a part of it, particles with such contacts and what lies or moves within 2^-8 d of them, until
+another particle meets one of them. The kinetic energy of flight is then counted as dissipated; spins, on
+which elastic contacts do not act, are kept.
 """
 
 from __future__ import annotations
@@ -60,23 +60,23 @@ class RestWatch:
         """Look which particles rest at the time `next`, and stop them. Returns whether events must be
         predicted anew: not if all rest."""
         from gaspart.kernels.event.islands import hold, join
-        from gaspart.kernels.event.scene_at_rest import find_resting, stop_all
+        from gaspart.kernels.event.scene_at_rest import RESTS, find_resting, stop_all
         from gaspart.kernels.model import NONE
 
         flights, places, time = particles.flights, self.arrays["before"], self.next
         self.arrays["next"] += self._window
-        touches, rests = np.empty((2, len(flights)), dtype=bool)
-        find_resting(flights, places, time, self._most, model, touches, rests)
-        if rests.all():
+        marks = np.empty((3, len(flights)), dtype=bool)
+        find_resting(flights, places, time, self._most, model, marks)
+        if marks[RESTS].all():
             stop_all(flights, time, model, tally)
             self.arrays["rests"][0] = True
             return False
         awake = (model.law.duration.island == NONE) & (model.law.inverse_mass > 0.0)
-        near = np.flatnonzero((touches | rests) & awake)
+        near = np.flatnonzero(marks.any(axis=0) & awake)  # not what slides slowly and touches nothing
         order = near[np.argsort(places[near, self._axis], kind="stable")]
         parent = np.empty(len(flights), dtype=np.int64)
         join(flights, order, places, self._axis, self._most, model.space, parent)
-        return hold(flights, order, time, (touches, rests), parent, model, tally)
+        return hold(flights, order, time, marks, parent, model, tally)
 
 
 def rest_watch(scene: Scene, state: State, clock: float) -> RestWatch | None:

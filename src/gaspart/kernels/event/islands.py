@@ -7,7 +7,7 @@ events: gravity does not act on it until another particle meets one of it.
 from math import sqrt
 
 from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
-from gaspart.kernels.event.scene_at_rest import stop
+from gaspart.kernels.event.scene_at_rest import RESTS, TOUCHES, stop
 from gaspart.kernels.flight import mark_resting
 from gaspart.kernels.periodic import nearest
 
@@ -53,9 +53,9 @@ def join(flights, order, places, axis, reach, space, parent):
 @kernel
 def hold(flights, order, time, marks, parent, model, tally):
     """Hold those of these particles that belong to a tree of which all rest, and some touch others: `marks`
-    (2, N), see `scene_at_rest.find_resting`, which become those of the trees. Returns whether there are any.
+    (3, N), see `scene_at_rest.find_resting`, which become those of the trees. Returns whether there are any.
     """
-    touches, rests = marks
+    touches, rests = marks[TOUCHES], marks[RESTS]
     island, found = model.law.duration.island, False
     for i in order:
         root = _root(parent, i)

@@ -5,6 +5,7 @@ from gaspart.kernels.flight import acceleration_of, advance, flown
 from gaspart.kernels.model import LOSS
 from gaspart.kernels.running_sum import add
 
+TOUCHES, MOVES, RESTS = range(3)  # what `find_resting` marks
 _PAUSE = 4.0  # contact durations: the longest time without a contact of a particle that others support
 
 
@@ -18,13 +19,13 @@ def _lies(flights, i, space, gravity):
 
 
 @kernel
-def find_resting(flights, before, time, most, model, touches, rests):
-    """Determine whether each particle has contacts that last, `touches` (N,); and whether it rests (N,): it
-    has such contacts, or lies on a wall, and is not further than `most` from its place `before` (N, d), which
-    becomes its place now."""
+def find_resting(flights, before, time, most, model, marks):
+    """Mark (3, N) which particles touch, by contacts that last; which move: they are further than `most` from
+    their places `before` (N, d), which become the places now; and which rest: those that do not move, and
+    touch or lie on a wall."""
     space, gravity, duration = model.space, model.gravity, model.law.duration
     for i in range(len(flights)):
-        touches[i] = time - duration.latest[i] < _PAUSE * duration.length
+        marks[TOUCHES, i] = time - duration.latest[i] < _PAUSE * duration.length
         square = 0.0
         for k in range(len(space.lengths)):
             pull = acceleration_of(flights, i, k, space, gravity)
@@ -32,7 +33,9 @@ def find_resting(flights, before, time, most, model, touches, rests):
             x = flown(flights[i].position[k], flights[i].velocity[k], pull, late)
             square += (x - before[i, k]) * (x - before[i, k])
             before[i, k] = x
-        rests[i] = (touches[i] or _lies(flights, i, space, gravity)) and square <= most * most
+        marks[MOVES, i] = square > most * most
+        stays = marks[TOUCHES, i] or _lies(flights, i, space, gravity)
+        marks[RESTS, i] = stays and not marks[MOVES, i]
 
 
 @inner_kernel
