@@ -71,7 +71,9 @@ class RestWatch:
             stop_all(flights, time, model, tally)
             self.arrays["rests"][0] = True
             return False
-        awake = (model.law.duration.island == NONE) & (model.law.inverse_mass > 0.0)
+        law = model.law
+        assert law is not None and law.duration is not None  # as `rest_watch` requires
+        awake = (law.duration.island == NONE) & (law.inverse_mass > 0.0)
         near = np.flatnonzero(marks.any(axis=0) & awake)  # not what slides slowly and touches nothing
         order = near[np.argsort(places[near, self._axis], kind="stable")]
         parent = np.empty(len(flights), dtype=np.int64)
