@@ -113,6 +113,12 @@ def test_random_granular_scenes_run_without_an_error():
     assert all_faults(range(3), tangential=(-0.5, 0.0, 0.5, 0.9)) == {}
 
 
+@pytest.mark.parametrize("seed", [146, 275])
+def test_contacts_with_walls_do_not_repeat_for_ever(seed):
+    """A slow disc in an acute wedge, and one that an inelastic contact has left moving along a wall."""
+    assert faults(granular_scene(np.random.default_rng(seed)), seed) == []
+
+
 @pytest.mark.thorough
 @pytest.mark.parametrize("first", range(0, 2000, 100))
 def test_two_thousand_random_granular_scenes(first):

@@ -10,6 +10,7 @@ from gaspart.engines.piston import piston_of
 from gaspart.engines.vibration import motion_of
 from gaspart.kernels.model import (
     HARD,
+    NONE,
     PISTON,
     STICKY,
     THERMAL,
@@ -89,6 +90,7 @@ def contact_duration(scene: Scene) -> ContactDuration | None:
         length=scene.contact_duration,
         latest=never,
         met=never.copy(),
+        island=np.full(scene.count, NONE),
         elastic=np.zeros(1, dtype=np.int64),
         kept=np.zeros((1, 2)),
     )

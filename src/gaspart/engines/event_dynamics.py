@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 _QUIET = QUIET + 2000  # epochs without an event after which a run without an end is given up
 _NUMBERS = ("start", "epoch", "base", "quiet", "clock", "since")  # of a checkpoint
-_OF_DURATION = ("latest", "met", "elastic", "kept")
+_OF_DURATION = ("latest", "met", "island", "elastic", "kept")
 _SHORTEST_BOUNCE = 2.0**-44  # of an epoch: the longest bounce on a floor that is taken for rest
 
 
@@ -317,6 +317,8 @@ class EventDynamics:
                 arrays["vibrations"] = law.vibrations
         if self._duration:
             arrays.update({f"contact_{key}": self._duration._asdict()[key] for key in _OF_DURATION})
+            if self._model.gravity:
+                arrays["held"] = self._model.gravity.fixed
         if self._scheduled:
             arrays.update({f"scheduled_{key}": array for key, array in self._scheduled.arrays.items()})
         if collapse:

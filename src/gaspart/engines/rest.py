@@ -2,8 +2,10 @@
 
 With a contact duration, a pile that has settled goes on with tiny elastic contacts for ever. A scene is taken
 for being at rest, and nothing happens in it any more, if for the time sqrt(d/g) of a fall each particle has
-stayed within 2^-8 of the smallest diameter d, and then lies on a wall or has contacts that last. The kinetic
-energy of flight is then counted as dissipated; spins, on which elastic contacts do not act, are kept.
+stayed within 2^-8 of the smallest diameter d, and then lies on a wall or has contacts that last. The same
+holds for a part of it, particles with such contacts and what lies or moves within 2^-8 d of them, until
+another particle meets one of them. The kinetic energy of flight is then counted as dissipated; spins, on
+which elastic contacts do not act, are kept.
 """
 
 from __future__ import annotations
@@ -38,6 +40,7 @@ class RestWatch:
             "next": np.array([clock + self._window]),
             "rests": np.zeros(1, dtype=bool),
         }
+        self._axis = int(np.argmax(np.abs(scene.gravity or ())))
 
     @property
     def next(self) -> float:
@@ -54,16 +57,28 @@ class RestWatch:
         self.arrays["next"] -= last
 
     def happen(self, particles: Particles, model: Model, tally: Tally) -> bool:
-        """Look whether all particles rest at the time `next`, and stop them if they do. Returns that no event
-        need be predicted anew."""
-        from gaspart.kernels.event.scene_at_rest import at_rest, stop_all
+        """Look which particles rest at the time `next`, and stop them. Returns whether events must be
+        predicted anew: not if all rest."""
+        from gaspart.kernels.event.islands import hold, join
+        from gaspart.kernels.event.scene_at_rest import RESTS, find_resting, stop_all
+        from gaspart.kernels.model import NONE
 
-        flights, before, time = particles.flights, self.arrays["before"], self.next
-        if at_rest(flights, before, time, self._most, model):
+        flights, places, time = particles.flights, self.arrays["before"], self.next
+        self.arrays["next"] += self._window
+        marks = np.empty((3, len(flights)), dtype=bool)
+        find_resting(flights, places, time, self._most, model, marks)
+        if marks[RESTS].all():
             stop_all(flights, time, model, tally)
             self.arrays["rests"][0] = True
-        self.arrays["next"] += self._window
-        return False
+            return False
+        law = model.law
+        assert law is not None and law.duration is not None  # as `rest_watch` requires
+        awake = (law.duration.island == NONE) & (law.inverse_mass > 0.0)
+        near = np.flatnonzero(marks.any(axis=0) & awake)  # not what slides slowly and touches nothing
+        order = near[np.argsort(places[near, self._axis], kind="stable")]
+        parent = np.empty(len(flights), dtype=np.int64)
+        join(flights, order, places, self._axis, self._most, model.space, parent)
+        return hold(flights, order, time, marks, parent, model, tally)
 
 
 def rest_watch(scene: Scene, state: State, clock: float) -> RestWatch | None:

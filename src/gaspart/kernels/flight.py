@@ -36,7 +36,7 @@ def remaining_pull(support, i, axis):
 def acceleration_of(flights, i, axis, space, gravity):
     """The acceleration of a particle along an axis: none if it is fixed, or lies at rest on the face below;
     what the walls that it rests on leave of gravity."""
-    if is_supported(gravity.support, i):
+    if is_supported(gravity.support, i) and not gravity.fixed[i]:
         return remaining_pull(gravity.support, i, axis)
     pull = gravity.acceleration[axis]
     if pull == 0.0 or gravity.fixed[i]:

@@ -90,8 +90,8 @@ def no_support(count: int, height: float) -> Support:
 
 
 class Gravity(NamedTuple):
-    """acceleration (d,); fixed (N,), which particles it does not move; shortest_bounce, the longest bounce on
-    a floor that is taken for rest; support, None without interior walls."""
+    """acceleration (d,); fixed (N,), which particles it does not move, now or ever; shortest_bounce, the
+    longest bounce on a floor that is taken for rest; support, None without interior walls."""
 
     acceleration: tuple
     fixed: np.ndarray
@@ -101,12 +101,14 @@ class Gravity(NamedTuple):
 
 class ContactDuration(NamedTuple):
     """Contacts less than `length` after an earlier one are elastic. Of the particles: latest (N,), the time
-    of the latest contact; met (N,), that with another particle. elastic (1,): the number of such contacts;
-    kept (1, 2): the energy that they have not dissipated, see `running_sum.add`."""
+    the latest contact; met (N,), that with another particle; island (N,), see `event.islands`, or NONE.
+    elastic (1,): the number of such contacts; kept (1, 2): the energy that they have not dissipated, see
+    `running_sum.add`."""
 
     length: float
     latest: np.ndarray
     met: np.ndarray
+    island: np.ndarray
     elastic: np.ndarray
     kept: np.ndarray
 

@@ -19,6 +19,7 @@ from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
 from gaspart.kernels.event.all_pairs import first_of_all
 from gaspart.kernels.event.box_lists import move, sort_in
 from gaspart.kernels.event.box_search import find_contact
+from gaspart.kernels.event.islands import wake_island
 from gaspart.kernels.event.monitors import collapse_detected, is_full, record_event
 from gaspart.kernels.event.neighbour_lists import is_room_lacking, next_renewal, renew, search_list
 from gaspart.kernels.event.oversized import search_oversized
@@ -168,6 +169,36 @@ def predict_after_piston(particles, partner, time, queue, boxes, model, faces):
             predict_faces(particles, time, queue, boxes, model, faces.piston)
 
 
+@inner_kernel
+def predict_island(particles, number, queue, boxes, model, tally, event, island):
+    """Predict the next events of the particles of an island, which belong to none any more."""
+    time, count = event
+    for i in range(len(island)):
+        if island[i] == number:
+            island[i] = NONE
+            if queue is not None:
+                particles.predictions[i].changed = count
+                predict(particles, i, boxes, model, tally, time, count, _NEW)
+                reschedule(queue, particles.predictions, i)
+
+
+@inner_helper
+def wake(particles, pair, queue, boxes, model, tally, event, law):
+    """Let gravity act again on the islands of two particles (2,) that have met. event: time and number."""
+    if law is not None:
+        _wake(particles, pair, queue, boxes, model, tally, event, law.duration)
+
+
+@inner_helper
+def _wake(particles, pair, queue, boxes, model, tally, event, duration):
+    if duration is not None:
+        for particle in pair:
+            number = duration.island[particle]
+            if number != NONE:
+                wake_island(particles.flights, number, event[0], boxes, model, model.gravity, duration.island)
+                predict_island(particles, number, queue, boxes, model, tally, event, duration.island)
+
+
 @inner_helper
 def leave_box(particles, i, face, time, boxes, model, tally, lists):
     """Let a particle cross into the next box, or renew its neighbour list. Returns the step (3,) into the
@@ -217,6 +248,7 @@ def process(particles, i, time, queue, boxes, model, tally):
         i, partner = min(i, partner), max(i, partner)
         first, second = i, partner
         collide(particles.flights, i, partner, time, model, tally)
+        wake(particles, (i, partner), queue, boxes, model, tally, (time, number), model.law)
     event = time, number, changes
     predict_after(particles, (first, second), queue, boxes, model, tally, event, crossed)
     predict_after_piston(particles, partner, time, queue, boxes, model, model.faces)
@@ -224,12 +256,15 @@ def process(particles, i, time, queue, boxes, model, tally):
 
 
 @inner_helper
-def process_first(particles, i, partner, face, time, model, tally):
-    """Process the earliest of all events, with a partner or at a face. Returns as `process` does."""
+def process_first(particles, event, boxes, model, tally):
+    """Process the earliest of all events: its time, a particle, and a partner or a face. Returns as `process`
+    does."""
+    time, i, partner, face = event
     if partner < 0:
         partner, happens = meet_obstacle(particles, i, face, time, model, tally)
         return i, partner, happens
     collide(particles.flights, i, partner, time, model, tally)
+    wake(particles, (i, partner), None, boxes, model, tally, (time, _NEW[0]), model.law)
     return i, partner, True
 
 
@@ -274,7 +309,7 @@ def run(particles, queue, boxes, model, tally, monitors, limits, all_pairs):
         if queue is not None:
             i, partner, happens = process(particles, i, time, queue, boxes, model, tally)
         if all_pairs is not None:
-            i, partner, happens = process_first(particles, i, partner, face, time, model, tally)
+            i, partner, happens = process_first(particles, (time, i, partner, face), boxes, model, tally)
         last = time
         if not happens:
             crossed += 1

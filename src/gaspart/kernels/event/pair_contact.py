@@ -2,10 +2,9 @@
 
 from gaspart.kernels.collision import exchange_momentum, gap_along
 from gaspart.kernels.compilation import inner_helper
-from gaspart.kernels.event.pressed_contact import least_parting, part
+from gaspart.kernels.event.pressed_contact import least_parting, part, release_pair
 from gaspart.kernels.flight import advance
 from gaspart.kernels.model import COLLISIONS, VIRIAL
-from gaspart.kernels.obstacles.resting import release_after
 from gaspart.kernels.running_sum import add
 
 
@@ -24,8 +23,7 @@ def collide(flights, i, j, time, model, tally):
     least = least_parting(flights, i, j, space, model.gravity, model.law)
     add(tally.sums, VIRIAL, exchange_momentum(flights, i, j, rr, rv, model, tally, model.law))
     part(flights, i, j, least, model, tally, model.law)
-    release_after(flights, i, space, model.gravity)
-    release_after(flights, j, space, model.gravity)
+    release_pair(flights, i, j, model, tally, model.gravity, model.law)
     sigma = flights[i].radius + flights[j].radius
     tally.worst[0] = max(tally.worst[0], abs(rr / (sigma * sigma) - 1.0))
     tally.counts[COLLISIONS] += 1

@@ -12,6 +12,9 @@ from gaspart.kernels.compilation import inner_helper, inner_kernel
 from gaspart.kernels.contact_duration import SHORTEST
 from gaspart.kernels.flight import acceleration_of
 from gaspart.kernels.model import LOSS
+from gaspart.kernels.obstacles.short_bounce import longest_rest
+from gaspart.kernels.obstacles.support import release
+from gaspart.kernels.obstacles.wedge import rest_in_wedge
 from gaspart.kernels.running_sum import add
 
 
@@ -38,6 +41,15 @@ def _pressed_parting(flights, i, j, space, gravity, duration):
     return 0.0
 
 
+@inner_kernel
+def direction(flights, i, j, space):
+    """(3,) the unit vector from a particle to another one."""
+    x, y = gap_along(flights, i, j, 0, space), gap_along(flights, i, j, 1, space)
+    z = gap_along(flights, i, j, 2, space)
+    distance = sqrt(x * x + y * y + z * z)
+    return x / distance, y / distance, z / distance
+
+
 @inner_helper
 def part(flights, i, j, least, model, tally, law):
     """Let two particles that have collided part at least so fast."""
@@ -49,10 +61,7 @@ def part(flights, i, j, least, model, tally, law):
 def _part_pressed(flights, i, j, least, space, tally, law, duration):
     if duration is None or least == 0.0:
         return
-    x, y = gap_along(flights, i, j, 0, space), gap_along(flights, i, j, 1, space)
-    z = gap_along(flights, i, j, 2, space)
-    distance = sqrt(x * x + y * y + z * z)
-    normal = x / distance, y / distance, z / distance
+    normal = direction(flights, i, j, space)
     speed = 0.0
     for k in range(len(space.lengths)):
         speed += normal[k] * (flights[j].velocity[k] - flights[i].velocity[k])
@@ -62,3 +71,37 @@ def _part_pressed(flights, i, j, least, space, tally, law, duration):
         push(flights, i, -impulse * law.inverse_mass[i], normal, space)
         push(flights, j, impulse * law.inverse_mass[j], normal, space)
         add(tally.sums, LOSS, -0.5 * (least * least - speed * speed) / mobility)
+
+
+@inner_helper
+def release_pair(flights, i, j, model, tally, gravity, law):
+    """Let gravity act in full on two particles that have collided, unless one rests below a fixed one."""
+    if gravity is not None:
+        _release_from(flights, i, j, model, tally, gravity, law)
+        _release_from(flights, j, i, model, tally, gravity, law)
+
+
+@inner_helper
+def _release_from(flights, i, j, model, tally, gravity, law):
+    """The same of the first of two particles."""
+    if not _rests_below(flights, i, j, model.space, tally, gravity, law):
+        release(flights, i, model.space, gravity.support)
+
+
+@inner_helper
+def _rests_below(flights, i, j, space, tally, gravity, law):
+    """Let the first of two particles rest in the wedge between what it rests on and a fixed second one.
+    Returns whether it does."""
+    if law is not None:
+        if law.inverse_mass[j] == 0.0:
+            return _rests_below_fixed(flights, i, j, space, tally, gravity, law, law.duration)
+    return False
+
+
+@inner_kernel
+def _rests_below_fixed(flights, i, j, space, tally, gravity, law, duration):
+    if duration is None:
+        return False
+    normal = direction(flights, i, j, space)
+    body = 1.0 / law.inverse_mass[i], longest_rest(flights, i, gravity, law)
+    return rest_in_wedge(flights, i, normal, body, space, tally, gravity, gravity.support)

@@ -1,10 +1,11 @@
-"""Whether all particles of a scene under gravity have come to rest."""
+"""Which particles of a scene under gravity have come to rest."""
 
-from gaspart.kernels.compilation import inner_helper, kernel
+from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
 from gaspart.kernels.flight import acceleration_of, advance, flown
 from gaspart.kernels.model import LOSS
 from gaspart.kernels.running_sum import add
 
+TOUCHES, MOVES, RESTS = range(3)  # what `find_resting` marks
 _PAUSE = 4.0  # contact durations: the longest time without a contact of a particle that others support
 
 
@@ -18,13 +19,13 @@ def _lies(flights, i, space, gravity):
 
 
 @kernel
-def at_rest(flights, before, time, most, model):
-    """Whether every particle lies on a wall, or has contacts that last, and none is further than `most` from
-    its place `before` (N, d), which becomes its place now."""
-    rest, space, gravity, duration = True, model.space, model.gravity, model.law.duration
+def find_resting(flights, before, time, most, model, marks):
+    """Mark (3, N) which particles touch, by contacts that last; which move: they are further than `most` from
+    their places `before` (N, d), which become the places now; and which rest: those that do not move, and
+    touch or lie on a wall."""
+    space, gravity, duration = model.space, model.gravity, model.law.duration
     for i in range(len(flights)):
-        lasts = time - duration.latest[i] < _PAUSE * duration.length
-        rest &= lasts or _lies(flights, i, space, gravity)
+        marks[TOUCHES, i] = time - duration.latest[i] < _PAUSE * duration.length
         square = 0.0
         for k in range(len(space.lengths)):
             pull = acceleration_of(flights, i, k, space, gravity)
@@ -32,18 +33,25 @@ def at_rest(flights, before, time, most, model):
             x = flown(flights[i].position[k], flights[i].velocity[k], pull, late)
             square += (x - before[i, k]) * (x - before[i, k])
             before[i, k] = x
-        rest &= square <= most * most
-    return rest
+        marks[MOVES, i] = square > most * most
+        stays = marks[TOUCHES, i] or _lies(flights, i, space, gravity)
+        marks[RESTS, i] = stays and not marks[MOVES, i]
+
+
+@inner_kernel
+def stop(flights, i, time, model, tally):
+    """Advance a particle to `time` and take its velocity, whose energy is counted as lost."""
+    advance(flights, i, time, model.space, model.gravity)
+    square = 0.0
+    for k in range(len(model.space.lengths)):
+        square += flights[i].velocity[k] * flights[i].velocity[k]
+        flights[i].velocity[k] = 0.0
+    if square > 0.0:
+        add(tally.sums, LOSS, 0.5 * square / model.law.inverse_mass[i])
 
 
 @kernel
 def stop_all(flights, time, model, tally):
-    """Advance all particles to `time` and take their velocities, whose energy is counted as lost."""
+    """Stop every particle."""
     for i in range(len(flights)):
-        advance(flights, i, time, model.space, model.gravity)
-        square = 0.0
-        for k in range(len(model.space.lengths)):
-            square += flights[i].velocity[k] * flights[i].velocity[k]
-            flights[i].velocity[k] = 0.0
-        if square > 0.0:
-            add(tally.sums, LOSS, 0.5 * square / model.law.inverse_mass[i])
+        stop(flights, i, time, model, tally)

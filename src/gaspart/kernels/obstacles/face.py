@@ -10,9 +10,10 @@ from gaspart.kernels.flight import acceleration_of, advance, face_plane
 from gaspart.kernels.model import BOX_FACES, NONE, PISTON, STICKY, THERMAL, THERMAL_NORMAL, VIBRATING
 from gaspart.kernels.obstacles.hard import bounce
 from gaspart.kernels.obstacles.piston import collide_piston, find_piston, is_piston
-from gaspart.kernels.obstacles.resting import come_to_rest, release, release_after
+from gaspart.kernels.obstacles.resting import come_to_rest
 from gaspart.kernels.obstacles.short_bounce import longest_rest, rest_on_floor
 from gaspart.kernels.obstacles.sticky import collide_sticky
+from gaspart.kernels.obstacles.support import release, release_after
 from gaspart.kernels.obstacles.thermal import collide_thermal
 from gaspart.kernels.obstacles.vibrating import collide_moving, find_vibrating, moves
 from gaspart.kernels.obstacles.well import mass_of, time_to_edge

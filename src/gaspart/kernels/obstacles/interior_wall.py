@@ -16,9 +16,10 @@ from gaspart.kernels.flight import advance
 from gaspart.kernels.model import NONE, WALLS
 from gaspart.kernels.obstacles.distance import to_wall
 from gaspart.kernels.obstacles.plate import time_to_plate
-from gaspart.kernels.obstacles.resting import come_to_rest, is_resting_on, leave, release
+from gaspart.kernels.obstacles.resting import come_to_rest, leave
 from gaspart.kernels.obstacles.segment import time_to_segment
 from gaspart.kernels.obstacles.short_bounce import longest_rest
+from gaspart.kernels.obstacles.support import is_resting_on, release
 from gaspart.kernels.obstacles.well import mass_of
 from gaspart.kernels.running_sum import add
 
@@ -121,6 +122,16 @@ def settle_on(flights, i, m, normal, model, tally, gravity):
         come_to_rest(flights, i, normal, place, mass, model.space, tally, gravity)
 
 
+@inner_helper
+def least_speed(flights, i, space):
+    """The least speed at which a particle parts from a wall: its speed times the rounding of the direction to
+    the wall, which is that of positions over the radius. With less it would meet the wall for ever."""
+    longest = flights[i].radius
+    for k in range(len(space.lengths)):
+        longest = max(longest, space.lengths[k])
+    return LEAST * fastest_component(flights, i, space) * (longest / flights[i].radius)
+
+
 @inner_kernel
 def collide_wall(flights, i, m, model, tally, walls, law):
     """Reflect a particle at an interior wall that it touches, from its side or its rim. Returns the number of
@@ -129,7 +140,7 @@ def collide_wall(flights, i, m, model, tally, walls, law):
     x, y, z = to_wall(walls.rows, m, flights[i].position, space.lengths)
     distance = sqrt(x * x + y * y + z * z)
     normal = x / distance, y / distance, z / distance
-    least = LEAST * fastest_component(flights, i, space)
+    least = least_speed(flights, i, space)
     if law is None:
         velocity = velocity_of(flights, i, space)
         approach = normal[0] * velocity[0] + normal[1] * velocity[1]

@@ -15,7 +15,8 @@ from gaspart.kernels.ballistic import (
 from gaspart.kernels.compilation import inner_helper, inner_kernel
 from gaspart.kernels.contact import time_to_contact
 from gaspart.kernels.flight import acceleration_of
-from gaspart.kernels.obstacles.resting import rests_on, time_to_leave
+from gaspart.kernels.obstacles.resting import time_to_leave
+from gaspart.kernels.obstacles.support import rests_on
 
 
 @inner_helper
