@@ -17,9 +17,9 @@ _NUMBER = re.compile(r"(?<![\w.^/-])\d+\.\d+(?![\w.])")
 NOT_MEASURED = "(not measured in this run)"
 
 
-def filled(caption: str, rows: Iterable[dict[str, Any]]) -> str:
+def filled(caption: str, rows: Iterable[dict[str, Any]], absent: str = NOT_MEASURED) -> str:
     """The caption with the measured value of a claim in each place, as 0.930(16), from rows of its figure's
-    claims table, or `NOT_MEASURED` where there is no such claim.
+    claims table, or `absent` where there is no such claim.
 
     Raises ValueError if a place names several claims.
     """
@@ -31,7 +31,7 @@ def filled(caption: str, rows: Iterable[dict[str, Any]]) -> str:
         if len(found) > 1:
             raise ValueError(f"{{{{{beginning}}}}}: {len(found)} claims begin so")
         if not found or not math.isfinite(_number(found[0], "measured")):
-            return NOT_MEASURED
+            return absent
         return concise(_number(found[0], "measured"), _number(found[0], "uncertainty"))
 
     return _PLACE.sub(value, caption)
