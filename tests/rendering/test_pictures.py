@@ -1,10 +1,12 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import gaspart as gp
 from gaspart.rendering.camera import camera_for
 from gaspart.rendering.discs import Canvas
-from gaspart.rendering.frames import particles_of, render
+from gaspart.rendering.frames import parameters_of, particles_of, render
 from gaspart.rendering.particles import DrawnParticles, colours_of, legend_of
 from gaspart.rendering.pictures import picture, pixels_per_length
 
@@ -206,3 +208,12 @@ def test_a_piston_is_drawn_where_it_is(tmp_path):
                 assert walls.shape == (sides, 2, len(lengths))
                 assert np.allclose(walls[..., 1], 6.0 - 0.5 * push * 4.0)
                 assert np.ptp(walls[..., 0]) == 8.0
+
+
+def test_the_parameters_of_moving_faces_are_stated():
+    scene = gp.Scene(gp.Container((8.0, 8.0)), [gp.Species(10, 0.3)])
+    assert parameters_of(scene) == ("10 discs", "packing fraction 0.0442")
+    shaken = replace(scene, faces={"y_low": gp.Vibrating(0.1, 2.0)})
+    assert parameters_of(shaken)[2:] == ("y_low vibrates: amplitude 0.1, period 2",)
+    pressed = replace(scene, faces={"y_high": gp.Piston(20.0, 0.5)})
+    assert parameters_of(pressed) == ("10 discs", "y_high a piston: mass 20, pressure 0.5")

@@ -15,7 +15,7 @@ from gaspart.errors import SceneError
 from gaspart.rendering.labels import Labels
 from gaspart.rendering.particles import DrawnParticles, colours_of, legend_of
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
-from gaspart.scene.faces import Piston, Vibrating
+from gaspart.scene.faces import Piston, Vibrating, pistons
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of
 from gaspart.scene.walls import Wall
@@ -113,7 +113,8 @@ def parameters_of(scene: Scene) -> tuple[str, ...]:
     """The parameters of a scene that a picture of it does not show, as short texts."""
     kind = {2: "disc", 3: "sphere"}[scene.dimension]
     texts = [f"{scene.count} {kind}{'s' if scene.count != 1 else ''}"]
-    texts.append(f"packing fraction {scene.packing_fraction:.3g}")
+    if not pistons(scene):  # the container would not be what they fill
+        texts.append(f"packing fraction {scene.packing_fraction:.3g}")
     if scene.gravity is not None:
         texts.append(f"gravity {math.hypot(*scene.gravity):.3g}")
     if scene.restitution is not None:
@@ -121,6 +122,8 @@ def parameters_of(scene: Scene) -> tuple[str, ...]:
     for name, face in scene.faces.items():
         if isinstance(face, Vibrating):
             texts.append(f"{name} vibrates: amplitude {face.amplitude:.3g}, period {face.period:.3g}")
+        if isinstance(face, Piston):
+            texts.append(f"{name} a piston: mass {face.mass:.3g}, pressure {face.pressure:.3g}")
     return tuple(texts)
 
 
