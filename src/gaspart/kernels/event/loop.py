@@ -39,7 +39,7 @@ from gaspart.kernels.flight import mark_resting
 from gaspart.kernels.model import BOX_FACES, CROSSINGS, NONE, OUTDATED, WALLS, WELL_EDGES
 from gaspart.kernels.obstacles.face import meet_face, next_face
 from gaspart.kernels.obstacles.interior_wall import find_wall, meet_wall
-from gaspart.kernels.obstacles.piston import is_piston, next_piston
+from gaspart.kernels.obstacles.piston import next_piston
 from gaspart.kernels.obstacles.well import meet_edge
 from gaspart.kernels.prefetch import fetch
 
@@ -165,8 +165,14 @@ def predict_after_piston(particles, partner, time, queue, boxes, model, faces):
     """After a contact with a piston, whose motion it has changed, predict that of all others with it anew.
     partner: -1 - the number of the face met."""
     if faces is not None:
-        if is_piston(-1 - partner, faces.piston):
-            predict_faces(particles, time, queue, boxes, model, faces.piston)
+        _predict_after_piston(particles, partner, time, queue, boxes, model, faces.piston)
+
+
+@inner_helper
+def _predict_after_piston(particles, partner, time, queue, boxes, model, piston):
+    if piston is not None:
+        if -1 - partner == piston.face:
+            predict_faces(particles, time, queue, boxes, model, piston)
 
 
 @inner_kernel
