@@ -154,7 +154,7 @@ def _webp(path: Path, width: int) -> str:
     with Image.open(path) as image:
         image = image.convert("RGB")
         image.thumbnail((width, 10 * width))
-        image.save(content, "WEBP", quality=80)
+        image.save(content, "WEBP", quality=68)
     return _data("image/webp", content.getvalue())
 
 
