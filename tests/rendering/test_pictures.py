@@ -194,7 +194,7 @@ def test_a_face_that_vibrates_is_drawn_where_it_is(name, at):
 
 
 def test_a_piston_is_drawn_where_it_is(tmp_path):
-    """It falls freely: nobody is in its way."""
+    """It falls freely: no particle is in its way."""
     for lengths, sides in (((8.0, 6.0), 1), ((8.0, 6.0, 7.0), 4)):
         container = gp.Container(lengths, ("periodic", "wall", "wall")[: len(lengths)])
         body = gp.Body((1.0,) * len(lengths), (0.0,) * len(lengths), 0.5)

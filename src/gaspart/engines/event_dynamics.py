@@ -318,7 +318,7 @@ class EventDynamics:
         if self._duration:
             arrays.update({f"contact_{key}": self._duration._asdict()[key] for key in _OF_DURATION})
             if self._model.gravity:
-                arrays["held"] = self._model.gravity.fixed
+                arrays["gravity_fixed"] = self._model.gravity.fixed
         if self._scheduled:
             arrays.update({f"scheduled_{key}": array for key, array in self._scheduled.arrays.items()})
         if collapse:

@@ -101,7 +101,7 @@ class Gravity(NamedTuple):
 
 class ContactDuration(NamedTuple):
     """Contacts less than `length` after an earlier one are elastic. Of the particles: latest (N,), the time
-    the latest contact; met (N,), that with another particle; island (N,), see `event.islands`, or NONE.
+    of the latest contact; met (N,), that with another particle; island (N,), see `event.islands`, or NONE.
     elastic (1,): the number of such contacts; kept (1, 2): the energy that they have not dissipated, see
     `running_sum.add`."""
 
