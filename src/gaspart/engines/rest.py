@@ -60,7 +60,7 @@ class RestWatch:
         """Look which particles rest at the time `next`, and stop them. Returns whether events must be
         predicted anew: not if all rest."""
         from gaspart.kernels.event.islands import hold, join
-        from gaspart.kernels.event.scene_at_rest import RESTS, find_resting, stop_all
+        from gaspart.kernels.event.scene_at_rest import RESTS, TOUCHES, find_resting, stop_all
         from gaspart.kernels.model import NONE
 
         flights, places, time = particles.flights, self.arrays["before"], self.next
@@ -74,6 +74,8 @@ class RestWatch:
         law = model.law
         assert law is not None and law.duration is not None  # as `rest_watch` requires
         awake = (law.duration.island == NONE) & (law.inverse_mass > 0.0)
+        if not (marks[RESTS] & marks[TOUCHES] & awake).any():
+            return False
         near = np.flatnonzero(marks.any(axis=0) & awake)  # not what slides slowly and touches nothing
         order = near[np.argsort(places[near, self._axis], kind="stable")]
         parent = np.empty(len(flights), dtype=np.int64)
