@@ -227,5 +227,7 @@ def _finite_size(gas: Gas, observable: str) -> float:
     if observable == "collision_rate":
         return float(theory.collision_rate_finite_size_factor(fraction, dimension, count)) - 1.0
     side = (count * theory.body_volume(dimension) / fraction) ** (1.0 / dimension)
-    lost = theory.yeh_hummer(side, float(theory.enskog_viscosity(fraction, dimension)))
-    return -float(lost / theory.enskog_diffusion(fraction, dimension))
+    diffusion = float(theory.enskog_diffusion(fraction, dimension))
+    carried = float(theory.number_density(fraction, dimension)) * diffusion  # modes decay with nu + D
+    lost = theory.yeh_hummer(side, float(theory.enskog_viscosity(fraction, dimension)) + carried)
+    return -float(lost) / diffusion
