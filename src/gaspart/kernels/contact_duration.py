@@ -13,7 +13,7 @@ from gaspart.kernels.compilation import inner_helper
 from gaspart.kernels.running_sum import add
 
 SHORTEST = 2.0**-7
-"""Of the contact duration: the shortest time between contacts of particles that gravity presses together."""
+"""Of the contact duration: the shortest time between contacts of particles that are pressed together."""
 
 
 @inner_helper
@@ -59,6 +59,12 @@ def keep(energy, duration):
     """Add an energy that a contact would have dissipated, if it had not been elastic."""
     if duration is not None:
         add(duration.kept, 0, energy)
+
+
+@inner_helper
+def meet_often(flights, i, j, duration):
+    """Whether the latest contacts of two particles, advanced to the present time, were both so shortly ago."""
+    return flights[i].clock - min(duration.latest[i], duration.latest[j]) < SHORTEST * duration.length
 
 
 @inner_helper

@@ -1,15 +1,17 @@
 """Contacts of two particles that gravity presses together, as in a stack at rest.
 
 The lower one rests on a floor, on a wall, or is fixed, so that the upper one falls relative to it and would
-meet it infinitely often. With a contact duration they part at least so fast that they meet again after a
-small part of it; this energy, far below that of a fall through a diameter, is counted as a negative loss.
+meet it infinitely often. Or both are in a row that others press: the slower they are, the more often they
+meet, as their momentum times this rate is the force. With a contact duration they part at least so fast that
+gravity lets them meet again after a small part of it; this energy, far below that of a fall through a
+diameter, is counted as a negative loss.
 """
 
 from math import sqrt
 
 from gaspart.kernels.collision import gap_along, push
 from gaspart.kernels.compilation import inner_helper, inner_kernel
-from gaspart.kernels.contact_duration import SHORTEST
+from gaspart.kernels.contact_duration import SHORTEST, meet_often
 from gaspart.kernels.flight import acceleration_of
 from gaspart.kernels.model import LOSS
 from gaspart.kernels.obstacles.short_bounce import longest_rest
@@ -20,7 +22,8 @@ from gaspart.kernels.running_sum import add
 
 @inner_helper
 def least_parting(flights, i, j, space, gravity, law):
-    """The least speed at which two particles that touch part; 0 if nothing presses them together."""
+    """The least speed at which two particles that touch, and have been advanced to the present time, part; 0
+    if nothing presses them together."""
     if gravity is not None:
         if law is not None:
             return _pressed_parting(flights, i, j, space, gravity, law.duration)
@@ -30,14 +33,18 @@ def least_parting(flights, i, j, space, gravity, law):
 @inner_helper
 def _pressed_parting(flights, i, j, space, gravity, duration):
     if duration is not None:
-        square = along = 0.0
+        square = along = whole = 0.0
         for k in range(len(space.lengths)):
             gap = gap_along(flights, i, j, k, space)
             pull = acceleration_of(flights, j, k, space, gravity)
             pull -= acceleration_of(flights, i, k, space, gravity)
             square += gap * gap
             along += gap * pull
-        return max(0.0, -along / sqrt(square)) * 0.5 * SHORTEST * duration.length
+            whole += gravity.acceleration[k] * gravity.acceleration[k]
+        pressing = max(0.0, -along / sqrt(square))
+        if meet_often(flights, i, j, duration):
+            pressing = max(pressing, sqrt(whole))
+        return pressing * 0.5 * SHORTEST * duration.length
     return 0.0
 
 
