@@ -63,8 +63,10 @@ def keep(energy, duration):
 
 @inner_helper
 def meet_often(flights, i, j, duration):
-    """Whether the latest contacts of two particles, advanced to the present time, were both so shortly ago."""
-    return flights[i].clock - min(duration.latest[i], duration.latest[j]) < SHORTEST * duration.length
+    """Whether two particles, advanced to the present time, have both had contacts far more often than any
+    that gravity alone presses together."""
+    late = flights[i].clock - min(duration.latest[i], duration.latest[j])
+    return late < SHORTEST * SHORTEST * duration.length
 
 
 @inner_helper
