@@ -41,6 +41,31 @@ def test_perfectly_rough_discs_share_equally_at_the_known_rate():
         assert theory.rough_ratio(q, 1.0) == pytest.approx(1.0, rel=1e-12)
 
 
+@pytest.mark.parametrize("q", [0.1, 0.5, 1.0])
+def test_between_rough_walls_every_hit_follows_the_contact_law(q, particles=200_000):
+    """Spencer 2022, Eqs. 26 and 40, unit mass, radius and distance, at one wall after the other."""
+    rng = np.random.default_rng(4)
+    v, w = rng.standard_normal(particles), np.zeros(particles)
+    normal, upwards = np.abs(rng.standard_normal(particles)), rng.random(particles) < 0.5
+    next_hit = rng.random(particles) / normal
+    start = np.mean(v**2)
+    for time in (0.2, 0.6, 1.0, 2.5):
+        while (next_hit < time).any():
+            hits = next_hit < time
+            side = np.where(upwards, 1.0, -1.0)  # of the wall; the surface moves at v - side w along x
+            impulse = np.where(hits, -2.0 / (1.0 + 1.0 / q) * (v - side * w), 0.0)
+            v, w = v + impulse, w - side * impulse / q
+            upwards = upwards ^ hits
+            next_hit = np.where(hits, next_hit + 1.0 / normal, next_hit)
+        found = np.mean(v**2 - q * w**2) / start
+        assert found == pytest.approx(
+            theory.rough_wall_difference(time, q), abs=4.0 * 1.7 / np.sqrt(particles)
+        )
+    assert theory.rough_wall_difference(0.0, q) == pytest.approx(1.0, abs=2.1e-4)
+    lost = 1.0 - theory.rough_wall_difference(0.01, q)  # of 4q/(1+q)^2, twice, at each of |v| t / h hits
+    assert lost == pytest.approx(8.0 * q / (1.0 + q) ** 2 * 0.01 * np.sqrt(2.0 / np.pi), rel=1e-6)
+
+
 def test_the_ratio_is_where_the_temperatures_tend():
     translation, rotation = theory.rough_temperatures(200.0, 0.5, 0.2, 0.9)
     assert rotation / translation == pytest.approx(theory.rough_ratio(0.5, 0.2, 0.9), rel=1e-9)
@@ -84,6 +109,8 @@ def test_the_driven_gas_loses_what_it_is_given():
         (theory.rough_matrix, (0.0, 1.0)),
         (theory.rough_matrix, (0.5, 1.5)),
         (theory.rough_ratio, (0.5, -1.0)),
+        (theory.rough_wall_difference, (1.0, 0.0)),
+        (theory.rough_wall_difference, (-1.0, 0.5)),
     ],
 )
 def test_invalid_arguments_are_refused(function, arguments):

@@ -77,6 +77,7 @@ from gaspart.theory.granular import (
     rough_matrix,
     rough_ratio,
     rough_temperatures,
+    rough_wall_difference,
 )
 from gaspart.theory.gravity import (
     hydrostatic_profiles,
@@ -228,6 +229,7 @@ __all__ = [
     "rough_matrix",
     "rough_ratio",
     "rough_temperatures",
+    "rough_wall_difference",
     "santos_haro_yuste",
     "sawtooth_temperature",
     "scaled_particle",

@@ -143,6 +143,26 @@ def rough_cooling() -> np.ndarray:
     return np.loadtxt(Path(__file__).parent / "data" / "rough_cooling.csv", delimiter=",", skiprows=1)
 
 
+@checked
+def rough_wall_difference(time: Numbers, inertia: float) -> Values:
+    """(T_par - T_rot) / T_par(0) of perfectly rough particles without spin at first, which meet nothing but
+    two parallel rough walls; time: t sqrt(k_B T / m) / h, h the distance between the walls for centres.
+
+    By Spencer 2022, Eq. 40, a hit turns the pair (v, sqrt(q) R w) of a tangential velocity and its spin, seen
+    from the wall, by the angle a, cos a = (1 - q)/(1 + q), inertia: q = I / (m R^2). After K hits v is v(0)
+    cos(K a), and the difference the mean of cos(2 K a). For uniform positions its mean at a given normal
+    speed is linear between the times of integer K; as a Fourier series, and averaged over Maxwellian normal
+    velocities: sum over integers j of (sin a / (a + pi j))^2 exp(-2 (a + pi j)^2 time^2). Exact; the sum ends
+    at j = 1000, which matters (2e-4) only for times below 0.002.
+    """
+    q = float(inertia)
+    if not q > 0.0:
+        raise ValueError(f"inertia: {inertia} (must be positive)")
+    angle = np.arccos((1.0 - q) / (1.0 + q)) + np.pi * np.arange(-1000.0, 1001.0)
+    decay = np.exp(-2.0 * np.multiply.outer(np.asarray(time, dtype=float), angle) ** 2)
+    return decay @ (np.sin(angle) / angle) ** 2
+
+
 def _checked_restitution(restitution: Numbers) -> np.ndarray:
     e = np.asarray(restitution, dtype=float)
     if not np.all((e >= 0.0) & (e <= 1.0)):

@@ -9,7 +9,8 @@ from gaspart.experiments.brownian import claims as brownian
 def measured(**changes):
     """What `measure.brownian` gives of a heavy body, if theory is right."""
     values = {
-        "experiment": "brownian_heavy",
+        "equal_speeds": False,
+        "stepped": False,
         "mass": 100.0,
         "gas_mass": 1.0,
         "replicas": 200,
@@ -56,11 +57,25 @@ def test_each_claim_can_fail(name, value, text):
 
 
 def test_the_sources_gas_is_not_in_equilibrium():
-    ds = measured(experiment="brownian_source", mass=1.0, share=0.0, equipartition=0.93)
+    ds = measured(equal_speeds=True, mass=1.0, share=0.0, equipartition=0.93)
     claims = brownian.brownian_msd(ds)
     assert {claim.kind for claim in claims} == {"reproduction", "identity"}
     assert "equal speeds" in claims[0].claim
     assert judge(claims) == ["source in error", "reproduced", "reproduced", "agrees"]
+
+
+def test_both_engines_are_compared_where_both_have_run_a_scene():
+    events = measured(equal_speeds=True, mass=1.0, share=0.0, equipartition=0.93)
+    heavy = measured(stepped=False)
+    steps = events.assign(stepped=("point", [True]))
+    claims = brownian.brownian_msd(xr.concat([heavy, events, steps], "point"))
+    both = [claim for claim in claims if "by time steps" in claim.claim]
+    assert len(both) == 3 and judge(both) == ["agrees"] * 3
+    assert all(claim.measured.value == 1.0 and "equal speeds" in claim.claim for claim in both)
+    for name in ("equipartition", "measured_friction", "measured_diffusion"):
+        wrong = steps.assign({name: 1.2 * steps[name]})
+        found = judged(brownian.brownian_msd(xr.concat([heavy, events, wrong], "point")))
+        assert [one for text, one in found.items() if "by time steps" in text].count("disagrees") == 1
 
 
 def test_a_friction_that_does_not_exclude_the_bare_radius_is_inconclusive():

@@ -8,7 +8,8 @@ from gaspart.experiments.brownian import figure as brownian
 
 def rows(**values):
     return xr.Dataset(values | {
-        "experiment": ("point", ["brownian_heavy", "brownian_source"]),
+        "equal_speeds": ("point", [False, True]),
+        "stepped": ("point", [False, True]),
         "mass": ("point", [100.0, 1.0]),
         "gas_mass": ("point", [1.0, 1.0]),
         "radius": ("point", [10.0, 10.0]),
@@ -31,11 +32,11 @@ def test_displacements_and_velocities_are_drawn_with_their_deviations(tmp_path):
     first, second = (ds.isel(point=k) for k in (0, 1))
     shows(
         msd, "", "Delta r", column(first, "$M=100\\,m$", "time", "msd", some=True),
-        column(second, "equal speeds", "time", "msd", some=True),
+        column(second, "equal speeds, steps", "time", "msd", some=True),
     )  # fmt: skip
     shows(
         vacf, "", "V(t)", column(first, "$M=100\\,m$", "time", "vacf", some=True),
-        column(second, "equal speeds", "time", "vacf", some=True),
+        column(second, "equal speeds, steps", "time", "vacf", some=True),
     )  # fmt: skip
     relative, absolute = [], []
     for row in (first, second):

@@ -100,6 +100,19 @@ def test_ends_of_paths(made_up):
     assert ratio == pytest.approx(29.0 / 28.5, abs=4 * np.sqrt(2 / 600))
 
 
+def test_both_engines_move_the_sources_sphere_along_one_path():
+    """From one start the paths differ by rounding only, which grows about fifteenfold in 30 units of time: no
+    contact is missed, not even of the huge sphere. Seeds 0 to 5 have 1e-10 to 3e-9 after 60."""
+    scene = gp.Scene.from_file("config/scenes/brownian.yaml")
+    ends = []
+    for engine in (gp.EventDriven(), gp.TimeStepped(time_step=0.05)):
+        simulation = gp.Simulation(scene, engine, seed=3)
+        simulation.advance(duration=60.0)
+        ends.append(simulation.state.positions[0])
+    assert np.linalg.norm(ends[0] - 160.0) > 10.0
+    assert ends[1] == pytest.approx(ends[0], abs=1e-6)
+
+
 def test_what_cannot_be_measured_is_refused(made_up):
     with pytest.raises(gp.SceneError, match="displacements"):
         brownian.brownian_msd([point(displacements=False)], {})

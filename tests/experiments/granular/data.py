@@ -6,8 +6,9 @@ import xarray as xr
 from gaspart import theory
 
 
-def rough(noise=1.0, rate=1.0, ratio=1.0, steady=1.0, seed=1):
-    """Discs of three moments of inertia; rate, ratio and steady ratio are theirs over theory's."""
+def rough(noise=1.0, rate=1.0, ratio=1.0, steady=1.0, exchange=1.0, mixed=1.0, seed=1):
+    """Discs of three moments of inertia; rate, ratio and steady ratio are theirs over theory's; and
+    two gases between rough walls, of the exchange and the final ratio over theory's."""
     rng = np.random.default_rng(seed)
     inertia = np.array([0.1, 0.5, 1.0])
     expected = 3.0 * inertia / (1.0 + inertia) ** 2
@@ -17,6 +18,9 @@ def rough(noise=1.0, rate=1.0, ratio=1.0, steady=1.0, seed=1):
     rotation = rotation + noise * error * rng.standard_normal(s.shape)
     tangential = np.array([-0.5, 0.0, 0.5])
     theoretical = theory.rough_cooling()[:3, 3]
+    wall_inertia, crossings = np.array([0.5, 0.4]), np.tile(np.linspace(0.0, 2.0, 11), (2, 1))
+    pairs = zip(crossings, wall_inertia, strict=True)
+    difference = np.stack([theory.rough_wall_difference(one, q) for one, q in pairs])
     return xr.Dataset({
         "collisions": (("start", "frame"), s),
         "translation": (("start", "frame"), 1.0 - 0.5 * rotation),
@@ -32,6 +36,19 @@ def rough(noise=1.0, rate=1.0, ratio=1.0, steady=1.0, seed=1):
         "tangential": ("cooling", tangential),
         "cooling_inertia": ("cooling", np.full(3, 0.5)),
         "steady_ratio": ("cooling", steady * theoretical),
+        "wall_dimension": ("walls", np.array([2, 3])),
+        "wall_inertia": ("walls", wall_inertia),
+        "wall_time": (("walls", "moment"), crossings),
+        "wall_translation": (("walls", "moment"), 0.5 * (1.0 + difference)),
+        "wall_translation_error": (("walls", "moment"), np.full(crossings.shape, 0.002)),
+        "wall_rotation": (("walls", "moment"), 0.5 * (1.0 - difference)),
+        "wall_rotation_error": (("walls", "moment"), np.full(crossings.shape, 0.002)),
+        "exchange": ("walls", exchange + 0.004 * noise * rng.standard_normal(2)),
+        "exchange_error": ("walls", np.full(2, 0.004)),
+        "exchange_freedom": ("walls", np.full(2, 31)),
+        "wall_ratio": ("walls", mixed + 0.004 * noise * rng.standard_normal(2)),
+        "wall_ratio_error": ("walls", np.full(2, 0.004)),
+        "wall_ratio_freedom": ("walls", np.full(2, 31)),
         "steady_ratio_error": ("cooling", 0.005 * theoretical),
     })  # fmt: skip
 

@@ -26,6 +26,8 @@ def test_a_rate_that_does_not_show_the_cumulant_is_inconclusive():
         ({"rate": 1.2}, "T_tr - T_rot minus"),
         ({"ratio": 1.02}, "T_rot / T_tr of rough discs"),
         ({"steady": 0.85}, "T_rot / T_tr of cooling discs"),
+        ({"exchange": 0.97}, "energy that the first hits turn into spin"),
+        ({"mixed": 1.03}, "T_rot / T_tr along the walls"),
     ],
 )
 def test_wrong_shares_are_found(wrong, beginning):

@@ -8,8 +8,8 @@ from gaspart.experiments.granular import figure as granular
 
 
 def test_temperatures_differences_and_steady_ratios(tmp_path):
-    ds = varied(rough(), "equilibrium_inertia", "cooling_inertia", "inertia")
-    both, difference, ratio = draw(granular.equipartition, ds, tmp_path).axes
+    ds = varied(rough(), "equilibrium_inertia", "cooling_inertia", "inertia", "wall_inertia")
+    both, difference, ratio, walls = draw(granular.equipartition, ds, tmp_path).axes
     temperatures, differences, ratios = [], [], []
     for k in range(ds.sizes["start"]):
         row = ds.isel(start=k)
@@ -30,6 +30,15 @@ def test_temperatures_differences_and_steady_ratios(tmp_path):
     shows(both, "", "T_\\mathrm{tr}", *temperatures)
     shows(difference, "collisions per particle", "minus theory", *differences)
     shows(ratio, "tangential restitution", "steady", *ratios)
+    mixing = []
+    for k, name in enumerate(("discs, $q=0.5$", "spheres, $q=0.4$")):
+        row = ds.isel(walls=k)
+        mixing += [
+            column(row, name, "wall_time", "wall_translation"),
+            column(row, None, "wall_time", "wall_rotation"),
+        ]
+    shows(walls, "rough walls", "parallel", *mixing)
+    obeys(lines(walls)[3], lambda t: 0.5 - 0.5 * theory.rough_wall_difference(t, 0.4))
     obeys(lines(both)[1], lambda s: theory.rough_temperatures(s, 0.1, 1.0)[1])
     obeys(line(ratio, "q=0.5"), lambda x: np.array([theory.rough_ratio(0.5, e) for e in x]))
 

@@ -58,6 +58,37 @@ def test_rough_discs_share_as_theory_says(tmp_path):
     assert total == pytest.approx(np.full(11, total[0]), rel=2e-3)
 
 
+def test_rough_walls_mix_velocity_and_spin_as_theory_says(tmp_path):
+    scene = gp.Scene(
+        gp.Container((4000.0, 10.0002), ("periodic", "wall")),
+        [gp.Species(2048, 0.0001, mass=2.0, temperature=4.0, moment_of_inertia=0.6e-8)],
+        restitution=gp.Restitution(1.0, 1.0),
+    )
+    ds = granular.equipartition(
+        [made(tmp_path, "walls", scene, duration=18.0, samples=18)], {"steady_from": 1.0}
+    )
+    row = ds.isel(walls=0)
+    assert float(row["wall_inertia"]) == pytest.approx(0.3)
+    assert row["wall_time"][-1] == pytest.approx(18.0 * np.sqrt(2.0) / 10.0)
+    assert row["wall_translation"][0] == 1.0 and row["wall_rotation"][0] == pytest.approx(0.0, abs=1e-6)
+    total = row["wall_translation"] + row["wall_rotation"]
+    assert total.values == pytest.approx(np.ones(19), abs=0.01)  # hardly any collisions
+    for name in ("exchange", "wall_ratio"):
+        assert abs(row[name] - 1.0) < 4.0 * row[f"{name}_error"] < 0.2, name
+
+
+def test_between_rough_walls_the_start_must_be_maxwellian(tmp_path):
+    scene = gp.Scene(
+        gp.Container((40.0, 10.0), ("periodic", "wall")),
+        [gp.Species(2, 0.0001, speed=1.0)],
+        restitution=gp.Restitution(1.0, 1.0),
+    )
+    with pytest.raises(gp.SceneError, match="temperature"):
+        granular.equipartition(
+            [made(tmp_path, "walls", scene, duration=1.0, samples=1)], {"steady_from": 1.0}
+        )
+
+
 def test_an_inelastic_gas_cools_as_haff_says_and_the_number_variance_is_counted(tmp_path):
     points = [
         made(tmp_path, "haff", gas(restitution=gp.Restitution(0.8)), duration=200.0, samples=16),

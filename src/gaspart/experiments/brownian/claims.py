@@ -16,16 +16,13 @@ NOT_MAXWELLS = (
 
 def _name(row: xr.Dataset) -> str:
     """The particle that a row describes."""
-    gas = ", gas of equal speeds" if _is_source(row) else ""
-    return f"mass {float(row['mass'] / row['gas_mass']):g} times a gas particle's{gas}"
-
-
-def _is_source(row: xr.Dataset) -> bool:
-    return str(row["experiment"].values) == "brownian_source"
+    gas = ", gas of equal speeds" if row["equal_speeds"] else ""
+    steps = "time-stepped, " if row["stepped"] else ""
+    return f"{steps}mass {float(row['mass'] / row['gas_mass']):g} times a gas particle's{gas}"
 
 
 def _kind(row: xr.Dataset) -> str:
-    return "reproduction" if _is_source(row) else "test"
+    return "reproduction" if row["equal_speeds"] else "test"
 
 
 def brownian_paths(ds: xr.Dataset) -> list[Claim]:
@@ -44,8 +41,36 @@ def brownian_paths(ds: xr.Dataset) -> list[Claim]:
 
 
 def brownian_msd(ds: xr.Dataset) -> list[Claim]:
-    """Equipartition, friction and diffusion of every point, and the mean free path that theory requires."""
-    return [claim for row in rows(ds, "point") for claim in _coefficients(row)]
+    """Equipartition, friction and diffusion of every point, and the mean free path that theory requires; the
+    same numbers by both engines where both have run a scene."""
+    claims = [claim for row in rows(ds, "point") for claim in _coefficients(row)]
+    steps, events = (rows(ds.isel(point=ds["stepped"].values == one), "point") for one in (True, False))
+    for row in steps:
+        for other in events:
+            if all(row[name] == other[name] for name in ("equal_speeds", "mass", "friction")):
+                claims += _both_engines(row, other)
+    return claims
+
+
+def _both_engines(row: xr.Dataset, other: xr.Dataset) -> list[Claim]:
+    """What time steps give of a scene over what events do, from independent runs."""
+    claims = []
+    for text, key, required in (
+        ("energy of the large particle", "equipartition", 0.04),
+        ("friction rate", "measured_friction", 0.04),
+        ("diffusion coefficient", "measured_diffusion", 0.08),
+    ):
+        claims.append(
+            Claim(
+                claim=f"{text} by time steps over that by events, {_name(other)}",
+                measured=Estimate.of(row, key) / Estimate.of(other, key),
+                expected=1.0,
+                required=required,
+                source="both engines solve the same equations of motion",
+                fails_if="contacts that time steps miss, count twice, or resolve along a wrong normal",
+            )
+        )
+    return claims
 
 
 def _coefficients(row: xr.Dataset) -> list[Claim]:
@@ -68,7 +93,7 @@ def _coefficients(row: xr.Dataset) -> list[Claim]:
                 required=required * expected,
                 source=LANGEVIN,
                 alternative=None if other is None else other * expected,
-                why=NOT_MAXWELLS if _is_source(row) else "",
+                why=NOT_MAXWELLS if row["equal_speeds"] else "",
                 fails_if=fails_if,
             )
         )

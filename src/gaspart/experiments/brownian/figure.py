@@ -50,8 +50,8 @@ def brownian_msd(ds: xr.Dataset) -> Figure:
         style.level(residual, 0.0)
     for kind in range(ds.sizes["point"]):
         row = ds.isel(point=kind)
-        source = str(row["experiment"].values) == "brownian_source"
-        label = f"$M={float(row['mass'] / row['gas_mass']):g}\\,m$" + (", equal speeds" if source else "")
+        label = f"$M={float(row['mass'] / row['gas_mass']):g}\\,m$"
+        label += ", equal speeds" * bool(row["equal_speeds"]) + ", steps" * bool(row["stepped"])
         time, msd, vacf = (row[name].values for name in ("time", "msd", "vacf"))
         shown = np.unique(np.round(np.geomspace(1, np.isfinite(time).sum() - 1, 16)).astype(int))
         curve = theory.langevin_msd(time[shown], 1.0 / 6.0, 1.0)

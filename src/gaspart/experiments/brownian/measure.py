@@ -127,7 +127,7 @@ def brownian_msd(points: list[grid.Point], settings: dict) -> xr.Dataset:
     The constant part is subtracted from correlation and msd; what follows is brought to an infinite gas:
     `equipartition` is M <V^2> / (3 k_B T (1 - s)), `measured_friction` (1 - s) times the decay rate, the
     slope of ln C until FRICTION_TO, `measured_diffusion` D times the msd at DIFFUSION_AT over that of the
-    Langevin equation.
+    Langevin equation. `equal_speeds` and `stepped`: of the gas at the start, and by the time-stepped engine.
 
     Dimensions point, lag: `time` in 1 / g', `vacf` in (1 - s) k_B T / M, `msd` in 6 (1 - s) k_B T / (M g'^2).
     Errors: standard errors over replicas (bootstrap for the numbers).
@@ -180,9 +180,15 @@ def _statistics(point: grid.Point) -> dict:
         "vacf_error": vacf_error,
         **{name: one.value for name, one in estimates.items()},
         **{f"{name}_error": one.error for name, one in estimates.items()},
+        **{f"{name}_freedom": one.freedom for name, one in estimates.items()},
     }
 
 
 def _facts(point: grid.Point, setting: Setting) -> dict:
     """The columns of every row."""
-    return {"experiment": point.experiment, "replicas": point.replicas, **vars(setting)}
+    return {
+        "equal_speeds": grid.scene(point).species[0].speed is not None,
+        "stepped": point.settings.get("engine") == "step",
+        "replicas": point.replicas,
+        **vars(setting),
+    }

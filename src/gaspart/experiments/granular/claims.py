@@ -33,6 +33,8 @@ def equipartition(ds: xr.Dataset) -> list[Claim]:
         claims += _decay(row)
     for row in rows(ds, "cooling"):
         claims.append(_steady(row))
+    for row in rows(ds, "walls"):
+        claims += _at_walls(row)
     return claims
 
 
@@ -78,6 +80,32 @@ def _decay(row: xr.Dataset) -> list[Claim]:
             source=f"{HUTHMANN}; a homogeneous Boltzmann gas stays within 0.012 (direct simulation, "
             "computed)",
             fails_if="a gas that is not dilute, or energies that tend to other shares",
+        ),
+    ]
+
+
+def _at_walls(row: xr.Dataset) -> list[Claim]:
+    """Energy that is exchanged at rough walls only: the share of a hit, and equal shares in the end."""
+    q = float(row["wall_inertia"])
+    which = f"{PARTICLES[int(row['wall_dimension'])]} between rough walls, q = {q:g}"
+    return [
+        Claim(
+            claim=f"energy that the first hits turn into spin over theory's, {which}",
+            measured=Estimate.of(row, "exchange"),
+            expected=1.0,
+            required=0.01,
+            source="Spencer 2022, Eq. 40, without collisions: 4q/(1+q)^2 of the tangential energy at a "
+            "particle's first hit (exact, gaspart.theory.rough_wall_difference)",
+            fails_if="a wrong impulse or torque at walls",
+        ),
+        Claim(
+            claim=f"T_rot / T_tr along the walls in the end over theory's, {which}",
+            measured=Estimate.of(row, "wall_ratio"),
+            expected=1.0,
+            required=0.01,
+            source="the same: 1 within 0.003, equipartition without collisions, as hits at different times "
+            "lose each other's phase",
+            fails_if="hits that are not reversible, or turn velocity and spin by angles that repeat",
         ),
     ]
 

@@ -13,12 +13,14 @@ from gaspart.rendering import style
 
 
 def equipartition(ds: xr.Dataset) -> Figure:
-    """Three panels: both temperatures against collisions, their difference minus theory's, steady ratios."""
-    figure, (upper, middle, lower) = style.new((2.3, 1.2), (2.4,))
+    """Both temperatures against collisions, and their difference minus theory's; steady ratios; the same
+    temperatures of particles that meet rough walls only."""
+    figure, (upper, middle, lower, walls) = style.new((2.3, 1.2), (2.0,), (2.0,))
     _temperatures(upper, ds)
     _differences(middle, ds)
     _ratios(lower, ds)
-    style.letters(upper, middle, lower)
+    _at_walls(walls, ds)
+    style.letters(upper, middle, lower, walls)
     return figure
 
 
@@ -88,6 +90,32 @@ def _ratios(axis: Axes, ds: xr.Dataset) -> None:
     axis.set_xlabel(r"tangential restitution $\epsilon_\mathrm{t}$")
     axis.set_ylabel(r"steady $T_\mathrm{rot}/T_\mathrm{tr}$")
     axis.legend(loc="upper left")
+
+
+def _at_walls(axis: Axes, ds: xr.Dataset) -> None:
+    """T along the walls and T_rot against time, over the former at the start, and theory's."""
+    fine = np.linspace(0.0, float(ds["wall_time"].max()), 200)
+    for kind in range(ds.sizes["walls"]):
+        row = ds.isel(walls=kind)
+        q = float(row["wall_inertia"])
+        label = rf"{PARTICLES[int(row['wall_dimension'])]}, $q={q:g}$"
+        difference = theory.rough_wall_difference(fine, q)
+        for name, hollow, sign in (("translation", False, 1.0), ("rotation", True, -1.0)):
+            axis.plot(fine, 0.5 * (1.0 + sign * difference), color=style.COLOURS[kind], zorder=1)
+            style.points(
+                axis,
+                row["wall_time"],
+                row[f"wall_{name}"],
+                row[f"wall_{name}_error"],
+                kind,
+                hollow=hollow,
+                label=None if hollow else label,
+            )
+    axis.set_xlim(0.0, fine[-1])
+    axis.set_ylim(0.0, 1.05)
+    axis.set_xlabel(r"time $t\,\sqrt{k_\mathrm{B}T/m}/h$ between rough walls")
+    axis.set_ylabel(r"$T_\parallel$ (filled), $T_\mathrm{rot}$ (hollow)")
+    axis.legend(loc="upper right")
 
 
 def cooling(ds: xr.Dataset) -> Figure:

@@ -14,6 +14,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.statistics import block_average, bootstrap, fit_polynomial, mean_of, means_of
+from gaspart.errors import SceneError
 from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
 from gaspart.scene.restitution import Restitution
@@ -22,6 +23,10 @@ from gaspart.trajectory.run import open_trajectory
 
 SETTLED = 3.0
 """Collisions per particle after which an inelastic gas has relaxed from Maxwell's distribution to its own."""
+
+MIXING, MIXED = 0.5, 1.6
+"""Times t sqrt(k_B T / m) / h between rough walls at a distance h, up to which energy passes into spins at a
+rate that depends on the moment of inertia, and from which on the difference is below 1 %."""
 
 
 @dataclass(frozen=True)
@@ -72,15 +77,19 @@ def law(point: grid.Point) -> Restitution:
 def equipartition(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """How the energies of rough discs become equal, that they do, and what they do when contacts dissipate.
 
-    Points whose tangential restitution is below 1 are cooling; the others are in equilibrium if they have an
-    equilibration, and start without spins if not. settings: `steady_from`, see `_cooling`.
+    Points whose container has walls are particles that meet only these. Of the others those whose tangential
+    restitution is below 1 are cooling, and the rest in equilibrium if they have an equilibration; without,
+    they start without spins. settings: `steady_from`, see `_cooling`.
 
     Returns, over `start` and `frame`: collisions, translation, rotation, with errors; over `start`: inertia q
     = I / (m R^2), rate and its error, of T_tr - T_rot's decay per collision of a particle at the start. Over
     `equilibrium`: equilibrium_inertia, equilibrium_ratio T_rot / T_tr and its error. Over `cooling` and
     `step`: cooling_collisions, cooling_ratio; over `cooling`: tangential, cooling_inertia, steady_ratio and
-    its error.
+    its error. Over `walls` and `moment`: wall_time, wall_translation, wall_rotation, with errors; over
+    `walls`: wall_dimension, wall_inertia, exchange and wall_ratio (see `_walls`) and their errors.
     """
+    between = [point for point in points if not all(grid.scene(point).container.periodic)]
+    points = [point for point in points if point not in between]
     rough = [point for point in points if law(point).tangential == 1.0]
     still = [point for point in rough if grid.schedule(point).equilibration_frames]
     cooled = [_cooling(point, settings["steady_from"]) for point in points if point not in rough]
@@ -88,6 +97,7 @@ def equipartition(points: list[grid.Point], settings: dict) -> xr.Dataset:
         from_rows("start", [_start(point) for point in rough if point not in still], ("frame",), units={}),
         from_rows("equilibrium", [_equilibrium(point) for point in still], units={}),
         from_rows("cooling", cooled, ("step",), units={}),
+        from_rows("walls", [_walls(point) for point in between], ("moment",), units={}),
     ])  # fmt: skip
 
 
@@ -162,6 +172,53 @@ def _cooling(point: grid.Point, steady_from: float) -> dict:
         "steady_ratio_freedom": steady.freedom,
         "steady_ratio": steady.value,
         "steady_ratio_error": steady.error,
+    }
+
+
+def _walls(point: grid.Point) -> dict:
+    """Of particles between two rough walls, over T_par at the start: T_par = m <v^2> of each direction along
+    the walls, and T_rot = I <w^2> of each spin that a hit changes, which are as many.
+
+    `exchange`: T_rot over theory's, by least squares until MIXING; `wall_ratio`: T_rot / T_par after MIXED,
+    over theory's. wall_time: t sqrt(k_B T / m) / h.
+    """
+    scene = grid.scene(point)
+    kind, along = scene.species[0], np.array(scene.container.periodic)
+    if kind.temperature is None:
+        raise SceneError(
+            f"experiments.{point.experiment}.scene", None, "must state the particles' temperature"
+        )
+    (gap,) = np.array(scene.container.lengths)[~along] - 2.0 * kind.radius
+    samples = []
+    for path in point.replica_paths:
+        with open_trajectory(path) as trajectory:
+            squares = (trajectory["velocities"].values.astype(float) ** 2).sum(axis=1)
+            rotation = 2.0 * trajectory["kinetic_energy"].values - kind.mass * squares.sum(axis=1)
+            time = trajectory["time"].values * np.sqrt(kind.temperature / kind.mass) / gap
+        translation = kind.mass * squares[:, along].sum(axis=1)
+        samples.append(np.stack([translation, rotation]) / translation[0])
+    expected = 0.5 * (1.0 - theory.rough_wall_difference(time, inertia(point)))
+    early, late = time <= MIXING, time >= MIXED
+    weights = expected[early] / (expected[early] @ expected[early])
+    ratio = expected[late].sum() / (1.0 - expected[late]).sum()
+    estimates = {
+        "exchange": bootstrap(lambda chosen: weights @ chosen.mean(axis=0)[1, early], np.array(samples)),
+        "wall_ratio": bootstrap(
+            lambda chosen: np.divide(*chosen[:, ::-1, late].mean(axis=(0, 2))) / ratio, np.array(samples)
+        ),
+    }
+    (translation, rotation), (translation_error, rotation_error) = means_of(samples)
+    return {
+        "wall_dimension": scene.dimension,
+        "wall_inertia": inertia(point),
+        "wall_time": time,
+        "wall_translation": translation,
+        "wall_translation_error": translation_error,
+        "wall_rotation": rotation,
+        "wall_rotation_error": rotation_error,
+        **{name: one.value for name, one in estimates.items()},
+        **{f"{name}_error": one.error for name, one in estimates.items()},
+        **{f"{name}_freedom": one.freedom for name, one in estimates.items()},
     }
 
 
