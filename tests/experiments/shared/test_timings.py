@@ -56,6 +56,13 @@ def test_penalty_of_the_finest_boxes_where_the_time_falls_throughout():
     assert timings.penalty(costs(np.geomspace(0.5, 8.0, 6)), 8.0)[0] == 1.0
 
 
+def test_boxes_of_a_penalty_cost_nothing_rather_than_less():
+    """The time falls faster at the finest partitions than one over their number, as by a disturbance."""
+    made = costs(np.geomspace(0.5, 8.0, 8))
+    made["seconds"][-2:] *= 0.9
+    assert timings.penalty(made, 4.0)[0] < float(made.seconds[-3] / made.seconds[-1]) * 0.97
+
+
 def test_the_uncertainty_of_a_penalty_is_its_scatter():
     """Of 300 scans with noise of which the errors know."""
     boxes = np.geomspace(1.0, 256.0, 12)
