@@ -141,18 +141,19 @@ def penalty(costs: xr.Dataset, boxes_per_body: float) -> tuple[float, float]:
     NaN beyond the partitions timed.
 
     Both by a + b / boxes + c boxes, fitted to the times near the least one, so that no single disturbed
-    timing decides; without b or c where it would be negative, which no work can cost.
+    timing decides; none of the three is negative, as no work costs less than nothing.
     """
+    from scipy.optimize import nnls
+
     boxes, seconds, error = (costs[name].values for name in ("boxes_per_body", "seconds", "seconds_error"))
     if not boxes.min() <= boxes_per_body <= boxes.max():
         return math.nan, math.nan
     near = _near(seconds)
     fine = np.append(boxes_per_body, np.geomspace(boxes.min(), boxes.max(), 1001))
     at, curve = (np.stack([np.ones(x.size), 1.0 / x, x], axis=1) for x in (boxes[near], fine))
-    fit = weights(seconds[near], error[near], *at.T)
-    costly = fit.values * [0.0, 1.0, 1.0] >= 0.0
-    if not costly.all():
-        fit, curve = weights(seconds[near], error[near], *at[:, costly].T), curve[:, costly]
+    spread = np.hypot(error, SYSTEMATIC * seconds)[near]
+    costly = nnls(at / spread[:, None], seconds[near] / spread)[0] > 0.0
+    fit, curve = weights(seconds[near], error[near], *at[:, costly].T), curve[:, costly]
     given, least = curve[0], curve[np.argmin(curve @ fit.values)]
     ratio = given @ fit.values / (least @ fit.values)
     gradient = given / (given @ fit.values) - least / (least @ fit.values)  # of ln ratio
