@@ -134,6 +134,17 @@ def test_boxes_per_body_are_never_smaller_than_a_diameter():
     assert grid.boxes_per_side(1e-6, 10, 0.5, (10.0, 10.0)) == (1, 1)
 
 
+def test_a_scan_is_timed_beside_the_same_partitions_without_a_key_of_the_engine():
+    steps = {"engine": "step", "time_step": 0.01, "scan_boxes_per_side": [3, 6], "near_boxes": True}
+    recipe = grid.recipe(only(point=steps | {"without": ["near_boxes"]}, job="measure_cost"))
+    beside = recipe["rival"]
+    assert beside["scene"] == recipe["scene"]
+    assert [engine["near_boxes"] for engine in recipe["engines"] + beside["engines"]] == [True] * 2 + [
+        False
+    ] * 2
+    assert [engine["boxes_per_side"] for engine in recipe["engines"] + beside["engines"]] == [3, 6, 3, 6]
+
+
 def test_a_recipe_is_plain_and_makes_the_same_scene():
     point = only(point={"replicas": 2})
     recipe = grid.recipe(point)

@@ -37,12 +37,34 @@ def test_one_box_holds_all_pairs():
     assert partition.expected_box_visits(1, 3, 50.0, 0.5) == 1.0
 
 
-def test_wide_reach():
-    rng = np.random.default_rng(2)
-    width, reach = 1.0, 0.3
-    low = np.floor(rng.random((20000, 3)) * width - reach)
-    assert partition.boxes_in_reach(width, reach, 3) == pytest.approx(1.6**3)
-    assert low.min() == -1.0  # the cube around a point near the face meets the box beyond it
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("reach", [0.2, 0.9])
+def test_boxes_in_reach(dimension, reach):
+    """Counted for random points of a box, of it and its neighbours."""
+    places = np.random.default_rng(2).random((20000, dimension))
+    beyond = np.stack([places, 0.0 * places, 1.0 - places], axis=-1) ** 2  # to the box below, in it, above
+    squares = beyond[:, 0]
+    for k in range(1, dimension):
+        squares = (squares[..., None] + beyond[:, k].reshape(20000, *[1] * k, 3)).reshape(
+            20000, *[3] * (k + 1)
+        )
+    within = (squares.reshape(20000, -1) <= reach**2).sum(axis=1)
+    error = within.std() / np.sqrt(20000)
+    assert within.mean() == pytest.approx(
+        partition.boxes_in_reach(2.0, 2.0 * reach, dimension), abs=4.0 * error
+    )
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("width", [1.0, 2.5])
+def test_share_of_contacts_in_a_box(dimension, width):
+    """Counted for pairs in contact in random directions, the first one at random places of a box."""
+    rng = np.random.default_rng(3)
+    places, directions = rng.random((20000, dimension)) * width, rng.normal(size=(20000, dimension))
+    others = places + directions / np.linalg.norm(directions, axis=1, keepdims=True)
+    share = ((others >= 0.0) & (others < width)).all(axis=1).mean()
+    expected = partition.share_of_contacts_in_a_box(width, 1.0, dimension)
+    assert share == pytest.approx(expected, abs=4.0 * np.sqrt(expected / 20000))
 
 
 def test_touched_boxes_do_not_suffice():

@@ -104,12 +104,13 @@ def engines(point: Point) -> list:
 
     Raises SceneError.
     """
-    own, settings = engine(point), point.settings
+    settings = point.settings
     given = [key for key in SCANS if key in settings]
     if not given:
-        return [own]
+        return [engine(point)]
     where = f"experiments.{point.experiment}.{given[0]}"
     if given == ["scan_time_steps"]:
+        own = engine(point)
         if own.name != "step":
             raise SceneError(where, settings[given[0]], "has no meaning with engine: event")
         return [replace(own, time_step=step) for step in settings[given[0]]]
@@ -120,6 +121,7 @@ def engines(point: Point) -> list:
     partitions = settings[given[0]]
     if given[0] == "scan_boxes_per_body":
         partitions = [boxes_per_side(per_body, *extents(point)) for per_body in partitions]
+    own = engine(replace(point, settings={**settings, "boxes_per_side": 1}))
     return [replace(own, boxes_per_side=partition) for partition in dict.fromkeys(partitions)]
 
 
@@ -181,7 +183,7 @@ def recipe(point: Point) -> dict:
         return {
             **made,
             **recording,
-            "engines": [engine_to_dict(chosen) for chosen in engines(point)],
+            "engines": _engines_to_dicts(point),
             "equilibration": times.equilibration,
             "stretch": times.sample_interval,
             "repeats": times.samples,
@@ -210,12 +212,19 @@ def recipe(point: Point) -> dict:
 
 
 def rival(point: Point) -> dict | None:
-    """The scene that is timed in turn with a point's own, which lacks its keys `without`; None if it has
-    none."""
+    """The scene and the engines that are timed in turn with a point's own, which lack its keys `without`;
+    None if it has none."""
     if "without" not in point.settings:
         return None
     left = {key: value for key, value in point.settings.items() if key not in point.settings["without"]}
-    return scene(replace(point, settings=left)).to_dict()
+    beside = replace(point, settings=left)
+    return {"scene": scene(beside).to_dict(), "engines": _engines_to_dicts(beside)}
+
+
+def _engines_to_dicts(point: Point) -> list[dict]:
+    from gaspart.engines import engine_to_dict
+
+    return [engine_to_dict(chosen) for chosen in engines(point)]
 
 
 def _unit_of_time(point: Point, unit: str) -> float:

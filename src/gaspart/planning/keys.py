@@ -189,7 +189,7 @@ RUN: dict[str, Kind] = {
     "record_events": flag("`measure_cost`, engine `event`: record all events", default=False),
     "without": described(
         {"type": "array", "items": TEXT, "minItems": 1},
-        "`measure_cost`: keys that a second scene lacks, which is timed in turn with the point's own",
+        "`measure_cost`: keys that a second scene and engine lack, which are timed in turn with the point's",
         default=None,
     ),
 }

@@ -71,8 +71,26 @@ def expected_box_visits(per_side: int, dimension: int, side: float, radius: floa
 
 @checked
 def boxes_in_reach(width: Numbers, reach: Numbers, dimension: int) -> Values:
-    """Mean number of boxes of side `width` that a cube of half side `reach` around a random point meets."""
-    return (1.0 + 2.0 * np.asarray(reach) / width) ** checked_dimension(dimension)
+    """Mean number of boxes of side `width` that lie within `reach` of a random point, its own box included.
+
+    The volume within `reach` of a box, over that of the box (Steiner's formula).
+    """
+    t = np.asarray(reach) / width
+    if checked_dimension(dimension) == 2:
+        return 1.0 + 4.0 * t + math.pi * t**2
+    return 1.0 + 6.0 * t + 3.0 * math.pi * t**2 + 4.0 / 3.0 * math.pi * t**3
+
+
+def share_of_contacts_in_a_box(width: Numbers, diameter: Numbers, dimension: int) -> Values:
+    """Chance that two particles in contact lie in the same box of side `width`, at least a diameter.
+
+    The mean over the directions n of the contact of prod(1 - |n_k| diameter / width): with a place that is
+    uniform in the box.
+    """
+    s = np.asarray(diameter) / width
+    if checked_dimension(dimension) == 2:
+        return 1.0 - 4.0 * s / math.pi + s**2 / math.pi
+    return 1.0 - 1.5 * s + 2.0 * s**2 / math.pi - s**3 / (4.0 * math.pi)
 
 
 def ideal_boxes_per_body(test_cost: Numbers, box_cost: Numbers, dimension: int) -> Values:

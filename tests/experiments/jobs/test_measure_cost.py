@@ -73,6 +73,18 @@ def test_searches_have_the_same_events():
     assert tests[0] > tests[1] > tests[2]
 
 
+def test_a_rival_is_timed_with_engines_of_its_own():
+    """The same gas, searched in all boxes instead of those within reach: from the same state."""
+    near = [TimeStepped(0.01, boxes_per_side=n, passes=1, near_boxes=True) for n in (4, 8)]
+    wide = [TimeStepped(0.01, boxes_per_side=n, passes=1) for n in (4, 8)]
+    run = measure_cost(GAS, near, (1, 2), 0.05, 0.1, 2, rival=(GAS, wide))
+    assert run.seconds.shape == (4, 2)
+    assert run.boxes_per_side.values.tolist() == [4, 8, 4, 8]
+    assert len(set(run.collisions.values.tolist())) == 1
+    assert (run.box_visits.values[:2] < 0.3 * run.box_visits.values[2:]).all()
+    assert run.pair_tests.values[2:].tolist() == measured(wide, equilibration=0.05).pair_tests.values.tolist()
+
+
 def test_refuses_boxes_below_a_diameter():
     with pytest.raises(SceneError, match="boxes_per_side"):
         measured([TimeStepped(0.01, boxes_per_side=101)])

@@ -1,5 +1,6 @@
 """Jobs of a machine whose every cost is known, for the tests of the scaling figures."""
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from gaspart.yaml_text import read_yaml
 
 ROOT = Path(__file__).parents[3]
 BODY, TEST, BOX, LIST = 30e-9, 12e-9, 0.3e-9, 2e-9  # s per body and step (with a list), pair test, box
+NEAR, CONTACTS = 20e-9, 10  # s per body and step to leave out boxes; contacts in a timing
 CONFIG = read_yaml(ROOT / "config/config.yaml")
 SCALING = ("naive_scaling", "box_count", "ideal_boxes", "linear_scaling", "event_scaling")
 
@@ -33,8 +35,10 @@ def points(figure, folder):
 
 def job(point):
     """What `measure_cost` would write, with 1 % noise of the clock."""
+    if "without" in point.settings:
+        return _in_turn(point)
     count, radius, lengths = grid.extents(point)
-    dimension, side = point.settings["dimension"], lengths[0]
+    dimension, side = len(lengths), lengths[0]
     chosen = grid.engines(point)
     sides = np.array([_side(engine) for engine in chosen])
     gas = {"dimension": dimension, "side": side, "radius": radius}
@@ -47,7 +51,7 @@ def job(point):
     else:
         counted = _events(count, sides, getattr(chosen[0], "search", ""), gas)
         seconds = TEST * counted["pair_tests"] + 4e-7 * counted["collisions"]
-    rng = np.random.default_rng(count)
+    rng = np.random.default_rng((count, *point.name.encode()))
     noise = 1.0 + 0.01 * rng.standard_normal((sides.size, 5))
     return xr.Dataset(
         {
@@ -69,6 +73,21 @@ def job(point):
     )
 
 
+def _in_turn(point):
+    """A gas and, in turn, the same one: with a search of near boxes only, or without a huge sphere."""
+    alone = {key: value for key, value in point.settings.items() if key != "without"}
+    own, beside = (job(replace(point, settings=alone, name=name)) for name in (point.name, "beside"))
+    count = own.attrs["count"]
+    if "near_boxes" in point.settings:
+        reached = partition.boxes_in_reach(own.side / own.boxes_per_side, 2.0 * own.radius, own.dimension)
+        own["box_visits"] = np.round(5 * count * (1.0 + reached))
+        own["seconds"] = own["seconds"] + 10 * NEAR * count
+    else:
+        beside["pair_tests"] = beside["pair_tests"] + 10 * count
+        beside["seconds"] = beside["seconds"] + 10 * TEST * count
+    return xr.concat([own, beside], "partition", combine_attrs="override")
+
+
 def _side(engine):
     given = engine.boxes_per_side or (0 if engine.name == "step" else 1)
     return given[0] if isinstance(given, tuple) else given
@@ -81,7 +100,7 @@ def _steps(count, sides, dimension, side, radius):
     zeros = np.zeros(len(sides), dtype=int)
     return {
         "steps": zeros + 10,
-        "collisions": zeros,
+        "collisions": zeros + CONTACTS,
         "wall_hits": zeros,
         "crossings": zeros,
         "pair_tests": np.round(10 * np.array(tests)).astype(int),

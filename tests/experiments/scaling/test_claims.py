@@ -10,8 +10,18 @@ from gaspart.experiments.scaling import claims as scaling
 from gaspart.experiments.scaling import measure as measured
 
 
-def dataset(figure, folder):
-    return getattr(measured, figure)(points(figure, folder), settings(figure))
+@pytest.fixture(scope="module")
+def dataset(tmp_path_factory):
+    """Returns a copy of a figure's data set."""
+    made = {}
+
+    def of(figure):
+        if figure not in made:
+            folder = tmp_path_factory.mktemp(figure)
+            made[figure] = getattr(measured, figure)(points(figure, folder), settings(figure))
+        return made[figure].copy(deep=True)
+
+    return of
 
 
 def verdicts(figure, ds):
@@ -20,8 +30,8 @@ def verdicts(figure, ds):
 
 
 @pytest.mark.parametrize("figure", SCALING)
-def test_tests_and_identities_hold_on_a_known_machine(figure, tmp_path):
-    claims = getattr(scaling, figure)(dataset(figure, tmp_path))
+def test_tests_and_identities_hold_on_a_known_machine(figure, dataset, tmp_path):
+    claims = getattr(scaling, figure)(dataset(figure))
     wrong = [
         claim.claim
         for claim, verdict in zip(claims, judge(claims), strict=True)
@@ -42,8 +52,8 @@ FALSIFIED = {
 
 
 @pytest.mark.parametrize("figure", SCALING)
-def test_claims_can_fail(figure, tmp_path):
-    ds = dataset(figure, tmp_path)
+def test_claims_can_fail(figure, dataset):
+    ds = dataset(figure)
     changes, text = FALSIFIED[figure]
     for name, value in changes.items():
         ds[name] = ds[name] * 0.0 + value
@@ -51,8 +61,8 @@ def test_claims_can_fail(figure, tmp_path):
     assert found == ["disagrees"]
 
 
-def test_pair_tests_that_go_missing_are_noticed(tmp_path):
-    ds = dataset("box_count", tmp_path)
+def test_pair_tests_that_go_missing_are_noticed(dataset):
+    ds = dataset("box_count")
     ds["pair_tests"] = 0.9 * ds.pair_tests
     assert any(
         "pair tests" in claim
@@ -61,13 +71,45 @@ def test_pair_tests_that_go_missing_are_noticed(tmp_path):
     )
 
 
-def test_quick_round_widths_are_noticed(tmp_path):
-    ds = dataset("box_count", tmp_path)
+def test_quick_round_widths_are_noticed(dataset):
+    ds = dataset("box_count")
     ds["advantage"] = ds.advantage + 0.1
     found = [verdict for claim, verdict in verdicts("box_count", ds).items() if "power of two" in claim]
     assert found == ["disagrees", "disagrees"]
 
 
-def test_no_minimum_is_no_pass(tmp_path):
-    found = verdicts("ideal_boxes", dataset("ideal_boxes", tmp_path))
+@pytest.mark.parametrize(
+    ("name", "value", "text"),
+    [
+        ("near_box_visits", 14.0, "searched within reach"),
+        ("near_missed", 1.0, "difference of the contacts"),
+        ("own_first", 0.1, "end in the own box"),
+        ("huge_tests", 0.0, "pairs tested more"),
+    ],
+)
+def test_false_remarks_are_noticed(name, value, text, dataset):
+    ds = dataset("box_count")
+    ds[name] = ds[name] * 0.0 + value
+    found = [verdict for claim, verdict in verdicts("box_count", ds).items() if text in claim]
+    assert found == ["disagrees"]
+
+
+def test_remarks_about_time_are_decided(dataset):
+    """Leaving out boxes costs more than it saves on the known machine, and a further test little."""
+    found = verdicts("box_count", dataset("box_count"))
+    decided = {
+        claim: verdict for claim, verdict in found.items() if "within reach over" in claim or "huge" in claim
+    }
+    assert list(decided.values()) == ["agrees", "source in error", "agrees", "source in error"]
+
+
+def test_plateaus_are_decided(dataset):
+    ds = dataset("ideal_boxes")
+    ds["plateau_penalty"] = ds["plateau_penalty"] * 0.0 + 1.5
+    found = [verdict for claim, verdict in verdicts("ideal_boxes", ds).items() if "worst N" in claim]
+    assert found == 4 * ["source in error"]
+
+
+def test_no_minimum_is_no_pass(dataset):
+    found = verdicts("ideal_boxes", dataset("ideal_boxes"))
     assert found["ideal number of boxes per particle, N = 1200000, r = 0.1"] == "inconclusive"

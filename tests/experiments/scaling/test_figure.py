@@ -43,7 +43,11 @@ def test_naive_scaling(measure):
 def test_box_count(measure):
     ds, (time, work, widths, sectors) = measure("box_count", "container_side")
     boxes = ds["boxes_per_side"].astype(float) ** 3
-    shows(time, "", "time per particle", timed("measured", boxes, ds, scale=1e9))
+    reached = ds["near_boxes_per_side"].astype(float) ** 3
+    shows(
+        time, "", "time per particle", timed("measured", boxes, ds, scale=1e9),
+        timed("within reach", reached, ds, "near_seconds", 1e9),
+    )  # fmt: skip
     near = (ds["seconds"] <= 3.0 * ds["seconds"].min()).values
     model = ds["body_seconds"] + ds["test_seconds"] * ds["pair_tests"]
     model = model + ds["box_seconds"] * ds["boxes_emptied"]
@@ -52,6 +56,7 @@ def test_box_count(measure):
         work, "number of boxes", "per particle", Points("pair tests", boxes, ds["pair_tests"]),
         Points("boxes searched", boxes, ds["box_visits"]),
         Points("boxes emptied", boxes, ds["boxes_emptied"]),
+        Points("within reach", reached, ds["near_box_visits"]),
     )  # fmt: skip
     for curve, name in zip(
         lines(work), ("expected_tests", "expected_visits", "in_reach", "touched"), strict=True

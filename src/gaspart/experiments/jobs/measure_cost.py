@@ -34,12 +34,12 @@ def measure_cost(
     stretch: float,
     repeats: int,
     record: bool = False,
-    rival: Scene | None = None,
+    rival: tuple[Scene, Sequence[EventDriven | TimeStepped]] | None = None,
 ) -> xr.Dataset:
     """Time `repeats` times, with each of the engines, the same stretch of simulated time of the same gas.
 
-    equilibration, stretch: in the scene's time; record: write down all events, and forget them; rival:
-    another scene, timed in turn with these, by the first engine and without a record: the last partition.
+    equilibration, stretch: in the scene's time; record: write down all events, and forget them; rival: a
+    scene and engines, timed in turn with these and without a record: the last partitions.
     Returns a dataset over ``partition`` (the engines, in their order) and ``repeat``: ``seconds``
     (partition, repeat), processor time of the advance alone (filling the container, setting up and compiling
     are left out); over ``partition``: ``boxes`` in all, ``boxes_per_side`` (of the first axis; both 0 if the
@@ -51,10 +51,10 @@ def measure_cost(
     """
     # By the shortest step: a longer one leaves overlaps, which would count against a shorter one.
     careful = min(engines, key=lambda engine: getattr(engine, "time_step", 0.0))
-    own = scene, _start(scene, careful, seed, equilibration)
-    runs = [(*own, engine, record) for engine in engines]
-    if rival is not None:
-        runs.append((rival, _start(rival, careful, seed, equilibration), engines[0], False))
+    runs = []
+    for made, chosen, recorded in [(scene, engines, record), *([(*rival, False)] if rival else [])]:
+        start = _start(made, careful, seed, equilibration)
+        runs += [(made, start, engine, recorded) for engine in chosen]
     seconds = np.empty((len(runs), repeats))
     counts: list[dict] = [{}] * len(runs)
     for repeat in range(repeats):
@@ -94,7 +94,9 @@ def _start(
     """The state from which everything is timed. No partition or search changes a bit of it."""
     if equilibration <= 0.0:
         return initial_state(scene, seed)
-    quick = EventDriven() if isinstance(engine, EventDriven) else replace(engine, boxes_per_side=None)
+    quick: EventDriven | TimeStepped = EventDriven()
+    if isinstance(engine, TimeStepped):
+        quick = replace(engine, boxes_per_side=None, near_boxes=False)
     simulation = Simulation(scene, quick, seed=seed)
     simulation.advance(duration=equilibration)
     return simulation.state
@@ -130,12 +132,15 @@ def _sides(engine: EventDriven | TimeStepped, dimension: int) -> tuple[int, ...]
 def run(recipe: dict) -> xr.Dataset:
     """`measure_cost` of a point's recipe."""
     return measure_cost(
-        Scene.from_dict(recipe["scene"]),
-        [engine_from_dict(engine) for engine in recipe["engines"]],
+        *_scene_and_engines(recipe),
         seed=tuple(recipe["seeds"][0]),
         equilibration=recipe["equilibration"],
         stretch=recipe["stretch"],
         repeats=recipe["repeats"],
         record=recipe["record"],
-        rival=recipe["rival"] and Scene.from_dict(recipe["rival"]),
+        rival=recipe["rival"] and _scene_and_engines(recipe["rival"]),
     )
+
+
+def _scene_and_engines(recipe: dict) -> tuple[Scene, list[EventDriven | TimeStepped]]:
+    return Scene.from_dict(recipe["scene"]), [engine_from_dict(engine) for engine in recipe["engines"]]

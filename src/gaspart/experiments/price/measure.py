@@ -9,10 +9,9 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.statistics import mean_of
 from gaspart.experiments.price.stripped import instructions
 from gaspart.experiments.shared.rows import from_rows
-from gaspart.experiments.shared.timings import per_event
+from gaspart.experiments.shared.timings import log_ratios, per_event, ratio_of_jobs
 from gaspart.planning import grid
 from gaspart.scene.scene import Scene
 
@@ -48,16 +47,14 @@ def price_of_features(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 def _together(jobs: list[dict]) -> dict:
     """The row of several jobs of one feature; NaN errors for a single one."""
-    ratios = np.array([job["log_ratio"] for job in jobs])
-    error, freedom = (one.error, one.freedom) if len(jobs) > 1 and (one := mean_of(ratios)) else (np.nan,) * 2
-    ratio = float(np.exp(ratios.mean()))
+    ratio = ratio_of_jobs([job["log_ratio"] for job in jobs])
     return {
         "engine": jobs[0]["engine"],
         "feature": jobs[0]["feature"],
         **{name: float(np.mean([job[name] for job in jobs])) for name in ("seconds", *WORK)},
-        "ratio": ratio,
-        "ratio_error": ratio * error,
-        "ratio_freedom": freedom,
+        "ratio": ratio.value,
+        "ratio_error": ratio.error,
+        "ratio_freedom": ratio.freedom,
     }
 
 
@@ -67,12 +64,12 @@ def _row(point: grid.Point) -> dict:
     with xr.open_dataset(point.path) as run:
         costs = per_event(run)
         engine, recorded = run.attrs["engine"], bool(run.attrs["recorded"])
-        beside = np.log(run.seconds.values / costs["events"].values[:, None])
+        log_ratio = float(log_ratios(run, costs["events"].values)[0])
     own = costs.isel(partition=0)
     return {
         "engine": engine,
         "feature": _feature(grid.scene(point), recorded),
-        "log_ratio": float(np.median(beside[0] - beside[-1])),
+        "log_ratio": log_ratio,
         **{name: float(own[name]) for name in ("seconds", *WORK)},
     }
 

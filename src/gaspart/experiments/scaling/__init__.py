@@ -22,6 +22,16 @@ FIGURES = {
             ),
             "what source A found for the largest gas of its figures 5, 6 and 7",
         ),
+        "source_plateaus": listed(
+            record(
+                {
+                    "radius": positive("radius"),
+                    "counts": listed(COUNT, "least and largest number of particles", 2, 2),
+                    "boxes_per_side": count("the ideal number of boxes per side in this range"),
+                }
+            ),
+            "where source A's ideal number of boxes does not depend on the number of particles",
+        ),
     },
     "linear_scaling": {
         "source_figures": listed(

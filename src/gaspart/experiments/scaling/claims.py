@@ -100,7 +100,7 @@ def box_count(ds: xr.Dataset) -> list[Claim]:
         why=OTHER_MACHINE,
         fails_if="the source's number is far from the flat minimum on this machine",
     )
-    return [*claims, *_counts(ds), number, *_round_widths(ds), *_sectors(ds)]
+    return [*claims, *_counts(ds), number, *_round_widths(ds), *_remarks(ds), *_sectors(ds)]
 
 
 def _counts(ds: xr.Dataset) -> list[Claim]:
@@ -142,6 +142,66 @@ def _round_widths(ds: xr.Dataset) -> list[Claim]:
             fails_if="boxes whose width is a power of two make a step faster",
         )
         for power in rows(ds, "power")
+    ]
+
+
+def _remarks(ds: xr.Dataset) -> list[Claim]:
+    """The source's remarks on what makes a step cheaper or dearer, by counted work and by time."""
+    visits = (ds.near_box_visits / ds.near_expected_visits).values
+    return [
+        Claim.within(
+            claim="boxes searched within reach over those expected, the scan's largest deviation",
+            measured=Estimate(visits[np.argmax(np.abs(visits - 1.0))], visits.std(ddof=1)),
+            expected=1.0,
+            half_width=0.03,
+            source="Steiner's formula, gaspart.theory.partition, without the walls' 1 %",
+            fails_if="boxes within reach are left out, or others are searched",
+        ),
+        Claim(
+            claim="largest difference of the contacts found with and without the boxes out of reach",
+            kind="identity",
+            measured=Estimate(ds.near_missed),
+            expected=0.0,
+            required=0.0,
+            source="a box farther than a contact holds no partner",
+            fails_if="a contact is missed",
+        ),
+        Claim.at_most(
+            claim="least time with only the boxes within reach over the least with all neighbouring ones",
+            kind="reproduction",
+            measured=Estimate.of(ds, "near_least"),
+            bound=1.0,
+            required=0.1,
+            source=f"{A}, section 2.3: to search fewer boxes is a possible improvement",
+            why="whether a box is within reach costs more to decide than the box, mostly empty, to look into",
+            fails_if="leaving out boxes costs more than looking into them",
+        ),
+        Claim.at_most(
+            claim="share of searches that can end in the own box if it is searched first, widest boxes",
+            measured=Estimate.of(ds, "own_first"),
+            bound=0.01,
+            required=0.001,
+            source="a search ends early only at a contact, which few particles have in a step",
+            fails_if="the order of the boxes matters for the cost",
+        ),
+        Claim.within(
+            claim="pairs tested more per particle and step with one huge sphere",
+            measured=Estimate.of(ds, "huge_tests"),
+            expected=1.0,
+            half_width=0.01,
+            source=f"{A}, section 4.2: each particle is tested against it",
+            fails_if="it is kept in the boxes, which would have to be as wide as it is",
+        ),
+        Claim.at_most(
+            claim="time per step with one huge sphere among 10 000 over that without",
+            kind="reproduction",
+            measured=Estimate.of(ds, "huge_ratio"),
+            bound=1.05,
+            required=0.05,
+            source=f"{A}, section 4.2: a negligible effect",
+            why=OTHER_MACHINE,
+            fails_if="a further test per particle costs more than a twentieth of a step",
+        ),
     ]
 
 
@@ -209,6 +269,20 @@ def ideal_boxes(ds: xr.Dataset) -> list[Claim]:
     ]
     for number, source in enumerate(rows(ds, "source"), start=5):
         claims += _source_numbers(source, f"{A}, figure {number}")
+    claims += [
+        Claim.at_most(
+            claim=f"time with {int(part.plateau_boxes)} boxes over the least, the worst N from "
+            f"{int(part.plateau_low)} to {int(part.plateau_high)}, r = {float(part.plateau_radius):g}",
+            kind="reproduction",
+            measured=Estimate.of(part, "plateau_penalty"),
+            bound=1.05,
+            required=0.05,
+            source=f"{A}, section 3.4: so many are ideal in all of this range",
+            why=OTHER_MACHINE,
+            fails_if="the ideal number follows N, or is another",
+        )
+        for part in rows(ds, "plateau")
+    ]
     return claims
 
 

@@ -53,6 +53,10 @@ def box_count(ds: xr.Dataset) -> Figure:
 def _scan_time(axis: Axes, ds: xr.Dataset, boxes: np.ndarray) -> None:
     model = ds.body_seconds + ds.test_seconds * ds.pair_tests + ds.box_seconds * ds.boxes_emptied
     style.points(axis, boxes, ds.seconds * _NS, ds.seconds_error * _NS, color=style.DATA, label="measured")
+    style.points(
+        axis, ds.near_boxes_per_side.values.astype(float) ** 3, ds.near_seconds * _NS,
+        ds.near_seconds_error * _NS, kind=1, hollow=True, label="boxes within reach",
+    )  # fmt: skip
     near = (ds.seconds <= 3.0 * ds.seconds.min()).values
     axis.plot(
         boxes[near], (model * _NS).values[near], color=style.REFERENCE, label="$a + b$ tests $+ c$ boxes"
@@ -77,7 +81,11 @@ def _scan_work(axis: Axes, ds: xr.Dataset, boxes: np.ndarray) -> None:
         for kind, (name, label) in enumerate(kinds.items())
     ]
     colour = style.COLOURS[1]
-    shown += axis.plot(boxes, ds.in_reach, color=colour, linestyle="--", label="boxes within a diameter")
+    reached = ds.near_boxes_per_side.values.astype(float) ** 3
+    shown.append(
+        style.points(axis, reached, ds.near_box_visits, kind=1, hollow=True, label="searched, within reach")
+    )
+    shown += axis.plot(boxes, ds.in_reach, color=colour, linestyle="--", label="boxes within reach")
     shown += axis.plot(boxes, ds.touched, color=colour, linestyle=":", label="boxes touched (F & M)")
     axis.set(yscale="log", ylabel="per particle and step", ylim=(0.01, 1e8))
     axis.legend(handles=shown, loc="upper right")
@@ -133,6 +141,8 @@ def ideal_boxes(ds: xr.Dataset) -> Figure:
         limit = float((of.most * of["count"])[0])
         label = f"boxes of a diameter, $r = {radius:g}$"
         top.axhline(limit, color=style.COLOURS[kind], linestyle=":", lw=0.8, label=label)
+    plateaus = ds.plateau_boxes, ds.plateau_low, ds.plateau_high
+    top.hlines(*plateaus, color=_SOURCE, lw=2.0, label="F & M: plateaus")
     top.set(xscale="log", yscale="log", xlabel="number of particles $N$", ylabel="ideal number of boxes")
     top.set_ylim(2e3, 1e8)
     top.legend(loc="lower right")

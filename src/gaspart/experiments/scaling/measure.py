@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis import statistics
+from gaspart.experiments.scaling.remarks import huge_sphere, near_boxes
 from gaspart.experiments.shared.timings import (
     extrapolate,
     ideal,
@@ -63,8 +64,11 @@ def box_count(points: list[grid.Point], settings: dict) -> xr.Dataset:
     many neighbourhoods are searched at an event (``event_searches``) and at a crossing
     (``crossing_searches``), from pair tests = discs in a neighbourhood x (a + b crossings), and
     ``crossing_exponent``, of the crossings per event in the number of planes between sectors; with errors.
+    Points that are timed in turn `without` something: see `remarks`.
     """
-    runs = [_run(point) for point in points]
+    near = [_run(point) for point in points if point.settings.get("near_boxes")]
+    huge = [_run(point) for point in points if "scene" in point.settings]
+    runs = [_run(point) for point in points if "without" not in point.settings]
     sectors = next(run for run in runs if run.engine == "event")
     stepped = [run for run in runs if run.engine == "step"]
     main = next(run for run in stepped if 1 in run.boxes)
@@ -72,11 +76,6 @@ def box_count(points: list[grid.Point], settings: dict) -> xr.Dataset:
     costs, events = per_body(main), per_event(sectors)
     pair = xr.concat([per_body(run) for run in fine], "container")
     pair = pair.rename(_names("fine", pair))
-    near = (sectors.attrs["count"] - 1.0) * theory.neighbour_share(
-        events.boxes_per_side.values, sectors.dimension, sectors.side, sectors.radius
-    )
-    searches = statistics.fit_polynomial(events.crossings.values, events.pair_tests.values / near)
-    crossings = statistics.fit_power_law(events.boxes_per_side.values - 1.0, events.crossings.values)
     advantage = np.array([_advantage(pair, per_side) for per_side in settings["round_per_side"]])
     slower = penalty(costs, settings["source_boxes_per_body"])
     return xr.merge(
@@ -84,9 +83,12 @@ def box_count(points: list[grid.Point], settings: dict) -> xr.Dataset:
             costs.assign(_expected(main)).rename(partition="scan"),
             pair.rename(partition="fine"),
             events.rename(partition="sector", **_names("sector", events)),
+            near_boxes(near),
         ]
     ).assign(
         **ideal(costs, main.dimension),
+        **huge_sphere(huge),
+        **_crossings(events, sectors),
         count=main.attrs["count"],
         radius=main.radius,
         source_boxes_per_body=settings["source_boxes_per_body"],
@@ -96,27 +98,40 @@ def box_count(points: list[grid.Point], settings: dict) -> xr.Dataset:
         round_per_side=("power", settings["round_per_side"]),
         advantage=("power", advantage[:, 0]),
         advantage_error=("power", advantage[:, 1]),
-        event_searches=searches.values[0],
-        event_searches_error=searches.errors[0],
-        crossing_searches=searches.values[1],
-        crossing_searches_error=searches.errors[1],
-        crossing_exponent=crossings.exponent,
-        crossing_exponent_error=crossings.exponent_error,
     )
+
+
+def _crossings(events: xr.Dataset, run: xr.Dataset) -> dict[str, Any]:
+    """What crossings between sectors cost, for `box_count`."""
+    others = (run.attrs["count"] - 1.0) * theory.neighbour_share(
+        events.boxes_per_side.values, run.dimension, run.side, run.radius
+    )
+    searches = statistics.fit_polynomial(events.crossings.values, events.pair_tests.values / others)
+    crossings = statistics.fit_power_law(events.boxes_per_side.values - 1.0, events.crossings.values)
+    return {
+        "event_searches": searches.values[0],
+        "event_searches_error": searches.errors[0],
+        "crossing_searches": searches.values[1],
+        "crossing_searches_error": searches.errors[1],
+        "crossing_exponent": crossings.exponent,
+        "crossing_exponent_error": crossings.exponent_error,
+    }
 
 
 def ideal_boxes(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """The ideal number of boxes of many gases.
 
     settings: ``rule``, source A's boxes per particle; ``source_numbers``, those that it found for the largest
-    gas of its figures 5, 6 and 7 (each with ``count``, ``radius``, ``boxes_per_body``).
+    gas of its figures 5, 6 and 7 (each with ``count``, ``radius``, ``boxes_per_body``); ``source_plateaus``,
+    the ranges of N in which it found one number of boxes (``radius``, ``counts``, ``boxes_per_side``).
 
     Over (``gas``, ``partition``): costs as in `per_body`, NaN beyond a gas's own partitions. Over ``gas``:
     ``count``, ``radius``, ``most`` (boxes per particle of a diameter's width, the limit), the results of
     `ideal`, and ``penalty``, the time at the rule's number over the least, with error. Over ``source``:
     ``source_number``, and what was found there: ``source_ideal`` with interval, ``source_penalty`` at that
-    number, with error. Over ``series`` (gases of one ``series_radius``): ``exponent`` of the ideal number of
-    boxes in N, where it was found between the partitions timed, with error from the scatter.
+    number, with error. Over ``plateau``: see `_plateau`. Over ``series`` (gases of one ``series_radius``):
+    ``exponent`` of the ideal number of boxes in N, where it was found between the partitions timed, with
+    error from the scatter.
     """
     runs = sorted((_run(point) for point in points), key=lambda run: (-run.radius, run.attrs["count"]))
     costs = [per_body(run) for run in runs]
@@ -128,11 +143,13 @@ def ideal_boxes(points: list[grid.Point], settings: dict) -> xr.Dataset:
     boxes = np.where(found["ideal_interior"], found["ideal"] * count, math.nan)
     trend = [_trend(count[radius == r], boxes[radius == r]) for r in radii]
     sources = [_source(given, costs, found, count, radius) for given in settings["source_numbers"]]
+    plateaus = [_plateau(given, runs, costs) for given in settings["source_plateaus"]]
     slower = [penalty(cost, settings["rule"]) for cost in costs]
     most = [int(run.side / (2.0 * run.radius)) ** run.dimension / run.attrs["count"] for run in runs]
     numbered = [cost.assign_coords(partition=np.arange(cost.sizes["partition"])) for cost in costs]
     by_gas: dict[str, Any] = {name: ("gas", values) for name, values in found.items()}
     by_source: dict[str, Any] = {name: ("source", [one[name] for one in sources]) for name in sources[0]}
+    by_plateau: dict[str, Any] = {name: ("plateau", [one[name] for one in plateaus]) for name in plateaus[0]}
     return xr.concat(numbered, "gas", join="outer").assign(
         **by_gas,
         count=("gas", count),
@@ -141,6 +158,7 @@ def ideal_boxes(points: list[grid.Point], settings: dict) -> xr.Dataset:
         penalty=("gas", [value for value, _ in slower]),
         penalty_error=("gas", [error for _, error in slower]),
         **by_source,
+        **by_plateau,
         rule=settings["rule"],
         series_radius=("series", radii),
         exponent=("series", [value for value, _ in trend]),
@@ -285,6 +303,29 @@ def _source(
         "source_radius": given["radius"],
         "source_penalty": slower[0],
         "source_penalty_error": slower[1],
+    }
+
+
+def _plateau(given: dict, runs: list[xr.Dataset], costs: list[xr.Dataset]) -> dict:
+    """What one of source A's constant numbers of boxes costs, for `ideal_boxes`: ``plateau_radius``,
+    ``plateau_low`` and ``_high`` N, ``plateau_boxes``; of the gases between these the worst, its
+    ``plateau_count``, and ``plateau_penalty``, the time with so many boxes over the least, with error."""
+    low, high = given["counts"]
+    boxes = given["boxes_per_side"] ** 3
+    within = [
+        (*penalty(cost, boxes / run.attrs["count"]), run.attrs["count"])
+        for run, cost in zip(runs, costs, strict=True)
+        if run.radius == given["radius"] and low <= run.attrs["count"] <= high
+    ]
+    ratio, error, count = max(within)
+    return {
+        "plateau_radius": given["radius"],
+        "plateau_low": low,
+        "plateau_high": high,
+        "plateau_boxes": boxes,
+        "plateau_count": count,
+        "plateau_penalty": ratio,
+        "plateau_penalty_error": error,
     }
 
 

@@ -8,12 +8,14 @@ is processor time: the median of the repeats, with that median's standard error.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from gaspart.analysis import statistics
+from gaspart.analysis.estimate import Estimate
 from gaspart.theory.partition import ideal_boxes_per_body
 
 NEAR = 3.0
@@ -107,7 +109,7 @@ def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
     """
     boxes, seconds, error = (costs[name].values for name in ("boxes_per_body", "seconds", "seconds_error"))
     best = statistics.optimum(boxes, seconds, within=NEAR)
-    near = seconds <= max(NEAR * seconds.min(), np.sort(seconds)[min(3, len(seconds) - 1)])
+    near = _near(seconds)
     fit = weights(seconds[near], error[near], 1.0, costs.pair_tests.values[near], boxes[near])
     (body, test, box), errors = fit.values, fit.errors
     model = spread = math.nan
@@ -135,22 +137,46 @@ def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
 
 
 def penalty(costs: xr.Dataset, boxes_per_body: float) -> tuple[float, float]:
-    """Time at a given number of boxes per particle (between partitions timed, by powers) over the least time,
-    and its standard error; NaN beyond the partitions timed."""
-    order = np.argsort(costs.boxes_per_body.values)
-    boxes, seconds, error = (
-        costs[name].values[order] for name in ("boxes_per_body", "seconds", "seconds_error")
-    )
-    after = int(np.searchsorted(boxes, boxes_per_body))
-    if not 0 < after < boxes.size:
+    """Time at a given number of boxes per particle over the least time of the scan, and its standard error;
+    NaN beyond the partitions timed.
+
+    Both by a + b / boxes + c boxes, fitted to the times near the least one, so that no single disturbed
+    timing decides; none of the three is negative, as no work costs less than nothing.
+    """
+    from scipy.optimize import nnls
+
+    boxes, seconds, error = (costs[name].values for name in ("boxes_per_body", "seconds", "seconds_error"))
+    if not boxes.min() <= boxes_per_body <= boxes.max():
         return math.nan, math.nan
-    part = math.log(boxes_per_body / boxes[after - 1]) / math.log(boxes[after] / boxes[after - 1])
-    best = int(np.argmin(seconds))
-    share = np.zeros(boxes.size)  # of each time's logarithm in that of the result
-    share[[after - 1, after]] = 1.0 - part, part
-    share[best] -= 1.0
-    ratio = math.exp(share @ np.log(seconds))
-    return ratio, ratio * math.sqrt(np.sum((share * error / seconds) ** 2))
+    near = _near(seconds)
+    fine = np.append(boxes_per_body, np.geomspace(boxes.min(), boxes.max(), 1001))
+    at, curve = (np.stack([np.ones(x.size), 1.0 / x, x], axis=1) for x in (boxes[near], fine))
+    spread = np.hypot(error, SYSTEMATIC * seconds)[near]
+    costly = nnls(at / spread[:, None], seconds[near] / spread)[0] > 0.0
+    fit, curve = weights(seconds[near], error[near], *at[:, costly].T), curve[:, costly]
+    given, least = curve[0], curve[np.argmin(curve @ fit.values)]
+    ratio = given @ fit.values / (least @ fit.values)
+    gradient = given / (given @ fit.values) - least / (least @ fit.values)  # of ln ratio
+    return ratio, ratio * math.sqrt(gradient @ fit.covariance @ gradient)
+
+
+def _near(seconds: np.ndarray) -> np.ndarray:
+    """Which partitions are fitted: those within `NEAR` times the least time, or the four cheapest."""
+    return seconds <= max(NEAR * seconds.min(), np.sort(seconds)[min(3, len(seconds) - 1)])
+
+
+def log_ratios(run: xr.Dataset, work: np.ndarray) -> np.ndarray:
+    """ln of the time per unit of work (partitions,) of a job's own partitions over those that are timed in
+    turn with them and lack its keys `without` (the second half): the median over repeats."""
+    own, beside = np.split(np.log(run.seconds.values / work[:, None]), 2)
+    return np.median(own - beside, axis=1)
+
+
+def ratio_of_jobs(logs: Sequence[float] | np.ndarray) -> Estimate:
+    """A ratio from its logarithms in several jobs, with their scatter as the uncertainty; NaN for one job."""
+    mean = statistics.mean_of(logs) if len(logs) > 1 else Estimate(float(logs[0]), math.nan, math.nan)
+    ratio = math.exp(mean.value)
+    return Estimate(ratio, ratio * mean.error, mean.freedom)
 
 
 def one_box(runs: list[xr.Dataset]) -> xr.Dataset:
