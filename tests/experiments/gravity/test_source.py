@@ -52,7 +52,7 @@ def test_shares_of_the_light_discs_in_layers_of_the_container(column, monkeypatc
 
 
 def test_only_the_source_s_own_run_is_compared_with_its_numbers(column, tmp_path):
-    settings = SETTINGS | {"blocks": 2, "source_shares": [0.5] * 3, "source_collisions": 100.0}
+    settings = SETTINGS | {"blocks": 2, "source_shares": [0.5] * 3}
     own = replace(column, experiment="column_source")
     made = [run(p, tmp_path) for p in (column, own)]
     ds = measure.separation(made, settings)

@@ -31,17 +31,25 @@ from gaspart.trajectory.run import open_trajectory
 
 
 def barometric(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """Density, temperature and pressure against height of one kind of discs; see `profiles`."""
-    return profiles(points, settings, source.ringing)
+    """Density, temperature and pressure against height of one kind of discs; see `profiles`.
+
+    settings: also `source_collisions` and `source_temperature`, of the source's sample.
+    """
+    made = profiles(points, settings, source.ringing)
+    return made.assign_attrs(
+        source_collisions=settings["source_collisions"], source_temperature=settings["source_temperature"]
+    )
 
 
 def separation(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """The same of heavy and light discs of one size, and the slope of their ratio; see `profiles`.
 
-    settings: also `source_shares`, of the light discs in equal layers of the source's container.
+    settings: also `source_collisions` before the source's sample, and `source_shares` in it, of the light
+    discs in equal layers of the container.
     """
-    layers = len(settings["source_shares"])
-    return profiles(points, settings, lambda point: source.shares(point, layers))
+    shares = settings["source_shares"]
+    made = profiles(points, settings, lambda point: source.shares(point, len(shares)))
+    return made.assign_attrs(source_collisions=settings["source_collisions"], source_shares=shares)
 
 
 def profiles(points: list[grid.Point], settings: dict, of_source: Callable[[grid.Point], dict]) -> xr.Dataset:
@@ -78,8 +86,7 @@ def profiles(points: list[grid.Point], settings: dict, of_source: Callable[[grid
         range_low=("range", low),
         range_high=("range", high),
     )
-    reported = {name: settings[name] for name in settings if name.startswith("source_")}
-    return dataset.assign_attrs(clear=settings["clear"], **reported)
+    return dataset.assign_attrs(clear=settings["clear"])
 
 
 @dataclass(frozen=True)
