@@ -41,6 +41,7 @@ def buoyancy(points: list[grid.Point], settings: dict) -> xr.Dataset:
     fixed = [_fixed(point, settings) for point in held]
     free = [_free(point, settings) for point in own if point not in held]
     of_source = [_free(point, settings) for point in points if point not in own]
+    of_source.sort(key=lambda row: row["mass"])
     place, ratio = field(held[0]), fixed[0]["size_ratio"]
     z = np.linspace(0.0, place.height, 201)
     eta = np.mean([row.pop("fluid")(z) for row in fixed], axis=0)
