@@ -70,3 +70,16 @@ def measurement(error=0.03):
         coords={"height": height},
         attrs={"size_ratio": ratio, "strength": STRENGTH, "top": HEIGHT},
     )
+
+
+def with_source(ds):
+    """The same, and ten of the source's discs if theory is right: the first two at the ceiling, the last at
+    the floor, the one before too near to it for a claim, the others afloat, at the source's density in the
+    middle."""
+    expected = np.array([59.9, 59.0, 55.0, 47.0, 39.0, 31.0, 23.0, 15.0, 5.0, 3.1])
+    low, high = np.full(10, 2.5), np.full(10, 60.5)
+    density = 0.2 + 0.005 * (31.5 - expected) / 8.0
+    source = {"mass": 300.0 * density, "density": density, "height": expected, "expected": expected.copy()}
+    source |= {"height_error": np.full(10, 0.3), "lowest": low, "highest": high}
+    made = ds.assign({f"source_{name}": ("source", value) for name, value in source.items()})
+    return made.assign_attrs(source_density=0.2)

@@ -1,6 +1,6 @@
 import numpy as np
-from experiments.buoyancy.data import measurement
-from experiments.drawn import Points, column, draw, follows, lines, obeys, shows, varied
+from experiments.buoyancy.data import measurement, with_source
+from experiments.drawn import Points, column, draw, follows, line, lines, obeys, shows, varied
 
 from gaspart.experiments.buoyancy.figure import buoyancy
 from gaspart.theory.buoyancy import displaced_area
@@ -33,3 +33,15 @@ def test_forces_radii_and_heights_are_drawn_with_theory(tmp_path):
         mass, middle, spread = (float(ds[f"free_{name}"][n]) for name in ("mass", "height", "spread"))
         follows(one, [mass, mass], [middle - spread, middle + spread])
     assert len(fluctuations) == ds.sizes["free"]
+
+
+def test_the_source_s_discs_have_a_panel_if_there_are_any(tmp_path):
+    ds = varied(with_source(measurement()))
+    *others, own = draw(buoyancy, ds, tmp_path).axes
+    assert len(others) == 3
+    relative = ds["source_density"] / ds.attrs["source_density"]
+    shows(
+        own, "density of the disc", "height",
+        Points("source's discs", relative, ds["source_height"], ds["source_height_error"]),
+    )  # fmt: skip
+    follows(line(own, "theory"), relative, ds["source_expected"])

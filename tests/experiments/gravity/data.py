@@ -83,6 +83,23 @@ def columns(kinds=1, error=0.002):
     )
 
 
+def with_source(ds):
+    """The same, and the source's own column: in its sample and later, both as the dense one."""
+    more = [ds.isel(point=1).assign_coords(experiment=f"column_{name}") for name in ("source", "large")]
+    made = xr.concat([ds, *more], "point")
+    reported = np.linspace(0.2, 0.9, 10)
+    share = reported + 0.01 * np.sqrt(2.0) * np.tile([1.0, -1.0], 5)  # each one standard deviation off
+    only = np.array([np.nan, np.nan, 1.0, np.nan])
+    numbers = {"collisions": 1e7, "ringing": 0.002, "ringing_error": 0.001}
+    return made.assign(
+        {name: ("point", value * only) for name, value in numbers.items()}
+        | {
+            "share": (("point", "layer"), np.outer(only, share)),
+            "share_error": (("point", "layer"), np.outer(only, np.full(10, 0.01))),
+        }
+    ).assign_attrs(source_collisions=1e7, source_temperature=1.0, source_shares=reported.tolist())
+
+
 def capacities():
     """What `measure.gravity.heat_capacity` gives if theory is right, without and with gravity."""
     x = np.array([0.0, 2.0])

@@ -1,6 +1,6 @@
 import pytest
 from claims.data import judged
-from experiments.gravity.data import capacities, columns
+from experiments.gravity.data import capacities, columns, with_source
 
 from gaspart.experiments.gravity import claims as gravity
 
@@ -13,6 +13,41 @@ def test_theory_agrees_with_itself():
     ):
         assert len(found) == count
         assert set(judged(found).values()) == {"agrees"}
+
+
+def source_mixture():
+    """The source's mixture as theory has it: halfway to equilibrium."""
+    ds = with_source(columns(2)).isel(point=[0, 1, 2])
+    ds["exchange_ratio"][2] = 0.6
+    return ds
+
+
+def test_the_source_is_reproduced_by_its_own_numbers():
+    for found, before, count in (
+        (gravity.barometric(with_source(columns())), 9, 4 + 2),
+        (gravity.separation(source_mixture()), 12, 5),
+    ):
+        assert {verdict for claim, verdict in judged(found).items()} == {"agrees", "reproduced"}
+        own = found[before : before + count]
+        assert {claim.kind for claim in own} >= {"reproduction", "identity"}
+
+
+@pytest.mark.parametrize(
+    ("statement", "name", "change", "text", "verdict"),
+    [
+        (gravity.barometric, "collisions", 2e5, "collisions until", "disagrees"),
+        (gravity.barometric, "temperature", 0.05, "over the source's, in its sample", "disagrees"),
+        (gravity.barometric, "ringing", 0.02, "amplitude of the oscillation", "source in error"),
+        (gravity.separation, "share", 0.04, "share of light discs", "disagrees"),
+        (gravity.separation, "exchange_ratio", 0.4, "mixture at the end", "disagrees"),
+        (gravity.separation, "species_temperature_ratio", 0.02, "temperature of the heavy", "disagrees"),
+    ],
+)
+def test_each_claim_about_the_source_can_fail(statement, name, change, text, verdict):
+    ds = with_source(columns()) if statement is gravity.barometric else source_mixture()
+    ds[name] = ds[name] + change
+    found = judged(statement(ds))
+    assert verdict in {verdict for claim, verdict in found.items() if text in claim}
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
+import numpy as np
 from experiments.drawn import Points, draw, follows, line, lines, obeys, shows, varied
-from experiments.gravity.data import capacities, columns
+from experiments.gravity.data import capacities, columns, with_source
 
 from gaspart.experiments.gravity import figure as gravity
 from gaspart.theory.gravity import ideal_heat_capacity, ideal_profile
@@ -26,9 +27,9 @@ def percent(x, ratio, error):
 
 
 def test_profiles_and_the_equation_of_state_of_a_column(tmp_path):
-    ds = varied(columns())
-    density, ratio, temperature, state, deviation = draw(gravity.barometric, ds, tmp_path).axes
-    dilute, dense = (ds.isel(point=n) for n in (0, 1))
+    ds = varied(with_source(columns()))
+    density, ratio, temperature, state, deviation, *panels = draw(gravity.barometric, ds, tmp_path).axes
+    dilute, dense, sample, large = (ds.isel(point=n) for n in range(4))
     shows(density, "", "density", profile(dilute, 0, "dilute"), profile(dense, 0, "dense"))
     theory = (ideal(dilute, 0), dense["hydrostatic"].isel(species=0))
     ratios, temperatures = [], []
@@ -46,11 +47,22 @@ def test_profiles_and_the_equation_of_state_of_a_column(tmp_path):
         deviation, "packing fraction", "ref",
         percent(eta, dense["pressure_ratio"], dense["pressure_ratio_error"]),
     )  # fmt: skip
+    names = ((large, "later"), (sample, "source's sample"))
+    ratios = [(row["height"], row["temperature_ratio"], row["temperature_ratio_error"]) for row, _ in names]
+    shows(panels[0], "", "density", *(profile(row, 0, name) for row, name in names))
+    for drawn, (row, _) in zip(lines(panels[0]), names, strict=True):
+        follows(drawn, row["height"], row["hydrostatic"].isel(species=0) / float(row["mean_density"]))
+    shows(panels[1], "source's column", "T(z)", *(percent(*values) for values in ratios))
+
+
+def test_without_the_source_s_columns_there_are_no_panels_for_them(tmp_path):
+    assert len(draw(gravity.barometric, varied(columns()), tmp_path).axes) == 5
+    assert len(draw(gravity.separation, varied(columns(2)), tmp_path).axes) == 4
 
 
 def test_densities_of_two_species_and_their_ratio(tmp_path):
-    ds = varied(columns(2))
-    *densities, ratio, residual = draw(gravity.separation, ds, tmp_path).axes
+    ds = varied(with_source(columns(2)))
+    *densities, ratio, residual, shares = draw(gravity.separation, ds, tmp_path).axes
     for n, axis in enumerate(densities):
         row = ds.isel(point=n)
         shows(axis, "", "density", profile(row, 0, "light"), profile(row, 1, "heavy"))
@@ -68,6 +80,18 @@ def test_densities_of_two_species_and_their_ratio(tmp_path):
         follows(lines(ratio)[n], row["height"], row["log_ratio_expected"])
     shows(ratio, "", "ln", *logarithms)
     shows(residual, "height", "residual", *residuals)
+    own, top = ds.isel(point=2), float(ds["top"][2])
+    middles = (np.arange(10) + 0.5) * top / 10
+    shows(
+        shares,
+        "source's mixture",
+        "share",
+        Points("the same, here", middles, own["share"], own["share_error"]),
+    )
+    light, heavy = own["hydrostatic"]
+    follows(line(shares, "equilibrium"), own["height"], light / (light + heavy))
+    [steps] = (patch for patch in shares.patches if patch.get_label() == "source's run")
+    assert list(steps.get_data().values) == ds.attrs["source_shares"]
 
 
 def test_heat_capacities_from_slopes_and_from_fluctuations(tmp_path):

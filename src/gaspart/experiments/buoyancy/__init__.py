@@ -10,8 +10,9 @@ FIGURES = {
         "blocks": count("stretches of each replica"),
         "clear": positive("small diameters next to floor and ceiling that are left out, where layers are"),
         "far": positive(
-            "horizontal distance from the large disc's centre beyond which the fluid is undisturbed"
+            "small diameters across from the large disc's edge beyond which the fluid is undisturbed"
         ),
-        "near": positive("radius about that centre within which the missing small discs are counted"),
+        "near": positive("small diameters around that edge within which missing small discs are counted"),
+        "source_density": positive("at which source C expects its large disc to float in the middle"),
     }
 }

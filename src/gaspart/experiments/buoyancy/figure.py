@@ -17,7 +17,9 @@ METHODS = (("force", "force", "from the force"), ("missing", "count", "small dis
 
 def buoyancy(ds: xr.Dataset) -> Figure:
     """Force against density, the radius that counts as displaced, and the heights of free discs."""
-    figure, (top, middle, bottom) = style.new((2.1, 2.1), (2.6,))
+    has_source = "source" in ds.sizes
+    figure, axes = style.new((2.1, 2.1), (2.1,), *([(2.1,)] if has_source else []))
+    top, middle, bottom = axes[:3]
     ratio = ds.attrs["size_ratio"]
     packing = ds["fixed_packing_fraction"].values
     eta = np.linspace(0.0, 1.1 * packing.max(), 200)
@@ -42,7 +44,9 @@ def buoyancy(ds: xr.Dataset) -> Figure:
     middle.set_ylim(-0.15, 1.35)
     middle.set_xlabel(r"packing fraction $\eta$ of the fluid at that height")
     _heights(bottom, ds)
-    style.letters(top, middle, bottom)
+    if has_source:
+        _source(axes[3], ds)
+    style.letters(*axes)
     return figure
 
 
@@ -58,5 +62,19 @@ def _heights(axis: Axes, ds: xr.Dataset) -> None:
     axis.set_xlim(0.0, 1.08 * mass.max())
     axis.set_ylim(0.0, ds.attrs["top"])
     axis.set_xlabel("mass $M/m$ of a free disc")
+    axis.set_ylabel("height $z$ (length)")
+    axis.legend(loc="upper right")
+
+
+def _source(axis: Axes, ds: xr.Dataset) -> None:
+    """The source's discs of many densities: mean heights, with theory, from the floor to the ceiling."""
+    density = ds["source_density"].values / ds.attrs["source_density"]
+    for name in ("lowest", "highest"):
+        style.level(axis, float(ds[f"source_{name}"][0]), ls=":")
+    axis.plot(density, ds["source_expected"], color=style.DATA, label="theory", zorder=2)
+    height, error = (ds[f"source_{name}"].values for name in ("height", "height_error"))
+    style.points(axis, density, height, error, label="source's discs")
+    axis.axvline(1.0, color=style.GREY, ls="--", lw=0.8, zorder=1)
+    axis.set_xlabel("density of the disc over the fluid's mean")
     axis.set_ylabel("height $z$ (length)")
     axis.legend(loc="upper right")

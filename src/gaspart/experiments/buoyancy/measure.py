@@ -13,50 +13,62 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.statistics import jackknife
-from gaspart.experiments.shared.columns import Field, Stretch, field, stretches, temperature
+from gaspart.experiments.shared.columns import Field, Stretch, field, is_source, stretches, temperature
 from gaspart.planning import grid
-from gaspart.theory.buoyancy import displaced_area, insertion_work
+from gaspart.theory.buoyancy import displaced_area
 from gaspart.theory.geometry import body_volume
 from gaspart.theory.gravity import hydrostatic_profiles
 from gaspart.theory.potential import excess_chemical_potential, packing_fraction_at
 
 
 def buoyancy(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """Fixed discs at several heights, and free ones of several masses, in one and the same fluid.
+    """Fixed discs at several heights, and free ones of several masses, in one and the same fluid; and the
+    source's free discs in its own fluid.
 
     settings: `bins` of height; `blocks` of each replica; `clear`, the small diameters next to floor and
-    ceiling where layers are, not hydrostatics; `far`, the distance across from the large disc's centre from
-    which on the fluid is undisturbed; `near`, the radius about that centre within which it is disturbed, and
-    the small discs that are missing are counted.
+    ceiling where layers are, not hydrostatics; `far`, the small diameters across from the large disc's edge
+    from which on the fluid is undisturbed; `near`, those within which it is disturbed, and the small discs
+    that are missing are counted; `source_density`, at which a disc floats in the middle by the source's
+    estimate.
 
-    Dimensions fixed, free, and height of a theoretical curve: the mass displaced in the mean fluid of the
-    fixed points. Heights are those of `columns`; masses are in those of a small disc. `force_radius` is
+    Dimensions fixed, free, source, and height of a theoretical curve: the mass displaced in the mean fluid of
+    the fixed points. Heights are those of `columns`; masses are in those of a small disc. `force_radius` is
     how much larger than the large disc, in small radii, is the disc of undisturbed fluid whose weight is the
     force; `count_radius`, that of as many discs as are missing.
     """
-    large = {point.name: grid.scene(point).bodies[0] for point in points}
-    held = [point for point in points if large[point.name].fixed]
-    loose = [point for point in points if not large[point.name].fixed]
+    own = [point for point in points if not is_source(point.experiment)]
+    held = [point for point in own if grid.scene(point).bodies[0].fixed]
     fixed = [_fixed(point, settings) for point in held]
-    free = [_free(point, settings) for point in loose]
+    free = [_free(point, settings) for point in own if point not in held]
+    of_source = [_free(point, settings) for point in points if point not in own]
+    of_source.sort(key=lambda row: row["mass"])
     place, ratio = field(held[0]), fixed[0]["size_ratio"]
     z = np.linspace(0.0, place.height, 201)
     eta = np.mean([row.pop("fluid")(z) for row in fixed], axis=0)
     return xr.Dataset(
-        {f"fixed_{name}": ("fixed", np.array([row[name] for row in fixed])) for name in fixed[0]}
-        | {f"free_{name}": ("free", np.array([row[name] for row in free])) for name in free[0]}
+        {
+            f"{kind}_{name}": (kind, np.array([row[name] for row in table]))
+            for kind, table in (("fixed", fixed), ("free", free), ("source", of_source))
+            for name in (table[0] if table else ())
+        }
         | {"displaced": ("height", eta * displaced_area(eta, ratio))},
         coords={"height": z},
-        attrs={"size_ratio": ratio, "strength": place.strength, "top": place.height},
+        attrs={
+            "size_ratio": ratio,
+            "strength": place.strength,
+            "top": place.height,
+            "source_density": settings["source_density"],
+        },
     )
 
 
-def _far(place: Field, stretch: Stretch, settings: dict) -> np.ndarray:
-    """(B,) density of the small discs far from the large one, in bins of height."""
+def _far(place: Field, stretch: Stretch, radius: float, settings: dict) -> np.ndarray:
+    """(B,) density of the small discs far from the large one, of this radius, in bins of height."""
     across = np.abs(stretch.positions[..., 0] - stretch.positions[:, :1, 0])
-    far = np.minimum(across, place.width - across) > settings["far"]
+    distance = radius + settings["far"] * place.diameter
+    far = np.minimum(across, place.width - across) > distance
     counts, _ = np.histogram(stretch.heights[far], settings["bins"], (0.0, place.height))
-    area = (place.width - 2.0 * settings["far"]) * place.height / settings["bins"]
+    area = (place.width - 2.0 * distance) * place.height / settings["bins"]
     return counts / (len(stretch.heights) * area)
 
 
@@ -82,7 +94,7 @@ def _fixed(point: grid.Point, settings: dict) -> dict:
     ratio = 2.0 * radius / place.diameter
     unit = place.masses[-1] * place.strength
     force = np.array([s.floor - s.ceiling - place.weight - s.gain for s in found])
-    density = np.array([_far(place, stretch, settings) for stretch in found])
+    density = np.array([_far(place, stretch, radius, settings) for stretch in found])
     temperatures = np.array([temperature(place, stretch) for stretch in found])
     # The undisturbed density where the disc is: its mean over the disc's area.
     z = (np.arange(settings["bins"]) + 0.5) * place.height / settings["bins"]
@@ -93,9 +105,10 @@ def _fixed(point: grid.Point, settings: dict) -> dict:
     # One smooth profile for all blocks, scaled to each one's number: missing discs are counted relative to
     # it.
     fluid = _fluid(place, density.mean(axis=0), temperatures.mean(), settings)
-    across, up = _disc(settings["near"])
+    reach = radius + settings["near"] * place.diameter
+    across, up = _disc(reach)
     undisturbed = float((fluid(height + up) * across).sum() / volume)
-    inside = np.array([_inside(place, s, height, settings["near"]) for s in found])
+    inside = np.array([_inside(place, s, height, reach) for s in found])
     total = density.sum(axis=1) / density.mean(axis=0).sum()
 
     def radius_of(displaced: float, density: np.ndarray) -> float:
@@ -136,17 +149,21 @@ def _inside(place: Field, stretch: Stretch, height: float, radius: float) -> flo
 
 
 def _free(point: grid.Point, settings: dict) -> dict:
-    """Where a free disc is, and where Boltzmann's factor of its weight and the work of insertion wants it."""
+    """Where a free disc is, and where Boltzmann's factor of its weight and the displaced one's wants it."""
     place, found = field(point), stretches(point, settings["blocks"])
     radius, _ = _large(point, place)
     ratio = 2.0 * radius / place.diameter
     mass = grid.scene(point).bodies[0].mass
     heights = np.array([[s.heights[:, 0].mean(), (s.heights[:, 0] ** 2).mean()] for s in found])
     warm = float(np.mean([temperature(place, stretch) for stretch in found]))
-    fluid = _fluid(place, np.mean([_far(place, s, settings) for s in found], axis=0), warm, settings)
+    fluid = _fluid(place, np.mean([_far(place, s, radius, settings) for s in found], axis=0), warm, settings)
     margin = radius - 0.5 * place.diameter
     z = np.linspace(margin, place.height - margin, 2001)
-    exponent = -mass * place.strength * z / warm - insertion_work(fluid(z), ratio)
+    # The forces are integrated, not the work's differences taken: that of the fluid's pressure, by far the
+    # largest, is then exact, and only the edge's relies on scaled-particle theory.
+    eta = fluid(z)
+    force = place.masses[-1] * eta * displaced_area(eta, ratio) - mass
+    exponent = np.cumsum(force) * (z[1] - z[0]) * place.strength / warm
     chance = np.exp(exponent - exponent.max())
     chance /= chance.sum()
     expected = chance @ z
@@ -161,6 +178,8 @@ def _free(point: grid.Point, settings: dict) -> dict:
         "expected": expected,
         "expected_spread": np.sqrt(chance @ (z - expected) ** 2),
         "lowest": margin,
+        "highest": place.height - margin,
+        "density": mass / (np.pi * radius**2),
     }
 
 

@@ -7,10 +7,13 @@ import xarray as xr
 
 from gaspart.claims import Claim, Estimate
 from gaspart.experiments.shared.claims import rows
+from gaspart.experiments.shared.columns import is_source
 from gaspart.theory.gravity import ideal_heat_capacity
 
 HYDROSTATICS = "hydrostatics dP/dz = -m g rho"
 REFERENCE = "virial series to B10 with a linear tail (Clisby and McCoy 2006)"
+EXCHANGE = "exchange of two discs of one size costs (M - m) g dz (exact at any density)"
+C = "notebooks of source C's code (tms-ninja/billiards)"
 DILUTE = 0.01
 """Packing fraction up to which a column counts as an ideal gas."""
 
@@ -19,7 +22,14 @@ def barometric(ds: xr.Dataset) -> list[Claim]:
     """The barometric formula, the equation of state from the weight of the column, and one temperature."""
     claims = []
     for row in rows(ds, "point"):
+        if _is_source(row):
+            claims += _source_column(row)
+            continue
         at, discs = _at(row), row.isel(species=0)
+        if str(row["experiment"].values).endswith("_large"):
+            # Heat takes as long to cross it as a stretch lasts: only what is local is independent in each.
+            claims += [_balance(row, at), *_pressures(row, at)]
+            continue
         claims += [
             _slope(discs, "discs", at, 0.005 if _dilute(row) else 0.01),
             Claim(
@@ -41,25 +51,20 @@ def separation(ds: xr.Dataset) -> list[Claim]:
     claims = []
     for row in rows(ds, "point"):
         at = _at(row)
-        claims += [
+        claims += [_species_temperature(row, at), _balance(row, at)]
+        if _is_source(row):
+            claims += _source_mixture(row)
+            continue
+        claims.append(
             Claim(
                 claim=f"slope of ln(heavy/light) over -(M - m) g / kT, {at}",
                 measured=Estimate.of(row, "exchange_ratio"),
                 expected=1.0,
                 required=0.01 if _dilute(row) else 0.02,
-                source="exchange of two discs of one size costs (M - m) g dz (exact at any density)",
+                source=EXCHANGE,
                 fails_if="species that do not separate according to their weights, or runs too short for it",
-            ),
-            Claim(
-                claim=f"temperature of the heavy over that of the light discs, {at}",
-                measured=Estimate.of(row.isel(species=-1), "species_temperature_ratio"),
-                expected=1.0,
-                required=0.01,
-                source="equipartition",
-                fails_if="species that do not share their energy",
-            ),
-            _balance(row, at),
-        ]
+            )
+        )
         if _dilute(row):
             species = list(zip(rows(row, "species"), ("light", "heavy"), strict=True))
             claims += [_slope(one, name, at, 0.005) for one, name in species]
@@ -69,13 +74,97 @@ def separation(ds: xr.Dataset) -> list[Claim]:
     return claims
 
 
+def _source_column(row: xr.Dataset) -> list[Claim]:
+    """Source C's column where it samples it: the same state, and not yet in equilibrium."""
+    return [
+        _collisions(row),
+        Claim.within(
+            claim="temperature of the source's column over the source's, in its sample",
+            kind="reproduction",
+            measured=Estimate.of(row, "temperature") / row.attrs["source_temperature"],
+            expected=1.0,
+            half_width=0.02,
+            source=f"{C}, gravity: {row.attrs['source_temperature']:g}, fitted to ten bins of speeds, of a "
+            "sample that is shorter than a period of the oscillation",
+            fails_if="a column that falls, bounces or heats up otherwise",
+        ),
+        Claim.at_most(
+            claim="amplitude of the oscillation of the temperature in the source's sample, in per cent",
+            kind="reproduction",
+            measured=Estimate.of(row, "ringing") * 100.0,
+            bound=1.0,
+            required=0.3,
+            source=f"{C}, gravity: takes the column to be in equilibrium after its collisions",
+            why="the oscillation after the fall decays as slowly as sound does over 200 diameters",
+            fails_if="a column that still rings more than the accuracy of the other claims",
+        ),
+        _balance(row, _at(row)),
+    ]
+
+
+def _source_mixture(row: xr.Dataset) -> list[Claim]:
+    """Source C's mixture at the end of its run: as far separated as the source's, and not in equilibrium."""
+    reported = np.array(row.attrs["source_shares"])
+    measured, error = row["share"].values, row["share_error"].values
+    return [
+        _collisions(row),
+        Claim.joint(
+            claim="share of light discs in ten layers, over the source's",
+            kind="reproduction",
+            deviations=(measured - reported) / (np.sqrt(2.0) * error),
+            source=f"{C}, separation, last picture: as many discs in a layer, so the error is as large",
+            fails_if="discs that diffuse through each other, or fall, faster or more slowly",
+        ),
+        Claim.at_most(
+            claim="slope of ln(heavy/light) over -(M - m) g / kT, the source's mixture at the end of its run",
+            kind="reproduction",
+            measured=Estimate.of(row, "exchange_ratio"),
+            bound=0.9,
+            required=0.05,
+            source=f"{EXCHANGE}; {C}, separation, does not state that its run has arrived there",
+            fails_if="a mixture that separates within the source's collisions",
+        ),
+    ]
+
+
+def _collisions(row: xr.Dataset) -> Claim:
+    """Of the source's own run until its end; one run, whose collisions are counted."""
+    reported = row.attrs["source_collisions"]
+    count = float(row["collisions"])
+    return Claim.within(
+        claim=f"collisions until the source's {reported:.1e}, over them",
+        kind="reproduction",
+        measured=Estimate(count, np.sqrt(count)) / reported,
+        expected=1.0,
+        half_width=0.01,
+        source=f"{C}: the time at which its run ends; walls count, and its grid is square",
+        fails_if="an engine that misses contacts or makes up others, or another scene than the source's",
+    )
+
+
+def _species_temperature(row: xr.Dataset, at: str) -> Claim:
+    return Claim(
+        claim=f"temperature of the heavy over that of the light discs, {at}",
+        measured=Estimate.of(row.isel(species=-1), "species_temperature_ratio"),
+        expected=1.0,
+        required=0.01,
+        source="equipartition",
+        fails_if="species that do not share their energy",
+    )
+
+
+def _is_source(row: xr.Dataset) -> bool:
+    return is_source(str(row["experiment"].values))
+
+
 def _dilute(row: xr.Dataset) -> bool:
     return float(row["packing_fraction"].max()) < DILUTE
 
 
 def _at(row: xr.Dataset) -> str:
     density = "dilute" if _dilute(row) else "dense"
-    return f"{density} column (packing fraction to {float(row['packing_fraction'][row['used']].max()):.2g})"
+    highest = float(row["packing_fraction"][row["used"]].max())
+    return f"{density} column of {float(row['count']):g} discs (packing fraction to {highest:.2g})"
 
 
 def _slope(one: xr.Dataset, name: str, at: str, required: float) -> Claim:

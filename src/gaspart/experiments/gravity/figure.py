@@ -16,29 +16,22 @@ KNOWN = 0.1
 
 
 def barometric(ds: xr.Dataset) -> Figure:
-    """Density and temperature against height, and the equation of state from the weight of the column."""
-    figure, axes = style.new((2.4, 1.1, 1.1), (2.6, 1.2))
-    top, ratio, warm, state, off = axes
-    for kind in range(ds.sizes["point"]):
-        row = ds.isel(point=kind)
-        name = str(row["experiment"].values).rpartition("_")[2]
-        height = row["height"].values
-        density, error = (row[key].isel(species=0).values for key in ("density", "density_error"))
-        mean = float(row["mean_density"])
-        seen = error < KNOWN * density
+    """Density and temperature against height, the equation of state from the weight, and the source's
+    column."""
+    of_source = _named(ds, "large", "source")
+    figure, axes = style.new((2.4, 1.1, 1.1), (1.7, 1.0), *([(1.5, 1.1)] if of_source else []))
+    top, ratio, warm, state, off = axes[:5]
+    for kind, row in enumerate(_named(ds, "dilute", "dense")):
         expected = _expected(row, 0)
-        label = f"{name}, {'hydrostatics' if name == 'dense' else 'ideal gas'}"
-        style.points(
-            top, height[seen], density[seen] / mean, error[seen] / mean, kind=kind, hollow=True, label=name
+        name = _name(row)
+        _density(top, row, kind, f"{name}, {'hydrostatics' if kind else 'ideal gas'}", name)
+        density, error = (row[key].isel(species=0).values for key in ("density", "density_error"))
+        seen = (error < KNOWN * density) & row["used"].values
+        _percent(
+            ratio, row["height"].values[seen], (density / expected)[seen], (error / expected)[seen], kind
         )
-        top.plot(height, expected / mean, color=style.COLOURS[kind], label=label, zorder=4)
-        for axis, value, bar in (
-            (ratio, density / expected, error / expected),
-            (warm, row["temperature_ratio"].values, row["temperature_ratio_error"].values),
-        ):
-            shown = seen & row["used"].values if axis is ratio else seen
-            _percent(axis, height[shown], value[shown], bar[shown], kind)
-    dense = ds.isel(point=-1)
+        _temperature(warm, row, kind)
+    [dense] = _named(ds, "dense")
     used = dense["used"].values
     eta = dense["packing_fraction"].values[used]
     line = np.linspace(0.0, 1.05 * eta.max(), 200)
@@ -58,27 +51,38 @@ def barometric(ds: xr.Dataset) -> Figure:
     off.set_ylabel(r"$Z/Z_\mathrm{ref} - 1$ (%)")
     warm.set_xlabel("height $z$ (length)")
     off.set_xlabel(r"packing fraction $\eta$")
-    style.letters(top, ratio, warm, state)
+    if of_source:
+        _source_columns(axes[5], axes[6], of_source)
+    style.letters(top, ratio, warm, state, *axes[5:6])
     return figure
 
 
+def _source_columns(top: Axes, bottom: Axes, columns: list[xr.Dataset]) -> None:
+    """Density and temperature of the source's column, in the source's sample and later."""
+    for kind, row in enumerate(columns, start=2):
+        name = {"large": "later", "source": "source's sample"}[_name(row)]
+        _density(top, row, kind, None if kind > 2 else "hydrostatics", name)
+        _temperature(bottom, row, kind)
+    top.set_ylabel(r"density $\rho/\bar\rho$")
+    top.set_ylim(0.0)
+    top.legend(loc="upper right")
+    bottom.set_ylabel(r"$T(z)/T - 1$ (%)")
+    bottom.set_ylim(-6.0, 12.0)
+    bottom.set_xlabel("height $z$ (length) in the source's column")
+
+
 def separation(ds: xr.Dataset) -> Figure:
-    """Heavy and light discs: densities, dilute and dense, and the ratio of the two."""
-    figure, axes = style.new((2.2,), (2.2,), (2.4, 1.2))
+    """Heavy and light discs: densities, dilute and dense, the ratio of the two, and the source's mixture."""
+    of_source = _named(ds, "source")
+    figure, axes = style.new((2.2,), (2.2,), (2.0, 1.0), *[(1.6,) for _ in of_source])
     names = ("light", "heavy")
-    for n, axis in enumerate(axes[:2]):
-        row = ds.isel(point=n)
-        mean = float(row["mean_density"])
-        height = row["height"].values
+    columns = _named(ds, "dilute", "dense")
+    for n, (axis, row) in enumerate(zip(axes[:2], columns, strict=True)):
         for kind, name in enumerate(names):
-            density, error = (row[key].isel(species=kind).values for key in ("density", "density_error"))
-            seen = error < KNOWN * density
-            where = (axis, height[seen], density[seen] / mean, error[seen] / mean)
-            style.points(*where, kind=kind, hollow=True, label=name)
-            axis.plot(height, _expected(row, kind) / mean, color=style.COLOURS[kind], zorder=4)
+            _density(axis, row, kind, None, name)
             if n:
-                ideal = _ideal(row, kind) / mean
-                axis.plot(height, ideal, color=style.COLOURS[kind], ls=":", label=f"{name} if ideal")
+                ideal = _ideal(row, kind) / float(row["mean_density"])
+                axis.plot(row["height"], ideal, color=style.COLOURS[kind], ls=":", label=f"{name} if ideal")
         axis.set_yscale("log")
         axis.set_ylim(0.01, 20.0)
         axis.set_ylabel(r"density $\rho_i/\bar\rho$")
@@ -86,14 +90,13 @@ def separation(ds: xr.Dataset) -> Figure:
         axis.legend(loc="upper right", ncol=2, columnspacing=0.8)
     style.band(axes[3], -3.0, 3.0)
     style.level(axes[3], 0.0)
-    for n, name in enumerate(("dilute", "dense")):
-        row = ds.isel(point=n)
+    for n, row in enumerate(columns):
         error = row["log_ratio_error"].values
         seen = np.isfinite(error) & (error < 0.3)
         height, value, expected = (
             row[key].values[seen] for key in ("height", "log_ratio", "log_ratio_expected")
         )
-        style.points(axes[2], height, value, error[seen], kind=2 + n, hollow=True, label=name)
+        style.points(axes[2], height, value, error[seen], kind=2 + n, hollow=True, label=_name(row))
         axes[2].plot(height, expected, color=style.COLOURS[2 + n], zorder=4)
         style.points(axes[3], height, (value - expected) / error[seen], kind=2 + n, markersize=2.5)
     axes[2].set_ylabel(r"$\ln(\rho_\mathrm{heavy}/\rho_\mathrm{light})$")
@@ -102,9 +105,58 @@ def separation(ds: xr.Dataset) -> Figure:
     axes[3].set_ylim(-4.5, 4.5)
     axes[3].set_yticks([-3, 0, 3])
     axes[3].set_xlabel("height $z$ (length)")
-    for axis, title in zip(axes, ("(a) dilute", "(b) dense", "(c)"), strict=False):
+    for axis, row in zip(axes[4:], of_source, strict=True):
+        _shares(axis, row)
+    titled = (*axes[:3], *axes[4:])
+    for axis, title in zip(titled, ("(a) dilute", "(b) dense", "(c)", "(d)"), strict=False):
         style.letter(axis, title)
     return figure
+
+
+def _shares(axis: Axes, row: xr.Dataset) -> None:
+    """Of the light discs in the source's mixture: as in its run, as in ours, and in equilibrium."""
+    reported = np.array(row.attrs["source_shares"])
+    edges = np.linspace(0.0, float(row["top"]), len(reported) + 1)
+    axis.stairs(reported, edges, baseline=None, color=style.GREY, label="source's run")
+    middles = 0.5 * (edges[1:] + edges[:-1])
+    style.points(
+        axis, middles, row["share"].values, row["share_error"].values, kind=1, label="the same, here"
+    )
+    light, heavy = row["hydrostatic"].values
+    axis.plot(row["height"], light / (light + heavy), color=style.REFERENCE, label="equilibrium at its $T$")
+    axis.set_ylabel("share of light discs")
+    axis.set_xlabel("height $z$ (length) in the source's mixture")
+    axis.set_ylim(0.0, 1.0)
+    axis.legend(loc="upper left")
+
+
+def _named(ds: xr.Dataset, *names: str) -> list[xr.Dataset]:
+    """The points whose experiments' names end so, in this order; those that there are."""
+    found = {_name(row): row for row in (ds.isel(point=n) for n in range(ds.sizes["point"]))}
+    return [found[name] for name in names if name in found]
+
+
+def _name(row: xr.Dataset) -> str:
+    return str(row["experiment"].values).rpartition("_")[2]
+
+
+def _density(axis: Axes, row: xr.Dataset, kind: int, theory: str | None, label: str) -> None:
+    """Density over its mean against height, with theory; of species number `kind` if there are several."""
+    species = kind if row.sizes["species"] > 1 else 0
+    height, mean = row["height"].values, float(row["mean_density"])
+    density, error = (row[key].isel(species=species).values for key in ("density", "density_error"))
+    seen = error < KNOWN * density
+    where = (axis, height[seen], density[seen] / mean, error[seen] / mean)
+    style.points(*where, kind=kind, hollow=True, label=label)
+    axis.plot(height, _expected(row, species) / mean, color=style.COLOURS[kind], label=theory, zorder=4)
+
+
+def _temperature(axis: Axes, row: xr.Dataset, kind: int) -> None:
+    """Of each height over that of all, where there are particles enough."""
+    density, error = (row[key].isel(species=0).values for key in ("density", "density_error"))
+    seen = error < KNOWN * density
+    value, bar = (row[key].values[seen] for key in ("temperature_ratio", "temperature_ratio_error"))
+    _percent(axis, row["height"].values[seen], value, bar, kind)
 
 
 def heat_capacity(ds: xr.Dataset) -> Figure:

@@ -6,13 +6,15 @@ independent, and errors are the jackknife's over them. The temperature is always
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
 
 from gaspart.analysis.statistics import jackknife
-from gaspart.experiments.shared.columns import Field, field, profile, stretches, temperature
+from gaspart.experiments.gravity import source
+from gaspart.experiments.shared.columns import Field, field, is_source, profile, stretches, temperature
 from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
 from gaspart.state.initial import initial_state
@@ -29,28 +31,45 @@ from gaspart.trajectory.run import open_trajectory
 
 
 def barometric(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """Density, temperature and pressure against height of one kind of discs; see `profiles`."""
-    return profiles(points, settings)
+    """Density, temperature and pressure against height of one kind of discs; see `profiles`.
+
+    settings: also `source_collisions` and `source_temperature`, of the source's sample.
+    """
+    made = profiles(points, settings, source.ringing)
+    return made.assign_attrs(
+        source_collisions=settings["source_collisions"], source_temperature=settings["source_temperature"]
+    )
 
 
 def separation(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """The same of heavy and light discs of one size, and the slope of their ratio; see `profiles`."""
-    return profiles(points, settings)
+    """The same of heavy and light discs of one size, and the slope of their ratio; see `profiles`.
+
+    settings: also `source_collisions` before the source's sample, and `source_shares` in it, of the light
+    discs in equal layers of the container.
+    """
+    shares = settings["source_shares"]
+    made = profiles(points, settings, lambda point: source.shares(point, len(shares)))
+    return made.assign_attrs(source_collisions=settings["source_collisions"], source_shares=shares)
 
 
-def profiles(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def profiles(points: list[grid.Point], settings: dict, of_source: Callable[[grid.Point], dict]) -> xr.Dataset:
     """Columns of discs of one size under gravity, point by point.
 
     settings: `bins` of height; `blocks`, the time blocks of each replica; `clear`, the diameters next to
     floor and ceiling that are left out of every comparison (layers there are real, and not hydrostatics);
-    `ranges`, pairs of packing fractions between which the equation of state is averaged.
+    `ranges`, pairs of packing fractions between which the equation of state is averaged. of_source: further
+    numbers of a point that is the source's own run.
 
-    Dimensions point, species, bin, range. `pressure_ratio` is the pressure that carries the weight of what is
-    above over rho T Z(eta) of the reference; `slope_ratio` that of ln eta_i + mu_excess against height over
-    -m_i g / T; `exchange_ratio` that of ln (eta_1 / eta_0) over -(m_1 - m_0) g / T, which for particles of
-    one size is exact at any density: given their places, which of them is heavy has no other energy.
+    Dimensions point, species, bin, range, layer (of the source's shares). `pressure_ratio` is the pressure
+    that carries the weight of what is above over rho T Z(eta) of the reference; `slope_ratio` that of
+    ln eta_i + mu_excess against height over -m_i g / T; `exchange_ratio` that of ln (eta_1 / eta_0) over
+    -(m_1 - m_0) g / T, which for particles of one size is exact at any density: given their places, which of
+    them is heavy has no other energy.
     """
     rows = [_column(point, settings) for point in points]
+    for row, point in zip(rows, points, strict=True):
+        if is_source(point.experiment):
+            row |= {"collisions": source.collisions(point)} | of_source(point)
     by_bin = ("temperature_ratio", "packing_fraction", "compressibility", "pressure_ratio")
     by_bin += ("height", "used", "log_ratio", "log_ratio_expected")
     by_species = ("mass", "slope_ratio", "mean_height_ratio", "species_temperature_ratio")
@@ -59,6 +78,7 @@ def profiles(points: list[grid.Point], settings: dict) -> xr.Dataset:
         **dict.fromkeys(by_bin, ("bin",)),
         **dict.fromkeys(by_species, ("species",)),
         "range_ratio": ("range",),
+        "share": ("layer",),
     }
     low, high = np.array(settings["ranges"], dtype=float).T
     dataset = from_rows("point", rows, axes).assign_coords(
