@@ -13,7 +13,8 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.statistics import jackknife
-from gaspart.experiments.shared.columns import Field, Stretch, field, is_source, stretches, temperature
+from gaspart.experiments.shared.claims import is_source
+from gaspart.experiments.shared.columns import Field, Stretch, field, stretches, temperature
 from gaspart.planning import grid
 from gaspart.theory.buoyancy import displaced_area
 from gaspart.theory.geometry import body_volume

@@ -6,8 +6,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.claims import Claim, Estimate
-from gaspart.experiments.shared.claims import rows
-from gaspart.experiments.shared.columns import is_source
+from gaspart.experiments.shared.claims import is_source, rows
 from gaspart.theory.gravity import ideal_heat_capacity
 
 HYDROSTATICS = "hydrostatics dP/dz = -m g rho"

@@ -14,7 +14,8 @@ import xarray as xr
 
 from gaspart.analysis.statistics import jackknife
 from gaspart.experiments.gravity import source
-from gaspart.experiments.shared.columns import Field, field, is_source, profile, stretches, temperature
+from gaspart.experiments.shared.claims import is_source
+from gaspart.experiments.shared.columns import Field, field, profile, stretches, temperature
 from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
 from gaspart.state.initial import initial_state

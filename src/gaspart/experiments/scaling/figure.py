@@ -197,7 +197,7 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
         _SCAN * scale * line**2,
         color=_SOURCE,
         linestyle="--",
-        label="one box, scanned 27 times (F & M)",
+        label="one box, 27 scans (F & M)",
     )
     top.plot(line, scale * line**2, color=style.COLOURS[1], linestyle="--")
     style.points(top, naive, ds.naive_seconds, ds.naive_seconds_error, kind=1, label="one box")

@@ -15,11 +15,6 @@ from gaspart.scene.species import Body, Species
 from gaspart.trajectory.run import open_trajectory
 
 
-def is_source(experiment: str) -> bool:
-    """Whether the experiment, by its name, is source C's own scene."""
-    return experiment.endswith("_source")
-
-
 @dataclass(frozen=True)
 class Field:
     """The gravity, container and particles of a point's scene, in its units.
