@@ -58,8 +58,8 @@ def gases(error=0.002):
 
 
 def metals(error=0.002):
-    """A metal between different walls, and between walls at 1 and at 2."""
-    ones, bins = np.ones(3), 8
+    """A metal between different walls, between walls at 1 and at 2, and its grid between different walls."""
+    ones, bins = np.ones(4), 8
     position = (np.arange(bins) + 0.5) / bins
     values = {
         "share": ones,
@@ -67,16 +67,17 @@ def metals(error=0.002):
         "log_fluctuation": 0.0 * ones,
         "bend": 0.0 * ones,
         "mode_ratio": ones,
-        "flux": 0.1 * ones,
+        "flux": np.array([0.1, 0.1, 0.1, 0.105]),
     }
     ds = xr.Dataset({name: ("point", value) for name, value in values.items()})
     for name in ("electrons", "modes"):
-        ds[name] = (("point", "bin"), np.tile(2.0 - position, (3, 1)))
+        ds[name] = (("point", "bin"), np.tile(2.0 - position, (4, 1)))
     for name in list(ds):
         ds[f"{name}_error"] = (
             error * ds[name] if name not in ("log_fluctuation", "bend") else ("point", error * ones)
         )
-    ds["position"] = (("point", "bin"), np.tile(position, (3, 1)))
-    for name, value in {"hot": [2, 1, 2], "cold": [1, 1, 2], "expected": [360] * 3}.items():
+    ds["position"] = (("point", "bin"), np.tile(position, (4, 1)))
+    for name, value in {"hot": [2, 1, 2, 2], "cold": [1, 1, 2, 1], "expected": [360] * 4}.items():
         ds[name] = ("point", np.array(value, dtype=float))
+    ds["regular"] = ("point", np.array([False, False, False, True]))
     return ds.assign(electrons_part=("point", ones * 5 / 9), slope=1.0, slope_error=error)

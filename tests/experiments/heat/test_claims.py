@@ -1,4 +1,5 @@
 import pytest
+import xarray as xr
 from claims.data import judged
 from experiments.heat.data import gases, metals
 
@@ -62,3 +63,16 @@ def test_each_claim_about_metals_can_fail(name, text):
     ds[name] = ds[name] + 0.1
     found = judged(heat.heat_conduction_metal(ds))
     assert {verdict for claim, verdict in found.items() if text in claim} == {"disagrees"}
+
+
+@pytest.mark.parametrize(("ratio", "verdict"), [(0.98, "disagrees"), (1.05, "agrees"), (1.12, "disagrees")])
+def test_a_grid_conducts_a_little_better_than_random_scatterers(ratio, verdict):
+    ds = metals()
+    ds["flux"] = ds["flux"][0] * xr.where(ds["regular"], ratio, 1.0)
+    found = judged(heat.heat_conduction_metal(ds))
+    assert [got for claim, got in found.items() if claim.startswith("flux among")] == [verdict]
+
+
+def test_random_scatterers_alone_are_not_compared_with_a_grid():
+    ds = metals().isel(point=slice(3))
+    assert not [claim for claim in judged(heat.heat_conduction_metal(ds)) if "grid" in claim]

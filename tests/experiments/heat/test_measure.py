@@ -105,6 +105,22 @@ def test_modes_and_electrons_have_the_temperature_of_the_walls(tmp_path):
     assert float(ds["slope"]) == pytest.approx(1.0, abs=0.05)
 
 
+def test_scatterers_on_a_grid_are_told_from_electrons(tmp_path):
+    """The scatterers come first; they and the electrons take the temperature of the walls."""
+    faces = dict.fromkeys(("x_low", "x_high"), gp.Thermal(2.0))
+    centres = [(x, y) for x in (2.0, 4.0, 6.0) for y in (1.0, 3.0, 5.0)]
+    grid = [gp.Body(centre, (0.0, 0.0), 0.5, fixed=True, vibration=0.0) for centre in centres]
+    container = gp.Container((8.0, 6.0), ("wall", "periodic"))
+    scene = gp.Scene(container, [gp.Species(20, 0.02, temperature=1.0)], grid, faces=faces)
+    point = run(tmp_path, scene, duration=6000.0, equilibration=100.0, samples=600)
+    row = heat._metal(point, {"bins": 3, "blocks": 10})
+    assert row["regular"] and row["expected"] == 29.0
+    assert row["electrons_part"] == pytest.approx(20.0 / 29.0)
+    for name, value in (("energy_ratio", 1.0), ("mode_ratio", 1.0), ("modes", 2.0), ("electrons", 2.0)):
+        assert (np.abs(row[name] - value) < 4.0 * row[f"{name}_error"]).all()
+        assert row[name] == pytest.approx(np.full(np.shape(row[name]), value), rel=0.07)
+
+
 def test_a_bent_profile_is_distinguished_from_a_straight_one():
     position, number = (np.arange(10) + 0.5) / 10, np.linspace(3.0, 5.0, 10)
     straight, bent = 2.0 - position, 2.0 - position + 0.3 * position**2

@@ -137,9 +137,10 @@ def _profiles(warm: Axes, off: Axes, dense: Axes, row: xr.Dataset, kind: int) ->
 
 
 def heat_conduction_metal(ds: xr.Dataset) -> Figure:
-    """Temperatures of electrons and modes between two walls; energy against temperature."""
+    """Temperatures of electrons and modes between two walls, among scatterers at random places; energy
+    against temperature."""
     figure, (top, bottom, off) = style.new((3.0,), (2.2, 1.2))
-    for n in np.flatnonzero(ds["hot"] != ds["cold"]):
+    for n in np.flatnonzero((ds["hot"] != ds["cold"]) & ~ds["regular"].astype(bool)):
         row = ds.isel(point=n)
         for kind, (name, label) in enumerate((("electrons", "electrons"), ("modes", "modes"))):
             values = (row["position"], row[name], row[f"{name}_error"])

@@ -18,6 +18,7 @@ from gaspart.experiments.heat.approach import NO_APPROACH, approach
 from gaspart.planning import grid
 from gaspart.scene.faces import thermal_face
 from gaspart.scene.scene import Scene
+from gaspart.state.insertion import per_body
 from gaspart.theory.enskog import mean_free_path
 from gaspart.theory.geometry import packing_fraction
 from gaspart.theory.heat import conducting_slab, dilute_fourier_flux, free_molecular_flux
@@ -219,8 +220,8 @@ def _jump(gap: Gap, position: np.ndarray, energy: np.ndarray, density: np.ndarra
 
 
 def heat_conduction_metal(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """Electrons, the first species, among fixed vibrating scatterers, the second: profiles between walls of
-    two temperatures, and the specific heat between walls of one.
+    """Electrons, all particles that move, among fixed vibrating scatterers: profiles between walls of two
+    temperatures, and the specific heat between walls of one.
 
     settings: `bins` across the gap; `blocks` of each replica. `expected` is the heat capacity N_e d/2 + N_s,
     `electrons_part` what the electrons have of it.
@@ -232,7 +233,8 @@ def heat_conduction_metal(points: list[grid.Point], settings: dict) -> xr.Datase
     over it (both with T of the walls, and NaN between different ones; the variance about the known mean,
     which has no bias where samples are correlated, and whose logarithm is closer to Gaussian),
     mode_ratio, the mean energy of all modes over T. `slope` is dE/dT over the expected, from a line
-    through the points in equilibrium, of which there must be two.
+    through the points in equilibrium, of which there must be two. `regular` are points whose scatterers are
+    given one by one, on a grid, instead of placed at random.
     """
     rows = [_metal(point, settings) for point in points]
     long = {name for name, value in rows[0].items() if np.ndim(value)}
@@ -251,9 +253,9 @@ def heat_conduction_metal(points: list[grid.Point], settings: dict) -> xr.Datase
 def _metal(point: grid.Point, settings: dict) -> dict:
     """The numbers of one point."""
     scene = grid.scene(point)
-    gap, (moving, fixed) = Gap.of(scene), scene.species
+    gap, fixed = Gap.of(scene), per_body(scene, "fixed").astype(bool)
     bins, blocks = settings["bins"], settings["blocks"]
-    capacity = 0.5 * gap.dimension * moving.count + fixed.count
+    capacity = 0.5 * gap.dimension * np.sum(~fixed) + np.sum(fixed)
     first = grid.schedule(point).equilibration_frames
     sums, totals, squares, heats, modes = [], [], [], [], []
     for path in point.replica_paths:
@@ -261,15 +263,17 @@ def _metal(point: grid.Point, settings: dict) -> dict:
             part = trajectory.isel(frame=slice(first, None))
             time, heat = part["time"].values, part["wall_energy"].values[:, :2]
             places = part["coordinates"].values[1:, :, 0]
-            speeds = (part["velocities"].values[1:, : moving.count].astype(float) ** 2).sum(axis=2)
-            vibrations = part["vibrations"].values[1:, moving.count :].astype(float)
+            speeds = (part["velocities"].values[1:, ~fixed].astype(float) ** 2).sum(axis=2)
+            vibrations = part["vibrations"].values[1:, fixed].astype(float)
         length = (len(time) - 1) // blocks
         if length < 1:
             raise ValueError(f"blocks: {blocks} (more than the {len(time) - 1} intervals of {path})")
         used = length * blocks
-        bin_of = np.clip((places[:used] - moving.radius) * (bins / gap.length), 0, bins - 1).astype(int)
+        bin_of = np.clip((places[:used] - scene.smallest_radius) * (bins / gap.length), 0, bins - 1).astype(
+            int
+        )
         slot = bin_of + np.repeat(np.arange(blocks), length)[:, None] * bins
-        here, there = slot[:, : moving.count].ravel(), slot[:, moving.count :].ravel()
+        here, there = slot[:, ~fixed].ravel(), slot[:, fixed].ravel()
         table = [
             np.bincount(where, weights, minlength=blocks * bins).reshape(blocks, bins)
             for where, weights in (
@@ -303,7 +307,8 @@ def _metal(point: grid.Point, settings: dict) -> dict:
     row = {name: value for name, (value, _) in made.items()}
     row |= {f"{name}_error": error for name, (_, error) in made.items()}
     row |= {f"{name}_freedom": len(total) - 1 for name in made}
-    row |= {"electrons_part": 1.0 - fixed.count / capacity, "expected": capacity}
+    row |= {"electrons_part": 1.0 - np.sum(fixed) / capacity, "expected": capacity}
+    row["regular"] = bool(scene.bodies)
     return row | {"hot": gap.hot, "cold": gap.cold, "position": (np.arange(bins) + 0.5) / bins}
 
 
