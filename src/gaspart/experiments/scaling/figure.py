@@ -219,17 +219,18 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
         style.points(bottom, n, of.list_pair_tests, kind=3, linestyle="--", hollow=True)
     guide = np.array([count.min(), count.max()])
     top.plot(guide, guide * float(ds.seconds.min()), color=style.GREY, lw=0.8, zorder=1, label="linear")
-    for factor, offset, colour in ((_SCAN, 3, _SOURCE), (1.0, -31, style.COLOURS[1])):
+    for factor, colour in ((_SCAN, _SOURCE), (1.0, style.COLOURS[1])):
         seconds = factor * float(ds.extrapolated_seconds)
         top.annotate(
             _duration(seconds),
             (far, seconds),
-            xytext=(-4, offset),
+            xytext=(4, 0),
             textcoords="offset points",
-            ha="right",
+            va="center",
             color=colour,
         )
     top.set(xscale="log", yscale="log", ylabel="time per step (s)", xlabel="number of particles $N$")
+    top.set_xlim(right=50.0 * far)  # room for the times at the ends of the lines
     top.legend(loc="upper left")
     middle.set(xscale="log", yscale="log", ylabel="time per particle (ns)", ylim=(1.0, None))
     bottom.set(yscale="log", ylabel="per particle", xlabel="number of particles $N$", ylim=(0.02, 100.0))
