@@ -4,7 +4,7 @@ import numpy as np
 from PIL import Image
 
 from gaspart.experiments.registry import chapters, families
-from gaspart.report.page import CHAPTERS, Section, address, by_chapter, findings, headline, picture
+from gaspart.report.page import CHAPTERS, Section, address, by_chapter, films, findings, headline, picture
 
 ROW = {"figure": "cooling", "claim": "rate of cooling, discs", "measured": 0.93, "uncertainty": 0.02}
 
@@ -49,5 +49,9 @@ def test_pictures_lie_beside_the_page_or_are_in_it(tmp_path):
     assert beside.size == within.size == (100, 60)
     assert beside.narrow_size == within.narrow_size == (75, 150)
     assert within.large.startswith("data:image/webp;base64,") and within.narrow != within.large
-    (tmp_path / "film.mp4").write_bytes(b"film")
+    for name in ("film", "other"):
+        (tmp_path / f"{name}.mp4").write_bytes(name.encode())
     assert address(tmp_path / "film.mp4", True) == "data:video/mp4;base64,ZmlsbQ=="
+    paths = [tmp_path / "film.mp4", tmp_path / "other.mp4"]
+    assert list(films(paths, False)) == ["film", "other"]
+    assert films(paths, True) == {"film": "data:video/mp4;base64,ZmlsbQ=="}

@@ -80,10 +80,8 @@ with job(snakemake):
             )
         )
     of_chapter = page.by_chapter(sections)
-    films, posters = (
-        {Path(path).stem: page.address(Path(path), params.one_file) for path in paths}
-        for paths in (given.films, given.posters)
-    )
+    films = page.films([Path(path) for path in given.films], params.one_file)
+    posters = {Path(path).stem: page.address(Path(path), params.one_file) for path in given.posters}
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(Path(given.template).parent),
         autoescape=True,

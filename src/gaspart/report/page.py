@@ -28,7 +28,8 @@ CHAPTERS = (
     "Pictures and checks",
 )
 """In the order of the page."""
-_THUMBNAIL = 360
+_THUMBNAIL, _SHARPNESS = 360, 1.6
+"""Width of a thumbnail, and pixels of a picture for each of the page, in a page that holds its pictures."""
 HEADLINE = ("test", "identity", "reproduction")
 """The kinds of claims that are counted on the first screen, apart from one another."""
 
@@ -120,7 +121,8 @@ def picture(path: Path, one_file: bool) -> Picture:
     column = path.parent / "journal" / path.name
     size, narrow = _size(path), _size(column)
     if one_file:
-        addresses = _webp(path, 2 * size[0]), _webp(column, 2 * narrow[0]), _webp(path, _THUMBNAIL)
+        sharp = round(_SHARPNESS * size[0]), round(_SHARPNESS * narrow[0])
+        addresses = _webp(path, sharp[0]), _webp(column, sharp[1]), _webp(path, _THUMBNAIL)
     else:
         addresses = address(path.with_suffix(".svg")), f"figures/journal/{path.name}", address(path)
     return Picture(*addresses, size, narrow)
@@ -140,6 +142,12 @@ def address(path: Path, one_file: bool = False) -> str:
     if one_file:
         return _data(mimetypes.guess_type(path.name)[0] or "", path.read_bytes())
     return f"{path.parent.name}/{path.name}"
+
+
+def films(paths: list[Path], one_file: bool) -> dict[str, str]:
+    """Name and address of each film that the page shows. One that is to hold them holds the first one only:
+    all films together are larger than everything else."""
+    return {path.stem: address(path, one_file) for path in (paths[:1] if one_file else paths)}
 
 
 def _data(kind: str, content: bytes) -> str:
