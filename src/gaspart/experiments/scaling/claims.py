@@ -146,7 +146,7 @@ def _round_widths(ds: xr.Dataset) -> list[Claim]:
 
 
 def _remarks(ds: xr.Dataset) -> list[Claim]:
-    """The source's remarks on what makes a step cheaper or dearer, by counted work and by time."""
+    """The source's remarks on what makes a step cheaper or more expensive, by counted work and by time."""
     visits = (ds.near_box_visits / ds.near_expected_visits).values
     return [
         Claim.within(
