@@ -40,7 +40,7 @@ def test_any_search_gives_the_same_bits(scene, precision, rewind, passes, seed):
             continue
         try:
             sim.advance(duration=3.0)
-        except gp.SimulationError as error:  # too crowded for the step: all searches must say the same
+        except gp.SimulationError as error:  # too dense for the step: all searches must say the same
             ends.append((str(error),))
             continue
         tally = sim.tally
@@ -144,7 +144,7 @@ def test_walls_reflect_exactly():
 
 
 @pytest.mark.parametrize("boundary", ["wall", "periodic"])
-def test_a_step_longer_than_the_container_leaves_nobody_outside(boundary):
+def test_a_step_longer_than_the_container_leaves_no_particle_outside(boundary):
     body = gp.Body((2.0, 5.0), (130.0, 0.0), 0.5)
     sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0), boundary), bodies=[body]), gp.TimeStepped(1.0))
     for _ in range(20):
@@ -265,16 +265,16 @@ def test_a_falling_gas_keeps_its_energy_whatever_the_search():
     assert all(np.array_equal(ends[0], end) for end in ends[1:])
 
 
-def test_a_giant_and_fixed_bodies_follow_the_event_driven_engine():
-    """A body larger than a box is kept beside the partition, a fixed one passes no momentum on."""
-    giant = gp.Body((10.0, 10.0), (0.1, 0.0), 4.0, mass=50.0)
-    bodies = [giant, gp.Body((3.0, 16.0), (0.0, 0.0), 0.5, fixed=True)]
+def test_oversized_and_fixed_bodies_follow_the_event_driven_engine():
+    """A body larger than a box is kept outside the partition, a fixed one passes no momentum on."""
+    large = gp.Body((10.0, 10.0), (0.1, 0.0), 4.0, mass=50.0)
+    bodies = [large, gp.Body((3.0, 16.0), (0.0, 0.0), 0.5, fixed=True)]
     kinds = [gp.Species(25, 0.3, temperature=1.0)]
     scene = gp.Scene(gp.Container((20.0, 20.0), "periodic"), kinds, bodies)
     exact = gp.Simulation(scene, gp.EventDriven(), seed=5)
     exact.advance(duration=5.0)
     assert exact.tally.collisions > 5
-    for search in ({}, {"boxes_per_side": 20}):  # boxes of 1, the giant of 8
+    for search in ({}, {"boxes_per_side": 20}):  # boxes of 1, the large body of 8
         sim = gp.Simulation(scene, gp.TimeStepped(0.0005, **search), seed=5)
         sim.advance(duration=5.0)
         assert sim.tally.collisions == exact.tally.collisions

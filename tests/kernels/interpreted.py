@@ -16,8 +16,7 @@ from scenes import gas
 import gaspart as gp
 from gaspart.kernels import flight, insertion, model
 from gaspart.kernels.event import box_search as search
-from gaspart.kernels.event import loop as event_kernels
-from gaspart.kernels.event import prefetch as ahead
+from gaspart.kernels.event import prediction, prefetch
 from gaspart.kernels.obstacles import distance
 from gaspart.kernels.step import neighbour_list as step_list
 from gaspart.kernels.step import resolve as step_contacts
@@ -26,7 +25,7 @@ from gaspart.trajectory.correlator import Correlator
 PYTHON = bool(numba.config.DISABLE_JIT)
 VISCOUS = gp.Restitution(0.8, 0.4, reference_speed=1.0)
 ROUGH, METAL = gp.Restitution(0.95, 0.4), gp.Restitution(1.0, 0.5)
-FINE = {"big": (6, 6, 5), "big and rough": (12, 10)}  # boxes too narrow for the big particles
+FINE = {"oversized": (6, 6, 5), "oversized and rough": (12, 10)}  # boxes too narrow for the large particles
 
 
 def event_scenes():
@@ -65,8 +64,8 @@ def event_scenes():
         "piston": gp.Scene(room, two, faces={"x_low": gp.Piston(5.0, 0.1)}),
         "viscoelastic": gp.Scene(box, [*two, fixed], restitution=VISCOUS),
         "metal": gp.Scene(box, electrons, restitution=METAL, faces=heat),
-        "big": gp.Scene(room, [small, large]),
-        "big and rough": gp.Scene(box, [small, large], gravity=down, restitution=METAL, walls=cross),
+        "oversized": gp.Scene(room, [small, large]),
+        "oversized and rough": gp.Scene(box, [small, large], gravity=down, restitution=METAL, walls=cross),
     }
 
 
@@ -79,7 +78,7 @@ def step_scenes():
         "steps": (dense, 0.05),
         "steps that fall": (gp.Scene(container, species, gravity=(-1.0, 0.0)), 0.02),
         "steps that lose": (gp.Scene(container, species, restitution=gp.Restitution(0.9)), 0.02),
-        "steps with a giant": (gp.Scene(container, thin), 0.02),
+        "steps with an oversized particle": (gp.Scene(container, thin), 0.02),
     }
 
 
@@ -204,7 +203,7 @@ def compact_eight(words, first, least, kept, number):
 def do_without_vectors():
     """Replace what is written in vector instructions by plain loops."""
     search.earliest, search.list_box = earliest, list_box
-    event_kernels.fetch = ahead.fetch = insertion.fetch = fetch
+    prediction.fetch = prefetch.fetch = insertion.fetch = fetch
     step_contacts.fetch = step_list.fetch = fetch
     step_list.nearer, step_list.equals, step_list.compact_eight = nearer, equals, compact_eight
     step_list.bits = lambda word: np.uint64(int(word).bit_count())

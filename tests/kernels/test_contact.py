@@ -16,7 +16,7 @@ masses = st.floats(1e-8, 1e8)
 
 
 @given(vectors, vectors, st.floats(0.1, 2.0))
-def test_bodies_touch_at_the_time_foretold(r, v, sigma):
+def test_bodies_touch_at_the_predicted_time(r, v, sigma):
     assume(r @ r > 1.01 * sigma**2)
     time = time_to_contact(r @ r, r @ v, v @ v, sigma**2)
     if math.isinf(time):

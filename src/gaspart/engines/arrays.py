@@ -144,6 +144,16 @@ def face_energy(scene: Scene) -> float:
     return scene.dimension * hottest + 2.0 * deepest
 
 
+def internal_arrays(law: ContactLaw | None, faces: Faces | None) -> dict[str, np.ndarray]:
+    """What particles keep inside or at faces during a run, and how often faces have drawn, by name."""
+    arrays = {key: getattr(faces, key) for key in ("place", "held", "draws")} if faces else {}
+    if law:
+        arrays["spins"] = law.spins
+        if law.vibrations is not None:
+            arrays["vibrations"] = law.vibrations
+    return arrays
+
+
 def write_internal(
     state: State, scene: Scene, law: ContactLaw | None, faces: Faces | None, unit_mass: float
 ) -> None:

@@ -9,12 +9,13 @@ import numpy as np
 
 from gaspart.engines import piston
 from gaspart.engines.arrays import EventLog, write_internal
-from gaspart.engines.clock_epochs import QUIET, epoch_length, quiet_epoch
-from gaspart.engines.event_model import event_model, monitors
+from gaspart.engines.clock_epochs import epoch_length, quiet_epoch
+from gaspart.engines.event_model import changing, event_model, monitors
 from gaspart.engines.event_search import chosen_search, make_lists, neighbour_lists
+from gaspart.engines.event_tally import EventTally
 from gaspart.engines.kicks import kicks
 from gaspart.engines.rest import rest_watch
-from gaspart.engines.stalling import MANY, check_progress
+from gaspart.engines.stalling import MANY, check_events, check_progress, collapsed
 from gaspart.engines.vibration import begin_epoch
 from gaspart.errors import SimulationError
 from gaspart.kernels.memory import aligned
@@ -25,10 +26,9 @@ from gaspart.state.tally import Tally
 
 if TYPE_CHECKING:
     from gaspart.kernels.event.monitors import Record
+    from gaspart.kernels.model import Space
 
-_QUIET = QUIET + 2000  # epochs without an event after which a run without an end is given up
-_NUMBERS = ("start", "epoch", "base", "quiet", "clock", "since")  # of a checkpoint
-_OF_DURATION = ("latest", "met", "island", "elastic", "kept")
+_NUMBERS = ("start", "epoch", "base", "quiet", "clock")  # of a checkpoint
 _SHORTEST_BOUNCE = 2.0**-44  # of an epoch: the longest bounce on a floor that is taken for rest
 
 
@@ -44,14 +44,13 @@ class EventDynamics:
         search: str,
         boxes_per_side: int | tuple[int, ...] | None,
     ) -> None:
-        from gaspart.kernels import flight, model, running_sum
-        from gaspart.kernels.event import loop
+        from gaspart.kernels import flight, model
+        from gaspart.kernels.event import loop, prediction
         from gaspart.kernels.event import neighbour_lists as lists
         from gaspart.kernels.event.box_lists import empty_lists
         from gaspart.kernels.event.queue import EVENT_COUNT, empty_queue
 
-        self._loop, self._flight, self._kernels, self._sums = loop, flight, model, running_sum
-        self._lists = lists
+        self._loop, self._prediction, self._flight, self._lists = loop, prediction, flight, lists
         self._scene = scene
         self._reference = state
         n = state.count
@@ -77,7 +76,6 @@ class EventDynamics:
         self._piston = self._model.faces.piston if self._model.faces else None
         self._monitors, self._interval = monitors(self._model, n)
         self._lightest = float(state.masses.min(initial=np.inf))
-        self._lost = np.zeros(2)  # net and gross, before the tally began
         self._base, self._quiet = epoch_length(scene, state.velocities, self._lightest), 0
         epochs, self._clock = divmod(state.time, self._base)
         self._start = epochs * self._base
@@ -88,22 +86,12 @@ class EventDynamics:
         self._kicks = kicks(scene, seed, self._unit_mass)
         self._scheduled = self._rest or self._kicks  # no scene has both
         self._flights["clock"] = self._clock
-        self._count()
+        self._tally = EventTally(scene, self._unit_mass, self._duration, self._kicks, self.time)
         self._predict()
 
     def reset_tally(self) -> None:
         """Begin to count from zero."""
-        self._lost = np.array([self.dissipated, self.exchanged])
-        self._count()
-
-    def _count(self) -> None:
-        """A tally at zero."""
-        self._tally = self._kernels.empty_tally(2 * self._scene.dimension + len(self._scene.walls))
-        if self._duration:
-            self._duration.elastic[:], self._duration.kept[:] = 0, 0.0
-        if self._kicks:
-            self._kicks.reset()
-        self._since = self.time
+        self._tally.reset(self.time)
 
     def _make_lists(self) -> None:
         """Make the neighbour lists from their centres."""
@@ -114,8 +102,8 @@ class EventDynamics:
             self._lists.centre_all(self._boxes.lists, self._flights, self._clock, self._model.space.lengths)
             self._make_lists()
         if self._queue:
-            self._loop.predict_all(
-                self._particles, self._queue, self._boxes, self._model, self._tally, self._clock
+            self._prediction.predict_all(
+                self._particles, self._queue, self._boxes, self._model, self._tally.arrays, self._clock
             )
 
     @property
@@ -162,7 +150,7 @@ class EventDynamics:
                 work -= 1 + len(self._flights)  # what follows predicts all anew
                 if scheduled:
                     self._clock = end
-                    if scheduled.happen(self._particles, self._model, self._tally):
+                    if scheduled.happen(self._particles, self._model, self._tally.arrays):
                         self._predict()
                     continue
                 if not ends_epoch:
@@ -170,26 +158,14 @@ class EventDynamics:
                     return
                 begun -= self._epoch
                 self._next_epoch()
-                if until == np.inf and self._quiet > _QUIET:
-                    raise SimulationError(
-                        f"no event up to time {self.time:g} in {self._quiet} epochs of the clocks: "
-                        "particles miss one another"
-                    )
+                if until == np.inf:
+                    check_events(self.time, self._quiet)
             else:
                 self._clock = max(self._clock, last)
             if reason == self._loop.NO_ROOM:
                 self._predict()
-            self._check_collapse(reason)
-
-    def _check_collapse(self, reason: int) -> None:
-        """Raise SimulationError if a collapse is why the kernel stopped."""
-        if reason == self._loop.COLLAPSE and self._monitors.collapse is not None:
-            collapse = self._monitors.collapse
-            raise SimulationError(
-                f"at time {self.time:g} particle {collapse.contacts.argmax()} has had "
-                f"{collapse.most} contacts within a time of {collapse.interval:g}: "
-                "an inelastic collapse, or a stack at rest; the state is that of the present time"
-            )
+            if reason == self._loop.COLLAPSE and self._monitors.collapse:
+                raise collapsed(self.time, self._monitors.collapse)
 
     def _stay(self, until: float) -> None:
         """Let time pass in a scene at rest."""
@@ -202,7 +178,7 @@ class EventDynamics:
     def _run(self, record: Record | None, limits: tuple[float, int, int]) -> tuple[int, int, int, float]:
         """Let the kernel run: why it stopped, the events and crossings it processed, the time of the last."""
         monitors = self._monitors._replace(record=record)
-        scene = self._particles, self._queue, self._boxes, self._model, self._tally
+        scene = self._particles, self._queue, self._boxes, self._model, self._tally.arrays
         return self._loop.run(*scene, monitors, limits, () if self._queue is None else None)
 
     def _next_epoch(self) -> None:
@@ -242,57 +218,27 @@ class EventDynamics:
     @property
     def tally(self) -> Tally:
         """What was counted since the last `reset_tally`."""
-        kernels, tally, duration = self._kernels, self._tally, self._duration
-        return Tally(
-            time=self.time - self._since,
-            collisions=int(tally.counts[kernels.COLLISIONS]),
-            wall_hits=tally.wall_hits.copy(),
-            wall_impulse=self._sums.values(tally.wall_impulse) * self._unit_mass,
-            wall_energy=self._sums.values(tally.wall_energy) * self._unit_mass,
-            virial_sum=self._sums.net(tally.sums[kernels.VIRIAL]) * self._unit_mass,
-            pair_tests=int(tally.counts[kernels.PAIR_TESTS]),
-            box_visits=int(tally.counts[kernels.BOX_VISITS]),
-            crossings=int(tally.counts[kernels.CROSSINGS]),
-            worst_contact=float(tally.worst[0]),
-            dissipated_energy=self._sums.net(tally.sums[kernels.LOSS]),
-            elastic_contacts=int(duration.elastic[0]) if duration else 0,
-            retained_energy=self._sums.net(duration.kept) if duration else 0.0,
-            thermostat_energy=self._given(),
-        )
+        return self._tally.read(self.time)
 
     @property
     def dissipated(self) -> float:
         """The energy that contacts and thermal walls have taken since time 0, less what kicks have given."""
-        taken = self._tally.sums[self._kernels.LOSS], self._tally.wall_energy
-        return float(self._lost[0]) + self._sums.net(*taken) * self._unit_mass - self._given()
+        return self._tally.dissipated
 
     @property
     def exchanged(self) -> float:
         """The sum of what contacts and each face have taken or given since time 0, each counted positive."""
-        loss, walls = self._tally.sums[self._kernels.LOSS], self._sums.values(self._tally.wall_energy)
-        gross = self._sums.net(loss) + float(np.abs(walls).sum())
-        return float(self._lost[1]) + gross * self._unit_mass + self._given()
-
-    def _given(self) -> float:
-        """The energy that kicks have given since the tally began."""
-        return self._sums.net(self._kicks.given) * self._unit_mass if self._kicks else 0.0
+        return self._tally.exchanged
 
     @property
     def state(self) -> State:
         """All particles at the present time."""
         space = self._model.space
-        flights, lengths = self._flights.copy(), np.array(space.lengths)
+        flights = self._flights.copy()
         if not (self._rest and self._rest.rests):
             self._flight.advance_all(flights, self._clock, space, self._model.gravity)
         positions, images = flights["position"].copy(), self._particles.images.copy()
-        # a particle that reaches a periodic face just now may stand beyond it by rounding
-        outside = (positions < 0.0) | (positions >= lengths)
-        beyond = np.nonzero(outside & space.periodic)
-        there, length = positions[beyond], lengths[beyond[1]]
-        crossed = np.where(there < 0.0, -1, 1)
-        there = there - crossed * length
-        positions[beyond] = np.where(there >= length, 0.0, there)
-        images[beyond] += crossed
+        _wrap(positions, images, space)
         state = replace(
             self._reference,
             time=self.time,
@@ -307,36 +253,22 @@ class EventDynamics:
 
     def _arrays(self) -> dict[str, np.ndarray]:
         """Everything that the kernels change and that cannot be made again, by name."""
-        arrays = {**self._particles._asdict(), "event_count": self._event_count, **self._tally._asdict()}
-        law, faces, collapse = self._model.law, self._model.faces, self._monitors.collapse
+        arrays = {**self._particles._asdict(), **self._tally.arrays._asdict(), **changing(self._model)}
+        arrays["event_count"] = self._event_count
         if self._boxes.lists:
             arrays["centres"] = self._boxes.lists.listed["centre"]
-        if law:
-            arrays["spins"] = law.spins
-            if law.vibrations is not None:
-                arrays["vibrations"] = law.vibrations
-        if self._duration:
-            arrays.update({f"contact_{key}": self._duration._asdict()[key] for key in _OF_DURATION})
-            if self._model.gravity:
-                arrays["gravity_fixed"] = self._model.gravity.fixed
         if self._scheduled:
-            arrays.update({f"scheduled_{key}": array for key, array in self._scheduled.arrays.items()})
-        if collapse:
-            arrays.update(contacts_since=collapse.since, contacts=collapse.contacts)
-        if self._model.gravity and self._model.gravity.support:
-            support = self._model.gravity.support._asdict()
-            arrays.update({f"support_{key}": support[key] for key in support if key != "height"})
-        if faces:
-            arrays.update({key: getattr(faces, key) for key in ("place", "held", "draws")})
-        if self._piston:
-            arrays["piston"] = self._piston.motion
+            arrays |= {f"scheduled_{key}": array for key, array in self._scheduled.arrays.items()}
+        if collapse := self._monitors.collapse:
+            arrays |= {"contacts_since": collapse.since, "contacts": collapse.contacts}
         return arrays
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         """All that a continuation to the same bits needs: particles at their own clocks, predictions,
         counts."""
-        parts = {**{key: getattr(self, f"_{key}") for key in _NUMBERS}, "lost": self._lost}
-        return {key: np.array(value) for key, value in {**parts, **self._arrays()}.items()}
+        parts = {key: getattr(self, f"_{key}") for key in _NUMBERS}
+        parts |= {"since": self._tally.since, "lost": self._tally.lost, **self._arrays()}
+        return {key: np.array(value) for key, value in parts.items()}
 
     def restore(self, parts: dict[str, np.ndarray]) -> None:
         """Go on from a checkpoint of the same scene and engine."""
@@ -344,9 +276,21 @@ class EventDynamics:
             array[...] = parts[key]
         for key in _NUMBERS:
             setattr(self, f"_{key}", parts[key].item())
-        self._lost = parts["lost"].copy()
+        self._tally.since, self._tally.lost = parts["since"].item(), parts["lost"].copy()
         self._begin_epoch(self._epoch)
         if self._boxes.lists:
             self._make_lists()
         if self._queue:
-            self._loop.restore(self._particles, self._queue, self._boxes, self._model, self._clock)
+            self._prediction.restore(self._particles, self._queue, self._boxes, self._model, self._clock)
+
+
+def _wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:
+    """Put particles back that rounding shows beyond a periodic face, which they reach just now."""
+    lengths = np.array(space.lengths)
+    outside = (positions < 0.0) | (positions >= lengths)
+    beyond = np.nonzero(outside & space.periodic)
+    there, length = positions[beyond], lengths[beyond[1]]
+    crossed = np.where(there < 0.0, -1, 1)
+    there = there - crossed * length
+    positions[beyond] = np.where(there >= length, 0.0, there)
+    images[beyond] += crossed

@@ -11,6 +11,7 @@ from gaspart.engines.arrays import (
     contact_duration,
     contact_law,
     interior_walls,
+    internal_arrays,
     scaled_masses,
     special_faces,
 )
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from gaspart.kernels.event.monitors import Monitors
     from gaspart.kernels.model import Model
 
+_OF_DURATION = ("latest", "met", "island", "elastic", "kept")  # the arrays of a contact duration
 _LOWEST = 2.0**-44  # of the container: the highest bounce on an interior wall that is taken for rest
 # More contacts of one particle than these, within so much of an epoch, are taken for a collapse. Intervals
 # between inelastic contacts shrink geometrically until rounding lets the particles part, so few of them can
@@ -71,3 +73,19 @@ def monitors(model: Model, count: int) -> tuple[Monitors, float]:
     most, interval = (_INELASTIC_MOST, _INELASTIC_INTERVAL) if inelastic else (_MOST, _INTERVAL)
     watch = CollapseWatch(np.full(count, -np.inf), np.zeros(count, dtype=np.int64), 0.0, most)
     return Monitors(None, watch), interval
+
+
+def changing(model: Model) -> dict[str, np.ndarray]:
+    """The arrays of a model that a run changes, by name."""
+    law, faces, gravity = model.law, model.faces, model.gravity
+    arrays = internal_arrays(law, faces)
+    if law and law.duration:
+        arrays |= {f"contact_{key}": getattr(law.duration, key) for key in _OF_DURATION}
+        if gravity:
+            arrays["gravity_fixed"] = gravity.fixed
+    if gravity and gravity.support:
+        support = gravity.support._asdict()
+        arrays |= {f"support_{key}": support[key] for key in support if key != "height"}
+    if faces and faces.piston:
+        arrays["piston"] = faces.piston.motion
+    return arrays

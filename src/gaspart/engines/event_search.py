@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
 _LISTED = {2: 8.0, 3: 15.0}  # particles that a list holds on average: they fill one or two vectors of eight
 _MARGINS = 0.1, 0.65  # of the largest diameter: limits on how far a particle moves before its list is renewed
-_DENSE = {2: 0.6, 3: 0.38}  # packing fractions from which neighbour lists are faster than boxes
+_MANY = 1 << 15  # particles whose neighbour lists no longer fit into the processor's own cache
+_DENSE = {2: (0.45, 0.55), 3: (0.28, 0.4)}  # packing fractions from which lists are faster: few, many
 _ALIKE = 1.5  # and the largest ratio of radii: a list of small particles reaches as far as one of large ones
 _ROOM = {2: 16, 3: 32}  # entries of a list at first
 _SMALLEST, _LARGEST = 1e-12, 1e12  # radii whose squares are numbers in single precision
@@ -30,7 +31,7 @@ def distances(scene: Scene) -> tuple[float, float]:
     rounding = 16.0 * float(np.finfo(np.float32).eps) * max(lengths)
     holding = (_LISTED[d] + 1.0) * scene.container.volume / (scene.count * ball_volume(d))
     least, most = (share * diameter for share in _MARGINS)
-    # each image of a particle is told from the others, also once both have moved
+    # each image of a particle is distinguished from the others, also once both have moved
     axes = [length for length, periodic in zip(lengths, scene.container.periodic, strict=True) if periodic]
     for length in axes:
         most = min(
@@ -68,7 +69,7 @@ def chosen_search(scene: Scene, search: str, boxes_given: bool) -> str:
             raise SceneError("search", search, f"neighbour lists do not support {obstacle}; use boxes")
         return search
     radii = [kind.radius for kind in scene.kinds]
-    dense = scene.packing_fraction >= _DENSE[scene.dimension]
+    dense = scene.packing_fraction >= _DENSE[scene.dimension][scene.count > _MANY]
     alike = bool(radii) and max(radii) <= _ALIKE * min(radii)
     return "lists" if dense and alike and not obstacle and not boxes_given else "boxes"
 
@@ -82,7 +83,11 @@ def neighbour_lists(scene: Scene, room: int = 0, per_cell: int = 1) -> Neighbour
     sides = tuple(max(1, int(length / reach)) for length in scene.container.lengths)
     cells = make_boxes(scene, sides, images=True, narrowest=reach)
     d = scene.dimension
-    return empty_neighbour_lists(cells, scene.count, d, (margin, reach), room or _ROOM[d], per_cell)
+    walls = np.array([0.0 if periodic else scene.largest_radius for periodic in scene.container.periodic])
+    clearance = walls + margin * (1.0 + 1e-6)
+    return empty_neighbour_lists(
+        cells, scene.count, d, (margin, reach, clearance), room or _ROOM[d], per_cell
+    )
 
 
 def make_lists(lists: NeighbourLists, scene: Scene) -> NeighbourLists:

@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.arrays import contact_law, face_energy, scaled_masses, special_faces
+from gaspart.engines.arrays import (
+    contact_law,
+    face_energy,
+    internal_arrays,
+    scaled_masses,
+    special_faces,
+)
 from gaspart.kernels.model import Gravity, Model, Space, empty_tally, flight_dtype
 from gaspart.kernels.step.boundaries import Rules
 from gaspart.kernels.step.model import StepModel, StepParticles, StepTally
@@ -113,15 +119,9 @@ def rules_for(
 
 def changing(model: StepModel) -> dict[str, np.ndarray]:
     """The arrays of a model's rules and law that a run changes, by name."""
-    arrays, rules, law = {}, model.rules, model.law
-    if rules:
-        arrays = {key: getattr(rules.model.faces, key) for key in ("place", "held", "draws")}
-        arrays["heat"] = rules.heat
-    if law:
-        arrays["spins"] = law.spins
-        if law.vibrations is not None:
-            arrays["vibrations"] = law.vibrations
-    return arrays
+    if model.rules is None:
+        return internal_arrays(model.law, None)
+    return {**internal_arrays(model.law, model.rules.model.faces), "heat": model.rules.heat}
 
 
 def needs_rules(scene: Scene) -> bool:

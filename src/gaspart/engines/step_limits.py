@@ -28,7 +28,7 @@ MOST_BODIES = 2**28
 
 MISSED, MISSED_MOST = 0.01, 0.1
 """The part of all contacts that a step may miss before the engine warns, and refuses."""
-CROWDED, CROWDED_MOST = {True: 2.5, False: 0.5}, {True: 5.0, False: 1.0}
+CONTACTS, CONTACTS_MOST = {True: 2.5, False: 0.5}, {True: 5.0, False: 1.0}
 """Contacts of a particle in a step, with several passes or with one, before the engine warns, and refuses. Up
 to the first the pressure is correct to about 1 % (measured: docs/time-stepped.md)."""
 
@@ -136,15 +136,15 @@ def check_step(engine: TimeStepped, state: State) -> None:
     several = engine.passes > 1
     missed = missed_contacts(engine.time_step, several, state)
     met = contacts_per_step(engine.time_step, state)
-    worst = max(math.sqrt(missed / MISSED), met / CROWDED[several])
+    worst = max(math.sqrt(missed / MISSED), met / CONTACTS[several])
     if worst <= 1.0:
         return
     rule = (
         f"misses {100 * missed:.2g} % of all contacts (fit is {100 * MISSED:g} %), and a particle has "
-        f"{met:.2g} in a step (fit is {CROWDED[several]:g}); "
+        f"{met:.2g} in a step (fit is {CONTACTS[several]:g}); "
         f"a step of {engine.time_step / worst:.2g} would do"
     )
-    if missed > MISSED_MOST or met > CROWDED_MOST[several]:
+    if missed > MISSED_MOST or met > CONTACTS_MOST[several]:
         raise SceneError("time_step", engine.time_step, rule)
     warnings.warn(f"gaspart: time_step = {engine.time_step:g} {rule}", stacklevel=4)
 

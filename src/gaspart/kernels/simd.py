@@ -202,11 +202,20 @@ def sooner(time: Lanes, number: Lanes, other_time: Lanes, other_number: Lanes) -
 
 
 def soonest(time: Lanes, number: Lanes) -> tuple[ir.Value, ir.Value]:
-    """The soonest of eight contacts."""
+    """The soonest of eight contacts, of simultaneous ones that with the lowest number."""
+    build = time.builder
+    first = time
     for step in (4, 2, 1):
-        time, number = sooner(time, number, time.turned(step), number.turned(step))
-    first, second = (time.builder.extract_element(part.value, _INT(0)) for part in (time, number))
-    return first, second
+        other = first.turned(step)
+        first = other.where(other < first, first)
+    highest = number.all(_WORD(2**63 - 1))
+    lowest = number.where(time.equals(first), highest)
+    for step in (4, 2, 1):
+        other = lowest.turned(step)
+        lower = Lanes(build, build.icmp_signed("<", other.value, lowest.value))
+        lowest = other.where(lower, lowest)
+    found, number = (build.extract_element(part.value, _INT(0)) for part in (first, lowest))
+    return found, number
 
 
 def load_candidates(builder: ir.IRBuilder, place: ir.Value, short: bool) -> Lanes:

@@ -27,7 +27,7 @@ def sent(position, velocity, search="boxes", walls=(PLATE,), gravity=(0.0, 0.0, 
 
 
 @given(partitioned(), st.integers(0, 2**32))
-def test_all_searches_agree_bit_for_bit_and_nobody_passes_a_plate(scene, seed):
+def test_all_searches_agree_bit_for_bit_and_no_particle_passes_a_plate(scene, seed):
     assume(scene.walls)
     check_searches(scene, 100, seed, may_collapse=True)
     sim = events_of(scene, "boxes", 1500, seed, may_collapse=True)

@@ -19,7 +19,7 @@ def test_all_searches_give_the_same_events_bit_for_bit(scene, seed):
 
 
 @given(walled(most=20), st.integers(0, 2**32))
-def test_nobody_passes_through_a_wall(scene, seed):
+def test_no_particle_passes_through_a_wall(scene, seed):
     sim = events_of(scene, "automatic", 2000, seed, may_collapse=True)
     sim.check_invariants()
     assert sim.tally.worst_contact < 1e-8

@@ -27,7 +27,7 @@ def test_all_searches_give_the_same_events_bit_for_bit_and_keep_the_energy(scene
 
 
 @given(surfaced(most=20), st.integers(0, 2**32))
-def test_nobody_leaves_and_no_energy_is_lost(scene, seed):
+def test_no_particle_leaves_and_no_energy_is_lost(scene, seed):
     sim = events_of(scene, "automatic", 3000, seed, may_collapse=True)
     sim.check_invariants()
     check_inside(scene, sim.state, 1e-9)

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.experiments.price.stripped import instructions
-from gaspart.experiments.shared.rows import from_rows
+from gaspart.experiments.shared.rows import entries, from_rows
 from gaspart.experiments.shared.timings import log_ratios, per_event, ratio_of_jobs
 from gaspart.planning import grid
 from gaspart.scene.scene import Scene
@@ -47,14 +47,11 @@ def price_of_features(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 def _together(jobs: list[dict]) -> dict:
     """The row of several jobs of one feature; NaN errors for a single one."""
-    ratio = ratio_of_jobs([job["log_ratio"] for job in jobs])
     return {
         "engine": jobs[0]["engine"],
         "feature": jobs[0]["feature"],
         **{name: float(np.mean([job[name] for job in jobs])) for name in ("seconds", *WORK)},
-        "ratio": ratio.value,
-        "ratio_error": ratio.error,
-        "ratio_freedom": ratio.freedom,
+        **entries({"ratio": ratio_of_jobs([job["log_ratio"] for job in jobs])}),
     }
 
 

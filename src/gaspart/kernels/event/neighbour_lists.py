@@ -9,7 +9,7 @@ dozen particles, and the cells of the centres are read once in many collisions (
 Which particles are listed follows from the centres alone, so a checkpoint need not hold the lists.
 """
 
-from math import sqrt
+from math import inf, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -17,10 +17,10 @@ from numpy import int64, uint32, uint64
 
 from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
 from gaspart.kernels.memory import aligned
-from gaspart.kernels.model import BOX_FACES, CROSSINGS, LISTED_BITS, PAIR_TESTS
+from gaspart.kernels.model import BOX_FACES, CROSSINGS, LISTED_BITS, NONE, PAIR_TESTS
 from gaspart.kernels.simd import IMAGE_BITS, WIDTH, earliest, equal, lowest, nearer
 
-_NUMBER = (1 << LISTED_BITS) - 1
+NUMBER = (1 << LISTED_BITS) - 1  # the bits of an entry that name a particle
 _FAR = 1e30  # an empty place of a cell
 _STILL = 1e-280  # squared speeds below which a particle does not move
 _X, _Y, _Z = (LISTED_BITS + IMAGE_BITS * k for k in range(3))
@@ -47,7 +47,9 @@ class NeighbourLists(NamedTuple):
     and the unused rest names the particle itself. Of the cells of centres (see `state.boxes.Boxes`):
     per_side, per_length (one over their widths), strides (3,), neighbour, shift; filled (cells,), how many
     each holds; pages (cells * per_cell,), see `page_dtype`. margin, reach: the distance a particle may move,
-    and that within which centres are listed. full (2,): whether a list or a cell had no room."""
+    and that within which centres are listed. clearance (3,): along each axis, the distance of a centre from a
+    face beyond which the particle cannot touch it before its list is renewed. full (2,): whether a list or a
+    cell had no room."""
 
     listed: np.ndarray
     candidates: np.ndarray
@@ -62,12 +64,13 @@ class NeighbourLists(NamedTuple):
     per_cell: int
     margin: float
     reach: float
+    clearance: np.ndarray
     full: np.ndarray
 
 
 def empty_neighbour_lists(cells, count, dimension, distances, room, per_cell):
     """Lists of less than `room` entries for `count` particles, and cells (see `state.boxes.Boxes`) of
-    `per_cell` pages, with none in them. distances: margin, reach."""
+    `per_cell` pages, with none in them. distances: margin, reach, clearance (3,)."""
     return NeighbourLists(
         listed=aligned((count,), LISTED),
         candidates=aligned((count * room + 2 * WIDTH,), np.uint32),
@@ -79,6 +82,7 @@ def empty_neighbour_lists(cells, count, dimension, distances, room, per_cell):
         per_cell=per_cell,
         margin=distances[0],
         reach=distances[1],
+        clearance=distances[2],
         full=np.zeros(2, dtype=np.uint8),
     )  # fmt: skip
 
@@ -154,10 +158,10 @@ def strike(lists, i, other):
     row = uint64(i) * uint64(lists.room)
     last = row + uint64(lists.candidates[row])
     place = row + uint64(1)
-    found = equal(lists.candidates, place, other, _NUMBER)
+    found = equal(lists.candidates, place, other, NUMBER)
     while not found:
         place += uint64(2 * WIDTH)
-        found = equal(lists.candidates, place, other, _NUMBER)
+        found = equal(lists.candidates, place, other, NUMBER)
     lists.candidates[place + lowest(found)] = lists.candidates[last]
     lists.candidates[last] = i + _HERE
     lists.candidates[row] -= uint32(1)
@@ -257,7 +261,7 @@ def centre_all(lists, flights, time, lengths):
 @inner_helper
 def listed_number(lists, n):
     """The particle of an entry of a list."""
-    return int64(lists.candidates[n] & uint32(_NUMBER))
+    return int64(lists.candidates[n] & uint32(NUMBER))
 
 
 @inner_helper
@@ -274,9 +278,8 @@ def search_list(particles, i, lists, space, tally):
 
 
 @inner_helper
-def next_renewal(flights, i, lists, time, face):
-    """The earlier of the time at which a particle has moved a margin from its centre, and the next face:
-    (time, face code)."""
+def next_renewal(flights, i, lists):
+    """When a particle will have moved a margin from its centre: (time, face code)."""
     if lists is not None:
         flight, centre = flights[i], lists.listed[i].centre
         rr = rv = vv = 0.0
@@ -287,10 +290,20 @@ def next_renewal(flights, i, lists, time, face):
             vv += v * v
         if vv > _STILL:
             left = rv * rv - vv * (rr - lists.margin * lists.margin)
-            moved = flight.clock + (sqrt(max(left, 0.0)) - rv) / vv
-            if moved < time:
-                return moved, int64(BOX_FACES)
-    return time, face
+            return flight.clock + (sqrt(max(left, 0.0)) - rv) / vv, int64(BOX_FACES)
+    return inf, int64(NONE)
+
+
+@inner_helper
+def is_renewed_first(i, time, lists, space, faces):
+    """Whether the list of a particle is renewed, at a `time` or never, before it can come to a face: all
+    faces are at rest and farther from its centre than a margin."""
+    if lists is None or faces is not None:
+        return False
+    centre, far = lists.listed[i].centre, time < inf
+    for k in range(len(space.lengths)):
+        far &= (lists.clearance[k] < centre[k]) & (centre[k] < space.lengths[k] - lists.clearance[k])
+    return far
 
 
 @inner_helper

@@ -10,10 +10,10 @@ does not come is not used.
 from numpy import int64, uint32, uint64
 
 from gaspart.kernels.compilation import inner_helper
-from gaspart.kernels.event.neighbour_lists import listed_number
+from gaspart.kernels.event.neighbour_lists import NUMBER, cell_along, listed_number
 from gaspart.kernels.event.queue import BUCKET
 from gaspart.kernels.model import BOX_FACES, WELL_EDGES
-from gaspart.kernels.prefetch import fetch
+from gaspart.kernels.prefetch import TOGETHER, fetch, fetch_numbered, fetch_two
 
 CACHED = 1 << 15  # particles up to which the nearer caches suffice without,
 CACHED_LISTS = 1 << 12  # and with neighbour lists
@@ -92,9 +92,11 @@ def fetch_predictions(predictions, queue, bucket):
 @inner_helper
 def fetch_listed(flights, lists, i):
     """Fetch the flights of the particles in a neighbour list."""
-    row = i * lists.room
-    for n in range(row + 1, row + 1 + int64(lists.candidates[row])):
-        fetch(flights, listed_number(lists, n))
+    row = uint64(i) * uint64(lists.room)
+    first = row + uint64(1)
+    while first <= row + uint64(lists.candidates[row]):
+        fetch_numbered(flights, lists.candidates, first, uint64(NUMBER))
+        first += uint64(TOGETHER)
 
 
 @inner_helper
@@ -102,7 +104,28 @@ def fetch_list(flights, lists, i):
     """Fetch the flight of a particle and its neighbour list."""
     fetch(flights, i)
     fetch(lists.listed, i)
-    fetch(lists.candidates, i * lists.room)
+    fetch_two(lists.candidates, i * lists.room)
+
+
+@inner_helper
+def fetch_renewal(flights, lists, i, time):
+    """Fetch what the renewal of a particle's list at a time will read: the lists of the particles in it, and
+    the cells about the place where it will be."""
+    row = i * lists.room
+    for n in range(row + 1, row + 1 + int64(lists.candidates[row])):
+        fetch_two(lists.candidates, listed_number(lists, n) * lists.room)
+    flight, neighbour = flights[i], lists.neighbour
+    late, d = time - flight.clock, len(flight.position)
+    ax = cell_along(lists, 0, flight.position[0] + flight.velocity[0] * late)
+    ay = cell_along(lists, 1, flight.position[1] + flight.velocity[1] * late)
+    az = cell_along(lists, 2, flight.position[2] + flight.velocity[2] * late) if d == 3 else int64(0)
+    for dz in range(3):
+        for dy in range(3):
+            y, z = neighbour[1, ay, dy], neighbour[2, az, dz]
+            if y < 0 or z < 0:
+                continue
+            for dx in range(3):
+                fetch_two(lists.pages, (y + z + max(neighbour[0, ax, dx], 0)) * lists.per_cell)
 
 
 @inner_helper
@@ -127,6 +150,8 @@ def prefetch_lists(particles, queue, lists, next_bucket):
                     fetch_listed(flights, lists, i)
                     if meets:
                         fetch_listed(flights, lists, partner)
+                    elif predictions[i].face == BOX_FACES:
+                        fetch_renewal(flights, lists, i, predictions[i].face_time)
                 i = int64(predictions[i].after)
     return now + 1
 

@@ -3,6 +3,8 @@ there."""
 
 from math import inf
 
+from numpy import int64
+
 from gaspart.kernels.ballistic import time_against, time_along
 from gaspart.kernels.compilation import inner_helper, inner_kernel
 from gaspart.kernels.contact import time_to_plane
@@ -26,10 +28,11 @@ def plane_of(particles, i, axis, upper, boxes, space, oversized):
     wall stops an oversized particle some boxes before the last."""
     flights = particles.flights
     at = particles.predictions[i].box[axis]
-    code = 2 * axis + (1 if upper else 0)
-    if at == (boxes.per_side[axis] - 1 if upper else 0):
+    up = int64(upper)  # a number: the processor cannot predict which way a particle flies
+    code = 2 * axis + up
+    if at == up * (boxes.per_side[axis] - 1):
         return face_plane(flights, i, axis, upper, space), code
-    plane = (at + 1 if upper else at) * boxes.widths[axis]
+    plane = (at + up) * boxes.widths[axis]
     if oversized is not None:
         outer = face_plane(flights, i, axis, upper, space)
         if outer <= plane if upper else outer >= plane:

@@ -70,9 +70,21 @@ def count_part(particles, part, cells):
 
 
 @inner_kernel
-def begin_cells(ends):
-    """Replace how many slots each thread has in each cell by where these begin."""
-    place = np.uint32(0)
+def total_of_part(ends, part):
+    """How many particles one thread's share of the cells holds."""
+    low, high = part_of(part, len(ends), ends.shape[1])
+    total = np.uint32(0)
+    for row in range(len(ends)):
+        for number in ends[row, low:high]:
+            total += number
+    return total
+
+
+@inner_kernel
+def begin_part(ends, part, place):
+    """Replace how many slots each thread has in each cell of one thread's share of them by where these
+    begin. place: how many lie before."""
+    low, high = part_of(part, len(ends), ends.shape[1])
     if len(ends) == 1:
         only = ends[0]
         for cell in range(len(only)):
@@ -80,10 +92,10 @@ def begin_cells(ends):
             only[cell] = place
             place += number
         return
-    for cell in range(ends.shape[1]):
-        for part in range(len(ends)):
-            number = ends[part, cell]
-            ends[part, cell] = place
+    for cell in range(low, high):
+        for row in range(len(ends)):
+            number = ends[row, cell]
+            ends[row, cell] = place
             place += number
 
 

@@ -11,9 +11,8 @@ from numpy import int64
 from gaspart.kernels.compilation import allocating_kernel, inner_allocating_kernel, inner_helper
 from gaspart.kernels.step.box_search import search_all, search_boxes, sort_in
 from gaspart.kernels.step.model import DISPLACEMENT, FASTEST, PAIR_TESTS, Search, Step
-from gaspart.kernels.step.neighbour_list import is_outdated
 from gaspart.kernels.step.resolve import count_left, in_order, resolve_all
-from gaspart.kernels.step.threads import gathered, make_list, move_all, room_for, search_list
+from gaspart.kernels.step.threads import gathered, is_outdated, make_list, move_all, room_for, search_list
 
 
 @inner_helper
@@ -30,7 +29,7 @@ def total_pull(gravity):
 def update_list(particles, pairs, space, tally, before, threads, cells):
     """Make the list anew if it is outdated. Returns its pairs, and `before`, see `Step`."""
     if cells is not None:
-        if is_outdated(particles, cells, space):
+        if is_outdated(particles, cells, space, threads):
             return make_list(particles, cells, pairs, space, tally, threads), int64(0)
     return pairs, before
 

@@ -256,32 +256,32 @@ def highest(squares, most):
 
 
 @inner_allocating_kernel
-def measure_fastest(particles):
-    """Measure the highest speed of any particle."""
-    count = particles.velocities.shape[1]
+def fastest_part(particles, slots):
+    """The highest squared speed of the particles in the slots from slots[0] to slots[1]."""
     room = np.empty(_BLOCK, particles.velocities.dtype)
     most = particles.velocities[0, 0] - particles.velocities[0, 0]
-    for low in range(0, count, _BLOCK):
-        high = min(low + _BLOCK, count)
+    for low in range(slots[0], slots[1], _BLOCK):
+        high = min(low + _BLOCK, slots[1])
         squares = room[: high - low]
         squares[:] = 0
         for k in range(len(particles.velocities)):
             add_squares(particles.velocities[k, low:high], squares)
         most = highest(squares, most)
-    particles.bounds[FASTEST] = np.sqrt(most)
+    return most
 
 
 @inner_allocating_kernel
-def measure_displacement(particles, cells, space):
-    """Measure how far any ordinary particle is from where it was when the list was made."""
+def displacement_part(particles, slots, cells, space):
+    """The square of how far any particle in the slots from slots[0] to slots[1] is from where it was when the
+    list was made."""
     room = np.empty(_BLOCK, particles.positions.dtype)
     most = space.margin - space.margin
-    for low in range(0, particles.ordinary, _BLOCK):
-        high = min(low + _BLOCK, particles.ordinary)
+    for low in range(slots[0], slots[1], _BLOCK):
+        high = min(low + _BLOCK, slots[1])
         squares = room[: high - low]
         squares[:] = 0
         for k in range(len(space.lengths)):
             length = space.lengths[k] if space.periodic[k] else np.inf
             add_gaps(particles.positions[k, low:high], cells.origin[k, low:high], length, squares)
         most = highest(squares, most)
-    particles.bounds[DISPLACEMENT] = np.sqrt(most)
+    return most

@@ -13,7 +13,6 @@ from gaspart.kernels.compilation import helper, inner_allocating_kernel, inner_h
 from gaspart.kernels.prefetch import fetch
 from gaspart.kernels.simd import lowest
 from gaspart.kernels.step.model import DISPLACEMENT, part_of
-from gaspart.kernels.step.motion import measure_displacement
 from gaspart.kernels.step.resolve import examine
 from gaspart.kernels.step.simd import WIDTH, bits, compact_eight, equals, nearer
 
@@ -136,17 +135,6 @@ def list_part(particles, part, cells, pairs, space, tests):
 def is_complete(particles, cells):
     """Whether no two particles may have come nearer by more than the skin since the list was made."""
     return 2.0 * particles.bounds[DISPLACEMENT] < _SAFE * cells.skin
-
-
-@inner_allocating_kernel
-def is_outdated(particles, cells, space):
-    """Whether the list is to be made anew. By how far the fastest particle may have come, first; and if that
-    is too much, by how far all have come."""
-    if is_complete(particles, cells):
-        return False
-    if particles.bounds[DISPLACEMENT] < np.inf:
-        measure_displacement(particles, cells, space)
-    return not is_complete(particles, cells)
 
 
 @inner_kernel

@@ -17,17 +17,18 @@ from gaspart.kernels.compilation import (
 )
 from gaspart.kernels.model import Space
 from gaspart.kernels.step.cells import (
-    begin_cells,
+    begin_part,
     copy,
     copy_periodic_rows,
     count_part,
     locate_part,
     order_part,
     permute,
+    total_of_part,
 )
-from gaspart.kernels.step.model import DISPLACEMENT, PAIR_TESTS, REBUILDS, Found, StepModel, part_of
-from gaspart.kernels.step.motion import measure_fastest, move, move_by_rules
-from gaspart.kernels.step.neighbour_list import list_part, search_pairs
+from gaspart.kernels.step.model import DISPLACEMENT, FASTEST, PAIR_TESTS, REBUILDS, Found, StepModel, part_of
+from gaspart.kernels.step.motion import displacement_part, fastest_part, move, move_by_rules
+from gaspart.kernels.step.neighbour_list import is_complete, list_part, search_pairs
 from gaspart.kernels.step.simd import WIDTH
 
 _BLOCK = 1024  # pairs that are tested before those that touch are looked at
@@ -82,6 +83,16 @@ def count_shared(particles, cells):
     for part in prange(len(cells.ends)):
         locate_part(particles, part, cells)
         count_part(particles, part, cells)
+
+
+@inner_parallel_kernel
+def begin_shared(ends, totals):
+    """`begin_part` for all parts. totals (threads,): room for how many particles each share of the cells
+    holds."""
+    for part in prange(len(ends)):
+        totals[part] = total_of_part(ends, part)
+    for part in prange(len(ends)):
+        begin_part(ends, part, np.uint32(totals[:part].sum()))
 
 
 @inner_parallel_kernel
@@ -147,18 +158,17 @@ def reorder(values, order, room, threads):
         copy_shared(permuted, values, threads)
 
 
-@inner_kernel
+@inner_allocating_kernel
 def sort_into_cells(particles, cells, threads):
     """Bring the ordinary particles into the order of their cells."""
     if threads is None:
         locate_part(particles, 0, cells)
         count_part(particles, 0, cells)
-    else:
-        count_shared(particles, cells)
-    begin_cells(cells.ends)
-    if threads is None:
+        begin_part(cells.ends, 0, np.uint32(0))
         order_part(particles, 0, cells)
     else:
+        count_shared(particles, cells)
+        begin_shared(cells.ends, np.zeros(len(cells.ends), np.uint32))
         order_shared(particles, cells)
     copy_periodic_rows(cells)
     reorder(particles.radii, cells.order, cells.origin[0], threads)
@@ -171,6 +181,57 @@ def sort_into_cells(particles, cells, threads):
         locate_part(particles, 0, cells)
     else:
         locate_shared(particles, cells)
+
+
+@inner_parallel_kernel
+def fastest_shared(particles, squares):
+    """`fastest_part` for all parts, into squares (threads,)."""
+    for part in prange(len(squares)):
+        slots = part_of(part, len(squares), particles.velocities.shape[1])
+        squares[part] = fastest_part(particles, slots)
+
+
+@inner_parallel_kernel
+def displacement_shared(particles, cells, lengths, periodic, margin, squares):
+    """`displacement_part` for all parts, into squares (threads,)."""
+    for part in prange(len(squares)):
+        slots = part_of(part, len(squares), particles.ordinary)
+        squares[part] = displacement_part(particles, slots, cells, Space(lengths, periodic, margin))
+
+
+@inner_allocating_kernel
+def measure_fastest(particles, threads):
+    """Measure the highest speed of any particle."""
+    if threads is None:
+        square = fastest_part(particles, (0, particles.velocities.shape[1]))
+    else:
+        squares = np.empty(threads, particles.velocities.dtype)
+        fastest_shared(particles, squares)
+        square = squares.max()
+    particles.bounds[FASTEST] = np.sqrt(square)
+
+
+@inner_allocating_kernel
+def measure_displacement(particles, cells, space, threads):
+    """Measure how far any ordinary particle is from where it was when the list was made."""
+    if threads is None:
+        square = displacement_part(particles, (0, particles.ordinary), cells, space)
+    else:
+        squares = np.empty(threads, particles.positions.dtype)
+        displacement_shared(particles, cells, space.lengths, space.periodic, space.margin, squares)
+        square = squares.max()
+    particles.bounds[DISPLACEMENT] = np.sqrt(square)
+
+
+@inner_allocating_kernel
+def is_outdated(particles, cells, space, threads):
+    """Whether the list is to be made anew. By how far the fastest particle may have come, first; and if that
+    is too much, by how far all have come."""
+    if is_complete(particles, cells):
+        return False
+    if particles.bounds[DISPLACEMENT] < np.inf:
+        measure_displacement(particles, cells, space, threads)
+    return not is_complete(particles, cells)
 
 
 @allocating_kernel
@@ -186,7 +247,7 @@ def make_list(particles, cells, pairs, space, tally, threads):
         if cells.listed.max() + WIDTH <= pairs.shape[1]:
             break
         pairs = np.empty((len(pairs), cells.listed.max() * 5 // 4 + WIDTH), np.uint64)
-    measure_fastest(particles)
+    measure_fastest(particles, threads)
     particles.bounds[DISPLACEMENT] = 0.0
     tally.counts[REBUILDS] += 1
     tally.counts[PAIR_TESTS] += tests.sum()
