@@ -3,9 +3,11 @@ import math
 import numpy as np
 import pytest
 from scipy import stats
+from scipy.signal import lfilter
 
 from gaspart import theory
 from gaspart.analysis import statistics
+from gaspart.claims.claim import gaussian_deviation
 
 
 def autoregressive(size, memory, seed):
@@ -43,12 +45,17 @@ def test_block_average_reports_a_series_that_is_too_short():
     assert result.block_length == 16
 
 
-def test_block_errors_have_the_stated_coverage():
+@pytest.mark.parametrize(("size", "memory"), [(200, 0.5), (200, 0.72), (1000, 0.9), (2048, 0.8)])
+def test_deviations_over_errors_follow_student(size, memory):
+    """As Gaussian deviations of the same probability; errors from blocks alone make them 1.1 to 1.4 wide."""
+    rng, scattered = np.random.default_rng(5), 1500
     deviations = []
-    for seed in range(60):
-        result = statistics.block_average(autoregressive(2048, 0.8, 100 + 2 * seed))
-        deviations.append(result.mean / result.error)
-    assert 0.8 < np.std(deviations) < 1.3
+    for noise in rng.standard_normal((scattered, size + 100)):
+        result = statistics.block_average(lfilter([1.0], [1.0, -memory], noise)[100:])
+        deviations.append(gaussian_deviation(result.mean / result.error, result.freedom))
+    width = np.sqrt(np.mean(np.square(deviations)))
+    assert width == pytest.approx(1.0, abs=0.05)  # 3 / sqrt(2 * 1500), and the freedom is an estimate
+    assert np.mean(np.abs(deviations) > 3.0) < 0.01
 
 
 @pytest.mark.parametrize("memory", [0.0, 0.5, 0.9])

@@ -101,6 +101,19 @@ def test_the_driven_gas_loses_what_it_is_given():
         assert lost == pytest.approx(2.0 * 0.02 / dimension, rel=1e-3)
 
 
+@pytest.mark.parametrize(("count", "dimension"), [(3, 2), (4, 3), (20, 2)])
+def test_few_particles_of_one_energy_lose_more_or_less_of_it(count, dimension):
+    """By the mean square of the approach speed at contacts, of velocities uniform on their sphere: 4 T of
+    Maxwellian ones."""
+    velocities = np.random.default_rng(8).standard_normal((400_000, count, dimension))
+    velocities -= velocities.mean(axis=1, keepdims=True)
+    velocities *= np.sqrt(count * dimension / (velocities**2).sum(axis=(1, 2)))[:, None, None]
+    approach = np.maximum(velocities[:, 0, 0] - velocities[:, 1, 0], 0.0)
+    factor = theory.cooling_rate_finite_size_factor(count, dimension)
+    assert (approach**3).mean() / approach.mean() / 4.0 == pytest.approx(factor, rel=0.01)
+    assert theory.cooling_rate_finite_size_factor(1e9, dimension) == pytest.approx(1.0, abs=1e-8)
+
+
 @pytest.mark.parametrize(
     ("function", "arguments"),
     [

@@ -31,11 +31,11 @@ _CHUNK = 20_000  # events that are kept at once
 _PATIENCE = 1_000_000  # events without a collision of two particles
 _ABOUT = {
     "time": ("time of the collision", "time"),
-    "bodies": ("the two bodies, the lower index first", "1"),
-    "normal": ("unit vector at contact, from the first body to the second", "1"),
+    "bodies": ("the two particles, the lower index first", "1"),
+    "normal": ("unit vector at contact, from the first particle to the second", "1"),
     "approach": ("relative speed along the normal, before", "length / time"),
     "relative_speed": ("relative speed, before", "length / time"),
-    "free_time": ("time since the body's last event of any kind", "time"),
+    "free_time": ("time since the last event of the particle of any kind", "time"),
     "free_path": ("its flight since then", "length"),
 }
 

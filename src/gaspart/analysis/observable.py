@@ -112,7 +112,7 @@ def _label(values: xr.DataArray) -> str:
 
 
 def scalar(name: str, series: np.ndarray, edges: np.ndarray, **about: Any) -> Observable:
-    """The mean of a series over the intervals between frames, with its error from blocks.
+    """The mean of a series over the intervals between frames, with the error of a correlated series.
 
     series (M,); edges (M + 1,), the times of the frames. about: `units`, `long_name`, and perhaps `theory`, a
     value and its uncertainty, and its `source`. Raises SceneError for fewer than `LEAST_INTERVALS`.

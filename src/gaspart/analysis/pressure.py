@@ -12,6 +12,7 @@ from gaspart.analysis.observable import Observable, observable, scalar
 from gaspart.analysis.source import Run, Source, measured, require_elastic, require_periodic
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
+from gaspart.trajectory.amber import face_names
 
 _BLOCKS = 16
 
@@ -66,7 +67,7 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
         ends = np.linspace(0, len(run.time) - 1, blocks + 1).astype(int)
         impulse = np.diff(run.data["wall_impulse"].values[ends, : 2 * d], axis=0)
         series = impulse / np.diff(run.time[ends])[:, None] / areas
-        faces = np.array([f"{axis} {end}" for axis in "xyz"[:d] for end in ("low", "high")])
+        faces = np.array(face_names(d))
         chosen = np.repeat(walled, 2)
         values, errors = means_of(np.abs(series[:, chosen]))
         return observable(

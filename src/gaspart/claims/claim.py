@@ -24,7 +24,7 @@ UNVERIFIED = "the reference is quoted from memory and has not been verified"
 
 @dataclass(frozen=True, kw_only=True)
 class Claim:
-    """One measured number and what it should be, in the unit that the claim's text gives.
+    """One measured number and what is expected of it, in the unit that the claim's text gives.
 
     claim: the statement in words; expected: a plain number is exact, the uncertainty of an Estimate is the
     allowance for that of the theory or the literature, whose origin is `allowance_source`, and which must
@@ -33,8 +33,9 @@ class Claim:
     bounds: the lowest and the highest allowed number, for a statement of bounds instead of a value (see
     `at_least`, `at_most`, `within`). exact_deviation: for numbers that are not Gaussian, their deviation as a
     Gaussian one (see `chi_square`). alternative: the value of a competing theory, which a claim that agrees
-    must exclude. no_verdict: why the number is reported only, such as UNVERIFIED. why: of a reproduction,
-    why the source errs if it is not reproduced.
+    must exclude. follows: whether the number follows, or nearly, from those of other claims, so that the
+    joint test does not count it again. no_verdict: why the number is reported only, such as UNVERIFIED.
+    why: of a reproduction, why the source errs if it is not reproduced.
 
     Raises ValueError for an unknown kind, an empty text, source or fails_if, a negative required uncertainty,
     and an allowance without a source.
@@ -51,6 +52,7 @@ class Claim:
     exact_deviation: float | None = None
     allowance_source: str = ""
     alternative: Scalar | None = None
+    follows: bool = False
     no_verdict: str = ""
     why: str = ""
 
@@ -177,10 +179,11 @@ class Claim:
 
     @property
     def is_scattered(self) -> bool:
-        """Whether the deviation is a standard Gaussian one if the claim is true: a test of a value, with a
-        verdict, whose allowance is negligible beside the measurement's uncertainty."""
+        """Whether the deviation is a standard Gaussian one if the claim is true, and one of its own: a test
+        of a value, with a verdict, whose allowance is negligible beside the measurement's uncertainty."""
         return (
-            self.form == "value"
+            not self.follows
+            and self.form == "value"
             and self.kind == "test"
             and not self.no_verdict
             and self.is_finite

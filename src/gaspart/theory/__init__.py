@@ -1,8 +1,9 @@
 """Theory of hard discs and spheres: formulas, provenance, range of validity.
 
 Independent of the engines; imports only numpy. Every docstring states the source of its formula: exact
-(closed form), literature (read in the source), recalled (from memory of the source), computed (this project's
-own numerics). Arguments that are out of range raise SceneError, which is a ValueError.
+(closed form), literature (and what of it was derived again or tested here), computed (this project's own
+numerics). What was not verified is said to be so. Arguments that are out of range raise SceneError, which
+is a ValueError.
 """
 
 from gaspart.scene.geometry import CLOSE_PACKING
@@ -69,6 +70,7 @@ from gaspart.theory.geometry import (
 )
 from gaspart.theory.granular import (
     cooling_rate,
+    cooling_rate_finite_size_factor,
     driven_cumulant,
     driven_temperature,
     fourth_cumulant,
@@ -172,6 +174,7 @@ __all__ = [
     "conducting_slab",
     "contact_value",
     "cooling_rate",
+    "cooling_rate_finite_size_factor",
     "crystal_finite_size_correction",
     "diffusion_in_cube",
     "diffusion_modes",

@@ -37,7 +37,8 @@ def scaled_particle_activity(packing_fraction: Numbers) -> Values:
     """Discs: eta / (1 - eta) exp[(3 eta - 2 eta^2) / (1 - eta)^2], scaled-particle theory.
 
     It is z w e^{depth / k_B T} pi sigma^2 / 4 of a layer of coverage eta whose gas has the activity z. From
-    Z = 1 / (1 - eta)^2 (Helfand, Frisch and Lebowitz, J. Chem. Phys. 34, 1037 (1961); recalled).
+    Z = 1 / (1 - eta)^2 (Helfand, Frisch and Lebowitz, J. Chem. Phys. 34, 1037 (1961); tested to the
+    second order).
     """
     eta = checked_packing_fraction(packing_fraction, STABLE_DISCS)
     return eta / (1.0 - eta) * np.exp((3.0 * eta - 2.0 * eta**2) / (1.0 - eta) ** 2)
@@ -45,8 +46,8 @@ def scaled_particle_activity(packing_fraction: Numbers) -> Values:
 
 @checked
 def langmuir_coverage(activity: Numbers) -> Values:
-    """K / (1 + K): places that each hold one particle (Langmuir, J. Am. Chem. Soc. 40, 1361 (1918);
-    recalled)."""
+    """K / (1 + K): places that each hold one particle (Langmuir, J. Am. Chem. Soc. 40, 1361
+    (1918))."""
     activity = np.asarray(activity, dtype=float)
     return activity / (1.0 + activity)
 

@@ -17,7 +17,7 @@ def insertion_work(packing_fraction: Numbers, size_ratio: Numbers) -> Values:
     """W / (k_B T) of a hard disc in a fluid of discs 1 / size_ratio as large (scaled-particle theory).
 
     -ln(1 - eta) + 2 s eta / (1 - eta) + s^2 eta / (1 - eta)^2: Helfand, Frisch and Lebowitz, J. Chem. Phys.
-    34, 1037 (1961) (recalled; tested against the equation of state at s = 1). Its last term is the pressure
+    34, 1037 (1961) (tested against the equation of state at s = 1). Its last term is the pressure
     times the disc's own area, so the second is the line tension of its edge.
     """
     eta = checked_packing_fraction(packing_fraction, _HIGHEST)

@@ -24,10 +24,10 @@ YEH_HUMMER_CONSTANT = 2.837297
 def erpenbeck_wood_ratio(packing_fraction: Numbers) -> Values:
     """Spheres: D / D_Enskog = 1 + 0.05403 y + 6.3656 y^2 - 10.9425 y^3, y = rho sigma^3 / sqrt 2.
 
-    Erpenbeck and Wood, Phys. Rev. A 43, 4254 (1991). The coefficients are recalled; the values differ by
-    0.7 % at most up to eta = 0.45, and by 2 % at 0.487, from the table of D of Pieprzyk, Bannerman, Branka,
-    Chudak and Heyes, Phys. Chem. Chem. Phys. 21, 6886 (2019), as a public script quotes it (tested). Range:
-    the fluid, eta <= 0.4915. Infinite system. Dimensionless.
+    Erpenbeck and Wood, Phys. Rev. A 43, 4254 (1991). The coefficients were not read in the paper; the values
+    differ by 0.7 % at most up to eta = 0.45, and by 2 % at 0.487, from the table of D of Pieprzyk, Bannerman,
+    Branka, Chudak and Heyes, Phys. Chem. Chem. Phys. 21, 6886 (2019), as a public script quotes it (tested).
+    Range: the fluid, eta <= 0.4915. Infinite system. Dimensionless.
     """
     eta = checked_packing_fraction(packing_fraction, 0.4915)
     y = number_density(eta, 3) / math.sqrt(2.0)
@@ -133,8 +133,9 @@ def velocity_autocorrelation_tail(
 ) -> Values:
     """Long-time tail of <v(0).v(t)> / <v^2>: ((d-1) / (d rho)) [4 pi (D + nu) t]^(-d/2) (dimensionless).
 
-    Mode coupling, Ernst, Hauge and van Leeuwen (1970); recalled. D and the kinematic viscosity nu are
-    Enskog's. Range: after 15 to 30 mean free times and before sound has crossed the container.
+    Mode coupling, Ernst, Hauge and van Leeuwen (1970); the integral over the shear modes of `modes`. D and
+    the kinematic viscosity nu are Enskog's. Range: after 15 to 30 mean free times and before sound has
+    crossed the container.
     """
     density, spreading = _spreading(packing_fraction, dimension, diameter, temperature, mass)
     amplitude = (dimension - 1) / (dimension * density)

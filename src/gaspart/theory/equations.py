@@ -30,7 +30,7 @@ def van_der_waals(packing_fraction: Numbers, dimension: int) -> Values:
 
 
 def carnahan_starling(packing_fraction: Numbers) -> Values:
-    """Spheres: Z = (1 + eta + eta^2 - eta^3) / (1 - eta)^3 (Carnahan and Starling 1969; recalled).
+    """Spheres: Z = (1 + eta + eta^2 - eta^3) / (1 - eta)^3 (Carnahan and Starling 1969).
 
     0.13 % low at eta = 0.2, 0.27 % low at 0.3 to 0.4: to be drawn, not to be tested against at 0.1 %.
     """
@@ -41,7 +41,7 @@ def carnahan_starling(packing_fraction: Numbers) -> Values:
 def kolafa_1986(packing_fraction: Numbers) -> Values:
     """Spheres: Z = [1 + eta + eta^2 - 2 eta^3 (1 + eta) / 3] / (1 - eta)^3 (Kolafa 1986).
 
-    Recalled; within 0.1 % of the reference.
+    Within 0.1 % of the reference (tested); to be drawn.
     """
     eta = checked_packing_fraction(packing_fraction, METASTABLE_SPHERES)
     return (1.0 + eta + eta**2 - 2.0 / 3.0 * eta**3 * (1.0 + eta)) / (1.0 - eta) ** 3
@@ -51,8 +51,8 @@ def kolafa_labik_malijevsky(packing_fraction: Numbers) -> Values:
     """Spheres: a polynomial in x = eta / (1 - eta), fitted to simulations and to B2 ... B6.
 
     Kolafa, Labik and Malijevsky, Phys. Chem. Chem. Phys. 6, 2335 (2004): data at rho sigma^3 = 0.20 to 1.03
-    with a relative error below 4e-5 at 95 % confidence (literature: its abstract). Coefficients: recalled;
-    that they give B4, B5 and B6 back is tested.
+    with a relative error below 4e-5 at 95 % confidence (literature: its abstract). Coefficients: the
+    same in a public program of Enskog's theory; that they give B4, B5 and B6 back is tested.
     """
     eta = checked_packing_fraction(packing_fraction, METASTABLE_SPHERES)
     return np.polynomial.polynomial.polyval(eta / (1.0 - eta), _KLM)
@@ -71,7 +71,7 @@ def percus_yevick_compressibility(packing_fraction: Numbers) -> Values:
 
 
 def scaled_particle(packing_fraction: Numbers) -> Values:
-    """Discs: Z = 1 / (1 - eta)^2, scaled-particle theory (Helfand and others 1961; recalled); to 4 %."""
+    """Discs: Z = 1 / (1 - eta)^2, scaled-particle theory (Helfand and others 1961); to 4 %."""
     return 1.0 / (1.0 - checked_packing_fraction(packing_fraction, STABLE_DISCS)) ** 2
 
 
@@ -87,7 +87,8 @@ def henderson(packing_fraction: Numbers) -> Values:
 def santos_haro_yuste(packing_fraction: Numbers) -> Values:
     """Discs: Z = 1 / [1 - 2 eta + (2 eta_c - 1) eta^2 / eta_c^2], eta_c close packing.
 
-    Santos, Lopez de Haro and Yuste 1995 (recalled); good to 1.6 % up to eta = 0.55.
+    Santos, Lopez de Haro and Yuste 1995: the simplest that has B2 and a pole at close packing; good to 1.6 %
+    up to eta = 0.55.
     """
     eta = checked_packing_fraction(packing_fraction, STABLE_DISCS)
     closest = CLOSE_PACKING[2]

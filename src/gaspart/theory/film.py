@@ -20,7 +20,7 @@ def white_bear_slit(
     """Density profile in a slit in equilibrium with a fluid of `bulk_density`: places (n,) of centres above
     the lower wall's contact plane, from 0 to H - 1, and densities (n,).
 
-    White Bear functional: Roth, Evans, Lang and Kahl, J. Phys.: Condens. Matter 14, 12063 (2002; recalled),
+    White Bear functional: Roth, Evans, Lang and Kahl, J. Phys.: Condens. Matter 14, 12063 (2002),
     solved by damped iteration. Its bulk is Carnahan and Starling's, 0.3 % low at eta = 0.35; it obeys the
     contact theorem exactly, so rho(0) is its pressure on the walls. `spacing` is adapted to divide the
     width and the radius.

@@ -64,10 +64,10 @@ def alder_hoover_young_crystal(packing_fraction: Numbers, dimension: int) -> Val
     """Z = d/alpha + a_0 + a_1 alpha + ..., alpha = V / V_c - 1: the free-volume limit and a fit beyond it.
 
     Alder, Hoover and Young, J. Chem. Phys. 49, 3688 (1968). Discs on the triangular lattice: 2/alpha
-    + 1.90(1) + 0.67(7) alpha (by SklogWiki) + 1.5 alpha^2 (recalled; 0.4 % below CRYSTAL_OF_1024_DISCS, 1.2 %
-    without it); spheres, face-centred cubic: 3/alpha + 2.566 + 0.55 alpha (2.56 and 0.56 by SklogWiki) - 1.19
-    alpha^2 + 5.95 alpha^3 (recalled; within 0.15 % of Speedy's fit). The free-volume term is exact at close
-    packing; the fits are good to some 0.3 %.
+    + 1.90(1) + 0.67(7) alpha (by SklogWiki) + 1.5 alpha^2 (not verified; 0.4 % below CRYSTAL_OF_1024_DISCS,
+    1.2 % without it); spheres, face-centred cubic: 3/alpha + 2.566 + 0.55 alpha (2.56 and 0.56 by SklogWiki)
+    - 1.19 alpha^2 + 5.95 alpha^3 (not verified; within 0.15 % of Speedy's fit). The free-volume term is exact
+    at close packing; the fits are good to some 0.3 %. To be drawn: no claim depends on them.
     """
     alpha = _expansion(packing_fraction, checked_dimension(dimension))
     series = {2: (1.90, 0.67, 1.5), 3: (2.566, 0.55, -1.19, 5.95)}[dimension]

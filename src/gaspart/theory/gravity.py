@@ -102,7 +102,7 @@ def lebowitz_percus_verlet(mean: Numbers, variance: Numbers, count: int, dimensi
     """C_V / (N k_B) from the kinetic energy's mean and variance at fixed total energy.
 
     <dK^2> = (d/2) N T^2 (1 - (d/2) N k_B / C_V), to leading order in 1/N; Lebowitz, Percus and Verlet,
-    Phys. Rev. 153, 250 (1967) (recalled).
+    Phys. Rev. 153, 250 (1967) (tested against an exact case).
     """
     half = 0.5 * dimension
     relative = variance / (half * count * (mean / (half * count)) ** 2)

@@ -15,10 +15,16 @@ from gaspart.theory.state import compressibility_factor
 
 TEMPERATURE_JUMP = 2.127
 """T_gas - T_wall over l_0 dT/dn at a diffuse wall, hard spheres, l_0 = 1 / (sqrt 2 pi n sigma^2): 2.4001
-sqrt(pi) / 2, Sone, Ohwada and Aoki, Phys. Fluids A 1, 363 (1989) (recalled)."""
+sqrt(pi) / 2, Sone, Ohwada and Aoki, Phys. Fluids A 1, 363 (1989). Moments of the linearised Boltzmann
+equation, derived again, come within 0.5 % of it and converge (tested)."""
 ELEMENTARY_JUMP = 15.0 / 8.0
 """The same by Maxwell's elementary argument, 2 gamma / (gamma + 1) / Pr with gamma = 5/3, Pr = 2/3: particles
 arrive with the distribution of the gas far from the wall. A measurement must distinguish the two."""
+METAL_GAP, METAL_BEND, METAL_BEND_ERROR = 10.0, 0.044, 0.0046
+"""Gap, in mean free paths, between walls at 2 and at 1; the second-order coefficient of the temperature of
+electrons among scatterers with modes against position over the gap, without the outermost tenths; and its
+standard error. Computed by the program `electrons`: 10 metals of 20 000 electrons, for 800 or 1200 mean free
+times. A linear T^0.85 would have 0.037, T^(3/2) of a gas -0.12."""
 
 
 @checked

@@ -3,7 +3,7 @@
 This program computes what has no closed form: `data/relaxation_2d.csv` and `_3d.csv`, the relaxation of a gas
 whose particles all start with one speed; the fourth cumulant of a gas that cools; `data/rough_cooling.csv`,
 the temperatures of rough discs that cool. There are no positions: partners are drawn at random, which is
-molecular chaos (Nanbu 1980, Babovsky 1986).
+molecular chaos (Nanbu 1980, Babovsky 1986). `tagged` has a particle of another size and mass in such a gas.
 """
 
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ def homogeneous_gas(
     dimension. Statistical errors fall as 1 / sqrt(count).
     """
     rng, d = np.random.default_rng(seed), checked_dimension(dimension)
-    velocity = _directions(rng, count, d)
+    velocity = directions(rng, count, d)
     hit = np.zeros(count, dtype=bool)
     made, rows = 0.0, [(0.0, 1.0, 1.0, 1.0)]
     while made < collisions:
@@ -52,6 +52,26 @@ def homogeneous_gas(
         square = (velocity**2).sum(axis=1)
         rows.append((made, (square**2).mean() / square.mean() ** 2, 1.0 - hit.mean(), square.mean()))
     return Homogeneous(*np.array(rows).T)
+
+
+def relaxing_speeds(count: int, times: np.ndarray, hits: float, seed: int = 0) -> np.ndarray:
+    """Speeds (T, count) at rising times of a gas of spheres that all have speed 1 at time 0.
+
+    hits: n pi d^2, the number density times the cross-section of two of them: per length, so that a particle
+    meets those at rest relative to each other at this rate per unit of its speed.
+    """
+    rng = np.random.default_rng(seed)
+    velocity = directions(rng, count, 3)
+    now, rows = 0.0, []
+    for time in times:
+        while now < time:
+            i, j, normal, approach = _meetings(rng, velocity)
+            velocity[i] -= approach[:, None] * normal
+            velocity[j] += approach[:, None] * normal
+            # A step pairs all, and the mean of max(g.n, 0) over the normals is g / 4.
+            now += _step(velocity) / (4.0 * hits)
+        rows.append(np.linalg.norm(velocity, axis=1))
+    return np.array(rows)
 
 
 def rough_discs(
@@ -84,16 +104,21 @@ def rough_discs(
 def _meetings(
     rng: np.random.Generator, velocity: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Who collides in one step: particles i and j (M,), unit normals (M, d), speeds of approach (M,)."""
-    step = _SHARE / np.sqrt((velocity**2).sum(axis=1).mean())
+    """The collisions of one step: particles i and j (M,), unit normals (M, d), speeds of approach (M,)."""
+    step = _step(velocity)
     first, second = rng.permutation(len(velocity))[: len(velocity) // 2 * 2].reshape(2, -1)
-    normal = _directions(rng, len(first), velocity.shape[1])
+    normal = directions(rng, len(first), velocity.shape[1])
     approach = ((velocity[first] - velocity[second]) * normal).sum(axis=1)
     meets = rng.random(len(first)) < step * approach
     return first[meets], second[meets], normal[meets], approach[meets]
 
 
-def _directions(rng: np.random.Generator, count: int, dimension: int) -> np.ndarray:
+def _step(velocity: np.ndarray) -> float:
+    """The chance of a collision per speed of approach in one step."""
+    return _SHARE / float(np.sqrt((velocity**2).sum(axis=1).mean()))
+
+
+def directions(rng: np.random.Generator, count: int, dimension: int) -> np.ndarray:
     """(count, dimension) random unit vectors."""
     vectors = rng.standard_normal((count, dimension))
     return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)

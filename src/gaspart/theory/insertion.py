@@ -11,10 +11,11 @@ import numpy as np
 from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
 
 RSA_SATURATION = {2: 0.547074, 3: 0.384131}
-"""Packing fraction at which no further particle fits, infinite container (Zhang, Torquato 2013;
-literature)."""
+"""Packing fraction at which no further particle fits, infinite container (Zhang, Torquato 2013, as public
+programs quote it: 0.5470735 and 0.3841307)."""
 RSA_SATURATION_UNCERTAINTY = {2: 3e-6, 3: 3e-6}
-"""Standard uncertainty of RSA_SATURATION (recalled: a few units of the last digit)."""
+"""Standard uncertainty of RSA_SATURATION: a few units of the last digit (not verified; a hundredth of that of
+what is measured here)."""
 
 # Excess at hard walls, in diameters per side: saturation (1 + c sigma / L)^d for centres in [0, L]^d.
 # Computed: fits to insertions to saturation at L/sigma = 4 ... 24 (3D) and 100 (2D).
@@ -72,8 +73,8 @@ def insertion_saturation_uncertainty(
 def available_fraction(packing_fraction: Numbers, dimension: int) -> Values:
     """Chance that a random attempt fits: 1 - 2^d eta + c_2 eta^2, c_2 = 6 sqrt 3 / pi (2D), 17 (3D).
 
-    Exact to eta^2, where insertion and equilibrium still agree (Widom 1966, Schaaf and Talbot 1989;
-    recalled), so c_2 follows from B2 and B3. Infinite or periodic container. The neglected third order limits
+    Exact to eta^2, where insertion and equilibrium still agree (Widom 1966, Schaaf and Talbot 1989), so c_2
+    follows from B2 and B3 (tested). Infinite or periodic container. The neglected third order limits
     it to about 1 % at eta = 0.05 in 3D and 0.1 in 2D; refused beyond the minimum of the parabola.
     """
     first = 2.0 ** checked_dimension(dimension)

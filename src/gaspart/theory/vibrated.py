@@ -52,6 +52,6 @@ def sine_temperature(layers: Numbers, restitution: Numbers, packing_fraction: Nu
     """T / <U^2> over a floor of velocity U that averages to zero: sqrt(8 / pi) / `bed_loss`.
 
     Its power is N g <U^2> sqrt(8 / (pi T)) to the lowest order in U^2 / T. Without the floor's loss this is
-    Kumaran's 4 sqrt(2) / (pi layers (1 - e^2)) (recalled).
+    4 sqrt(2) / (pi layers (1 - e^2)).
     """
     return math.sqrt(8.0 / math.pi) / bed_loss(layers, restitution, packing_fraction)

@@ -1,0 +1,92 @@
+"""Electrons among scatterers with modes, between two walls: their Boltzmann equation, by direct simulation.
+
+Electrons in two dimensions do not collide with each other. One that hits a scatterer, along a normal n,
+gives its energy along n to the scatterer's mode, and takes the mode's; its velocity across n remains.
+Scatterers are met at random after a mean free path, the unit of length here, which is molecular chaos: it
+needs scatterers far from each other. What leaves a wall has its temperature.
+
+This program computes `heat.METAL_BEND`, by which the electrons' temperature deviates from a straight line.
+Among scatterers that only deflect, n sqrt(T) is uniform, and T linear where electrons have forgotten the
+walls. Here a fast electron loses its speed at a hit and not its direction alone; n T^0.65 is uniform (by
+correlations in equilibrium), so T^0.85 is linear, up to flights that are not short beside the gap.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+_CELLS = 100
+"""Of the gap: within one of them electrons hit the same modes."""
+_PER_CELL = 1.0
+"""Modes over electrons: a steady state does not depend on it."""
+_STEP = 0.2
+"""Time in which all electrons are moved at once, mean free paths over sqrt(cold): flights are exact, but hits
+of different electrons in it have no order."""
+
+
+class MetalSlab:
+    """Electrons between walls of the temperatures hot, at 0, and cold = 1, at `gap` mean free paths.
+
+    place (N,), velocity (N, 2), modes (C, M): the energies of those in each of C cells of the gap. All begin
+    at the mean temperature.
+    """
+
+    def __init__(self, hot: float, gap: float, count: int, seed: int = 0) -> None:
+        self.hot, self.gap, self.rng = hot, gap, np.random.default_rng(seed)
+        mean = 0.5 * (hot + 1.0)
+        self.place = self.rng.uniform(0.0, gap, count)
+        self.velocity = np.sqrt(mean) * self.rng.standard_normal((count, 2))
+        self.modes = self.rng.exponential(mean, (_CELLS, round(_PER_CELL * count / _CELLS)))
+
+    def profile(self, duration: float, bins: int) -> np.ndarray:
+        """(2, bins) sums over times, and over electrons in each bin: of v^2 / 2, and their number."""
+        sums = np.zeros((2, bins))
+        for _ in range(round(duration / _STEP)):
+            self._advance()
+            where = np.minimum((self.place * (bins / self.gap)).astype(int), bins - 1)
+            energy = 0.5 * (self.velocity**2).sum(axis=1)
+            sums += [np.bincount(where, weights, bins) for weights in (energy, None)]
+        return sums
+
+    def _advance(self) -> None:
+        moving, left = np.arange(len(self.place)), np.full(len(self.place), _STEP)
+        while moving.size:
+            across = self.velocity[moving, 0]
+            ahead = np.where(across > 0.0, self.gap - self.place[moving], self.place[moving])
+            to_wall = ahead / np.maximum(np.abs(across), 1e-300)
+            speed = np.linalg.norm(self.velocity[moving], axis=1)
+            to_hit = self.rng.exponential(size=moving.size) / speed
+            flight = np.minimum(np.minimum(to_wall, to_hit), left[moving])
+            self.place[moving] = np.clip(self.place[moving] + across * flight, 0.0, self.gap)
+            stopped = flight < left[moving]
+            left[moving] -= flight
+            self._leave_wall(moving[stopped & (to_wall <= to_hit)])
+            self._swap(moving[stopped & (to_hit < to_wall)])
+            moving = moving[stopped]
+
+    def _leave_wall(self, which: np.ndarray) -> None:
+        """Diffusely, with the temperature of the wall: along the normal that of a flux."""
+        at_cold = self.velocity[which, 0] > 0.0
+        thermal = np.sqrt(np.where(at_cold, 1.0, self.hot))
+        normal = np.sqrt(2.0 * self.rng.exponential(size=which.size))
+        self.velocity[which, 0] = np.where(at_cold, -thermal, thermal) * normal
+        self.velocity[which, 1] = thermal * self.rng.standard_normal(which.size)
+
+    def _swap(self, which: np.ndarray) -> None:
+        """Exchange of the energy along the normal with one mode of the cell each, none of them twice."""
+        cell = np.minimum((self.place[which] * (_CELLS / self.gap)).astype(int), _CELLS - 1)
+        order = np.argsort(cell, kind="stable")
+        which, cell = which[order], cell[order]
+        rank = np.arange(which.size) - np.searchsorted(cell, cell)
+        mode = (rank + self.rng.integers(self.modes.shape[1])) % self.modes.shape[1]
+        velocity = self.velocity[which]
+        speed = np.linalg.norm(velocity, axis=1)
+        sine = self.rng.uniform(-1.0, 1.0, which.size)  # of the angle of incidence: the impact parameter
+        cosine = np.sqrt(1.0 - sine**2)
+        ahead = velocity / speed[:, None]
+        aside = np.stack([-ahead[:, 1], ahead[:, 0]], axis=1)
+        normal = sine[:, None] * aside - cosine[:, None] * ahead
+        along = -speed * cosine
+        taken = np.sqrt(2.0 * self.modes[cell, mode])
+        self.modes[cell, mode] = 0.5 * along**2
+        self.velocity[which] = velocity + (taken - along)[:, None] * normal
