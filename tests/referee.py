@@ -35,6 +35,13 @@ def check_same(one, other, *names):
         assert np.array_equal(attrgetter(name)(one), attrgetter(name)(other)), name
 
 
+def check_boxes(scene, events):
+    """Any number of boxes gives the same bits."""
+    first = events_of(scene, "boxes", events)
+    for boxes_per_side in (1, 2, 3, tuple(range(4, 4 + scene.dimension))):
+        assert same_bits(first, events_of(scene, "boxes", events, boxes_per_side=boxes_per_side))
+
+
 def check_searches(scene, most, seed, *names, may_collapse=False):
     """The boxes and the direct search give the events of the referee, which tests all pairs, and the same
     values of the attributes `names`. Returns the referee's simulation."""

@@ -142,21 +142,21 @@ def metals(draw, most=12):
 
 @st.composite
 def uneven(draw, most=16):
-    """Small bodies among one to three big ones: alone in 3D; in 2D rough, falling, with a wall inside, the
-    big ones perhaps fixed (two kinds of scene, so that few kernels are compiled)."""
+    """Small bodies among one to three large ones: alone in 3D; in 2D rough, falling, with a wall inside, the
+    large ones perhaps fixed (two kinds of scene, so that few kernels are compiled)."""
     dimension = draw(st.sampled_from([2, 3]))
     boundary = draw(st.lists(st.sampled_from(["wall", "periodic"]), min_size=dimension, max_size=dimension))
     lengths = draw(st.lists(st.floats(5.0, 8.0), min_size=dimension, max_size=dimension))
     small = gp.Species(draw(st.integers(4, most)), draw(st.floats(0.001, 0.15)), temperature=1.0)
     size, mass = draw(st.floats(0.4, 1.2)), draw(st.sampled_from([0.5, 20.0]))
-    big = gp.Species(draw(st.integers(1, 3)), size, mass, temperature=1.0)
+    large = gp.Species(draw(st.integers(1, 3)), size, mass, temperature=1.0)
     if dimension == 3:
-        return gp.Scene(gp.Container(lengths, boundary), [small, big])
+        return gp.Scene(gp.Container(lengths, boundary), [small, large])
     if draw(st.booleans()):
-        big = replace(big, temperature=None, fixed=True)
+        large = replace(large, temperature=None, fixed=True)
     return gp.Scene(
         gp.Container(lengths, (boundary[0], "wall")),
-        [small, big],
+        [small, large],
         gravity=(0.0, -1.0),
         restitution=gp.Restitution(1.0, 0.5),
         walls=[gp.Wall((1.0, 1.0), (4.5, draw(st.floats(0.0, 2.0))))],

@@ -204,7 +204,7 @@ def test_waiting_is_shown_on_a_terminal_after_a_while(monkeypatch):
     monkeypatch.setattr(sys, "stderr", io.StringIO())
     with progress.waiting("compiling"):
         pass
-    assert progress.counted("picture") is None and sys.stderr.getvalue() == ""
+    assert progress.counted() is None and sys.stderr.getvalue() == ""
 
 
 def test_pictures_are_counted(monkeypatch):
@@ -213,7 +213,7 @@ def test_pictures_are_counted(monkeypatch):
     monkeypatch.setattr(sys, "stderr", terminal)
     clock = iter([100.0, 101.0, 110.0])
     monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock))
-    show = progress.counted("picture")
+    show = progress.counted()
     show(1, 40)
     show(10, 40)
     assert terminal.getvalue() == "\r\033[Kpicture 10 of 40  0:00:30 left"

@@ -50,7 +50,8 @@ def test_every_key_has_a_meaning():
 
 @pytest.mark.parametrize("family", sorted(set(families().values())))
 def test_every_setting_of_a_figure_is_declared_and_used(family):
-    text = (ROOT / f"src/gaspart/experiments/{family}/measure.py").read_text(encoding="utf-8")
+    modules = (ROOT / f"src/gaspart/experiments/{family}").glob("*.py")
+    text = "\n".join(path.read_text(encoding="utf-8") for path in modules)
     used = set(re.findall(r'(?<!\.)\bsettings(?:\[|\.get\()"(\w+)"', text))
     declared = {
         key for figure in families() if families()[figure] == family for key in settings()[figure]

@@ -83,7 +83,7 @@ def test_a_point_is_warmed_by_a_few_of_its_own_bodies_that_have_all_its_features
 
 def test_a_scene_whose_big_body_stands_beside_the_boxes_is_warmed_with_all_its_bodies(tmp_path):
     scene = gp.Scene(BOX, [gp.Species(900, 0.1)], [gp.Body((20.0, 20.0), (0.0, 0.0), 5.0)])
-    assert features(scene) == {"beside"}
+    assert features(scene) == {"oversized"}
     assert gp.Scene.from_dict(json.loads(task(described(tmp_path, scene)))["scene"]) == scene
 
 

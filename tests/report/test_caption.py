@@ -13,7 +13,7 @@ MOST_WORDS = 120
 LONG = """**Discs freeze.** (a) Pressure of
 discs.
 
-*What theory says.* That they do.
+*What theory predicts.* That they do.
 
 *What is seen.* (b) *g*\\ (*r*).
 """
@@ -23,7 +23,7 @@ def test_a_caption_is_divided():
     parts = divided(LONG)
     assert (parts.finding, parts.plain) == ("Discs freeze", "Discs freeze")
     assert "Pressure of\ndiscs" in parts.reading and "<em>g</em>" in parts.reading
-    assert "What is seen" not in parts.reading and "What theory says" in parts.details
+    assert "What is seen" not in parts.reading and "What theory predicts" in parts.details
 
 
 def test_a_caption_begins_with_its_finding():

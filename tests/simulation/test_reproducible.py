@@ -15,6 +15,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart.trajectory import amber, recording
+from gaspart.trajectory.frames import frame_count
 from gaspart.trajectory.run import checkpoint_path, partial_path
 
 ENGINES = {
@@ -132,7 +133,7 @@ def frames_in(partial):
     """Frames of a file that is being written; 0 if it is not there yet."""
     try:
         with partial.open("rb") as file:
-            return amber.frame_count(file)
+            return frame_count(file)
     except (OSError, struct.error):
         return 0
 

@@ -58,15 +58,16 @@ def test_invalid_numbers_of_boxes(wrong):
 
 
 def test_the_number_of_boxes_follows_the_number_of_particles():
-    assert np.prod(sides_for(gas(3, 1000, 0.01), per_body=1.0)) == 1000
-    dense = gas(3, 1000, 0.4)
-    assert dense.container.lengths[0] / sides_for(dense, per_body=10.0)[0] >= 1.0
+    assert np.prod(sides_for(gas(3, 1000, 0.01))) == 1000
+    dense = gas(3, 1000, 0.6)
+    assert dense.container.lengths[0] / sides_for(dense)[0] >= 1.0
+    assert np.prod(sides_for(dense)) < 1000
 
 
 @pytest.mark.parametrize("lengths", [(1e11, 1.0), (1e-6, 1e5), (1e10, 1.0, 1.0), (1e11, 1e11, 1.0)])
 def test_a_long_container_has_about_one_box_per_particle(lengths):
     scene = gp.Scene(gp.Container(lengths), [gp.Species(10, 0.1 * min(lengths), temperature=1.0)])
-    sides = sides_for(scene, 1.0)
+    sides = sides_for(scene)
     assert math.prod(sides) <= 10
     for other in (gp.EventDriven(), gp.TimeStepped(1e-3 * min(lengths))):
         gp.Simulation(scene, other)

@@ -52,8 +52,11 @@ def test_a_lattice_that_would_overlap_is_refused():
 @pytest.mark.parametrize(("dimension", "eta", "boundary"), [(2, 0.4, "wall"), (3, 0.28, "periodic")])
 def test_insertion_is_that_of_one_attempt_after_another(dimension, eta, boundary):
     scene = gas(dimension, 300, eta, boundary)
-    big, small = gp.Species(2, 1.2), gp.Species(40, 0.05)  # beside the boxes; more than a box has places for
-    scene = gp.Scene(scene.container, [*scene.species, small, big])
+    large, small = (
+        gp.Species(2, 1.2),
+        gp.Species(40, 0.05),
+    )  # outside the boxes; more than a box has places for
+    scene = gp.Scene(scene.container, [*scene.species, small, large])
     positions, failures = random_insertion(scene, stream(5))
     lengths, rng, standing = np.array(scene.container.lengths), stream(5), []
     radii = {0: scene.species[0].radius, 1: 0.05, 2: 1.2}
@@ -73,7 +76,7 @@ def test_insertion_is_that_of_one_attempt_after_another(dimension, eta, boundary
                 assert failures[first[kind] + placed] == failed
                 standing.append((place, radii[kind]))
                 placed, failed = placed + 1, 0
-                if placed == count or kind == 2:  # big ones are tried alone
+                if placed == count or kind == 2:  # large ones are tried alone
                     break
 
 

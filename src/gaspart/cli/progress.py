@@ -48,8 +48,8 @@ def waiting(text: str, quiet: bool = False) -> Iterator[Callable[[], None]]:
         end()
 
 
-def counted(what: str) -> Callable[[int, int], None] | None:
-    """A function that shows how many of all are done and the time left; None without a terminal."""
+def counted() -> Callable[[int, int], None] | None:
+    """A function that shows how many of all pictures are done and the time left; None without a terminal."""
     if not sys.stderr.isatty():
         return None
     begun = time.monotonic()
@@ -57,7 +57,7 @@ def counted(what: str) -> Callable[[int, int], None] | None:
     def show(done: int, total: int) -> None:
         took = time.monotonic() - begun
         if took > _PATIENCE:
-            show_line(f"{what} {done} of {total}  {clock(took / done * (total - done))} left")
+            show_line(f"picture {done} of {total}  {clock(took / done * (total - done))} left")
 
     return show
 

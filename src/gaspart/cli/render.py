@@ -85,7 +85,7 @@ def _render(given: argparse.Namespace) -> None:
             raise SceneError("output", given.output, f"must end in {', '.join((*PICTURES, *KINDS))}")
         if "frame" in options:
             raise SceneError("frame", given.frame, "has no meaning for a film, which shows all frames")
-        film(given.trajectory, output, **options, overwrite=given.force, progress=counted("picture"))
+        film(given.trajectory, output, **options, overwrite=given.force, progress=counted())
         print(clear_line(), end="", file=sys.stderr)
     print_line(output)
 

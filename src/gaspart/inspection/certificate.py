@@ -25,7 +25,7 @@ def certificate(path: Path) -> list[str]:
 
 def _drift(scene: Scene, energy: np.ndarray) -> str:
     """Drift of the kinetic energy, where the scene conserves it."""
-    elastic = scene.restitution is None or (scene.restitution.normal == 1.0 and not scene.rough)
+    elastic = scene.restitution is None or scene.restitution.smooth_and_elastic
     if not elastic or scene.gravity is not None or scene.faces or scene.vibrates:
         return f"kinetic energy from {energy[0]:.6g} to {energy[-1]:.6g}: this scene does not conserve it"
     drift = np.abs(energy - energy[0]).max() / max(energy[0], np.finfo(float).tiny)

@@ -95,7 +95,7 @@ def _foreign(path: Path) -> Iterator[Any]:
 def _own(path: Path) -> dict:
     """Properties of the scene of a trajectory of gaspart."""
     scene = read_recipe(path).scene
-    elastic = scene.restitution is None or (scene.restitution.normal == 1.0 and not scene.rough)
+    elastic = scene.restitution is None or scene.restitution.smooth_and_elastic
     quiet = scene.gravity is None and not scene.faces and not scene.walls and not scene.vibrates
     alike = len({kind.mass for kind in scene.kinds}) == 1
     free = not any(kind.fixed for kind in scene.kinds)

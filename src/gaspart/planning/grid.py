@@ -228,7 +228,7 @@ def _engines_to_dicts(point: Point) -> list[dict]:
 
 
 def _unit_of_time(point: Point, unit: str) -> float:
-    """The scene's time in one ``unit`` of length; for collisions per body, from Enskog's rate."""
+    """The scene's time in one ``unit`` of length; for collisions per particle, from Enskog's rate."""
     if unit == "duration":
         return 1.0
     if unit == "steps":

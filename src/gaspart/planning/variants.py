@@ -66,7 +66,7 @@ def features(scene: Scene) -> set[str]:
         from gaspart.state.oversized import largest_in_boxes
 
         if largest_in_boxes(scene) < scene.largest_radius:
-            found.add("beside")
+            found.add("oversized")
     return found
 
 

@@ -73,7 +73,8 @@ def film(
             raise SceneError(
                 "trajectory", source, "must be a path or an open trajectory: a film needs frames"
             )
-        shown = _pictures(source, size, colour, trail, clock, camera)
+        direction = _checked(source, colour, trail, camera)
+        shown = _pictures(source, size, colour, trail, clock, direction)
         if progress is not None:
             shown = _reported(shown, source.sizes["frame"], progress)
         with writing(path, KINDS[path.suffix], overwrite) as scratch:
@@ -105,15 +106,13 @@ def _reported(
         progress(done, total)
 
 
-def _pictures(
+def _checked(
     trajectory: xr.Dataset,
-    size: tuple[int, int],
     colour: str | np.ndarray,
     trail: int | None,
-    clock: bool,
     camera: tuple[float, float] | None,
-) -> Iterator[np.ndarray]:
-    """The pictures in order; all arguments are checked before the first."""
+) -> tuple[float, float]:
+    """The camera's direction. Raises SceneError if no picture could be drawn."""
     if trajectory.sizes["frame"] == 0:
         raise SceneError("frame", 0, "the trajectory has no frame yet")
     first = particles_of(trajectory, 0)
@@ -124,10 +123,10 @@ def _pictures(
             raise SceneError("trail", trail, f"the trajectory has {len(first.radii)} particles")
         if first.dimension != 2:
             raise SceneError("trail", trail, "is drawn among discs only")
-    return _shown(trajectory, size, colour, trail, clock, direction)
+    return direction
 
 
-def _shown(
+def _pictures(
     trajectory: xr.Dataset,
     size: tuple[int, int],
     colour: str | np.ndarray,

@@ -37,7 +37,7 @@ REFERENCE = "#0072b2"
 GREY = "#8c8c8c"
 """For guides: zero lines, bands, limits."""
 _DATED = {"svg": "Date", "pdf": "CreationDate", "png": "Software"}
-"""What a file of each format says about its making by default, and here does not."""
+"""What a file of each format states of its making by default, and here does not."""
 _SHORTEST, _SHORT = 0.5, 2.2
 """Decades of a logarithmic axis: below the first it has ticks like a linear one, up to the second also at
 twice and five times a power of ten."""

@@ -86,7 +86,7 @@ def findings(chosen: Iterable[Mapping[str, str]], rows: list[dict[str, Any]]) ->
 
 
 def headline(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    """What the first screen says of the claims: how many there are of each kind with each verdict, and those
+    """The claims on the first screen: how many there are of each kind with each verdict, and those
     that disagree."""
     found = counts(rows)
     return {

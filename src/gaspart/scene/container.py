@@ -8,7 +8,7 @@ from typing import Any
 
 from gaspart.errors import SceneError
 from gaspart.scene.keys import POSITIVE, Rule, checked_by_class, declared, validate
-from gaspart.scene.validation import choice, positive, settle, vector
+from gaspart.scene.validation import choice, positive, set_fields, vector
 
 BOUNDARIES = ("wall", "periodic")
 _PER_AXIS = {"type": "array", "minItems": 2, "maxItems": 3}
@@ -41,7 +41,7 @@ class Container:
             raise SceneError("boundary", given, f"must be one of {BOUNDARIES}, or a list of one per axis")
         for kind in boundary:
             choice("boundary", kind, BOUNDARIES)
-        settle(self, boundary=tuple(boundary))
+        set_fields(self, boundary=tuple(boundary))
 
     @property
     def dimension(self) -> int:

@@ -203,7 +203,8 @@ def check_faces(scene: Scene) -> None:
         if name not in known:
             raise SceneError(f"faces.{name}", surface, f"unknown face; known are {', '.join(known)}")
         if type(surface) not in KINDS.values():
-            raise SceneError(f"faces.{name}", surface, "must be Thermal, Well, Sticky, Vibrating or Piston")
+            *others, last = (kind.__name__ for kind in KINDS.values())
+            raise SceneError(f"faces.{name}", surface, f"must be {', '.join(others)} or {last}")
         axis = known.index(name) // 2
         if scene.container.periodic[axis]:
             raise SceneError(f"faces.{name}", surface.kind, "a periodic axis has no faces")

@@ -24,18 +24,12 @@ from gaspart.scene.restitution import Restitution
 from gaspart.scene.species import SHARED, Body, Species
 from gaspart.scene.thermostat import Thermostat, check_thermostat
 from gaspart.scene.validation import MOST_BODIES, from_mapping, vector
-from gaspart.scene.walls import Plate, Wall
+from gaspart.scene.walls import WALL_RULE, Plate, Wall, check_walls, wall_kind
 from gaspart.yaml_text import read_yaml, write_yaml
 
 _TOUCH = 1e-12  # of a radius: overlap with a wall that rounding may show for a particle that touches it
 _CONTACT = 0.01  # of sqrt(d/g): the default duration of a contact
 _ABSENT = ("fixed", "walls", "faces")  # not written into a file unless there
-_WALLS = "a Wall needs a container of two dimensions, a Plate one of three"
-
-
-def _wall_kind(container: Container) -> type[Wall] | type[Plate]:
-    """The kind of interior wall that such a container may have."""
-    return Wall if container.dimension == 2 else Plate
 
 
 @dataclass(frozen=True)
@@ -69,7 +63,7 @@ class Scene:
         metadata=declared(instance_of(Restitution), "the law of all contacts; without it elastic and smooth"),
     )
     walls: Sequence[Wall | Plate] = field(
-        default=(), metadata=declared(list_of(Wall, Plate, rule=_WALLS), "walls inside the container")
+        default=(), metadata=declared(list_of(Wall, Plate, rule=WALL_RULE), "walls inside the container")
     )
     faces: dict[str, Surface] = field(
         default_factory=dict,
@@ -92,7 +86,7 @@ class Scene:
         if self.centres_to_walls and self.rough:
             rule = "rough particles (tangential above -1) touch walls with their surfaces"
             raise SceneError("centres_to_walls", True, rule)
-        self._check_walls()
+        check_walls(self)
         check_faces(self)
         check_thermostat(self)
         if self.vibrates and self.restitution is not None and self.restitution.normal != 1.0:
@@ -122,18 +116,6 @@ class Scene:
             if component != 0.0 and periodic:
                 rule = "must not point along a periodic axis, where particles would gain energy without limit"
                 raise SceneError("gravity", self.gravity, rule)
-
-    def _check_walls(self) -> None:
-        for n, wall in enumerate(self.walls):
-            if not isinstance(wall, _wall_kind(self.container)):
-                raise SceneError(f"walls[{n}]", wall, _WALLS)
-            if self.centres_to_walls:
-                raise SceneError("centres_to_walls", True, "interior walls stop the surfaces of particles")
-            for key, point in wall.corners.items():
-                if not all(
-                    0.0 <= x <= length for x, length in zip(point, self.container.lengths, strict=True)
-                ):
-                    raise SceneError(f"walls[{n}].{key}", point, "must lie inside the container")
 
     def wall_at(self, position: tuple[float, ...], radius: float) -> str | None:
         """The key of an interior wall that a particle at this position overlaps, if any."""
@@ -288,7 +270,7 @@ class Scene:
             if isinstance(parts.get("faces"), dict):
                 faces = parts["faces"].items()
                 parts["faces"] = {name: surface_from_dict(face, f"faces.{name}") for name, face in faces}
-            wall = _wall_kind(parts["container"])
+            wall = wall_kind(parts["container"])
             for key, kind in (("species", Species), ("bodies", Body), ("walls", wall)):
                 items = parts.get(key, ())
                 if not isinstance(items, (list, tuple)):

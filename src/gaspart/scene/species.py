@@ -19,7 +19,7 @@ from gaspart.scene.keys import (
     two_vectors,
     validate,
 )
-from gaspart.scene.validation import LARGEST, MOST_BODIES, SMALLEST, number, settle, size, vector
+from gaspart.scene.validation import LARGEST, MOST_BODIES, SMALLEST, number, set_fields, size, vector
 
 LATTICES = ("lattice", "slab")
 SHARED = (*LATTICES, "compressed")
@@ -129,7 +129,7 @@ class Body:
             flat = len(self.position) == 2
             spin = number("spin", self.spin, "must be a number") if flat else vector("spin", self.spin, 3)
             size("spin", spin)
-            settle(self, spin=spin)
+            set_fields(self, spin=spin)
         for key, value in (("velocity", self.velocity), ("spin", self.spin_vector)):
             if self.fixed and any(value):
                 raise SceneError(key, value, "a fixed particle has none")

@@ -133,7 +133,7 @@ def choice(key: str, value: Any, known: Iterable[str]) -> str:
     return value
 
 
-def settle(instance: object, **values: object) -> None:
+def set_fields(instance: object, **values: object) -> None:
     """Write validated `values` into a frozen dataclass that is being made."""
     for name, value in values.items():
         object.__setattr__(instance, name, value)

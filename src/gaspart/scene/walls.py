@@ -4,11 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
 from gaspart.scene.keys import declared, two_vectors, validate
 from gaspart.scene.keys import vector as vector_of
 from gaspart.scene.validation import positive, vector
+
+if TYPE_CHECKING:
+    from gaspart.scene.container import Container
+    from gaspart.scene.scene import Scene
+
+WALL_RULE = "a Wall needs a container of two dimensions, a Plate one of three"
 
 
 @dataclass(frozen=True)
@@ -90,3 +97,21 @@ def box_of_walls(lower: tuple[float, ...], upper: tuple[float, ...]) -> tuple[Wa
         edges = [tuple(opposite[k] - corner[k] if k == n else 0.0 for k in range(3)) for n in range(3)]
         plates += [Plate(corner, (edges[n], edges[(n + 1) % 3])) for n in range(3)]
     return tuple(plates)
+
+
+def wall_kind(container: Container) -> type[Wall] | type[Plate]:
+    """The kind of interior wall that such a container may have."""
+    return Wall if container.dimension == 2 else Plate
+
+
+def check_walls(scene: Scene) -> None:
+    """Raise SceneError, with its key, for a wall that does not fit into the scene."""
+    for n, wall in enumerate(scene.walls):
+        if not isinstance(wall, wall_kind(scene.container)):
+            raise SceneError(f"walls[{n}]", wall, WALL_RULE)
+        if scene.centres_to_walls:
+            raise SceneError("centres_to_walls", True, "interior walls stop the surfaces of particles")
+        for key, point in wall.corners.items():
+            inside = zip(point, scene.container.lengths, strict=True)
+            if not all(0.0 <= x <= length for x, length in inside):
+                raise SceneError(f"walls[{n}].{key}", point, "must lie inside the container")

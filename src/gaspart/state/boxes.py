@@ -69,13 +69,11 @@ def narrowest_box(scene: Scene) -> float:
     return 2.0 * scene.largest_radius
 
 
-def sides_for(scene: Scene, per_body: float, narrowest: float | None = None) -> tuple[int, ...]:
-    """Boxes per side (d,) for about `per_body` boxes per particle, none narrower than the largest diameter,
-    or than `narrowest` if larger particles are kept outside the boxes."""
+def sides_for(scene: Scene, narrowest: float | None = None) -> tuple[int, ...]:
+    """Boxes per side (d,) for about one box per particle, none narrower than the largest diameter, or than
+    `narrowest` if larger particles are kept outside the boxes."""
     lengths = scene.container.lengths
-    width = max(
-        cube_side(lengths, per_body * scene.count), narrowest_box(scene) if narrowest is None else narrowest
-    )
+    width = max(cube_side(lengths, scene.count), narrowest_box(scene) if narrowest is None else narrowest)
     return tuple(max(1, int(length / width)) for length in lengths)
 
 

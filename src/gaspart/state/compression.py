@@ -133,7 +133,7 @@ class _Growing:
         predictions = aligned((n,), model.PREDICTION)
         self.particles = model.Particles(self.flights, np.zeros((n, d), dtype=np.int64), predictions)
         width = 2.0 * scene.largest_radius * end * (1.0 + 2.0 * _SPARE)  # so that boxes serve to the end
-        boxes = make_boxes(scene, sides_for(scene, 1.0, width), images=True, narrowest=width)
+        boxes = make_boxes(scene, sides_for(scene, width), images=True, narrowest=width)
         predictions["box"] = boxes.coordinates(positions)
         self.boxes = empty_lists(boxes, n)
         self._space = model.Space(

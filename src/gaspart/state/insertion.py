@@ -73,7 +73,7 @@ def random_insertion(
         + [np.full(scene.species[n].count, scene.species[n].radius) for n in species]
     ).astype(float)
     largest = largest_in_boxes(scene)
-    boxes = make_boxes(scene, sides_for(scene, 1.0, 2 * largest), images=False, narrowest=2 * largest)
+    boxes = make_boxes(scene, sides_for(scene, 2 * largest), images=False, narrowest=2 * largest)
     walls = None
     if scene.walls:
         walls, _ = wall_rows(scene)
@@ -94,7 +94,7 @@ def random_insertion(
         oversized = np.flatnonzero(radii[:done] > largest)
         while done < stop:
             draws = rng.random(out=numbers[: max(256, min(1_000_000, 2 * (stop - done)))])
-            if alone:  # too big for the boxes: it is tested against all that are placed already, and alone
+            if alone:  # too large for the boxes: it is tested against all that are placed already, and alone
                 oversized = np.arange(done)
             task = Task(done, done + 1 if alone else stop, failures, patience, lower, upper)
             done, failures, _ = place(draws, placed, grid, block, task, oversized, walls)

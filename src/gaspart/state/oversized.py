@@ -1,7 +1,7 @@
 """Oversized particles: those that are too large for the boxes of the partition.
 
-A box may not be narrower than the diameter of any particle that is found by its box alone. So a few big
-particles would make the boxes of all the small ones huge; beside the partition, they cost a look at each of
+A box may not be narrower than the diameter of any particle that is found by its box alone. So a few large
+particles would make the boxes of all the small ones huge; outside the partition, they cost a look at each of
 them in every search, and a look at all the boxes around one in a search of its own.
 """
 
@@ -19,8 +19,9 @@ _GAIN = 0.75  # largest share of the work that may remain if particles are taken
 
 
 def largest_in_boxes(scene: Scene) -> float:
-    """The largest radius that the boxes are made for: of the radii that leave at most `MOST` particles beside
-    them, that with which a search looks at least, but the largest of all unless that saves a quarter."""
+    """The largest radius that the boxes are made for: of the radii that leave at most `MOST` particles
+    outside them, that with which a search looks at least, but the largest of all unless that saves a quarter.
+    """
     radii, counts = sizes(scene)
     if len(radii) < 2:
         return scene.largest_radius
@@ -38,7 +39,7 @@ def boxes_and_largest(scene: Scene, boxes_per_side: int | tuple[int, ...] | None
     """
     if boxes_per_side is None:
         largest = largest_in_boxes(scene)
-        per_side = sides_for(scene, per_body=1.0, narrowest=2 * largest)
+        per_side = sides_for(scene, 2 * largest)
         return make_boxes(scene, per_side, images=True, narrowest=2 * largest), largest
     boxes = make_boxes(scene, boxes_per_side, images=True, narrowest=0.0)
     narrowest = min(boxes.widths[boxes.per_side > 1], default=np.inf)
@@ -66,7 +67,7 @@ def work(scene: Scene, largest: float) -> float:
     dimension, volume = scene.dimension, scene.container.volume
     radii, counts = sizes(scene)
     listed = radii <= largest
-    per_side = np.array(sides_for(scene, per_body=1.0, narrowest=2 * largest))
+    per_side = np.array(sides_for(scene, 2 * largest))
     widths = np.array(scene.container.lengths) / per_side
     crowd = counts[listed].sum() / per_side.prod()
     reach = np.where(listed, 0.0, radii + largest)

@@ -1,11 +1,7 @@
 """The trajectory's file format: AMBER NetCDF, https://ambermd.org/netcdf/nctraj.xhtml, version 1.0.
 
-A netCDF-3 file is a header and then frames of equal size. The netCDF library makes the header; frames are
-appended to it as they come, and the number of frames in the header is raised when a frame is complete, so
-that a file cut short at any moment is a readable one.
-
-Checksums (CRC-32) detect damage: one in the header, of the header without the number of frames, and one at
-the end of each frame, which depends on the header and on the frame's place too. Other readers ignore both.
+A netCDF-3 file is a header, which the netCDF library makes, and then `frames` of equal size. A checksum
+(CRC-32) in the header, of the header without the number of frames, detects damage; other readers ignore it.
 """
 
 from __future__ import annotations
@@ -30,11 +26,13 @@ _STEPS = ("steps", "overlaps_left", "deepest_overlap", "multiple_contacts", "reb
 """Of the time-stepped engine; in other files they would be zero."""
 
 _PER_FACE = tuple(field.name for field in fields(Tally) if field.type == "np.ndarray")
-_MAGIC = b"CDF\x02"  # a netCDF-3 file of 64-bit offsets
-_FRAME_COUNT_AT = 4  # where a netCDF-3 header keeps the number of frames, as a big-endian uint32
-_WORD = 4  # bytes of a checksum, and of all that a netCDF-3 header counts
+MAGIC = b"CDF\x02"
+"""The first bytes of a netCDF-3 file of 64-bit offsets."""
+FRAME_COUNT_AT = 4
+"""Where a netCDF-3 header keeps the number of frames, as a big-endian uint32."""
+WORD = 4
+"""Bytes of a checksum, and of all that a netCDF-3 header counts."""
 _HEAD = 1024  # bytes from the start of a file within which the attributes of `BOOKKEEPING` lie
-_CHUNK = 1 << 24  # bytes that are read at once
 _VECTORS = ("atom", "spatial")
 _EXTRA: dict[str, tuple[str, tuple[str, ...], dict[str, str]]] = {
     "spins": (
@@ -132,7 +130,7 @@ class Layout:
         header = bytearray(self._header({**own, **attributes}, radii, types))
         for name, value in (("header_bytes", len), ("header_crc32", zlib.crc32)):
             at = _value_at(header, name)
-            header[at : at + _WORD] = struct.pack(">I", value(header))
+            header[at : at + WORD] = struct.pack(">I", value(header))
         return bytes(header)
 
     def _header(self, attributes: dict, radii: np.ndarray, types: np.ndarray) -> bytes:
@@ -170,7 +168,7 @@ def _frames_begin(header: bytes) -> int:
 
 def _value_at(header: bytes | bytearray, name: str) -> int:
     """Offset of the value of a numerical attribute: after its name, padded to words, its type and count."""
-    return header.index(name.encode()) + -(-len(name) // _WORD) * _WORD + 2 * _WORD
+    return header.index(name.encode()) + -(-len(name) // WORD) * WORD + 2 * WORD
 
 
 def stored_header(file: BinaryIO) -> bytes:
@@ -180,23 +178,23 @@ def stored_header(file: BinaryIO) -> bytes:
     """
     file.seek(0)
     head = file.read(_HEAD)
-    if not head.startswith(_MAGIC):
+    if not head.startswith(MAGIC):
         foreign = head.startswith((b"CDF", b"\x89HDF"))
         raise ValueError(f"is not a {'trajectory written by gaspart' if foreign else 'readable NetCDF file'}")
     if not all(name.encode() in head for name in BOOKKEEPING):
         raise ValueError("is not a trajectory written by gaspart, or its header is damaged")
     at = _value_at(head, "header_bytes")
-    length = int.from_bytes(head[at : at + _WORD], "big")
+    length = int.from_bytes(head[at : at + WORD], "big")
     size = os.fstat(file.fileno()).st_size
     if not len(head) <= length <= size:
         raise ValueError(f"is truncated or damaged: {size} bytes, where the header alone needs {length}")
     header = bytearray(head + file.read(length - len(head)))
-    header[_FRAME_COUNT_AT : _FRAME_COUNT_AT + _WORD] = bytes(_WORD)
+    header[FRAME_COUNT_AT : FRAME_COUNT_AT + WORD] = bytes(WORD)
     at = _value_at(header, "header_crc32")
-    checksum, header[at : at + _WORD] = header[at : at + _WORD], bytes(_WORD)
+    checksum, header[at : at + WORD] = header[at : at + WORD], bytes(WORD)
     if struct.pack(">I", zlib.crc32(header)) != checksum:
         raise ValueError("has a damaged or edited header: its checksum does not match")
-    header[at : at + _WORD] = checksum
+    header[at : at + WORD] = checksum
     return bytes(header)
 
 
@@ -208,94 +206,13 @@ def frame_bytes(header: bytes) -> int:
 
 def same_header(file: BinaryIO, header: bytes) -> bool:
     """Whether a file begins with this header, however many frames it counts."""
-    after = _FRAME_COUNT_AT + _WORD
+    after = FRAME_COUNT_AT + WORD
     file.seek(0)
     found = file.read(len(header))
-    return found[:_FRAME_COUNT_AT] == header[:_FRAME_COUNT_AT] and found[after:] == header[after:]
+    return found[:FRAME_COUNT_AT] == header[:FRAME_COUNT_AT] and found[after:] == header[after:]
 
 
 def is_blank(file: BinaryIO) -> bool:
     """Whether a file is empty, or its header was never finished."""
     file.seek(0)
-    return not any(file.read(len(_MAGIC)))
-
-
-def frame_count(file: BinaryIO) -> int:
-    """The number of complete frames that a file's header states."""
-    file.seek(_FRAME_COUNT_AT)
-    return struct.unpack(">I", file.read(_WORD))[0]
-
-
-def _frame_checksum(frame: bytes | memoryview, number: int, header_checksum: int) -> bytes:
-    """The last word of a frame: the checksum of what comes before it."""
-    start = zlib.crc32(struct.pack(">I", number), header_checksum)
-    return struct.pack(">I", zlib.crc32(frame[:-_WORD], start))
-
-
-def damaged_frame(file: BinaryIO, header: bytes, frames: int) -> int | None:
-    """The first of `frames` frames that is damaged or cut short; None if all are correct."""
-    size, header_checksum = frame_bytes(header), zlib.crc32(header)
-    at_once = max(1, _CHUNK // size)
-    file.seek(len(header))
-    for first in range(0, frames, at_once):
-        wanted = min(at_once, frames - first)
-        data = memoryview(file.read(wanted * size))
-        for n in range(wanted):
-            frame = data[n * size : (n + 1) * size]
-            if len(frame) < size or frame[-_WORD:] != _frame_checksum(frame, first + n, header_checksum):
-                return first + n
-    return None
-
-
-class Frames:
-    """The frames of an unbuffered open file, of which the first `kept` are kept and the others removed.
-
-    With `kept` = 0 the header is written too. Every method may raise OSError.
-    """
-
-    def __init__(self, file: BinaryIO, layout: Layout, header: bytes, kept: int = 0) -> None:
-        self._file, self._frame = file, np.zeros((), layout.frame)
-        self.count = kept
-        self._header_checksum = zlib.crc32(header)
-        if kept == 0:
-            self._begin(header)
-        else:
-            self._count_frames()
-        file.truncate(len(header) + kept * layout.frame.itemsize)
-        file.seek(0, os.SEEK_END)
-
-    def _begin(self, header: bytes) -> None:
-        """Write the header, its first word last: if that is present, the header is complete."""
-        self._file.truncate(0)
-        self._file.seek(0)
-        try:
-            self._write(bytes(len(_MAGIC)) + header[len(_MAGIC) :])
-        except OSError:
-            self._file.truncate(0)
-            raise
-        os.pwrite(self._file.fileno(), header[: len(_MAGIC)], 0)
-
-    def append(self, values: dict[str, np.ndarray | float]) -> None:
-        """Write one frame: a value for every variable of the layout, vectors of 2 or 3 components."""
-        for name in self._frame.dtype.names[:-1]:
-            given = np.asarray(values[name])
-            there = self._frame[name]
-            components = there[..., : given.shape[-1]] if given.ndim else there  # 2D leaves z = 0
-            components[...] = given
-        data = self._frame.reshape(1).view(np.uint8).data
-        data[-_WORD:] = _frame_checksum(data, self.count, self._header_checksum)
-        self._write(data)
-        self.count += 1
-        self._count_frames()
-
-    def _write(self, data: bytes | memoryview) -> None:
-        left = memoryview(data).cast("B")
-        while left:
-            left = left[self._file.write(left) :]
-
-    def _count_frames(self) -> None:
-        os.pwrite(self._file.fileno(), struct.pack(">I", self.count), _FRAME_COUNT_AT)
-
-    def sync(self) -> None:
-        """Return when all data are on the disk."""
-        os.fsync(self._file.fileno())
+    return not any(file.read(len(MAGIC)))

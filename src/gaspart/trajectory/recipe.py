@@ -22,6 +22,7 @@ from gaspart.scene.validation import count_of, number
 from gaspart.state.random import stream
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.correlator import Correlations, sums_of
+from gaspart.trajectory.frames import damaged_frame, frame_count
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 if TYPE_CHECKING:
@@ -178,7 +179,7 @@ def _checked(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
                 raise ValueError("cannot be read: it is no regular file")
             if path.suffix == PARTIAL and amber.is_blank(file):
                 raise ValueError("nothing was written to it yet; start the run again with `gaspart run`")
-            header, frames = amber.stored_header(file), amber.frame_count(file)
+            header, frames = amber.stored_header(file), frame_count(file)
             needed = len(header) + frames * amber.frame_bytes(header)
             if status.st_size < needed:
                 rule = f"is truncated: {status.st_size} bytes, where {frames} frames need {needed}"
@@ -221,7 +222,7 @@ def opened(path: Path) -> Iterator[netCDF4.Dataset]:
 def check_frames(path: Path, first: int | None = None) -> None:
     """Read the frames of a trajectory, or so many of the first. SceneError if one is damaged."""
     with _checked(path) as (file, header, frames):
-        damaged = amber.damaged_frame(file, header, frames if first is None else min(first, frames))
+        damaged = damaged_frame(file, header, frames if first is None else min(first, frames))
         if damaged is not None:
             raise ValueError(f"frame {damaged} is damaged: its checksum does not match")
 

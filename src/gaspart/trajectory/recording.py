@@ -18,6 +18,7 @@ from gaspart.state.state import State
 from gaspart.trajectory import amber
 from gaspart.trajectory.checkpoint import checkpoint_path, write_checkpoint
 from gaspart.trajectory.correlator import Correlator
+from gaspart.trajectory.frames import Frames
 from gaspart.trajectory.recipe import Recipe, multiple
 
 Progress = Callable[[float, float, int], None]
@@ -39,7 +40,7 @@ class Recording:
         self,
         recipe: Recipe,
         simulation: Simulation,
-        frames: amber.Frames,
+        frames: Frames,
         header: bytes,
         path: Path,
         every: float,

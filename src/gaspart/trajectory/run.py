@@ -24,6 +24,7 @@ from gaspart.simulation.simulation import Simulation
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.checkpoint import checkpoint_path, read_checkpoint, remove_checkpoint
 from gaspart.trajectory.correlator import Correlations
+from gaspart.trajectory.frames import Frames, frame_count
 from gaspart.trajectory.recipe import (
     PARTIAL,
     Recipe,
@@ -216,7 +217,7 @@ def _holds(path: Path, wanted: Recipe, frames: int) -> bool:
         return False
     with suppress(SceneError), path.open("rb") as file:
         check_frames(path)
-        return amber.frame_count(file) == frames
+        return frame_count(file) == frames
     return False
 
 
@@ -261,9 +262,9 @@ def _record(
     continued = begun_as(partial, wanted)
     header = wanted.header(stored_revision(partial) if continued else provenance.git_revision())
     found = read_checkpoint(checkpoint_path(path), header) if continued else None
-    if found and (found.frames > amber.frame_count(file) or not _can_keep(partial, found.frames, overwrite)):
+    if found and (found.frames > frame_count(file) or not _can_keep(partial, found.frames, overwrite)):
         found = None
-    frames = amber.Frames(file, wanted.layout, header, kept=found.frames if found else 0)
+    frames = Frames(file, wanted.layout, header, kept=found.frames if found else 0)
     recording = Recording(wanted, simulation, frames, header, path, every, progress)
     if found:
         recording.restore(found.arrays)

@@ -10,6 +10,7 @@ def rows(**values):
     return xr.Dataset(values | {
         "equal_speeds": ("point", [False, True]),
         "stepped": ("point", [False, True]),
+        "is_light": ("point", [False, True]),
         "mass": ("point", [100.0, 1.0]),
         "gas_mass": ("point", [1.0, 1.0]),
         "radius": ("point", [10.0, 10.0]),
@@ -26,10 +27,14 @@ def test_displacements_and_velocities_are_drawn_with_their_deviations(tmp_path):
         msd_error=(("point", "lag"), np.full(time.shape, 0.01)),
         vacf=(("point", "lag"), np.exp(-time)),
         vacf_error=(("point", "lag"), np.full(time.shape, 0.01)),
+        expected_msd=(("point", "lag"), 0.93 * theory.langevin_msd(time, 1 / 6, 1.0)),
+        expected_vacf=(("point", "lag"), 0.93 * np.exp(-time)),
     )
     ds = varied(ds, "time", "mass", "gas_mass")
+    for name in ("time", "msd", "msd_error", "vacf", "vacf_error", "expected_msd", "expected_vacf"):
+        ds[name][1, 70:] = np.nan  # a shorter run has fewer lags
     msd, ratio, vacf, difference = draw(brownian.brownian_msd, ds, tmp_path).axes
-    first, second = (ds.isel(point=k) for k in (0, 1))
+    first, second = ds.isel(point=0), ds.isel(point=1, lag=slice(70))
     shows(
         msd, "", "Delta r", column(first, "$M=100\\,m$", "time", "msd", some=True),
         column(second, "equal speeds, steps", "time", "msd", some=True),
@@ -48,6 +53,11 @@ def test_displacements_and_velocities_are_drawn_with_their_deviations(tmp_path):
         absolute.append(Points(None, row["time"], difference_of, row["vacf_error"], some=True))
     shows(ratio, "time", "ratio", *relative)
     shows(difference, "time", "difference", *absolute)
+    langevin = theory.langevin_msd(second["time"][1:], 1 / 6, 1.0)
+    follows(lines(ratio)[-1], second["time"][1:], second["expected_msd"][1:] / langevin - 1.0)
+    drawn = second.isel(lag=np.flatnonzero(second["time"] < brownian.LONGEST))
+    follows(lines(difference)[-1], drawn["time"], drawn["expected_vacf"] - np.exp(-drawn["time"]))
+    assert len(lines(ratio)) == len(lines(difference)) == 1  # none of the heavy particle
     obeys(lines(msd)[0], lambda t: theory.langevin_msd(t, 1 / 6, 1.0))
     obeys(lines(vacf)[0], lambda t: np.exp(-t))
 

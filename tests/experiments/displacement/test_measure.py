@@ -138,8 +138,8 @@ def test_a_point_without_lags_is_refused():
     [
         ({"displacements": False}, "displacements"),
         ({"replicas": 1}, "replicas"),
-        ({"collisions_per_body": 30, "samples": 30}, "collisions per body"),
-        ({"lags": 10}, "collisions per body.*`lags` reach half of it"),
+        ({"collisions_per_body": 30, "samples": 30}, "collisions per particle"),
+        ({"lags": 10}, "collisions per particle.*`lags` reach half of it"),
     ],
 )
 def test_runs_that_cannot_tell_are_refused(stored, change, key):

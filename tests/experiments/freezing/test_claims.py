@@ -65,7 +65,7 @@ def test_each_claim_about_discs_can_fail(name, value, where, text):
     assert verdict(found, text) == "disagrees"
 
 
-def test_discs_that_have_not_settled_are_inconclusive():
+def test_discs_out_of_equilibrium_are_inconclusive():
     data = discs()
     data["plateau_error"] = data["plateau_error"] * 10
     data["disagreement"] = data["disagreement"] + 5.0

@@ -58,6 +58,7 @@ def inelastic(rate=1.0, exponent=-2.0, clustered=True, seed=1):
     rng = np.random.default_rng(seed)
     dimension, restitution = np.array([2, 2, 3, 3]), np.array([0.9, 0.7, 0.9, 0.7])
     expected = np.array([theory.cooling_rate(e, d) for e, d in zip(restitution, dimension, strict=True)])
+    finite = 1024 * dimension / (1023 * dimension + 1)
     time = np.tile(np.linspace(0.0, 5.0, 11), (4, 1))
     s = np.tile(np.linspace(0.0, 100.0, 21), (2, 1))
     excess = np.exp(0.03 * s) if clustered else np.ones_like(s)
@@ -70,7 +71,7 @@ def inelastic(rate=1.0, exponent=-2.0, clustered=True, seed=1):
             "temperature": (("gas", "frame"), (1.0 + time) ** -2.0),
             "temperature_error": (("gas", "frame"), np.full(time.shape, 1e-4)),
             "count": ("gas", np.full(4, 1024)),
-            "rate": ("gas", expected * 1024 / 1023 * (rate + 1e-4 * rng.standard_normal(4))),
+            "rate": ("gas", finite * expected * (rate + 1e-4 * rng.standard_normal(4))),
             "rate_error": ("gas", 1e-4 * expected),
             "exponent": ("gas", exponent + 0.005 * rng.standard_normal(4)),
             "exponent_error": ("gas", np.full(4, 0.005)),

@@ -6,6 +6,7 @@ import pytest
 import gaspart as gp
 from gaspart import theory
 from gaspart.experiments.granular import measure as granular
+from gaspart.experiments.granular.runs import read_run
 from gaspart.planning import grid
 
 
@@ -53,7 +54,7 @@ def test_rough_discs_share_as_theory_says(tmp_path):
     assert abs(ds["equilibrium_ratio"].item() - 1.0) < 4.0 * ds["equilibrium_ratio_error"].item() < 0.3
     assert abs(ds["steady_ratio"].item() - theory.rough_ratio(0.5, 0.5)) < 0.1
     # the energy of a gas without losses is conserved: 2 (N - 1) T_tr + N T_rot, less the drift's own
-    run = granular.read_run(points[0], points[0].replica_path(0))
+    run = read_run(points[0], points[0].replica_path(0))
     total = 2.0 * 255 * run.translation + 256 * run.rotation
     assert total == pytest.approx(np.full(11, total[0]), rel=2e-3)
 

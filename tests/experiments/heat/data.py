@@ -1,17 +1,44 @@
-"""What the measurements of heat between walls give if theory is right."""
+"""Runs of heat between walls, and what their measurements give if theory is right."""
+
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
+import gaspart as gp
 from gaspart.experiments.heat.approach import FRAMES
-from gaspart.experiments.heat.measure import _dimensions
+from gaspart.experiments.heat.measure import INNER
+from gaspart.experiments.shared.rows import from_rows
+from gaspart.planning import grid
 from gaspart.theory.heat import (
+    METAL_BEND,
+    METAL_GAP,
     TEMPERATURE_JUMP,
     conducting_slab,
     dilute_fourier_flux,
     free_molecular_flux,
     steady_part,
 )
+
+
+def run(tmp_path, scene, **settings):
+    """A point of this scene with its runs made."""
+    scene.to_file(tmp_path / "scene.yaml")
+    settings |= {"scene": str(tmp_path / "scene.yaml")}
+    point = grid.Point("heat", "single", "simulate", settings, str(tmp_path / "points"), 1)
+    times = grid.schedule(point)
+    for k, path in enumerate(point.replica_paths):
+        Path(path).parent.mkdir(parents=True, exist_ok=True)
+        engine = grid.engine(point)
+        gp.run(grid.scene(point), engine, point.seed(k), times.duration, times.sample_interval, path)
+    return point
+
+
+def gas(count, radius, components="all"):
+    """Spheres between walls at 2 and 1."""
+    container = gp.Container((10.0 + 2 * radius, 6.0, 6.0), ("wall", "periodic", "periodic"))
+    faces = {"x_low": gp.Thermal(2.0, components), "x_high": gp.Thermal(1.0, components)}
+    return gp.Scene(container, [gp.Species(count, radius, temperature=1.4)], faces=faces)
 
 
 def gases(error=0.002):
@@ -49,12 +76,7 @@ def gases(error=0.002):
         for name in ("flux", "wall_ratio", "half_ratio", "profile_ratio", "jump", "temperature", "density"):
             row[f"{name}_error"] = np.abs(row[name]) * error
         rows.append(row)
-    return xr.Dataset(
-        {
-            name: (_dimensions(name, value), np.stack([row[name] for row in rows]))
-            for name, value in rows[0].items()
-        }
-    )
+    return from_rows("point", rows, INNER)
 
 
 def metals(error=0.002):
@@ -65,7 +87,8 @@ def metals(error=0.002):
         "share": ones,
         "energy_ratio": ones,
         "log_fluctuation": 0.0 * ones,
-        "bend": 0.0 * ones,
+        "bend": METAL_BEND * ones,
+        "gap_over_path": METAL_GAP * ones,
         "mode_ratio": ones,
         "flux": np.array([0.1, 0.1, 0.1, 0.105]),
     }

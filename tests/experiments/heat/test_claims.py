@@ -73,6 +73,18 @@ def test_a_grid_conducts_a_little_better_than_random_scatterers(ratio, verdict):
     assert [got for claim, got in found.items() if claim.startswith("flux among")] == [verdict]
 
 
+def test_the_profile_of_a_gas_disagrees_and_that_of_other_gaps_is_not_claimed():
+    ds = metals()
+    ds["bend"] = ds["bend"] - 0.17
+    text = "second-order coefficient"
+    (found,) = (verdict for claim, verdict in judged(heat.heat_conduction_metal(ds)).items() if text in claim)
+    assert found == "disagrees"
+    for name, value in (("gap_over_path", 5.0), ("hot", 1.5)):
+        others = metals()
+        others[name] = xr.where(others["hot"] > others["cold"], value, others[name])
+        assert not [claim for claim in judged(heat.heat_conduction_metal(others)) if text in claim]
+
+
 def test_random_scatterers_alone_are_not_compared_with_a_grid():
     ds = metals().isel(point=slice(3))
     assert not [claim for claim in judged(heat.heat_conduction_metal(ds)) if "grid" in claim]

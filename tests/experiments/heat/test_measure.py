@@ -2,32 +2,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from experiments.heat.data import gas, run
 
 import gaspart as gp
 from gaspart.experiments.heat import measure as heat
-from gaspart.experiments.heat.approach import FRAMES, approach
+from gaspart.experiments.heat.approach import FRAMES
+from gaspart.experiments.heat.gap import Gap
 from gaspart.planning import grid
-from gaspart.theory.heat import conducting_slab, free_molecular_flux
-
-
-def run(tmp_path, scene, **settings):
-    """A point of this scene with its runs made."""
-    scene.to_file(tmp_path / "scene.yaml")
-    settings |= {"scene": str(tmp_path / "scene.yaml")}
-    point = grid.Point("heat", "single", "simulate", settings, str(tmp_path / "points"), 1)
-    times = grid.schedule(point)
-    for k, path in enumerate(point.replica_paths):
-        Path(path).parent.mkdir(parents=True, exist_ok=True)
-        engine = grid.engine(point)
-        gp.run(grid.scene(point), engine, point.seed(k), times.duration, times.sample_interval, path)
-    return point
-
-
-def gas(count, radius, components="all"):
-    """Spheres between walls at 2 and 1."""
-    container = gp.Container((10.0 + 2 * radius, 6.0, 6.0), ("wall", "periodic", "periodic"))
-    faces = {"x_low": gp.Thermal(2.0, components), "x_high": gp.Thermal(1.0, components)}
-    return gp.Scene(container, [gp.Species(count, radius, temperature=1.4)], faces=faces)
+from gaspart.theory.heat import free_molecular_flux
 
 
 def test_a_thin_gas_carries_what_free_flight_does(tmp_path):
@@ -47,7 +29,7 @@ def test_a_thin_gas_carries_what_free_flight_does(tmp_path):
 
 def test_the_jump_of_a_made_up_profile_comes_back():
     """T^(3/2) linear between 1.9 and 1.05, where the walls have 2 and 1: slopes and paths by hand."""
-    gap = heat.Gap(100.0, 1.0, 2.0, 1.0, 3)
+    gap = Gap(100.0, 1.0, 2.0, 1.0, 3)
     position = np.linspace(5.0, 95.0, 30)
     power = 1.9**1.5 + (1.05**1.5 - 1.9**1.5) * position / 100.0
     temperature, pressure = power ** (2 / 3), 1e-4
@@ -73,18 +55,6 @@ def test_a_dense_gas_is_compared_with_fourier(tmp_path):
         heat.heat_conduction_gas([point], {"bins": 5, "blocks": 1000, "clear": 1})
 
 
-def test_the_start_of_a_run_is_shown_from_one_temperature_on(tmp_path):
-    """Halves at one temperature; of a run with fewer frames the others are missing."""
-    point = run(tmp_path, gas(100, 0.5), duration=20.0, equilibration=5.0, samples=8, boxes_per_side=1)
-    slab = conducting_slab(10.0, 100 / 360, 2.0, 1.0)
-    found = approach(point, slab)
-    frames = int(np.isfinite(found["approach_time"]).sum())
-    assert 8 < frames < FRAMES and np.isnan(found["approach"][frames:]).all()
-    assert abs(found["approach"][0]) < 4.0 * found["approach_error"][0]
-    # two halves of 50 spheres at 1.4, the squares of whose components vary by 2
-    assert found["approach_error"][0] == pytest.approx(1.4 * np.sqrt(2.0 * 2.0 / (3.0 * 50.0)), rel=0.15)
-
-
 def test_modes_and_electrons_have_the_temperature_of_the_walls(tmp_path):
     """Whatever they began with; two temperatures give the heat capacity."""
     points = []
@@ -105,13 +75,13 @@ def test_modes_and_electrons_have_the_temperature_of_the_walls(tmp_path):
     assert float(ds["slope"]) == pytest.approx(1.0, abs=0.05)
 
 
-def test_scatterers_on_a_grid_are_told_from_electrons(tmp_path):
+def test_scatterers_on_a_grid_are_distinguished_from_electrons(tmp_path):
     """The scatterers come first; they and the electrons take the temperature of the walls."""
     faces = dict.fromkeys(("x_low", "x_high"), gp.Thermal(2.0))
     centres = [(x, y) for x in (2.0, 4.0, 6.0) for y in (1.0, 3.0, 5.0)]
-    grid = [gp.Body(centre, (0.0, 0.0), 0.5, fixed=True, vibration=0.0) for centre in centres]
+    scatterers = [gp.Body(centre, (0.0, 0.0), 0.5, fixed=True, vibration=0.0) for centre in centres]
     container = gp.Container((8.0, 6.0), ("wall", "periodic"))
-    scene = gp.Scene(container, [gp.Species(20, 0.02, temperature=1.0)], grid, faces=faces)
+    scene = gp.Scene(container, [gp.Species(20, 0.02, temperature=1.0)], scatterers, faces=faces)
     point = run(tmp_path, scene, duration=6000.0, equilibration=100.0, samples=600)
     row = heat._metal(point, {"bins": 3, "blocks": 10})
     assert row["regular"] and row["expected"] == 29.0
@@ -119,6 +89,30 @@ def test_scatterers_on_a_grid_are_told_from_electrons(tmp_path):
     for name, value in (("energy_ratio", 1.0), ("mode_ratio", 1.0), ("modes", 2.0), ("electrons", 2.0)):
         assert (np.abs(row[name] - value) < 4.0 * row[f"{name}_error"]).all()
         assert row[name] == pytest.approx(np.full(np.shape(row[name]), value), rel=0.07)
+
+
+def test_replicas_with_other_places_of_scatterers_are_one_block_each(tmp_path):
+    """Their scatter is the uncertainty of the flux, which stretches of one run do not have."""
+    faces = {"x_low": gp.Thermal(2.0), "x_high": gp.Thermal(1.0)}
+    species = [gp.Species(20, 0.02, temperature=1.4), gp.Species(8, 0.5, fixed=True, vibration=1.4)]
+    scene = gp.Scene(gp.Container((8.0, 6.0), ("wall", "periodic")), species, faces=faces)
+    point = run(tmp_path, scene, duration=400.0, equilibration=100.0, samples=40, replicas=3)
+    both = heat._metal(point, {"bins": 3, "blocks": 10})
+    alone = []
+    for k in range(3):
+        one = grid.Point(
+            "heat", "single", "simulate", point.settings | {"replicas": 1}, str(tmp_path / str(k)), 1
+        )
+        Path(one.replica_paths[0]).parent.mkdir(parents=True)
+        Path(point.replica_paths[k]).rename(one.replica_paths[0])
+        alone.append(heat._metal(one, {"bins": 3, "blocks": 10}))
+    fluxes = [float(one["flux"]) for one in alone]
+    assert float(both["flux"]) == pytest.approx(np.mean(fluxes), rel=1e-9)
+    assert float(both["flux_error"]) == pytest.approx(np.std(fluxes, ddof=1) / 3**0.5, rel=1e-9)
+    assert both["flux_freedom"] == 2 and alone[0]["flux_freedom"] == 9
+    # the free area over half the perimeter of 8 discs of 0.52, on 7.96 of 8 by 6
+    free = 7.96 * 6.0 - 8 * np.pi * 0.52**2
+    assert both["gap_over_path"] == pytest.approx(7.96 * 2.0 * 8 * 0.52 / free)
 
 
 def test_a_bent_profile_is_distinguished_from_a_straight_one():

@@ -2,31 +2,11 @@
 
 import pytest
 from claims.data import judged
-from experiments.scaling.data import SCALING, points, settings
+from experiments.scaling.data import SCALING
 
 from gaspart import claims as core
 from gaspart.claims import judge
 from gaspart.experiments.scaling import claims as scaling
-from gaspart.experiments.scaling import measure as measured
-
-
-@pytest.fixture(scope="module")
-def dataset(tmp_path_factory):
-    """Returns a copy of a figure's data set."""
-    made = {}
-
-    def of(figure):
-        if figure not in made:
-            folder = tmp_path_factory.mktemp(figure)
-            made[figure] = getattr(measured, figure)(points(figure, folder), settings(figure))
-        return made[figure].copy(deep=True)
-
-    return of
-
-
-def verdicts(figure, ds):
-    """Verdict of each claim, by its text."""
-    return judged(getattr(scaling, figure)(ds))
 
 
 @pytest.mark.parametrize("figure", SCALING)
@@ -57,7 +37,7 @@ def test_claims_can_fail(figure, dataset):
     changes, text = FALSIFIED[figure]
     for name, value in changes.items():
         ds[name] = ds[name] * 0.0 + value
-    found = [verdict for claim, verdict in verdicts(figure, ds).items() if text in claim]
+    found = [verdict for claim, verdict in judged(getattr(scaling, figure)(ds)).items() if text in claim]
     assert found == ["disagrees"]
 
 
@@ -66,7 +46,7 @@ def test_pair_tests_that_go_missing_are_noticed(dataset):
     ds["pair_tests"] = 0.9 * ds.pair_tests
     assert any(
         "pair tests" in claim
-        for claim, verdict in verdicts("box_count", ds).items()
+        for claim, verdict in judged(scaling.box_count(ds)).items()
         if verdict == "disagrees"
     )
 
@@ -74,42 +54,5 @@ def test_pair_tests_that_go_missing_are_noticed(dataset):
 def test_quick_round_widths_are_noticed(dataset):
     ds = dataset("box_count")
     ds["advantage"] = ds.advantage + 0.1
-    found = [verdict for claim, verdict in verdicts("box_count", ds).items() if "power of two" in claim]
+    found = [verdict for claim, verdict in judged(scaling.box_count(ds)).items() if "power of two" in claim]
     assert found == ["disagrees", "disagrees"]
-
-
-@pytest.mark.parametrize(
-    ("name", "value", "text"),
-    [
-        ("near_box_visits", 14.0, "searched within reach"),
-        ("near_missed", 1.0, "difference of the contacts"),
-        ("own_first", 0.1, "end in the own box"),
-        ("huge_tests", 0.0, "pairs tested more"),
-    ],
-)
-def test_false_remarks_are_noticed(name, value, text, dataset):
-    ds = dataset("box_count")
-    ds[name] = ds[name] * 0.0 + value
-    found = [verdict for claim, verdict in verdicts("box_count", ds).items() if text in claim]
-    assert found == ["disagrees"]
-
-
-def test_remarks_about_time_are_decided(dataset):
-    """Leaving out boxes costs more than it saves on the known machine, and a further test little."""
-    found = verdicts("box_count", dataset("box_count"))
-    decided = {
-        claim: verdict for claim, verdict in found.items() if "within reach over" in claim or "huge" in claim
-    }
-    assert list(decided.values()) == ["agrees", "source in error", "agrees", "source in error"]
-
-
-def test_plateaus_are_decided(dataset):
-    ds = dataset("ideal_boxes")
-    ds["plateau_penalty"] = ds["plateau_penalty"] * 0.0 + 1.5
-    found = [verdict for claim, verdict in verdicts("ideal_boxes", ds).items() if "worst N" in claim]
-    assert found == 4 * ["source in error"]
-
-
-def test_no_minimum_is_no_pass(dataset):
-    found = verdicts("ideal_boxes", dataset("ideal_boxes"))
-    assert found["ideal number of boxes per particle, N = 1200000, r = 0.1"] == "inconclusive"

@@ -12,7 +12,7 @@ from experiments.tradeoff.data import (
     written,
 )
 
-from gaspart.experiments.tradeoff.measure import OBSERVABLES, frontier, time_to_accuracy
+from gaspart.experiments.tradeoff.measure import OBSERVABLES, _orders, frontier, time_to_accuracy
 
 
 @pytest.fixture(scope="module")
@@ -26,6 +26,20 @@ def test_orders_of_convergence(dataset):
     assert orders.sel(observable="Z") == pytest.approx(3.0, abs=0.02)
     late = dataset.set_index(row="setting").order.sel(row="1 pass, no rewinding")
     assert late.sel(observable="Z") == pytest.approx(1.0, abs=0.02)
+
+
+def test_two_errors_have_no_order():
+    """Spheres at 0.3, by four passes: the error changes its sign, and only the largest two are seen."""
+    step = np.array([0.32, 0.24, 0.16, 0.12, 0.08])
+    bias, error = np.array([-7.68, -0.71, 0.33, 0.47, 0.26]), np.array([0.11, 0.15, 0.18, 0.14, 0.08])
+    row = {
+        "time_step": step,
+        "bias": [bias / 100.0, -(step**2)],
+        "bias_error": [error / 100.0, step**2 / 50.0],
+    }
+    (order, order_error), (second, second_error) = _orders(row, 0.2)
+    assert np.isnan(order) and np.isnan(order_error)
+    assert second == pytest.approx(2.0) and second_error < 0.05
 
 
 def test_a_pressure_error_is_weighed_by_its_part_in_z(dataset):

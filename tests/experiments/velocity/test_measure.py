@@ -15,7 +15,7 @@ def test_autocorrelation_is_the_mean_over_all_pairs_of_frames():
         assert found == pytest.approx(np.mean(values[: 7 - lag] * values[lag:]), rel=1e-12)
 
 
-def test_the_start_of_a_gas_is_enskogs_and_momentum_is_put_back(tmp_path):
+def test_the_start_of_a_gas_is_enskogs_and_momentum_is_restored(tmp_path):
     settings = {
         "dimension": 3, "count": 256, "radius": 0.5, "boundary": "periodic", "packing_fraction": 0.2,
         "temperature": 2.0, "arrangement": "lattice", "collisions_per_body": 12, "equilibration": 20,

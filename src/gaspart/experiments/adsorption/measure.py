@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.statistics import jackknife
-from gaspart.experiments.shared.rows import from_rows
+from gaspart.experiments.shared.rows import entries, from_rows
 from gaspart.planning import grid
 from gaspart.scene.faces import Sticky, Well, thermal_face
 from gaspart.theory.adsorption import length_in_langmuirs_formula
@@ -145,11 +145,8 @@ def _measured(point: grid.Point, settings: dict) -> dict:
     else:
         estimates |= _desorption(slowly, flux, _REACH / bins)
         estimates |= {"activity": absent, "filling": absent, "filling_by_activity": absent}
-    row = {name: value for name, (value, _) in estimates.items()}
-    row |= {f"{name}_error": error for name, (_, error) in estimates.items()}
-    for name in ("kind", "temperature", "depth", "width", "momentum", "mass", "outside"):
-        row[name] = getattr(holder, name)
-    row |= {f"{name}_freedom": len(held) - 1 for name in estimates}
+    facts = ("kind", "temperature", "depth", "width", "momentum", "mass", "outside")
+    row = entries(estimates, len(held) - 1) | {name: getattr(holder, name) for name in facts}
     return row | {"slow_speed": slow}
 
 

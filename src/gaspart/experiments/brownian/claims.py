@@ -8,10 +8,14 @@ from gaspart.claims import Claim, Estimate
 from gaspart.experiments.shared.claims import rows
 
 LANGEVIN = "the Langevin equation with the friction of a dilute gas (Chapman and Cowling 1970)"
-NOT_MAXWELLS = (
-    "the source's gas has equal speeds, and its particles hardly collide with each other: it is not in "
-    "equilibrium, which theory assumes"
-)
+BOLTZMANN = "the linear Boltzmann equation, direct simulation (gaspart.theory.tagged)"
+RELAXING = f"{BOLTZMANN}, in a gas that relaxes from equal speeds (gaspart.theory.homogeneous)"
+FAILS_IF = {
+    "equipartition": "a particle with another energy than the gas gives it",
+    "friction": "a wrong momentum exchange",
+    "diffusion": "memory",
+}
+STATISTICAL = "the statistical error of the direct simulation"
 
 
 def _name(row: xr.Dataset) -> str:
@@ -21,8 +25,11 @@ def _name(row: xr.Dataset) -> str:
     return f"{steps}mass {float(row['mass'] / row['gas_mass']):g} times a gas particle's{gas}"
 
 
-def _kind(row: xr.Dataset) -> str:
-    return "reproduction" if row["equal_speeds"] else "test"
+def _source(row: xr.Dataset) -> str:
+    """Of what is expected of a row."""
+    if not row["is_light"]:
+        return LANGEVIN
+    return RELAXING if row["equal_speeds"] else BOLTZMANN
 
 
 def brownian_paths(ds: xr.Dataset) -> list[Claim]:
@@ -30,10 +37,9 @@ def brownian_paths(ds: xr.Dataset) -> list[Claim]:
     return [
         Claim.chi_square(
             claim=f"ends of {int(row['replicas'])} paths over their variance from rest, {_name(row)}",
-            kind=_kind(row),
             chi_square=float(row["end_chi_square"]),
             degrees_of_freedom=int(row["end_freedom"]),
-            source=LANGEVIN,
+            source=_source(row),
             fails_if="paths that spread too far or too little, or are cut off by the walls",
         )
         for row in rows(ds, "point")
@@ -66,6 +72,7 @@ def _both_engines(row: xr.Dataset, other: xr.Dataset) -> list[Claim]:
                 measured=Estimate.of(row, key) / Estimate.of(other, key),
                 expected=1.0,
                 required=required,
+                follows=True,
                 source="both engines solve the same equations of motion",
                 fails_if="contacts that time steps miss, count twice, or resolve along a wrong normal",
             )
@@ -73,28 +80,35 @@ def _both_engines(row: xr.Dataset, other: xr.Dataset) -> list[Claim]:
     return claims
 
 
-def _coefficients(row: xr.Dataset) -> list[Claim]:
-    name = _name(row)
-    # What a friction with the particle's own radius, instead of the distance of contact, would be.
+def _alternative(row: xr.Dataset, key: str) -> float | None:
+    """What a competing theory expects: of a gas of equal speeds, that it is in equilibrium; of one that is,
+    that the particle's own radius counts instead of the distance of contact."""
+    if row["equal_speeds"]:
+        return 1.0 if key == "equipartition" else float(row[key])
     bare = float(row["radius"] / row["contact"]) ** 2
-    claims = []
-    for text, key, expected, required, other, fails_if in (
-        ("equipartition M<V^2>/3kT", "equipartition", 1.0, 0.03, None, "the particle is not in equilibrium"),
-        ("friction rate", "measured_friction", row["friction"], 0.03, bare, "a wrong momentum exchange"),
-        ("diffusion coefficient", "measured_diffusion", row["diffusion"], 0.05, 1.0 / bare, "memory"),
+    factor = {"friction": bare, "diffusion": 1.0 / bare}.get(key)
+    return factor and factor * float(row[f"expected_{key}"])
+
+
+def _coefficients(row: xr.Dataset) -> list[Claim]:
+    name, claims = _name(row), []
+    for text, key, measured, required in (
+        ("equipartition M<V^2>/3kT", "equipartition", "equipartition", 0.03),
+        ("friction rate", "friction", "measured_friction", 0.03),
+        ("diffusion coefficient", "diffusion", "measured_diffusion", 0.05),
     ):
-        expected = float(expected)
+        expected = Estimate.of(row, f"expected_{key}")
         claims.append(
             Claim(
                 claim=f"{text}, {name}",
-                kind=_kind(row),
-                measured=Estimate.of(row, key),
+                measured=Estimate.of(row, measured),
                 expected=expected,
-                required=required * expected,
-                source=LANGEVIN,
-                alternative=None if other is None else other * expected,
-                why=NOT_MAXWELLS if row["equal_speeds"] else "",
-                fails_if=fails_if,
+                required=required * expected.value,
+                source=_source(row),
+                allowance_source=STATISTICAL,
+                alternative=_alternative(row, key),
+                follows=key == "diffusion",  # nearly energy over friction
+                fails_if=FAILS_IF[key],
             )
         )
     claims.append(

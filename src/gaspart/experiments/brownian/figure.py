@@ -41,7 +41,8 @@ def brownian_paths(ds: xr.Dataset) -> Figure:
 
 
 def brownian_msd(ds: xr.Dataset) -> Figure:
-    """Mean-squared displacement and velocity autocorrelation, with those of the Langevin equation."""
+    """Mean-squared displacement and velocity autocorrelation, with those of the Langevin equation; below, the
+    deviations from it, with those that theory expects of a light particle as lines."""
     figure, axes = style.new((2.4, 1.1), (2.4, 1.1))
     t = np.geomspace(0.05, 1.05 * float(ds["time"].max()), 300)
     axes[0].loglog(t, theory.langevin_msd(t, 1.0 / 6.0, 1.0), color=style.DATA, label="Langevin", zorder=2)
@@ -49,16 +50,22 @@ def brownian_msd(ds: xr.Dataset) -> Figure:
     for residual in (axes[1], axes[3]):
         style.level(residual, 0.0)
     for kind in range(ds.sizes["point"]):
-        row = ds.isel(point=kind)
+        row = ds.isel(point=kind).dropna("lag", subset=["time"])
         label = f"$M={float(row['mass'] / row['gas_mass']):g}\\,m$"
         label += ", equal speeds" * bool(row["equal_speeds"]) + ", steps" * bool(row["stepped"])
         time, msd, vacf = (row[name].values for name in ("time", "msd", "vacf"))
-        shown = np.unique(np.round(np.geomspace(1, np.isfinite(time).sum() - 1, 16)).astype(int))
+        shown = np.unique(np.round(np.geomspace(1, time.size - 1, 16)).astype(int))
         curve = theory.langevin_msd(time[shown], 1.0 / 6.0, 1.0)
         error = row["msd_error"].values[shown]
         hollow = kind > 0
         style.points(axes[0], time[shown], msd[shown], error, kind=kind, hollow=hollow, label=label)
         style.points(axes[1], time[shown], msd[shown] / curve - 1.0, error / curve, kind=kind, hollow=hollow)
+        if row["is_light"]:
+            expected = row["expected_msd"].values[1:] / theory.langevin_msd(time[1:], 1.0 / 6.0, 1.0) - 1.0
+            axes[1].plot(time[1:], expected, color=style.COLOURS[kind], lw=0.8, zorder=2)
+            early = time < LONGEST
+            expected = row["expected_vacf"].values[early] - np.exp(-time[early])
+            axes[3].plot(time[early], expected, color=style.COLOURS[kind], lw=0.8, zorder=2)
         shown = np.flatnonzero(time < LONGEST)[::3]
         error, curve = row["vacf_error"].values[shown], np.exp(-time[shown])
         style.points(axes[2], time[shown], vacf[shown], error, kind=kind, hollow=hollow, label=label)

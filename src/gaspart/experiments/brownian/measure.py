@@ -1,23 +1,26 @@
 """A large particle among small ones: its paths, its mean-squared displacement, its friction.
 
 The scene's first particle is the tracked one; its gas is the first species. Theory's time is that of the
-friction: 1 / `friction`, from the actual gas density, outside the large particle.
+friction: 1 / `friction`, from the actual gas density, outside the large particle. What is expected of a
+heavy particle is Langevin's equation, of one that is not much heavier than a gas particle `expected`'s.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis.correlations import correlate
+from gaspart.analysis.correlations import Curves, correlate
+from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import bootstrap, means_of
 from gaspart.errors import SceneError
-from gaspart.experiments.shared.rows import from_rows
+from gaspart.experiments.brownian.expected import Setting, light_paths, setting_of
+from gaspart.experiments.shared.rows import entries, from_rows
 from gaspart.planning import grid
 from gaspart.trajectory.run import open_trajectory
 
@@ -26,50 +29,12 @@ LONGEST = 8.0
 FRICTION_TO, DIFFUSION_AT = 0.5, 5.0
 """Friction times up to which the velocity autocorrelation gives the friction, from all lags, and at which the
 msd gives the diffusion."""
-
-
-@dataclass(frozen=True)
-class Setting:
-    """Theory's predictions for a point. share: the large particle's part of all mass where momentum is
-    conserved (all axes periodic), else 0."""
-
-    mass: float
-    gas_mass: float
-    radius: float
-    temperature: float
-    contact: float
-    friction: float
-    diffusion: float
-    share: float
-    mean_free_path: float
-
-
-def setting_of(point: grid.Point) -> Setting:
-    """The setting of a point's scene; SceneError for one that has not one particle and one species."""
-    scene, where = grid.scene(point), f"experiments.{point.experiment}.scene"
-    if len(scene.bodies) != 1 or len(scene.species) != 1:
-        raise SceneError(where, point.settings.get("scene"), "must have one entry of bodies and one species")
-    body, gas = scene.bodies[0], scene.species[0]
-    temperature = gas.temperature
-    if temperature is None:
-        temperature = gas.mass * (gas.speed or 0.0) ** 2 / 3.0
-    contact = body.radius + gas.radius
-    lower, upper = scene.reach(gas.radius)
-    room = math.prod(b - a for a, b in zip(lower, upper, strict=True))
-    density = gas.count / (room - theory.body_volume(3, 2.0 * contact))
-    friction = float(theory.friction_rate(density, contact, body.mass, gas.mass, temperature))
-    conserved = all(scene.container.periodic)
-    return Setting(
-        mass=body.mass,
-        gas_mass=gas.mass,
-        radius=body.radius,
-        temperature=temperature,
-        contact=contact,
-        friction=friction,
-        diffusion=float(theory.tagged_diffusion(friction, body.mass, gas.mass, temperature)),
-        share=body.mass / (body.mass + gas.count * gas.mass) if conserved else 0.0,
-        mean_free_path=1.0 / (math.sqrt(2.0) * math.pi * density * (2.0 * gas.radius) ** 2),
-    )
+NAMES = {
+    "equipartition": "equipartition",
+    "friction": "measured_friction",
+    "diffusion": "measured_diffusion",
+}
+"""Columns of the numbers that are derived from measured paths; `friction` and `diffusion` are theory's."""
 
 
 def _followed(point: grid.Point) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
@@ -88,10 +53,10 @@ def _followed(point: grid.Point) -> Iterator[tuple[np.ndarray, np.ndarray, np.nd
 def brownian_paths(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """The first `paths` ways of each point, and how far all of its replicas have come in the end.
 
-    Lengths are the scene's. `end_chi_square`: of the components of all ends, each over the variance of the
-    Langevin equation from rest, in which the share of the gas counts, as in `brownian_msd`, with its drift of
-    mean square (1 - share) share k_B T / M along each axis (its momentum is drawn with the velocities).
-    Dimensions point, path, frame, axis.
+    Lengths are the scene's. `end_chi_square`: of the components of all ends, each over the variance that is
+    expected from rest. That of the Langevin equation has the share of the gas, as in `brownian_msd`, with its
+    drift of mean square (1 - share) share k_B T / M along each axis (its momentum is drawn with the
+    velocities). Dimensions point, path, frame, axis.
     """
     rows = []
     for point in points:
@@ -99,23 +64,30 @@ def brownian_paths(points: list[grid.Point], settings: dict) -> xr.Dataset:
         found = list(_followed(point))
         ends = np.array([moved[-1, 0] for _, moved, _ in found])
         duration = float(found[0][0][-1])
-        rest = 1.0 - setting.share
-        variance = theory.langevin_msd_from_rest(
-            duration, rest**2 * setting.diffusion, setting.friction / rest, dimension=1
-        )
-        variance += rest * setting.share * setting.temperature / setting.mass * duration**2
+        variance = _end_variance(point, setting, duration)
         shown = np.array([moved[:, 0] for _, moved, _ in found[: settings["paths"]]])
         rows.append(
             {
                 **_facts(point, setting),
                 "duration": duration,
                 "way": shown,
-                "end_variance": float(variance),
+                "end_variance": variance,
                 "end_chi_square": float((ends**2).sum() / variance),
                 "end_freedom": ends.size,
             }
         )
     return from_rows("point", rows, ("path", "frame", "axis"))
+
+
+def _end_variance(point: grid.Point, setting: Setting, duration: float) -> float:
+    """Expected mean square of a component of the displacement at the end."""
+    if setting.is_light:
+        return float(np.mean([(moved[-1] ** 2).mean() for _, moved, _ in light_paths(point, setting)]))
+    rest = 1.0 - setting.share
+    variance = theory.langevin_msd_from_rest(
+        duration, rest**2 * setting.diffusion, setting.friction / rest, dimension=1
+    )
+    return float(variance + rest * setting.share * setting.temperature / setting.mass * duration**2)
 
 
 def brownian_msd(points: list[grid.Point], settings: dict) -> xr.Dataset:
@@ -128,22 +100,37 @@ def brownian_msd(points: list[grid.Point], settings: dict) -> xr.Dataset:
     `equipartition` is M <V^2> / (3 k_B T (1 - s)), `measured_friction` (1 - s) times the decay rate, the
     slope of ln C until FRICTION_TO, `measured_diffusion` D times the msd at DIFFUSION_AT over that of the
     Langevin equation. `equal_speeds` and `stepped`: of the gas at the start, and by the time-stepped engine.
+    `expected_...`: the same of theory, with the statistical error of its direct simulation, if it is one.
 
-    Dimensions point, lag: `time` in 1 / g', `vacf` in (1 - s) k_B T / M, `msd` in 6 (1 - s) k_B T / (M g'^2).
-    Errors: standard errors over replicas (bootstrap for the numbers).
+    Dimensions point, lag: `time` in 1 / g', `vacf` in (1 - s) k_B T / M, `msd` in 6 (1 - s) k_B T / (M g'^2),
+    `expected_vacf` and `expected_msd`. Errors: standard errors over replicas (bootstrap for the numbers).
     """
     return from_rows("point", [_statistics(point) for point in points], ("lag",))
 
 
 def _statistics(point: grid.Point) -> dict:
     setting = setting_of(point)
+    curves, found = _reduced(point, setting, _followed(point))
+    row = {**_facts(point, setting), **curves}
+    row |= entries({NAMES[name]: one for name, one in found.items()})
+    if setting.is_light:
+        infinite = replace(setting, share=0.0)
+        predicted, expected = _reduced(point, infinite, light_paths(point, setting))
+        row |= {f"expected_{name}": predicted[name][: len(curves["time"])] for name in ("vacf", "msd")}
+    else:
+        time = curves["time"]
+        row |= {"expected_vacf": np.exp(-time), "expected_msd": theory.langevin_msd(time, 1.0 / 6.0, 1.0)}
+        exact = {"equipartition": 1.0, "friction": setting.friction, "diffusion": setting.diffusion}
+        expected = {name: Estimate(value) for name, value in exact.items()}
+    return row | entries({f"expected_{name}": one for name, one in expected.items()})
+
+
+def _reduced(
+    point: grid.Point, setting: Setting, paths: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray]]
+) -> tuple[dict[str, np.ndarray], dict[str, Estimate]]:
+    """The correlations of paths in reduced units, with errors, and the quantities derived from them."""
     rest = 1.0 - setting.share
-    rate, drop = setting.friction / rest, grid.schedule(point).equilibration_frames
-    curves = []
-    for time, moved, velocities in _followed(point):
-        interval = (time[-1] - time[0]) / (len(time) - 1)
-        lags = min(math.ceil(LONGEST / (rate * interval)), (len(time) - drop) // 2) + 1
-        curves.append(correlate(moved[drop:], velocities[drop:], interval, lags))
+    rate, curves = setting.friction / rest, _curves(point, setting, paths)
     time = rate * curves[0].time
     if time[-1] < DIFFUSION_AT:
         longer = math.ceil(2.0 * DIFFUSION_AT / rate)
@@ -165,23 +152,29 @@ def _statistics(point: grid.Point) -> dict:
 
     derived = {
         "equipartition": lambda x: x[:, 0].mean() / (rest * equilibrium),
-        "measured_friction": lambda x: rest * rate * decay(x),
-        "measured_diffusion": lambda x: x[:, -1].mean() / langevin * setting.diffusion,
+        "friction": lambda x: rest * rate * decay(x),
+        "diffusion": lambda x: x[:, -1].mean() / langevin * setting.diffusion,
     }
-    estimates = {name: bootstrap(function, both) for name, function in derived.items()}
-    vacf, vacf_error = means_of(vacf / (rest * equilibrium))
-    msd, msd_error = means_of(msd * rate**2 / (6.0 * rest * equilibrium))
-    return {
-        **_facts(point, setting),
-        "time": time,
-        "msd": msd,
-        "msd_error": msd_error,
-        "vacf": vacf,
-        "vacf_error": vacf_error,
-        **{name: one.value for name, one in estimates.items()},
-        **{f"{name}_error": one.error for name, one in estimates.items()},
-        **{f"{name}_freedom": one.freedom for name, one in estimates.items()},
+    curves_of = {
+        "msd": means_of(msd * rate**2 / (6.0 * rest * equilibrium)),
+        "vacf": means_of(vacf / (rest * equilibrium)),
     }
+    return {"time": time, **entries(curves_of)}, {
+        name: bootstrap(function, both) for name, function in derived.items()
+    }
+
+
+def _curves(
+    point: grid.Point, setting: Setting, paths: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray]]
+) -> list[Curves]:
+    """Time correlations of each of the paths, after equilibration."""
+    drop = grid.schedule(point).equilibration_frames
+    rate, curves = setting.friction / (1.0 - setting.share), []
+    for time, moved, velocities in paths:
+        interval = (time[-1] - time[0]) / (len(time) - 1)
+        lags = min(math.ceil(LONGEST / (rate * interval)), (len(time) - drop) // 2) + 1
+        curves.append(correlate(moved[drop:], velocities[drop:], interval, lags))
+    return curves
 
 
 def _facts(point: grid.Point, setting: Setting) -> dict:
@@ -190,5 +183,6 @@ def _facts(point: grid.Point, setting: Setting) -> dict:
         "equal_speeds": grid.scene(point).species[0].speed is not None,
         "stepped": point.settings.get("engine") == "step",
         "replicas": point.replicas,
+        "is_light": setting.is_light,
         **vars(setting),
     }

@@ -88,10 +88,15 @@ def _free(row: xr.Dataset, largest: float) -> Claim:
             source="its weight beyond the displaced one holds it down: kT/(Mg - F)",
             fails_if="a disc that is heavier than the fluid it displaces and does not sink",
         )
+    return _floating(row, "free", "a free disc")
+
+
+def _floating(row: xr.Dataset, kind: str, disc: str) -> Claim:
+    """The mean height of one disc that floats, "free" or of the "source"."""
     return Claim(
-        claim=f"mean height of a free disc of mass {mass:g}",
-        measured=Estimate.of(row, "free_height"),
-        expected=row["free_expected"],
+        claim=f"mean height of {disc} of mass {float(row[f'{kind}_mass']):g}",
+        measured=Estimate.of(row, f"{kind}_height"),
+        expected=row[f"{kind}_expected"],
         required=2.0,
         source=f"Boltzmann's factor of its weight less the displaced one's, {THEORY}",
         fails_if="a disc that does not float where it displaces its own mass",
@@ -104,17 +109,7 @@ def _source(ds: xr.Dataset) -> list[Claim]:
     near = np.minimum(expected - lowest, highest - expected)
     afloat, is_lying = near > AFLOAT, near < LYING
     middle = 0.5 * float(lowest[0] + highest[0])
-    claims = [
-        Claim(
-            claim=f"mean height of the source's disc of mass {float(row['source_mass']):g}",
-            measured=Estimate.of(row, "source_height"),
-            expected=row["source_expected"],
-            required=2.0,
-            source=f"Boltzmann's factor of its weight less the displaced one's, {THEORY}",
-            fails_if="a disc that does not float where it displaces its own mass",
-        )
-        for row in rows(ds.isel(source=afloat), "source")
-    ]
+    claims = [_floating(row, "source", "the source's disc") for row in rows(ds.isel(source=afloat), "source")]
     lying = ds.isel(source=is_lying)
     is_heavy = (lying["source_expected"] < middle).values
     heavy, light = lying.isel(source=is_heavy), lying.isel(source=~is_heavy)

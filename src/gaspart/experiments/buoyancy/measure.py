@@ -15,6 +15,7 @@ import xarray as xr
 from gaspart.analysis.statistics import jackknife
 from gaspart.experiments.shared.claims import is_source
 from gaspart.experiments.shared.columns import Field, Stretch, field, stretches, temperature
+from gaspart.experiments.shared.rows import entries
 from gaspart.planning import grid
 from gaspart.theory.buoyancy import displaced_area
 from gaspart.theory.geometry import body_volume
@@ -124,9 +125,7 @@ def _fixed(point: grid.Point, settings: dict) -> dict:
             lambda n, share, rho: radius_of(undisturbed * share - n, rho), inside, total, density
         ),
     }
-    row = {name: float(value) for name, (value, _) in made.items()}
-    row |= {f"{name}_error": float(error) for name, (_, error) in made.items()}
-    row |= {f"{name}_freedom": len(found) - 1 for name in made}
+    row = entries(made, len(found) - 1)
     return row | {
         "height": height,
         "size_ratio": ratio,

@@ -151,7 +151,7 @@ def _spheres(point: grid.Point) -> dict:
         return {**rows, **_absent("diffusion")}
     time = rows["time"]
     if time[-1] + time[1] < 2.0 * start:
-        where = f"experiments.{point.experiment}[{point.name}]: collisions per body"
+        where = f"experiments.{point.experiment}[{point.name}]: collisions per particle"
         needed = math.ceil(4.0 * start * state["collision_rate"])
         rule = f"must be {needed} or more, and `lags` reach half of it, for a straight stretch of the msd"
         raise SceneError(where, round(grid.schedule(point).samples * rows["interval"]), rule)
@@ -247,7 +247,7 @@ UNITS = {
         "diameter^2 / reduced time",
     ),
     "collision_rate": "1 / reduced time",
-    "interval": "collisions per body",
+    "interval": "collisions per particle",
 }
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import xarray as xr
 
 from gaspart.analysis.statistics import mean_of
-from gaspart.experiments.shared.rows import from_rows
+from gaspart.experiments.shared.rows import entries, from_rows
 from gaspart.planning import grid
 from gaspart.trajectory.run import open_trajectory
 
@@ -64,7 +64,5 @@ def _gas(point: grid.Point) -> dict[str, float]:
         "count": scene.count,
         "power": recipe["thermostat"]["power"],
     }
-    for name in ("temperature", "cumulant", "given", "lost"):
-        mean = mean_of([getattr(run, name) for run in runs])
-        row[name], row[f"{name}_error"] = mean.value, mean.error
-    return row
+    names = ("temperature", "cumulant", "given", "lost")
+    return row | entries({name: mean_of([getattr(run, name) for run in runs]) for name in names})

@@ -7,7 +7,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.claims import Claim, Estimate
-from gaspart.experiments.shared.claims import PARTICLES, rows
+from gaspart.experiments.shared.claims import PARTICLES, SOURCE_C, rows
 
 HUTHMANN = (
     "Huthmann & Zippelius 1997: averages over Maxwellian velocities and spins, computed in "
@@ -94,7 +94,7 @@ def _at_walls(row: xr.Dataset) -> list[Claim]:
             measured=Estimate.of(row, "exchange"),
             expected=1.0,
             required=0.01,
-            source="Spencer 2022, Eq. 40, without collisions: 4q/(1+q)^2 of the tangential energy at a "
+            source=f"{SOURCE_C}, Eq. 40, without collisions: 4q/(1+q)^2 of the tangential energy at a "
             "particle's first hit (exact, gaspart.theory.rough_wall_difference)",
             fails_if="a wrong impulse or torque at walls",
         ),
@@ -116,15 +116,14 @@ def cooling(ds: xr.Dataset) -> list[Claim]:
     for row in rows(ds, "gas"):
         dimension, e = int(row["dimension"]), float(row["restitution"])
         which, count = f"{PARTICLES[dimension]}, restitution {e:g}", float(row["count"])
-        # Velocities relative to each other have the variance 2T N/(N - 1), T that about the centre of mass.
-        finite = count / (count - 1.0)
+        finite = float(theory.cooling_rate_finite_size_factor(count, dimension))
         claims += [
             Claim(
                 claim=f"-d ln T / ds over (1 - e^2)/d (1 + a2/4), {which}",
                 measured=Estimate.of(row, "rate") / theory.cooling_rate(e, dimension),
                 expected=finite,
                 required=0.005,
-                source=f"{VAN_NOIJE}; times N/(N - 1), as the total momentum is zero (exact)",
+                source=f"{VAN_NOIJE}; times d N/(d N - d + 1), at one energy and total momentum zero (exact)",
                 alternative=finite / (1.0 + 0.25 * float(theory.fourth_cumulant(e, dimension))),
                 fails_if="contacts that dissipate too much or too little, as without a2",
             ),

@@ -7,71 +7,25 @@ of the run.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import xarray as xr
 
 from gaspart import theory
+from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import block_average, bootstrap, fit_polynomial, mean_of, means_of
 from gaspart.errors import SceneError
-from gaspart.experiments.shared.rows import from_rows
+from gaspart.experiments.granular.runs import inertia, law, read_runs
+from gaspart.experiments.shared.rows import entries, from_rows
 from gaspart.planning import grid
-from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.run import open_trajectory
 
-SETTLED = 3.0
+RELAXED = 3.0
 """Collisions per particle after which an inelastic gas has relaxed from Maxwell's distribution to its own."""
 
 MIXING, MIXED = 0.5, 1.6
 """Times t sqrt(k_B T / m) / h between rough walls at a distance h, up to which energy passes into spins at a
 rate that depends on the moment of inertia, and from which on the difference is below 1 %."""
-
-
-@dataclass(frozen=True)
-class Run:
-    """One replica over T frames: time, collisions per particle, T_tr and T_rot, (T,) each; first T_tr."""
-
-    time: np.ndarray
-    collisions: np.ndarray
-    translation: np.ndarray
-    rotation: np.ndarray
-    start: float
-
-
-def read_run(point: grid.Point, path: str) -> Run:
-    """One trajectory, in which all particles are alike, without its equilibration."""
-    first = grid.schedule(point).equilibration_frames
-    with open_trajectory(path) as trajectory:
-        velocities = trajectory["velocities"].values.astype(float)
-        energy = trajectory["kinetic_energy"].values
-        counted = trajectory["collisions"].values
-        time = trajectory["time"].values.astype(float)
-    count, dimension = velocities.shape[1:]
-    mass = grid.scene(point).species[0].mass
-    total = mass * (velocities**2).sum(axis=(1, 2))
-    drift = velocities.mean(axis=1)
-    translation = (total - mass * count * (drift**2).sum(axis=1)) / (dimension * (count - 1))
-    spins = {2: 1, 3: 3}[dimension]
-    rotation = (2.0 * energy - total) / (spins * count)
-    return Run(
-        time=time[first:],
-        collisions=2.0 * counted[first:] / count,
-        translation=translation[first:] / translation[0],
-        rotation=rotation[first:] / translation[0],
-        start=float(translation[0]),
-    )
-
-
-def read_runs(point: grid.Point) -> list[Run]:
-    """All replicas of a point."""
-    return [read_run(point, path) for path in point.replica_paths]
-
-
-def law(point: grid.Point) -> Restitution:
-    """That of the contacts of a point's scene."""
-    return grid.scene(point).restitution or Restitution()
 
 
 def equipartition(points: list[grid.Point], settings: dict) -> xr.Dataset:
@@ -101,30 +55,19 @@ def equipartition(points: list[grid.Point], settings: dict) -> xr.Dataset:
     ])  # fmt: skip
 
 
-def inertia(point: grid.Point) -> float:
-    """q = I / (m R^2) of a point's only species; by default that of a uniform disc or sphere."""
-    kind = grid.scene(point).species[0]
-    if kind.moment_of_inertia is None:
-        return {2: 0.5, 3: 0.4}[grid.scene(point).dimension]
-    return kind.moment_of_inertia / (kind.mass * kind.radius**2)
-
-
 def _start(point: grid.Point) -> dict:
     runs = read_runs(point)
     samples = np.stack([[run.collisions, run.translation, run.rotation] for run in runs])
     rate = bootstrap(lambda chosen: _initial_decay(*chosen.mean(axis=0)), samples, repeats=200)
-    translation, translation_error = means_of([run.translation for run in runs])
-    rotation, rotation_error = means_of([run.rotation for run in runs])
+    temperatures = {
+        "translation": means_of([run.translation for run in runs]),
+        "rotation": means_of([run.rotation for run in runs]),
+    }
     return {
         "collisions": samples[:, 0].mean(axis=0),
-        "translation": translation,
-        "translation_error": translation_error,
-        "rotation": rotation,
-        "rotation_error": rotation_error,
         "inertia": inertia(point),
-        "rate": rate.value,
-        "rate_error": rate.error,
-        "rate_freedom": rate.freedom,
+        **entries(temperatures),
+        **entries({"rate": rate}),
     }
 
 
@@ -142,14 +85,13 @@ def _equilibrium(point: grid.Point) -> dict:
     runs = read_runs(point)
     rotation = [block_average(run.rotation) for run in runs]
     translation = float(np.mean([run.translation.mean() for run in runs]))
-    mean = float(np.mean([one.mean for one in rotation]))
-    error = float(np.sqrt(sum(one.error**2 for one in rotation)) / len(rotation))
-    ratio = mean / translation
+    mean = sum((Estimate(one.mean, one.error, one.freedom) for one in rotation), Estimate(0.0)) / len(runs)
+    ratio = mean.value / translation
     # The energy is conserved, 2 (N-1) T_tr + N T_rot: what one has more the other has less.
+    error = mean.error / mean.value * ratio * (1.0 + 0.5 * ratio)
     return {
         "equilibrium_inertia": inertia(point),
-        "equilibrium_ratio": ratio,
-        "equilibrium_ratio_error": error / mean * ratio * (1.0 + 0.5 * ratio),
+        **entries({"equilibrium_ratio": Estimate(ratio, error, mean.freedom)}),
     }
 
 
@@ -169,9 +111,7 @@ def _cooling(point: grid.Point, steady_from: float) -> dict:
         "cooling_inertia": inertia(point),
         "cooling_collisions": collisions,
         "cooling_ratio": rotation / np.mean([run.translation for run in runs], axis=0),
-        "steady_ratio_freedom": steady.freedom,
-        "steady_ratio": steady.value,
-        "steady_ratio_error": steady.error,
+        **entries({"steady_ratio": steady}),
     }
 
 
@@ -207,18 +147,14 @@ def _walls(point: grid.Point) -> dict:
             lambda chosen: np.divide(*chosen[:, ::-1, late].mean(axis=(0, 2))) / ratio, np.array(samples)
         ),
     }
-    (translation, rotation), (translation_error, rotation_error) = means_of(samples)
+    mean, error = means_of(samples)
+    temperatures = {"wall_translation": (mean[0], error[0]), "wall_rotation": (mean[1], error[1])}
     return {
         "wall_dimension": scene.dimension,
         "wall_inertia": inertia(point),
         "wall_time": time,
-        "wall_translation": translation,
-        "wall_translation_error": translation_error,
-        "wall_rotation": rotation,
-        "wall_rotation_error": rotation_error,
-        **{name: one.value for name, one in estimates.items()},
-        **{f"{name}_error": one.error for name, one in estimates.items()},
-        **{f"{name}_freedom": one.freedom for name, one in estimates.items()},
+        **entries(temperatures),
+        **entries(estimates),
     }
 
 
@@ -228,7 +164,7 @@ def cooling(points: list[grid.Point], settings: dict) -> xr.Dataset:
     settings: `clustering`, the experiments of the latter; `cells_per_side`, into which its container is cut.
 
     Returns, over `gas` and `frame`: collisions, time (over Haff's t_H), temperature and its error; over
-    `gas`: dimension, restitution, rate and its error (-d ln T / ds, per replica between `SETTLED` and the
+    `gas`: dimension, restitution, rate and its error (-d ln T / ds, per replica between `RELAXED` and the
     end), exponent and its error (of T against 1 + t / t_H). Over `clusters` and `step`: cluster_collisions;
     cluster_excess, T over exp(-rate s) of theory, and its error; variance, of the number of particles in a
     cell over its mean, and its error; over `clusters`: cluster_restitution. Over `body`: x, y, at the end of
@@ -251,26 +187,18 @@ def _gas(point: grid.Point) -> dict:
             scene.packing_fraction, dimension, 2.0 * kind.radius, run.start, kind.mass
         )
         times.append(run.time / theory.haff_time(restitution, dimension, float(frequency)))
-        late = np.flatnonzero(run.collisions >= SETTLED)
+        late = np.flatnonzero(run.collisions >= RELAXED)
         first, logarithm = late[0], np.log(run.translation)
         rates.append((logarithm[first] - logarithm[-1]) / (run.collisions[-1] - run.collisions[first]))
         exponents.append(np.polyfit(np.log1p(times[-1][late]), logarithm[late], 1)[0])
-    rate, exponent = mean_of(rates), mean_of(exponents)
-    temperature, error = means_of([run.translation for run in runs])
     return {
         "dimension": dimension,
         "count": scene.count,
         "restitution": restitution,
         "collisions": np.mean([run.collisions for run in runs], axis=0),
         "time": np.mean(times, axis=0),
-        "temperature": temperature,
-        "temperature_error": error,
-        "rate": rate.value,
-        "rate_error": rate.error,
-        "exponent": exponent.value,
-        "exponent_error": exponent.error,
-        "rate_freedom": rate.freedom,
-        "exponent_freedom": exponent.freedom,
+        **entries({"temperature": means_of([run.translation for run in runs])}),
+        **entries({"rate": mean_of(rates), "exponent": mean_of(exponents)}),
     }
 
 
@@ -281,14 +209,12 @@ def _clusters(point: grid.Point, cells: int) -> dict:
     rate = theory.cooling_rate(restitution, scene.dimension)
     # Of logarithms: after so many collisions replicas differ by factors.
     excess, relative = means_of([np.log(run.translation) + rate * run.collisions for run in runs])
-    variance, error = means_of([_number_variance(path, scene, cells) for path in point.replica_paths])
+    variances = [_number_variance(path, scene, cells) for path in point.replica_paths]
     return {
         "cluster_restitution": restitution,
         "cluster_collisions": collisions,
-        "cluster_excess": np.exp(excess),
-        "cluster_excess_error": np.exp(excess) * relative,
-        "variance": variance,
-        "variance_error": error,
+        **entries({"cluster_excess": (np.exp(excess), np.exp(excess) * relative)}),
+        **entries({"variance": means_of(variances)}),
     }
 
 

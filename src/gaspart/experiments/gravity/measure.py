@@ -16,7 +16,7 @@ from gaspart.analysis.statistics import jackknife
 from gaspart.experiments.gravity import source
 from gaspart.experiments.shared.claims import is_source
 from gaspart.experiments.shared.columns import Field, field, profile, stretches, temperature
-from gaspart.experiments.shared.rows import from_rows
+from gaspart.experiments.shared.rows import entries, from_rows
 from gaspart.planning import grid
 from gaspart.state.initial import initial_state
 from gaspart.theory.geometry import body_volume
@@ -213,9 +213,7 @@ def _column(point: grid.Point, settings: dict) -> dict:
             "mean_height_ratio": jackknife(bins.mean_height_ratio, heights, warm),
             "species_temperature_ratio": jackknife(lambda k: k / k[0], kinetic),
         }
-    row = {name: value for name, (value, _) in made.items()}
-    row |= {f"{name}_error": error for name, (_, error) in made.items()}
-    row |= {f"{name}_freedom": len(found) - 1 for name in made}
+    row = entries(made, len(found) - 1)
     return row | {
         "height": bins.height,
         "used": bins.used,
@@ -262,7 +260,7 @@ def heat_capacity(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 
 def _energies(point: grid.Point, blocks: int) -> dict:
-    """Temperature, fluctuations and what they should be, of one point of a single replica."""
+    """Temperature and fluctuations, measured and expected, of one point of a single replica."""
     place, scene = field(point), grid.scene(point)
     if point.replicas != 1 or place.across:
         raise ValueError(f"{point.path}: must be one run between walls, whose energy is known")

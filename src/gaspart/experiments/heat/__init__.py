@@ -4,11 +4,15 @@ from gaspart.kinds import count, positive
 
 TITLE = "Heat between walls"
 CHAPTER = "Gravity, heat and walls"
-_PROFILES = {"bins": count("bins across the gap"), "blocks": count("stretches of each replica")}
+_BINS = {"bins": count("bins across the gap")}
 FIGURES = {
     "heat_conduction_gas": {
-        **_PROFILES,
+        **_BINS,
+        "blocks": count("stretches of each replica"),
         "clear": positive("mean free paths next to the walls that are left out, where no fluid theory holds"),
     },
-    "heat_conduction_metal": _PROFILES,
+    "heat_conduction_metal": {
+        **_BINS,
+        "blocks": count("stretches of a run; of several replicas each is one block"),
+    },
 }

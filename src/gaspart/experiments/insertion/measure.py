@@ -3,7 +3,7 @@ r"""Random sequential insertion: failed attempts per particle, and saturation.
 With k particles in the container an attempt succeeds with the probability that a random point is free, the
 available fraction; failures before the next success are geometric. Time is counted in attempts per volume
 of a particle, :math:`t = T v / V` for T attempts. Late insertion fills single small holes, whose sizes are
-uniform down to zero, so :math:`\eta_s - \eta(t) \propto t^{-1/d}` (Feder 1980, Swendsen 1981; recalled):
+uniform down to zero, so :math:`\eta_s - \eta(t) \propto t^{-1/d}` (Feder 1980, Swendsen 1981):
 a straight line in :math:`t^{-1/d}` leads to the saturation :math:`\eta_s`, although no run ever reaches it.
 """
 

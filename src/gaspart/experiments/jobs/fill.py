@@ -49,7 +49,7 @@ def _fill_once(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.n
 def insert(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarray, int, np.ndarray]:
     """Failures before each particle (N,), -1 for one never placed; the number of attempts; and the positions
     (M, d) of those placed."""
-    boxes = make_boxes(scene, sides_for(scene, per_body=1.0), images=False)
+    boxes = make_boxes(scene, sides_for(scene), images=False)
     lower, upper = scene.reach(scene.largest_radius)
     placed, grid, block = empty_arrays(scene, boxes, np.full(scene.count, scene.largest_radius))
     rng, number, failures, used = stream(seed), 0, 0, 0

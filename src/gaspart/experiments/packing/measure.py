@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from scipy.spatial import cKDTree
 
+from gaspart.experiments.shared.rows import entries, from_rows
 from gaspart.planning import grid
 
 TOUCH = 1e-4
@@ -21,40 +22,34 @@ def densest_fill(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
     Returns a dataset: packing_fraction, error, contacts, contacts_error (packing,), contacts of those that do
     not rattle, NaN for insertions; rule (packing,); position (packing, body, axis), radius (packing,), length
-    (packing, axis).
+    (packing, axis). freedom: that of the errors.
     """
-    made, columns = [], []
+    rows = []
     for point in points:
-        with xr.open_dataset(point.path) as dataset:
-            made.append(dataset.load())
-        compressed = point.settings.get("arrangement") == "compressed"
+        made = xr.load_dataset(point.path)
+        fractions, positions, radii = (
+            made[name].values for name in ("packing_fraction", "position", "radius")
+        )
+        length, compressed = made["length"].values, point.settings.get("arrangement") == "compressed"
         rule = "centres_to_walls" if point.settings.get("centres_to_walls") else point.settings["boundary"]
-        touching = [
-            contacts(places, radius, made[-1]["length"].values)
-            for places, radius in zip(made[-1]["position"].values, made[-1]["radius"].values, strict=True)
-            if compressed
-        ] or [np.nan]
-        filled, touched = _mean(made[-1]["packing_fraction"].values), _mean(np.array(touching))
-        freedom = max(1, made[-1]["packing_fraction"].size - 1)
-        columns.append(("compressed" if compressed else rule, *filled, *touched, freedom))
-    rules, fractions, errors, numbers, number_errors, freedoms = zip(*columns, strict=True)
-    bodies = max(one.sizes["body"] for one in made)
-    shown = np.full((len(made), bodies, 3), np.nan)
-    for place, one in zip(shown, made, strict=True):
-        place[: one.sizes["body"]] = one["position"][0]
-    return xr.Dataset(
-        {
-            "rule": ("packing", list(rules)),
-            "packing_fraction": ("packing", list(fractions), {"units": "1"}),
-            "error": ("packing", list(errors), {"units": "1"}),
-            "freedom": ("packing", list(freedoms), {"units": "1", "long_name": "of the errors"}),
-            "contacts": ("packing", list(numbers), {"units": "1"}),
-            "contacts_error": ("packing", list(number_errors), {"units": "1"}),
-            "position": (("packing", "body", "axis"), shown, {"units": "length"}),
-            "radius": ("packing", [float(one["radius"][0]) for one in made], {"units": "length"}),
-            "length": (("packing", "axis"), np.array([one["length"] for one in made]), {"units": "length"}),
-        }
-    )
+        touching = [np.nan]
+        if compressed:
+            touching = [contacts(*one, length) for one in zip(positions, radii, strict=True)]
+        fraction, error = _mean(fractions)
+        rows.append(
+            {
+                "rule": "compressed" if compressed else rule,
+                "packing_fraction": fraction,
+                "error": error,
+                "freedom": max(1, fractions.size - 1),
+                **entries({"contacts": _mean(np.array(touching))}),
+                "position": positions[0],
+                "radius": float(radii[0]),
+                "length": length,
+            }
+        )
+    inner = {"position": ("body", "axis"), "length": ("axis",)}
+    return from_rows("packing", rows, inner, dict.fromkeys(("position", "radius", "length"), "length"))
 
 
 def _mean(values: np.ndarray) -> tuple[float, float]:

@@ -82,13 +82,13 @@ def overlapping(places: np.ndarray, radii: np.ndarray, lengths: np.ndarray, peri
             (np.sqrt((gap**2).sum(axis=-1)) < touch - 2.0 * ROUNDING * np.minimum(radii[i], radii[j])).sum()
         )
 
-    large = radii > 2.0 * np.median(radii)
-    small, big = np.flatnonzero(~large), np.flatnonzero(large)
+    is_large = radii > 2.0 * np.median(radii)
+    small, large = np.flatnonzero(~is_large), np.flatnonzero(is_large)
     wrapped = np.where(box > 0.0, places % np.where(box > 0.0, box, 1.0), places)
     tree = cKDTree(wrapped[small], boxsize=np.where(box > 0.0, box, 0.0))
     pairs = tree.query_pairs(2.0 * radii[small].max(), output_type="ndarray")
     found = deep(small[pairs[:, 0]], small[pairs[:, 1]])
-    for n, i in enumerate(big):
-        others = np.concatenate([small, big[n + 1 :]])
+    for n, i in enumerate(large):
+        others = np.concatenate([small, large[n + 1 :]])
         found += deep(np.full(len(others), i), others)
     return found

@@ -1,4 +1,4 @@
-"""Claims about scaling. Source A: Frederickx and Meerts 2010; C: Spencer 2022.
+"""Claims about scaling.
 
 Work is counted, so it is judged strictly. Times belong to a machine and a program: what the sources report
 of theirs is a reproduction, in which disagreement is a result and not a fault.
@@ -13,19 +13,12 @@ import numpy as np
 import xarray as xr
 
 from gaspart.claims import Claim, Estimate
-from gaspart.experiments.shared.claims import rows
+from gaspart.experiments.scaling.ideal_boxes_claims import ideal_boxes as ideal_boxes
+from gaspart.experiments.scaling.remarks_claims import remarks
+from gaspart.experiments.shared.claims import OTHER_MACHINE, SOURCE_A, SOURCE_C, exponent, rows
 
-A = "Frederickx & Meerts 2010"
-C = "Spencer 2022"
 YEAR = 365.25 * 86400.0
-_INTERVAL = 2.0 * 1.96  # a 95 % interval in standard errors
-OTHER_MACHINE = "on this machine, and by this program, tests and boxes have other relative costs"
 _OTHER_CAUSE = "something other than the pair tests takes the time"
-
-
-def _exponent(what: str, ds: xr.Dataset, name: str = "exponent", **others: Any) -> Claim:
-    """The exponent `name` of a dataset lies in a band. others: as of `Claim.within`."""
-    return Claim.within(claim=f"exponent of the {what}", measured=Estimate.of(ds, name), **others)
 
 
 def _all_pairs(what: str, excess: xr.DataArray) -> Claim:
@@ -41,31 +34,16 @@ def _all_pairs(what: str, excess: xr.DataArray) -> Claim:
     )
 
 
-def _ideal_number(gas: str, ideal: Estimate, source_number: float, source: str) -> Claim:
-    """The ideal number of boxes per particle is the source's, to 10 %."""
-    return Claim(
-        claim=f"ideal number of boxes per particle, {gas}",
-        kind="reproduction",
-        measured=ideal,
-        expected=Estimate(source_number, 0.1 * source_number),
-        required=0.3 * ideal.value,
-        source=source,
-        allowance_source="read from the source's figure to 10 %",
-        why=OTHER_MACHINE,
-        fails_if="another machine or program has other relative costs of tests and boxes",
-    )
-
-
 def naive_scaling(ds: xr.Dataset) -> list[Claim]:
     """Quadratic: exactly in pair tests, and in time as far as the caches permit."""
     return [
         _all_pairs("one box, every step", ds.tests_excess),
-        _exponent(
+        exponent(
             "time per step in N, one box",
             ds,
             expected=2.0,
             half_width=0.15,
-            source=f"{A}, figure 3",
+            source=f"{SOURCE_A}, figure 3",
             fails_if=_OTHER_CAUSE,
         ),
     ]
@@ -85,7 +63,7 @@ def box_count(ds: xr.Dataset) -> list[Claim]:
                 measured=ratio,
                 bound=bound,
                 required=0.25 * ratio.value,
-                source=f"{A}, figure 4",
+                source=f"{SOURCE_A}, figure 4",
                 fails_if="time rises or falls with the number of boxes throughout",
             )
         )
@@ -96,11 +74,11 @@ def box_count(ds: xr.Dataset) -> list[Claim]:
         measured=Estimate.of(ds, "source_penalty"),
         bound=1.05,
         required=0.05,
-        source=f"{A}, figure 6 at this number of particles",
+        source=f"{SOURCE_A}, figure 6 at this number of particles",
         why=OTHER_MACHINE,
         fails_if="the source's number is far from the flat minimum on this machine",
     )
-    return [*claims, *_counts(ds), number, *_round_widths(ds), *_remarks(ds), *_sectors(ds)]
+    return [*claims, *_counts(ds), number, *_round_widths(ds), *remarks(ds), *_sectors(ds)]
 
 
 def _counts(ds: xr.Dataset) -> list[Claim]:
@@ -138,70 +116,10 @@ def _round_widths(ds: xr.Dataset) -> list[Claim]:
             measured=Estimate.of(power, "advantage"),
             expected=0.0,
             required=0.02,
-            source=f"arithmetic does not depend on it; {A}, section 3.4, states that it does",
+            source=f"arithmetic does not depend on it; {SOURCE_A}, section 3.4, states that it does",
             fails_if="boxes whose width is a power of two make a step faster",
         )
         for power in rows(ds, "power")
-    ]
-
-
-def _remarks(ds: xr.Dataset) -> list[Claim]:
-    """The source's remarks on what makes a step cheaper or more expensive, by counted work and by time."""
-    visits = (ds.near_box_visits / ds.near_expected_visits).values
-    return [
-        Claim.within(
-            claim="boxes searched within reach over those expected, the scan's largest deviation",
-            measured=Estimate(visits[np.argmax(np.abs(visits - 1.0))], visits.std(ddof=1)),
-            expected=1.0,
-            half_width=0.03,
-            source="Steiner's formula, gaspart.theory.partition, without the walls' 1 %",
-            fails_if="boxes within reach are left out, or others are searched",
-        ),
-        Claim(
-            claim="largest difference of the contacts found with and without the boxes out of reach",
-            kind="identity",
-            measured=Estimate(ds.near_missed),
-            expected=0.0,
-            required=0.0,
-            source="a box farther than a contact holds no partner",
-            fails_if="a contact is missed",
-        ),
-        Claim.at_most(
-            claim="least time with only the boxes within reach over the least with all neighbouring ones",
-            kind="reproduction",
-            measured=Estimate.of(ds, "near_least"),
-            bound=1.0,
-            required=0.1,
-            source=f"{A}, section 2.3: to search fewer boxes is a possible improvement",
-            why="whether a box is within reach costs more to decide than the box, mostly empty, to look into",
-            fails_if="leaving out boxes costs more than looking into them",
-        ),
-        Claim.at_most(
-            claim="share of searches that can end in the own box if it is searched first, widest boxes",
-            measured=Estimate.of(ds, "own_first"),
-            bound=0.01,
-            required=0.001,
-            source="a search ends early only at a contact, which few particles have in a step",
-            fails_if="the order of the boxes matters for the cost",
-        ),
-        Claim.within(
-            claim="pairs tested more per particle and step with one huge sphere",
-            measured=Estimate.of(ds, "huge_tests"),
-            expected=1.0,
-            half_width=0.01,
-            source=f"{A}, section 4.2: each particle is tested against it",
-            fails_if="it is kept in the boxes, which would have to be as wide as it is",
-        ),
-        Claim.at_most(
-            claim="time per step with one huge sphere among 10 000 over that without",
-            kind="reproduction",
-            measured=Estimate.of(ds, "huge_ratio"),
-            bound=1.05,
-            required=0.05,
-            source=f"{A}, section 4.2: a negligible effect",
-            why=OTHER_MACHINE,
-            fails_if="a further test per particle costs more than a twentieth of a step",
-        ),
     ]
 
 
@@ -213,10 +131,10 @@ def _sectors(ds: xr.Dataset) -> list[Claim]:
             measured=Estimate.of(ds, "crossing_searches"),
             expected=1.0 / 3.0,
             half_width=0.05,
-            source=f"{C}, section 4.4: of the nine adjacent sectors, three are new",
+            source=f"{SOURCE_C}, section 4.4: of the nine adjacent sectors, three are new",
             fails_if="searches extend beyond the adjacent sectors, or miss some",
         ),
-        _exponent(
+        exponent(
             "crossings per event in the number of planes between sectors",
             ds,
             "crossing_exponent",
@@ -228,98 +146,18 @@ def _sectors(ds: xr.Dataset) -> list[Claim]:
     ]
 
 
-def ideal_boxes(ds: xr.Dataset) -> list[Claim]:
-    """The source's numbers of boxes per particle, and how much they matter."""
-    worst = ds.isel(gas=int(np.nanargmax(ds.penalty.values)))
-    ratio = np.log(ds.model / ds.ideal).values
-    ratio = ratio[ds.ideal_interior.values.astype(bool) & np.isfinite(ratio)]
-    model = Estimate(math.nan, math.nan)
-    if ratio.size > 1:
-        model = Estimate(ratio.mean(), ratio.std(ddof=1) / math.sqrt(ratio.size))
-    claims = [
-        Claim.at_most(
-            claim=f"time with {float(ds.rule):g} boxes per particle over the least, the worst of all gases",
-            measured=Estimate.of(worst, "penalty"),
-            bound=1.25,
-            required=0.1,
-            source=f"{A}, section 3.5: ideal is roughly ten",
-            fails_if="the source's rule is far from the minimum on this machine",
-        ),
-        Claim.within(
-            claim="ln of the ideal number by counted work over that by time, mean of the gases",
-            measured=model,
-            expected=0.0,
-            half_width=0.3,
-            source="(3^d c_test / 2 c_box)^(1/2), gaspart.theory.partition",
-            fails_if="something other than pair tests and boxes determines the optimum",
-        ),
-    ]
-    claims += [
-        _exponent(
-            f"ideal number of boxes in N, r = {float(series.series_radius):g}",
-            series,
-            kind="reproduction",
-            expected=1.0,
-            half_width=0.4,
-            source=f"{A}, figures 5 to 7: linear",
-            why=OTHER_MACHINE,
-            fails_if="the ideal number per particle depends on N, as when caches overflow",
-        )
-        for series in rows(ds, "series")
-    ]
-    for number, source in enumerate(rows(ds, "source"), start=5):
-        claims += _source_numbers(source, f"{A}, figure {number}")
-    claims += [
-        Claim.at_most(
-            claim=f"time with {int(part.plateau_boxes)} boxes over the least, the worst N from "
-            f"{int(part.plateau_low)} to {int(part.plateau_high)}, r = {float(part.plateau_radius):g}",
-            kind="reproduction",
-            measured=Estimate.of(part, "plateau_penalty"),
-            bound=1.05,
-            required=0.05,
-            source=f"{A}, section 3.4: so many are ideal in all of this range",
-            why=OTHER_MACHINE,
-            fails_if="the ideal number follows N, or is another",
-        )
-        for part in rows(ds, "plateau")
-    ]
-    return claims
-
-
-def _source_numbers(source: xr.Dataset, origin: str) -> list[Claim]:
-    """Whether the source's number for one gas is the ideal one, and how much slower it is.
-
-    If no minimum lies between the timed partitions, its interval is infinite and the claim inconclusive."""
-    number = float(source.source_number)
-    gas = f"N = {int(source.source_count)}, r = {float(source.source_radius):g}"
-    interval = float(source.source_ideal_high - source.source_ideal_low)
-    return [
-        _ideal_number(gas, Estimate(source.source_ideal, interval / _INTERVAL), number, origin),
-        Claim.at_most(
-            claim=f"time with {number:g} boxes per particle over the least, {gas}",
-            kind="reproduction",
-            measured=Estimate.of(source, "source_penalty"),
-            bound=1.1,
-            required=0.05,
-            source=origin,
-            why=OTHER_MACHINE,
-            fails_if="the source's number is far from the minimum on this machine",
-        ),
-    ]
-
-
 def linear_scaling(ds: xr.Dataset) -> list[Claim]:
     """Linear in counted work; in time, the source's three regimes; and its years of the naive method."""
     slowest = ds.isel(listed=int(np.nanargmax(ds.list_share.values)))
     ratio = Estimate.of(ds, "extrapolated_ratio") * 27.0
     return [
-        _exponent(
+        exponent(
             "pair tests and box visits per step in N, cheapest partition",
             ds,
             "work_exponent",
             expected=1.0,
             half_width=0.05,
-            source=f"{A}, section 1.2",
+            source=f"{SOURCE_A}, section 1.2",
             fails_if="the work per particle depends on N",
         ),
         *(_regime(part, number) for number, part in enumerate(rows(ds, "part"), start=8)),
@@ -338,7 +176,7 @@ def linear_scaling(ds: xr.Dataset) -> list[Claim]:
             measured=Estimate(math.log10(ratio.value), ratio.error / ratio.value / math.log(10.0)),
             expected=math.log10(float(ds.source_years) * YEAR),
             required=0.1,
-            source=f"{A}, section 3.4: {float(ds.source_years):g} years instead of a second",
+            source=f"{SOURCE_A}, section 3.4: {float(ds.source_years):g} years instead of a second",
             why="no count of the work of one step gives it: it is what about a thousand steps would take",
             fails_if="the source's years are not those of one step",
         ),
@@ -348,7 +186,7 @@ def linear_scaling(ds: xr.Dataset) -> list[Claim]:
 def _regime(part: xr.Dataset, number: int) -> Claim:
     """One of the source's figures 8 to 10: linear, but for the superlinear 9."""
     what = f"time per step in N, N = {int(part.part_low)} to {int(part.part_high)}"
-    source = f"{A}, figure {number}"
+    source = f"{SOURCE_A}, figure {number}"
     if number == 9:
         return Claim.at_least(
             claim=f"exponent of the {what}",
@@ -360,7 +198,7 @@ def _regime(part: xr.Dataset, number: int) -> Claim:
             why="caches of this machine are larger",
             fails_if="larger gases are no slower per particle",
         )
-    return _exponent(
+    return exponent(
         what,
         part,
         kind="reproduction",
@@ -383,9 +221,9 @@ def event_scaling(ds: xr.Dataset) -> list[Claim]:
             "boxes": (0.0, "4.4: sectors"),
         }[search]
         where = f'per event in N, search "{search}", {int(method.method_dimension)}D'
-        common: dict[str, Any] = {"expected": power, "source": f"{C}, section {section}"}
+        common: dict[str, Any] = {"expected": power, "source": f"{SOURCE_C}, section {section}"}
         claims.append(
-            _exponent(
+            exponent(
                 f"pair tests {where}",
                 method,
                 "work_exponent",
@@ -395,7 +233,7 @@ def event_scaling(ds: xr.Dataset) -> list[Claim]:
             )
         )
         if power > 0.0:
-            claims.append(_exponent(f"time {where}", method, half_width=0.2, fails_if=_OTHER_CAUSE, **common))
+            claims.append(exponent(f"time {where}", method, half_width=0.2, fails_if=_OTHER_CAUSE, **common))
         else:
             claims.append(
                 Claim.at_most(

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.statistics import means_of
+from gaspart.experiments.shared.rows import entries
 from gaspart.experiments.shared.timings import log_ratios, per_body, ratio_of_jobs
 from gaspart.theory.partition import boxes_in_reach, share_of_contacts_in_a_box
 
@@ -35,7 +36,6 @@ def near_boxes(runs: list[xr.Dataset]) -> xr.Dataset:
     contacts = np.array([run.collisions.values for run in runs])
     colliding = [2.0 * run.collisions.values[0] / (run.attrs["count"] * run.steps.values[0]) for run in runs]
     within = share_of_contacts_in_a_box(width.max(), 2.0 * first.radius, first.dimension)
-    own, own_error = means_of(np.array(colliding) * within)
     return xr.Dataset(
         {
             "near_boxes_per_side": ("near", first.boxes_per_side.values[:partitions]),
@@ -43,12 +43,9 @@ def near_boxes(runs: list[xr.Dataset]) -> xr.Dataset:
             "near_seconds_error": ("near", error, {"units": "s"}),
             "near_box_visits": ("near", visits),
             "near_expected_visits": ("near", 0.5 + 0.5 * reached),
-            "near_least": least.value,
-            "near_least_error": least.error,
-            "near_least_freedom": least.freedom,
+            **entries({"near_least": least}),
             "near_missed": int(np.ptp(contacts, axis=1).max()),
-            "own_first": own,
-            "own_first_error": own_error,
+            **entries({"own_first": means_of(np.array(colliding) * within)}),
         }
     )
 
@@ -61,11 +58,4 @@ def huge_sphere(runs: list[xr.Dataset]) -> dict[str, Any]:
     """
     ratio = ratio_of_jobs([-log_ratios(run, run.steps.values)[0] for run in runs])
     tests = [np.diff(run.pair_tests.values / run.steps.values)[0] / run.attrs["count"] for run in runs]
-    more, error = means_of(tests)
-    return {
-        "huge_ratio": ratio.value,
-        "huge_ratio_error": ratio.error,
-        "huge_ratio_freedom": ratio.freedom,
-        "huge_tests": float(more),
-        "huge_tests_error": float(error),
-    }
+    return entries({"huge_ratio": ratio, "huge_tests": means_of(tests)})

@@ -1,10 +1,17 @@
-"""Parts of claims that several families share."""
+"""Parts of claims that several modules share."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from gaspart.claims import Claim, Estimate
+
+SOURCE_A, SOURCE_C = "Frederickx & Meerts 2010", "Spencer 2022"
+OTHER_MACHINE = "on this machine, and by this program, tests and boxes have other relative costs"
+"""Why an optimum that source A reports need not be the one found here."""
 PARTICLES = {2: "discs", 3: "spheres"}
 """Names of the particles in each dimension."""
 MODE_COUPLING = "hydrodynamic modes of the container, transport coefficients Enskog's (gaspart.theory.modes)"
@@ -27,3 +34,8 @@ def deviations(dataset: xr.Dataset, measured: str, expected: str) -> np.ndarray:
     """
     spread = np.hypot(dataset[f"{measured}_error"], dataset[f"{expected}_error"])
     return ((dataset[measured] - dataset[expected]) / spread).values
+
+
+def exponent(what: str, dataset: xr.Dataset, name: str = "exponent", **others: Any) -> Claim:
+    """The exponent `name` of a dataset lies in a band. others: as of `Claim.within`."""
+    return Claim.within(claim=f"exponent of the {what}", measured=Estimate.of(dataset, name), **others)

@@ -109,7 +109,7 @@ def pressure(point: grid.Point) -> Pressure:
 
 
 def combine_runs(runs: list[Run]) -> Pressure:
-    """Mean over replicas of equal length; the errors are those of each one's blocks, in quadrature."""
+    """Mean over replicas of equal length; the errors are those of correlated series, in quadrature."""
     z = [block_average(run.z) for run in runs]
     rate = [block_average(run.rate) for run in runs]
     value, error = _mean(z)

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.estimate import Estimate
+
 
 def from_rows(
     over: str,
@@ -29,6 +31,23 @@ def from_rows(
         attributes = {} if units is None or values.dtype.kind in "OSU" else {"units": units.get(key, "1")}
         columns[name] = (over, *dims), values, attributes
     return xr.Dataset(columns)
+
+
+def entries(numbers: Mapping[str, Estimate | tuple[Any, Any]], freedom: int | None = None) -> dict[str, Any]:
+    """The entries of a row for numbers with uncertainties: `name`, `name`_error, and `name`_freedom.
+
+    numbers: by name, each an Estimate, or a value and its error, numbers or arrays. freedom: the degrees of
+    freedom of the latter; without it they have no such entry.
+    """
+    row: dict[str, Any] = {}
+    for name, number in numbers.items():
+        if isinstance(number, Estimate):
+            row |= {name: number.value, f"{name}_error": number.error, f"{name}_freedom": number.freedom}
+        else:
+            row[name], row[f"{name}_error"] = number
+            if freedom is not None:
+                row[f"{name}_freedom"] = freedom
+    return row
 
 
 def _stacked(arrays: list[np.ndarray]) -> np.ndarray:

@@ -179,6 +179,15 @@ def ratio_of_jobs(logs: Sequence[float] | np.ndarray) -> Estimate:
     return Estimate(ratio, ratio * mean.error, mean.freedom)
 
 
+def trend(count: np.ndarray, values: np.ndarray) -> tuple[float, float]:
+    """Exponent of a power law and its error from the scatter; NaN if fewer than three points can be used."""
+    usable = np.isfinite(values)
+    if usable.sum() < 3:
+        return math.nan, math.nan
+    fit = statistics.fit_power_law(count[usable], values[usable])
+    return fit.exponent, fit.exponent_error
+
+
 def one_box(runs: list[xr.Dataset]) -> xr.Dataset:
     """Over ``count``: pair tests and time of one step with one box."""
     runs = sorted(runs, key=lambda run: run.attrs["count"])

@@ -22,6 +22,9 @@ from gaspart.tradeoff.table import EQUILIBRATION, LEAST, PRECISIONS, QUANTILE, R
 OBSERVABLES = ("collision_rate", "Z", "D")
 SEEN = 3.5
 """An error counts as seen, in fits of its order, if it is so many standard errors from 0."""
+FITTED = 3
+"""Errors that a fit of their order needs at least: two have an order whatever their law, also where an error
+changes its sign."""
 
 
 def speed_accuracy(points: list[grid.Point], settings: dict) -> xr.Dataset:
@@ -37,9 +40,9 @@ def speed_accuracy(points: list[grid.Point], settings: dict) -> xr.Dataset:
     ``seconds`` (processor time per exact collision, with ``seconds_error``) and ``pair_tests`` (per exact
     collision), NaN where not timed. Over ``row``: ``dimension``, ``packing_fraction``, ``setting``,
     ``contacts`` (of the exact runs), ``event_seconds`` with its error. Over (``row``, ``observable``):
-    ``order`` of the error in the time step, with ``order_error`` (NaN without two errors of one sign). Over
-    (``gas``, ``observable``, ``accuracy``): see `frontier`. Over ``steady``: gas and setting of long runs,
-    and ``build_up`` with error, the relative error of their Z minus that of the paired runs.
+    ``order`` of the error in the time step, with ``order_error`` (NaN without `FITTED` errors of one sign).
+    Over (``gas``, ``observable``, ``accuracy``): see `frontier`. Over ``steady``: gas and setting of long
+    runs, and ``build_up`` with error, the relative error of their Z minus that of the paired runs.
     """
     rows = [errors(point) for point in points if point.job == "compare"]
     rows = sorted(rows, key=lambda row: (-row["dimension"], row["packing_fraction"]))
@@ -207,7 +210,7 @@ def _orders(row: dict, largest: float) -> list[tuple[float, float]]:
     for bias, error in zip(row["bias"], row["bias_error"], strict=True):
         size = np.abs(bias)
         seen = (size > SEEN * error) & (size < largest)
-        if seen.sum() < 2 or np.unique(np.sign(bias[seen])).size > 1:
+        if seen.sum() < FITTED or np.unique(np.sign(bias[seen])).size > 1:
             found.append((np.nan, np.nan))
             continue
         law = statistics.fit_power_law(row["time_step"][seen], size[seen], error[seen])

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.statistics import means_of
-from gaspart.experiments.shared.rows import from_rows
+from gaspart.experiments.shared.rows import entries, from_rows
 from gaspart.planning import grid
 from gaspart.scene.faces import Vibrating
 from gaspart.trajectory.run import open_trajectory
@@ -50,8 +50,7 @@ def _bed(point: grid.Point, settings: dict) -> dict[str, Any]:
         "speed": floor.greatest_speed / math.sqrt(2.0) if sine else floor.greatest_speed,
     }
     runs = [read_run(point, path, settings) for path in point.replica_paths]
-    for name in runs[0]:
-        row[name], row[f"{name}_error"] = means_of([run[name] for run in runs])
+    row |= entries({name: means_of([run[name] for run in runs]) for name in runs[0]})
     weight = species.count * -scene.gravity[1] / width
     row["packing_fraction"] = math.pi * species.radius**2 * weight / row["temperature"]
     return row

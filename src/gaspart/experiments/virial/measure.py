@@ -52,7 +52,7 @@ def equation_of_state(points: list[grid.Point], settings: dict) -> xr.Dataset:
     collisions = np.array([run.counters["collisions"] for run in runs])
     columns = {
         "Z": (z, "compressibility factor of the infinite system"),
-        "Z_error": ([run.error for run in runs], "standard error of Z, from blocks"),
+        "Z_error": ([run.error for run in runs], "standard error of Z, with its correlation in time"),
         "finite_size": (shift, "correction that was subtracted, first order in 1/N"),
         "poisson_error": ((z - 1.0) / np.sqrt(collisions), "(Z-1)/sqrt(number of collisions)"),
         "reference": (theory.compressibility_factor(eta, dimension), "Z of the reference equation"),
@@ -64,7 +64,7 @@ def equation_of_state(points: list[grid.Point], settings: dict) -> xr.Dataset:
         "correlation": ([run.correlation for run in runs], "autocorrelation time in samples"),
         "flat": ([int(run.flat) for run in runs], "1 if all block errors reached a plateau"),
         "collisions": (collisions, "number of collisions measured"),
-        "count": (count, "number of bodies"),
+        "count": (count, "number of particles"),
     }
     dataset = xr.Dataset(
         {

@@ -1,0 +1,100 @@
+"""The frames of a trajectory file, behind its header.
+
+They are appended as they come, and the number of frames in the header is raised when a frame is complete, so
+that a file cut short at any moment is a readable one. A checksum (CRC-32) at the end of each frame, which
+depends on the header and on the frame's place too, detects damage.
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+import zlib
+from typing import BinaryIO
+
+import numpy as np
+
+from gaspart.trajectory.amber import FRAME_COUNT_AT, MAGIC, WORD, Layout, frame_bytes
+
+_CHUNK = 1 << 24  # bytes that are read at once
+
+
+def frame_count(file: BinaryIO) -> int:
+    """The number of complete frames that a file's header states."""
+    file.seek(FRAME_COUNT_AT)
+    return struct.unpack(">I", file.read(WORD))[0]
+
+
+def _frame_checksum(frame: bytes | memoryview, number: int, header_checksum: int) -> bytes:
+    """The last word of a frame: the checksum of what comes before it."""
+    start = zlib.crc32(struct.pack(">I", number), header_checksum)
+    return struct.pack(">I", zlib.crc32(frame[:-WORD], start))
+
+
+def damaged_frame(file: BinaryIO, header: bytes, frames: int) -> int | None:
+    """The first of `frames` frames that is damaged or cut short; None if all are correct."""
+    size, header_checksum = frame_bytes(header), zlib.crc32(header)
+    at_once = max(1, _CHUNK // size)
+    file.seek(len(header))
+    for first in range(0, frames, at_once):
+        wanted = min(at_once, frames - first)
+        data = memoryview(file.read(wanted * size))
+        for n in range(wanted):
+            frame = data[n * size : (n + 1) * size]
+            if len(frame) < size or frame[-WORD:] != _frame_checksum(frame, first + n, header_checksum):
+                return first + n
+    return None
+
+
+class Frames:
+    """The frames of an unbuffered open file, of which the first `kept` are kept and the others removed.
+
+    With `kept` = 0 the header is written too. Every method may raise OSError.
+    """
+
+    def __init__(self, file: BinaryIO, layout: Layout, header: bytes, kept: int = 0) -> None:
+        self._file, self._frame = file, np.zeros((), layout.frame)
+        self.count = kept
+        self._header_checksum = zlib.crc32(header)
+        if kept == 0:
+            self._begin(header)
+        else:
+            self._count_frames()
+        file.truncate(len(header) + kept * layout.frame.itemsize)
+        file.seek(0, os.SEEK_END)
+
+    def _begin(self, header: bytes) -> None:
+        """Write the header, its first word last: if that is present, the header is complete."""
+        self._file.truncate(0)
+        self._file.seek(0)
+        try:
+            self._write(bytes(len(MAGIC)) + header[len(MAGIC) :])
+        except OSError:
+            self._file.truncate(0)
+            raise
+        os.pwrite(self._file.fileno(), header[: len(MAGIC)], 0)
+
+    def append(self, values: dict[str, np.ndarray | float]) -> None:
+        """Write one frame: a value for every variable of the layout, vectors of 2 or 3 components."""
+        for name in self._frame.dtype.names[:-1]:
+            given = np.asarray(values[name])
+            there = self._frame[name]
+            components = there[..., : given.shape[-1]] if given.ndim else there  # 2D leaves z = 0
+            components[...] = given
+        data = self._frame.reshape(1).view(np.uint8).data
+        data[-WORD:] = _frame_checksum(data, self.count, self._header_checksum)
+        self._write(data)
+        self.count += 1
+        self._count_frames()
+
+    def _write(self, data: bytes | memoryview) -> None:
+        left = memoryview(data).cast("B")
+        while left:
+            left = left[self._file.write(left) :]
+
+    def _count_frames(self) -> None:
+        os.pwrite(self._file.fileno(), struct.pack(">I", self.count), FRAME_COUNT_AT)
+
+    def sync(self) -> None:
+        """Return when all data are on the disk."""
+        os.fsync(self._file.fileno())
