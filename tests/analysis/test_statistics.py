@@ -7,7 +7,6 @@ from scipy.signal import lfilter
 
 from gaspart import theory
 from gaspart.analysis import statistics
-from gaspart.claims.claim import gaussian_deviation
 
 
 def autoregressive(size, memory, seed):
@@ -21,26 +20,26 @@ def autoregressive(size, memory, seed):
     return series
 
 
-def test_block_average_of_independent_samples_needs_no_blocks():
+def test_correlated_mean_of_independent_samples_needs_no_blocks():
     series = np.random.default_rng(1).standard_normal(4096)
-    result = statistics.block_average(series)
+    result = statistics.correlated_mean(series)
     assert result.flat
-    assert result.error == pytest.approx(1.0 / 64.0, rel=0.15)
-    assert abs(result.mean) < 4.0 / 64.0
+    assert result.estimate.error == pytest.approx(1.0 / 64.0, rel=0.15)
+    assert abs(result.estimate.value) < 4.0 / 64.0
 
 
-def test_block_average_finds_the_error_of_a_correlated_series():
+def test_correlated_mean_finds_the_error_of_a_correlated_series():
     memory, size = 0.9, 2**16
     time = 0.5 + memory / (1.0 - memory)
-    result = statistics.block_average(autoregressive(size, memory, 2))
+    result = statistics.correlated_mean(autoregressive(size, memory, 2))
     assert result.flat
     assert result.block_length > time
-    assert result.error == pytest.approx(math.sqrt(2.0 * time / size), rel=0.15)
-    assert result.errors[0] < 0.4 * result.error
+    assert result.estimate.error == pytest.approx(math.sqrt(2.0 * time / size), rel=0.15)
+    assert result.errors[0] < 0.4 * result.estimate.error
 
 
-def test_block_average_reports_a_series_that_is_too_short():
-    result = statistics.block_average(np.cumsum(np.random.default_rng(3).standard_normal(256)))
+def test_correlated_mean_reports_a_series_that_is_too_short():
+    result = statistics.correlated_mean(np.cumsum(np.random.default_rng(3).standard_normal(256)))
     assert not result.flat
     assert result.block_length == 16
 
@@ -51,8 +50,8 @@ def test_deviations_over_errors_follow_student(size, memory):
     rng, scattered = np.random.default_rng(5), 1500
     deviations = []
     for noise in rng.standard_normal((scattered, size + 100)):
-        result = statistics.block_average(lfilter([1.0], [1.0, -memory], noise)[100:])
-        deviations.append(gaussian_deviation(result.mean / result.error, result.freedom))
+        result = statistics.correlated_mean(lfilter([1.0], [1.0, -memory], noise)[100:])
+        deviations.append(result.estimate.deviation)
     width = np.sqrt(np.mean(np.square(deviations)))
     assert width == pytest.approx(1.0, abs=0.05)  # 3 / sqrt(2 * 1500), and the freedom is an estimate
     assert np.mean(np.abs(deviations) > 3.0) < 0.01
@@ -211,7 +210,7 @@ def test_a_minimum_at_the_edge_is_not_an_optimum():
         (lambda: statistics.mean_of([1.0]), "at least 2"),
         (lambda: statistics.mean_of([1.0, math.nan]), "not all values are finite"),
         (lambda: statistics.combine([1.0, 2.0], [1.0, 0.0]), "errors: must be positive"),
-        (lambda: statistics.block_average(np.ones(8)), "at least 16"),
+        (lambda: statistics.correlated_mean(np.ones(8)), "at least 16"),
         (lambda: statistics.fit_polynomial([1.0, 2.0], [1.0, 2.0, 3.0]), "2 and 3 values"),
         (lambda: statistics.fit_polynomial([1.0, 2.0], [1.0, 2.0], powers=(0, 1)), "too few"),
         (lambda: statistics.fit_polynomial([1.0, 1.0, 1.0], [1.0, 2.0, 3.0], 0.1), "not independent"),

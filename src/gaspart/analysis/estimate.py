@@ -43,6 +43,23 @@ class Estimate:
         freedom = float(dataset.get(f"{name}_freedom", math.inf))
         return cls(dataset[name], dataset[f"{name}_error"], freedom if freedom > 0.0 else math.inf)
 
+    @property
+    def deviation(self) -> float:
+        """Distance from 0 in standard deviations, infinite for an exact number that is not 0.
+
+        Where the uncertainty comes from a few samples, the Gaussian deviation of the same probability as that
+        of Student's t.
+        """
+        if self.error == 0.0:
+            return math.copysign(math.inf, self.value) if self.value else 0.0
+        t = self.value / self.error
+        if math.isinf(self.freedom) or t == 0.0 or not math.isfinite(t):
+            return t
+        from scipy.special import ndtri, stdtr
+
+        beyond = max(float(stdtr(self.freedom, -abs(t))), 1e-300)
+        return math.copysign(-float(ndtri(beyond)), t)
+
     def __neg__(self) -> Estimate:
         return Estimate(-self.value, self.error, self.freedom)
 

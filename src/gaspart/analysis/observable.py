@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.statistics import block_average
+from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
 
 if TYPE_CHECKING:
@@ -119,10 +119,10 @@ def scalar(name: str, series: np.ndarray, edges: np.ndarray, **about: Any) -> Ob
     """
     if len(series) < LEAST_INTERVALS:
         raise SceneError("frames", len(series) + 1, f"an error needs {LEAST_INTERVALS + 1} or more")
-    found = block_average(series, LEAST_INTERVALS)
+    found = correlated_mean(series, LEAST_INTERVALS).estimate
     stretches = [part.mean() for part in np.array_split(series, min(STRETCHES, len(series)))]
     ends = [part[[0, -1]].mean() for part in np.array_split(0.5 * (edges[1:] + edges[:-1]), len(stretches))]
-    result = observable(name, {}, found.mean, found.error, **about)
+    result = observable(name, {}, found.value, found.error, **about)
     result["stretches"] = ("time", np.array(stretches), {"units": about["units"]})
     result["time"] = ("time", np.array(ends), {"units": "time", "long_name": "time"})
     return result.set_coords("time")

@@ -139,18 +139,14 @@ class Claim:
         """Signed distance from what was stated, in standard deviations; 0 inside stated bounds.
 
         (measured - expected) / sqrt(sum of the squares of both uncertainties); for bounds, expected is the
-        nearer bound. Where the uncertainty comes from a few samples, the Gaussian deviation of the same
-        probability as that of Student's t.
+        nearer bound. See `Estimate.deviation` for uncertainties that come from a few samples.
         """
         if self.exact_deviation is not None:
             return self.exact_deviation
         stated = self.expected.value
         if self.bounds is not None:
             stated = min(max(self.measured.value, self.bounds[0]), self.bounds[1])
-        difference = self.measured - Estimate(stated, self.expected.error)
-        if difference.error == 0.0:
-            return 0.0 if difference.value == 0.0 else math.copysign(math.inf, difference.value)
-        return gaussian_deviation(difference.value / difference.error, difference.freedom)
+        return (self.measured - Estimate(stated, self.expected.error)).deviation
 
     @property
     def p_value(self) -> float:
@@ -190,13 +186,3 @@ class Claim:
             and self.measured.error > 0.0
             and self.expected.error <= NEGLIGIBLE * self.measured.error
         )
-
-
-def gaussian_deviation(t: float, freedom: float) -> float:
-    """The Gaussian deviation that is as probable as the deviation t of Student's distribution."""
-    if math.isinf(freedom) or t == 0.0 or not math.isfinite(t):
-        return t
-    from scipy.special import ndtri, stdtr
-
-    beyond = max(float(stdtr(freedom, -abs(t))), 1e-300)
-    return math.copysign(-float(ndtri(beyond)), t)

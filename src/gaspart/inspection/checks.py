@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from gaspart import theory
-from gaspart.analysis.statistics import block_average, histogram_chi_square
+from gaspart.analysis.statistics import correlated_mean, histogram_chi_square
 from gaspart.inspection.contact_value import FIT_ERROR, contact_values
 from gaspart.inspection.diffusion import diffusion, expected_diffusion, why_not
 from gaspart.inspection.frames import Frames
@@ -131,9 +131,9 @@ def _kurtosis(frames: Frames) -> Check:
     if rest:
         moving = moving - moving.mean(axis=1, keepdims=True)
     square = (moving**2).sum(axis=2)
-    found = block_average((square**2).mean(axis=1) / square.mean(axis=1) ** 2)
+    found = correlated_mean((square**2).mean(axis=1) / square.mean(axis=1) ** 2).estimate
     expected = theory.kurtosis(frames.dimension, frames.count, zero_momentum=rest)
-    return _compared(name, found.mean, found.error, expected, 0.0, "Maxwell's")
+    return _compared(name, found.value, found.error, expected, 0.0, "Maxwell's")
 
 
 def _pressure(frames: Frames, seen: np.ndarray) -> Check:
@@ -152,13 +152,14 @@ def _pressure(frames: Frames, seen: np.ndarray) -> Check:
     chosen = seen[len(seen) // 4 :]
     if len(chosen) < _LEAST_FRAMES:
         return Check(name, None, f"frames are too few for an error: {len(chosen)}")
-    found = block_average(contact_values(replace(frames, positions=frames.positions[chosen])))
+    series = contact_values(replace(frames, positions=frames.positions[chosen]))
+    found = correlated_mean(series).estimate
     first = 2.0 ** (d - 1) * eta
     expected = float(theory.compressibility_factor(eta, d))
     expected += float(theory.finite_size_correction(eta, d, frames.count, "canonical"))
     unsure = float(theory.compressibility_uncertainty(eta, d))
-    error = first * math.hypot(found.error, FIT_ERROR * found.mean)
-    return _compared(name, 1.0 + first * found.mean, error, expected, unsure, f"fluid, eta = {eta:.4g}")
+    error = first * math.hypot(found.error, FIT_ERROR * found.value)
+    return _compared(name, 1.0 + first * found.value, error, expected, unsure, f"fluid, eta = {eta:.4g}")
 
 
 def _diffusion(frames: Frames) -> Check:

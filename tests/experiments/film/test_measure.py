@@ -21,19 +21,19 @@ def slit(rng, density, width, samples, side=6.0):
 def test_contact_density_of_uniform_bodies_is_their_density():
     rng = np.random.default_rng(1)
     one = slit(rng, 0.5, 5.0, 600)
-    value, error = film._contact(one)
-    assert abs(value - 0.5) < 4.0 * error < 0.2
+    density = film._contact(one)
+    assert abs(density.value - 0.5) < 4.0 * density.error < 0.2
 
 
 def test_insertion_into_a_dilute_gas_of_points_counts_their_spheres():
     # Each of the 29 points forbids a ball of radius 1, on average 3/16 less of it within 1 of either wall.
     rng = np.random.default_rng(2)
     one = slit(rng, 0.1, 9.0, 64)
-    value, error = film._widom(one, 64_000, 3)
+    potential = film._widom(one, 64_000, 3)
     forbidden = 4.0 / 3.0 * np.pi * (1.0 - 2.0 * (3.0 / 16.0) / 8.0)
     expected = np.log(30 / 288.0) - 29 * np.log(1.0 - forbidden / 288.0)
-    assert value == pytest.approx(expected, abs=4.0 * error + 0.005)
-    assert error < 0.01
+    assert potential.value == pytest.approx(expected, abs=4.0 * potential.error + 0.005)
+    assert potential.error < 0.01
 
 
 def test_a_real_slit_obeys_the_contact_theorem(tmp_path):

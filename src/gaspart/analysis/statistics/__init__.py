@@ -6,11 +6,12 @@ of independent Gaussian scatter; arrays are one-dimensional and of equal length 
 unequal length or not finite raise ValueError.
 """
 
-from gaspart.analysis.statistics.blocks import BlockAverage, autocorrelation_time, block_average
+from gaspart.analysis.statistics.blocks import CorrelatedMean, autocorrelation_time, correlated_mean
 from gaspart.analysis.statistics.distributions import Histogram, histogram_chi_square
 from gaspart.analysis.statistics.fits import Fit, PowerLaw, fit_linear, fit_polynomial, fit_power_law
 from gaspart.analysis.statistics.means import (
     Combination,
+    average,
     bootstrap,
     combine,
     jackknife,
@@ -21,16 +22,17 @@ from gaspart.analysis.statistics.means import (
 from gaspart.analysis.statistics.minimum import Optimum, optimum
 
 __all__ = [
-    "BlockAverage",
     "Combination",
+    "CorrelatedMean",
     "Fit",
     "Histogram",
     "Optimum",
     "PowerLaw",
     "autocorrelation_time",
-    "block_average",
+    "average",
     "bootstrap",
     "combine",
+    "correlated_mean",
     "fit_linear",
     "fit_polynomial",
     "fit_power_law",

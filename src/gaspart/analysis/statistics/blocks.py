@@ -6,21 +6,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics.inputs import series_of
 
 
 @dataclass(frozen=True)
-class BlockAverage:
-    """Mean of a correlated series, its standard error, and the degrees of freedom of that; `errors[k]` is the
-    standard error from blocks of `lengths[k]` samples.
+class CorrelatedMean:
+    """The mean of a correlated series, and what blocks say of its error; `errors[k]` is the standard error
+    from blocks of `lengths[k]` samples.
 
     `flat`: the error from blocks no longer grows with their length beyond its own uncertainty, so that the
     series is long enough; from blocks of `block_length` on, of which there are `blocks`.
     """
 
-    mean: float
-    error: float
-    freedom: float
+    estimate: Estimate
     block_length: int
     blocks: int
     lengths: np.ndarray
@@ -28,7 +27,7 @@ class BlockAverage:
     flat: bool
 
 
-def block_average(series: ArrayLike, minimum_blocks: int = 16) -> BlockAverage:
+def correlated_mean(series: ArrayLike, minimum_blocks: int = 16) -> CorrelatedMean:
     """Mean and standard error of a stationary correlated series.
 
     The error is that of n / (2 t) independent samples, t the autocorrelation time. The sum of correlations
@@ -68,10 +67,8 @@ def block_average(series: ArrayLike, minimum_blocks: int = 16) -> BlockAverage:
     error = float(series.std() * math.sqrt(2.0 * time * (1.0 + share) / series.size))
     if share > 0.25:  # correlated over so much of the series that the sum means little
         error = max(error, float(errors[-1]))
-    return BlockAverage(
-        mean=float(series.mean()),
-        error=error,
-        freedom=1.0 / share,
+    return CorrelatedMean(
+        estimate=Estimate(series.mean(), error, 1.0 / share),
         block_length=lengths[chosen],
         blocks=counts[chosen],
         lengths=np.array(lengths),

@@ -1,7 +1,7 @@
 """Means of independent numbers, and functions of means by resampling."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -31,6 +31,11 @@ def mean_of(values: ArrayLike) -> Estimate:
     values = series_of("values", values, 2)
     error = float(values.std(ddof=1) / math.sqrt(values.size))
     return Estimate(float(values.mean()), error, values.size - 1)
+
+
+def average(estimates: Sequence[Estimate]) -> Estimate:
+    """Mean of independent estimates that count alike, with their own uncertainties."""
+    return sum(estimates, Estimate(0.0)) / len(estimates)
 
 
 def means_of(samples: ArrayLike) -> tuple[np.ndarray, np.ndarray]:

@@ -7,7 +7,7 @@ import xarray as xr
 
 from gaspart.analysis.statistics import combine, fit_polynomial, fit_power_law
 from gaspart.claims import Claim, Estimate
-from gaspart.experiments.shared.claims import rows
+from gaspart.experiments.shared.claims import deviations, rows
 from gaspart.theory.adsorption import planck_constant, slow_flux_share
 
 LANGMUIR = "Boltzmann factor of the well (exact for an ideal gas; Langmuir's formula, source A section 4.5)"
@@ -108,7 +108,7 @@ def _layer(ds: xr.Dataset) -> list[Claim]:
         ),
         Claim.joint(
             claim=f"{what}, all depths",
-            deviations=(ds["filling"] - 1.0) / ds["filling_error"],
+            deviations=deviations(ds, "filling", 1.0),
             source=source,
             fails_if="uncertainties too small, as from time blocks that are not independent",
         ),

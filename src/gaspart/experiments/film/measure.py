@@ -9,8 +9,9 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis.statistics import block_average, fit_polynomial, mean_of, means_of
-from gaspart.experiments.shared.rows import from_rows
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.statistics import average, correlated_mean, fit_polynomial, mean_of, means_of
+from gaspart.experiments.shared.rows import entries, from_rows
 from gaspart.planning import grid
 from gaspart.state.random import stream
 from gaspart.trajectory.run import open_trajectory
@@ -100,18 +101,13 @@ def _responses(bulk: float, widths: list[float]) -> np.ndarray:
 
 
 def _estimates(slits: list[Slit], insertions: int, point: grid.Point) -> dict[str, float]:
-    """Pressure, density at contact and chemical potential: means over the replicas, each with _error."""
-    found = {
-        "pressure": [_pressure(slit) for slit in slits],
-        "contact": [_contact(slit) for slit in slits],
-        "chemical_potential": [_widom(slit, insertions, point.seed(k)) for k, slit in enumerate(slits)],
-    }
-    row = {}
-    for name, values in found.items():
-        value, error = np.array(values).T
-        row[name] = value.mean()
-        row[f"{name}_error"] = np.sqrt(np.sum(error**2)) / error.size
-    return row
+    """Pressure, density at contact and chemical potential: means over the replicas."""
+    potentials = [_widom(slit, insertions, point.seed(k)) for k, slit in enumerate(slits)]
+    return entries({
+        "pressure": average([correlated_mean(slit.pressure).estimate for slit in slits]),
+        "contact": average([_contact(slit) for slit in slits]),
+        "chemical_potential": average(potentials),
+    })  # fmt: skip
 
 
 def _truncation(place: np.ndarray, density: np.ndarray) -> float:
@@ -142,23 +138,17 @@ def read_slit(point: grid.Point, path: str) -> Slit:
     )
 
 
-def _pressure(slit: Slit) -> tuple[float, float]:
-    block = block_average(slit.pressure)
-    return block.mean, block.error
-
-
-def _contact(slit: Slit) -> tuple[float, float]:
+def _contact(slit: Slit) -> Estimate:
     """Density extrapolated to the contact plane, with the scatter of blocks of frames as its error."""
     edges = np.linspace(0.0, NEAR, _BINS + 1)
     blocks = []
     for frames in np.array_split(slit.heights, _BLOCKS):
         counts = np.histogram(frames, edges)[0] / (len(frames) * 2.0 * slit.area * edges[1])
         blocks.append(fit_polynomial(edges[:-1] + 0.5 * edges[1], counts, powers=range(4)).values[0])
-    estimate = mean_of(blocks)
-    return estimate.value, estimate.error
+    return mean_of(blocks)
 
 
-def _widom(slit: Slit, insertions: int, seed: int | tuple[int, ...]) -> tuple[float, float]:
+def _widom(slit: Slit, insertions: int, seed: int | tuple[int, ...]) -> Estimate:
     """mu / k_B T = ln[(N + 1) / (V p)], p the chance that a further sphere fits (Widom, J. Chem. Phys. 39,
     2808 (1963)).
 
@@ -179,8 +169,9 @@ def _widom(slit: Slit, insertions: int, seed: int | tuple[int, ...]) -> tuple[fl
     chance = mean_of(chances)
     volume = slit.area * (slit.width - 1.0)
     if chance.value == 0.0:
-        return math.nan, math.inf
-    return math.log((slit.positions.shape[1] + 1) / (volume * chance.value)), chance.error / chance.value
+        return Estimate(math.nan, math.inf)
+    potential = math.log((slit.positions.shape[1] + 1) / (volume * chance.value))
+    return Estimate(potential, chance.error / chance.value, chance.freedom)
 
 
 def _profile(slits: list[Slit], place: np.ndarray, functional: np.ndarray) -> xr.Dataset:
@@ -193,7 +184,7 @@ def _profile(slits: list[Slit], place: np.ndarray, functional: np.ndarray) -> xr
             blocks.append(counts / (len(frames) * 2.0 * slit.area * edges[1]))
             inner = frames > edges[-1] - 1.0
             middle.append(inner.sum() / (len(frames) * 2.0 * slit.area))
-    estimate, (density, error) = mean_of(middle), means_of(blocks)
+    density, error = means_of(blocks)
     centre = edges[:-1] + 0.5 * edges[1]
     return xr.Dataset(
         {
@@ -201,8 +192,7 @@ def _profile(slits: list[Slit], place: np.ndarray, functional: np.ndarray) -> xr
             "density": ("bin", density),
             "density_error": ("bin", error),
             "functional": ("bin", np.interp(centre, place, functional)),
-            "middle": estimate.value,
-            "middle_error": estimate.error,
+            **entries({"middle": mean_of(middle)}),
         }
     )
 

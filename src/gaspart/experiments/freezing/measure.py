@@ -11,7 +11,7 @@ import xarray as xr
 from gaspart import theory
 from gaspart.analysis import order as structure
 from gaspart.analysis.coexistence import plateau
-from gaspart.analysis.statistics import block_average, mean_of
+from gaspart.analysis.statistics import correlated_mean, mean_of
 from gaspart.experiments.shared.pressure import read_run
 from gaspart.planning import grid
 from gaspart.trajectory.run import open_trajectory
@@ -94,9 +94,8 @@ def _read(point: grid.Point, path: str, order: Callable[[np.ndarray, Sequence[fl
 
 def _halves(series: np.ndarray) -> tuple[float, float, float, float]:
     """Mean, its error, second half minus first, and the error of that: a run in equilibrium has none."""
-    block = block_average(series)
-    middle = len(series) // 2
-    return block.mean, block.error, series[middle:].mean() - series[:middle].mean(), 2.0 * block.error
+    mean, middle = correlated_mean(series).estimate, len(series) // 2
+    return mean.value, mean.error, series[middle:].mean() - series[:middle].mean(), 2.0 * mean.error
 
 
 def _states(points: list[grid.Point], order: Callable[[np.ndarray, Sequence[float]], float]) -> xr.Dataset:

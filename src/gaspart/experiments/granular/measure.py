@@ -12,7 +12,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.statistics import block_average, bootstrap, fit_polynomial, mean_of, means_of
+from gaspart.analysis.statistics import average, bootstrap, correlated_mean, fit_polynomial, mean_of, means_of
 from gaspart.errors import SceneError
 from gaspart.experiments.granular.runs import inertia, law, read_runs
 from gaspart.experiments.shared.rows import entries, from_rows
@@ -83,9 +83,8 @@ def _initial_decay(collisions: np.ndarray, translation: np.ndarray, rotation: np
 def _equilibrium(point: grid.Point) -> dict:
     """T_rot / T_tr of the mean energies, of a run of conserved energy. Blocks: frames may be correlated."""
     runs = read_runs(point)
-    rotation = [block_average(run.rotation) for run in runs]
+    mean = average([correlated_mean(run.rotation).estimate for run in runs])
     translation = float(np.mean([run.translation.mean() for run in runs]))
-    mean = sum((Estimate(one.mean, one.error, one.freedom) for one in rotation), Estimate(0.0)) / len(runs)
     ratio = mean.value / translation
     # The energy is conserved, 2 (N-1) T_tr + N T_rot: what one has more the other has less.
     error = mean.error / mean.value * ratio * (1.0 + 0.5 * ratio)

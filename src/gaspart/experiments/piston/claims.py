@@ -98,7 +98,7 @@ def isothermal_variance(packing_fraction: float, dimension: int) -> float:
 def _equipartition(energies: list[Estimate]) -> Claim:
     return Claim.joint(
         claim="kinetic energy of the piston over k_B T / 2 at each state",
-        deviations=[(energy.value - 1.0) / energy.error for energy in energies],
+        deviations=[(energy - 1.0).deviation for energy in energies],
         source="equipartition",
         fails_if="contacts with the piston that are not elastic, or energy that its load loses",
     )

@@ -52,7 +52,7 @@ def _reference(other: xr.Dataset) -> Claim:
 def _crossings(event: xr.Dataset) -> Claim:
     return Claim.joint(
         claim="crossings of box boundaries per particle and time over d <|v_x|> (n-1)/L, all radii",
-        deviations=(event["crossings"] - 1.0) / event["crossings_error"],
+        deviations=deviations(event, "crossings", 1.0),
         source="kinetic theory, exact in equilibrium",
         fails_if="crossings are missed or counted twice, or velocities are not Maxwellian",
     )

@@ -20,13 +20,13 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis.statistics import block_average
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.statistics import average, correlated_mean
 from gaspart.experiments.shared.pressure import Run, combine_runs, read_run, totals
-from gaspart.experiments.shared.rows import from_rows
+from gaspart.experiments.shared.rows import entries, from_rows
 from gaspart.planning import grid
 from gaspart.scene.scene import Scene
 
@@ -75,35 +75,27 @@ def _row(point: grid.Point) -> dict[str, float]:
             "box_visits": counted["box_visits"] / searches,
             "pair_tests_expected": expected_pair_tests(scene.count, per_side[0], eta, dimension),
         }
-    z = combine_runs(runs)
+    z = combine_runs(runs).z
     shift = float(theory.finite_size_correction(eta, dimension, scene.count, ensemble="canonical"))
-    crossings, crossings_error = _crossings(runs, scene, per_side[0])
     width = scene.container.lengths[0] / per_side[0] / (2.0 * scene.largest_radius)
     return row | {
-        "Z": z.value - shift,
-        "Z_error": z.error,
+        **entries({"Z": z - shift, "crossings": _crossings(runs, scene, per_side[0])}),
         "finite_size": shift,
         "reference": float(theory.compressibility_factor(eta, dimension)),
         "reference_error": float(theory.compressibility_uncertainty(eta, dimension)),
         "collisions": counted["collisions"],
         "pair_tests": counted["pair_tests"] / counted["collisions"],
         "box_visits": counted["box_visits"] / counted["collisions"],
-        "crossings": crossings,
-        "crossings_error": crossings_error,
         "crossings_counted": counted["crossings"] / counted["collisions"],
         "crossings_expected": crossings_per_collision(eta, width, per_side[0], dimension),
     }
 
 
-def _crossings(runs: list[Run], scene: Scene, per_side: int) -> tuple[float, float]:
-    """Crossings per particle and time over the kinetic theory's, and the standard error."""
+def _crossings(runs: list[Run], scene: Scene, per_side: int) -> Estimate:
+    """Crossings per particle and time over the kinetic theory's."""
     between = scene.dimension * (per_side - 1) / scene.container.lengths[0] * math.sqrt(2.0 / math.pi)
-    ratios = [
-        block_average(run.counters["crossings"] / (scene.count * run.interval * between * run.speed))
-        for run in runs
-    ]
-    error = math.sqrt(sum(one.error**2 for one in ratios)) / len(ratios)
-    return float(np.mean([one.mean for one in ratios])), error
+    ratios = [run.counters["crossings"] / (scene.count * run.interval * between * run.speed) for run in runs]
+    return average([correlated_mean(ratio).estimate for ratio in ratios])
 
 
 def crossings_per_collision(packing_fraction: float, width: float, per_side: int, dimension: int) -> float:

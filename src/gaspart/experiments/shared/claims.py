@@ -27,13 +27,14 @@ def rows(dataset: xr.Dataset, dimension: str) -> list[xr.Dataset]:
     return [dataset.isel({dimension: position}) for position in range(dataset.sizes.get(dimension, 0))]
 
 
-def deviations(dataset: xr.Dataset, measured: str, expected: str) -> np.ndarray:
-    """measured - expected of two variables, in the standard deviations of their difference.
-
-    The uncertainties are the variables of the same names with the suffix _error.
-    """
-    spread = np.hypot(dataset[f"{measured}_error"], dataset[f"{expected}_error"])
-    return ((dataset[measured] - dataset[expected]) / spread).values
+def deviations(dataset: xr.Dataset, measured: str, expected: str | float) -> np.ndarray:
+    """measured - expected of two variables of one dimension, or of one and an exact number, in the standard
+    deviations of their difference (see `Estimate.of` and `Estimate.deviation`)."""
+    differences = []
+    for at in rows(dataset, str(dataset[measured].dims[0])):
+        stated = Estimate.of(at, expected) if isinstance(expected, str) else Estimate(expected)
+        differences.append(Estimate.of(at, measured) - stated)
+    return np.array([difference.deviation for difference in differences])
 
 
 def exponent(what: str, dataset: xr.Dataset, name: str = "exponent", **others: Any) -> Claim:

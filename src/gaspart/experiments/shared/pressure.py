@@ -25,7 +25,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gaspart.analysis.statistics import BlockAverage, autocorrelation_time, block_average
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.statistics import autocorrelation_time, average, correlated_mean
 from gaspart.planning import grid
 from gaspart.trajectory.run import open_trajectory
 
@@ -49,22 +50,19 @@ class Run:
 
 @dataclass(frozen=True)
 class Pressure:
-    """Z of all replicas of a point: mean, standard error, and whether blocks and replicas agree about it.
+    """Z of all replicas of a point, and whether blocks and replicas agree about it.
 
-    chi_square: of the replicas about their mean, by their own block errors, with replicas - 1 degrees of
-    freedom; flat: all block errors had reached a plateau; correlation: longest integrated autocorrelation
-    time, in intervals (1/2: independent). collision_rate with its error: see `Run.rate`. counters: sums over
-    the replicas.
+    chi_square: of the replicas about their mean, by their own errors, with replicas - 1 degrees of freedom;
+    flat: all block errors had reached a plateau; correlation: longest integrated autocorrelation time, in
+    intervals (1/2: independent). collision_rate: see `Run.rate`. counters: sums over the replicas.
     """
 
-    value: float
-    error: float
+    z: Estimate
     chi_square: float
     degrees_of_freedom: int
     flat: bool
     correlation: float
-    collision_rate: float
-    collision_rate_error: float
+    collision_rate: Estimate
     counters: dict[str, float]
 
 
@@ -110,19 +108,17 @@ def pressure(point: grid.Point) -> Pressure:
 
 def combine_runs(runs: list[Run]) -> Pressure:
     """Mean over replicas of equal length; the errors are those of correlated series, in quadrature."""
-    z = [block_average(run.z) for run in runs]
-    rate = [block_average(run.rate) for run in runs]
-    value, error = _mean(z)
-    chi_square = sum(((one.mean - value) / one.error) ** 2 for one in z) if len(z) > 1 else 0.0
+    series = [correlated_mean(run.z) for run in runs]
+    replicas = [one.estimate for one in series]
+    z = average(replicas)
+    deviations = [(one - z.value).deviation for one in replicas]
     return Pressure(
-        value=value,
-        error=error,
-        chi_square=chi_square,
-        degrees_of_freedom=len(z) - 1,
-        flat=all(one.flat for one in z),
+        z=z,
+        chi_square=float(np.sum(np.square(deviations))),
+        degrees_of_freedom=len(runs) - 1,
+        flat=all(one.flat for one in series),
         correlation=max(autocorrelation_time(run.z) for run in runs),
-        collision_rate=_mean(rate)[0],
-        collision_rate_error=_mean(rate)[1],
+        collision_rate=average([correlated_mean(run.rate).estimate for run in runs]),
         counters=totals(runs),
     )
 
@@ -130,8 +126,3 @@ def combine_runs(runs: list[Run]) -> Pressure:
 def totals(runs: list[Run]) -> dict[str, float]:
     """Sums of the counters over all replicas, by name."""
     return {name: float(sum(run.counters[name].sum() for run in runs)) for name in runs[0].counters}
-
-
-def _mean(averages: list[BlockAverage]) -> tuple[float, float]:
-    values, errors = [one.mean for one in averages], [one.error for one in averages]
-    return float(np.mean(values)), float(np.sqrt(np.sum(np.square(errors))) / len(errors))

@@ -235,7 +235,7 @@ def _built_up(dataset: xr.Dataset, at: xr.Dataset) -> float:
 def _steady(point: grid.Point, rows: list[dict]) -> dict:
     """The error of Z in a long run of the time-stepped engine, minus that of the paired runs of its gas."""
     own = point.settings
-    long, fraction, dimension = pressure(point), own["packing_fraction"], own["dimension"]
+    long, fraction, dimension = pressure(point).z, own["packing_fraction"], own["dimension"]
     name = setting_name(own.get("rewind", True), own.get("passes", 4), own.get("precision", "float64"))
     gas = (dimension, fraction, name)
     row = next(row for row in rows if (row["dimension"], row["packing_fraction"], row["setting"]) == gas)

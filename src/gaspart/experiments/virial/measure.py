@@ -48,17 +48,20 @@ def equation_of_state(points: list[grid.Point], settings: dict) -> xr.Dataset:
         float(theory.collision_rate(x, dimension) * theory.collision_rate_finite_size_factor(x, dimension, n))
         for x, n in zip(eta, count, strict=True)
     ])  # fmt: skip
-    z = np.array([run.value for run in runs]) - shift
+    z = np.array([run.z.value for run in runs]) - shift
+    rates = [run.collision_rate for run in runs]
     collisions = np.array([run.counters["collisions"] for run in runs])
     columns = {
         "Z": (z, "compressibility factor of the infinite system"),
-        "Z_error": ([run.error for run in runs], "standard error of Z, with its correlation in time"),
+        "Z_error": ([run.z.error for run in runs], "standard error of Z, with its correlation in time"),
+        "Z_freedom": ([run.z.freedom for run in runs], "degrees of freedom of the error"),
         "finite_size": (shift, "correction that was subtracted, first order in 1/N"),
         "poisson_error": ((z - 1.0) / np.sqrt(collisions), "(Z-1)/sqrt(number of collisions)"),
         "reference": (theory.compressibility_factor(eta, dimension), "Z of the reference equation"),
         "reference_error": (theory.compressibility_uncertainty(eta, dimension), "its uncertainty"),
-        "collision_rate": (np.array([run.collision_rate for run in runs]) / expected_rate, "over Enskog's"),
-        "collision_rate_error": ([run.collision_rate_error for run in runs] / expected_rate, "of the ratio"),
+        "collision_rate": ([run.value for run in rates] / expected_rate, "over Enskog's"),
+        "collision_rate_error": ([run.error for run in rates] / expected_rate, "of the ratio"),
+        "collision_rate_freedom": ([run.freedom for run in rates], "degrees of freedom of the error"),
         "replica_chi_square": ([run.chi_square for run in runs], "of replicas about their mean"),
         "replica_degrees_of_freedom": ([run.degrees_of_freedom for run in runs], "replicas - 1"),
         "correlation": ([run.correlation for run in runs], "autocorrelation time in samples"),

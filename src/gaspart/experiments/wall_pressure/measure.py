@@ -11,9 +11,9 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis.statistics import block_average
+from gaspart.analysis.statistics import average, correlated_mean
 from gaspart.errors import SceneError
-from gaspart.experiments.shared.rows import from_rows
+from gaspart.experiments.shared.rows import entries, from_rows
 from gaspart.planning import grid
 from gaspart.trajectory.run import open_trajectory
 
@@ -46,17 +46,14 @@ def _row(point: grid.Point) -> dict:
     expected, expected_error = theory.wall_pressure(length, count / touched.prod(), count, dimension, axes)
     replicas = [_replica(point, path, walled, diameter) for path in point.replica_paths]
     # Mean over walls of force over area, per replica: an area is the volume over the length across it.
-    accessible = [
-        block_average((force * touched[walled]).mean(axis=1) / touched.prod()) for force, _, _ in replicas
-    ]
-    pressure = float(np.mean([one.mean for one in accessible]))
+    accessible = [(force * touched[walled]).mean(axis=1) / touched.prod() for force, _, _ in replicas]
+    pressure = average([correlated_mean(one).estimate for one in accessible])
     share = touched.prod() / touched[walled][0] * lengths[walled][0] / lengths.prod()
     density = count / float(lengths.prod())
     eta = float(theory.packing_fraction(density, dimension))
     return {
-        "pressure": pressure,
-        "pressure_error": float(np.sqrt(sum(one.error**2 for one in accessible)) / len(accessible)),
-        "whole_pressure": pressure * share,
+        **entries({"pressure": pressure}),
+        "whole_pressure": pressure.value * share,
         "bulk_pressure": density * float(theory.compressibility_factor(eta, dimension)),
         "expected": expected,
         "expected_error": expected_error,
