@@ -1,6 +1,8 @@
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
+import gaspart as gp
 from gaspart.theory import adsorption
 from gaspart.theory.potential import packing_fraction_at
 
@@ -44,3 +46,36 @@ def test_the_flux_is_normalised_and_its_slow_share_is_its_integral():
     density = adsorption.flux_density(v) * 1e-4
     assert density.sum() == pytest.approx(1.0, rel=1e-8)
     assert adsorption.slow_flux_share(1.0) == pytest.approx(density[v < 1.0].sum(), rel=1e-6)
+
+
+def test_a_single_sphere_in_front_of_a_layer_closes_half_a_ball():
+    assert adsorption.excluded_in_front(0.0, 1e-9) == pytest.approx(2.0 * np.pi / 3.0)
+    assert adsorption.layer_activity(2.0, 0.0, 0.01, 1e-9) == pytest.approx(2.0)
+    # Half of the lens that the balls of two neighbours share, at r = 1 to 2, is closed once (exact).
+    r = np.linspace(1.0, 2.0, 2001)
+    lens = np.trapezoid(np.pi / 24.0 * (4.0 + r) * (2.0 - r) ** 2 * 2.0 * np.pi * r, r)
+    step = 1e-4
+    slope = (adsorption.excluded_in_front(step, 1e-9) - 2.0 * np.pi / 3.0) / (4.0 / np.pi * step)
+    assert slope == pytest.approx(-lens, rel=0.08)  # scaled-particle theory is approximate here
+
+
+def test_the_room_that_discs_close_is_that_in_front_of_simulated_ones():
+    """The mean height up to which random points are within 1 of a disc's centre, at packing fraction 0.3."""
+    eta, count, width = 0.3, 400, 0.1
+    side = np.sqrt(count * np.pi / 4.0 / eta)
+    discs = gp.Scene(gp.Container((side, side), "periodic"), [gp.Species(count, radius=0.5, temperature=1.0)])
+    simulation, rng, found = gp.Simulation(discs, gp.EventDriven(), seed=1), np.random.default_rng(2), []
+    for _ in range(30):
+        simulation.advance(duration=1.0)
+        tree = cKDTree(simulation.state.positions % side, boxsize=side)
+        distance, _ = tree.query(rng.random((20_000, 2)) * side)
+        found.append(np.sqrt(np.maximum(1.0 - distance**2, (0.5 * width) ** 2)).mean() - 0.5 * width)
+    nodes, weights = np.polynomial.legendre.leggauss(16)
+    closed = [adsorption.excluded_in_front(0.5 * eta * (1.0 + x), width) for x in nodes]
+    assert np.mean(found) == pytest.approx(0.5 * eta * (weights @ closed) * 4.0 / np.pi, rel=0.01)
+
+
+def test_discs_of_a_layer_are_smaller_by_the_heights_of_their_centres():
+    heights = np.random.default_rng(1).uniform(0.0, 0.1, (2, 10**6))
+    across = np.sqrt(1.0 - (heights[0] - heights[1]) ** 2).mean()
+    assert adsorption.layer_diameter(0.1) == pytest.approx(across, abs=1e-6)

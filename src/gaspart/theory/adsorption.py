@@ -9,6 +9,9 @@ import numpy as np
 from gaspart.theory._arguments import Numbers, Values, checked, checked_packing_fraction
 from gaspart.theory.equations import STABLE_DISCS
 
+_EXACT = np.sqrt(0.75)
+"""Height above a layer of spheres of diameter 1 from which on a point is near one of them at most."""
+
 
 @checked
 def well_ratio(depth: Numbers, width: Numbers, outside: Numbers) -> Values:
@@ -42,6 +45,52 @@ def scaled_particle_activity(packing_fraction: Numbers) -> Values:
     """
     eta = checked_packing_fraction(packing_fraction, STABLE_DISCS)
     return eta / (1.0 - eta) * np.exp((3.0 * eta - 2.0 * eta**2) / (1.0 - eta) ** 2)
+
+
+def layer_diameter(width: Numbers) -> Values:
+    """Diameter of the hard discs that spheres of diameter 1 are in a layer of this width, sqrt(1 - w^2 / 6).
+
+    The centres' heights are uniform and independent, so their difference has the mean square w^2 / 6 (to
+    first order in w^2, where neighbours touch).
+    """
+    return np.sqrt(1.0 - np.asarray(width, dtype=float) ** 2 / 6.0)
+
+
+def excluded_in_front(packing_fraction: float, width: float) -> float:
+    """The volume in front of a layer that each further sphere, of diameter 1, closes to the gas's centres.
+
+    Of a single sphere it is the part of its ball of radius 1 that lies in front of the layer, 2 pi / 3 where
+    that is thin; of more it is less, since their balls overlap. At the height h above the layer's middle a
+    sphere of the gas needs a circle without discs of the radius R = sqrt(1 - h^2): its probability is exact
+    up to R = 1/2, and scaled-particle theory's beyond (Helfand, Frisch and Lebowitz, J. Chem. Phys. 34, 1037
+    (1961)); the volume is the derivative of what is closed with respect to the number of discs. Raises
+    SceneError beyond the stable discs.
+    """
+    eta = float(checked_packing_fraction(packing_fraction, STABLE_DISCS))
+    nodes, weights = np.polynomial.legendre.leggauss(32)
+    total = 0.0
+    for low, high in ((0.5 * width, _EXACT), (_EXACT, 1.0)):
+        height = 0.5 * (low + high) + 0.5 * (high - low) * nodes
+        radius = np.sqrt(1.0 - height**2)
+        closed = 4.0 * radius**2
+        if low < _EXACT:
+            x, free = 2.0 * radius - 1.0, 1.0 - eta
+            work = -np.log(free) + 2.0 * eta * x / free + eta * x**2 / free**2
+            slope = 1.0 / free + 2.0 * x / free**2 + (1.0 + eta) * x**2 / free**3
+            closed = np.exp(-work) * slope
+        total += 0.5 * (high - low) * float(weights @ closed)
+    return 0.25 * np.pi * total
+
+
+def layer_activity(activity: Numbers, packing_fraction: float, gas_density: float, width: float) -> Values:
+    """The activity of the hard discs that spheres of diameter 1 are in a well of this width.
+
+    activity: beta P w e^{depth / k_B T} pi / 4 of the gas, whose pressure P is the density at contact with a
+    hard wall; it is right for a single sphere in a thin well. To first order in the gas's density: a sphere
+    closes less of the gas's room where others do so already, see `excluded_in_front`.
+    """
+    gained = 2.0 * np.pi / 3.0 - excluded_in_front(packing_fraction, width)
+    return activity * layer_diameter(width) ** 2 * np.exp(gas_density * gained)
 
 
 @checked

@@ -6,6 +6,7 @@ import pytest
 from gaspart.experiments.adsorption import measure as adsorption
 from gaspart.planning import grid
 from gaspart.theory.adsorption import flux_density, slow_flux_share, well_ratio
+from gaspart.theory.potential import packing_fraction_at
 from gaspart.trajectory.run import run
 
 SCENES = Path(__file__).parents[3] / "config/scenes"
@@ -66,3 +67,13 @@ def test_a_real_well_holds_as_many_as_it_must(tmp_path):
     assert np.isnan(dataset["filling"])
     with pytest.raises(ValueError, match="blocks: 31"):
         adsorption.adsorption([one], SETTINGS | {"blocks": 31})
+
+
+def test_the_coverage_of_a_layer_is_compared_with_that_of_discs():
+    holder = adsorption.Holder.of(point("monolayer"))
+    density, coverage = 0.01, 0.2
+    for _ in range(50):  # until the coverage is that of discs at the activity which it gives the layer
+        coverage /= holder.filling(coverage, density)
+    assert holder.filling(coverage, density) == pytest.approx(1.0)
+    plain = packing_fraction_at(holder.activity(density), 2)
+    assert 1.002 < coverage / plain < 1.006  # more than with the pressure alone, by theory's first order

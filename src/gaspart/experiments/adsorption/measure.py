@@ -16,7 +16,7 @@ from gaspart.analysis.statistics import jackknife
 from gaspart.experiments.shared.rows import entries, from_rows
 from gaspart.planning import grid
 from gaspart.scene.faces import Sticky, Well, thermal_face
-from gaspart.theory.adsorption import length_in_langmuirs_formula
+from gaspart.theory.adsorption import layer_activity, layer_diameter, length_in_langmuirs_formula
 from gaspart.theory.geometry import body_volume
 from gaspart.theory.potential import excess_chemical_potential, packing_fraction_at
 from gaspart.theory.state import compressibility_factor
@@ -91,6 +91,16 @@ class Holder:
         pressure = density * compressibility_factor(eta, 3)
         return pressure * self._hold
 
+    def filling(self, coverage: float | np.ndarray, density: float | np.ndarray) -> float | np.ndarray:
+        """The coverage of a layer over that of hard discs in equilibrium with a gas of this density."""
+        diameter = 2.0 * self.radius
+        width = self.width / diameter
+        discs = coverage * layer_diameter(width) ** 2
+        in_gas = float(density) * diameter**3
+        return discs / packing_fraction_at(
+            layer_activity(self.activity(density), float(discs), in_gas, width), 2
+        )
+
     @property
     def _hold(self) -> float:
         return self.width * np.exp(self.depth / self.temperature) * body_volume(2, 2.0 * self.radius)
@@ -115,8 +125,9 @@ def adsorption(points: list[grid.Point], settings: dict) -> xr.Dataset:
     cover; gas_density far from both walls; flux (bin), the density of the normal speeds of particles that
     leave, in units of sqrt(kT/m), and slow_share, that of those below `slow_speed`, the sticky wall's limit
     (1 for wells; NaN both for layers). Of layers: activity, beta P w e^(depth/kT) pi sigma^2/4, and filling,
-    the coverage over that of hard discs in equilibrium with it; filling_by_activity, the same with the gas'
-    activity in the place of its pressure. `_freedom` are the degrees of freedom of the errors.
+    the coverage over that of hard discs in equilibrium with the gas (see `theory.adsorption.layer_activity`);
+    filling_by_activity, the same with the gas' activity alone in the place of its pressure. `_freedom` are
+    the degrees of freedom of the errors.
     """
     edges = np.linspace(0.0, _REACH, settings["bins"] + 1)
     return from_rows("point", [_measured(point, settings) for point in points], ("bin",)).assign_coords(
@@ -182,8 +193,8 @@ def _isotherm(holder: Holder, held: np.ndarray, far: np.ndarray) -> dict[str, tu
     def activity(counted: np.ndarray) -> float | np.ndarray:
         return holder.activity(holder.gas_density(counted))
 
-    def filling(inside: np.ndarray, counted: np.ndarray) -> np.ndarray:
-        return holder.coverage(inside) / packing_fraction_at(activity(counted), 2)
+    def filling(inside: np.ndarray, counted: np.ndarray) -> float | np.ndarray:
+        return holder.filling(holder.coverage(inside), holder.gas_density(counted))
 
     def by_activity(inside: np.ndarray, counted: np.ndarray) -> np.ndarray:
         return holder.coverage(inside) / packing_fraction_at(holder.fugacity(holder.gas_density(counted)), 2)
