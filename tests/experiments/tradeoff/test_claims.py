@@ -30,6 +30,17 @@ def test_the_cheaper_engine_is_reported_without_a_verdict(tmp_path):
     assert set(found) == {"no verdict"}
 
 
+def test_an_accuracy_that_no_step_is_known_to_reach_leaves_the_number_of_claims(tmp_path):
+    dataset = speed_accuracy_measurement(tmp_path)
+    dataset["gas_packing_fraction"] = dataset.gas_packing_fraction * 0.0 + 0.3
+    known = verdicts(dataset)
+    dataset["best_seconds"] = dataset.best_seconds.where(dataset.accuracy > dataset.accuracy.min())
+    unknown = verdicts(dataset)
+    assert unknown.keys() == known.keys()
+    (text,) = (claim for claim in known if "time of steps for" in claim)
+    assert unknown[text] == "inconclusive"
+
+
 def choice(dataset):
     claims = tradeoff.time_to_accuracy(dataset)
     return dict(zip(("event", "step", "choice"), judge(claims), strict=True))

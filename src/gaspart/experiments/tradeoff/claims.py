@@ -108,19 +108,17 @@ def _frontier(z: xr.Dataset) -> list[Claim]:
     ]
     relative = (z.best_ratio_error / z.best_ratio).values
     coarse, fine = (Estimate(z.best_seconds[k], z.best_seconds[k] * relative[k]) for k in (0, -1))
-    if np.isfinite(coarse.value * fine.value):
-        ratio = fine / coarse
-        claims.append(
-            Claim.at_least(
-                claim=f"time of steps for {100 * float(z.accuracy[-1]):g} % of Z over that for "
-                f"{100 * float(z.accuracy[0]):g} %, {where}",
-                measured=ratio,
-                bound=1.5,
-                required=0.25 * ratio.value,
-                source="shorter steps, more of them",
-                fails_if="the cost does not depend on the length of a step",
-            )
+    claims.append(  # inconclusive where no step is known to be that accurate
+        Claim.at_least(
+            claim=f"time of steps for {100 * float(z.accuracy[-1]):g} % of Z over that for "
+            f"{100 * float(z.accuracy[0]):g} %, {where}",
+            measured=fine / coarse,
+            bound=1.5,
+            required=0.5,
+            source="shorter steps, more of them",
+            fails_if="the cost does not depend on the length of a step",
         )
+    )
     return claims
 
 
