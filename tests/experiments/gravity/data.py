@@ -109,6 +109,7 @@ def capacities():
     return xr.Dataset(
         {
             "x": ("pair", x),
+            "gravity": ("pair", [0.0, 0.02]),
             "run_x": (("pair", "run"), np.array([[0.0, 0.0], [1.9, 2.1]])),
             "slope": ("pair", slope),
             "slope_error": ("pair", error),

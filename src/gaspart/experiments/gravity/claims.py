@@ -162,8 +162,8 @@ def _dilute(row: xr.Dataset) -> bool:
 
 def _at(row: xr.Dataset) -> str:
     density = "dilute" if _dilute(row) else "dense"
-    highest = float(row["packing_fraction"][row["used"]].max())
-    return f"{density} column of {float(row['count']):g} discs (packing fraction to {highest:.2g})"
+    whose = "the source's " if _is_source(row) else ""
+    return f"{whose}{density} column of {float(row['count']):g} discs"
 
 
 def _slope(one: xr.Dataset, name: str, at: str, required: float) -> Claim:
@@ -225,14 +225,14 @@ def heat_capacity(ds: xr.Dataset) -> list[Claim]:
     claims = []
     for row in rows(ds, "pair"):
         x = abs(float(row["x"]))
-        kind = "test" if x else "identity"
+        kind, at = "test" if x else "identity", f"gravity {float(row['gravity']):g}"
         ideal = f"d/2 + 1 - x^2 e^x/(e^x - 1)^2 = {float(ideal_heat_capacity(x, 2)):.4f}"
         finite = f"{ideal}, here for {ds.attrs['count']} particles at the runs' energies"
         claims.append(
             Claim(
-                claim=f"heat capacity C_V/Nk as dE/dT, x = mgH/kT = {x:.2f}",
+                claim=f"heat capacity C_V/Nk as dE/dT, {at}",
                 kind=kind,
-                measured=Estimate(row["slope"], max(float(row["slope_error"]), 1e-9)),
+                measured=_rounded(row, "slope"),
                 expected=row["slope_expected"],
                 required=0.02,
                 source=finite,
@@ -242,10 +242,9 @@ def heat_capacity(ds: xr.Dataset) -> list[Claim]:
         for number, run in enumerate(rows(row, "run"), start=1):
             claims.append(
                 Claim(
-                    claim=f"heat capacity C_V/Nk from fluctuations, x = {abs(float(run['run_x'])):.2f}, "
-                    f"run {number}",
+                    claim=f"heat capacity C_V/Nk from fluctuations, {at}, run {number}",
                     kind=kind,
-                    measured=Estimate(run["fluctuation"], max(float(run["fluctuation_error"]), 1e-9)),
+                    measured=_rounded(run, "fluctuation"),
                     expected=run["fluctuation_expected"],
                     required=0.03,
                     source=f"Lebowitz, Percus and Verlet (1967); {finite}",
@@ -253,3 +252,8 @@ def heat_capacity(ds: xr.Dataset) -> list[Claim]:
                 )
             )
     return claims
+
+
+def _rounded(row: xr.Dataset, name: str) -> Estimate:
+    """An estimate whose error is at least that of rounding: without gravity it is exact."""
+    return Estimate.of(row, name) + Estimate(0.0, 1e-9)

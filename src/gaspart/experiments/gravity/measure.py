@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import jackknife
 from gaspart.experiments.gravity import source
 from gaspart.experiments.shared.claims import is_source
@@ -88,6 +89,10 @@ def profiles(points: list[grid.Point], settings: dict, of_source: Callable[[grid
         range_high=("range", high),
     )
     return dataset.assign_attrs(clear=settings["clear"])
+
+
+_PARTS = ("", "_error", "_freedom")
+"""Of the names of the variables that are an estimate."""
 
 
 @dataclass(frozen=True)
@@ -240,23 +245,29 @@ def heat_capacity(points: list[grid.Point], settings: dict) -> xr.Dataset:
     if len(points) % 2:
         raise ValueError(f"points: {len(points)} (must be pairs)")
     runs = [_energies(point, settings["blocks"]) for point in points]
-    names = list(runs[0])
-    table = {name: np.array([run[name] for run in runs]).reshape(-1, 2) for name in names}
-    if np.ptp(table["strength"], axis=1).any() or np.ptp(table["count"]).any():
+    pairs = list(zip(runs[::2], runs[1::2], strict=True))
+    if (
+        any(one["gravity"] != other["gravity"] for one, other in pairs)
+        or len({run["count"] for run in runs}) > 1
+    ):
         raise ValueError("points: the two of a pair must differ in their energy only")
-    count = int(table["count"][0, 0])
-    rise = np.diff(table["energy"], axis=1)[:, 0] / count
-    step = np.diff(table["temperature"], axis=1)[:, 0]
-    pairs = {
-        "slope": rise / step,
-        "slope_error": np.abs(rise) / step**2 * np.hypot(*table["temperature_error"].T),
-        "slope_expected": rise / np.diff(table["temperature_expected"], axis=1)[:, 0],
-        "x": table["run_x"].mean(axis=1),
+    rows = [_pair(*pair) for pair in pairs]
+    return from_rows("pair", rows, ("run",)).assign_attrs(count=runs[0]["count"])
+
+
+def _pair(colder: dict, warmer: dict) -> dict:
+    """The variables of two runs at two energies, and C = dE/dT from both."""
+    row = {
+        name: np.array([colder[name], warmer[name]]) for name in colder if name not in ("count", "gravity")
     }
-    values = {name: (("pair", "run"), table[name]) for name in names if name != "count"}
-    return xr.Dataset(
-        values | {name: ("pair", value) for name, value in pairs.items()}, attrs={"count": count}
-    )
+    rise = np.diff(row["energy"])[0] / colder["count"]
+    cold, warm = (Estimate(*(run[f"temperature{part}"] for part in _PARTS)) for run in (colder, warmer))
+    return row | {
+        **entries({"slope": Estimate(rise) / (warm - cold)}),
+        "slope_expected": rise / np.diff(row["temperature_expected"])[0],
+        "x": row["run_x"].mean(),
+        "gravity": colder["gravity"],
+    }
 
 
 def _energies(point: grid.Point, blocks: int) -> dict:
@@ -284,10 +295,11 @@ def _energies(point: grid.Point, blocks: int) -> dict:
     mean, variance = ideal_energy_moments(float(energy), count, place.height, force, 2)
     return {
         "count": count,
-        "strength": place.strength,
+        "gravity": place.strength,
         "energy": energy,
         "temperature": float(temperature),
         "temperature_error": float(error),
+        "temperature_freedom": blocks - 1,
         "temperature_expected": mean / count,
         "run_x": force * place.height / float(temperature),
         "fluctuation": float(fluctuation),
