@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from claims.data import claim
+from scipy.special import stdtr
 
 from gaspart.analysis.statistics import mean_of
 from gaspart.claims import UNVERIFIED, Claim, Estimate, judge
@@ -97,6 +98,15 @@ def test_only_tests_of_values_scatter_as_gaussians():
     assert (band.form, joint.form) == ("bound", "distribution")
     others = claim(kind="reproduction"), claim(error=math.nan), claim(error=0.0), claim(no_verdict=UNVERIFIED)
     assert not any(one.is_scattered for one in (band, joint, *others))
+
+
+def test_a_chi_square_whose_uncertainty_comes_from_few_samples_is_fishers():
+    """With one deviation it is Student's t, and with many samples the chi-square itself."""
+    few = Claim.chi_square(claim="Z", chi_square=9.0, degrees_of_freedom=1, error_freedom=7, **COMMON)
+    assert few.p_value == pytest.approx(2.0 * 2.0 * stdtr(7, -3.0))  # two-sided, |t| > 3
+    many = Claim.chi_square(claim="Z", chi_square=9.0, degrees_of_freedom=4, error_freedom=1e9, **COMMON)
+    exact = Claim.chi_square(claim="Z", chi_square=9.0, degrees_of_freedom=4, **COMMON)
+    assert many.deviation_sigma == pytest.approx(exact.deviation_sigma, abs=1e-6)
 
 
 def test_deviation_combines_both_uncertainties():

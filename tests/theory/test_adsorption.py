@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
+from scipy.special import gammaln
 
 import gaspart as gp
 from gaspart.theory import adsorption
@@ -79,3 +80,21 @@ def test_discs_of_a_layer_are_smaller_by_the_heights_of_their_centres():
     heights = np.random.default_rng(1).uniform(0.0, 0.1, (2, 10**6))
     across = np.sqrt(1.0 - (heights[0] - heights[1]) ** 2).mean()
     assert adsorption.layer_diameter(0.1) == pytest.approx(across, abs=1e-6)
+
+
+@pytest.mark.parametrize(("particles", "ratio"), [(500, 1.2), (800, 10.0), (1050, 100.0)])
+def test_a_small_gas_leaves_the_layer_more(particles, ratio):
+    """All numbers of discs with an area pi/4 on 1000, by scaled-particle theory, and an ideal gas."""
+    number = np.arange(min(particles, 690))  # of those in the layer
+    insertion = np.log(adsorption.scaled_particle_activity((number[1:] - 0.5) / 1000.0))
+    layer = np.concatenate([[0.0], np.cumsum(-insertion)])
+
+    def mean(logarithm):
+        weights = np.exp(logarithm - logarithm.max())
+        return float(weights @ number / weights.sum())
+
+    canonical = mean(layer + number * np.log(ratio / particles) - gammaln(particles - number + 1.0))
+    gas = particles - canonical
+    activity = ratio * gas / particles
+    large = mean(layer + number * np.log(activity))
+    assert adsorption.excess_of_few(activity, large, gas) == pytest.approx(canonical / large - 1.0, rel=0.1)

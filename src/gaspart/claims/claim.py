@@ -99,17 +99,24 @@ class Claim:
         )
 
     @classmethod
-    def chi_square(cls, *, chi_square: Scalar, degrees_of_freedom: int, **others: Any) -> Claim:
+    def chi_square(
+        cls, *, chi_square: Scalar, degrees_of_freedom: int, error_freedom: Scalar = math.inf, **others: Any
+    ) -> Claim:
         """Chi-square of many deviations at once; measured is chi-square per degree of freedom, expected 1.
 
         The deviation is the Gaussian one of the same two-sided probability (a chi-square far too small is
         a fault as well: error bars too large); the uncertainty sqrt(2 / dof) is the statistic's own scatter.
+        error_freedom: degrees of freedom of the uncertainty if all deviations have one in common, from the
+        scatter of a few samples; the statistic per degree of freedom then follows Fisher's distribution.
         others: the remaining fields of the claim.
         """
-        from scipy.special import chdtr, chdtrc, ndtri
+        from scipy.special import chdtr, chdtrc, fdtr, fdtrc, ndtri
 
-        above = chdtrc(degrees_of_freedom, chi_square)
-        below = chdtr(degrees_of_freedom, chi_square)
+        if math.isinf(error_freedom):
+            above, below = (tail(degrees_of_freedom, chi_square) for tail in (chdtrc, chdtr))
+        else:
+            each = chi_square / degrees_of_freedom
+            above, below = (tail(degrees_of_freedom, error_freedom, each) for tail in (fdtrc, fdtr))
         deviation = -ndtri(above) if above < below else ndtri(below)
         scatter = math.sqrt(2.0 / degrees_of_freedom)
         measured = Estimate(chi_square / degrees_of_freedom, scatter)

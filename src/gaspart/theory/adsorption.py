@@ -8,6 +8,7 @@ import numpy as np
 
 from gaspart.theory._arguments import Numbers, Values, checked, checked_packing_fraction
 from gaspart.theory.equations import STABLE_DISCS
+from gaspart.theory.potential import packing_fraction_at
 
 _EXACT = np.sqrt(0.75)
 """Height above a layer of spheres of diameter 1 from which on a point is near one of them at most."""
@@ -91,6 +92,23 @@ def layer_activity(activity: Numbers, packing_fraction: float, gas_density: floa
     """
     gained = 2.0 * np.pi / 3.0 - excluded_in_front(packing_fraction, width)
     return activity * layer_diameter(width) ** 2 * np.exp(gas_density * gained)
+
+
+def excess_of_few(activity: float, held: float, others: float) -> float:
+    """By what part a layer of hard discs holds more, on average, than one in equilibrium with a large gas.
+
+    The gas with which it exchanges has on average `others` particles, and its activity goes down with each
+    that the layer gains. To the first order beyond Gaussian fluctuations, with the cumulants kappa_n of the
+    number of discs under a large gas, whose mean is `held`, that is (kappa_2 - kappa_3) / (2 (others +
+    kappa_2)) discs; kappa_2 = S held, kappa_3 = (S^2 + S') held, S = d ln eta / d ln z, S' = dS / d ln z.
+    An ideal layer has no such excess (exact: the number is binomial).
+    """
+    step = 0.05
+    lower, middle, upper = np.log(
+        packing_fraction_at(activity * np.exp(step * np.array([-1.0, 0.0, 1.0])), 2)
+    )
+    slope, bend = (upper - lower) / (2.0 * step), (upper - 2.0 * middle + lower) / step**2
+    return float((slope * (1.0 - slope) - bend) / (2.0 * (others + slope * held)))
 
 
 @checked

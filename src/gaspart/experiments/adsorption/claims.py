@@ -80,7 +80,8 @@ def _layer(ds: xr.Dataset) -> list[Claim]:
     source = (
         "spheres in a layer thinner than their diameter, as hard discs (virial series to B10), at the "
         "density P/kT that a hard wall has at contact (exact where the coverage is low), and to first order "
-        "in the gas' density what the layer closes to it (scaled-particle theory)"
+        "in the gas' density what the layer closes to it (scaled-particle theory), and in 1/N what a gas of "
+        "N loses to the layer"
     )
     lowest = float(ds["depth"].min()) if ds.sizes["point"] else 0.0
     claims = [

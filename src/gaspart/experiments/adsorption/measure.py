@@ -16,7 +16,12 @@ from gaspart.analysis.statistics import jackknife
 from gaspart.experiments.shared.rows import entries, from_rows
 from gaspart.planning import grid
 from gaspart.scene.faces import Sticky, Well, thermal_face
-from gaspart.theory.adsorption import layer_activity, layer_diameter, length_in_langmuirs_formula
+from gaspart.theory.adsorption import (
+    excess_of_few,
+    layer_activity,
+    layer_diameter,
+    length_in_langmuirs_formula,
+)
 from gaspart.theory.geometry import body_volume
 from gaspart.theory.potential import excess_chemical_potential, packing_fraction_at
 from gaspart.theory.state import compressibility_factor
@@ -76,7 +81,7 @@ class Holder:
         """
         return height < self.width if self.kind != "sticky" else velocity == 0.0
 
-    def coverage(self, count: np.ndarray) -> np.ndarray:
+    def coverage(self, count: float | np.ndarray) -> float | np.ndarray:
         """The share of the wall's area that so many particles cover."""
         return count * body_volume(2, 2.0 * self.radius) / self.area
 
@@ -91,15 +96,14 @@ class Holder:
         pressure = density * compressibility_factor(eta, 3)
         return pressure * self._hold
 
-    def filling(self, coverage: float | np.ndarray, density: float | np.ndarray) -> float | np.ndarray:
-        """The coverage of a layer over that of hard discs in equilibrium with a gas of this density."""
-        diameter = 2.0 * self.radius
+    def filling(self, held: float, density: float, others: float) -> float:
+        """The coverage of a layer of so many particles over that of hard discs in equilibrium with a gas of
+        this density and so many others."""
+        diameter, coverage = 2.0 * self.radius, float(self.coverage(held))
         width = self.width / diameter
-        discs = coverage * layer_diameter(width) ** 2
-        in_gas = float(density) * diameter**3
-        return discs / packing_fraction_at(
-            layer_activity(self.activity(density), float(discs), in_gas, width), 2
-        )
+        discs = coverage * float(layer_diameter(width)) ** 2
+        activity = float(layer_activity(self.activity(density), discs, density * diameter**3, width))
+        return discs / float(packing_fraction_at(activity, 2)) / (1.0 + excess_of_few(activity, held, others))
 
     @property
     def _hold(self) -> float:
@@ -152,7 +156,7 @@ def _measured(point: grid.Point, settings: dict) -> dict:
     estimates = _amounts(holder, held, free, far)
     if layer:  # hardly any particle leaves it
         estimates |= {"flux": (np.full(bins, np.nan),) * 2, "slow_share": absent}
-        estimates |= _isotherm(holder, held, far)
+        estimates |= _isotherm(holder, held, free, far)
     else:
         estimates |= _desorption(slowly, flux, _REACH / bins)
         estimates |= {"activity": absent, "filling": absent, "filling_by_activity": absent}
@@ -186,22 +190,23 @@ def _desorption(slowly: np.ndarray, flux: np.ndarray, width: float) -> dict[str,
     }
 
 
-def _isotherm(holder: Holder, held: np.ndarray, far: np.ndarray) -> dict[str, tuple]:
+def _isotherm(holder: Holder, held: np.ndarray, free: np.ndarray, far: np.ndarray) -> dict[str, tuple]:
     """(value, error) of the activity of the gas, and of the coverage over that of hard discs in equilibrium
     with it."""
 
     def activity(counted: np.ndarray) -> float | np.ndarray:
         return holder.activity(holder.gas_density(counted))
 
-    def filling(inside: np.ndarray, counted: np.ndarray) -> float | np.ndarray:
-        return holder.filling(holder.coverage(inside), holder.gas_density(counted))
+    def filling(inside: np.ndarray, counted: np.ndarray, others: np.ndarray) -> float:
+        density = holder.gas_density(counted)
+        return holder.filling(float(inside), float(density), float(others))
 
     def by_activity(inside: np.ndarray, counted: np.ndarray) -> np.ndarray:
         return holder.coverage(inside) / packing_fraction_at(holder.fugacity(holder.gas_density(counted)), 2)
 
     return {
         "activity": jackknife(activity, far),
-        "filling": jackknife(filling, held, far),
+        "filling": jackknife(filling, held, far, free),
         "filling_by_activity": jackknife(by_activity, held, far),
     }
 

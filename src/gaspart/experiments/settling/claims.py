@@ -94,6 +94,7 @@ def _flows(ds: xr.Dataset) -> list[Claim]:
                 claim="deviations from Beverloo's law, exponent 3/2 (chi-square per degree of freedom)",
                 chi_square=float(ds["chi_square"]),
                 degrees_of_freedom=freedom,
+                error_freedom=float(ds["exponent_freedom"]),
                 source=BEVERLOO,
                 fails_if="another law",
             )
