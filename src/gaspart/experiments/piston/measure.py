@@ -22,8 +22,9 @@ def piston(points: list[grid.Point], settings: dict) -> xr.Dataset:
     temperature over that at first; over `path` dimension and packing_fraction at first.
     With a piston and an equilibration, over (state, state_replica): density, the packing fraction in the
     middle half of the volume; factor, the external pressure over that density and the temperature;
-    fluctuation, the number of particles times the relative variance of the volume; energy, twice the kinetic
-    energy of the piston over the temperature; over `state` dimension and count.
+    fluctuation, the number of particles times the variance of the volume over the square of that which they
+    would have at this density; energy, twice the kinetic energy of the piston over the temperature; over
+    `state` dimension and count.
     Without a piston, over (expansion, expansion_replica): heat, the final kinetic energy over the first;
     speed, the final mean speed over that of Maxwell's distribution at the first temperature; share of the
     particles in the half of the container that was empty; over `expansion` dimension.
@@ -71,10 +72,11 @@ def _state(scene: Scene, path: str, first: int) -> dict[str, np.ndarray]:
         places = run["coordinates"].values[first:, :, 0] / length[:, None]
     temperature = 2.0 * energy.mean() / (scene.dimension * scene.count)
     middle = ((places > 0.25) & (places < 0.75)).sum() / (0.5 * area * length.sum())
+    bulk = scene.count / (middle * area)  # the length without what the walls deplete, which does not vary
     return {
         "density": middle * scene.packing_fraction * scene.container.volume / scene.count,
         "factor": face.pressure / (middle * temperature),
-        "fluctuation": scene.count * length.var() / length.mean() ** 2,
+        "fluctuation": scene.count * length.var(ddof=1) / bulk**2,
         "energy": face.mass * np.mean(velocity**2) / temperature,
     }
 
