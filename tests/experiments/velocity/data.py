@@ -27,10 +27,11 @@ def correlations(start=1.0, tail=1.0, error=0.01, seed=1):
             "sound": 60.0,
             "start_rate": nan if long else 2.0 / dimension * (start + 0.002 * rng.standard_normal()),
             "start_rate_error": nan if long else 2.0 / dimension * 0.002,
-            "tail_from": 30.0 if long else nan,
+            "tail_from": 16.0 if long else nan,
             "tail_to": 60.0 if long else nan,
             "tail_ratio": tail + error * rng.standard_normal() if long else nan,
             "tail_ratio_error": error if long else nan,
+            "tail_correction": 4.0 if long else nan,
         })  # fmt: skip
     return xr.Dataset({
         name: (("point", "lag")[: 1 + np.ndim(rows[0][name])], np.array([row[name] for row in rows]))

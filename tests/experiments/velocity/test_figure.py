@@ -10,7 +10,7 @@ from gaspart.experiments.velocity.figure import velocity_autocorrelation
 @pytest.mark.parametrize("points", [[0, 1, 2, 3], [0], [3]])
 def test_the_tail_the_start_and_their_ratio_are_drawn(points, tmp_path):
     ds = correlations().isel(point=points)
-    whole = varied(ds, "packing_fraction", "sound", "start_rate", "tail_ratio")
+    whole = varied(ds, "packing_fraction", "sound", "start_rate", "tail_ratio", "tail_correction")
     ds = whole.assign({name: ds[name] for name in ("tail_from", "tail_to")})
     tails, starts, ratios = draw(velocity_autocorrelation, ds, tmp_path).axes
     fine = [ds.isel(point=k) for k in range(len(points)) if np.isfinite(ds["start_rate"][k])]
@@ -42,6 +42,9 @@ def test_the_tail_the_start_and_their_ratio_are_drawn(points, tmp_path):
         late = (row["collisions"] > 3.0).values
         follows(lines(tails)[2 + n], row["collisions"][late], np.asarray(tail)[late])
     shows(ratios, "collisions per particle", "modes", *expected)
+    for one, row in zip(lines(ratios), long, strict=True):
+        amplitude, correction = row["tail_ratio"].item(), row["tail_correction"].item()
+        obeys(one, lambda s, a=amplitude, b=correction: a + b / s)
     for one, row in zip(lines(starts), fine, strict=True):
         dimension = int(row["dimension"])
         obeys(one, lambda s, d=dimension: np.exp(-2.0 / d * s))

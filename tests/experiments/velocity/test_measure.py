@@ -47,3 +47,10 @@ def test_the_start_of_a_gas_is_enskogs_and_momentum_is_restored(tmp_path):
 def test_the_initial_rate_is_that_of_the_logarithm():
     s = np.linspace(0.05, 0.3, 6)
     assert velocity._initial_rate(s, np.exp(-0.7 * s + 0.1 * s**2)) == pytest.approx(0.7, rel=1e-10)
+
+
+def test_the_tail_is_extrapolated_over_the_modes():
+    s = np.linspace(16.0, 60.0, 45)
+    modes = s**-1.5
+    fitted = velocity._tail(s, modes * (1.1 + 5.0 / s), modes)
+    np.testing.assert_allclose(fitted, [1.1, 5.0], rtol=1e-9)

@@ -31,7 +31,7 @@ def velocity_autocorrelation(ds: xr.Dataset) -> list[Claim]:
             window = f"collisions {float(row['tail_from']):.3g} to {float(row['tail_to']):.3g}, {which}"
             claims += [
                 Claim(
-                    claim=f"long-time tail over the sum of the container's modes, {window}",
+                    claim=f"long-time tail over the sum of the container's modes, extrapolated from {window}",
                     measured=Estimate.of(row, "tail_ratio"),
                     expected=1.0,
                     required=0.1,

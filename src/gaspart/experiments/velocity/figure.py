@@ -84,7 +84,7 @@ def _starts(axis: Axes, ds: xr.Dataset) -> None:
 
 
 def _ratios(axis: Axes, ds: xr.Dataset) -> None:
-    """C - 1/N over the sum of the container's modes; marked, when sound has crossed it."""
+    """C - 1/N over the sum of the container's modes with its fit; marked, when sound has crossed it."""
     style.level(axis, 1.0)
     for kind in range(ds.sizes["point"]):
         row = ds.isel(point=kind)
@@ -103,6 +103,9 @@ def _ratios(axis: Axes, ds: xr.Dataset) -> None:
             kind,
             markersize=2.5,
         )
+        fitted = np.linspace(float(row["tail_from"]), float(row["tail_to"]), 50)
+        curve = float(row["tail_ratio"]) + float(row["tail_correction"]) / fitted
+        axis.plot(fitted, curve, color=style.COLOURS[kind])
     if ds.sizes["point"]:
         axis.axvspan(
             float(ds["tail_from"].min()), float(ds["tail_to"].max()), color=style.GREY, alpha=0.18, lw=0

@@ -8,6 +8,9 @@ of mass; where momentum is free (canonical) one has the centre's own beside, whi
 
 That is exact. C(t) of an infinite fluid differs from it once momentum has come round the container, sound
 first, so that the tail is compared with the modes of the container (`theory.velocity_autocorrelation_modes`).
+These decay with the transport coefficients of long waves; at a time t the waves that matter are some
+sqrt((D + nu) t) long, and the next terms of their decay rates, of order k^4, are 1/t of the first. So the ratio to
+the modes is fitted by A + B/s, and A compared with 1.
 """
 
 from __future__ import annotations
@@ -19,7 +22,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.correlations import between
-from gaspart.analysis.statistics import fit_polynomial, mean_of, means_of
+from gaspart.analysis.statistics import fit_linear, fit_polynomial, mean_of, means_of
 from gaspart.experiments.shared.curves import reduced_curves
 from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
@@ -33,8 +36,8 @@ def velocity_autocorrelation(points: list[grid.Point], settings: dict) -> xr.Dat
 
     Returns over `point` and `lag` (NaN beyond a point's own): collisions s, time, correlation and its error;
     over `point`: dimension, packing_fraction, count, sound (s at which it has crossed the container),
-    start_rate and its error (over the collision rate), tail_from, tail_to, tail_ratio and its error
-    (C - 1/N over the sum of the container's hydrodynamic modes); NaN where a point has none.
+    start_rate and its error (over the collision rate), tail_from, tail_to, tail_ratio and tail_correction, A and
+    B of C - 1/N over the sum of the container's hydrodynamic modes, and A's error; NaN where a point has none.
     """
     rows = [_row(point, settings) for point in points]
     return from_rows("point", rows, ("lag",), units={"time": "sigma sqrt(m / k_B T)"})
@@ -64,7 +67,7 @@ def _row(point: grid.Point, settings: dict) -> dict:
         "correlation_error": error,
         **dict.fromkeys(("start_rate_freedom", "tail_ratio_freedom"), len(samples) - 1),
         **dict.fromkeys(("start_rate", "start_rate_error", "tail_from", "tail_to"), math.nan),
-        **dict.fromkeys(("tail_ratio", "tail_ratio_error"), math.nan),
+        **dict.fromkeys(("tail_ratio", "tail_ratio_error", "tail_correction"), math.nan),
     }
     early = between(row["collisions"], row["collisions"][1], settings["start_to"])
     if early.sum() >= 4:
@@ -74,11 +77,17 @@ def _row(point: grid.Point, settings: dict) -> dict:
     late = between(row["collisions"], start, stop)
     if late.sum() >= 4 and early.sum() < 4:  # what is sampled finely is too short for the tail
         share = 1.0 / count  # known exactly, and not part of the tail
-        expected = theory.velocity_autocorrelation_modes(time[late], eta, dimension, count) - share
-        ratio = mean_of(((samples[:, late] - share) @ expected / (expected @ expected)).tolist())
+        modes = theory.velocity_autocorrelation_modes(time[late], eta, dimension, count) - share
+        fits = np.array([_tail(row["collisions"][late], one[late] - share, modes) for one in samples])
+        ratio = mean_of(fits[:, 0].tolist())
         row |= {"tail_from": start, "tail_to": stop, "tail_ratio": ratio.value}
-        row["tail_ratio_error"] = ratio.error
+        row |= {"tail_ratio_error": ratio.error, "tail_correction": float(fits[:, 1].mean())}
     return row
+
+
+def _tail(collisions: np.ndarray, values: np.ndarray, modes: np.ndarray) -> np.ndarray:
+    """A and B of values = modes (A + B / s); the noise of C is the same at all lags."""
+    return fit_linear(np.stack([modes, modes / collisions], axis=1), values).values
 
 
 def _initial_rate(collisions: np.ndarray, values: np.ndarray) -> float:
