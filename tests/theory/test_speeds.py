@@ -101,3 +101,14 @@ def test_relaxation_refuses_negative_counts():
         theory.relaxation(2).kurtosis(-1.0)
     with pytest.raises(ValueError, match="dimension"):
         theory.relaxation(1)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_mean_speed_of_few_particles_is_that_on_a_sphere(dimension):
+    rng, count = np.random.default_rng(5), 3
+    velocities = rng.standard_normal((200_000, count, dimension))
+    velocities *= np.sqrt(dimension * count / np.sum(velocities**2, axis=(1, 2)))[:, None, None]
+    speeds = np.linalg.norm(velocities, axis=2).mean(axis=1)
+    error = speeds.std() / np.sqrt(speeds.size)
+    assert abs(speeds.mean() - theory.mean_speed(dimension, count=count)) < 3.0 * error
+    assert error < 2e-4 * theory.mean_speed(dimension)

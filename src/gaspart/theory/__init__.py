@@ -35,6 +35,7 @@ from gaspart.theory.enskog import (
     enskog_bulk_viscosity,
     enskog_conductivity,
     enskog_diffusion,
+    enskog_longitudinal_viscosity,
     enskog_viscosity,
     mean_free_path,
 )
@@ -185,6 +186,7 @@ __all__ = [
     "enskog_bulk_viscosity",
     "enskog_conductivity",
     "enskog_diffusion",
+    "enskog_longitudinal_viscosity",
     "enskog_mean_squared_displacement",
     "enskog_viscosity",
     "erpenbeck_wood_diffusion",

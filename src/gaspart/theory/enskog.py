@@ -146,6 +146,24 @@ def enskog_viscosity(
 
 
 @checked
+def enskog_longitudinal_viscosity(
+    packing_fraction: Numbers,
+    dimension: int,
+    diameter: float = 1.0,
+    temperature: float = 1.0,
+    mass: float = 1.0,
+) -> Values:
+    """Viscosity against a flow along one axis that changes along it, 2 (d-1)/d shear + bulk viscosity.
+
+    Of sound, and of a gas between a wall and a piston, where it makes heat of longitudinal viscosity times
+    (du/dx)^2 in a volume and time. Unit mass length^(2-d) / time.
+    """
+    shear = enskog_viscosity(packing_fraction, dimension, diameter, temperature, mass)
+    bulk = enskog_bulk_viscosity(packing_fraction, dimension, diameter, temperature, mass)
+    return 2.0 * (dimension - 1) / dimension * shear + bulk
+
+
+@checked
 def enskog_conductivity(
     packing_fraction: Numbers,
     dimension: int,

@@ -20,9 +20,9 @@ import numpy as np
 
 from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
 from gaspart.theory.enskog import (
-    enskog_bulk_viscosity,
     enskog_conductivity,
     enskog_diffusion,
+    enskog_longitudinal_viscosity,
     enskog_viscosity,
 )
 from gaspart.theory.geometry import number_density
@@ -43,7 +43,7 @@ def sound_attenuation(packing_fraction: float, dimension: int) -> float:
     density, z = float(number_density(eta, d)), float(compressibility_factor(eta, d))
     slope = float(speed_of_sound(eta, d)) ** 2 - 2.0 * z**2 / d  # of rho Z
     added, constant = z**2 / slope, 0.5 * d
-    viscous = 2.0 * (d - 1) / d * float(enskog_viscosity(eta, d)) + float(enskog_bulk_viscosity(eta, d))
+    viscous = float(enskog_longitudinal_viscosity(eta, d))
     thermal = float(enskog_conductivity(eta, d)) * (1.0 / constant - 1.0 / (constant + added))
     return (viscous + thermal) / density
 

@@ -21,10 +21,20 @@ RELAXATION_UNCERTAINTY = 3e-4
 
 
 @checked
-def mean_speed(dimension: int, temperature: float = 1.0, mass: float = 1.0) -> float:
-    """Mean speed in equilibrium: sqrt(pi k_B T / 2m) in 2D, sqrt(8 k_B T / (pi m)) in 3D (exact)."""
+def mean_speed(
+    dimension: int, temperature: float = 1.0, mass: float = 1.0, count: int | None = None
+) -> float:
+    """Mean speed in equilibrium: sqrt(pi k_B T / 2m) in 2D, sqrt(8 k_B T / (pi m)) in 3D (exact).
+
+    With `count` particles at the fixed energy d N k_B T / 2 it is sqrt(n) Gamma(n) / Gamma(n + 1/2) times that,
+    n = d N / 2: their velocities are uniform on a sphere in d N dimensions (exact).
+    """
     ratio = {2: 0.5 * math.pi, 3: 8.0 / math.pi}[checked_dimension(dimension)]
-    return math.sqrt(ratio * temperature / mass)
+    infinite = math.sqrt(ratio * temperature / mass)
+    if count is None:
+        return infinite
+    half = 0.5 * dimension * count
+    return infinite * math.sqrt(half) * math.exp(math.lgamma(half) - math.lgamma(half + 0.5))
 
 
 @checked

@@ -22,7 +22,7 @@ def gases(exponent=1.0, back=1.0, factor=1.0, fluctuation=1.0, energy=1.0, heat=
     for dimension in dimensions:
         expected = theory.adiabatic_temperature(0.005 / volume, 0.005, dimension)
         power = np.where(np.arange(volume.size) < 10, exponent, back)
-        paths.append(np.array([expected ** (power * (1.0 + 0.001 * one)) for one in REPLICAS]))
+        paths.append(np.array([1.01 * expected ** (power * (1.0 + 0.001 * one)) for one in REPLICAS]))
     density = np.array([0.1, 0.3, 0.1, 0.3])
     kinds = np.repeat(dimensions, 2)
     known = [
@@ -35,6 +35,7 @@ def gases(exponent=1.0, back=1.0, factor=1.0, fluctuation=1.0, energy=1.0, heat=
         {
             "path_volume": (("path", "path_replica", "frame"), np.tile(volume, (2, REPLICAS.size, 1))),
             "path_temperature": (("path", "path_replica", "frame"), np.array(paths)),
+            "path_heating": (("path", "path_replica", "frame"), np.full_like(paths, np.log(1.01))),
             "path_dimension": ("path", dimensions),
             "path_packing_fraction": ("path", [0.005, 0.005]),
             "state_density": (state, scattered(density, 0.0)),

@@ -6,11 +6,13 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from scipy.integrate import cumulative_trapezoid
 
 from gaspart.experiments.shared.rows import from_rows
 from gaspart.planning import grid
 from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
+from gaspart.theory.enskog import enskog_longitudinal_viscosity
 from gaspart.theory.speeds import mean_speed
 from gaspart.trajectory.run import open_trajectory
 
@@ -19,14 +21,15 @@ def piston(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """Three kinds of points, all of particles of mass 1 in containers whose first axis has walls.
 
     With a piston and without an equilibration, over (path, path_replica, frame): volume over that at first;
-    temperature over that at first; over `path` dimension and packing_fraction at first.
+    temperature over that at first; heating, see `_heating`; over `path` dimension and packing_fraction at
+    first.
     With a piston and an equilibration, over (state, state_replica): density, the packing fraction in the
     middle half of the volume; factor, the external pressure over that density and the temperature;
     fluctuation, the number of particles times the variance of the volume over the square of that which they
     would have at this density; energy, twice the kinetic energy of the piston over the temperature; over
     `state` dimension and count.
     Without a piston, over (expansion, expansion_replica): heat, the final kinetic energy over the first;
-    speed, the final mean speed over that of Maxwell's distribution at the first temperature; share of the
+    speed, the final mean speed over that of equilibrium at the first temperature; share of the
     particles in the half of the container that was empty; over `expansion` dimension.
     Final are means over the second half of the frames.
     """
@@ -52,8 +55,26 @@ def piston(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 def _path(scene: Scene, path: str, _: int) -> dict[str, np.ndarray]:
     with open_trajectory(path) as run:
-        volume, energy = _length(scene, run), run["kinetic_energy"].values
-    return {"volume": volume / volume[0], "temperature": energy / energy[0]}
+        length, energy, time = _length(scene, run), run["kinetic_energy"].values, run["time"].values
+        rate = run["piston_velocity"].values / length  # its square counts: on either side
+    heating = _heating(scene, time, length, energy, rate)
+    return {"volume": length / length[0], "temperature": energy / energy[0], "heating": heating}
+
+
+def _heating(
+    scene: Scene, time: np.ndarray, length: np.ndarray, energy: np.ndarray, rate: np.ndarray
+) -> np.ndarray:
+    """(frame,) by how much viscosity has increased the logarithm of the temperature.
+
+    The gas between the wall and the piston flows with a velocity proportional to the distance from the wall;
+    its longitudinal viscosity (Enskog's) times the square of the `rate` of strain is heat. An adiabat keeps
+    the ratio of two temperatures, so that the parts add up.
+    """
+    dimension, diameter = scene.dimension, 2.0 * scene.largest_radius
+    share = length / scene.container.lengths[0]
+    viscosity = enskog_longitudinal_viscosity(scene.packing_fraction / share, dimension, diameter)
+    viscosity *= np.sqrt(2.0 * energy / (dimension * scene.count))
+    return cumulative_trapezoid(viscosity * rate**2 * scene.container.volume * share / energy, time, initial=0)
 
 
 def _length(scene: Scene, run: xr.Dataset) -> np.ndarray:
@@ -90,6 +111,6 @@ def _expansion(scene: Scene, path: str, _: int) -> dict[str, np.ndarray]:
     first = 2.0 * energy[0] / (scene.dimension * scene.count)
     return {
         "heat": energy[half:].mean() / energy[0],
-        "speed": speeds.mean() / mean_speed(scene.dimension, first),
+        "speed": speeds.mean() / mean_speed(scene.dimension, first, count=scene.count),
         "share": beyond.mean(),
     }
