@@ -26,8 +26,8 @@ def mean_speed(
 ) -> float:
     """Mean speed in equilibrium: sqrt(pi k_B T / 2m) in 2D, sqrt(8 k_B T / (pi m)) in 3D (exact).
 
-    With `count` particles at the fixed energy d N k_B T / 2 it is sqrt(n) Gamma(n) / Gamma(n + 1/2) times that,
-    n = d N / 2: their velocities are uniform on a sphere in d N dimensions (exact).
+    With `count` particles at the fixed energy d N k_B T / 2 it is sqrt(n) Gamma(n) / Gamma(n + 1/2) times
+    that, n = d N / 2: their velocities are uniform on a sphere in d N dimensions (exact).
     """
     ratio = {2: 0.5 * math.pi, 3: 8.0 / math.pi}[checked_dimension(dimension)]
     infinite = math.sqrt(ratio * temperature / mass)

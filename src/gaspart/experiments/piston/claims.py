@@ -49,7 +49,7 @@ def _of_path(path: xr.Dataset) -> list[Claim]:
             required=0.01,
             source="d/2 N k_B dT = -P dV, P that of the equation of state (exact for slow changes), and the "
             "heat of Enskog's longitudinal viscosity in the flow that follows the piston",
-            fails_if="a piston that gives the gas another work than it loses, or flow that heats it otherwise",
+            fails_if="a piston that gives the gas another work than it loses, or flow that heats it more",
         )
         for how, frame in (("compressed to the least volume", least), ("expanded again, last frame", -1))
     ]

@@ -74,7 +74,8 @@ def _heating(
     share = length / scene.container.lengths[0]
     viscosity = enskog_longitudinal_viscosity(scene.packing_fraction / share, dimension, diameter)
     viscosity *= np.sqrt(2.0 * energy / (dimension * scene.count))
-    return cumulative_trapezoid(viscosity * rate**2 * scene.container.volume * share / energy, time, initial=0)
+    power = viscosity * rate**2 * scene.container.volume * share
+    return cumulative_trapezoid(power / energy, time, initial=0)
 
 
 def _length(scene: Scene, run: xr.Dataset) -> np.ndarray:

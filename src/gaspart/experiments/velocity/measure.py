@@ -9,8 +9,8 @@ of mass; where momentum is free (canonical) one has the centre's own beside, whi
 That is exact. C(t) of an infinite fluid differs from it once momentum has come round the container, sound
 first, so that the tail is compared with the modes of the container (`theory.velocity_autocorrelation_modes`).
 These decay with the transport coefficients of long waves; at a time t the waves that matter are some
-sqrt((D + nu) t) long, and the next terms of their decay rates, of order k^4, are 1/t of the first. So the ratio to
-the modes is fitted by A + B/s, and A compared with 1.
+sqrt((D + nu) t) long, and the next terms of their decay rates, of order k^4, are of the order of 1/t of the
+first. So the ratio to the modes is fitted by A + B/s, and A compared with 1.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ def velocity_autocorrelation(points: list[grid.Point], settings: dict) -> xr.Dat
 
     Returns over `point` and `lag` (NaN beyond a point's own): collisions s, time, correlation and its error;
     over `point`: dimension, packing_fraction, count, sound (s at which it has crossed the container),
-    start_rate and its error (over the collision rate), tail_from, tail_to, tail_ratio and tail_correction, A and
-    B of C - 1/N over the sum of the container's hydrodynamic modes, and A's error; NaN where a point has none.
+    start_rate and its error (over the collision rate), tail_from, tail_to, tail_ratio and tail_correction, A
+    and B of C - 1/N over the sum of the container's modes, and A's error; NaN where a point has none.
     """
     rows = [_row(point, settings) for point in points]
     return from_rows("point", rows, ("lag",), units={"time": "sigma sqrt(m / k_B T)"})
