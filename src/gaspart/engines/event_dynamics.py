@@ -287,8 +287,10 @@ class EventDynamics:
 def _wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:
     """Put particles back that rounding shows beyond a periodic face, which they reach just now."""
     lengths = np.array(space.lengths)
-    outside = (positions < 0.0) | (positions >= lengths)
-    beyond = np.nonzero(outside & space.periodic)
+    outside = ((positions < 0.0) | (positions >= lengths)) & space.periodic
+    if not outside.any():
+        return
+    beyond = np.nonzero(outside)
     there, length = positions[beyond], lengths[beyond[1]]
     crossed = np.where(there < 0.0, -1, 1)
     there = there - crossed * length

@@ -84,6 +84,8 @@ class State:
     @property
     def rotational_energy(self) -> float:
         """Kinetic energy of spin, of all particles."""
+        if not self.spins.any():  # those of smooth particles, at a fraction of the cost
+            return 0.0
         return 0.5 * float((_finite(self.moments_of_inertia) * (self.spins**2).T).sum())
 
     @property
