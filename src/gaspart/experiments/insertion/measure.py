@@ -72,10 +72,10 @@ def fill_failures(points: list[grid.Point], settings: dict) -> xr.Dataset:
     (mean); final and final_spread, mean and standard deviation of the packing fraction of a single fill at
     its end; last_time, in t; failures_per_body with its error at packing_fraction, each (container, bin), NaN
     without attempts; filled (container, sample), mean packing fraction at `time` (container, sample);
-    saturation and its error (container, window), NaN for those not in `saturated`, and slope of its line
-    in t^(-1/d); approach and its error: exponent p of eta_s - eta ~ t^-p with the literature's eta_s
-    (saturated periodic containers only); dilute_failures with error: failures over those expected at low
-    density (periodic containers only). Attribute dilute_up_to.
+    saturation with its error (container, window) and the degrees of freedom of that (container), NaN for those
+    not in `saturated`, and slope of its line in t^(-1/d); approach and its error: exponent p of eta_s - eta ~
+    t^-p with the literature's eta_s (saturated periodic containers only); dilute_failures with error:
+    failures over those expected at low density (periodic containers only). Attribute dilute_up_to.
     """
     fills = [_read(point) for point in points]
     names = [
@@ -106,6 +106,7 @@ def fill_failures(points: list[grid.Point], settings: dict) -> xr.Dataset:
         {
             **_columns(bins, curves, "packing_fraction", "failures_per_body", "failures_per_body_error"),
             **_columns(ends_of, ends, "saturation", "saturation_error", "saturation_slope"),
+            "saturation_freedom": ("container", [len(one.attempts) - 1 for one in fills]),
             "time": (samples, times, {"units": "attempts v / V"}),
             "filled": (samples, filled, {"units": "1"}),
             **_columns(containers, approach, "approach", "approach_error"),

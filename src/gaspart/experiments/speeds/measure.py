@@ -98,7 +98,7 @@ def speed_relaxation(points: list[grid.Point], settings: dict) -> xr.Dataset:
     (each must be a sampled one), `bins` of the histograms up to speed `highest` (over root-mean-square).
 
     Dimensions engine, frame, snapshot, bin. Errors are those of the mean over replicas, from the scatter of
-    all runs. Raises SceneError if the points differ or a time is not sampled.
+    all runs, with their degrees of freedom. Raises SceneError if the points differ or a time is not sampled.
     """
     dimension = points[0].settings["dimension"]
     groups = [runs(point, drop=0) for point in points]
@@ -129,6 +129,7 @@ def speed_relaxation(points: list[grid.Point], settings: dict) -> xr.Dataset:
             "collision_rate": _rate_between_walls(scene, groups[0][0].temperature[0]),
         },
     )
+    freedom = sum(len(group) - 1 for group in groups)
     measures = {
         "collisions": lambda run: run.collisions,
         "kurtosis": lambda run: kurtosis(run.speeds),
@@ -142,11 +143,13 @@ def speed_relaxation(points: list[grid.Point], settings: dict) -> xr.Dataset:
         units = {"units": "1"}
         dataset[name] = (axes, np.stack([group.mean(axis=0) for group in samples]), units)
         dataset[f"{name}_error"] = (axes, np.stack(shared_error(samples)), units)
+        dataset[f"{name}_freedom"] = freedom
     slopes = [
         np.array([_initial_slope(run.collisions, kurtosis(run.speeds)) for run in group]) for group in groups
     ]
     dataset["initial_slope"] = ("engine", np.array([values.mean() for values in slopes]), {"units": "1"})
     dataset["initial_slope_error"] = ("engine", np.array(shared_error(slopes)), {"units": "1"})
+    dataset["initial_slope_freedom"] = freedom
     dataset["replicas"] = ("engine", np.array([len(group) for group in groups]), {"units": "1"})
     return dataset
 

@@ -50,7 +50,7 @@ def _bed(point: grid.Point, settings: dict) -> dict[str, Any]:
         "speed": floor.greatest_speed / math.sqrt(2.0) if sine else floor.greatest_speed,
     }
     runs = [read_run(point, path, settings) for path in point.replica_paths]
-    row |= entries({name: means_of([run[name] for run in runs]) for name in runs[0]})
+    row |= entries({name: means_of([run[name] for run in runs]) for name in runs[0]}, len(runs) - 1)
     weight = species.count * -scene.gravity[1] / width
     row["packing_fraction"] = math.pi * species.radius**2 * weight / row["temperature"]
     return row
