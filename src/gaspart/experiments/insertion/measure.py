@@ -72,9 +72,9 @@ def fill_failures(points: list[grid.Point], settings: dict) -> xr.Dataset:
     (mean); final and final_spread, mean and standard deviation of the packing fraction of a single fill at
     its end; last_time, in t; failures_per_body with its error at packing_fraction, each (container, bin), NaN
     without attempts; filled (container, sample), mean packing fraction at `time` (container, sample);
-    saturation with its error (container, window) and the degrees of freedom of that (container), NaN for those
-    not in `saturated`, and slope of its line in t^(-1/d); approach and its error: exponent p of eta_s - eta ~
-    t^-p with the literature's eta_s (saturated periodic containers only); dilute_failures with error:
+    saturation with its error (container, window) and the degrees of freedom of that (container), NaN for
+    those not in `saturated`, and slope of its line in t^(-1/d); approach and its error: exponent p of eta_s -
+    eta ~ t^-p with the literature's eta_s (saturated periodic containers only); dilute_failures with error:
     failures over those expected at low density (periodic containers only). Attribute dilute_up_to.
     """
     fills = [_read(point) for point in points]
