@@ -104,13 +104,7 @@ def speed_relaxation(points: list[grid.Point], settings: dict) -> xr.Dataset:
     groups = [runs(point, drop=0) for point in points]
     scene = grid.scene(points[0])
     time = groups[0][0].time
-    for point, group in zip(points, groups, strict=True):
-        if grid.scene(point) != scene or any(
-            run.time.shape != time.shape or not np.allclose(run.time, time) for run in group
-        ):
-            raise SceneError(
-                f"experiments.{point.experiment}", point.name, "must be the others' scene and times"
-            )
+    _require_alike(points, groups)
     shown = np.array([_frame_at(time, chosen) for chosen in settings["times"]])
     edges = np.linspace(0.0, settings["highest"], settings["bins"] + 1)
 
@@ -152,6 +146,18 @@ def speed_relaxation(points: list[grid.Point], settings: dict) -> xr.Dataset:
     dataset["initial_slope_freedom"] = freedom
     dataset["replicas"] = ("engine", np.array([len(group) for group in groups]), {"units": "1"})
     return dataset
+
+
+def _require_alike(points: list[grid.Point], groups: list[list]) -> None:
+    """Raise SceneError unless all points, with a group of runs each, have the first's scene and times."""
+    scene, time = grid.scene(points[0]), groups[0][0].time
+    for point, group in zip(points, groups, strict=True):
+        if grid.scene(point) != scene or any(
+            run.time.shape != time.shape or not np.allclose(run.time, time) for run in group
+        ):
+            raise SceneError(
+                f"experiments.{point.experiment}", point.name, "must be the others' scene and times"
+            )
 
 
 def _rate_between_walls(scene: Scene, temperature: float) -> float:

@@ -12,9 +12,10 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis import statistics
+from gaspart.analysis.estimate import Estimate
 from gaspart.experiments.shared.accuracy import add_costs, costs, errors, setting_name
 from gaspart.experiments.shared.pressure import pressure
-from gaspart.experiments.shared.rows import from_rows
+from gaspart.experiments.shared.rows import entries, from_rows
 from gaspart.planning import grid
 from gaspart.tradeoff import table
 from gaspart.tradeoff.table import EQUILIBRATION, LEAST, PRECISIONS, QUANTILE, REFERENCE, STEP
@@ -248,6 +249,5 @@ def _steady(point: grid.Point, rows: list[dict]) -> dict:
         "steady_packing_fraction": fraction,
         "steady_setting": name,
         "steady_step": own["time_step"],
-        "build_up": long.value / exact - 1.0 - row["bias"][1, at],
-        "build_up_error": np.hypot(long.error / exact, row["bias_error"][1, at]),
+        **entries({"build_up": long / exact - Estimate(1.0 + row["bias"][1, at], row["bias_error"][1, at])}),
     }
