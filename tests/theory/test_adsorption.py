@@ -25,6 +25,19 @@ def test_the_model_gives_its_own_length_back_and_no_constant_of_planck():
     assert planck == pytest.approx(0.2 * np.sqrt(6.0 * np.pi * temperature))
 
 
+def test_two_spheres_leave_a_well_as_their_configurations_do():
+    """The integral over both heights, whose discs of contact are closed, at three places of the densities."""
+    diameter, width, outside = 0.5, 0.7, 1.1
+    height = (np.arange(1800) + 0.5) * 1e-3
+    inside = height < width
+    closed = np.pi * np.maximum(diameter**2 - (height[:, None] - height) ** 2, 0.0)
+    for held, free in ((1.0, 0.0), (0.0, 1.0), (3.0, 0.5)):
+        mean = (closed * np.where(inside, held, free)).sum(axis=1) * 1e-3
+        expected = mean[~inside].mean() - mean[inside].mean()
+        found = adsorption.excess_in_well(held, free, diameter, width, outside)
+        assert found == pytest.approx(expected, rel=1e-5)
+
+
 def test_scaled_particle_theory_is_exact_to_the_second_order_and_near_the_reference():
     """ln(z / eta) = 4 eta + ... (B2 = 2 v of discs); d ln z / d ln eta = d(eta Z)/d eta, Z = (1 - eta)^-2."""
     eta = 1e-5

@@ -8,6 +8,7 @@ import numpy as np
 
 from gaspart.theory._arguments import Numbers, Values, checked, checked_packing_fraction
 from gaspart.theory.equations import STABLE_DISCS
+from gaspart.theory.geometry import body_volume
 from gaspart.theory.potential import packing_fraction_at
 
 _EXACT = np.sqrt(0.75)
@@ -23,6 +24,20 @@ def well_ratio(depth: Numbers, width: Numbers, outside: Numbers) -> Values:
     of the well where the thermal wavelength lambda is there.
     """
     return width / outside * np.exp(depth)
+
+
+@checked
+def excess_in_well(held: Numbers, free: Numbers, diameter: float, width: float, outside: float) -> Values:
+    """ln of N_ads / N_gas of spheres over that of an ideal gas, to first order in the densities.
+
+    held, free: number densities in the well and outside, both of uniform thickness, `width` and `outside`,
+    of at least a diameter. A sphere's ball of radius sigma, 4 pi sigma^3 / 3, is closed to other centres;
+    beyond a plane at a random distance within a layer of thickness t lies pi sigma^4 / (4 t) of it (exact).
+    """
+    ball, beyond = body_volume(3, 2.0 * diameter), 0.25 * np.pi * diameter**4
+    in_well = held * (ball - 2.0 * beyond / width) + free * beyond / width
+    in_gas = free * (ball - 2.0 * beyond / outside) + held * beyond / outside
+    return in_gas - in_well
 
 
 @checked

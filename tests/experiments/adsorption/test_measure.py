@@ -63,7 +63,8 @@ def test_a_real_well_holds_as_many_as_it_must(tmp_path):
     error = float(dataset["log_ratio_error"])
     assert 0.005 < error < 0.04
     assert np.log(float(dataset["ratio"]) / expected) == pytest.approx(0.0, abs=4.0 * error)
-    assert float(dataset["length"]) == pytest.approx(0.2 * float(dataset["ratio"]) / expected)
+    # A little more than counted, since spheres close room to each other, most where they are dense.
+    assert 1.0001 < float(dataset["length"]) / (0.2 * float(dataset["ratio"]) / expected) < 1.001
     assert np.isnan(dataset["filling"])
     with pytest.raises(ValueError, match="blocks: 31"):
         adsorption.adsorption([one], SETTINGS | {"blocks": 31})

@@ -10,8 +10,14 @@ from gaspart.claims import Claim, Estimate
 from gaspart.experiments.shared.claims import deviations, rows
 from gaspart.theory.adsorption import planck_constant, slow_flux_share
 
-LANGMUIR = "Boltzmann factor of the well (exact for an ideal gas; Langmuir's formula, source A section 4.5)"
-OWN_LENGTH = "equilibrium of an ideal gas with a step well: the length is its width (exact)"
+LANGMUIR = (
+    "Boltzmann factor of the well (exact for an ideal gas; Langmuir's formula, source A section 4.5); what "
+    "spheres close to each other is subtracted, to first order in their density"
+)
+OWN_LENGTH = (
+    "equilibrium of an ideal gas with a step well: the length is its width (exact); what spheres close to "
+    "each other is subtracted, to first order in their density"
+)
 
 
 def adsorption(ds: xr.Dataset) -> list[Claim]:

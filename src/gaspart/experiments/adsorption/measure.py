@@ -17,6 +17,7 @@ from gaspart.experiments.shared.rows import entries, from_rows
 from gaspart.planning import grid
 from gaspart.scene.faces import Sticky, Well, thermal_face
 from gaspart.theory.adsorption import (
+    excess_in_well,
     excess_of_few,
     layer_activity,
     layer_diameter,
@@ -96,6 +97,12 @@ class Holder:
         pressure = density * compressibility_factor(eta, 3)
         return pressure * self._hold
 
+    def ideal_ratio(self, held: np.ndarray, others: np.ndarray) -> np.ndarray:
+        """The ratio of so many particles in the well to the others, of an ideal gas in their place."""
+        densities = held / (self.width * self.area), others / (self.outside * self.area)
+        excess = excess_in_well(*densities, 2.0 * self.radius, self.width, self.outside)
+        return held / others * np.exp(-excess)
+
     def filling(self, held: float, density: float, others: float) -> float:
         """The coverage of a layer of so many particles over that of hard discs in equilibrium with a gas of
         this density and so many others."""
@@ -124,14 +131,15 @@ def adsorption(points: list[grid.Point], settings: dict) -> xr.Dataset:
     particles are read; `bins` of their speeds.
 
     Dimensions point, bin. Of every point: kind, temperature, depth, width, momentum, mass and outside, as in
-    `Holder`; with _error: held, the mean number of held particles; ratio, of it to the others, and log_ratio;
-    length, which takes the place of the thermal wavelength; coverage, the share of the wall's area that they
-    cover; gas_density far from both walls; flux (bin), the density of the normal speeds of particles that
-    leave, in units of sqrt(kT/m), and slow_share, that of those below `slow_speed`, the sticky wall's limit
-    (1 for wells; NaN both for layers). Of layers: activity, beta P w e^(depth/kT) pi sigma^2/4, and filling,
-    the coverage over that of hard discs in equilibrium with the gas (see `theory.adsorption.layer_activity`);
-    filling_by_activity, the same with the gas' activity alone in the place of its pressure. `_freedom` are
-    the degrees of freedom of the errors.
+    `Holder`; with _error: held, the mean number of held particles; ratio, of it to the others; coverage, the
+    share of the wall's area that they cover; gas_density far from both walls; flux (bin), the density of the
+    normal speeds of particles that leave, in units of sqrt(kT/m), and slow_share, that of those below
+    `slow_speed`, the sticky wall's limit (1 for wells; NaN both for layers). Of wide wells, whose gas is
+    ideal but for what spheres close to each other: log_ratio, ln of the ideal gas's ratio, and length, which
+    takes the place of the thermal wavelength in it. Of layers: activity, beta P w e^(depth/kT) pi sigma^2/4,
+    and filling, the coverage over that of hard discs in equilibrium with the gas (see
+    `theory.adsorption.layer_activity`); filling_by_activity, the same with the gas's activity alone in the
+    place of its pressure. `_freedom` are the degrees of freedom of the errors.
     """
     edges = np.linspace(0.0, _REACH, settings["bins"] + 1)
     return from_rows("point", [_measured(point, settings) for point in points], ("bin",)).assign_coords(
@@ -153,7 +161,9 @@ def _measured(point: grid.Point, settings: dict) -> dict:
     ]
     held, free, far, slowly, flux = (np.array(series) for series in zip(*blocks, strict=True))
     bins, absent = settings["bins"], (np.nan, np.nan)
-    estimates = _amounts(holder, held, free, far)
+    estimates = _amounts(holder, held, free, far) | {"log_ratio": absent, "length": absent}
+    if holder.kind == "ideal":
+        estimates |= _well(holder, held, free)
     if layer:  # hardly any particle leaves it
         estimates |= {"flux": (np.full(bins, np.nan),) * 2, "slow_share": absent}
         estimates |= _isotherm(holder, held, free, far)
@@ -167,18 +177,25 @@ def _measured(point: grid.Point, settings: dict) -> dict:
 
 def _amounts(holder: Holder, held: np.ndarray, free: np.ndarray, far: np.ndarray) -> dict[str, tuple]:
     """(value, error) of the adsorbed amount by name: the number, its ratio to the free particles and the
-    length that follows from it, the coverage; and of the density of the gas."""
-
-    def length(inside: np.ndarray, others: np.ndarray) -> np.ndarray:
-        return length_in_langmuirs_formula(inside / others, holder.depth / holder.temperature, holder.outside)
-
+    coverage; and of the density of the gas."""
     return {
         "held": jackknife(lambda inside: inside, held),
         "ratio": jackknife(lambda inside, others: inside / others, held, free),
-        "log_ratio": jackknife(lambda inside, others: np.log(inside / others), held, free),
-        "length": jackknife(length, held, free),
         "coverage": jackknife(holder.coverage, held),
         "gas_density": jackknife(holder.gas_density, far),
+    }
+
+
+def _well(holder: Holder, held: np.ndarray, free: np.ndarray) -> dict[str, tuple]:
+    """(value, error) of the ratio that an ideal gas would have, and of the length that follows from it."""
+    depth = holder.depth / holder.temperature
+
+    def length(inside: np.ndarray, others: np.ndarray) -> np.ndarray:
+        return length_in_langmuirs_formula(holder.ideal_ratio(inside, others), depth, holder.outside)
+
+    return {
+        "log_ratio": jackknife(lambda *counted: np.log(holder.ideal_ratio(*counted)), held, free),
+        "length": jackknife(length, held, free),
     }
 
 
