@@ -34,6 +34,14 @@ def test_wrong_shares_are_found(wrong, beginning):
     assert "disagrees" in verdicts(equipartition(rough(**wrong)), beginning)
 
 
+def test_a_gas_with_fewer_frames_than_another_is_judged_too():
+    gases = rough()
+    frames = gases.sizes["frame"]
+    longer = gases.pad(frame=(0, 2))  # as beside one with two more
+    assert longer.sizes["frame"] == frames + 2
+    assert verdicts(equipartition(longer)) == {"agrees"}
+
+
 def test_wrong_cooling_is_found():
     assert "disagrees" in verdicts(cooling(inelastic(rate=1.03)), "-d ln T")
     assert "disagrees" in verdicts(cooling(inelastic(exponent=-1.9)), "exponent")

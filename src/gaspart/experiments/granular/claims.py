@@ -61,6 +61,7 @@ def _decay(row: xr.Dataset) -> list[Claim]:
     """From spins 0: the initial rate, and the whole curve."""
     q = float(row["inertia"])
     expected = 3.0 * q / (1.0 + q) ** 2
+    row = row.dropna("frame", subset=["collisions"])  # those that only other points have
     excess = row["translation"] - row["rotation"] - np.exp(-expected * row["collisions"])
     worst = int(np.abs(excess.values).argmax())
     return [
