@@ -30,6 +30,7 @@ def job(snakemake):
         for stream in (sys.stdout, sys.stderr):
             stream.flush()
             os.dup2(log.fileno(), stream.fileno())
+            stream.reconfigure(line_buffering=True)  # a log shows progress, and the reason of a failure last
 
         def report(text):
             """Write without locks, which another thread may hold."""
