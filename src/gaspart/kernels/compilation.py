@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 
 from gaspart.kernels.cache import usable_cache
 from gaspart.kernels.compiled_files import KernelCache
-from gaspart.kernels.inner_compilation import PartCompiler
+from gaspart.kernels.inner_compilation import PartCache, PartCompiler
 from gaspart.kernels.numba_loading import load_numba
 
 numba = load_numba()
@@ -38,11 +38,12 @@ _CACHE = usable_cache(source_digest())
 
 def _compile(function: F, **options: Any) -> F:
     compiled = numba.njit(nogil=True, error_model="numpy", **options)(function)
-    if _CACHE and not options.get("pipeline_class"):
+    if _CACHE:
         before = numba.config.CACHE_DIR
         numba.config.CACHE_DIR = str(_CACHE)
         try:
-            compiled._cache = KernelCache(function)
+            cache = PartCache if "pipeline_class" in options else KernelCache
+            compiled._cache = cache(function, options)
         finally:
             numba.config.CACHE_DIR = before
     return compiled

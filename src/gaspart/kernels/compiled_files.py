@@ -41,23 +41,25 @@ class KernelFiles(caching.IndexDataCacheFile):
             return None
 
     def _name(self, key: tuple) -> str:
-        """key: types of arguments, processor, and digest of the bytecode."""
+        """key: types of arguments, processor, and digest of the bytecode. The stamp holds the options."""
         compiled = repr((self._version, self._source_stamp, key))
         digest = hashlib.sha256(compiled.encode()).hexdigest()
         return str(self._data_name_pattern.replace("{number:d}", digest[:24]))
 
 
-class _CacheParts(caching.CompileResultCacheImpl):
+class KernelContents(caching.CompileResultCacheImpl):
+    """What is in the file of a kernel: machine code."""
+
     _locator_classes: ClassVar = [KernelLocator]
 
 
 class KernelCache(caching.FunctionCache):
-    """numba's cache of a function, with these files."""
+    """numba's cache of a function that is compiled with these `options`, with these files."""
 
-    _impl_class = _CacheParts
+    _impl_class: ClassVar = KernelContents
 
-    def __init__(self, function: Callable) -> None:
+    def __init__(self, function: Callable, options: dict[str, Any]) -> None:
         super().__init__(function)
-        parts = self._impl
-        stamp = parts.locator.get_source_stamp()
-        self._cache_file = KernelFiles(self.cache_path, parts.filename_base, stamp)
+        contents = self._impl
+        stamp = contents.locator.get_source_stamp(), repr(sorted(options.items()))
+        self._cache_file = KernelFiles(self.cache_path, contents.filename_base, stamp)
