@@ -169,8 +169,7 @@ class Recording:
         if state.vibrations is not None:
             inner["vibrations"] = state.vibrations
         if self._recipe.displacements:
-            moved = state.positions[followed] + state.images[followed] * state.lengths
-            inner["displacements"] = moved - self._origin[followed]
+            inner["displacements"] = state.unwrapped[followed] - self._origin[followed]
         # in 2D the cell is one diameter thick
         lengths = np.full(3, 2.0 * self._recipe.scene.largest_radius)
         lengths[: state.dimension] = state.lengths
