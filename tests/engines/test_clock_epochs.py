@@ -5,7 +5,7 @@ import pytest
 from referee import check_restored
 
 import gaspart as gp
-from gaspart.engines.clock_epochs import QUIET, epoch_length, quiet_epoch
+from gaspart.engines.clock_epochs import QUIET, Epochs
 
 
 def alone(side, restitution=None, radius=0.5, velocity=(1.0, 0.3), boundary="wall"):
@@ -53,14 +53,14 @@ def test_a_run_without_possible_events_is_stopped():
 
 
 def test_epochs_follow_large_changes_only():
-    scene = alone(5.0)
-    velocities = np.array([[1.0, 0.3]])
-    first = epoch_length(scene, velocities, 1.0)
+    epochs = Epochs(alone(5.0), 1.0)
+    speed = epochs.speed(np.array([[1.0, 0.3]]))
+    first = epochs.length(speed)
     assert np.frexp(first)[0] == 0.5
     for factor, kept in ((2.0**-9, True), (2.0**9, True), (2.0**-11, False), (2.0**11, False)):
-        assert (epoch_length(scene, factor * velocities, 1.0, first) == first) == kept
-    assert epoch_length(scene, 0.0 * velocities, 1.0) == epoch_length(scene, 1e-300 * velocities, 1.0)
-    assert quiet_epoch(scene, velocities, 1.0, first, 10_000) == first  # longer than a flight through it
-    vast = alone(1e9)
-    found = [quiet_epoch(vast, velocities, 1.0, first, quiet) for quiet in (0, QUIET, QUIET + 3, 10_000)]
+        assert (epochs.length(factor * speed, first) == first) == kept
+    assert epochs.length(0.0) == epochs.length(1e-300)
+    assert epochs.quiet(speed, first, 10_000) == first  # longer than a flight through it
+    vast = Epochs(alone(1e9), 1.0)
+    found = [vast.quiet(speed, first, number) for number in (0, QUIET, QUIET + 3, 10_000)]
     assert found[:3] == [first, first, 8.0 * first] and 1e9 / 1.1 < found[3] < 4e9

@@ -18,40 +18,48 @@ QUIET = 64
 """Epochs without an event after which epochs are doubled."""
 
 
-def _speed(scene: Scene, velocities: np.ndarray, lightest: float) -> float:
-    """The speed for times of flight: the rms speed, with the largest gain by gravity and walls, among them
-    twice the speed that its load gives a piston."""
-    square = float((velocities**2).sum(axis=1).mean()) if len(velocities) else 0.0
-    if scene.gravity is not None:  # the square of the speed gained in a fall
-        lengths = scene.container.lengths
-        square += 2.0 * sum(abs(g) * length for g, length in zip(scene.gravity, lengths, strict=True))
-    if scene.faces and len(velocities):  # and of the speed gained at a wall
-        square += face_energy(scene) / lightest + (2.0 * greatest_speed(scene)) ** 2
-        square += sum(8.0 * face.pressure * scene.container.volume / face.mass for _, face in pistons(scene))
-    return math.sqrt(square)
+class Epochs:
+    """How long the epochs of a scene are, with masses of at least `lightest`.
 
-
-def epoch_length(scene: Scene, velocities: np.ndarray, lightest: float, present: float = 0.0) -> float:
-    """The time after which clocks start again from zero, for velocities (N, d) and masses of at least
-    `lightest`: a power of two, so that it scales with the units.
-
-    A `present` length is kept until speeds have changed by a factor of 2^10: a cooling gas needs longer
-    epochs, since the work of an epoch does not depend on its length.
+    The speed for times of flight is the rms speed, with the largest gain by gravity and walls, among them
+    twice the speed that its load gives a piston.
     """
-    speed = _speed(scene, velocities, lightest)
-    length = _AT_REST
-    if speed > 0.0:
-        length = _power_of_two(2 * scene.smallest_radius / speed, _LENGTH)
-    return present if present / _OTHER < length < present * _OTHER else length
 
+    def __init__(self, scene: Scene, lightest: float) -> None:
+        gained = 0.0  # the square of the largest speed that the scene itself gives
+        if scene.gravity is not None:
+            lengths = scene.container.lengths
+            gained += 2.0 * sum(abs(g) * length for g, length in zip(scene.gravity, lengths, strict=True))
+        if scene.faces and scene.count:
+            gained += face_energy(scene) / lightest + (2.0 * greatest_speed(scene)) ** 2
+            gained += sum(
+                8.0 * face.pressure * scene.container.volume / face.mass for _, face in pistons(scene)
+            )
+        self._gained = gained
+        self._diameter = 2 * scene.smallest_radius
+        self._across = max(scene.container.lengths)
 
-def quiet_epoch(scene: Scene, velocities: np.ndarray, lightest: float, epoch: float, quiet: int) -> float:
-    """The length of an epoch after so many `quiet` ones, without an event: twice the last one, until
-    it is a time of flight through the container. The clocks are then as precise as the positions."""
-    speed = _speed(scene, velocities, lightest)
-    most = _power_of_two(max(scene.container.lengths) / speed, 0) if speed > 0.0 else epoch
-    doublings = min(max(quiet - QUIET, 0), max(0, math.frexp(most)[1] - math.frexp(epoch)[1]))
-    return math.ldexp(epoch, doublings)
+    def speed(self, velocities: np.ndarray) -> float:
+        """The speed for times of flight, with velocities (N, d)."""
+        square = float((velocities**2).sum(axis=1).mean()) if len(velocities) else 0.0
+        return math.sqrt(square + self._gained)
+
+    def length(self, speed: float, present: float = 0.0) -> float:
+        """The time after which clocks start again from zero: a power of two, so that it scales with the
+        units.
+
+        A `present` length is kept until speeds have changed by a factor of 2^10: a cooling gas needs longer
+        epochs, since the work of an epoch does not depend on its length.
+        """
+        length = _power_of_two(self._diameter / speed, _LENGTH) if speed > 0.0 else _AT_REST
+        return present if present / _OTHER < length < present * _OTHER else length
+
+    def quiet(self, speed: float, length: float, number: int) -> float:
+        """The length of an epoch after a `number` of them without an event: twice the last one, until it is
+        a time of flight through the container. The clocks are then as precise as the positions."""
+        most = _power_of_two(self._across / speed, 0) if speed > 0.0 else length
+        doublings = min(max(number - QUIET, 0), max(0, math.frexp(most)[1] - math.frexp(length)[1]))
+        return math.ldexp(length, doublings)
 
 
 def _power_of_two(time: float, more: int) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 
 from gaspart.engines import piston
 from gaspart.engines.arrays import EventLog, write_internal
-from gaspart.engines.clock_epochs import epoch_length, quiet_epoch
+from gaspart.engines.clock_epochs import Epochs
 from gaspart.engines.event_model import changing, event_model, monitors
 from gaspart.engines.event_search import chosen_search, make_lists, neighbour_lists
 from gaspart.engines.event_tally import EventTally
@@ -75,8 +75,8 @@ class EventDynamics:
         self._duration = self._model.law.duration if self._model.law else None
         self._piston = self._model.faces.piston if self._model.faces else None
         self._monitors, self._interval = monitors(self._model, n)
-        self._lightest = float(state.masses.min(initial=np.inf))
-        self._base, self._quiet = epoch_length(scene, state.velocities, self._lightest), 0
+        self._epochs = Epochs(scene, float(state.masses.min(initial=np.inf)))
+        self._base, self._quiet = self._epochs.length(self._epochs.speed(state.velocities)), 0
         epochs, self._clock = divmod(state.time, self._base)
         self._start = epochs * self._base
         if self._piston:
@@ -196,9 +196,9 @@ class EventDynamics:
         if self._piston:
             piston.next_epoch(self._piston, self._epoch)
         self._quiet += 1
-        velocities = self._flights["velocity"]
-        self._base = epoch_length(self._scene, velocities, self._lightest, self._base)
-        self._begin_epoch(quiet_epoch(self._scene, velocities, self._lightest, self._base, self._quiet))
+        speed = self._epochs.speed(self._flights["velocity"])
+        self._base = self._epochs.length(speed, self._base)
+        self._begin_epoch(self._epochs.quiet(speed, self._base, self._quiet))
         self._predict()
 
     def _begin_epoch(self, length: float) -> None:

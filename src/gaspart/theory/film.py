@@ -11,6 +11,12 @@ from gaspart.theory.equations import METASTABLE_SPHERES, carnahan_starling
 from gaspart.theory.geometry import packing_fraction
 
 _RADIUS = 0.5
+_MIXING = 0.015
+"""Part of a change that is made far from the solution: more oscillates without end in slits of less than two
+diameters."""
+_NEAR, _NEAR_MIXING, _REMEMBERED = 0.3, 0.05, 5
+"""Largest change, in bulk densities, near the solution; the part that is made there, and how many changes are
+remembered."""
 
 
 @checked
@@ -21,9 +27,9 @@ def white_bear_slit(
     the lower wall's contact plane, from 0 to H - 1, and densities (n,).
 
     White Bear functional: Roth, Evans, Lang and Kahl, J. Phys.: Condens. Matter 14, 12063 (2002),
-    solved by damped iteration. Its bulk is Carnahan and Starling's, 0.3 % low at eta = 0.35; it obeys the
-    contact theorem exactly, so rho(0) is its pressure on the walls. `spacing` is adapted to divide the
-    width and the radius.
+    solved by damped iteration, near the solution with the mixing of Anderson, J. ACM 12, 547 (1965). Its
+    bulk is Carnahan and Starling's, 0.3 % low at eta = 0.35; it obeys the contact theorem exactly, so rho(0)
+    is its pressure on the walls. `spacing` is adapted to divide the width and the radius.
 
     Raises ValueError if the width leaves no room, and RuntimeError if the iteration does not converge.
     """
@@ -45,7 +51,8 @@ def white_bear_slit(
     excess = _derivatives(*(np.array([value]) for value in (*_bulk_measures(bulk_density), 0.0)))
     bulk_excess = float(excess[0][0] * np.pi / 6.0 + excess[1][0] * np.pi)
     density = np.full(cells + 1, bulk_density)
-    mixing = 0.015  # more oscillates without end in slits of less than two diameters
+    moves: list[np.ndarray] = []
+    changes: list[np.ndarray] = []
     for _ in range(20_000):
         weighted = density * weight
         n3, n2 = np.convolve(weighted, volume), np.convolve(weighted, surface)
@@ -58,10 +65,25 @@ def white_bear_slit(
         )
         wanted = bulk_density * np.exp(np.clip(bulk_excess - felt, -20.0, 5.0))
         change = wanted - density
-        density = density + mixing * change
-        if np.max(np.abs(change)) < tolerance * bulk_density:
+        changes.append(change)
+        largest = float(np.max(np.abs(change))) / bulk_density
+        move = _anderson(moves, changes) if largest < _NEAR else _MIXING * change
+        density = density + move
+        moves.append(move)
+        if largest < tolerance:
             return step * np.arange(cells + 1), density
+        del moves[:-_REMEMBERED], changes[:-_REMEMBERED]
     raise RuntimeError(f"the profile at density {bulk_density:g}, width {width:g} does not converge")
+
+
+def _anderson(moves: list[np.ndarray], changes: list[np.ndarray]) -> np.ndarray:
+    """The next move: the changes wanted after the last moves, taken as linear, are combined to the least."""
+    if not moves:
+        return _NEAR_MIXING * changes[-1]
+    differences = np.diff(changes, axis=0).T
+    shares = np.linalg.lstsq(differences, changes[-1], rcond=1e-10)[0]
+    least = changes[-1] - differences @ shares
+    return _NEAR_MIXING * least - np.transpose(moves) @ shares
 
 
 @checked
