@@ -52,6 +52,8 @@ def check(point: Point) -> None:
             rule = "is required with job: pack, unless the arrangement is compressed"
             raise SceneError(f"{where}.attempts", settings.get("attempts"), rule)
         return
+    if point.job == "count_instructions":
+        return
     engine = settings.get("engine", "event")
     if engine == "step" and "time_step" not in settings:
         raise SceneError(f"{where}.time_step", None, "must be given with engine: step")
@@ -170,6 +172,8 @@ def recipe(point: Point) -> dict:
         return {**made, "attempts": point.settings["attempts"]}
     if point.job == "pack":
         return {**made, "attempts": point.settings.get("attempts")}
+    if point.job == "count_instructions":
+        return made
     from gaspart.engines import engine_to_dict
 
     times = schedule(point)

@@ -215,6 +215,8 @@ JOBS = {
     "echo": "runs forward and back",
     "fill": "random insertion, every failure counted",
     "pack": "random insertion until nothing more fits; with `arrangement: compressed` growth until all jam",
+    "count_instructions": "the machine code of both engines for the scene, with and without the source of "
+    "absent features",
 }
 
 _BLOCK: Kind = {"type": "object"}  # each value is checked against its key's kind

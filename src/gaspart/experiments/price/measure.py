@@ -9,7 +9,6 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from gaspart.experiments.price.stripped import instructions
 from gaspart.experiments.shared.rows import entries, from_rows
 from gaspart.experiments.shared.timings import log_ratios, per_event, ratio_of_jobs
 from gaspart.planning import grid
@@ -22,26 +21,22 @@ WORK = ("pair_tests", "box_visits", "crossings")
 def price_of_features(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """Costs per event (a collision or a hit at a wall), and over those of the plain scene beside it.
 
-    settings: `count_instructions`, whether to compare those of compiled kernels with those of kernels whose
-    source lacks the features.
-
     Over point (a feature with an engine): engine, feature (which the plain scene lacks), seconds per event,
     `ratio` over the plain one's in the same jobs with its error, which is the jobs' scatter, and the degrees
     of freedom of that; counted `pair_tests`, `box_visits` and `crossings` per event. The plain scene beside
-    itself has the ratio 1. Over kernel, if counted: engine's name, `instructions`, and `stripped`.
+    itself has the ratio 1. Over kernel, if a point counts them: engine's name, `instructions`, and
+    `stripped`, those of a kernel whose source lacks the features.
     """
-    jobs = [_row(point) for point in points]
+    timed = [point for point in points if point.job == "measure_cost"]
+    jobs = [_row(point) for point in timed]
     groups: dict[tuple, list[dict]] = {}
     for job in jobs:
         groups.setdefault((job["engine"], job["feature"]), []).append(job)
     rows = [_together(group) for group in groups.values()]
     dataset = from_rows("point", rows)
-    if settings["count_instructions"]:
-        counted = instructions()
-        dataset = dataset.assign_coords(kernel=list(counted)).assign(
-            instructions=("kernel", [own for own, _ in counted.values()]),
-            stripped=("kernel", [bare for _, bare in counted.values()]),
-        )
+    for point in points:
+        if point not in timed:
+            dataset = dataset.merge(xr.load_dataset(point.path).rename(engine="kernel"))
     return dataset
 
 

@@ -7,6 +7,7 @@ from the source of the kernels instead, in a copy of the package, and the instru
 from __future__ import annotations
 
 import ast
+import json
 import os
 import shutil
 import subprocess
@@ -14,6 +15,8 @@ import sys
 import tempfile
 from pathlib import Path
 from typing import Any
+
+import xarray as xr
 
 FEATURES = {
     "collapse", "duration", "faces", "gravity", "law", "masses", "motion", "oversized", "piston", "record",
@@ -61,10 +64,11 @@ def stripped(source: str) -> str:
     return ast.unparse(ast.fix_missing_locations(Strip().visit(ast.parse(source))))
 
 
-def instructions() -> dict[str, tuple[int, int]]:
-    """Instructions of each engine's main kernel for a plain gas of spheres: {engine: (own, stripped)}.
+def run(recipe: dict) -> xr.Dataset:
+    """Instructions of each engine's main kernel for the recipe's scene, which should be a plain gas.
 
-    Both are compiled in separate processes with separate caches.
+    Returns over engine: `instructions`, and `stripped`, those without the branches of absent features. Both
+    are compiled in separate processes with separate caches.
     """
     found = []
     with tempfile.TemporaryDirectory() as folder:
@@ -76,33 +80,35 @@ def instructions() -> dict[str, tuple[int, int]]:
                     module.write_text(stripped(module.read_text(encoding="utf-8")), encoding="utf-8")
             environment = {"PYTHONPATH": str(package.parent), "GASPART_CACHE": str(package.parent / "cache")}
             done = subprocess.run(
-                [sys.executable, "-m", __name__],
+                [sys.executable, "-m", __name__, json.dumps(recipe["scene"])],
                 env={**os.environ, **environment},
                 capture_output=True,
                 text=True,
                 check=True,
             )
-            found.append(map(int, done.stdout.split()))
-    return dict(zip(ENGINES, zip(*found, strict=True), strict=True))
+            found.append([int(line) for line in done.stdout.split()])
+    own, bare = found
+    return xr.Dataset(
+        {"instructions": ("engine", own), "stripped": ("engine", bare)}, {"engine": list(ENGINES)}
+    )
 
 
-def count() -> None:
-    """Print the number of instructions of each engine's main kernel for a plain gas of spheres."""
+def count(scene: dict) -> None:
+    """Print the number of instructions of each engine's main kernel for a scene."""
     import gaspart as gp
     from gaspart.kernels.event import loop as event_loop
     from gaspart.kernels.step import loop as step_loop
 
-    scene = gp.Scene(gp.Container((9.0,) * 3, "periodic"), [gp.Species(50, 0.5, temperature=1.0)])
     kernels: dict[Any, Any] = {
         gp.EventDriven(): event_loop.run,
         gp.TimeStepped(0.01): step_loop.run_steps,
     }
     for engine, kernel in kernels.items():
-        gp.Simulation(scene, engine).advance(duration=0.1)
+        gp.Simulation(gp.Scene.from_dict(scene), engine).advance(duration=0.1)
         (code,) = kernel.inspect_asm().values()
         lines = [line.strip() for line in code.splitlines() if line.startswith("\t")]
         print(sum(not line.startswith((".", "#")) for line in lines))
 
 
 if __name__ == "__main__":
-    count()
+    count(json.loads(sys.argv[1]))
