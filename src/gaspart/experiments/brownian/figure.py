@@ -11,6 +11,8 @@ from gaspart.rendering import style
 
 LONGEST = 3.2
 """Friction times up to which the velocity autocorrelation is drawn: noise dominates beyond."""
+MOST = 10
+"""About so many of its points are drawn of each sphere."""
 
 
 def brownian_paths(ds: xr.Dataset) -> Figure:
@@ -66,7 +68,8 @@ def brownian_msd(ds: xr.Dataset) -> Figure:
             early = time < LONGEST
             expected = row["expected_vacf"].values[early] - np.exp(-time[early])
             axes[3].plot(time[early], expected, color=style.COLOURS[kind], lw=0.8, zorder=2)
-        shown = np.flatnonzero(time < LONGEST)[::3]
+        shown = np.flatnonzero(time < LONGEST)
+        shown = shown[:: max(1, round(shown.size / MOST))]
         error, curve = row["vacf_error"].values[shown], np.exp(-time[shown])
         style.points(axes[2], time[shown], vacf[shown], error, kind=kind, hollow=hollow, label=label)
         style.points(axes[3], time[shown], vacf[shown] - curve, error, kind=kind, hollow=hollow)
