@@ -80,7 +80,7 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     recipe = read_recipe(path)
     scene = recipe.scene
     store = xr.backends.NetCDF4DataStore(open_netcdf(path))
-    data = opened = xr.open_dataset(store, decode_times=False, create_default_indexes=False)
+    data = opened = xr.open_dataset(store, decode_times=False)
     attributes = {**data.attrs, "count": scene.count, "dimension": scene.dimension}
     attributes |= {"packing_fraction": scene.packing_fraction, "number_density": scene.number_density}
     if "spins" in data and scene.dimension == 2:

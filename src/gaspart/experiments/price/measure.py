@@ -27,15 +27,14 @@ def price_of_features(points: list[grid.Point], settings: dict) -> xr.Dataset:
     itself has the ratio 1. Over kernel, if a point counts them: engine's name, `instructions`, and
     `stripped`, those of a kernel whose source lacks the features.
     """
-    timed = [point for point in points if point.job == "measure_cost"]
-    jobs = [_row(point) for point in timed]
+    jobs = [_row(point) for point in points if point.job == "measure_cost"]
     groups: dict[tuple, list[dict]] = {}
     for job in jobs:
         groups.setdefault((job["engine"], job["feature"]), []).append(job)
     rows = [_together(group) for group in groups.values()]
     dataset = from_rows("point", rows)
     for point in points:
-        if point not in timed:
+        if point.job == "count_instructions":
             dataset = dataset.merge(xr.load_dataset(point.path).rename(engine="kernel"))
     return dataset
 
