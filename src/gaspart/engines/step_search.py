@@ -70,6 +70,7 @@ def cells_for(engine: TimeStepped, scene: Scene, state: State, radii: np.ndarray
         order=np.empty(len(radii), np.uint32),
         skin=real(skin),
         origin=np.empty((scene.dimension, state.count), real),
+        held=np.zeros(state.count if engine.threads > 1 else 0, bool),
         listed=np.zeros(engine.threads, int),
     )
 

@@ -21,7 +21,7 @@ class Cells(NamedTuple):
     the first and the last cell along an axis are neighbours; ends (threads, cells), of which the last row
     holds behind which slot each cell's particles end; cell, order (N,): room for the sort; skin, the distance
     beyond a contact up to which pairs are listed; origin (d, N), where the particle in each slot was when the
-    list was made; listed (threads,), how long each thread's list is."""
+    list was made; held (N,), see `shared_contacts`; listed (threads,), how long each thread's list is."""
 
     per_side: np.ndarray
     inverse: np.ndarray
@@ -32,6 +32,7 @@ class Cells(NamedTuple):
     order: np.ndarray
     skin: float
     origin: np.ndarray
+    held: np.ndarray
     listed: np.ndarray
 
 

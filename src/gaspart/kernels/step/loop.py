@@ -11,7 +11,8 @@ from numpy import int64
 from gaspart.kernels.compilation import allocating_kernel, inner_allocating_kernel, inner_helper
 from gaspart.kernels.step.box_search import search_all, search_boxes, sort_in
 from gaspart.kernels.step.model import DISPLACEMENT, FASTEST, PAIR_TESTS, Search, Step
-from gaspart.kernels.step.resolve import count_left, in_order, resolve_all
+from gaspart.kernels.step.resolve import count_left, in_order
+from gaspart.kernels.step.shared_contacts import resolve_found
 from gaspart.kernels.step.threads import gathered, is_outdated, make_list, move_all, room_for, search_list
 
 
@@ -84,8 +85,8 @@ def run_steps(particles, search, model, settings, steps, tally, threads):
             if number == 0:
                 break
             contacts, times = gathered(found)
-            order = in_order(particles.index, contacts, times)
-            resolve_all(particles, contacts, order, model, step, tally, law, cells)
+            in_turn = contacts, in_order(particles.index, contacts, times)
+            resolve_found(particles, in_turn, model, step, tally, threads, law, cells)
             before = now
         if number > 0:
             count_left(particles, contacts, space, tally)

@@ -273,14 +273,20 @@ def fetch_particle(particles, slot, cells):
     fetch(particles.last_pass, slot)
 
 
+@inner_helper
+def fetch_ahead(particles, pairs, order, n, cells):
+    """Begin to load what the contacts soon after order[n] read, while this one is resolved."""
+    last = len(order) - 1
+    for side in range(2):
+        fetch_particle(particles, pairs[order[min(n + 2 * _AHEAD, last)], side], cells)
+        fetch(particles.masses, particles.index[pairs[order[min(n + _AHEAD, last)], side]])
+
+
 @inner_kernel
 def resolve_all(particles, pairs, order, model, step, tally, law, cells):
     """Resolve what one search has found, in order."""
-    last = len(order) - 1
     for n in range(len(order)):
-        for side in range(2):  # what the next contacts read is loaded while this one is resolved
-            fetch_particle(particles, pairs[order[min(n + 2 * _AHEAD, last)], side], cells)
-            fetch(particles.masses, particles.index[pairs[order[min(n + _AHEAD, last)], side]])
+        fetch_ahead(particles, pairs, order, n, cells)
         i, j = pairs[order[n], 0], pairs[order[n], 1]
         resolve(particles, i, j, model, step, tally, law, cells)
 

@@ -1,0 +1,163 @@
+"""How threads share the contacts of a step, to the same bits as one thread.
+
+Contacts that have no particle in common may be resolved in any order. So each thread resolves, in their
+order, those between two slots of its own; those between slots of two threads are postponed, and with them
+the later contacts of their particles, of these contacts' particles, and so on. What was postponed follows in
+order; the terms of sums are kept by contact, and added up in the order of all contacts.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import prange
+
+from gaspart.kernels.compilation import (
+    allocating_kernel,
+    inner_allocating_kernel,
+    inner_helper,
+    inner_kernel,
+    inner_parallel_kernel,
+)
+from gaspart.kernels.model import Space
+from gaspart.kernels.running_sum import add
+from gaspart.kernels.step.model import LOSS, VIRIAL, StepModel, StepParticles, StepTally, part_of
+from gaspart.kernels.step.resolve import fetch_ahead, resolve, resolve_all
+
+
+class Contacts(NamedTuple):
+    """The contacts of a pass. pairs (n, 2) of slots; order (n,) in which they are resolved; terms (n, 2, 2),
+    those of the tally's sums; postponed (n,), whether a contact is; by thread: its counts (threads, 8),
+    extremes and bounds (threads, 2)."""
+
+    pairs: np.ndarray
+    order: np.ndarray
+    terms: np.ndarray
+    postponed: np.ndarray
+    counts: np.ndarray
+    extremes: np.ndarray
+    bounds: np.ndarray
+
+
+@inner_helper
+def is_among(slot, slots):
+    """Whether a slot is one of those from slots[0] to slots[1]."""
+    return slots[0] <= slot < slots[1]
+
+
+@inner_kernel
+def select_own(contacts, slots, held, own):
+    """Select the contacts between two of one thread's slots, in their order, and hold the particles that meet
+    one of another thread's. Returns how many there are."""
+    number = 0
+    for contact in contacts.order:
+        i, j = contacts.pairs[contact, 0], contacts.pairs[contact, 1]
+        if is_among(i, slots) and is_among(j, slots):
+            own[number] = contact
+            number += 1
+        elif is_among(i, slots):
+            held[i] = True
+        elif is_among(j, slots):
+            held[j] = True
+    return number
+
+
+@inner_helper
+def tally_of_contact(tally, terms):
+    """The tally whose sums are the terms (2, 2) of one contact. For kernels that make no arrays: others count
+    references, which this function does not."""
+    return StepTally(
+        tally.counts, terms, tally.extremes, tally.wall_hits, tally.wall_impulse, tally.wall_loss,
+        tally.momentum, tally.energy,
+    )  # fmt: skip
+
+
+@inner_kernel
+def resolve_own(particles, contacts, own, model, step, tally, cells):
+    """Resolve one thread's contacts in order. Where one of the two particles is held, hold both instead."""
+    pairs, held = contacts.pairs, cells.held
+    for n in range(len(own)):
+        fetch_ahead(particles, pairs, own, n, cells)
+        contact = own[n]
+        i, j = pairs[contact, 0], pairs[contact, 1]
+        if held[i] or held[j]:
+            held[i] = held[j] = True
+        else:
+            contacts.postponed[contact] = False
+            its_tally = tally_of_contact(tally, contacts.terms[contact])
+            resolve(particles, i, j, model, step, its_tally, None, cells)
+
+
+@inner_kernel
+def resolve_postponed(particles, contacts, model, step, tally, cells):
+    """Resolve what threads have postponed, and release its particles; add up the terms of all contacts."""
+    for contact in contacts.order:
+        terms = contacts.terms[contact]
+        if contacts.postponed[contact]:
+            i, j = contacts.pairs[contact, 0], contacts.pairs[contact, 1]
+            cells.held[i] = cells.held[j] = False
+            resolve(particles, i, j, model, step, tally_of_contact(tally, terms), None, cells)
+        add(tally.sums, VIRIAL, terms[VIRIAL, 0])
+        add(tally.sums, LOSS, terms[LOSS, 0])
+
+
+@inner_allocating_kernel
+def resolve_part(particles, part, contacts, model, step, tally, cells):
+    """Resolve the contacts of one thread. It writes its counts, extremes and bounds only at the end: threads
+    that write to one cache line wait for each other."""
+    own = np.empty(len(contacts.order), np.uint32)
+    slots = part_of(part, len(cells.ends), particles.positions.shape[1])
+    number = select_own(contacts, slots, cells.held, own)
+    counts, extremes, bounds = np.zeros_like(tally.counts), tally.extremes.copy(), particles.bounds.copy()
+    particles = StepParticles(
+        particles.positions, particles.velocities, particles.images, particles.radii, particles.index,
+        particles.masses, particles.last_pass, bounds, particles.ordinary,
+    )  # fmt: skip
+    tally = StepTally(
+        counts, tally.sums, extremes, tally.wall_hits, tally.wall_impulse, tally.wall_loss, tally.momentum,
+        tally.energy,
+    )  # fmt: skip
+    resolve_own(particles, contacts, own[:number], model, step, tally, cells)
+    contacts.counts[part], contacts.extremes[part], contacts.bounds[part] = counts, extremes, bounds
+
+
+@inner_parallel_kernel
+def resolve_parts(particles, contacts, lengths, periodic, numbers, step, tally, cells):
+    """`resolve_part` for all parts. numbers: those of the model, and the margin of its space."""
+    for part in prange(len(cells.ends)):
+        normal, impulse_share, inset, margin = numbers
+        model = StepModel(Space(lengths, periodic, margin), normal, impulse_share, inset, None, None, None)
+        resolve_part(particles, part, contacts, model, step, tally, cells)
+
+
+@allocating_kernel
+def resolve_shared(particles, found, model, step, tally, cells):
+    """`resolve_all`, by several threads. found: pairs and their order."""
+    (pairs, order), threads, space = found, len(cells.ends), model.space
+    contacts = Contacts(
+        pairs,
+        order,
+        np.zeros((len(order), 2, 2)),
+        np.ones(len(order), np.bool_),
+        np.empty((threads, len(tally.counts)), np.int64),
+        np.empty((threads, len(tally.extremes))),
+        np.empty((threads, len(particles.bounds)), particles.bounds.dtype),
+    )
+    numbers = model.normal, model.impulse_share, model.inset, space.margin
+    resolve_parts(particles, contacts, space.lengths, space.periodic, numbers, step, tally, cells)
+    for part in range(threads):
+        tally.counts[:] += contacts.counts[part]
+        tally.extremes[:] = np.maximum(tally.extremes, contacts.extremes[part])
+        particles.bounds[:] = np.maximum(particles.bounds, contacts.bounds[part])
+    resolve_postponed(particles, contacts, model, step, tally, cells)
+
+
+@inner_allocating_kernel
+def resolve_found(particles, found, model, step, tally, threads, law, cells):
+    """Resolve what one search has found, pairs and their order: shared among threads if there are several and
+    a list, and contacts are smooth."""
+    if law is None:
+        if cells is not None:
+            if threads is not None:
+                resolve_shared(particles, found, model, step, tally, cells)
+                return
+    resolve_all(particles, found[0], found[1], model, step, tally, law, cells)
