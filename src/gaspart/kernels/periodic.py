@@ -1,6 +1,6 @@
 """Along one axis of the container: the box that holds a coordinate, the nearest image of a difference."""
 
-from gaspart.kernels.compilation import helper, inner_helper
+from gaspart.kernels.compilation import inner_helper
 
 
 @inner_helper
@@ -10,7 +10,7 @@ def box_coordinate(x, width, per_side):
     return min(max(c, 0), per_side - 1)
 
 
-@helper
+@inner_helper
 def nearest(gap, length, periodic):
     """A difference of two coordinates of the container, by the nearest image on a periodic axis."""
     if periodic:

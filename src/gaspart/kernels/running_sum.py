@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from gaspart.kernels.compilation import helper, inner_helper
+from gaspart.kernels.compilation import inner_helper
 
 _COARSE, _FINE = 2.0**-28, 2.0**-57  # of the largest term: each holds 2^35 such terms in 64 bits
 
@@ -29,7 +29,7 @@ def add(sums, n, x):
     sums[n, 1] += (before - (after - added)) + (x - added)
 
 
-@helper
+@inner_helper
 def add_whole(sum_, x, largest):
     """Add x to a sum (2,) of integers: multiples of a coarse unit, and of a fine one for the remainder.
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gaspart.kernels.collision import collide_by_law
-from gaspart.kernels.compilation import helper, inner_helper, inner_kernel, kernel
+from gaspart.kernels.compilation import inner_helper, inner_kernel
 from gaspart.kernels.contact import time_to_plane
 from gaspart.kernels.flight import advance, face_plane
 from gaspart.kernels.model import LOSS as LOST
@@ -63,7 +63,7 @@ def gather(particles, slot, rules):
     return i
 
 
-@kernel
+@inner_kernel
 def scatter(particles, slot, rules):
     """Write a flight back into its slot; returns the square of the particle's speed."""
     flights, i = rules.flights, particles.index[slot]
@@ -137,7 +137,7 @@ def first_crossing(flights, i, space, dt, faces, gravity):
     return first, face
 
 
-@helper
+@inner_helper
 def taken(sums, n):
     """Reset one of some sums (K, 2) to zero; returns what it held."""
     x = sums[n, 0] + sums[n, 1]

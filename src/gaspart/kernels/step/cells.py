@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gaspart.kernels.compilation import helper, inner_kernel, kernel
+from gaspart.kernels.compilation import inner_helper, inner_kernel
 from gaspart.kernels.step.model import part_of
 
 ONE = np.uint32(1)  # whole numbers of this type index arrays without a test for negative ones
@@ -36,7 +36,7 @@ class Cells(NamedTuple):
     listed: np.ndarray
 
 
-@helper
+@inner_helper
 def coordinate(x, inverse, per_side):
     """Which cell along an axis holds coordinate x; the outermost one for x outside."""
     return min(max(int(x * inverse), 0), per_side - 1)
@@ -132,7 +132,7 @@ def permute(values, order, slots, permuted):
         permuted[n] = values[source[n]]
 
 
-@kernel
+@inner_kernel
 def copy(permuted, slots, values):
     """values[n] becomes permuted[n] for n from slots[0] to slots[1]."""
     values, permuted = values[slots[0] : slots[1]], permuted[slots[0] : slots[1]]

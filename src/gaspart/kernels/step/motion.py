@@ -6,7 +6,7 @@ has left the container.
 
 import numpy as np
 
-from gaspart.kernels.compilation import helper, inner_allocating_kernel, inner_helper, inner_kernel, kernel
+from gaspart.kernels.compilation import inner_allocating_kernel, inner_helper, inner_kernel
 from gaspart.kernels.periodic import nearest
 from gaspart.kernels.running_sum import add_whole
 from gaspart.kernels.step.boundaries import is_free, meet_faces
@@ -15,7 +15,7 @@ from gaspart.kernels.step.model import DISPLACEMENT, FASTEST
 _BLOCK = 128
 
 
-@helper
+@inner_helper
 def wrap(particles, slot, axis, length):
     """Bring a particle back into the container on a periodic axis."""
     x = particles.positions[axis, slot]
@@ -166,7 +166,7 @@ def fly(x, v, lower, upper, dt):
     return outside
 
 
-@kernel
+@inner_kernel
 def fall(x, v, pull, lower, upper, dt):
     """The same under a pull: exactly along the parabola."""
     outside = 0
@@ -207,7 +207,7 @@ def move_by_rules(particles, model, dt, tally, rules, law, cells, gravity):
                     apply_rules(particles, slot, model, dt, tally, rules, law, cells)
 
 
-@kernel
+@inner_kernel
 def move(particles, slots, model, dt, tally, thread, gravity):
     """Make the motion of one step for the slots from slots[0] to slots[1]."""
     space, inset = model.space, model.inset
@@ -242,7 +242,7 @@ def add_gaps(x, origin, length, squares):
         squares[n] += gap * gap
 
 
-@kernel
+@inner_kernel
 def highest(squares, most):
     """The highest of some values (n,), or `most`: looked at one by one only if it is among them, since a
     maximum must wait for the one before."""

@@ -9,7 +9,7 @@ wait for it.
 
 import numpy as np
 
-from gaspart.kernels.compilation import helper, inner_allocating_kernel, inner_helper, inner_kernel
+from gaspart.kernels.compilation import inner_allocating_kernel, inner_helper, inner_kernel
 from gaspart.kernels.prefetch import fetch
 from gaspart.kernels.simd import lowest
 from gaspart.kernels.step.model import DISPLACEMENT, part_of
@@ -62,7 +62,7 @@ def rows_ahead(dimension):
     return 5 if dimension == 3 else 2
 
 
-@helper
+@inner_helper
 def ahead(cells, n):
     """By how much the index of a cell in row n of these is higher."""
     if n < 2:

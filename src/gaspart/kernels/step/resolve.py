@@ -10,7 +10,7 @@ restitution: tests/kernels/step/test_resolve.py compares it bit for bit with `co
 
 import numpy as np
 
-from gaspart.kernels.compilation import allocating_kernel, helper, inner_helper, inner_kernel, kernel
+from gaspart.kernels.compilation import inner_allocating_kernel, inner_helper, inner_kernel
 from gaspart.kernels.contact import contact_root, exchange
 from gaspart.kernels.periodic import nearest
 from gaspart.kernels.prefetch import fetch
@@ -35,7 +35,7 @@ _AHEAD = 4  # contacts
 _LATE = 1.125  # steps ago: contacts before these belong to an earlier step, however float32 rounds
 
 
-@helper
+@inner_helper
 def distance_squared(particles, i, j, space):
     """Of two slots, by the nearest image: the same bits as in `invariants`, without a branch."""
     rr = space.margin - space.margin
@@ -47,7 +47,7 @@ def distance_squared(particles, i, j, space):
     return rr
 
 
-@helper
+@inner_helper
 def invariants(particles, i, j, space):
     """rr, rv, vv of a pair (see `contact`), j by its nearest image."""
     rr = rv = vv = space.margin - space.margin
@@ -61,7 +61,7 @@ def invariants(particles, i, j, space):
     return rr, rv, vv
 
 
-@helper
+@inner_helper
 def entry_time(rr, rv, vv, ss):
     """When an overlapping pair touched first, if it has always moved as it does now: a time in the past. The
     root of `contact_root`, for a pair that is parting already in the form that does not cancel for it."""
@@ -94,7 +94,7 @@ def examine(particles, i, j, space, step, found, thread):
         found.number[thread] = n + 1
 
 
-@helper
+@inner_helper
 def earlier(index, pairs, times, m, n):
     """Whether contact m is resolved before contact n: by time, then lower index, then higher index."""
     if times[m] != times[n]:
@@ -103,7 +103,7 @@ def earlier(index, pairs, times, m, n):
     return low_m < low_n or (low_m == low_n and index[pairs[m, 1]] < index[pairs[n, 1]])
 
 
-@allocating_kernel
+@inner_allocating_kernel
 def spread(times):
     """Contacts nearly in the order of their times: sorted into as many equal stretches of time as there are
     contacts."""
@@ -124,7 +124,7 @@ def spread(times):
     return order
 
 
-@kernel
+@inner_kernel
 def insert(index, pairs, times, order, low, high):
     """Put the contacts order[low:high] in order, one after another."""
     for n in range(low + 1, high):
@@ -136,7 +136,7 @@ def insert(index, pairs, times, order, low, high):
         order[place] = contact
 
 
-@kernel
+@inner_kernel
 def merge(index, pairs, times, order, room, low, middle, high):
     """Merge order[low:middle] with order[middle:high]."""
     for n in range(low, middle):
@@ -157,7 +157,7 @@ def merge(index, pairs, times, order, room, low, middle, high):
         place += 1
 
 
-@allocating_kernel
+@inner_allocating_kernel
 def in_order(index, pairs, times):
     """The order in which contacts are resolved: spread by time, runs put in order, and merged where they are
     not yet. (numba's own sorts take 15 s to compile.)"""
@@ -176,7 +176,7 @@ def in_order(index, pairs, times):
     return order
 
 
-@helper
+@inner_helper
 def impulse_factors(rr, rv, mass1, mass2):
     """The factors k1, k2 of an elastic contact (v1 += k1 r, v2 -= k2 r), and |r.p| of the momentum p passed.
     The velocity of a particle of infinite mass does not change, where `exchange` has no value."""
@@ -196,7 +196,7 @@ def record_contact(particles, slot, speed_squared, space, step, tally, cells):
     raise_bounds(particles, slot, speed_squared, space, cells)
 
 
-@helper
+@inner_helper
 def collide_smooth(particles, i, j, contact, model, tally):
     """A contact of smooth particles. contact: how long ago (a negative time), and the invariants rr, rv then.
     Returns the squares of the two speeds."""
@@ -221,7 +221,7 @@ def collide_smooth(particles, i, j, contact, model, tally):
     return speed_i, speed_j
 
 
-@helper
+@inner_helper
 def collide(particles, i, j, contact, model, tally, law):
     """A contact, by the law if there is one; see `collide_smooth`."""
     if law is None:
@@ -229,7 +229,7 @@ def collide(particles, i, j, contact, model, tally, law):
     return collide_flights(particles, i, j, contact, model.rules, tally, law)
 
 
-@helper
+@inner_helper
 def resolve(particles, i, j, model, step, tally, law, cells):
     """Collide a pair, if it is still to be resolved: rewind it to its contact, pass the momentum along the
     normal at contact, and play the rest of the step with the new velocities."""

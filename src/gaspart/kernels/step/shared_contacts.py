@@ -12,7 +12,6 @@ import numpy as np
 from numba import prange
 
 from gaspart.kernels.compilation import (
-    allocating_kernel,
     inner_allocating_kernel,
     inner_helper,
     inner_kernel,
@@ -129,7 +128,7 @@ def resolve_parts(particles, contacts, lengths, periodic, numbers, step, tally, 
         resolve_part(particles, part, contacts, model, step, tally, cells)
 
 
-@allocating_kernel
+@inner_allocating_kernel
 def resolve_shared(particles, found, model, step, tally, cells):
     """`resolve_all`, by several threads. found: pairs and their order."""
     (pairs, order), threads, space = found, len(cells.ends), model.space
