@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from gaspart.engines.time_stepped import TimeStepped
 
 _CELLS_PER_PARTICLE = 6.0
-_REBUILD, _TEST, _PAIR = 25.0, 3.5, 4.5  # ns per particle, candidate and pair listed: their ratios matter
+_REBUILD, _TEST, _PAIR = 25.0, 2.0, 6.0  # ns per particle, candidate and pair listed: their ratios matter
 _LEAST = 1.6  # times the distance by which the fastest two approach in a step, at least
 
 

@@ -71,18 +71,31 @@ def ahead(cells, n):
 
 
 @inner_helper
-def record_row(particles, slots, n, cells, space, entries, pairs, filled):
-    """`record_near` of the slots from slots[0] to slots[1] with those of row n in their columns and in the
-    columns beside these; the numbers of entries then, and of tests."""
+def find_stretches(slots, n, cells, stretches):
+    """Find the partners in row n of the slots from slots[0] to slots[1]: stretches of slots, those in the
+    same column and in the columns beside it. Those that are not empty are written into stretches (2, m), as
+    entries without marks and as the slots behind; how many these are, and how many partners. (To test an
+    empty stretch takes as long as eight slots, and no branch can foresee which are empty.)"""
     ends = cells.ends[len(cells.ends) - 1]
-    tests = np.uint64(0)
     on = np.uint64(ahead(cells, n))
+    number = partners = np.uint64(0)
     for slot in range(np.uint64(slots[0]), np.uint64(slots[1])):
         at = np.uint64(cells.cell[slot]) + on
-        others = slot + ONE if n == 0 else np.uint64(ends[at - _TWO]), np.uint64(ends[at + ONE])
-        tests += others[1] - others[0]
+        first, last = slot + ONE if n == 0 else np.uint64(ends[at - _TWO]), np.uint64(ends[at + ONE])
+        stretches[0, number] = (slot << _PLACE) | first
+        stretches[1, number] = last
+        number += np.uint64(last > first)
+        partners += last - first
+    return number, partners
+
+
+@inner_helper
+def record_stretches(particles, stretches, stop, cells, space, entries, pairs, filled):
+    """`record_near` of the slots and their partners in stretches[:, :stop]; the numbers of entries then."""
+    for k in range(stop):
+        slot, others = stretches[0, k] >> _PLACE, (stretches[0, k] & _SLOTS, stretches[1, k])
         filled = record_near(particles, slot, others, cells, space, entries, pairs, filled)
-    return filled, tests
+    return filled
 
 
 @inner_helper
@@ -108,12 +121,14 @@ def list_part(particles, part, cells, pairs, space, tests):
     parts, rows, mine = len(pairs), rows_ahead(len(space.lengths)), pairs[part]
     start, stop = part_of(part, parts, particles.ordinary)
     entries = np.empty(_ROOM + _EIGHT, np.uint64)
+    stretches = np.empty((2, _BLOCK), np.uint64)
     total = np.uint64(0)
     filled = np.uint64(0), np.uint64(0)
     for low in range(start, stop, _BLOCK):
         slots = low, min(low + _BLOCK, stop)
         for n in range(rows):
-            filled, tested = record_row(particles, slots, n, cells, space, entries, mine, filled)
+            number, tested = find_stretches(slots, n, cells, stretches)
+            filled = record_stretches(particles, stretches, number, cells, space, entries, mine, filled)
             total += tested
     if cells.wraps[0]:
         lines = cells.per_side[1] * cells.per_side[2]
