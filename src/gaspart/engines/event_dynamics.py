@@ -101,10 +101,14 @@ class EventDynamics:
         if self._boxes.lists:
             self._lists.centre_all(self._boxes.lists, self._flights, self._clock, self._model.space.lengths)
             self._make_lists()
+        self._begin(anew=True)
+
+    def _begin(self, anew: bool) -> None:
+        """Make the queue, with all events predicted `anew` or as they are."""
         if self._queue:
-            self._prediction.predict_all(
-                self._particles, self._queue, self._boxes, self._model, self._tally.arrays, self._clock
-            )
+            free = self._model._replace(masses=None, law=None)  # contacts do not matter here
+            scene = self._particles, self._queue, self._boxes, free, self._tally.arrays
+            self._prediction.begin(*scene, self._clock, anew)
 
     @property
     def time(self) -> float:
@@ -280,8 +284,7 @@ class EventDynamics:
         self._begin_epoch(self._epoch)
         if self._boxes.lists:
             self._make_lists()
-        if self._queue:
-            self._prediction.restore(self._particles, self._queue, self._boxes, self._model, self._clock)
+        self._begin(anew=False)
 
 
 def _wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:

@@ -192,16 +192,19 @@ class StepDynamics:
                 from numba import config, set_num_threads
 
                 set_num_threads(min(self._threads, config.NUMBA_NUM_THREADS))
-            settings = self._real(self._engine.time_step), self._engine.rewind, self._engine.passes
-            pairs = self._loop.run_steps(
-                self._particles, self._search, self._model, settings, target - self._steps, self._tally,
-                self._threads,
-            )  # fmt: skip
-            self._search = self._search._replace(pairs=pairs)
+            self._run(target - self._steps)
             self._steps = target
             layout, counts = self._layout, self._tally.counts
             found = (int(counts[n]) for n in (layout.COLLISIONS, layout.LATE, layout.PASSED))
             check_late(self._engine, self.time, *found)
+
+    def _run(self, steps: int) -> None:
+        """Let the kernel make so many steps; or, if none, only a list."""
+        settings = self._real(self._engine.time_step), self._engine.rewind, self._engine.passes
+        pairs = self._loop.run_steps(
+            self._particles, self._search, self._model, settings, steps, self._tally, self._threads
+        )
+        self._search = self._search._replace(pairs=pairs)
 
     @property
     def state(self) -> State:
@@ -275,11 +278,9 @@ class StepDynamics:
 
     def _list_from(self, origin: np.ndarray) -> None:
         """Make the list again that was made when particles were at `origin` (d, N), by slot."""
-        particles, search = self._particles, self._search
+        particles = self._particles
         now = particles.positions.copy()
         particles.positions[...] = origin
-        pairs = self._loop.make_list(
-            particles, search.cells, search.pairs, self._model.space, self._tally, self._threads
-        )
-        self._search = search._replace(pairs=pairs)
+        particles.bounds[self._layout.DISPLACEMENT] = np.inf  # no list is as old as that
+        self._run(0)
         particles.positions[...] = now

@@ -25,7 +25,7 @@ from gaspart.kernels.event.pair_contact import collide
 from gaspart.kernels.event.prediction import NOT_CROSSED, predict_after, predict_after_piston, predict_island
 from gaspart.kernels.event.prefetch import CACHED, CACHED_LISTS, crossing_of, prefetch, prefetch_lists
 from gaspart.kernels.event.queue import count_event, is_outdated, soonest, time_of
-from gaspart.kernels.model import BOX_FACES, CROSSINGS, NONE, OUTDATED, WALLS, WELL_EDGES
+from gaspart.kernels.model import BOX_FACES, CROSSINGS, NONE, OUTDATED, WALLS, WELL_EDGES, Model
 from gaspart.kernels.obstacles.face import meet_face
 from gaspart.kernels.obstacles.interior_wall import meet_wall
 from gaspart.kernels.obstacles.well import meet_edge
@@ -36,16 +36,29 @@ STOP, EVENTS, FULL, COLLAPSE, NO_ROOM, CROSSED = range(6)
 
 
 @inner_helper
+def without_obstacles(model):
+    """What all contacts depend on. Their functions need not be translated again for each kind of obstacle."""
+    return Model(model.space, model.masses, model.gravity, model.law, None, None, None)
+
+
+@inner_helper
+def without_contacts(model):
+    """What predictions depend on, whatever happens at contacts."""
+    return Model(model.space, None, model.gravity, None, model.faces, model.walls, model.oversized)
+
+
+@inner_helper
 def meet_obstacle(particles, i, face, time, model, tally):
     """Let a particle meet a face of the container, the edge of a well, or an interior wall. Returns -1 - the
     number of the face or wall, and False if that is no event of the model: at a periodic face, or where the
     particle leaves a wall along which it has slid."""
+    bare = without_obstacles(model)
     if face >= WALLS:
-        wall = meet_wall(particles.flights, i, face, time, model, tally, model.walls)
+        wall = meet_wall(particles.flights, i, face, time, bare, tally, model.walls)
         return -1 - wall, wall != NONE
     if face >= WELL_EDGES:
-        return -1 - meet_edge(particles.flights, i, face, time, model, tally, model.faces), True
-    return -1 - face, meet_face(particles, i, face, time, model, tally)
+        return -1 - meet_edge(particles.flights, i, face, time, bare, tally, model.faces), True
+    return -1 - face, meet_face(particles, i, face, time, bare, tally, model.faces)
 
 
 @inner_helper
@@ -62,15 +75,16 @@ def _wake(particles, pair, queue, boxes, model, tally, event, duration):
             number = duration.island[particle]
             if number != NONE:
                 wake_island(particles.flights, number, event[0], boxes, model, model.gravity, duration.island)
-                predict_island(particles, number, queue, boxes, model, tally, event, duration.island)
+                free = without_contacts(model)
+                predict_island(particles, number, queue, boxes, free, tally, event, duration.island)
 
 
 @inner_helper
-def leave_box(particles, i, face, time, boxes, model, tally, lists):
+def leave_box(particles, i, face, time, boxes, space, tally, lists):
     """Let a particle cross into the next box, or renew its neighbour list. Returns the step (3,) into the
     box, if any."""
     if lists is not None:
-        renew(particles.flights, i, time, lists, model.space, tally)
+        renew(particles.flights, i, time, lists, space, tally)
         return NOT_CROSSED
     axis, step = face % BOX_FACES // 2, 1 if face % 2 else -1
     move(particles.predictions, boxes, i, axis, particles.predictions[i].box[axis] + step)
@@ -79,10 +93,10 @@ def leave_box(particles, i, face, time, boxes, model, tally, lists):
 
 
 @inner_helper
-def enter_opposite_box(particles, i, face, time, boxes, model, tally, lists):
+def enter_opposite_box(particles, i, face, time, boxes, space, tally, lists):
     """Let a particle that has crossed a periodic face be found where it now is."""
     if lists is not None:
-        renew(particles.flights, i, time, lists, model.space, tally)
+        renew(particles.flights, i, time, lists, space, tally)
     else:
         axis, upper = face // 2, face % 2
         move(particles.predictions, boxes, i, axis, 0 if upper else boxes.per_side[axis] - 1)
@@ -102,22 +116,22 @@ def process(particles, i, time, queue, boxes, model, tally):
     if predictions[i].face_time <= predictions[i].contact_time:
         if BOX_FACES <= face < WELL_EDGES:
             happens = changes = False
-            crossed = leave_box(particles, i, face, time, boxes, model, tally, boxes.lists)
+            crossed = leave_box(particles, i, face, time, boxes, model.space, tally, boxes.lists)
         else:
             partner, happens = meet_obstacle(particles, i, face, time, model, tally)
             if not happens and face < BOX_FACES:
-                enter_opposite_box(particles, i, face, time, boxes, model, tally, boxes.lists)
+                enter_opposite_box(particles, i, face, time, boxes, model.space, tally, boxes.lists)
     elif is_outdated(predictions, i):
         happens = changes = False
         tally.counts[OUTDATED] += 1
     else:
         i, partner = min(i, partner), max(i, partner)
         first, second = i, partner
-        collide(particles.flights, i, partner, time, model, tally)
+        collide(particles.flights, i, partner, time, without_obstacles(model), tally)
         wake(particles, (i, partner), queue, boxes, model, tally, (time, number), model.law)
-    event = time, number, changes
-    predict_after(particles, (first, second), queue, boxes, model, tally, event, crossed)
-    predict_after_piston(particles, partner, time, queue, boxes, model, model.faces)
+    event, free = (time, number, changes), without_contacts(model)
+    predict_after(particles, (first, second), queue, boxes, free, tally, event, crossed)
+    predict_after_piston(particles, partner, time, queue, boxes, free, model.faces)
     return i, partner, happens
 
 
@@ -129,7 +143,7 @@ def process_first(particles, event, boxes, model, tally):
     if partner < 0:
         partner, happens = meet_obstacle(particles, i, face, time, model, tally)
         return i, partner, happens
-    collide(particles.flights, i, partner, time, model, tally)
+    collide(particles.flights, i, partner, time, without_obstacles(model), tally)
     wake(particles, (i, partner), None, boxes, model, tally, (time, NOT_CROSSED[0]), model.law)
     return i, partner, True
 
@@ -185,7 +199,7 @@ def run(particles, queue, boxes, model, tally, monitors, limits, all_pairs):
                 return CROSSED, done, crossed, last
             continue
         done += 1
-        record_event(particles.flights, i, partner, time, model, monitors.record)
+        record_event(particles.flights, i, partner, time, without_obstacles(model), monitors.record)
         if collapse_detected(i, partner, time, 2 * len(model.space.lengths), monitors.collapse):
             return COLLAPSE, done, crossed, last
     return EVENTS, done, crossed, last

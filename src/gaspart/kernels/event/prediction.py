@@ -63,29 +63,23 @@ def predict(particles, i, boxes, model, tally, now, number, crossed):
 
 
 @inner_helper
-def prepare(particles, boxes, model, lists):
-    """Sort all particles into their boxes, unless there are neighbour lists, and mark which may rest."""
+def sort_all(predictions, boxes, lists):
+    """Sort all particles into their boxes, unless there are neighbour lists."""
     if lists is None:
-        sort_in(particles.predictions, boxes)
+        sort_in(predictions, boxes)
+
+
+@kernel
+def begin(particles, queue, boxes, model, tally, now, anew):
+    """Make the boxes' lists and the queue of all predictions, which are those of a checkpoint or made `anew`.
+    Neighbour lists must have been made."""
+    sort_all(particles.predictions, boxes, boxes.lists)
     for i in range(len(particles.flights)):
         mark_resting(particles.flights, i, model.space, model.gravity, boxes.resting)
-
-
-@kernel
-def predict_all(particles, queue, boxes, model, tally, now):
-    """Sort all particles into their boxes, predict all events and fill the queue. Neighbour lists must have
-    been made."""
-    prepare(particles, boxes, model, boxes.lists)
-    number = queue.cursor[EVENT_COUNT]
-    for i in range(len(particles.flights)):
-        predict(particles, i, boxes, model, tally, now, number, NOT_CROSSED)
-    fill(queue, particles.predictions, now)
-
-
-@kernel
-def restore(particles, queue, boxes, model, now):
-    """Make the lists and the queue from the predictions of a checkpoint."""
-    prepare(particles, boxes, model, boxes.lists)
+    if anew:
+        number = queue.cursor[EVENT_COUNT]
+        for i in range(len(particles.flights)):
+            predict(particles, i, boxes, model, tally, now, number, NOT_CROSSED)
     fill(queue, particles.predictions, now)
 
 

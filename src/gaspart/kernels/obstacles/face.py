@@ -192,7 +192,7 @@ def place_at(flights, i, face, space, faces):
 
 
 @inner_helper
-def meet_face(particles, i, face, time, model, tally):
+def meet_face(particles, i, face, time, model, tally, faces):
     """Reflect a particle at a wall, or take it from a periodic face to the opposite one. True if a wall."""
     flights, space = particles.flights, model.space
     axis = face // 2
@@ -205,7 +205,7 @@ def meet_face(particles, i, face, time, model, tally):
         flights[i].position[axis] = 0.0 if upper else space.lengths[axis]
         particles.images[i, axis] += 1 if upper else -1
         return False
-    place_at(flights, i, face, space, model.faces)
-    hard = reflect(flights, i, face, model, tally, model.law, model.faces)
+    place_at(flights, i, face, space, faces)
+    hard = reflect(flights, i, face, model, tally, model.law, faces)
     rest_after(flights, i, face, hard, model, tally, model.gravity)
     return True

@@ -113,11 +113,11 @@ def leaves(flights, i, m, space, walls, gravity):
 
 
 @inner_helper
-def settle_on(flights, i, m, normal, model, tally, gravity):
+def settle_on(flights, i, m, normal, model, tally, walls, gravity):
     """Let a particle rest on an interior wall if its bounce cannot be resolved."""
     if gravity is not None:
         mass = mass_of(i, model.masses, model.law)
-        at_end = is_at_end(flights, i, model.walls.rows[m], model.space.lengths)
+        at_end = is_at_end(flights, i, walls.rows[m], model.space.lengths)
         place = m, at_end, longest_rest(flights, i, gravity, model.law)
         come_to_rest(flights, i, normal, place, mass, model.space, tally, gravity)
 
@@ -151,7 +151,7 @@ def collide_wall(flights, i, m, model, tally, walls, law):
         impulse = mass_in(model.masses, i) * change
     else:
         impulse = collide_wall_by_law(flights, i, normal, least, space, tally, law)
-    settle_on(flights, i, m, normal, model, tally, model.gravity)
+    settle_on(flights, i, m, normal, model, tally, walls, model.gravity)
     wall = 2 * len(space.lengths) + walls.wall[m]
     tally.wall_hits[wall] += 1
     add(tally.wall_impulse, wall, impulse)

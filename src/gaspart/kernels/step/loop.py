@@ -63,8 +63,9 @@ def find_contacts(particles, search, space, step, found, tally, threads):
 
 @allocating_kernel
 def run_steps(particles, search, model, settings, steps, tally, threads):
-    """Make so many steps. settings: their length, whether contacts are rewound, and the number of passes at
-    most; threads: their number, or None for one. Returns the pairs of the list as it stands then."""
+    """Make so many steps; or, if none, only the list if it is outdated. settings: their length, whether
+    contacts are rewound, and the number of passes at most; threads: their number, or None for one. Returns
+    the pairs of the list as it stands then."""
     boxes, cells, pairs = search
     space, rules, law = model.space, model.rules, model.law
     dt, rewind, passes = settings
@@ -72,6 +73,8 @@ def run_steps(particles, search, model, settings, steps, tally, threads):
     found = room_for(parts, particles.positions.shape[1] // parts + 16, particles.positions)
     particles.last_pass[:] = 0
     pull = total_pull(model.gravity)
+    if steps == 0:
+        pairs, _ = update_list(particles, pairs, space, tally, int64(0), threads, cells)
     for n in range(steps):
         particles.bounds[FASTEST] += pull * dt
         particles.bounds[DISPLACEMENT] += particles.bounds[FASTEST] * dt

@@ -9,7 +9,6 @@ import numpy as np
 from numba import prange
 
 from gaspart.kernels.compilation import (
-    allocating_kernel,
     inner_allocating_kernel,
     inner_helper,
     inner_kernel,
@@ -234,7 +233,7 @@ def is_outdated(particles, cells, space, threads):
     return not is_complete(particles, cells)
 
 
-@allocating_kernel
+@inner_allocating_kernel
 def make_list(particles, cells, pairs, space, tally, threads):
     """Make the list anew: its pairs (threads, room), in the old room or in more."""
     sort_into_cells(particles, cells, threads)
