@@ -22,11 +22,14 @@ _FEW = 8  # particles and walls that a tiny run has of each kind
 _MATTER = {"species.Species", "bodies.Body", "restitution.Restitution"}  # whose properties are features
 # in every kernel, or in none
 _NO_FEATURE = ("container", "count", "radius", "speed", "temperature", "centres_to_walls", "region")
+_NO_FEATURE += ("components", "waveform")  # of faces: numbers to the kernels, as the boundary is
+# All that makes kernels have a law of contacts, as an entry of `Model`.
+_LAW = {"restitution.normal", "restitution.tangential", "species.moment_of_inertia"}
 
 
 def variant(point: Point) -> str:
-    """The kernels of a point: engine, search or precision, dimension, boundaries (`p`eriodic or `w`all), and
-    a digest of the features of its scene.
+    """The kernels of a point: engine, search or precision, dimension, and a digest of the features of its
+    scene.
 
     Kernels are compiled for features, not for numbers. Raises SceneError.
     """
@@ -38,14 +41,14 @@ def variant(point: Point) -> str:
     )
     if engine == "event":
         choice = chosen_search(scene, point.settings.get("search", "automatic"), boxes)
+        choice = "boxes" if choice == "direct" else choice  # one box
     elif engine == "step":
         choice = "boxes" if boxes else "list"
         choice += f"-{point.settings.get('precision', 'float64')}"
         choice += "-threads" if point.settings.get("threads", 1) > 1 else ""
     else:
         choice = "random"
-    boundary = "".join(kind[0] for kind in scene.container.boundary)
-    parts = [engine, choice, f"{scene.dimension}d", boundary]
+    parts = [engine, choice, f"{scene.dimension}d"]
     present = sorted(features(scene))
     if present:
         parts.append(hashlib.sha256(" ".join(present).encode()).hexdigest()[:8])
@@ -53,10 +56,13 @@ def variant(point: Point) -> str:
 
 
 def features(scene: Scene) -> set[str]:
-    """Dotted names of all that differs from its default in a scene, with its value where that is a word."""
+    """Dotted names of all that differs from its default in a scene and changes its kernels, with its value
+    where that is a word."""
     found = set(_differing(scene)) - _MATTER
     if len({kind.mass for kind in scene.kinds}) <= 1:
         found -= {"species.mass", "bodies.mass"}  # equal masses are left out of the kernels
+    if found & _LAW:
+        found = (found - _LAW) | {"restitution"}
     found.discard("restitution.contact_duration")
     if scene.contact_duration > 0.0:  # by default under gravity
         found.add("contact_duration")
