@@ -19,8 +19,10 @@ def folder(tmp_path):
             "dimension": ("row", [3, 3]),
             "packing_fraction": ("row", [0.1, 0.1]),
             "setting": ("row", ["4 passes", "1 pass"]),  # of which the second is none to advise
-            "event_seconds": ("row", [4e-7, 4e-7]),
-            "event_error": ("row", [1e-8, 1e-8]),
+            "timed_dimension": ("timed", [3, 3]),
+            "timed_packing_fraction": ("timed", [0.1, 0.45]),
+            "timed_seconds": ("timed", [4e-7, 3e-7]),
+            "timed_error": ("timed", [1e-8, 1e-8]),
             "time_step": (both, [[0.01, 0.02, np.nan]] * 2),
             "seconds": (both, [[8e-6, 4e-6, np.nan]] * 2),
             "seconds_error": (both, [[1e-7, 1e-7, np.nan]] * 2),
@@ -56,9 +58,11 @@ def test_the_table_holds_what_was_measured(folder, capsys):
     assert output.startswith("# What accuracy costs")
     rows = list(csv.DictReader(io.StringIO("".join(output.splitlines(keepends=True)[2:]))))
     assert tuple(rows[0]) == table.COLUMNS
+    events = [row for row in rows if row["engine"] == "event" and row["quantity"] == "seconds"]
+    times = {row["packing_fraction"]: float(row["value"]) for row in events}
+    assert times == {"0.1": 4e-7, "0.45": 3e-7}
     found = {(row["engine"], row["time_step"], row["quantity"], row["dimension"]): row for row in rows}
-    assert len(found) == len(rows) == 1 + 3 + 2 + 4 + 1
-    assert float(found["event", "0", "seconds", "3"]["value"]) == 4e-7
+    assert len(found) + 1 == len(rows) == 2 + 3 + 2 + 4 + 1
     assert float(found["step", "0.02", "seconds", "3"]["value"]) == 4e-6
     assert float(found["step", "0.02", "bias_Z", "3"]["error"]) == 0.001
     assert ("step", "0.02", "bias_collision_rate", "3") not in found

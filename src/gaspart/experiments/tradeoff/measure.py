@@ -43,7 +43,9 @@ def speed_accuracy(points: list[grid.Point], settings: dict) -> xr.Dataset:
     ``contacts`` (of the exact runs), ``event_seconds`` with its error. Over (``row``, ``observable``):
     ``order`` of the error in the time step, with ``order_error`` (NaN without `FITTED` errors of one sign).
     Over (``gas``, ``observable``, ``accuracy``): see `frontier`. Over ``steady``: gas and setting of long
-    runs, and ``build_up`` with error, the relative error of their Z minus that of the paired runs.
+    runs, and ``build_up`` with error, the relative error of their Z minus that of the paired runs. Over
+    ``timed``, all gases in which the event-driven engine was timed: ``timed_dimension``,
+    ``timed_packing_fraction``, ``timed_seconds`` (per collision) with its error.
     """
     rows = [errors(point) for point in points if point.job == "compare"]
     rows = sorted(rows, key=lambda row: (-row["dimension"], row["packing_fraction"]))
@@ -58,7 +60,8 @@ def speed_accuracy(points: list[grid.Point], settings: dict) -> xr.Dataset:
     dataset["order"] = (("row", "observable"), orders[..., 0])
     dataset["order_error"] = (("row", "observable"), orders[..., 1])
     steady = [_steady(point, rows) for point in points if point.job == "simulate"]
-    return dataset.assign(from_rows("steady", steady)).merge(frontier(dataset))
+    dataset = dataset.assign(from_rows("steady", steady)).merge(frontier(dataset))
+    return dataset.assign(from_rows("timed", [_timed(one) for one in timed if one["setting"] == "event"]))
 
 
 def frontier(dataset: xr.Dataset) -> xr.Dataset:
@@ -231,6 +234,17 @@ def _built_up(dataset: xr.Dataset, at: xr.Dataset) -> float:
         & (np.abs(dataset.build_up) > SEEN * dataset.build_up_error)
     )
     return float(np.abs(dataset.build_up).where(same, 0.0).max())
+
+
+def _timed(run: dict) -> dict:
+    """The time of a collision of the event-driven engine, in the gas of a timing."""
+    dimension, fraction = run["gas"]
+    return {
+        "timed_dimension": dimension,
+        "timed_packing_fraction": fraction,
+        "timed_seconds": float(run["seconds"][0] / run["collisions"][0]),
+        "timed_error": float(run["error"][0] / run["collisions"][0]),
+    }
 
 
 def _steady(point: grid.Point, rows: list[dict]) -> dict:
