@@ -27,7 +27,16 @@ def test_unmeasured_time_steps_have_no_bound():
     assert math.isinf(table.bias(3, 0.45, "float64", 0.08, "Z"))
     assert math.isinf(table.bias(3, 0.1, "float64", 0.123, "Z"))
     assert math.isinf(table.seconds(3, 0.45, "step", "float64", 0.08))
-    assert math.isfinite(table.seconds(3, 0.45, "event"))
+
+
+@pytest.mark.parametrize(
+    ("dimension", "fractions"), [(3, (0.01, 0.1, 0.3, 0.45)), (2, (0.01, 0.1, 0.3, 0.6))]
+)
+def test_a_contact_costs_less_in_a_denser_gas(dimension, fractions):
+    """The flights between contacts are shorter, and neighbour lists know where to look."""
+    times = [table.seconds(dimension, fraction, "event") for fraction in fractions]
+    assert times == sorted(times, reverse=True)
+    assert times[-1] < 0.8 * times[-2]
 
 
 def test_noise_of_the_pressure_of_a_dilute_gas_is_that_of_independent_contacts():
