@@ -1,4 +1,5 @@
 # One point of a grid is one job with one output: its replicas run inside it.
+# Points come before figures: otherwise the longest may come last, with nothing to run beside it.
 # The stamps are `ancient`: kernels that are compiled anew change no result.
 
 
@@ -13,6 +14,7 @@ rule simulate:
         "results/benchmarks/simulate/{experiment}/{point}.tsv"
     wildcard_constraints:
         experiment=pattern([EXPERIMENTS["simulate"]]),
+    priority: 1
     conda:
         "../envs/gaspart.yaml"
     threads: 1
@@ -38,6 +40,7 @@ rule compute:
         "results/benchmarks/compute/{experiment}/{point}.tsv"
     wildcard_constraints:
         experiment=pattern(names for job, names in EXPERIMENTS.items() if job != "simulate"),
+    priority: 1
     conda:
         "../envs/gaspart.yaml"
     threads: cores_of

@@ -13,6 +13,7 @@ rule warm:
         "results/logs/warm/{digest}/{variant}.log",
     benchmark:
         "results/benchmarks/warm/{digest}/{variant}.tsv"
+    priority: 2
     conda:
         "../envs/gaspart.yaml"
     threads: 1
