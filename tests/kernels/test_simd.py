@@ -8,8 +8,8 @@ import gaspart as gp
 from gaspart.kernels.compilation import kernel
 from gaspart.kernels.event.box_lists import empty_lists
 from gaspart.kernels.flight import mark_resting, time_of_contact
-from gaspart.kernels.model import Gravity, Space, flight_dtype
-from gaspart.kernels.simd import IMAGE_BITS, IMAGE_FIRST, earliest, lowest
+from gaspart.kernels.model import NUMBER_BITS, Gravity, Space, flight_dtype
+from gaspart.kernels.simd import IMAGE_BITS, earliest, lowest
 from gaspart.state.boxes import make_boxes
 
 
@@ -56,9 +56,9 @@ def scene_of(d, seed):
     flights["clock"][rng.random(n) < 0.2] = 0.3
     others = rng.integers(0, n, 800)
     images = rng.choice([-1, 0, 0, 0, 1], (800, d))
-    near = others.astype(np.uint64)
+    near = others.astype(np.uint32)
     for k in range(d):
-        near |= (images[:, k] + 1).astype(np.uint64) << np.uint64(IMAGE_FIRST + IMAGE_BITS * k)
+        near |= (images[:, k] & 3).astype(np.uint32) << np.uint32(NUMBER_BITS + IMAGE_BITS * k)
     return flights, lengths, others, images, near
 
 
@@ -72,7 +72,7 @@ def test_eight_times_are_those_of_the_pairs_to_the_bit(d):
     space = Space(lengths, (True,) * d, 1.0)
     finite = 0
     for n, (other, image) in enumerate(zip(others, images, strict=True)):
-        alone = np.concatenate([near[n : n + 1], np.full(7, 7, dtype=np.uint64)])
+        alone = np.concatenate([near[n : n + 1], np.full(7, 7, dtype=np.uint32)])
         expected = time(flights, 7, other, offset_of(image, lengths), space, None)
         found = first_of(flights, alone, 1, 7, (np.inf, -1), space)
         assert found == ((expected, other, 0) if expected < np.inf else (np.inf, -1, 0))
@@ -108,8 +108,7 @@ def test_pairs_that_may_not_fall_alike_are_left_to_be_looked_at():
     space = Space(lengths, (True, True, False), 1.0)
     gravity = Gravity((0.0, 0.0, -1.0), fixed, 0.0, None)
     images[:, 2] = 0
-    near &= ~(np.uint64(3) << np.uint64(IMAGE_FIRST + 2 * IMAGE_BITS))
-    near |= np.uint64(1) << np.uint64(IMAGE_FIRST + 2 * IMAGE_BITS)
+    near &= ~(np.uint32(3) << np.uint32(NUMBER_BITS + 2 * IMAGE_BITS))
     resting = np.zeros(len(flights), dtype=np.uint8)
     for i in range(len(flights)):
         mark(flights, i, space, gravity, resting)
@@ -117,7 +116,7 @@ def test_pairs_that_may_not_fall_alike_are_left_to_be_looked_at():
     for i in (0, 3, 5, 7):  # fixed, resting, fixed, falling
         assert resting[i] == (i != 7)
         for n, (other, image) in enumerate(zip(others, images, strict=True)):
-            alone = np.concatenate([near[n : n + 1], np.full(7, i, dtype=np.uint64)])
+            alone = np.concatenate([near[n : n + 1], np.full(7, i, dtype=np.uint32)])
             found = first_of(flights, alone, 1, i, (np.inf, -1), space, gravity, resting)
             if i != 7 or fixed[other] or other % 3 == 0:
                 assert (*found[:2], found[2] & 1) == (np.inf, -1, 1)

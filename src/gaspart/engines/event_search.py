@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.kernels.model import LISTED_BITS
+from gaspart.kernels.model import NUMBER_BITS
 from gaspart.scene.geometry import ball_volume
 from gaspart.state.boxes import make_boxes
 
@@ -49,8 +49,8 @@ def obstacle_to_lists(scene: Scene) -> str | None:
         return "interior walls"
     if not _SMALLEST < scene.largest_radius < _LARGEST:
         return "particles of so extreme a size"
-    if not 0 < scene.count <= 1 << LISTED_BITS:
-        return "so few or so many particles"
+    if scene.count == 0:
+        return "so few particles"
     if distances(scene)[0] < _MARGINS[0] * 2.0 * scene.largest_radius * (1.0 - 1e-9):
         return "so short a periodic axis"
     return None
@@ -59,8 +59,13 @@ def obstacle_to_lists(scene: Scene) -> str | None:
 def chosen_search(scene: Scene, search: str, boxes_given: bool) -> str:
     """The search for a scene: "boxes" or "lists" where it is left to the engine.
 
-    Raises SceneError if lists are asked for, but the scene has something that they do not support.
+    Raises SceneError if lists are asked for, but the scene has something that they do not support; and if
+    the particles are more than a search can number.
     """
+    if scene.count > 1 << NUMBER_BITS:
+        raise SceneError(
+            "species", scene.count, f"the event-driven engine has at most {1 << NUMBER_BITS} particles"
+        )
     if search not in ("automatic", "lists"):
         return search
     obstacle = obstacle_to_lists(scene)

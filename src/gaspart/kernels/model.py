@@ -15,7 +15,7 @@ NONE = -1  # no particle, no face
 BOX_FACES = 6  # face codes: 2 axis + side for the container's faces, BOX_FACES more for those between boxes,
 WELL_EDGES = 12  # WELL_EDGES more for the edges of the wells at the container's faces,
 WALLS = 18  # and from here on the rows of interior walls
-LISTED_BITS = 26  # of a particle's number in a neighbour list
+NUMBER_BITS = 26  # of a particle's number where a search lists it beside its image
 HARD, THERMAL, THERMAL_NORMAL, STICKY, VIBRATING, PISTON = range(6)  # kinds of faces
 PISTON_PLACE, PISTON_VELOCITY, PISTON_CLOCK = range(3)  # of Piston.motion
 

@@ -17,17 +17,16 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from gaspart.kernels.model import LISTED_BITS
+from gaspart.kernels.model import NUMBER_BITS
 
 WIDTH = 8
 PLACES = 4  # particles of a box that are listed at once
-IMAGE_BITS, IMAGE_FIRST = 2, 32  # of a candidate, above the particle's number: per axis 1 + its image
-SHORT_IMAGE_FIRST = LISTED_BITS  # the same in candidates of 32 bits
+IMAGE_BITS = 2  # of a candidate, above the NUMBER_BITS of the particle's number: per axis its image, signed
 _DOUBLE, _INT, _WORD = ir.DoubleType(), ir.IntType(32), ir.IntType(64)
-_STAGES = (  # of a transposition: swap single lanes, pairs of lanes, halves
+_STAGES = (  # of a transposition: pairs of rows, shuffled within their quarters, or by quarters
     (1, [0, 8, 2, 10, 4, 12, 6, 14], [1, 9, 3, 11, 5, 13, 7, 15]),
-    (2, [0, 1, 8, 9, 4, 5, 12, 13], [2, 3, 10, 11, 6, 7, 14, 15]),
-    (4, [0, 1, 2, 3, 8, 9, 10, 11], [4, 5, 6, 7, 12, 13, 14, 15]),
+    (2, [0, 1, 4, 5, 8, 9, 12, 13], [2, 3, 6, 7, 10, 11, 14, 15]),
+    (4, [0, 1, 4, 5, 8, 9, 12, 13], [2, 3, 6, 7, 10, 11, 14, 15]),
 )
 
 
@@ -94,6 +93,13 @@ class Lanes:
         places = ir.Constant(ir.VectorType(_INT, WIDTH), [(n + step) % WIDTH for n in range(WIDTH)])
         return Lanes(self.builder, self.builder.shuffle_vector(self.value, self.value, places))
 
+    def plus_product(self, one: Lanes, other: Lanes) -> Lanes:
+        """The sum with a product that is exact, so that it does not matter whether that is rounded."""
+        kind = ir.FunctionType(self.value.type, [self.value.type] * 3)
+        name = f"llvm.fmuladd.v{WIDTH}f64"
+        fused = cgutils.get_or_insert_function(self.builder.module, kind, name)
+        return Lanes(self.builder, self.builder.call(fused, [one.value, other.value, self.value]))
+
     def sqrt(self):
         """Lane by lane, rounded as IEEE wants."""
         kind = ir.FunctionType(self.value.type, [self.value.type])
@@ -131,26 +137,50 @@ def load_row(builder: ir.IRBuilder, data: ir.Value, index: ir.Value) -> list[Lan
     return [Lanes(builder, value).all(value) for value in values]
 
 
-def contact_times(one: list[Lanes], other: list[Lanes], offset: list[Lanes], pull: list[ir.Value]) -> Lanes:
-    """`flight.time_of_contact` in columns of rows, of one particle and eight others displaced by `offset`
-    (d,), which all fall alike under a `pull` (d,), or, without any, not at all."""
-    d = len(offset)
-    start = other[2 * d].where(other[2 * d] > one[2 * d], one[2 * d])
-    late, late_other = start - one[2 * d], start - other[2 * d]
-    rr = rv = vv = start.all(0.0)
-    for k in range(d):
-        v, v_other = one[d + k], other[d + k]
-        if not pull:
-            r = (other[k] + v_other * late_other) - (one[k] + v * late) + offset[k]
-            v = v_other - v
-        else:
-            fall = start.all(pull[k])
-            x = one[k] + (v + fall * 0.5 * late) * late
-            r = (other[k] + (v_other + fall * 0.5 * late_other) * late_other) - x + offset[k]
-            v = (v_other + fall * late_other) - (v + fall * late)
-        rr = rr + r * r
-        rv = rv + r * v
-        vv = vv + v * v
+def flown(x: Lanes, v: Lanes, pull: Lanes | None, late: Lanes) -> tuple[Lanes, Lanes]:
+    """A coordinate and its velocity some time later, as in `flight.encounter`."""
+    if pull is None:
+        return x + v * late, v
+    return x + (v + pull * 0.5 * late) * late, v + pull * late
+
+
+def bring_to_start(one: list[Lanes], clocks: Lanes, pull: list) -> tuple[Lanes, list[tuple]]:
+    """The later of one particle's clock and those of eight others; and each of its coordinates and velocities
+    then, under a pull (d,). Where no clock is later than its own, which is so whenever it has just had an
+    event, these are known already."""
+    builder, d = clocks.builder, len(pull)
+    clock = one[2 * d]
+    later = clocks > clock
+    known = builder.basic_block
+    own = [clock, *(part for k in range(d) for part in (one[k], one[d + k]))]
+    with builder.if_then(builder.icmp_unsigned("!=", mask_of(later), ir.IntType(WIDTH)(0)), likely=False):
+        start = clocks.where(later, clock)
+        then = [flown(one[k], one[d + k], pull[k], start - clock) for k in range(d)]
+        moved, computed = [start, *(part for pair in then for part in pair)], builder.basic_block
+    joined = []
+    for part, moved_part in zip(own, moved, strict=True):
+        phi = builder.phi(part.value.type)
+        phi.add_incoming(part.value, known)
+        phi.add_incoming(moved_part.value, computed)
+        joined.append(Lanes(builder, phi))
+    return joined[0], list(zip(joined[1::2], joined[2::2], strict=True))
+
+
+def contact_times(one: list[Lanes], other: list[Lanes], images: list, lengths: list, pull: list) -> Lanes:
+    """`flight.time_of_contact` in columns of rows, of one particle and eight others in some images (d,) of a
+    container with sides `lengths` (d,), which all fall alike under a `pull` (d,), or, without any, not at
+    all."""
+    d = len(lengths)
+    pull = [one[0].all(component) for component in pull] or [None] * d
+    start, flights = bring_to_start(one, other[2 * d], pull)
+    late = start - other[2 * d]
+    products = []
+    for k, (x, v) in enumerate(flights):
+        x_other, v_other = flown(other[k], other[d + k], pull[k], late)
+        r = (x_other - x).plus_product(images[k], start.all(lengths[k]))
+        v = v_other - v
+        products.append((r * r, r * v, v * v))
+    rr, rv, vv = (reduce(Lanes.__add__, terms) for terms in zip(*products, strict=True))
     sigma = one[2 * d + 1] + other[2 * d + 1]
     c = rr - sigma * sigma
     meets = (rv < 0.0) & (rv * rv >= vv * c)
@@ -158,21 +188,21 @@ def contact_times(one: list[Lanes], other: list[Lanes], offset: list[Lanes], pul
     return (start + start.all(0.0).where(c <= 0.0, root)).where(meets, inf)
 
 
-def bits(candidates: Lanes, start: int, count: int) -> Lanes:
-    """So many bits of each candidate."""
-    builder = candidates.builder
-    shifted = builder.lshr(candidates.value, candidates.all(_WORD(start)).value)
-    return Lanes(builder, builder.and_(shifted, candidates.all(_WORD((1 << count) - 1)).value))
+def mask_of(condition: Lanes) -> ir.Value:
+    """A bit for each lane: whether a condition holds."""
+    return condition.builder.bitcast(condition.value, ir.IntType(WIDTH))
 
 
-def image_of(candidates: Lanes, first: int, axis: int) -> Lanes:
-    """In which image of the container each candidate stands along an axis: -1, 0 or 1. first: the bit at
-    which images begin."""
+def images_of(candidates: Lanes, axes: int) -> list[Lanes]:
+    """In which image of the container each candidate stands along each axis: -1, 0 or 1."""
     builder = candidates.builder
-    image = bits(candidates, first + IMAGE_BITS * axis, IMAGE_BITS).value
-    image = builder.trunc(image, ir.VectorType(_INT, WIDTH))
-    image = builder.sub(image, candidates.all(_INT(1)).value)
-    return Lanes(builder, builder.sitofp(image, ir.VectorType(_DOUBLE, WIDTH)))
+    images = []
+    for axis in range(axes):
+        above = candidates.all(_INT(32 - NUMBER_BITS - IMAGE_BITS * (axis + 1)))
+        image = builder.shl(candidates.value, above.value)
+        image = builder.ashr(image, candidates.all(_INT(32 - IMAGE_BITS)).value)
+        images.append(Lanes(builder, builder.sitofp(image, ir.VectorType(_DOUBLE, WIDTH))))
+    return images
 
 
 def marks(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) -> ir.Value:
@@ -196,9 +226,10 @@ def fields(builder: ir.IRBuilder, kind: types.BaseNamedTuple, value: ir.Value) -
 def sooner(time: Lanes, number: Lanes, other_time: Lanes, other_number: Lanes) -> tuple[Lanes, Lanes]:
     """Of two contacts the sooner, of simultaneous ones that with the lower number."""
     build = time.builder
+    sooner = other_time < time
     lower = Lanes(build, build.icmp_signed("<", other_number.value, number.value))
-    other_is = (other_time < time) | (other_time.equals(time) & lower)
-    return other_time.where(other_is, time), other_number.where(other_is, number)
+    other_is = sooner | (other_time.equals(time) & lower)
+    return other_time.where(sooner, time), other_number.where(other_is, number)
 
 
 def soonest(time: Lanes, number: Lanes) -> tuple[ir.Value, ir.Value]:
@@ -208,22 +239,35 @@ def soonest(time: Lanes, number: Lanes) -> tuple[ir.Value, ir.Value]:
     for step in (4, 2, 1):
         other = first.turned(step)
         first = other.where(other < first, first)
-    highest = number.all(_WORD(2**63 - 1))
-    lowest = number.where(time.equals(first), highest)
-    for step in (4, 2, 1):
-        other = lowest.turned(step)
-        lower = Lanes(build, build.icmp_signed("<", other.value, lowest.value))
-        lowest = other.where(lower, lowest)
-    found, number = (build.extract_element(part.value, _INT(0)) for part in (first, lowest))
-    return found, number
+    earliest = build.extract_element(first.value, _INT(0))
+    at_first = time.equals(first)
+    mask = mask_of(at_first)
+    lane = build.zext(build.cttz(mask, ir.IntType(1)(0)), _INT)
+    found = cgutils.alloca_once_value(build, build.extract_element(number.value, lane))
+    one_less = build.sub(mask, mask.type(1))
+    several = build.icmp_unsigned("!=", build.and_(mask, one_less), mask.type(0))
+    is_finite = build.fcmp_ordered("<", earliest, _DOUBLE(inf))
+    with build.if_then(build.and_(several, is_finite), likely=False):
+        lowest = number.where(at_first, number.all(_WORD(2**63 - 1)))
+        for step in (4, 2, 1):
+            other = lowest.turned(step)
+            lower = Lanes(build, build.icmp_signed("<", other.value, lowest.value))
+            lowest = other.where(lower, lowest)
+        build.store(build.extract_element(lowest.value, _INT(0)), found)
+    return earliest, build.load(found)
 
 
-def load_candidates(builder: ir.IRBuilder, place: ir.Value, short: bool) -> Lanes:
-    """Eight candidates from a place on, of 64 bits or, if `short`, of 32."""
-    words = ir.VectorType(_WORD, WIDTH)
-    stored = ir.VectorType(_INT, WIDTH) if short else words
-    loaded = builder.load(builder.bitcast(place, stored.as_pointer()), align=4 if short else 8)
-    return Lanes(builder, builder.zext(loaded, words) if short else loaded)
+def load_candidates(builder: ir.IRBuilder, place: ir.Value) -> tuple[Lanes, Lanes, list[ir.Value]]:
+    """Eight candidates from a place on; and their numbers, together, and one by one: the units that compute
+    with vectors have enough to do."""
+    mask, numbers = (1 << NUMBER_BITS) - 1, []
+    for n in range(WIDTH):
+        candidate = builder.load(builder.gep(place, [_WORD(n)]))
+        numbers.append(builder.zext(builder.and_(candidate, _INT(mask)), _WORD))
+    eight = builder.bitcast(place, ir.VectorType(_INT, WIDTH).as_pointer())
+    candidates = Lanes(builder, builder.load(eight, align=4))
+    together = builder.and_(candidates.value, candidates.all(_INT(mask)).value)
+    return candidates, Lanes(builder, builder.zext(together, ir.VectorType(_WORD, WIDTH))), numbers
 
 
 @intrinsic
@@ -232,7 +276,7 @@ def earliest(typingctx, flights, i, span, present, boxes, space, gravity):
     sooner than `present`, (time, partner): (time, partner, a bit for each candidate of which nothing is
     known, since it or the particle may not fall, see `flight.mark_resting`).
 
-    boxes: a named tuple with `candidates`, of 64 or 32 bits, and under gravity `resting`.
+    boxes: a named tuple with `candidates` and, under gravity, `resting`.
     """
 
     def generate(context, builder, signature, arguments):
@@ -248,8 +292,6 @@ def earliest(typingctx, flights, i, span, present, boxes, space, gravity):
         kinds = dict(zip(types_of["boxes"].fields, types_of["boxes"].types, strict=True))
         rows = builder.bitcast(data(signature.args[0], flights), _DOUBLE.as_pointer())
         near = builder.gep(data(kinds["candidates"], boxes["candidates"]), [start])
-        short = kinds["candidates"].dtype.bitwidth == 32
-        image_first = SHORT_IMAGE_FIRST if short else IMAGE_FIRST
         falls = not isinstance(types_of["gravity"], types.NoneType)
         resting = data(kinds["resting"], boxes["resting"]) if falls else None
         pull = fields(builder, types_of["gravity"], gravity)["acceleration"] if falls else []
@@ -260,12 +302,10 @@ def earliest(typingctx, flights, i, span, present, boxes, space, gravity):
         )
         unknown = cgutils.alloca_once_value(builder, _WORD(0))
         with cgutils.for_range_slice(builder, _WORD(0), count, _WORD(WIDTH), _WORD) as (first, _):
-            candidates = load_candidates(builder, builder.gep(near, [first]), short)
-            numbers = bits(candidates, 0, image_first)
-            indices = [builder.extract_element(numbers.value, _INT(n)) for n in range(WIDTH)]
+            candidates, numbers, indices = load_candidates(builder, builder.gep(near, [first]))
             others = load_rows(builder, rows, indices)
-            offset = [image_of(candidates, image_first, k) * side for k, side in enumerate(lengths)]
-            time = contact_times(one, others, offset, pull)
+            images = images_of(candidates, len(lengths))
+            time = contact_times(one, others, images, lengths, pull)
             if falls:
                 mask = builder.or_(marks(builder, resting, indices), marks(builder, resting, [i] * WIDTH))
                 lanes = builder.bitcast(mask, ir.VectorType(ir.IntType(1), WIDTH))
@@ -349,14 +389,13 @@ def list_box(typingctx, candidates, count, places, box, image):
         near, count, places, box, image = arguments
         near = context.make_array(signature.args[0])(context, builder, near).data
         places = context.make_array(signature.args[2])(context, builder, places).data
-        four, words = ir.VectorType(_INT, PLACES), ir.VectorType(_WORD, PLACES)
+        four = ir.VectorType(_INT, PLACES)
         place = builder.gep(places, [builder.mul(box, _WORD(PLACES))])
         numbers = builder.load(builder.bitcast(place, four.as_pointer()), align=4)
-        images = Lanes(builder, image).all(image).value
-        images = builder.shuffle_vector(images, images, ir.Constant(four, [0] * PLACES))
-        listed = builder.or_(builder.zext(numbers, words), images)
-        place = builder.bitcast(builder.gep(near, [count]), words.as_pointer())
-        builder.store(listed, place, align=8)
+        image = builder.insert_element(ir.Constant(four, ir.Undefined), builder.trunc(image, _INT), _INT(0))
+        images = builder.shuffle_vector(image, image, ir.Constant(four, [0] * PLACES))
+        place = builder.bitcast(builder.gep(near, [count]), four.as_pointer())
+        builder.store(builder.or_(numbers, images), place, align=4)
         return context.get_dummy_value()
 
     return types.none(candidates, types.uint64, places, types.uint64, types.uint64), generate

@@ -10,7 +10,7 @@ from scenes import gas, mixtures
 import gaspart as gp
 from gaspart.engines import event_search
 from gaspart.engines.event_search import chosen_search, distances, obstacle_to_lists
-from gaspart.kernels.model import LISTED_BITS
+from gaspart.kernels.model import NUMBER_BITS
 
 
 def lists_of(sim):
@@ -21,7 +21,7 @@ def listed(sim):
     """The pairs (i, j) in the lists of a simulation."""
     lists = lists_of(sim)
     rows = lists.candidates[: sim.scene.count * lists.room].reshape(-1, lists.room)
-    numbers = rows & ((1 << LISTED_BITS) - 1)
+    numbers = rows & ((1 << NUMBER_BITS) - 1)
     return {(i, int(j)) for i, row in enumerate(numbers) for j in row[1 : 1 + rows[i, 0]]}
 
 
@@ -137,3 +137,10 @@ def test_what_lists_do_not_support_is_refused():
     for scene, what in [(falling, "gravity"), (short, "so short a periodic axis")]:
         with pytest.raises(gp.SceneError, match=f"search = 'lists'.*{what}"):
             gp.Simulation(scene, gp.EventDriven("lists"), seed=1)
+
+
+def test_more_particles_than_a_search_can_number_are_refused():
+    species = gp.Species(count=2**NUMBER_BITS + 1, radius=0.001, speed=1.0)
+    scene = gp.Scene(gp.Container((1e6,) * 3), species=[species])
+    with pytest.raises(gp.SceneError, match="species = 67108865: .* at most 67108864 particles"):
+        chosen_search(scene, "automatic", False)

@@ -44,7 +44,7 @@ def empty_lists(boxes, count, lists=None):
         places=aligned((boxes.count, PLACES), np.uint32),
         head=np.zeros(boxes.count, dtype=np.uint32),
         following=np.zeros(count, dtype=np.uint32),
-        candidates=np.zeros(CANDIDATES + WIDTH, dtype=np.uint64),
+        candidates=np.zeros(CANDIDATES + WIDTH, dtype=np.uint32),
         resting=np.zeros(count, dtype=np.uint8),
         lists=lists,
     )  # fmt: skip

@@ -12,25 +12,35 @@ from numpy import int64, uint64
 from gaspart.kernels.compilation import inner_helper, inner_kernel
 from gaspart.kernels.event.box_lists import CANDIDATES
 from gaspart.kernels.flight import time_of_contact
-from gaspart.kernels.model import BOX_VISITS, PAIR_TESTS
-from gaspart.kernels.simd import IMAGE_BITS, IMAGE_FIRST, PLACES, WIDTH, earliest, list_box, lowest
+from gaspart.kernels.model import BOX_VISITS, NUMBER_BITS, PAIR_TESTS
+from gaspart.kernels.simd import IMAGE_BITS, PLACES, WIDTH, earliest, list_box, lowest
 
 _WIDTH, _PLACES, _FULL = uint64(WIDTH), uint64(PLACES), uint64(CANDIDATES - 3 * PLACES - 1)
-_NUMBER = uint64((1 << IMAGE_FIRST) - 1)
-_X, _Y, _Z = (uint64(IMAGE_FIRST + IMAGE_BITS * k) for k in range(3))
-_HERE = uint64(1)  # the image of a particle in the container itself
+_NUMBER = uint64((1 << NUMBER_BITS) - 1)
+_X, _Y, _Z = (uint64(NUMBER_BITS + IMAGE_BITS * k) for k in range(3))
 _IMAGE = uint64((1 << IMAGE_BITS) - 1)
+
+
+@inner_helper
+def image_bits(image, first):
+    """The bits, from `first` on, that stand for the image -1, 0 or 1 of a candidate along an axis."""
+    return (uint64(image) & _IMAGE) << first
+
+
+@inner_helper
+def image_of(candidate, first):
+    """The image that the bits of a candidate from `first` on stand for."""
+    return (int64((candidate >> first) & _IMAGE) ^ 2) - 2
 
 
 @inner_helper
 def offset_of(candidate, space):
     """(3,) the displacement of the image of a candidate."""
-    x, y, z = (candidate >> _X) & _IMAGE, (candidate >> _Y) & _IMAGE, (candidate >> _Z) & _IMAGE
     lengths = space.lengths
     return (
-        (int64(x) - 1) * lengths[0],
-        (int64(y) - 1) * lengths[1],
-        (int64(z) - 1) * lengths[len(lengths) - 1],
+        image_of(candidate, _X) * lengths[0],
+        image_of(candidate, _Y) * lengths[1],
+        image_of(candidate, _Z) * lengths[len(lengths) - 1],
     )
 
 
@@ -69,7 +79,7 @@ def list_others(particles, i, count, row, boxes, space, tally, gravity):
         if beside < 0:
             continue
         box = uint64(first + beside)
-        image = image_yz | uint64(boxes.shift[0, x, step] + 1) << _X
+        image = image_yz | image_bits(boxes.shift[0, x, step], _X)
         other = uint64(boxes.head[box])
         for _ in range(_PLACES, uint64(boxes.filled[box])):
             boxes.candidates[count] = other | image
@@ -132,23 +142,23 @@ def find_contact(particles, number, boxes, space, tally, crossed, gravity):
         beside_z = neighbour[2, az, dz]
         if beside_z < 0:
             continue
-        image_z = uint64(shift[2, az, dz] + 1) << _Z
+        image_z = image_bits(shift[2, az, dz], _Z)
         for dy in range(low_y, end_y):
             beside_y = neighbour[1, ay, dy]
             if beside_y < 0:
                 continue
             row = beside_y + beside_z
-            image = image_z | uint64(shift[1, ay, dy] + 1) << _Y
+            image = image_z | image_bits(shift[1, ay, dy], _Y)
             most = uint64(0)
             if within:
                 first = uint64(row + at[0] - 1)
                 for box in range(first, first + uint64(3)):
-                    count, most = list_places(boxes, count, box, image | _HERE << _X, most)
+                    count, most = list_places(boxes, count, box, image, most)
             else:
                 for dx in range(low_x, end_x):
                     beside_x = neighbour[0, ax, dx]
                     if beside_x >= 0:
-                        box, image_x = uint64(row + beside_x), image | uint64(shift[0, ax, dx] + 1) << _X
+                        box, image_x = uint64(row + beside_x), image | image_bits(shift[0, ax, dx], _X)
                         count, most = list_places(boxes, count, box, image_x, most)
             if most > _PLACES or count > _FULL:
                 line = row, image, low_x, end_x

@@ -17,14 +17,15 @@ from numpy import int64, uint32, uint64
 
 from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
 from gaspart.kernels.memory import aligned
-from gaspart.kernels.model import BOX_FACES, CROSSINGS, LISTED_BITS, NONE, PAIR_TESTS
+from gaspart.kernels.model import BOX_FACES, CROSSINGS, NONE, NUMBER_BITS, PAIR_TESTS
 from gaspart.kernels.simd import IMAGE_BITS, WIDTH, earliest, equal, lowest, nearer
 
-NUMBER = (1 << LISTED_BITS) - 1  # the bits of an entry that name a particle
+NUMBER = (1 << NUMBER_BITS) - 1  # the bits of an entry that name a particle
 _FAR = 1e30  # an empty place of a cell
 _STILL = 1e-280  # squared speeds below which a particle does not move
-_X, _Y, _Z = (LISTED_BITS + IMAGE_BITS * k for k in range(3))
-_HERE = (1 << _X) + (1 << _Y) + (1 << _Z)  # the image of a particle in the container itself
+_X, _Y, _Z = (NUMBER_BITS + IMAGE_BITS * k for k in range(3))
+_IMAGE = (1 << IMAGE_BITS) - 1
+_LOW = (1 << _X) + (1 << _Y) + (1 << _Z)  # the lower bit of the image along each axis
 
 LISTED = np.dtype([("centre", "f8", 3), ("cell", "u4"), ("place", "u4")], align=True)
 """Of a particle: where its list was made, the cell of that point, and its place in it."""
@@ -149,7 +150,7 @@ def clear(lists, i):
     row = i * lists.room
     lists.candidates[row] = 0
     for n in range(row + 1, row + lists.room):
-        lists.candidates[n] = i + _HERE
+        lists.candidates[n] = i
 
 
 @inner_helper
@@ -163,8 +164,28 @@ def strike(lists, i, other):
         place += uint64(2 * WIDTH)
         found = equal(lists.candidates, place, other, NUMBER)
     lists.candidates[place + lowest(found)] = lists.candidates[last]
-    lists.candidates[last] = i + _HERE
+    lists.candidates[last] = i
     lists.candidates[row] -= uint32(1)
+
+
+@inner_helper
+def opposite(image):
+    """The image of one particle seen from another, of which `image` is seen from the first."""
+    return image ^ (image & _LOW) << 1
+
+
+@inner_helper
+def list_found(lists, i, page, found, image, both):
+    """List particles whose centres are near that of a particle: `found`, a bit for each place of the pages
+    from one on, WIDTH each."""
+    while found:
+        place = lowest(found)
+        found &= found - uint64(1)
+        other = int64(lists.pages[page + place // uint64(WIDTH)].members[place % uint64(WIDTH)])
+        if other != i:
+            append(lists, i, other + image)
+            if both:
+                append(lists, other, i + opposite(image))
 
 
 @inner_helper
@@ -175,14 +196,23 @@ def list_cell(lists, i, point, cell, offset, image, both):
     end = page + max((uint64(lists.filled[cell]) + uint64(WIDTH - 1)) // uint64(WIDTH), uint64(1))
     while page < end:
         found = nearer(lists.pages, page, point, offset, lists.reach * lists.reach)
-        while found:
-            other = int64(lists.pages[page].members[lowest(found)])
-            found &= found - uint64(1)
-            if other != i:
-                append(lists, i, other + image)
-                if both:
-                    append(lists, other, i + 2 * _HERE - image)
+        list_found(lists, i, page, found, image, both)
         page += uint64(1)
+
+
+@inner_helper
+def list_row(lists, i, point, first, offset, image, both):
+    """The same for three cells, one after another, which mostly have a page each: what is found in all of
+    them is listed in one loop, since no processor predicts the ends of many short ones."""
+    if lists.per_cell > 1:
+        for cell in range(first, first + uint64(3)):
+            list_cell(lists, i, point, cell, offset, image, both)
+        return
+    found = uint64(0)
+    for n in range(uint64(3)):
+        near = nearer(lists.pages, first + n, point, offset, lists.reach * lists.reach)
+        found |= near << n * uint64(WIDTH)
+    list_found(lists, i, first, found, image, both)
 
 
 @inner_kernel
@@ -202,17 +232,16 @@ def list_near(lists, i, lengths, both):
             if y < 0:
                 continue
             y_offset, z_offset = shift_y * lengths[1], shift_z * lengths[len(lengths) - 1]
-            image = _HERE + (shift_y << _Y) + (shift_z << _Z)
+            image = ((shift_y & _IMAGE) << _Y) + ((shift_z & _IMAGE) << _Z)
             if within:
                 first = uint64(y + z) + ax - uint64(1)
-                for cell in range(first, first + uint64(3)):
-                    list_cell(lists, i, point, cell, (0.0, y_offset, z_offset), image, both)
+                list_row(lists, i, point, first, (0.0, y_offset, z_offset), image, both)
                 continue
             for dx in range(uint64(0), uint64(3)):
                 x, shift_x = neighbour[0, ax, dx], shift[0, ax, dx]
                 if x >= 0:
-                    offset = shift_x * lengths[0], y_offset, z_offset
-                    list_cell(lists, i, point, uint64(x + y + z), offset, image + (shift_x << _X), both)
+                    offset, image_x = (shift_x * lengths[0], y_offset, z_offset), (shift_x & _IMAGE) << _X
+                    list_cell(lists, i, point, uint64(x + y + z), offset, image + image_x, both)
 
 
 @inner_helper

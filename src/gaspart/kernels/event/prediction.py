@@ -48,9 +48,9 @@ def predict_face(particles, i, boxes, model, now):
 
 
 @inner_helper
-def predict(particles, i, boxes, model, tally, now, number, crossed):
-    """Predict the next events of a particle anew; or, if it has just `crossed` (3,) into the next box, search
-    the boxes that have become neighbours. number: of the present event."""
+def predict_meeting(particles, i, boxes, model, tally, number, crossed):
+    """Predict the next contact of a particle anew; or, if it has just `crossed` (3,) into the next box,
+    search the boxes that have become neighbours. number: of the present event."""
     predictions = particles.predictions
     if crossed[0] == 0 and crossed[1] == 0 and crossed[2] == 0:
         predictions[i].contact_time = inf
@@ -59,6 +59,12 @@ def predict(particles, i, boxes, model, tally, now, number, crossed):
     predict_contact(particles, i, boxes, model, tally, crossed, boxes.lists)
     if predictions[i].contact_time != time or predictions[i].partner != partner:
         predictions[i].predicted = number
+
+
+@inner_helper
+def predict(particles, i, boxes, model, tally, now, number, crossed):
+    """Predict the next events of a particle; see `predict_meeting`."""
+    predict_meeting(particles, i, boxes, model, tally, number, crossed)
     predict_face(particles, i, boxes, model, now)
 
 
@@ -97,7 +103,11 @@ def predict_after(particles, pair, queue, boxes, model, tally, event, crossed):
     while i >= 0:
         if changes:
             predictions[i].changed = number
-        predict(particles, i, boxes, model, tally, time, number, crossed)
+        predict_meeting(particles, i, boxes, model, tally, number, crossed)
+        i = second if i == first else NONE
+    i = first
+    while i >= 0:
+        predict_face(particles, i, boxes, model, time)
         fetch(queue.head, bucket_of(queue, predictions, i))
         i = second if i == first else NONE
     reschedule(queue, predictions, first)

@@ -79,31 +79,26 @@ def bucket_of(queue, predictions, i):
 def _link(queue, predictions, i):
     """Put a particle into the bucket of its time."""
     bucket = bucket_of(queue, predictions, i)
-    if bucket < len(queue.head) - 1:
-        queue.cursor[FILLED] += 1
-    first = queue.head[bucket]
+    queue.cursor[FILLED] += bucket < len(queue.head) - 1
+    first = np.int64(queue.head[bucket])
+    predictions[first if first >= 0 else i].before = i
     predictions[i].after = first
     predictions[i].before = -1
-    if first >= 0:
-        predictions[first].before = i
     queue.head[bucket] = i
     predictions[i].bucket = bucket
 
 
 @inner_helper
 def _unlink(queue, predictions, i):
-    """Take a particle out of its bucket."""
-    bucket = predictions[i].bucket
-    after = predictions[i].after
-    before = predictions[i].before
-    if before >= 0:
-        predictions[before].after = after
-    else:
-        queue.head[bucket] = after
-    if after >= 0:
-        predictions[after].before = before
-    if bucket < len(queue.head) - 1:
-        queue.cursor[FILLED] -= 1
+    """Take a particle out of its bucket. Where it has no neighbour its own entry is written instead, which
+    means nothing any more: no processor predicts a branch."""
+    bucket = np.int64(predictions[i].bucket)
+    after, before = np.int64(predictions[i].after), np.int64(predictions[i].before)
+    first = np.int64(queue.head[bucket])
+    queue.head[bucket] = first if before >= 0 else after
+    predictions[before if before >= 0 else i].after = after
+    predictions[after if after >= 0 else i].before = before
+    queue.cursor[FILLED] -= bucket < len(queue.head) - 1
 
 
 @inner_helper
