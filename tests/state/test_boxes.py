@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart.state.boxes import NOWHERE, make_boxes, sides_for
+from gaspart.state.oversized import boxes_and_largest
 
 
 def neighbours(boxes, at):
@@ -71,3 +73,14 @@ def test_a_long_container_has_about_one_box_per_particle(lengths):
     assert math.prod(sides) <= 10
     for other in (gp.EventDriven(), gp.TimeStepped(1e-3 * min(lengths))):
         gp.Simulation(scene, other)
+
+
+@pytest.mark.parametrize(
+    ("dimension", "eta", "per_particle"), [(2, 0.01, 0.5), (2, 0.3, 1.0), (3, 0.01, 1.0), (3, 0.2, 1.5)]
+)
+def test_events_have_wide_boxes_where_a_gas_of_discs_is_dilute(dimension, eta, per_particle):
+    scene = gas(dimension, 10_000, eta, "wall")
+    boxes, _ = boxes_and_largest(scene, None)
+    assert 0.85 * per_particle < boxes.count / scene.count <= 1.1 * per_particle
+    pulled = replace(scene, gravity=(0.0,) * (dimension - 1) + (-1.0,))
+    assert 0.9 < boxes_and_largest(pulled, None)[0].count / scene.count <= 1.0

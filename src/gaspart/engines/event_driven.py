@@ -22,7 +22,7 @@ class EventDriven:
     search: "boxes", with one next event per particle in a queue; "lists", the same with neighbour lists;
     "automatic", the one of these that is faster at the density of the scene; "direct", with a single box,
     each search over all particles; "pairs", all pairs before every event (Spencer 2021, section 3.1), the
-    referee. All give the same bits. boxes_per_side: a number, or one per axis; by default about one a
+    referee. All give the same bits. boxes_per_side: a number, or one per axis; by default 0.5 to 1.5 a
     particle.
 
     No box is narrower than the diameters of the particles in it. A few oversized particles can be left out of

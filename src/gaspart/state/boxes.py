@@ -69,11 +69,12 @@ def narrowest_box(scene: Scene) -> float:
     return 2.0 * scene.largest_radius
 
 
-def sides_for(scene: Scene, narrowest: float | None = None) -> tuple[int, ...]:
-    """Boxes per side (d,) for about one box per particle, none narrower than the largest diameter, or than
-    `narrowest` if larger particles are kept outside the boxes."""
+def sides_for(scene: Scene, narrowest: float | None = None, per_particle: float = 1.0) -> tuple[int, ...]:
+    """Boxes per side (d,) for about so many boxes per particle, none narrower than the largest diameter, or
+    than `narrowest` if larger particles are kept outside the boxes."""
     lengths = scene.container.lengths
-    width = max(cube_side(lengths, scene.count), narrowest_box(scene) if narrowest is None else narrowest)
+    narrowest = narrowest_box(scene) if narrowest is None else narrowest
+    width = max(cube_side(lengths, per_particle * scene.count), narrowest)
     return tuple(max(1, int(length / width)) for length in lengths)
 
 

@@ -16,7 +16,7 @@ from gaspart.kernels.model import BOX_FACES, WELL_EDGES
 from gaspart.kernels.prefetch import TOGETHER, fetch, fetch_numbered, fetch_two
 
 CACHED = 1 << 15  # particles up to which the nearer caches suffice without,
-CACHED_LISTS = 1 << 12  # and with neighbour lists
+CACHED_LISTS = 3 << 12  # and with neighbour lists
 _STRIDE = 3  # buckets from one stage to the next: about as many events
 _MISSED = 15  # buckets that are made up for if the queue has leapt over them
 _BOTH = (int64(0), int64(0), int64(0))  # sides of each axis
