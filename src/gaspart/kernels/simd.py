@@ -139,7 +139,7 @@ def load_row(builder: ir.IRBuilder, data: ir.Value, index: ir.Value) -> list[Lan
 
 def flown(x: Lanes, v: Lanes, pull: Lanes | None, late: Lanes) -> tuple[Lanes, Lanes]:
     """A coordinate and its velocity some time later, as in `flight.encounter`."""
-    if pull is None:
+    if not pull:
         return x + v * late, v
     return x + (v + pull * 0.5 * late) * late, v + pull * late
 
