@@ -20,14 +20,14 @@ _BOXES = {2: (0.5, 1.6, 1.2), 3: (1.0, 3.0, 1.5)}  # per particle: in a dilute g
 
 
 def boxes_per_particle(scene: Scene) -> float:
-    """How many boxes there are for each particle. Eight particles are tested at once, so in a dilute gas,
-    where a particle crosses many boxes between its contacts, wide ones are best; measured with 10^4 particles
-    at packing fractions of 0.01 to 0.35 (docs/performance.md). Not so where gravity gathers particles, or
-    where kicks let most searches find nothing new."""
-    if scene.thermostat or (scene.gravity and any(scene.gravity)):
-        return 1.0
+    """How many boxes there are for each particle. Eight particles are tested at once, so in a dilute gas of
+    discs, which cross many boxes between contacts, wide ones are best; measured with 10^4 particles at
+    packing fractions of 0.01 to 0.35 (docs/performance.md). Not where gravity gathers the particles, or where
+    kicks make most searches find nothing new: there is one each at least."""
     dilute, by_density, most = _BOXES[scene.dimension]
-    return min(dilute + by_density * scene.packing_fraction, most)
+    best = min(dilute + by_density * scene.packing_fraction, most)
+    gathered = scene.gravity is not None and any(scene.gravity)
+    return max(1.0, best) if gathered or scene.thermostat else best
 
 
 def largest_in_boxes(scene: Scene) -> float:
