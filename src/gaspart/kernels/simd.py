@@ -1,33 +1,20 @@
-"""Eight pairs at once: the times of their contacts, in vector instructions.
+"""Eight numbers at once, in vector instructions: what the searches of both engines are written in
+(`event.simd`, `step.simd`).
 
-What a compiler does not find by itself: eight rows, each a vector of eight numbers, are transposed into
-vectors of one number of eight particles, and the times are worked out in these, in the same arithmetic and
-order as in `flight.time_of_contact`, to the same bits. LLVM makes of the vectors what the processor has, of
-whatever width.
+LLVM makes of the vectors what the processor has, of whatever width.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import reduce
-from math import inf
 
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from gaspart.kernels.model import NUMBER_BITS
-
 WIDTH = 8
-PLACES = 4  # particles of a box that are listed at once
-IMAGE_BITS = 2  # of a candidate, above the NUMBER_BITS of the particle's number: per axis its image, signed
-_DOUBLE, _INT, _WORD = ir.DoubleType(), ir.IntType(32), ir.IntType(64)
-_STAGES = (  # of a transposition: pairs of rows, shuffled within their quarters, or by quarters
-    (1, [0, 8, 2, 10, 4, 12, 6, 14], [1, 9, 3, 11, 5, 13, 7, 15]),
-    (2, [0, 1, 4, 5, 8, 9, 12, 13], [2, 3, 6, 7, 10, 11, 14, 15]),
-    (4, [0, 1, 4, 5, 8, 9, 12, 13], [2, 3, 6, 7, 10, 11, 14, 15]),
-)
+_DOUBLE, _INT = ir.DoubleType(), ir.IntType(32)
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,106 +99,9 @@ class Lanes:
         return Lanes(self.builder, self.builder.select(condition.value, self.value, other.value))
 
 
-def load_rows(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) -> list[Lanes]:
-    """The rows of eight particles as eight columns."""
-    vector = ir.VectorType(_DOUBLE, WIDTH)
-    rows = []
-    for index in indices:
-        place = builder.gep(data, [builder.mul(index, _WORD(WIDTH))])
-        rows.append(builder.load(builder.bitcast(place, vector.as_pointer()), align=8))
-    for step, *halves in _STAGES:
-        swapped = list(rows)
-        for n in range(WIDTH):
-            if not n & step:
-                for place, mask in zip((n, n + step), halves, strict=True):
-                    which = ir.Constant(ir.VectorType(_INT, WIDTH), mask)
-                    swapped[place] = builder.shuffle_vector(rows[n], rows[n + step], which)
-        rows = swapped
-    return [Lanes(builder, row) for row in rows]
-
-
-def load_row(builder: ir.IRBuilder, data: ir.Value, index: ir.Value) -> list[Lanes]:
-    """The row of one particle, in every lane."""
-    start = builder.mul(index, _WORD(WIDTH))
-    values = (builder.load(builder.gep(data, [builder.add(start, _WORD(k))])) for k in range(WIDTH))
-    return [Lanes(builder, value).all(value) for value in values]
-
-
-def flown(x: Lanes, v: Lanes, pull: Lanes | None, late: Lanes) -> tuple[Lanes, Lanes]:
-    """A coordinate and its velocity some time later, as in `flight.encounter`."""
-    if not pull:
-        return x + v * late, v
-    return x + (v + pull * 0.5 * late) * late, v + pull * late
-
-
-def bring_to_start(one: list[Lanes], clocks: Lanes, pull: list) -> tuple[Lanes, list[tuple]]:
-    """The later of one particle's clock and those of eight others; and each of its coordinates and velocities
-    then, under a pull (d,). Where no clock is later than its own, which is so whenever it has just had an
-    event, these are known already."""
-    builder, d = clocks.builder, len(pull)
-    clock = one[2 * d]
-    later = clocks > clock
-    known = builder.basic_block
-    own = [clock, *(part for k in range(d) for part in (one[k], one[d + k]))]
-    with builder.if_then(builder.icmp_unsigned("!=", mask_of(later), ir.IntType(WIDTH)(0)), likely=False):
-        start = clocks.where(later, clock)
-        then = [flown(one[k], one[d + k], pull[k], start - clock) for k in range(d)]
-        moved, computed = [start, *(part for pair in then for part in pair)], builder.basic_block
-    joined = []
-    for part, moved_part in zip(own, moved, strict=True):
-        phi = builder.phi(part.value.type)
-        phi.add_incoming(part.value, known)
-        phi.add_incoming(moved_part.value, computed)
-        joined.append(Lanes(builder, phi))
-    return joined[0], list(zip(joined[1::2], joined[2::2], strict=True))
-
-
-def contact_times(one: list[Lanes], other: list[Lanes], images: list, lengths: list, pull: list) -> Lanes:
-    """`flight.time_of_contact` in columns of rows, of one particle and eight others in some images (d,) of a
-    container with sides `lengths` (d,), which all fall alike under a `pull` (d,), or, without any, not at
-    all."""
-    d = len(lengths)
-    pull = [one[0].all(component) for component in pull] or [None] * d
-    start, flights = bring_to_start(one, other[2 * d], pull)
-    late = start - other[2 * d]
-    products = []
-    for k, (x, v) in enumerate(flights):
-        x_other, v_other = flown(other[k], other[d + k], pull[k], late)
-        r = (x_other - x).plus_product(images[k], start.all(lengths[k]))
-        v = v_other - v
-        products.append((r * r, r * v, v * v))
-    rr, rv, vv = (reduce(Lanes.__add__, terms) for terms in zip(*products, strict=True))
-    sigma = one[2 * d + 1] + other[2 * d + 1]
-    c = rr - sigma * sigma
-    meets = (rv < 0.0) & (rv * rv >= vv * c)
-    root = c / ((rv * rv - vv * c).sqrt() - rv)
-    return (start + start.all(0.0).where(c <= 0.0, root)).where(meets, inf)
-
-
 def mask_of(condition: Lanes) -> ir.Value:
     """A bit for each lane: whether a condition holds."""
     return condition.builder.bitcast(condition.value, ir.IntType(WIDTH))
-
-
-def images_of(candidates: Lanes, axes: int) -> list[Lanes]:
-    """In which image of the container each candidate stands along each axis: -1, 0 or 1."""
-    builder = candidates.builder
-    images = []
-    for axis in range(axes):
-        above = candidates.all(_INT(32 - NUMBER_BITS - IMAGE_BITS * (axis + 1)))
-        image = builder.shl(candidates.value, above.value)
-        image = builder.ashr(image, candidates.all(_INT(32 - IMAGE_BITS)).value)
-        images.append(Lanes(builder, builder.sitofp(image, ir.VectorType(_DOUBLE, WIDTH))))
-    return images
-
-
-def marks(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) -> ir.Value:
-    """A bit for each particle, from an array with a byte of 0 or 1 for each."""
-    found = ir.IntType(WIDTH)(0)
-    for n, index in enumerate(indices):
-        mark = builder.load(builder.gep(data, [index]))
-        found = builder.or_(found, builder.shl(mark, ir.IntType(WIDTH)(n)))
-    return found
 
 
 def fields(builder: ir.IRBuilder, kind: types.BaseNamedTuple, value: ir.Value) -> dict:
@@ -221,184 +111,6 @@ def fields(builder: ir.IRBuilder, kind: types.BaseNamedTuple, value: ir.Value) -
         part = builder.extract_value(value, n)
         members[name] = cgutils.unpack_tuple(builder, part) if hasattr(member, "count") else part
     return members
-
-
-def sooner(time: Lanes, number: Lanes, other_time: Lanes, other_number: Lanes) -> tuple[Lanes, Lanes]:
-    """Of two contacts the sooner, of simultaneous ones that with the lower number."""
-    build = time.builder
-    sooner = other_time < time
-    lower = Lanes(build, build.icmp_signed("<", other_number.value, number.value))
-    other_is = sooner | (other_time.equals(time) & lower)
-    return other_time.where(sooner, time), other_number.where(other_is, number)
-
-
-def soonest(time: Lanes, number: Lanes) -> tuple[ir.Value, ir.Value]:
-    """The soonest of eight contacts, of simultaneous ones that with the lowest number."""
-    build = time.builder
-    first = time
-    for step in (4, 2, 1):
-        other = first.turned(step)
-        first = other.where(other < first, first)
-    earliest = build.extract_element(first.value, _INT(0))
-    at_first = time.equals(first)
-    mask = mask_of(at_first)
-    lane = build.zext(build.cttz(mask, ir.IntType(1)(0)), _INT)
-    found = cgutils.alloca_once_value(build, build.extract_element(number.value, lane))
-    one_less = build.sub(mask, mask.type(1))
-    several = build.icmp_unsigned("!=", build.and_(mask, one_less), mask.type(0))
-    is_finite = build.fcmp_ordered("<", earliest, _DOUBLE(inf))
-    with build.if_then(build.and_(several, is_finite), likely=False):
-        lowest = number.where(at_first, number.all(_WORD(2**63 - 1)))
-        for step in (4, 2, 1):
-            other = lowest.turned(step)
-            lower = Lanes(build, build.icmp_signed("<", other.value, lowest.value))
-            lowest = other.where(lower, lowest)
-        build.store(build.extract_element(lowest.value, _INT(0)), found)
-    return earliest, build.load(found)
-
-
-def load_candidates(builder: ir.IRBuilder, place: ir.Value) -> tuple[Lanes, Lanes, list[ir.Value]]:
-    """Eight candidates from a place on; and their numbers, together, and one by one: the units that compute
-    with vectors have enough to do."""
-    mask, numbers = (1 << NUMBER_BITS) - 1, []
-    for n in range(WIDTH):
-        candidate = builder.load(builder.gep(place, [_WORD(n)]))
-        numbers.append(builder.zext(builder.and_(candidate, _INT(mask)), _WORD))
-    eight = builder.bitcast(place, ir.VectorType(_INT, WIDTH).as_pointer())
-    candidates = Lanes(builder, builder.load(eight, align=4))
-    together = builder.and_(candidates.value, candidates.all(_INT(mask)).value)
-    return candidates, Lanes(builder, builder.zext(together, ir.VectorType(_WORD, WIDTH))), numbers
-
-
-@intrinsic
-def earliest(typingctx, flights, i, span, present, boxes, space, gravity):
-    """The earliest contact of a particle with a `span` of candidates, (first, how many), of `boxes`, if it is
-    sooner than `present`, (time, partner): (time, partner, a bit for each candidate of which nothing is
-    known, since it or the particle may not fall, see `flight.mark_resting`).
-
-    boxes: a named tuple with `candidates` and, under gravity, `resting`.
-    """
-
-    def generate(context, builder, signature, arguments):
-        flights, i, span, present, boxes, space, gravity = arguments
-        start, count = cgutils.unpack_tuple(builder, span)
-        types_of = dict(zip(("boxes", "space", "gravity"), signature.args[4:], strict=True))
-        boxes = fields(builder, types_of["boxes"], boxes)
-        lengths = fields(builder, types_of["space"], space)["lengths"]
-
-        def data(array_type, array):
-            return context.make_array(array_type)(context, builder, array).data
-
-        kinds = dict(zip(types_of["boxes"].fields, types_of["boxes"].types, strict=True))
-        rows = builder.bitcast(data(signature.args[0], flights), _DOUBLE.as_pointer())
-        near = builder.gep(data(kinds["candidates"], boxes["candidates"]), [start])
-        falls = not isinstance(types_of["gravity"], types.NoneType)
-        resting = data(kinds["resting"], boxes["resting"]) if falls else None
-        pull = fields(builder, types_of["gravity"], gravity)["acceleration"] if falls else []
-        one = load_row(builder, rows, i)
-        best, partner = (
-            cgutils.alloca_once_value(builder, one[0].all(part).value)
-            for part in cgutils.unpack_tuple(builder, present)
-        )
-        unknown = cgutils.alloca_once_value(builder, _WORD(0))
-        with cgutils.for_range_slice(builder, _WORD(0), count, _WORD(WIDTH), _WORD) as (first, _):
-            candidates, numbers, indices = load_candidates(builder, builder.gep(near, [first]))
-            others = load_rows(builder, rows, indices)
-            images = images_of(candidates, len(lengths))
-            time = contact_times(one, others, images, lengths, pull)
-            if falls:
-                mask = builder.or_(marks(builder, resting, indices), marks(builder, resting, [i] * WIDTH))
-                lanes = builder.bitcast(mask, ir.VectorType(ir.IntType(1), WIDTH))
-                time = time.all(inf).where(Lanes(builder, lanes), time)
-                mask = builder.shl(builder.zext(mask, _WORD), first)
-                builder.store(builder.or_(builder.load(unknown), mask), unknown)
-            so_far = Lanes(builder, builder.load(best)), Lanes(builder, builder.load(partner))
-            time, numbers = sooner(*so_far, time, numbers)
-            builder.store(time.value, best)
-            builder.store(numbers.value, partner)
-        contact = soonest(*(Lanes(builder, builder.load(part)) for part in (best, partner)))
-        return context.make_tuple(builder, signature.return_type, [*contact, builder.load(unknown)])
-
-    found = types.Tuple((types.float64, types.int64, types.uint64))
-    contact = types.Tuple((types.float64, types.int64))
-    span_type = types.UniTuple(types.uint64, 2)
-    return found(flights, types.uint64, span_type, contact, boxes, space, gravity), generate
-
-
-@intrinsic
-def nearer(typingctx, pages, page, point, offset, square):
-    """A bit for each of the WIDTH points of a page (see `neighbour_lists.page_dtype`) whose distance from a
-    point (3,), once the page is displaced by `offset` (3,), has a square below `square`; in single
-    precision, and the same seen from either point."""
-
-    def generate(context, builder, signature, arguments):
-        pages, page, point, offset, square = arguments
-        kind = signature.args[0]
-        data = context.make_array(kind)(context, builder, pages).data
-        single, byte = ir.FloatType(), ir.IntType(8)
-        vector = ir.VectorType(single, WIDTH)
-        start = builder.gep(
-            builder.bitcast(data, byte.as_pointer()), [builder.mul(page, _WORD(kind.dtype.size))]
-        )
-        centres = builder.bitcast(start, vector.as_pointer())
-        point, offset = (cgutils.unpack_tuple(builder, part) for part in (point, offset))
-        squares = []
-        for k in range(kind.dtype.fields["centres"].type.shape[0]):
-            there = Lanes(builder, builder.load(builder.gep(centres, [_WORD(k)]), align=32))
-            gap = (there - builder.fptrunc(point[k], single)) + builder.fptrunc(offset[k], single)
-            squares.append(gap * gap)
-        total = reduce(Lanes.__add__, squares)
-        near = (total < builder.fptrunc(square, single)).value
-        return builder.zext(builder.bitcast(near, ir.IntType(WIDTH)), _WORD)
-
-    vector = types.UniTuple(types.float64, 3)
-    return types.uint64(pages, types.uint64, vector, vector, types.float64), generate
-
-
-@intrinsic
-def equal(typingctx, numbers, start, number, mask):
-    """A bit for each of 2 WIDTH numbers of an array of 32 bits, from `start` on, that is `number` once only
-    the bits of `mask` are left."""
-
-    def generate(context, builder, signature, arguments):
-        numbers, start, number, mask = arguments
-        data = context.make_array(signature.args[0])(context, builder, numbers).data
-        many = ir.VectorType(_INT, 2 * WIDTH)
-
-        def all_of(word):
-            first = builder.insert_element(
-                ir.Constant(many, ir.Undefined), builder.trunc(word, _INT), _INT(0)
-            )
-            return builder.shuffle_vector(first, first, ir.Constant(many, [0] * (2 * WIDTH)))
-
-        place = builder.bitcast(builder.gep(data, [start]), many.as_pointer())
-        masked = builder.and_(builder.load(place, align=4), all_of(mask))
-        same = builder.icmp_unsigned("==", masked, all_of(number))
-        return builder.zext(builder.bitcast(same, ir.IntType(2 * WIDTH)), _WORD)
-
-    word = types.uint64
-    return word(numbers, word, word, word), generate
-
-
-@intrinsic
-def list_box(typingctx, candidates, count, places, box, image):
-    """Write all places of a box, filled or not, as candidates of an image into `candidates` from number
-    `count` on."""
-
-    def generate(context, builder, signature, arguments):
-        near, count, places, box, image = arguments
-        near = context.make_array(signature.args[0])(context, builder, near).data
-        places = context.make_array(signature.args[2])(context, builder, places).data
-        four = ir.VectorType(_INT, PLACES)
-        place = builder.gep(places, [builder.mul(box, _WORD(PLACES))])
-        numbers = builder.load(builder.bitcast(place, four.as_pointer()), align=4)
-        image = builder.insert_element(ir.Constant(four, ir.Undefined), builder.trunc(image, _INT), _INT(0))
-        images = builder.shuffle_vector(image, image, ir.Constant(four, [0] * PLACES))
-        place = builder.bitcast(builder.gep(near, [count]), four.as_pointer())
-        builder.store(builder.or_(numbers, images), place, align=4)
-        return context.get_dummy_value()
-
-    return types.none(candidates, types.uint64, places, types.uint64, types.uint64), generate
 
 
 @intrinsic

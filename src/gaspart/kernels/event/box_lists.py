@@ -8,8 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gaspart.kernels.compilation import inner_helper, inner_kernel
+from gaspart.kernels.event.simd import PLACES
 from gaspart.kernels.memory import aligned
-from gaspart.kernels.simd import PLACES, WIDTH
+from gaspart.kernels.simd import WIDTH
 
 CANDIDATES = 64  # gathered by a search before they are tested: a bit of a word for each
 _EMPTY = np.uint32(0xFFFFFFFF)

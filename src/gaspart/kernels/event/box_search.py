@@ -11,9 +11,10 @@ from numpy import int64, uint64
 
 from gaspart.kernels.compilation import inner_helper, inner_kernel
 from gaspart.kernels.event.box_lists import CANDIDATES
+from gaspart.kernels.event.simd import IMAGE_BITS, PLACES, earliest, list_box
 from gaspart.kernels.flight import time_of_contact
 from gaspart.kernels.model import BOX_VISITS, NUMBER_BITS, PAIR_TESTS
-from gaspart.kernels.simd import IMAGE_BITS, PLACES, WIDTH, earliest, list_box, lowest
+from gaspart.kernels.simd import WIDTH, lowest
 
 _WIDTH, _PLACES, _FULL = uint64(WIDTH), uint64(PLACES), uint64(CANDIDATES - 3 * PLACES - 1)
 _NUMBER = uint64((1 << NUMBER_BITS) - 1)

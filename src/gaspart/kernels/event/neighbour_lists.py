@@ -16,9 +16,10 @@ import numpy as np
 from numpy import int64, uint32, uint64
 
 from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
+from gaspart.kernels.event.simd import IMAGE_BITS, earliest, equal, nearer
 from gaspart.kernels.memory import aligned
 from gaspart.kernels.model import BOX_FACES, CROSSINGS, NONE, NUMBER_BITS, PAIR_TESTS
-from gaspart.kernels.simd import IMAGE_BITS, WIDTH, earliest, equal, lowest, nearer
+from gaspart.kernels.simd import WIDTH, lowest
 
 NUMBER = (1 << NUMBER_BITS) - 1  # the bits of an entry that name a particle
 _FAR = 1e30  # an empty place of a cell
