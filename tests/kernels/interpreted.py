@@ -16,7 +16,7 @@ from scenes import gas
 import gaspart as gp
 from gaspart.kernels import flight, insertion, model
 from gaspart.kernels.event import box_search as search
-from gaspart.kernels.event import prediction, prefetch
+from gaspart.kernels.event import candidates, prediction, prefetch
 from gaspart.kernels.obstacles import distance
 from gaspart.kernels.step import neighbour_list as step_list
 from gaspart.kernels.step import resolve as step_contacts
@@ -162,7 +162,7 @@ def earliest(flights, i, span, present, boxes, space, gravity):
     best, partner = present
     first, count = (int(part) for part in span)
     for candidate in boxes.candidates[first : first + count]:
-        other, offset = int(candidate & search._NUMBER), search.offset_of(candidate, space)
+        other, offset = candidates.number_of(candidate), candidates.offset_of(candidate, space)
         time = flight.time_of_contact(flights, int(i), other, offset, space, gravity)
         if time < best or (time == best and time < np.inf and other < partner):
             best, partner = time, other

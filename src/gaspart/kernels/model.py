@@ -16,6 +16,7 @@ BOX_FACES = 6  # face codes: 2 axis + side for the container's faces, BOX_FACES 
 WELL_EDGES = 12  # WELL_EDGES more for the edges of the wells at the container's faces,
 WALLS = 18  # and from here on the rows of interior walls
 NUMBER_BITS = 26  # of a particle's number where a search lists it beside its image
+IMAGE_BITS = 2  # above them, for each axis: the image, signed
 HARD, THERMAL, THERMAL_NORMAL, STICKY, VIBRATING, PISTON = range(6)  # kinds of faces
 PISTON_PLACE, PISTON_VELOCITY, PISTON_CLOCK = range(3)  # of Piston.motion
 

@@ -11,38 +11,13 @@ from numpy import int64, uint64
 
 from gaspart.kernels.compilation import inner_helper, inner_kernel
 from gaspart.kernels.event.box_lists import CANDIDATES
-from gaspart.kernels.event.simd import IMAGE_BITS, PLACES, earliest, list_box
+from gaspart.kernels.event.candidates import NUMBER, X, Y, Z, image_bits, offset_of
+from gaspart.kernels.event.simd import PLACES, earliest, list_box
 from gaspart.kernels.flight import time_of_contact
-from gaspart.kernels.model import BOX_VISITS, NUMBER_BITS, PAIR_TESTS
+from gaspart.kernels.model import BOX_VISITS, PAIR_TESTS
 from gaspart.kernels.simd import WIDTH, lowest
 
 _WIDTH, _PLACES, _FULL = uint64(WIDTH), uint64(PLACES), uint64(CANDIDATES - 3 * PLACES - 1)
-_NUMBER = uint64((1 << NUMBER_BITS) - 1)
-_X, _Y, _Z = (uint64(NUMBER_BITS + IMAGE_BITS * k) for k in range(3))
-_IMAGE = uint64((1 << IMAGE_BITS) - 1)
-
-
-@inner_helper
-def image_bits(image, first):
-    """The bits, from `first` on, that stand for the image -1, 0 or 1 of a candidate along an axis."""
-    return (uint64(image) & _IMAGE) << first
-
-
-@inner_helper
-def image_of(candidate, first):
-    """The image that the bits of a candidate from `first` on stand for."""
-    return (int64((candidate >> first) & _IMAGE) ^ 2) - 2
-
-
-@inner_helper
-def offset_of(candidate, space):
-    """(3,) the displacement of the image of a candidate."""
-    lengths = space.lengths
-    return (
-        image_of(candidate, _X) * lengths[0],
-        image_of(candidate, _Y) * lengths[1],
-        image_of(candidate, _Z) * lengths[len(lengths) - 1],
-    )
 
 
 @inner_helper
@@ -58,7 +33,7 @@ def test_candidates(particles, i, count, boxes, space, tally, gravity):
         while unknown:
             candidate = candidates[lowest(unknown)]
             unknown &= unknown - uint64(1)
-            other = candidate & _NUMBER
+            other = candidate & NUMBER
             time = time_of_contact(flights, i, other, offset_of(candidate, space), space, gravity)
             if time < best or (time == best and time < inf and int64(other) < found):
                 best = time
@@ -80,7 +55,7 @@ def list_others(particles, i, count, row, boxes, space, tally, gravity):
         if beside < 0:
             continue
         box = uint64(first + beside)
-        image = image_yz | image_bits(boxes.shift[0, x, step], _X)
+        image = image_yz | image_bits(boxes.shift[0, x, step], X)
         other = uint64(boxes.head[box])
         for _ in range(_PLACES, uint64(boxes.filled[box])):
             boxes.candidates[count] = other | image
@@ -143,13 +118,13 @@ def find_contact(particles, number, boxes, space, tally, crossed, gravity):
         beside_z = neighbour[2, az, dz]
         if beside_z < 0:
             continue
-        image_z = image_bits(shift[2, az, dz], _Z)
+        image_z = image_bits(shift[2, az, dz], Z)
         for dy in range(low_y, end_y):
             beside_y = neighbour[1, ay, dy]
             if beside_y < 0:
                 continue
             row = beside_y + beside_z
-            image = image_z | image_bits(shift[1, ay, dy], _Y)
+            image = image_z | image_bits(shift[1, ay, dy], Y)
             most = uint64(0)
             if within:
                 first = uint64(row + at[0] - 1)
@@ -159,7 +134,7 @@ def find_contact(particles, number, boxes, space, tally, crossed, gravity):
                 for dx in range(low_x, end_x):
                     beside_x = neighbour[0, ax, dx]
                     if beside_x >= 0:
-                        box, image_x = uint64(row + beside_x), image | image_bits(shift[0, ax, dx], _X)
+                        box, image_x = uint64(row + beside_x), image | image_bits(shift[0, ax, dx], X)
                         count, most = list_places(boxes, count, box, image_x, most)
             if most > _PLACES or count > _FULL:
                 line = row, image, low_x, end_x

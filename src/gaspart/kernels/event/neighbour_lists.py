@@ -16,17 +16,14 @@ import numpy as np
 from numpy import int64, uint32, uint64
 
 from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
-from gaspart.kernels.event.simd import IMAGE_BITS, earliest, equal, nearer
+from gaspart.kernels.event.candidates import NUMBER, X, Y, Z, image_bits, number_of, opposite
+from gaspart.kernels.event.simd import earliest, equal, nearer
 from gaspart.kernels.memory import aligned
-from gaspart.kernels.model import BOX_FACES, CROSSINGS, NONE, NUMBER_BITS, PAIR_TESTS
+from gaspart.kernels.model import BOX_FACES, CROSSINGS, NONE, PAIR_TESTS
 from gaspart.kernels.simd import WIDTH, lowest
 
-NUMBER = (1 << NUMBER_BITS) - 1  # the bits of an entry that name a particle
 _FAR = 1e30  # an empty place of a cell
 _STILL = 1e-280  # squared speeds below which a particle does not move
-_X, _Y, _Z = (NUMBER_BITS + IMAGE_BITS * k for k in range(3))
-_IMAGE = (1 << IMAGE_BITS) - 1
-_LOW = (1 << _X) + (1 << _Y) + (1 << _Z)  # the lower bit of the image along each axis
 
 LISTED = np.dtype([("centre", "f8", 3), ("cell", "u4"), ("place", "u4")], align=True)
 """Of a particle: where its list was made, the cell of that point, and its place in it."""
@@ -170,23 +167,17 @@ def strike(lists, i, other):
 
 
 @inner_helper
-def opposite(image):
-    """The image of one particle seen from another, of which `image` is seen from the first."""
-    return image ^ (image & _LOW) << 1
-
-
-@inner_helper
 def list_found(lists, i, page, found, image, both):
     """List particles whose centres are near that of a particle: `found`, a bit for each place of the pages
     from one on, WIDTH each."""
     while found:
         place = lowest(found)
         found &= found - uint64(1)
-        other = int64(lists.pages[page + place // uint64(WIDTH)].members[place % uint64(WIDTH)])
+        other = uint64(lists.pages[page + place // uint64(WIDTH)].members[place % uint64(WIDTH)])
         if other != i:
-            append(lists, i, other + image)
+            append(lists, i, other | image)
             if both:
-                append(lists, other, i + opposite(image))
+                append(lists, other, i | opposite(image))
 
 
 @inner_helper
@@ -219,7 +210,7 @@ def list_row(lists, i, point, first, offset, image, both):
 @inner_kernel
 def list_near(lists, i, lengths, both):
     """List the particles whose centres are near that of a particle. both: also list it in theirs."""
-    centre, neighbour, shift = lists.listed[i].centre, lists.neighbour, lists.shift
+    number, centre, neighbour, shift = uint64(i), lists.listed[i].centre, lists.neighbour, lists.shift
     point = centre[0], centre[1], centre[2]
     ax, ay = uint64(cell_along(lists, 0, point[0])), uint64(cell_along(lists, 1, point[1]))
     az = uint64(cell_along(lists, 2, point[2])) if len(lengths) == 3 else uint64(0)
@@ -233,16 +224,16 @@ def list_near(lists, i, lengths, both):
             if y < 0:
                 continue
             y_offset, z_offset = shift_y * lengths[1], shift_z * lengths[len(lengths) - 1]
-            image = ((shift_y & _IMAGE) << _Y) + ((shift_z & _IMAGE) << _Z)
+            image = image_bits(shift_y, Y) | image_bits(shift_z, Z)
             if within:
                 first = uint64(y + z) + ax - uint64(1)
-                list_row(lists, i, point, first, (0.0, y_offset, z_offset), image, both)
+                list_row(lists, number, point, first, (0.0, y_offset, z_offset), image, both)
                 continue
             for dx in range(uint64(0), uint64(3)):
                 x, shift_x = neighbour[0, ax, dx], shift[0, ax, dx]
                 if x >= 0:
-                    offset, image_x = (shift_x * lengths[0], y_offset, z_offset), (shift_x & _IMAGE) << _X
-                    list_cell(lists, i, point, uint64(x + y + z), offset, image + image_x, both)
+                    offset, image_x = (shift_x * lengths[0], y_offset, z_offset), image_bits(shift_x, X)
+                    list_cell(lists, number, point, uint64(x + y + z), offset, image | image_x, both)
 
 
 @inner_helper
@@ -259,7 +250,7 @@ def renew(flights, i, time, lists, space, tally):
     tally.counts[CROSSINGS] += 1
     row = i * lists.room
     for n in range(row + 1, row + 1 + int64(lists.candidates[row])):
-        strike(lists, listed_number(lists, n), i)
+        strike(lists, number_of(lists.candidates[n]), i)
     clear(lists, i)
     leave_cell(lists, i)
     centre_on(lists, flights, i, time, space.lengths)
@@ -286,12 +277,6 @@ def centre_all(lists, flights, time, lengths):
     """Let the place of each particle at a time be its centre."""
     for i in range(len(flights)):
         centre_on(lists, flights, i, time, lengths)
-
-
-@inner_helper
-def listed_number(lists, n):
-    """The particle of an entry of a list."""
-    return int64(lists.candidates[n] & uint32(NUMBER))
 
 
 @inner_helper

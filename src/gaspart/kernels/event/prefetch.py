@@ -10,7 +10,8 @@ does not come is not used.
 from numpy import int64, uint32, uint64
 
 from gaspart.kernels.compilation import inner_helper
-from gaspart.kernels.event.neighbour_lists import NUMBER, cell_along, listed_number
+from gaspart.kernels.event.candidates import NUMBER, number_of
+from gaspart.kernels.event.neighbour_lists import cell_along
 from gaspart.kernels.event.queue import BUCKET
 from gaspart.kernels.model import BOX_FACES, WELL_EDGES
 from gaspart.kernels.prefetch import TOGETHER, fetch, fetch_numbered, fetch_two
@@ -95,7 +96,7 @@ def fetch_listed(flights, lists, i):
     row = uint64(i) * uint64(lists.room)
     first = row + uint64(1)
     while first <= row + uint64(lists.candidates[row]):
-        fetch_numbered(flights, lists.candidates, first, uint64(NUMBER))
+        fetch_numbered(flights, lists.candidates, first, NUMBER)
         first += uint64(TOGETHER)
 
 
@@ -113,7 +114,7 @@ def fetch_renewal(flights, lists, i, time):
     the cells about the place where it will be."""
     row = i * lists.room
     for n in range(row + 1, row + 1 + int64(lists.candidates[row])):
-        fetch_two(lists.candidates, listed_number(lists, n) * lists.room)
+        fetch_two(lists.candidates, number_of(lists.candidates[n]) * lists.room)
     flight, neighbour = flights[i], lists.neighbour
     late, d = time - flight.clock, len(flight.position)
     ax = cell_along(lists, 0, flight.position[0] + flight.velocity[0] * late)

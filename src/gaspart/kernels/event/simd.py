@@ -15,11 +15,10 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from gaspart.kernels.model import NUMBER_BITS
+from gaspart.kernels.model import IMAGE_BITS, NUMBER_BITS
 from gaspart.kernels.simd import WIDTH, Lanes, fields, mask_of
 
 PLACES = 4  # particles of a box that are listed at once
-IMAGE_BITS = 2  # of a candidate, above the NUMBER_BITS of the particle's number: per axis its image, signed
 _DOUBLE, _INT, _WORD = ir.DoubleType(), ir.IntType(32), ir.IntType(64)
 _STAGES = (  # of a transposition: pairs of rows, shuffled within their quarters, or by quarters
     (1, [0, 8, 2, 10, 4, 12, 6, 14], [1, 9, 3, 11, 5, 13, 7, 15]),
