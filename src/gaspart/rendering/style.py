@@ -44,9 +44,10 @@ twice and five times a power of ten."""
 
 RULES: dict[Any, Any] = {
     "figure.dpi": 100,
-    "figure.constrained_layout.use": True,
+    "figure.constrained_layout.use": False,  # by `new` alone, and not again once the panels have their places
     "figure.constrained_layout.w_pad": 0.08,
     "savefig.dpi": 300,
+    "font.family": "DejaVu Sans",  # matplotlib's own: no list of others is looked through for every text
     "font.size": 8,
     "axes.labelsize": 9,
     "axes.titlesize": 8,
@@ -99,11 +100,13 @@ def new(*groups: Sequence[float]) -> tuple[Figure, list[Axes]]:
     On a page the first groups fill the left column and the others the right one, with columns of about the
     same height; in a journal they all lie above each other. Returns (figure, panels in the order given).
     """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     columns = _columns(groups) if width() > COLUMN else [groups]
     height = max(sum(map(sum, column)) for column in columns)
     figure = Figure(figsize=(width(), height), layout="constrained")
+    FigureCanvasAgg(figure)  # keeps the sizes of texts between the passes of the layout
     outer = figure.add_gridspec(1, len(columns))
     axes: list[Axes] = []
     for n, column in enumerate(columns):
