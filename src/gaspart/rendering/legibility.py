@@ -51,7 +51,7 @@ def place_legends(figure: Figure) -> None:
         if not any(moved):
             break
     layout.execute(figure)  # ticks follow the size of a panel, and the layout follows them
-    figure.set_layout_engine(None)  # after "none" every file would be drawn twice, the first time to lay it out
+    figure.set_layout_engine(None)  # with "none", each file would be drawn twice, first to lay it out
 
 
 def _moved(axis: Axes) -> bool:
