@@ -231,7 +231,13 @@ def read_recipe(path: str | Path) -> Recipe:
     """The recipe of a trajectory, finished or not. Raises SceneError if the file has none."""
     path = Path(path)
     with opened(path) as file:
-        stored = file.__dict__
+        return stored_recipe(file, path)
+
+
+def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
+    """The recipe in the attributes of an open trajectory; messages name its path. Raises SceneError if there is
+    none."""
+    stored = file.__dict__
     try:
         scene = Scene.from_dict(parse_yaml(stored["scene"], f"{path}, attribute scene"), str(path))
         seed = json.loads(stored["seed"])

@@ -32,6 +32,7 @@ from gaspart.trajectory.recipe import (
     check_frames,
     open_netcdf,
     read_recipe,
+    stored_recipe,
     stored_revision,
 )
 from gaspart.trajectory.recording import Progress, Recording
@@ -45,6 +46,8 @@ _REDUCED = {
     "angstrom/picosecond": "length/time",
     "1/picosecond": "1/time",
 }
+_UNUSED = ["spatial", "cell_spatial", "cell_angular", "checksum"]
+"""Variables of a file that `open_trajectory` does not read: names of axes, and what detects damage."""
 _ENERGIES = ("kinetic_energy", "wall_energy", "virial_sum", "dissipated_energy", "vibrations")
 _UNITS = dict.fromkeys(_ENERGIES, "mass length^2/time^2") | {
     "wall_impulse": "mass length/time",
@@ -77,16 +80,20 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     import xarray as xr
 
     path = Path(path)
-    recipe = read_recipe(path)
+    file = open_netcdf(path)
+    try:
+        recipe = stored_recipe(file, path)
+    except SceneError:
+        file.close()
+        raise
     scene = recipe.scene
-    store = xr.backends.NetCDF4DataStore(open_netcdf(path))
-    data = opened = xr.open_dataset(store, decode_times=False)
+    store = xr.backends.NetCDF4DataStore(file)
+    data = opened = xr.open_dataset(store, decode_times=False, drop_variables=_UNUSED)
     attributes = {**data.attrs, "count": scene.count, "dimension": scene.dimension}
     attributes |= {"packing_fraction": scene.packing_fraction, "number_density": scene.number_density}
     if "spins" in data and scene.dimension == 2:
         data["spins"] = data["spins"].isel(spatial=2)
     data = data.isel(spatial=slice(scene.dimension)).set_coords(["time", "radius", "type"])
-    data = data.drop_vars(["cell_spatial", "cell_angular", "checksum"])
     faces = amber.face_names(scene.dimension, len(scene.walls))
     if "piston" in data:
         place, velocity = (data["piston"].isel(motion=n, drop=True) for n in (0, 1))
@@ -95,11 +102,12 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
             for unit, name in (("length", "place"), ("length/time", "velocity"))
         )
         data = data.drop_vars("piston").assign(piston_position=place, piston_velocity=velocity)
-    data = data.assign_coords(spatial=list("xyz"[: scene.dimension]), face=faces)
+    coordinates: dict = {"spatial": list("xyz"[: scene.dimension]), "face": faces}
     if recipe.correlations:
         lags = recipe.correlations.interval * np.arange(data.sizes["lag"])
-        data = data.assign_coords(lag=("lag", lags, {"units": "time"}))
-    data = data.assign_coords(frame=("frame", data["time"].values, {"long_name": "time", "units": "time"}))
+        coordinates["lag"] = ("lag", lags, {"units": "time"})
+    coordinates["frame"] = ("frame", data["time"].values, {"long_name": "time", "units": "time"})
+    data = data.assign_coords(coordinates)  # at once: each call copies everything
     for key, variable in data.variables.items():
         name = str(key)
         unit = variable.attrs.get("units", "1")
