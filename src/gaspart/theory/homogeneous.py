@@ -49,7 +49,7 @@ def homogeneous_gas(
         velocity[j] += change
         hit[i] = hit[j] = True
         made += 2.0 * len(i) / count
-        square = (velocity**2).sum(axis=1)
+        square = dot(velocity, velocity)
         rows.append((made, (square**2).mean() / square.mean() ** 2, 1.0 - hit.mean(), square.mean()))
     return Homogeneous(*np.array(rows).T)
 
@@ -70,7 +70,7 @@ def relaxing_speeds(count: int, times: np.ndarray, hits: float, seed: int = 0) -
             velocity[j] += approach[:, None] * normal
             # A step pairs all, and the mean of max(g.n, 0) over the normals is g / 4.
             now += _step(velocity) / (4.0 * hits)
-        rows.append(np.linalg.norm(velocity, axis=1))
+        rows.append(lengths(velocity))
     return np.array(rows)
 
 
@@ -90,14 +90,14 @@ def rough_discs(
     while made < collisions:
         i, j, along, approach = _meetings(rng, velocity)
         across = np.stack([-along[:, 1], along[:, 0]], axis=1)
-        slip = ((velocity[i] - velocity[j]) * across).sum(axis=1) + spin[i] + spin[j]
+        slip = dot(velocity[i] - velocity[j], across) + spin[i] + spin[j]
         change = 0.5 * (1.0 + normal) * approach[:, None] * along + share * slip[:, None] * across
         velocity[i] -= change
         velocity[j] += change
         spin[i] -= share / inertia * slip
         spin[j] -= share / inertia * slip
         made += 2.0 * len(i) / count
-        ratios.append(2.0 * inertia * (spin**2).mean() / (velocity**2).sum(axis=1).mean())
+        ratios.append(2.0 * inertia * (spin**2).mean() / dot(velocity, velocity).mean())
     return np.array(ratios)
 
 
@@ -108,17 +108,32 @@ def _meetings(
     step = _step(velocity)
     first, second = rng.permutation(len(velocity))[: len(velocity) // 2 * 2].reshape(2, -1)
     normal = directions(rng, len(first), velocity.shape[1])
-    approach = ((velocity[first] - velocity[second]) * normal).sum(axis=1)
+    approach = dot(velocity[first] - velocity[second], normal)
     meets = rng.random(len(first)) < step * approach
     return first[meets], second[meets], normal[meets], approach[meets]
 
 
 def _step(velocity: np.ndarray) -> float:
     """The chance of a collision per speed of approach in one step."""
-    return _SHARE / float(np.sqrt((velocity**2).sum(axis=1).mean()))
+    return _SHARE / float(np.sqrt(dot(velocity, velocity).mean()))
 
 
 def directions(rng: np.random.Generator, count: int, dimension: int) -> np.ndarray:
     """(count, dimension) random unit vectors."""
     vectors = rng.standard_normal((count, dimension))
-    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+    vectors /= lengths(vectors)[:, None]
+    return vectors
+
+
+def lengths(vectors: np.ndarray) -> np.ndarray:
+    """(count,) lengths of vectors (count, dimension)."""
+    return np.sqrt(dot(vectors, vectors))
+
+
+def dot(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """(count,) scalar products of vectors (count, dimension): column by column, which is several times faster
+    than numpy's sum over so short an axis, and rounds alike."""
+    products = first[:, 0] * second[:, 0]
+    for axis in range(1, first.shape[1]):
+        products += first[:, axis] * second[:, axis]
+    return products

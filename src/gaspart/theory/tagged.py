@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gaspart.theory.homogeneous import directions
+from gaspart.theory.homogeneous import directions, dot, lengths
 
 
 @dataclass(frozen=True)
@@ -63,16 +63,17 @@ def _advance(
     speed of approach: no step of time, and no error of one.
     """
     fastest = float(gas.max())
-    flying, left = np.arange(len(place)), np.full(len(place), interval)
+    flying, moving, left = np.arange(len(place)), velocity.copy(), np.full(len(place), interval)
     while flying.size:
-        most = np.linalg.norm(velocity[flying], axis=1) + fastest
+        most = lengths(moving) + fastest
         wait = rng.exponential(1.0 / (4.0 * hits * most))
-        place[flying] += velocity[flying] * np.minimum(wait, left[flying])[:, None]
-        left[flying] -= wait
-        meets = left[flying] > 0.0
-        flying, most = flying[meets], most[meets]
+        place[flying] += moving * np.minimum(wait, left)[:, None]
+        left -= wait
+        meets = left > 0.0
+        flying, moving, left, most = (values[meets] for values in (flying, moving, left, most))
         normal = directions(rng, flying.size, 3)
         along = rng.choice(gas, flying.size) * rng.uniform(-1.0, 1.0, flying.size)
-        approach = (velocity[flying] * normal).sum(axis=1) - along
+        approach = dot(moving, normal) - along
         hit = rng.random(flying.size) * most < approach
-        velocity[flying[hit]] -= share * (approach[:, None] * normal)[hit]
+        moving[hit] -= share * (approach[hit, None] * normal[hit])
+        velocity[flying[hit]] = moving[hit]
