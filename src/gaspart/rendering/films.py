@@ -135,8 +135,10 @@ def _pictures(
     direction: tuple[float, float],
 ) -> Iterator[np.ndarray]:
     """The pictures in order."""
-    frames = trajectory.sizes["frame"]
-    fastest = FASTEST * max(particles_of(trajectory, n).root_mean_square_speed for n in range(frames))
+    fastest = None
+    if isinstance(colour, str) and colour == "speed":  # one scale for all frames
+        frames = range(trajectory.sizes["frame"])
+        fastest = FASTEST * max(particles_of(trajectory, n).root_mean_square_speed for n in frames)
     first, times, path = particles_of(trajectory, 0), trajectory["time"].values, []
     labels = Labels(size, first.parameters, legend_of(first, colour, fastest)) if clock else None
     inner = labels.inner if labels else size

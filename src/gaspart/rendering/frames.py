@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import lru_cache
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
@@ -92,21 +93,28 @@ def particles_of(source: State | Simulation | xr.Dataset, frame: int = -1) -> Dr
     frames = source.sizes["frame"]
     if not -frames <= count_of("frame", frame, least=-frames) < frames:
         raise SceneError("frame", frame, f"the trajectory has {frames}, counted from 0")
-    shown = source.isel(frame=frame)
-    positions = shown["coordinates"].values.astype(float)
-    velocities = shown["velocities"].values.astype(float)
-    scene = Scene.from_dict(parse_yaml(source.attrs["scene"]))
+    names = ("coordinates", "velocities", "cell_lengths", "time", "piston_position")
+    # Of these alone: xarray takes milliseconds for a frame of the whole.
+    shown = {name: source.variables[name][frame].values for name in names if name in source.variables}
+    positions, velocities = shown["coordinates"].astype(float), shown["velocities"].astype(float)
+    scene = _scene(source.attrs["scene"])
     return DrawnParticles(
         positions=positions,
         radii=source["radius"].values,
         species=source["type"].values,
         speeds=np.sqrt((velocities**2).sum(axis=1)),
-        lengths=shown["cell_lengths"].values[: positions.shape[1]],
+        lengths=shown["cell_lengths"][: positions.shape[1]],
         walls=_walls(scene, float(shown["time"]), shown.get("piston_position")),
         periodic=scene.container.periodic,
         masses=per_body(scene, "mass")[: len(source["radius"])].astype(float),
         parameters=parameters_of(scene),
     )
+
+
+@lru_cache(maxsize=1)
+def _scene(text: str) -> Scene:
+    """The scene of a trajectory, which is the same for all its frames."""
+    return Scene.from_dict(parse_yaml(text))
 
 
 def parameters_of(scene: Scene) -> tuple[str, ...]:
@@ -141,7 +149,7 @@ def _of_state(state: State, scene: Scene | None) -> DrawnParticles:
     return DrawnParticles(*looks, state.lengths, walls, periodic, state.masses, parameters)
 
 
-def _walls(scene: Scene, time: float, piston: float | xr.DataArray | None) -> np.ndarray:
+def _walls(scene: Scene, time: float, piston: float | np.ndarray | None) -> np.ndarray:
     """(M, 2, d) the segments, the four sides of each plate, and those of the faces that move. piston: the
     place of one along its axis, if there is one."""
     found: list[tuple] = []
