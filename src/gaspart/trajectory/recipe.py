@@ -235,8 +235,7 @@ def read_recipe(path: str | Path) -> Recipe:
 
 
 def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
-    """The recipe in the attributes of an open trajectory; messages name its path. Raises SceneError if there is
-    none."""
+    """The recipe of an open trajectory, whose path messages name. Raises SceneError if the file has none."""
     stored = file.__dict__
     try:
         scene = Scene.from_dict(parse_yaml(stored["scene"], f"{path}, attribute scene"), str(path))
