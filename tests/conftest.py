@@ -1,6 +1,7 @@
 """How the tests are run: which random scenes hypothesis draws, and how several processes share the work."""
 
 import gc
+import os
 import signal
 
 from hypothesis import settings
@@ -12,6 +13,10 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 # numba makes a million objects where it compiles, which stay: looking for cycles among them takes a tenth of
 # the time.
 gc.set_threshold(1_000_000)
+
+# Of numpy's matrix products: the processes of the tests share the cores, and threads that wait for each other
+# use them up. It must be set before numpy is loaded.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # The same scenes every time, or new ones with `--hypothesis-profile=search`.
 settings.register_profile("fixed", max_examples=50, derandomize=True, deadline=None)
