@@ -14,9 +14,10 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 # the time.
 gc.set_threshold(1_000_000)
 
-# Of numpy's matrix products: the processes of the tests share the cores, and threads that wait for each other
-# use them up. It must be set before numpy is loaded.
+# The processes of the tests share the cores, and threads that spin while they wait for others use them up:
+# numpy's matrix products have none, and those of numba sleep. The libraries read this where they are loaded.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 # The same scenes every time, or new ones with `--hypothesis-profile=search`.
 settings.register_profile("fixed", max_examples=50, derandomize=True, deadline=None)
