@@ -1,5 +1,7 @@
 """How the tests are run: which random scenes hypothesis draws, and how several processes share the work."""
 
+import gc
+import os
 import signal
 
 from hypothesis import settings
@@ -7,6 +9,15 @@ from xdist.scheduler import LoadScopeScheduling
 
 # A shell lets what it runs in the background ignore Ctrl-C, and programs inherit that.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+# numba makes a million objects where it compiles, which stay: looking for cycles among them takes a tenth of
+# the time.
+gc.set_threshold(1_000_000)
+
+# The processes of the tests share the cores, and threads that spin while they wait for others use them up:
+# numpy's matrix products have none, and those of numba sleep. The libraries read this where they are loaded.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 # The same scenes every time, or new ones with `--hypothesis-profile=search`.
 settings.register_profile("fixed", max_examples=50, derandomize=True, deadline=None)

@@ -30,11 +30,15 @@ WRITERS = {
     "out.gsd": [["export", "run.nc", "-o", "out.gsd", "--frame", str(frame)] for frame in (0, 1, 2)],
     "out.data": [["export", "run.nc", "-o", "out.data", "--frame", str(frame)] for frame in (0, 1, 2)],
 }
-# Forked where all is loaded, so that the processes differ by the given times and not by those of imports.
+# Forked where all is loaded, kernels too: the processes differ by the given times, not by those of loading.
 FORKING = """
     import os, sys, time
     import gaspart.trajectory.export, gsd.hoomd, gaspart.analysis.collisions, gaspart.trajectory.run
     from gaspart.cli import main
+
+    gas = gaspart.Scene.from_file("scene.yaml")
+    gaspart.collision_data(gas, 1)
+    gaspart.Simulation(gas, gaspart.EventDriven(), 1).advance(1.0)
 
     def carry_out(line, delay, number):
         for name, stream in (("out", 1), ("err", 2)):
@@ -102,7 +106,7 @@ def play(folder, process, generator):
     output = str(generator.choice(list(WRITERS)))
     alone = [path.read_bytes() for path in folder.glob(f"alone*{Path(output).suffix}")]
     before = {path.name for path in folder.iterdir()}
-    writers = [(line, generator.uniform(0.0, 0.15)) for line in WRITERS[output]]
+    writers = [(line, generator.uniform(0.0, 0.05)) for line in WRITERS[output]]
     process.stdin.write(repr(writers) + "\n")
     process.stdin.flush()
     codes = eval(process.stdout.readline())

@@ -56,13 +56,18 @@ def next_bounce(face, time, height, velocity, pull):
     return hit, velocity - pull * (hit - time)
 
 
-def bounces(sim, count):
-    """Time, face, height and velocity after each of the next events."""
+def thrown(scene):
+    """A simulation that records its events."""
+    sim = gp.Simulation(scene, gp.EventDriven())
     sim.record_events = True
+    return sim
+
+
+def bounces(sim, count):
+    """Time, face, height and velocity after each of the next events of a simulation that records them."""
     before = len(sim.events["time"])
     sim.advance(max_events=count)
     events = {key: array[before:] for key, array in sim.events.items()}
-    sim.record_events = False
     faces = -1 - events["bodies"][:, 1]
     height, velocity = events["positions"][:, 0, 1] - 0.5, events["velocities"][:, 0, 1]
     return list(zip(events["time"], faces, height, velocity, strict=True))
@@ -74,7 +79,7 @@ def test_a_ball_bounces_on_a_vibrating_floor_as_computed_otherwise(face, law):
     """Each bounce from the one before: when it comes, how fast, and how fast the ball leaves. The second
     lot of bounces is many epochs of the clocks later. A bounce within the duration of a contact, 0.01 in
     these units, is elastic."""
-    sim = gp.Simulation(ball({"y_low": face}, law=law, side=1e4), gp.EventDriven())
+    sim = thrown(ball({"y_low": face}, law=law, side=1e4))
     for start in (0.0, 2000.0):
         sim.advance(until=start)
         known = bounces(sim, 25)
@@ -92,7 +97,7 @@ def test_a_ball_bounces_on_a_vibrating_floor_as_computed_otherwise(face, law):
 def test_each_bounce_on_a_small_sawtooth_adds_twice_its_speed():
     """The amplitude is nothing compared with the height, so the ball arrives as fast as it has left."""
     face = gp.Vibrating(1e-10, 1e-9, "sawtooth")
-    known = bounces(gp.Simulation(ball({"y_low": face}, side=1e3), gp.EventDriven()), 60)
+    known = bounces(thrown(ball({"y_low": face}, side=1e3)), 60)
     after = [velocity for _, _, _, velocity in known]
     assert after == pytest.approx(math.sqrt(4.0) + 2.0 * 0.2 * np.arange(1, 61), rel=1e-8)
 
@@ -100,7 +105,7 @@ def test_each_bounce_on_a_small_sawtooth_adds_twice_its_speed():
 @pytest.mark.parametrize("face", [SINE, SAWTOOTH], ids=["sine", "sawtooth"])
 def test_a_ball_between_a_vibrating_and_a_fixed_face(face):
     """Fermi's accelerator without gravity: the ball flies straight from one face to the other."""
-    sim = gp.Simulation(ball({"y_high": face}, 1.0, 0.7, gravity=None, side=4.0), gp.EventDriven())
+    sim = thrown(ball({"y_high": face}, 1.0, 0.7, gravity=None, side=4.0))
     known = bounces(sim, 40)
     for (time, code, height, velocity), (then, other, there, after) in itertools.pairwise(known):
         assert {code, other} == {2, 3} or (code == other == 3)

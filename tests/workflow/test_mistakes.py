@@ -14,9 +14,7 @@ pytestmark = pytest.mark.workflow
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("experiments: {virial_discs: {point: {mass: -1}}}", "experiments.virial_discs.point.mass = -1"),
         ("experiments: {virial_discs: {point: {mass: .nan}}}", "experiments.virial_discs.point.mass = nan"),
-        ("experiments: {virial_discs: {point: {maas: 1}}}", "experiments.virial_discs.point.maas = 1"),
         ("experiments: {virial_discs: {grid: {packing_fraction: []}}}", "must not be empty"),
     ],
 )
