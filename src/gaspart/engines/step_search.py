@@ -65,8 +65,8 @@ def cells_for(engine: TimeStepped, scene: Scene, state: State, radii: np.ndarray
         wraps=np.array(
             [p and side > 1 for side, p in zip(sides, periodic, strict=True)] + [False] * len(rest)
         ),
-        ends=np.empty((engine.threads, layers), np.uint32),
-        cell=np.empty(state.count, np.uint32),
+        ends=np.empty(layers, np.uint32),
+        cell=np.zeros(state.count, np.uint32),
         order=np.empty(len(radii), np.uint32),
         skin=real(skin),
         origin=np.empty((scene.dimension, state.count), real),

@@ -18,10 +18,11 @@ ONE = np.uint32(1)  # whole numbers of this type index arrays without a test for
 class Cells(NamedTuple):
     """per_side (3,) cells along each axis, without the layer around them; inverse (3,) of their widths;
     strides (3,) of the index with that layer, which is two cells deep where a row begins; wraps (3,), whether
-    the first and the last cell along an axis are neighbours; ends (threads, cells), of which the last row
-    holds behind which slot each cell's particles end; cell, order (N,): room for the sort; skin, the distance
-    beyond a contact up to which pairs are listed; origin (d, N), where the particle in each slot was when the
-    list was made; held (N,), see `shared_contacts`; listed (threads,), how long each thread's list is."""
+    the first and the last cell along an axis are neighbours; ends (cells,), behind which slot each cell's
+    particles end; cell (N,), in which cell the particle in each slot was when the list was made; order (N,):
+    room for the sort; skin, the distance beyond a contact up to which pairs are listed; origin (d, N), where
+    the particle in each slot was when the list was made; held (N,), see `shared_contacts`; listed (threads,),
+    how long each thread's list is."""
 
     per_side: np.ndarray
     inverse: np.ndarray
@@ -52,7 +53,7 @@ def locate(x, inverse, per_side, stride, cell):
 @inner_kernel
 def locate_part(particles, part, cells):
     """Find the cells of one thread's slots."""
-    low, high = part_of(part, len(cells.ends), particles.ordinary)
+    low, high = part_of(part, len(cells.listed), particles.ordinary)
     cell = cells.cell[low:high]
     cell[:] = 1
     for k in range(len(particles.positions)):
@@ -61,60 +62,43 @@ def locate_part(particles, part, cells):
 
 
 @inner_kernel
-def count_part(particles, part, cells):
-    """Count into ends[part] how many particles of one thread's slots are in each cell."""
-    low, high = part_of(part, len(cells.ends), particles.ordinary)
-    number = cells.ends[part]
-    number[:] = 0
-    for c in cells.cell[low:high]:
-        number[c] += ONE
+def divide_cells(cells, ordinary, shares):
+    """Divide the cells among threads, shares[n] to shares[n + 1] (threads + 1,) each: with about as many
+    particles, if these are where they were when they were sorted before."""
+    threads = len(cells.listed)
+    shares[0], shares[threads] = 0, len(cells.ends)
+    for part in range(1, threads):
+        first = part_of(part, threads, ordinary)[0]
+        shares[part] = max(shares[part - 1], cells.cell[first] if ordinary > 0 else ONE - ONE)
 
 
 @inner_kernel
-def total_of_part(ends, part):
-    """How many particles one thread's share of the cells holds."""
-    low, high = part_of(part, len(ends), ends.shape[1])
-    total = np.uint32(0)
-    for row in range(len(ends)):
-        for number in ends[row, low:high]:
-            total += number
-    return total
-
-
-@inner_kernel
-def begin_part(ends, part, place):
-    """Replace how many slots each thread has in each cell of one thread's share of them by where these
-    begin. place: how many lie before."""
-    low, high = part_of(part, len(ends), ends.shape[1])
-    if len(ends) == 1:
-        only = ends[0]
-        for cell in range(len(only)):
-            number = only[cell]
-            only[cell] = place
-            place += number
-        return
-    for cell in range(low, high):
-        for row in range(len(ends)):
-            number = ends[row, cell]
-            ends[row, cell] = place
-            place += number
-
-
-@inner_kernel
-def order_part(particles, part, cells):
-    """Put one thread's slots into the order of their cells."""
-    low, high = part_of(part, len(cells.ends), particles.ordinary)
-    ends, order = cells.ends[part], cells.order
-    for slot in range(low, high):
-        cell = cells.cell[slot]
-        order[ends[cell]] = slot
-        ends[cell] += ONE
+def order_part(cells, ordinary, first, end):
+    """Put the slots in the cells from `first` to `end`, one thread's share, into the order of these, in each
+    cell by number; and find where each cell's slots end then."""
+    ends, order, width = cells.ends[first:end], cells.order, np.uint32(end - first)
+    ends[:] = 0
+    place = ONE - ONE
+    for cell in cells.cell[:ordinary]:
+        within = np.uint32(cell - first)  # of a cell before the first, a large number
+        if within < width:
+            ends[within] += ONE
+        place += np.uint32(cell < first)
+    for within in range(width):
+        number = ends[within]
+        ends[within] = place
+        place += number
+    for slot in range(ordinary):
+        within = np.uint32(cells.cell[slot] - first)
+        if within < width:
+            order[ends[within]] = slot
+            ends[within] += ONE
 
 
 @inner_kernel
 def copy_periodic_rows(cells):
     """Give the rows behind periodic faces the slots of those across the container."""
-    ends = cells.ends[len(cells.ends) - 1]
+    ends = cells.ends
     for k in range(1, 3):
         if cells.wraps[k]:
             stride, across = cells.strides[k], cells.strides[k] * cells.per_side[k]

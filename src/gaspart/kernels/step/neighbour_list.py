@@ -76,7 +76,7 @@ def find_stretches(slots, n, cells, stretches):
     same column and in the columns beside it. Those that are not empty are written into stretches (2, m), as
     entries without marks and as the slots behind; how many these are, and how many partners. (To test an
     empty stretch takes as long as eight slots, and no branch can foresee which are empty.)"""
-    ends = cells.ends[len(cells.ends) - 1]
+    ends = cells.ends
     on = np.uint64(ahead(cells, n))
     number = partners = np.uint64(0)
     for slot in range(np.uint64(slots[0]), np.uint64(slots[1])):
@@ -102,7 +102,7 @@ def record_stretches(particles, stretches, stop, cells, space, entries, pairs, f
 def record_across(particles, at, across, cells, space, entries, pairs, filled):
     """`record_near` of the slots in cell `at` with those in the cell `across` the container and in the same
     column of the rows ahead; the numbers of entries then, and of tests."""
-    ends = cells.ends[len(cells.ends) - 1]
+    ends = cells.ends
     tests = np.uint64(0)
     for slot in range(np.uint64(ends[at - 1]), np.uint64(ends[at])):
         for n in range(0 if across > at else 1, rows_ahead(len(space.lengths))):
@@ -158,6 +158,7 @@ def search_pairs(particles, entries, space, step, found, thread):
     only those of which one particle at least had a contact in that pass: for all others nothing has changed
     since they were searched."""
     touching, before, last_pass = found.touching[thread], step.before, particles.last_pass
+    tests = np.uint64(0)  # into `found` at the end: threads that write to one cache line wait for each other
     for low in range(0, len(entries), len(touching)):
         number = np.uint64(0)
         for entry in entries[low : low + len(touching)]:
@@ -166,7 +167,7 @@ def search_pairs(particles, entries, space, step, found, thread):
                 marks &= equals(last_pass, first, np.uint32(before))
                 if marks == 0:
                     continue
-            found.tests[thread] += np.int64(bits(marks))
+            tests += bits(marks)
             marks &= nearer(particles.positions, particles.radii, space, slot, step.dt - step.dt, first)
             if marks != 0:
                 touching[number] = (marks << _MARKS) | (entry & ~(~np.uint64(0) << _MARKS))
@@ -183,3 +184,4 @@ def search_pairs(particles, entries, space, step, found, thread):
             while marks != 0:
                 examine(particles, slot, first + lowest(marks), space, step, found, thread)
                 marks &= marks - ONE
+    found.tests[thread] += np.int64(tests)

@@ -104,7 +104,7 @@ def resolve_part(particles, part, contacts, model, step, tally, cells):
     """Resolve the contacts of one thread. It writes its counts, extremes and bounds only at the end: threads
     that write to one cache line wait for each other."""
     own = np.empty(len(contacts.order), np.uint32)
-    slots = part_of(part, len(cells.ends), particles.positions.shape[1])
+    slots = part_of(part, len(cells.listed), particles.positions.shape[1])
     number = select_own(contacts, slots, cells.held, own)
     counts, extremes, bounds = np.zeros_like(tally.counts), tally.extremes.copy(), particles.bounds.copy()
     particles = StepParticles(
@@ -122,7 +122,7 @@ def resolve_part(particles, part, contacts, model, step, tally, cells):
 @inner_parallel_kernel
 def resolve_parts(particles, contacts, lengths, periodic, numbers, step, tally, cells):
     """`resolve_part` for all parts. numbers: those of the model, and the margin of its space."""
-    for part in prange(len(cells.ends)):
+    for part in prange(len(cells.listed)):
         normal, impulse_share, inset, margin = numbers
         model = StepModel(Space(lengths, periodic, margin), normal, impulse_share, inset, None, None, None)
         resolve_part(particles, part, contacts, model, step, tally, cells)
@@ -131,7 +131,7 @@ def resolve_parts(particles, contacts, lengths, periodic, numbers, step, tally, 
 @inner_allocating_kernel
 def resolve_shared(particles, found, model, step, tally, cells):
     """`resolve_all`, by several threads. found: pairs and their order."""
-    (pairs, order), threads, space = found, len(cells.ends), model.space
+    (pairs, order), threads, space = found, len(cells.listed), model.space
     contacts = Contacts(
         pairs,
         order,

@@ -16,14 +16,12 @@ from gaspart.kernels.compilation import (
 )
 from gaspart.kernels.model import Space
 from gaspart.kernels.step.cells import (
-    begin_part,
     copy,
     copy_periodic_rows,
-    count_part,
+    divide_cells,
     locate_part,
     order_part,
     permute,
-    total_of_part,
 )
 from gaspart.kernels.step.model import DISPLACEMENT, FASTEST, PAIR_TESTS, REBUILDS, Found, StepModel, part_of
 from gaspart.kernels.step.motion import displacement_part, fastest_part, move, move_by_rules
@@ -72,33 +70,15 @@ def move_all(particles, model, dt, tally, threads, rules, cells):
 @inner_parallel_kernel
 def locate_shared(particles, cells):
     """`locate_part` for all parts."""
-    for part in prange(len(cells.ends)):
+    for part in prange(len(cells.listed)):
         locate_part(particles, part, cells)
 
 
 @inner_parallel_kernel
-def count_shared(particles, cells):
-    """`locate_part` and `count_part` for all parts."""
-    for part in prange(len(cells.ends)):
-        locate_part(particles, part, cells)
-        count_part(particles, part, cells)
-
-
-@inner_parallel_kernel
-def begin_shared(ends, totals):
-    """`begin_part` for all parts. totals (threads,): room for how many particles each share of the cells
-    holds."""
-    for part in prange(len(ends)):
-        totals[part] = total_of_part(ends, part)
-    for part in prange(len(ends)):
-        begin_part(ends, part, np.uint32(totals[:part].sum()))
-
-
-@inner_parallel_kernel
-def order_shared(particles, cells):
-    """`order_part` for all parts."""
-    for part in prange(len(cells.ends)):
-        order_part(particles, part, cells)
+def order_shared(cells, ordinary, shares):
+    """`order_part` for all shares (threads + 1,) of the cells."""
+    for part in prange(len(cells.listed)):
+        order_part(cells, ordinary, shares[part], shares[part + 1])
 
 
 @inner_parallel_kernel
@@ -160,15 +140,14 @@ def reorder(values, order, room, threads):
 @inner_allocating_kernel
 def sort_into_cells(particles, cells, threads):
     """Bring the ordinary particles into the order of their cells."""
+    shares = np.empty(len(cells.listed) + 1, np.uint32)
+    divide_cells(cells, particles.ordinary, shares)
     if threads is None:
         locate_part(particles, 0, cells)
-        count_part(particles, 0, cells)
-        begin_part(cells.ends, 0, np.uint32(0))
-        order_part(particles, 0, cells)
+        order_part(cells, particles.ordinary, shares[0], shares[1])
     else:
-        count_shared(particles, cells)
-        begin_shared(cells.ends, np.zeros(len(cells.ends), np.uint32))
-        order_shared(particles, cells)
+        locate_shared(particles, cells)
+        order_shared(cells, particles.ordinary, shares)
     copy_periodic_rows(cells)
     reorder(particles.radii, cells.order, cells.origin[0], threads)
     for k in range(len(particles.positions)):
