@@ -28,11 +28,13 @@ all: setup
 
 setup: .venv/gaspart.stamp
 
+# All packages are listed with their dependencies. If pip looked for these again, it would refuse a release newer than
+# the one listed.
 .venv/environment.stamp: environment.txt
 	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
 		|| { echo "gaspart needs Python 3.11 or later: make PYTHON=/path/to/python3.11" >&2; exit 2; }
 	"$(PYTHON)" -m venv --clear .venv
-	$(PIP) install --require-hashes --requirement environment.txt
+	$(PIP) install --no-deps --require-hashes --requirement environment.txt
 	@touch $@
 
 # Only locked packages are installed: neither dependencies nor build tools come from the network here.
