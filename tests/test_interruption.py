@@ -118,7 +118,8 @@ def test_a_run_ends_with_a_checkpoint_and_says_how_to_continue(folder, engine, n
 @pytest.mark.parametrize("number", SIGNALS, ids=["SIGINT", "SIGTERM"])
 @pytest.mark.parametrize("wait", [0.0, 0.05, 0.5])
 def test_other_commands_end_at_once_during_imports_too(folder, number, wait):
-    process = start("collisions", "scene.yaml", "-o", "met.nc", "--count", "1000000000", folder=folder)
+    # for some seconds; so many more that they need more memory than there is would be refused at once
+    process = start("collisions", "scene.yaml", "-o", "met.nc", "--count", "5000000", folder=folder)
     wait_for(lambda: catches(process))
     time.sleep(wait)
     process.send_signal(number)
