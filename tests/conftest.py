@@ -10,7 +10,7 @@ from xdist.scheduler import LoadScopeScheduling
 # A shell lets what it runs in the background ignore Ctrl-C, and programs inherit that.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# numba makes a million objects where it compiles, which stay: looking for cycles among them takes a tenth of
+# numba makes a million objects where it compiles, which stay: looking for cycles among them takes some 3 % of
 # the time.
 gc.set_threshold(1_000_000)
 
