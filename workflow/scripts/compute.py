@@ -9,6 +9,6 @@ with job(snakemake):
     from gaspart.files import whole_file
 
     run = function(f"gaspart.experiments.jobs.{snakemake.params.job}", "run")
-    dataset = run(snakemake.params.recipe)
+    data = run(snakemake.params.recipe)
     with whole_file(snakemake.output[0]) as partial:
-        dataset.to_netcdf(partial)
+        data.write(partial)

@@ -20,7 +20,7 @@ def dataset(tmp_path):
     for name, settings in containers.items():
         point = grid.Point(name, "single", "fill", common | settings, str(tmp_path), 1)
         (tmp_path / name).mkdir()
-        fill(grid.scene(point), 40, [point.seed(k) for k in range(3)]).to_netcdf(point.path)
+        fill(grid.scene(point), 40, [point.seed(k) for k in range(3)]).write(point.path)
         points.append(point)
     return fill_failures(
         points, {"saturated": ["source", "discs"], "bins": 8, "windows": [10], "dilute": 0.04}

@@ -62,9 +62,9 @@ def test_bins_that_few_replicas_reach_are_left_out():
 
 def point(tmp_path, name, **settings):
     found = grid.Point(name, "single", "fill", settings, str(tmp_path), 5)
-    dataset = fill(grid.scene(found), settings["attempts"], [found.seed(k) for k in range(found.replicas)])
+    data = fill(grid.scene(found), settings["attempts"], [found.seed(k) for k in range(found.replicas)])
     (tmp_path / name).mkdir()
-    dataset.to_netcdf(found.path)
+    data.write(found.path)
     return found
 
 

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from gaspart.engines import TimeStepped
 from gaspart.experiments.jobs.compare import compare
@@ -21,7 +22,7 @@ GAS = Scene(
 def run():
     engines = [TimeStepped(step) for step in (4.0, 0.2, 0.002)]
     with pytest.warns(UserWarning, match="misses"):
-        return compare(GAS, engines, (1,), equilibration=5.0, stretch=0.7, snapshots=3)
+        return xr.Dataset(*compare(GAS, engines, (1,), equilibration=5.0, stretch=0.7, snapshots=3))
 
 
 def test_short_steps_find_every_contact_and_long_ones_do_not(run):

@@ -1,6 +1,7 @@
 """Filling a container: every failure counted, until the attempts are spent."""
 
 import pytest
+import xarray as xr
 
 import gaspart as gp
 from gaspart.experiments.jobs.fill import fill
@@ -9,7 +10,7 @@ from gaspart.experiments.jobs.fill import fill
 @pytest.mark.parametrize("boundary", ["wall", "periodic"])
 def test_failures_are_counted_until_the_attempts_are_spent(boundary):
     scene = gp.Scene(gp.Container((8.0, 8.0), boundary), [gp.Species(60, 0.5)])  # far above saturation
-    found = fill(scene, attempts=300, seeds=[(1,), (2,)])
+    found = xr.Dataset(*fill(scene, attempts=300, seeds=[(1,), (2,)]))
     for replica in range(2):
         placed = int(found["placed"][replica])
         failures = found["failures"][replica].values

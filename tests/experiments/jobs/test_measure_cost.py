@@ -1,6 +1,7 @@
 """Counted work against exact numbers, and what a timing holds."""
 
 import pytest
+import xarray as xr
 
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SceneError, SimulationError
@@ -16,7 +17,7 @@ DISCS = Scene(Container((30.0,) * 2), species=(Species(40, 0.5, speed=1.0),))
 
 
 def measured(engines, scene=GAS, equilibration=0.0, stretch=0.1, repeats=2):
-    return measure_cost(scene, engines, (1, 2), equilibration, stretch, repeats)
+    return xr.Dataset(*measure_cost(scene, engines, (1, 2), equilibration, stretch, repeats))
 
 
 def test_one_box_tests_each_pair_once():
@@ -77,7 +78,7 @@ def test_a_rival_is_timed_with_engines_of_its_own():
     """The same gas, searched in all boxes instead of those within reach: from the same state."""
     near = [TimeStepped(0.01, boxes_per_side=n, passes=1, near_boxes=True) for n in (4, 8)]
     wide = [TimeStepped(0.01, boxes_per_side=n, passes=1) for n in (4, 8)]
-    run = measure_cost(GAS, near, (1, 2), 0.05, 0.1, 2, rival=(GAS, wide))
+    run = xr.Dataset(*measure_cost(GAS, near, (1, 2), 0.05, 0.1, 2, rival=(GAS, wide)))
     assert run.seconds.shape == (4, 2)
     assert run.boxes_per_side.values.tolist() == [4, 8, 4, 8]
     assert len(set(run.collisions.values.tolist())) == 1

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
 from scenes import gas
 
 from gaspart.experiments.jobs.pack import pack
@@ -23,7 +24,7 @@ def test_contacts_of_a_crystal_are_twelve_and_a_loose_sphere_has_none():
 
 def test_packings_by_insertion_and_by_growth():
     scene = gas(3, 120, 0.6)
-    grown, inserted = pack(scene, None, [(1,), (2,)]), pack(scene, 200, [(1,), (2,)])
+    grown, inserted = (xr.Dataset(*pack(scene, attempts, [(1,), (2,)])) for attempts in (None, 200))
     assert (grown["packing_fraction"] > 0.6).all()
     assert (inserted["packing_fraction"] < 0.4).all()
     assert (grown["pressure"] > 1e6).all()

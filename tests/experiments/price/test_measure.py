@@ -32,7 +32,7 @@ def points(tmp_path_factory):
         varied = {**feature, "equilibration": equilibration, "without": list(feature) or ["scene.gravity"]}
         point = grid.Point("price", str(k), "measure_cost", {**common, **small, **varied}, str(root), 3)
         Path(point.path).parent.mkdir(parents=True, exist_ok=True)
-        run(grid.recipe(point)).to_netcdf(point.path)
+        run(grid.recipe(point)).write(point.path)
         made.append(point)
     return made
 
@@ -128,7 +128,7 @@ def test_absent_features_leave_nothing_in_the_machine_code(points, tmp_path):
     gas = {"dimension": 3, "count": 50, "radius": 0.5, "side": 9, "boundary": "periodic", "temperature": 1.0}
     point = grid.Point("price", "plain", "count_instructions", gas, str(tmp_path), 3)
     Path(point.path).parent.mkdir(parents=True)
-    count_instructions(grid.recipe(point)).to_netcdf(point.path)
+    count_instructions(grid.recipe(point)).write(point.path)
     ds = price_of_features([*points, point], {})
     assert ds["kernel"].values.tolist() == ["event", "step"]
     assert ds["stripped"].values.min() > 1000

@@ -11,11 +11,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import xarray as xr
 
 from gaspart.engines import EventDriven, TimeStepped, engine_from_dict
 from gaspart.engines.arrays import EventLog
 from gaspart.errors import SceneError
+from gaspart.experiments.jobs.data import PointData
 from gaspart.scene.scene import Scene
 from gaspart.simulation.simulation import Simulation
 from gaspart.state.state import State
@@ -34,7 +34,7 @@ def compare(
     equilibration: float,
     stretch: float,
     snapshots: int,
-) -> xr.Dataset:
+) -> PointData:
     """Run each of the time-stepped `engines` and the event-driven one from `snapshots` states of the same
     gas, a `stretch` of time apart, each for that time (rounded to whole steps, at least `LEAST_STEPS`).
 
@@ -65,14 +65,14 @@ def compare(
         for name in names
     }
     steps = [max(LEAST_STEPS, round(stretch / engine.time_step)) for engine in engines]
-    return xr.Dataset(
+    return PointData(
         {
             **table,
             "time_step": ("setting", [engine.time_step for engine in engines]),
             "steps": ("setting", steps),
             "refused": ("setting", [int(np.isnan(row[0]["collisions"])) for row in rows]),
         },
-        attrs={
+        attributes={
             "count": scene.count,
             "dimension": scene.dimension,
             "radius": scene.largest_radius,
@@ -144,7 +144,7 @@ def _missed_contacts(scene: Scene, engine: TimeStepped, state: State, steps: int
     }
 
 
-def run(recipe: dict) -> xr.Dataset:
+def run(recipe: dict) -> PointData:
     """`compare` of a point's recipe."""
     engines = map(engine_from_dict, recipe["engines"])
     return compare(

@@ -16,7 +16,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-import xarray as xr
+from gaspart.experiments.jobs.data import PointData
 
 FEATURES = {
     "collapse", "duration", "faces", "gravity", "law", "masses", "motion", "oversized", "piston", "record",
@@ -64,7 +64,7 @@ def stripped(source: str) -> str:
     return ast.unparse(ast.fix_missing_locations(Strip().visit(ast.parse(source))))
 
 
-def run(recipe: dict) -> xr.Dataset:
+def run(recipe: dict) -> PointData:
     """Instructions of each engine's main kernel for the recipe's scene, which should be a plain gas.
 
     Returns over engine: `instructions`, and `stripped`, those without the branches of absent features. Both
@@ -88,8 +88,8 @@ def run(recipe: dict) -> xr.Dataset:
             )
             found.append([int(line) for line in done.stdout.split()])
     own, bare = found
-    return xr.Dataset(
-        {"instructions": ("engine", own), "stripped": ("engine", bare)}, {"engine": list(ENGINES)}
+    return PointData(
+        {"instructions": ("engine", own), "stripped": ("engine", bare)}, {"engine": ("engine", list(ENGINES))}
     )
 
 

@@ -12,9 +12,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import xarray as xr
 
 from gaspart.engines import EventDriven, TimeStepped, engine_from_dict
+from gaspart.experiments.jobs.data import PointData
 from gaspart.scene.scene import Scene
 from gaspart.simulation.simulation import Simulation
 from gaspart.state.state import State
@@ -31,7 +31,7 @@ def echo(
     equilibration: float,
     interval: float,
     samples: int,
-) -> xr.Dataset:
+) -> PointData:
     """Echoes from equilibrium states of a scene, one for each seed.
 
     Returns over ``seed`` and ``sample``, of runs of 1 ... `samples` intervals: ``collisions`` per particle
@@ -61,9 +61,9 @@ def echo(
             found["collisions"][n, k] = 2.0 * there.tally.collisions / state.count
             found["echo"][n, k] = _distance(start, back.state)
             found["divergence"][n, k] = _distance(pair[0].state, pair[1].state)
-    return xr.Dataset(
+    return PointData(
         {name: (("seed", "sample"), values) for name, values in found.items()},
-        attrs={
+        attributes={
             "count": scene.count,
             "dimension": scene.dimension,
             "side": max(scene.container.lengths) / (2.0 * scene.largest_radius),
@@ -89,7 +89,7 @@ def _distance(one: State, other: State) -> float:
     return float(np.sqrt(apart.mean()) / (2.0 * one.radii.max()))
 
 
-def run(recipe: dict) -> xr.Dataset:
+def run(recipe: dict) -> PointData:
     """`echo` of a point's recipe."""
     return echo(
         Scene.from_dict(recipe["scene"]),

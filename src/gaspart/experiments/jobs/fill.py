@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import xarray as xr
 
+from gaspart.experiments.jobs.data import PointData
 from gaspart.kernels.insertion import Task, place
 from gaspart.scene.scene import Scene
 from gaspart.state.boxes import make_boxes, sides_for
@@ -14,7 +14,7 @@ from gaspart.state.random import stream
 CHUNK = 1 << 16
 
 
-def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> xr.Dataset:
+def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> PointData:
     """Offer the container ``attempts`` random positions for each particle of the scene's one species; once
     per seed.
 
@@ -26,13 +26,13 @@ def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> xr.Datase
     Attributes: packing_fraction_per_body, side, radius.
     """
     runs = [_fill_once(scene, attempts * scene.count, seed) for seed in seeds]
-    return xr.Dataset(
+    return PointData(
         {
             "failures": (("replica", "body"), np.array([failures for failures, _ in runs]), {"units": "1"}),
             "placed": ("replica", np.array([(failures >= 0).sum() for failures, _ in runs]), {"units": "1"}),
             "attempts": ("replica", np.array([used for _, used in runs]), {"units": "1"}),
         },
-        attrs={
+        attributes={
             "packing_fraction_per_body": scene.packing_fraction / scene.count,
             "side": list(scene.container.lengths),
             "radius": scene.largest_radius,
@@ -62,7 +62,7 @@ def insert(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarr
     return placed.failures, used, placed.positions[:number]
 
 
-def run(recipe: dict) -> xr.Dataset:
+def run(recipe: dict) -> PointData:
     """`fill` of a point's recipe."""
     return fill(
         Scene.from_dict(recipe["scene"]), recipe["attempts"], [tuple(seed) for seed in recipe["seeds"]]

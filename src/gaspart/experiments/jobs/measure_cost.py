@@ -12,11 +12,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import xarray as xr
 
 from gaspart.engines import EventDriven, TimeStepped, engine_from_dict
 from gaspart.engines.arrays import EventLog
 from gaspart.errors import SimulationError
+from gaspart.experiments.jobs.data import PointData
 from gaspart.scene.scene import Scene
 from gaspart.simulation.simulation import Simulation
 from gaspart.state.initial import initial_state
@@ -35,7 +35,7 @@ def measure_cost(
     repeats: int,
     record: bool = False,
     rival: tuple[Scene, Sequence[EventDriven | TimeStepped]] | None = None,
-) -> xr.Dataset:
+) -> PointData:
     """Time `repeats` times, with each of the engines, the same stretch of simulated time of the same gas.
 
     equilibration, stretch: in the scene's time; record: write down all events, and forget them; rival: a
@@ -67,14 +67,14 @@ def measure_cost(
                 raise SimulationError(f"the same run twice: counted {counts[n]}, then {counted}")
     columns = {name: ("partition", np.array([counted[name] for counted in counts])) for name in counts[0]}
     sides = [_sides(engine, one.dimension) for one, _, engine, _ in runs]
-    return xr.Dataset(
+    return PointData(
         {
             "seconds": (("partition", "repeat"), seconds, {"units": "s"}),
             "boxes": ("partition", np.array([int(np.prod(side)) for side in sides])),
             "boxes_per_side": ("partition", np.array([side[0] for side in sides])),
             **columns,
         },
-        attrs={
+        attributes={
             "count": scene.count,
             "dimension": scene.dimension,
             "radius": scene.largest_radius,
@@ -129,7 +129,7 @@ def _sides(engine: EventDriven | TimeStepped, dimension: int) -> tuple[int, ...]
     return given if isinstance(given, tuple) else (given,) * dimension
 
 
-def run(recipe: dict) -> xr.Dataset:
+def run(recipe: dict) -> PointData:
     """`measure_cost` of a point's recipe."""
     return measure_cost(
         *_scene_and_engines(recipe),

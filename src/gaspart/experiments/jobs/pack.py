@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import xarray as xr
 
+from gaspart.experiments.jobs.data import PointData
 from gaspart.experiments.jobs.fill import insert
 from gaspart.scene.scene import Scene
 from gaspart.state.compression import compress
@@ -13,7 +13,7 @@ GROWTH = 2.0**-6
 """Rate of growth towards jamming: slow enough to find all contacts, too fast to crystallise."""
 
 
-def pack(scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]]) -> xr.Dataset:
+def pack(scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]]) -> PointData:
     """Pack a scene of one species, once per seed: offer the container `attempts` random positions for each
     particle, or, with None, let the particles grow until they jam.
 
@@ -35,7 +35,7 @@ def pack(scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]]) -> xr
             scales.append(1.0)
             fractions.append(scene.packing_fraction * len(places) / scene.count)
             pressures.append(np.nan)
-    return xr.Dataset(
+    return PointData(
         {
             "position": (("replica", "body", "axis"), positions, {"units": "length"}),
             "radius": ("replica", scene.largest_radius * np.array(scales), {"units": "length"}),
@@ -46,7 +46,7 @@ def pack(scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]]) -> xr
     )
 
 
-def run(recipe: dict) -> xr.Dataset:
+def run(recipe: dict) -> PointData:
     """`pack` of a point's recipe."""
     return pack(
         Scene.from_dict(recipe["scene"]), recipe["attempts"], [tuple(seed) for seed in recipe["seeds"]]

@@ -1,0 +1,43 @@
+"""What a job of a grid point finds, and its file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+import numpy as np
+
+_NONE: Mapping = MappingProxyType({})
+
+
+class PointData(NamedTuple):
+    """Variables, coordinates and attributes, as xarray.Dataset takes them: `xr.Dataset(*data)`.
+
+    variables, coordinates: by name, their dimensions (one name, or several), values (numbers or words), and
+    attributes if there are any. Jobs neither make nor write data sets of xarray, which would take as long to
+    load as all else at the start of a job; timings, beside which nothing may run, are 170 of these.
+    """
+
+    variables: Mapping[str, tuple]
+    coordinates: Mapping[str, tuple] = _NONE
+    attributes: Mapping[str, Any] = _NONE
+
+    def write(self, path: str | Path) -> None:
+        """Write a netCDF file that xarray.load_dataset reads. May raise OSError."""
+        import netCDF4
+
+        with netCDF4.Dataset(path, "w") as file:
+            for name, (over, values, *attributes) in {**self.variables, **self.coordinates}.items():
+                array = np.asarray(values)
+                dimensions = (over,) if isinstance(over, str) else over
+                for dimension, size in zip(dimensions, array.shape, strict=True):
+                    if dimension not in file.dimensions:
+                        file.createDimension(dimension, size)
+                words = array.dtype.kind == "U"
+                variable = file.createVariable(name, str if words else array.dtype, dimensions)
+                variable[:] = array.astype(object) if words else array
+                for attribute in attributes:
+                    variable.setncatts(attribute)
+            file.setncatts(self.attributes)
