@@ -11,6 +11,7 @@ rule measure:
         "results/logs/measure/{figure}.log",
     benchmark:
         "results/benchmarks/measure/{figure}.tsv"
+    priority: 1  # as points have: the longest takes half a minute, beside which timings would have to wait
     conda:
         "../envs/gaspart.yaml"
     threads: 1

@@ -1,12 +1,7 @@
 """Compile the kernels that the task on the command line needs."""
 
-import gc
 import sys
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "src"))
+from _job import function
 
-from gaspart.planning.variants import warm
-
-gc.set_threshold(1_000_000)  # what the compiler makes stays until the end: some 3 % of its time
-warm(sys.argv[1])
+function("gaspart.planning.variants", "warm")(sys.argv[1])
