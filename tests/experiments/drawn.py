@@ -12,20 +12,17 @@ HIGHEST = 1.8
 """Of a figure on a page: its height over its width."""
 
 
-def draw(function, dataset, folder):
-    """The figure of a data set as drawn for a page, saved once; legible there and in a journal's column."""
-    drawn = {}
+def draw(function, dataset):
+    """The figure of a data set as drawn for a page; legible there and in a journal's column."""
     for layout in reversed(style.LAYOUTS):
         with style.applied(layout):
-            figure = drawn[layout] = function(dataset)
+            figure = function(dataset)
             style.finish(figure)
         found = flaws(figure)
         assert not found, f"{layout}: {found}"
         assert figure.get_figwidth() == style.LAYOUTS[layout]
     width, height = figure.get_size_inches()
     assert height <= HIGHEST * width
-    with style.applied():
-        style.save(figure, folder / "figure.svg")
     return figure
 
 

@@ -6,9 +6,9 @@ from gaspart.experiments.adsorption.figure import adsorption
 from gaspart.theory.adsorption import flux_density, scaled_particle_activity, well_ratio
 
 
-def test_the_panels_show_the_columns_of_the_data_set(tmp_path):
+def test_the_panels_show_the_columns_of_the_data_set():
     ds = varied(walls(), "depth", "width")
-    ratios, deviations, lengths, layer, coverage, leaving = draw(adsorption, ds, tmp_path).axes
+    ratios, deviations, lengths, layer, coverage, leaving = draw(adsorption, ds).axes
     wells = [ds.isel(point=slice(0, 4)), ds.isel(point=slice(4, 8))]
     tops, bottoms = [], []
     for kind, row in enumerate(wells):

@@ -19,7 +19,7 @@ def rows(**values):
     })  # fmt: skip
 
 
-def test_displacements_and_velocities_are_drawn_with_their_deviations(tmp_path):
+def test_displacements_and_velocities_are_drawn_with_their_deviations():
     time = np.linspace(0.0, 8.0, 81) * np.array([[1.0], [0.9]])
     ds = rows(
         time=(("point", "lag"), time),
@@ -33,7 +33,7 @@ def test_displacements_and_velocities_are_drawn_with_their_deviations(tmp_path):
     ds = varied(ds, "time", "mass", "gas_mass")
     for name in ("time", "msd", "msd_error", "vacf", "vacf_error", "expected_msd", "expected_vacf"):
         ds[name][1, 70:] = np.nan  # a shorter run has fewer lags
-    msd, ratio, vacf, difference = draw(brownian.brownian_msd, ds, tmp_path).axes
+    msd, ratio, vacf, difference = draw(brownian.brownian_msd, ds).axes
     first, second = ds.isel(point=0), ds.isel(point=1, lag=slice(70))
     shows(
         msd, "", "Delta r", column(first, "$M=100\\,m$", "time", "msd", some=True),
@@ -62,12 +62,12 @@ def test_displacements_and_velocities_are_drawn_with_their_deviations(tmp_path):
     obeys(lines(vacf)[0], lambda t: np.exp(-t))
 
 
-def test_paths_are_drawn_from_above_and_start_in_the_middle(tmp_path):
+def test_paths_are_drawn_from_above_and_start_in_the_middle():
     way = np.cumsum(np.random.default_rng(1).standard_normal((2, 4, 50, 3)), axis=2)
     way -= way[:, :, :1]
     way[1, :, 40:] = np.nan
     ds = rows(way=(("point", "path", "frame", "axis"), way))
-    figure = draw(brownian.brownian_paths, ds, tmp_path)
+    figure = draw(brownian.brownian_paths, ds)
     for index, axis in enumerate(figure.axes):
         paths = [one for one in lines(axis) if len(one.get_xdata()) > 1]
         for path, one in zip(way[index], paths, strict=True):

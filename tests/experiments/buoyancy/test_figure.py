@@ -6,9 +6,9 @@ from gaspart.experiments.buoyancy.figure import buoyancy
 from gaspart.theory.buoyancy import displaced_area
 
 
-def test_forces_radii_and_heights_are_drawn_with_theory(tmp_path):
+def test_forces_radii_and_heights_are_drawn_with_theory():
     ds = varied(measurement())
-    force, radius, height = draw(buoyancy, ds, tmp_path).axes
+    force, radius, height = draw(buoyancy, ds).axes
     eta = "fixed_packing_fraction"
     shows(
         force, "", "mass displaced", column(ds, "from the force", eta, "fixed_force"),
@@ -35,9 +35,9 @@ def test_forces_radii_and_heights_are_drawn_with_theory(tmp_path):
     assert len(fluctuations) == ds.sizes["free"]
 
 
-def test_the_source_s_discs_have_a_panel_if_there_are_any(tmp_path):
+def test_the_source_s_discs_have_a_panel_if_there_are_any():
     ds = varied(with_source(measurement()))
-    *others, own = draw(buoyancy, ds, tmp_path).axes
+    *others, own = draw(buoyancy, ds).axes
     assert len(others) == 3
     relative = ds["source_density"] / ds.attrs["source_density"]
     shows(

@@ -16,9 +16,9 @@ def running(row, eta, dimension, label):
     return Points(label, time, row["running"] / enskog, row["running_error"] / enskog, some=True)
 
 
-def test_spheres(tmp_path):
+def test_spheres():
     ds = varied(spheres(), *KEPT)
-    msd, slope, density, size = draw(displacement.msd_spheres, ds, tmp_path).axes
+    msd, slope, density, size = draw(displacement.msd_spheres, ds).axes
     long, fine = ds.isel(point=4), ds.isel(point=5)
     shows(
         msd, "time", "Delta", column(fine, r"$\eta=0.3$", "time", "msd", some=True),
@@ -56,9 +56,9 @@ def test_spheres(tmp_path):
     assert [one.get_text() for one in size.texts[:3]] == ["256", "864", "2048"]
 
 
-def test_discs(tmp_path):
+def test_discs():
     ds = varied(discs(), *KEPT)
-    msd, slope, logarithm = draw(displacement.msd_discs, ds, tmp_path).axes
+    msd, slope, logarithm = draw(displacement.msd_discs, ds).axes
     dilute, long, fine = (ds.isel(point=k) for k in range(3))
     shows(
         msd, "time", "Delta", column(fine, r"$\eta=0.3$", "time", "msd", some=True),
@@ -78,10 +78,10 @@ def test_discs(tmp_path):
     follows(line(logarithm, "this container"), known["packing_fraction"], known["slope_expected"])
 
 
-def test_no_series_of_sizes_leaves_its_panel_empty(tmp_path):
+def test_no_series_of_sizes_leaves_its_panel_empty():
     ds = spheres()
     ds["in_series"] = ("point", np.zeros(ds.sizes["point"], dtype=bool))
-    assert not draw(displacement.msd_spheres, ds, tmp_path).axes[3].axison
+    assert not draw(displacement.msd_spheres, ds).axes[3].axison
 
 
 @pytest.mark.parametrize("data", [discs, spheres])

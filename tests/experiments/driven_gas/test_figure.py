@@ -5,9 +5,9 @@ from gaspart import theory
 from gaspart.experiments.driven_gas import figure
 
 
-def test_temperatures_and_cumulants(tmp_path):
+def test_temperatures_and_cumulants():
     ds = driven(1.02, 0.003)
-    upper, lower = draw(figure.driven_gas, ds, tmp_path).axes
+    upper, lower = draw(figure.driven_gas, ds).axes
     temperatures, cumulants = [], []
     for dimension, name in ((2, "discs"), (3, "spheres")):
         own = ds.isel(gas=(ds["dimension"] == dimension).values)

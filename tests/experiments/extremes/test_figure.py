@@ -20,7 +20,7 @@ def table(axis):
     return texts, colours
 
 
-def test_each_cell_shows_an_error_or_the_reason_of_a_refusal(tmp_path):
+def test_each_cell_shows_an_error_or_the_reason_of_a_refusal():
     ds = extremes_data()
     ds["energy"][:] = [[1e-15, 1e-9], [0.0, 1.0]]
     ds["momentum"][:] = [[np.nan, 1e-8], [0.0, 1.0]]
@@ -30,7 +30,7 @@ def test_each_cell_shows_an_error_or_the_reason_of_a_refusal(tmp_path):
     ds["verdict"][:] = [["passes", "passes"], ["passes", "refused"]]
     ds["message"] = ds["message"].astype("U60")
     ds["message"][1, 1] = "speed = 1e300: must be 0 or of a size from 1e-60 to 1e+60"
-    axis = draw(stability_extremes, ds, tmp_path).axes[0]
+    axis = draw(stability_extremes, ds).axes[0]
     texts, colours = table(axis)
     assert len(texts) == 4 * 2 * 2
     assert [texts[name, 0, 0] for name in BLOCKS] == ["$10^{-15}$", "·", "0", "0"]
@@ -47,8 +47,8 @@ def test_each_cell_shows_an_error_or_the_reason_of_a_refusal(tmp_path):
     assert [line.get_ydata()[0] for line in axis.lines] == [1]  # between the two groups
 
 
-def test_a_failure_is_named(tmp_path):
-    texts, _ = table(draw(stability_extremes, extremes_data(verdict="fails"), tmp_path).axes[0])
+def test_a_failure_is_named():
+    texts, _ = table(draw(stability_extremes, extremes_data(verdict="fails")).axes[0])
     assert texts["energy", 0, 0] == texts["missed", 0, 0] == "fails"
 
 

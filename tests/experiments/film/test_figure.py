@@ -5,9 +5,9 @@ from experiments.film.data import slits
 from gaspart.experiments.film.figure import thin_film
 
 
-def test_density_contact_theorem_and_solvation_pressure_are_drawn(tmp_path):
+def test_density_contact_theorem_and_solvation_pressure_are_drawn():
     ds = varied(slits(), "place")
-    profile, contact, solvation = draw(thin_film, ds, tmp_path).axes
+    profile, contact, solvation = draw(thin_film, ds).axes
     widest = ds.isel(width=[-1])
     shows(
         profile, "contact", "density", column(ds, "measured, $H=12", "place", "density"),

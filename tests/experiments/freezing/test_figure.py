@@ -16,10 +16,10 @@ def filled_and_hollow(start, label, name):
     return [column(part, label, ETA, name) for part, label in parts if part.sizes[ETA]]
 
 
-def test_discs_with_plateau_order_and_structure(tmp_path):
+def test_discs_with_plateau_order_and_structure():
     ds = varied(discs(), "disagreement")
     ds["g"] = ds["g"] * np.linspace(0.5, 1.5, 20)
-    pressure, order, g, *pictures = draw(freezing.freezing_discs, ds, tmp_path).axes
+    pressure, order, g, *pictures = draw(freezing.freezing_discs, ds).axes
     starts = [ds.sel(start=name) for name in ds["start"].values]
     names = [f"from the {name}" for name in ds["start"].values]
     shows(
@@ -46,17 +46,17 @@ def test_discs_with_plateau_order_and_structure(tmp_path):
         assert np.asarray(mesh.get_array()) == pytest.approx(at["structure_factor"].values.T)
 
 
-def test_it_draws_discs_from_one_side_and_without_a_plateau(tmp_path):
+def test_it_draws_discs_from_one_side_and_without_a_plateau():
     data = discs().isel(start=[0])
     data["plateau"] = data["plateau"] * np.nan
-    pressure = draw(freezing.freezing_discs, data, tmp_path).axes[0]
+    pressure = draw(freezing.freezing_discs, data).axes[0]
     shows(pressure, "", "pressure", column(data.isel(start=0), "from the", ETA, "pressure"))
     assert all(not str(one.get_label()).startswith("_") for one in lines(pressure))
 
 
-def test_spheres_and_the_slab(tmp_path):
+def test_spheres_and_the_slab():
     ds = varied(spheres(), "disagreement")
-    pressure, residual, order, slab, density = draw(freezing.freezing_spheres, ds, tmp_path).axes
+    pressure, residual, order, slab, density = draw(freezing.freezing_spheres, ds).axes
     starts = [ds.sel(start=name).dropna(ETA, subset=["pressure"]) for name in ds["start"].values]
     names = [f"from the {name}" for name in ds["start"].values]
     labelled = zip(starts, names, strict=True)
@@ -85,9 +85,9 @@ def test_spheres_and_the_slab(tmp_path):
         follows(lines(density)[half], ds["position"], ds["slab_density"][half])
 
 
-def test_points_out_of_equilibrium_are_hollow(tmp_path):
+def test_points_out_of_equilibrium_are_hollow():
     data = discs()
     data["disagreement"] = data["disagreement"] + 5.0
-    figure = draw(freezing.freezing_discs, data, tmp_path)
+    figure = draw(freezing.freezing_discs, data)
     faces = {line.get_markerfacecolor() for line in figure.axes[0].lines if line.get_marker() in ("o", "s")}
     assert faces == {"white"}

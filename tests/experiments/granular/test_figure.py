@@ -7,9 +7,9 @@ from gaspart import theory
 from gaspart.experiments.granular import figure as granular
 
 
-def test_temperatures_differences_and_steady_ratios(tmp_path):
+def test_temperatures_differences_and_steady_ratios():
     ds = varied(rough(), "equilibrium_inertia", "cooling_inertia", "inertia", "wall_inertia")
-    both, difference, ratio, walls = draw(granular.equipartition, ds, tmp_path).axes
+    both, difference, ratio, walls = draw(granular.equipartition, ds).axes
     temperatures, differences, ratios = [], [], []
     for k in range(ds.sizes["start"]):
         row = ds.isel(start=k)
@@ -43,9 +43,9 @@ def test_temperatures_differences_and_steady_ratios(tmp_path):
     obeys(line(ratio, "q=0.5"), lambda x: np.array([theory.rough_ratio(0.5, e) for e in x]))
 
 
-def test_cooling_rates_clusters_and_their_picture(tmp_path):
+def test_cooling_rates_clusters_and_their_picture():
     ds = varied(inelastic(), "cluster_restitution")
-    haff, rates, leaving, picture = draw(granular.cooling, ds, tmp_path).axes
+    haff, rates, leaving, picture = draw(granular.cooling, ds).axes
     gases = []
     for dimension, name in ((2, "discs"), (3, "spheres")):
         own = ds.isel(gas=(ds["dimension"] == dimension).values).sortby("restitution", ascending=False)

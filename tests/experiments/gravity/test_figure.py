@@ -26,9 +26,9 @@ def percent(x, ratio, error):
     return Points(None, x, 100.0 * (ratio - 1.0), 100.0 * error, some=True)
 
 
-def test_profiles_and_the_equation_of_state_of_a_column(tmp_path):
+def test_profiles_and_the_equation_of_state_of_a_column():
     ds = varied(with_source(columns()))
-    density, ratio, temperature, state, deviation, *panels = draw(gravity.barometric, ds, tmp_path).axes
+    density, ratio, temperature, state, deviation, *panels = draw(gravity.barometric, ds).axes
     dilute, dense, sample, large = (ds.isel(point=n) for n in range(4))
     shows(density, "", "density", profile(dilute, 0, "dilute"), profile(dense, 0, "dense"))
     theory = (ideal(dilute, 0), dense["hydrostatic"].isel(species=0))
@@ -55,14 +55,14 @@ def test_profiles_and_the_equation_of_state_of_a_column(tmp_path):
     shows(panels[1], "source's column", "T(z)", *(percent(*values) for values in ratios))
 
 
-def test_without_the_source_s_columns_there_are_no_panels_for_them(tmp_path):
-    assert len(draw(gravity.barometric, varied(columns()), tmp_path).axes) == 5
-    assert len(draw(gravity.separation, varied(columns(2)), tmp_path).axes) == 4
+def test_without_the_source_s_columns_there_are_no_panels_for_them():
+    assert len(draw(gravity.barometric, varied(columns())).axes) == 5
+    assert len(draw(gravity.separation, varied(columns(2))).axes) == 4
 
 
-def test_densities_of_two_species_and_their_ratio(tmp_path):
+def test_densities_of_two_species_and_their_ratio():
     ds = varied(with_source(columns(2)))
-    *densities, ratio, residual, shares = draw(gravity.separation, ds, tmp_path).axes
+    *densities, ratio, residual, shares = draw(gravity.separation, ds).axes
     for n, axis in enumerate(densities):
         row = ds.isel(point=n)
         shows(axis, "", "density", profile(row, 0, "light"), profile(row, 1, "heavy"))
@@ -94,9 +94,9 @@ def test_densities_of_two_species_and_their_ratio(tmp_path):
     assert list(steps.get_data().values) == ds.attrs["source_shares"]
 
 
-def test_heat_capacities_from_slopes_and_from_fluctuations(tmp_path):
+def test_heat_capacities_from_slopes_and_from_fluctuations():
     ds = varied(capacities())
-    capacity, deviation = draw(gravity.heat_capacity, ds, tmp_path).axes
+    capacity, deviation = draw(gravity.heat_capacity, ds).axes
     values, deviations = [], []
     for name, x, label in (("slope", "x", "dE/dT"), ("fluctuation", "run_x", "fluctuations")):
         expected = ds[f"{name}_expected"]

@@ -6,9 +6,9 @@ from gaspart.experiments.heat import figure as heat
 from gaspart.theory.heat import conducting_slab
 
 
-def test_fluxes_and_profiles_of_a_gas(tmp_path):
+def test_fluxes_and_profiles_of_a_gas():
     ds = varied(gases(), "knudsen", "number")
-    flux, share, start, warm, deviation, dense = draw(heat.heat_conduction_gas, ds, tmp_path).axes
+    flux, share, start, warm, deviation, dense = draw(heat.heat_conduction_gas, ds).axes
     row = ds.isel(point=0)
     all_components = Points("all components", [row["number"]], [1e3 * row["flux"]], [1e3 * row["flux_error"]])
     nothing = Points("normal only", [], [], [])
@@ -49,16 +49,16 @@ def test_fluxes_and_profiles_of_a_gas(tmp_path):
     follows(lines(dense)[0], position, row["slab_density"] / number)
 
 
-def test_a_noisy_density_is_not_drawn(tmp_path):
+def test_a_noisy_density_is_not_drawn():
     ds = gases()
     ds["density_error"] = 0.05 * ds["density"]
-    dense = draw(heat.heat_conduction_gas, ds, tmp_path).axes[-1]
+    dense = draw(heat.heat_conduction_gas, ds).axes[-1]
     assert not dense.containers and lines(dense)
 
 
-def test_temperatures_and_energies_of_a_metal(tmp_path):
+def test_temperatures_and_energies_of_a_metal():
     ds = varied(metals(), "hot", "cold")
-    profiles, energy, deviation = draw(heat.heat_conduction_metal, ds, tmp_path).axes
+    profiles, energy, deviation = draw(heat.heat_conduction_metal, ds).axes
     row = ds.isel(point=0)
     shows(
         profiles, "position", "electrons", column(row, "electrons", "position", "electrons"),

@@ -27,10 +27,10 @@ def dataset(tmp_path):
     )
 
 
-def test_failures_and_the_approach_to_saturation_are_drawn(dataset, tmp_path):
+def test_failures_and_the_approach_to_saturation_are_drawn(dataset):
     kept = ("side_over_diameter", "packing_fraction")
     ds = varied(dataset, *kept)
-    figure = draw(insertion.fill_failures, ds, tmp_path)
+    figure = draw(insertion.fill_failures, ds)
     failures, dilute, filled = figure.axes
     source, discs, thin = (ds.isel(container=k) for k in range(3))
     names = [insertion.SERIES[key] for key in ((3, "centres_to_walls"), (2, "periodic"), (3, "periodic"))]

@@ -7,7 +7,7 @@ from experiments.packing.data import packings
 from gaspart.experiments.packing import figure as packing
 
 
-def test_the_first_and_the_last_packing_are_drawn_with_their_packing_fractions(tmp_path, monkeypatch):
+def test_the_first_and_the_last_packing_are_drawn_with_their_packing_fractions(monkeypatch):
     drawn = []
 
     def picture(bodies, size, colours):
@@ -16,7 +16,7 @@ def test_the_first_and_the_last_packing_are_drawn_with_their_packing_fractions(t
 
     monkeypatch.setattr(packing, "picture", picture)
     ds = varied(packings(), "packing_fraction", "error")
-    axes = draw(packing.densest_fill, ds, tmp_path).axes
+    axes = draw(packing.densest_fill, ds).axes
     titles = [axis.get_title() for axis in axes]
     assert "periodic" in titles[0] and "0.3760(10)" in titles[0]
     assert "jammed" in titles[1] and "0.6410(10)" in titles[1]
@@ -28,8 +28,8 @@ def test_the_first_and_the_last_packing_are_drawn_with_their_packing_fractions(t
         assert np.array_equal(bodies.lengths, one["length"])
 
 
-def test_packings_of_fewer_particles_are_drawn_without_the_missing_ones(tmp_path):
+def test_packings_of_fewer_particles_are_drawn_without_the_missing_ones():
     ds = packings()
     ds["position"][0, 5:] = np.nan
-    image = draw(packing.densest_fill, ds, tmp_path).axes[0].images[0].get_array()
+    image = draw(packing.densest_fill, ds).axes[0].images[0].get_array()
     assert image.shape == (700, 700, 3) and np.ptp(image) > 100

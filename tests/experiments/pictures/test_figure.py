@@ -19,8 +19,8 @@ def dataset():
 
 
 @pytest.mark.parametrize("function", [pictures.gas_render, pictures.brownian_render])
-def test_the_picture_is_drawn_with_a_pixel_for_each_dot(tmp_path, dataset, function):
-    figure = draw(function, dataset, tmp_path)
+def test_the_picture_is_drawn_with_a_pixel_for_each_dot(dataset, function):
+    figure = draw(function, dataset)
     image = figure.axes[0].images[0].get_array()
     assert image.shape == (1260, 1680, 3)
     saturated = np.ptp(image.astype(int), axis=-1) > 60
@@ -30,7 +30,7 @@ def test_the_picture_is_drawn_with_a_pixel_for_each_dot(tmp_path, dataset, funct
 @pytest.mark.parametrize(
     ("function", "colour"), [(pictures.gas_render, "speed"), (pictures.brownian_render, "species")]
 )
-def test_the_particles_of_the_data_set_are_drawn(tmp_path, monkeypatch, dataset, function, colour):
+def test_the_particles_of_the_data_set_are_drawn(monkeypatch, dataset, function, colour):
     drawn, coloured = [], []
 
     def picture(bodies, size, colours):
@@ -39,7 +39,7 @@ def test_the_particles_of_the_data_set_are_drawn(tmp_path, monkeypatch, dataset,
 
     monkeypatch.setattr(pictures, "picture", picture)
     monkeypatch.setattr(pictures, "colours_of", lambda bodies, by: coloured.append(by))
-    figure = draw(function, dataset, tmp_path)
+    figure = draw(function, dataset)
     bodies = drawn[-1]
     assert coloured == 2 * [colour]
     columns = {"positions": "position", "radii": "radius", "species": "species", "speeds": "speed"}

@@ -11,9 +11,9 @@ def of_replicas(values):
     return values.mean(axis=-1), values.std(axis=-1, ddof=1) / np.sqrt(REPLICAS.size)
 
 
-def test_paths_states_and_an_expansion(tmp_path):
+def test_paths_states_and_an_expansion():
     ds = gases(exponent=1.1, back=0.9, factor=1.02, fluctuation=0.9, speed=1.01)
-    upper, middle, lower = draw(figure.piston, ds, tmp_path).axes
+    upper, middle, lower = draw(figure.piston, ds).axes
     paths, factors, variances = [], [], []
     for n, name in enumerate(("discs", "spheres")):
         own = ds.isel(path=n)

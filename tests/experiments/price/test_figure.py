@@ -5,14 +5,14 @@ from experiments.drawn import Points, draw, shows, varied
 from gaspart.experiments.price.figure import price_of_features
 
 
-def test_times_and_counted_work_are_drawn_for_each_feature(tmp_path):
+def test_times_and_counted_work_are_drawn_for_each_feature():
     ones = np.ones(4)
     columns = dict.fromkeys(("seconds", "ratio", "ratio_error", "pair_tests", "crossings"), ("point", ones))
     ds = varied(xr.Dataset({**columns}))
     ds["engine"] = ("point", ["event", "event", "event", "step"])
     ds["feature"] = ("point", ["plain", "walls", "gravity", "plain"])
     ds["crossings"] = ds["crossings"] * (ds["engine"] == "event")
-    times, work = draw(price_of_features, ds, tmp_path).axes
+    times, work = draw(price_of_features, ds).axes
     event, step = ds.isel(point=[0, 1, 2]), ds.isel(point=[3])
     rows, others = np.array([0.0, -1.0, -2.0]) + 0.06, np.array([-0.06])
     labels = [f"{float(one['seconds'][0]) * 1e6:.3g}" for one in (event, step)]

@@ -21,9 +21,9 @@ def gases():
     return ds
 
 
-def test_z_its_deviation_and_the_counted_work_are_drawn_against_the_radius(tmp_path):
+def test_z_its_deviation_and_the_counted_work_are_drawn_against_the_radius():
     ds = gases()
-    z, deviation, work = draw(radius_grid, ds, tmp_path).axes
+    z, deviation, work = draw(radius_grid, ds).axes
     event = [ds.isel(point=slice(0, 3)), ds.isel(point=slice(3, 6))]
     step = [ds.isel(point=slice(6, 9)), ds.isel(point=slice(9, 12))]
     shows(

@@ -7,7 +7,7 @@ from gaspart.experiments.reversibility.figure import reversibility
 
 def test_echoes_growth_and_memory(tmp_path):
     ds = varied(measurement(tmp_path), "packing_fraction")
-    echoes, growth, memory = draw(reversibility, ds, tmp_path).axes
+    echoes, growth, memory = draw(reversibility, ds).axes
     assert "collisions" in echoes.get_xlabel() and "echo" in echoes.get_ylabel()
     drawn = lines(echoes)
     assert [one.get_label() for one in drawn[2:]] == ["event-driven", "time-stepped", "time-stepped, float32"]

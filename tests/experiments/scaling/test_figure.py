@@ -19,7 +19,7 @@ def measure(tmp_path):
 
     def drawn(figure, *kept):
         ds = varied(getattr(measured, figure)(points(figure, tmp_path), settings(figure)), *kept)
-        return ds, draw(getattr(scaling, figure), ds, tmp_path).axes
+        return ds, draw(getattr(scaling, figure), ds).axes
 
     return drawn
 
@@ -86,7 +86,7 @@ def test_box_count(measure):
 def test_a_scan_without_a_minimum(tmp_path):
     ds = measured.box_count(points("box_count", tmp_path), settings("box_count"))
     ds["ideal_low"], ds["ideal_high"] = 0.0, math.inf
-    assert len(draw(scaling.box_count, ds, tmp_path).axes[0].patches) == 0
+    assert len(draw(scaling.box_count, ds).axes[0].patches) == 0
 
 
 def test_ideal_boxes(measure):

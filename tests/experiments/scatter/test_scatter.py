@@ -51,11 +51,11 @@ def test_a_run_without_claims_has_nothing_to_state(tmp_path):
     claims.write(path, "empty", [])
     ds = claims_scatter([path], {})
     assert ds.sizes["claim"] == 0 and claims_of(ds) == []
-    assert len(draw(drawn, ds, tmp_path).axes) == 2
+    assert len(draw(drawn, ds).axes) == 2
 
 
 def test_each_figure_has_a_row_of_its_deviations(tmp_path):
     ds = claims_scatter(tables(tmp_path), {})
-    upper, lower = draw(drawn, ds, tmp_path).axes
+    upper, lower = draw(drawn, ds).axes
     assert [text.get_text() for text in lower.get_yticklabels()] == ["first", "second"]
     assert "160" in upper.get_legend().get_texts()[1].get_text()

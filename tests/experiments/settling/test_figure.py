@@ -5,9 +5,9 @@ from experiments.settling.data import settled
 from gaspart.experiments.settling import figure
 
 
-def test_four_panels(tmp_path):
+def test_four_panels():
     ds = settled()
-    energies, contacts, left, rates = draw(figure.settling, ds, tmp_path).axes
+    energies, contacts, left, rates = draw(figure.settling, ds).axes
     moving = ds["kinetic"].values > 0.0
     for n, duration in ((0, "0.003"), (3, "0.01")):
         row = ds.isel(pile=n)

@@ -29,11 +29,9 @@ def distribution(dimension, points):
     )
 
 
-def test_histograms_kurtosis_and_the_fraction_never_hit(tmp_path):
+def test_histograms_kurtosis_and_the_fraction_never_hit():
     ds = varied(relaxation_measurement())
-    histograms, kurtosis, kurtosis_residual, unhit, unhit_residual = draw(
-        speeds.speed_relaxation, ds, tmp_path
-    ).axes
+    histograms, kurtosis, kurtosis_residual, unhit, unhit_residual = draw(speeds.speed_relaxation, ds).axes
     middle = 0.5 * (ds["lower"] + ds["upper"])
     event, step = (ds.sel(engine=name) for name in ("event", "step"))
     shows(
@@ -71,12 +69,10 @@ def test_histograms_kurtosis_and_the_fraction_never_hit(tmp_path):
     ("function", "dimension", "points"),
     [(speeds.speed_distribution_spheres, 3, 3), (speeds.speed_distribution_discs, 2, 1)],
 )
-def test_density_residuals_tails_and_the_difference_of_the_distribution(
-    tmp_path, function, dimension, points
-):
+def test_density_residuals_tails_and_the_difference_of_the_distribution(function, dimension, points):
     ds = varied(distribution(dimension, points), "packing_fraction")
     ds["density"][:, -1] = 0.0  # a bin in which nothing was seen
-    density, residual, tail, difference = draw(function, ds, tmp_path).axes
+    density, residual, tail, difference = draw(function, ds).axes
     middle, width = 0.5 * (ds["lower"] + ds["upper"]), 0.125
     rows = [ds.isel(point=k) for k in range(points)]
     beside = [middle + width * 0.25 * (k - 0.5 * (points - 1)) for k in range(points)]

@@ -20,7 +20,7 @@ def errors(row, observable):
 
 def test_errors_are_drawn_against_the_step_and_costs_against_errors(tmp_path):
     ds = varied(speed_accuracy_measurement(tmp_path), "packing_fraction", "event_seconds")
-    *panels, cost = draw(tradeoff.speed_accuracy, ds, tmp_path).axes
+    *panels, cost = draw(tradeoff.speed_accuracy, ds).axes
     rows = {row["setting"].item(): row for row in (ds.isel(row=n) for n in range(ds.sizes["row"]))}
     assert set(rows) == set(tradeoff.SHOWN)
     for axis, (observable, label) in zip(
@@ -37,9 +37,9 @@ def test_errors_are_drawn_against_the_step_and_costs_against_errors(tmp_path):
     assert [1e6 * SECONDS] * 2 in [list(one.get_ydata()) for one in cost.lines]
 
 
-def test_costs_are_drawn_against_the_accuracy_for_each_gas(tmp_path):
+def test_costs_are_drawn_against_the_accuracy_for_each_gas():
     ds = varied(time_to_accuracy_measurement(), "gas_packing_fraction")
-    axes = np.reshape(draw(tradeoff.time_to_accuracy, ds, tmp_path).axes, (2, 2))
+    axes = np.reshape(draw(tradeoff.time_to_accuracy, ds).axes, (2, 2))
     titles = [axis.get_title(loc="left") for axis in axes[:, 0]]
     assert titles == [r"(a) spheres, $\eta = 0.05$", r"(b) spheres, $\eta = 0.2$"]
     percent = 100.0 * ds["accuracy"]

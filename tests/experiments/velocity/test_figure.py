@@ -8,11 +8,11 @@ from gaspart.experiments.velocity.figure import velocity_autocorrelation
 
 
 @pytest.mark.parametrize("points", [[0, 1, 2, 3], [0], [3]])
-def test_the_tail_the_start_and_their_ratio_are_drawn(points, tmp_path):
+def test_the_tail_the_start_and_their_ratio_are_drawn(points):
     ds = correlations().isel(point=points)
     whole = varied(ds, "packing_fraction", "sound", "start_rate", "tail_ratio", "tail_correction")
     ds = whole.assign({name: ds[name] for name in ("tail_from", "tail_to")})
-    tails, starts, ratios = draw(velocity_autocorrelation, ds, tmp_path).axes
+    tails, starts, ratios = draw(velocity_autocorrelation, ds).axes
     fine = [ds.isel(point=k) for k in range(len(points)) if np.isfinite(ds["start_rate"][k])]
     long = [ds.isel(point=k) for k in range(len(points)) if np.isfinite(ds["tail_ratio"][k])]
     names = {2: "discs", 3: "spheres"}

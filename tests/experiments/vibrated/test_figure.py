@@ -6,9 +6,9 @@ from gaspart.experiments.vibrated import figure
 from gaspart.experiments.vibrated.claims import expected_temperature, small_parameter
 
 
-def test_temperatures_and_profiles(tmp_path):
+def test_temperatures_and_profiles():
     ds = beds(limit=1.02)
-    upper, lower = draw(figure.vibrated_bed, ds, tmp_path).axes
+    upper, lower = draw(figure.vibrated_bed, ds).axes
     temperatures, profiles = [], []
     for kind, name in enumerate(("sawtooth", "sine")):
         own = ds.isel(bed=(ds["sine"] == kind).values)

@@ -14,9 +14,9 @@ LABELS = {
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_z_its_residuals_and_the_coefficients(dimension, tmp_path):
+def test_z_its_residuals_and_the_coefficients(dimension):
     ds = varied(equation_of_state(dimension), "up_to")
-    state, residuals, coefficients = draw(DRAW[dimension], ds, tmp_path).axes
+    state, residuals, coefficients = draw(DRAW[dimension], ds).axes
     eta = ds["packing_fraction"]
     shows(state, "", "compressibility", Points("measured", eta, ds["Z"]))
     for label, curve in LABELS[dimension].items():
@@ -44,6 +44,6 @@ def test_z_its_residuals_and_the_coefficients(dimension, tmp_path):
     assert names[0] == "$B_2$–$B_4$\n$\\leq$0.35\nheld" and names[2].endswith("0.2\nzero")
 
 
-def test_it_draws_without_fits(tmp_path):
-    axes = draw(virial.virial_discs, equation_of_state(2).isel(fit=slice(0, 0)), tmp_path).axes
+def test_it_draws_without_fits():
+    axes = draw(virial.virial_discs, equation_of_state(2).isel(fit=slice(0, 0))).axes
     shows(axes[2], "free", "deviation", *(Points(f"B_{order}", [], [], []) for order in (2, 3, 4)))

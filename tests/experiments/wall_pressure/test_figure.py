@@ -16,9 +16,9 @@ def deviation(ds, points, shift, label):
     return Points(label, own["packing_fraction"] + shift, 100.0 * (ratio - 1.0), error)
 
 
-def test_pressures_against_temperature_and_density_and_their_deviation(tmp_path):
+def test_pressures_against_temperature_and_density_and_their_deviation():
     ds = varied(pressures(), "density", "temperature")
-    temperatures, densities, residuals = draw(wall_pressure, ds, tmp_path).axes
+    temperatures, densities, residuals = draw(wall_pressure, ds).axes
     series = ds.isel(point=[2, 8, 9]).sortby("temperature")
     t, n = series["temperature"], float(series["density"][0].round(9))
     label = f"$\\eta={series['packing_fraction'][0].item():.2g}$"
@@ -51,7 +51,7 @@ def test_pressures_against_temperature_and_density_and_their_deviation(tmp_path)
     )  # fmt: skip
 
 
-def test_one_dimension_without_temperatures_leaves_their_panel_empty(tmp_path):
-    axes = draw(wall_pressure, pressures().isel(point=[0, 1, 6]), tmp_path).axes
+def test_one_dimension_without_temperatures_leaves_their_panel_empty():
+    axes = draw(wall_pressure, pressures().isel(point=[0, 1, 6])).axes
     shows(axes[0], "temperature", "P/")
     assert len(axes[1].containers) == 2

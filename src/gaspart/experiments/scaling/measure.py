@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis import statistics
+from gaspart.analysis.estimate import Estimate
 from gaspart.experiments.scaling.ideal_boxes import ideal_boxes as ideal_boxes
 from gaspart.experiments.scaling.remarks import huge_sphere, near_boxes
 from gaspart.experiments.shared.rows import entries, from_rows
@@ -79,13 +80,17 @@ def box_count(points: list[grid.Point], settings: dict) -> xr.Dataset:
     costs, events = per_body(main), per_event(sectors)
     pair = xr.concat([per_body(run) for run in fine], "container")
     pair = pair.rename(_names("fine", pair))
-    advantage = np.array([_advantage(pair, per_side) for per_side in settings["round_per_side"]])
+    powers = [
+        {"round_per_side": per_side, **entries({"advantage": _advantage(pair, per_side)})}
+        for per_side in settings["round_per_side"]
+    ]
     return xr.merge(
         [
             costs.assign(_expected(main)).rename(partition="scan"),
             pair.rename(partition="fine"),
             events.rename(partition="sector", **_names("sector", events)),
             near_boxes(near),
+            from_rows("power", powers),
         ]
     ).assign(
         **ideal(costs, main.dimension),
@@ -96,9 +101,6 @@ def box_count(points: list[grid.Point], settings: dict) -> xr.Dataset:
         source_boxes_per_body=settings["source_boxes_per_body"],
         **entries({"source_penalty": penalty(costs, settings["source_boxes_per_body"])}),
         container_side=("container", [run.side for run in fine]),
-        round_per_side=("power", settings["round_per_side"]),
-        advantage=("power", advantage[:, 0]),
-        advantage_error=("power", advantage[:, 1]),
     )
 
 
@@ -227,15 +229,17 @@ def _expected(run: xr.Dataset) -> dict:
     }
 
 
-def _advantage(fine: xr.Dataset, per_side: int) -> tuple[float, float]:
+def _advantage(fine: xr.Dataset, per_side: int) -> Estimate:
     """By how much (ln of time) `per_side` is quicker than the partitions within 10 % of it, in
-    the container of the lower side (round widths), less the same in the other; and its standard error.
+    the container of the lower side (round widths), less the same in the other.
 
-    Both scans have the same work, so what does not depend on round numbers cancels."""
+    Both scans have the same work, so what does not depend on round numbers cancels. The uncertainty is the
+    scatter of those other partitions: the time of each depends by one or two per cent on where its arrays
+    lie in memory, which repeats in the same process do not show.
+    """
     n = fine.fine_boxes_per_side.values[0]
     near = (n != per_side) & (np.abs(n / per_side - 1.0) <= 0.1)
     difference = np.log(fine.fine_seconds.values[1]) - np.log(fine.fine_seconds.values[0])
-    variance = ((fine.fine_seconds_error / fine.fine_seconds).values ** 2).sum(axis=0)
-    at = n == per_side
-    value = difference[at][0] - difference[near].mean()
-    return value, math.sqrt(variance[at][0] + variance[near].sum() / near.sum() ** 2)
+    others = difference[near]
+    error = others.std(ddof=1) * math.sqrt(1.0 + 1.0 / others.size)
+    return Estimate(difference[n == per_side][0] - others.mean(), error, others.size - 1)
