@@ -62,7 +62,7 @@ def box_count(points: list[grid.Point], settings: dict) -> xr.Dataset:
     pair tested once, if it left out those that it does not touch (``touched``: within a radius) or those
     that can hold no partner (``in_reach``: within a diameter).
     Over (``container``, ``fine``): ``fine_seconds`` ... of the two other scans, in containers whose sides
-    (``container_side``) do and do not give round widths. Over ``power``: ``advantage``, see `_advantage`.
+    (``container_side``) do and do not give round widths. Over ``power``: ``advantage``, see `_advantages`.
     Over ``sector``: ``sector_seconds`` ... as in `per_event`. Scalars: as in `ideal`; ``source_penalty``, the
     time at the source's number over the least, with error; of the sectors, how
     many neighbourhoods are searched at an event (``event_searches``) and at a crossing
@@ -80,9 +80,10 @@ def box_count(points: list[grid.Point], settings: dict) -> xr.Dataset:
     costs, events = per_body(main), per_event(sectors)
     pair = xr.concat([per_body(run) for run in fine], "container")
     pair = pair.rename(_names("fine", pair))
+    sides = settings["round_per_side"]
     powers = [
-        {"round_per_side": per_side, **entries({"advantage": _advantage(pair, per_side)})}
-        for per_side in settings["round_per_side"]
+        {"round_per_side": side, **entries({"advantage": advantage})}
+        for side, advantage in zip(sides, _advantages(pair, sides), strict=True)
     ]
     return xr.merge(
         [
@@ -229,17 +230,20 @@ def _expected(run: xr.Dataset) -> dict:
     }
 
 
-def _advantage(fine: xr.Dataset, per_side: int) -> Estimate:
-    """By how much (ln of time) `per_side` is quicker than the partitions within 10 % of it, in
-    the container of the lower side (round widths), less the same in the other.
+def _advantages(fine: xr.Dataset, round_per_side: list[int]) -> list[Estimate]:
+    """By how much (ln of time) each of these partitions is quicker than those within an eighth of it, in the
+    container of the lower side (round widths), less the same in the other.
 
     Both scans have the same work, so what does not depend on round numbers cancels. The uncertainty is the
     scatter of those other partitions: the time of each depends by one or two per cent on where its arrays
     lie in memory, which repeats in the same process do not show.
     """
     n = fine.fine_boxes_per_side.values[0]
-    near = (n != per_side) & (np.abs(n / per_side - 1.0) <= 0.1)
     difference = np.log(fine.fine_seconds.values[1]) - np.log(fine.fine_seconds.values[0])
-    others = difference[near]
-    error = others.std(ddof=1) * math.sqrt(1.0 + 1.0 / others.size)
-    return Estimate(difference[n == per_side][0] - others.mean(), error, others.size - 1)
+    others = [difference[(n != one) & (np.abs(n / one - 1.0) <= 0.125)] for one in round_per_side]
+    freedom = sum(near.size - 1 for near in others)
+    scatter = math.sqrt(sum(near.size * near.var() for near in others) / freedom)
+    return [
+        Estimate(difference[n == one][0] - near.mean(), scatter * math.sqrt(1.0 + 1.0 / near.size), freedom)
+        for one, near in zip(round_per_side, others, strict=True)
+    ]
