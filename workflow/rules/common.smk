@@ -27,10 +27,11 @@ from gaspart.planning.variants import task, variant
 from gaspart.errors import SceneError
 
 # A job on a cluster reads this file again, but need not validate ten thousand points again.
+RECIPES = {}
 if workflow.is_main_process:
     try:
         files = ["config/config.yaml", *workflow.overwrite_configfiles]
-        check(config, [str(name) for name in files if os.path.exists(name)])
+        RECIPES = check(config, [str(name) for name in files if os.path.exists(name)])
         for kept in ("results", ".snakemake"):
             folder = kept if os.path.exists(kept) else "."
             if not os.access(folder, os.W_OK):
@@ -72,7 +73,7 @@ def point_of(wildcards):
 
 
 def recipe_of(wildcards):
-    return grid.recipe(point_of(wildcards))
+    return RECIPES.get((wildcards.experiment, wildcards.point)) or grid.recipe(point_of(wildcards))
 
 
 def figure_points(wildcards):

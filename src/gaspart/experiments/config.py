@@ -33,22 +33,26 @@ def checked(path: str | Path) -> Iterator[dict[str, Any]]:
         yield merged
 
 
-def check(config: dict, files: Sequence[str | Path] = ()) -> None:
+def check(config: dict, files: Sequence[str | Path] = ()) -> dict[tuple[str, str], dict]:
     """Validate a merged config against the schema, then every point's scene and engine.
 
     files: the YAML files that were merged, in that order; an error names the last one that holds the key.
-    Raises SceneError.
+    Returns the recipes of all points, which must be made for it, by experiment and name. Raises SceneError.
     """
     contents = [(str(file), read_yaml(file)) for file in files]
     try:
         _check_values(config)
         _against(schema(), config, "")
-        for experiment in config["experiments"]:
-            _experiment(config, experiment)
+        recipes = {
+            (experiment, name): recipe
+            for experiment in config["experiments"]
+            for name, recipe in _experiment(config, experiment)
+        }
         for figure in config["figures"]:
             figure_points(config, figure)
         for animation, block in config.get("animations", {}).items():
             _animation(config, animation, block)
+        return recipes
     except SceneError as error:
         raise error.inside("", error.file or _file_of(error.key, contents)) from None
 
@@ -93,8 +97,9 @@ def _animation(config: dict, animation: str, block: dict | None) -> None:
         raise SceneError(f"animations.{animation}.figure", figure, unknown_word(figure, config["figures"]))
 
 
-def _experiment(config: dict, experiment: str) -> None:
-    """Validate the values of the grid, one by one, then the scene and the engine of every point."""
+def _experiment(config: dict, experiment: str) -> Iterator[tuple[str, dict]]:
+    """Validate the values of the grid, one by one, then the scene and the engine of every point. Yields the
+    name and the recipe of each."""
     where = f"experiments.{experiment}"
     for key, value in _grid_values(config["experiments"][experiment].get("grid")):
         if key.startswith(keys.PREFIX):  # a value of a scene file, which the scene validates
@@ -105,7 +110,7 @@ def _experiment(config: dict, experiment: str) -> None:
     for point in points(config, experiment):
         grid.check(point)
         try:
-            grid.recipe(point)
+            yield point.name, grid.recipe(point)
         except SceneError as error:
             located = error.file or error.key.startswith(where)
             raise error if located else error.inside(f"{where}[{point.name}]") from None

@@ -5,6 +5,7 @@ Planning a workflow makes the scene of every point, so slow imports are made ins
 
 from __future__ import annotations
 
+import json
 import math
 from copy import deepcopy
 from functools import cache
@@ -112,8 +113,6 @@ def _made(point: Point) -> Scene:
 
 def _read(point: Point) -> Scene:
     """The scene of the scene file, with the values that the settings replace."""
-    from gaspart.scene.scene import Scene
-
     path, where = point.settings["scene"], f"experiments.{point.experiment}"
     try:
         changed = Path(path).stat().st_mtime_ns
@@ -121,13 +120,22 @@ def _read(point: Point) -> Scene:
         raise SceneError(f"{where}.scene", path, f"cannot be read: {error.strerror}") from None
     except ValueError:  # a NUL, or a character that no file name can hold
         raise SceneError(f"{where}.scene", path, "is not a file name") from None
+    replaced = {key: value for key, value in point.settings.items() if key.startswith(PREFIX)}
+    return _with(path, changed, json.dumps(replaced), where)
+
+
+@cache
+def _with(path: str, changed: int, replaced: str, where: str) -> Scene:
+    """The scene of a file with values `replaced`, JSON; kept, since planning asks for each several times."""
+    from gaspart.scene.scene import Scene
+
     content, alone = _file(path, changed)
-    replaced = [key for key in point.settings if key.startswith(PREFIX)]
-    if not replaced:
+    values = json.loads(replaced)
+    if not values:
         return alone
     content = deepcopy(content)
-    for key in replaced:
-        _put(content, key, point.settings[key], where)
+    for key, value in values.items():
+        _put(content, key, value, where)
     return Scene.from_dict(content)
 
 
