@@ -16,8 +16,8 @@ class PointData(NamedTuple):
     """Variables, coordinates and attributes, as xarray.Dataset takes them: `xr.Dataset(*data)`.
 
     variables, coordinates: by name, their dimensions (one name, or several), values (numbers or words), and
-    attributes if there are any. Jobs neither make nor write data sets of xarray, which would take as long to
-    load as all else at the start of a job; timings, beside which nothing may run, are 170 of these.
+    attributes if there are any. Jobs neither make nor write data sets of xarray, which takes a quarter of a
+    second to load: most of them are short timings, beside which nothing may run.
     """
 
     variables: Mapping[str, tuple]

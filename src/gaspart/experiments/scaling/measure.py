@@ -235,8 +235,8 @@ def _advantages(fine: xr.Dataset, round_per_side: list[int]) -> list[Estimate]:
     container of the lower side (round widths), less the same in the other.
 
     Both scans have the same work, so what does not depend on round numbers cancels. The uncertainty is the
-    scatter of those other partitions: the time of each depends by one or two per cent on where its arrays
-    lie in memory, which repeats in the same process do not show.
+    scatter of those other partitions: their times differ by up to one per cent from process to process,
+    which repeats in one process do not show.
     """
     n = fine.fine_boxes_per_side.values[0]
     difference = np.log(fine.fine_seconds.values[1]) - np.log(fine.fine_seconds.values[0])
