@@ -23,8 +23,36 @@ core: Any = numba.core
 core.bytecode.FunctionIdentity._unique_ids = itertools.count(int.from_bytes(os.urandom(7), "big"))
 
 
+@core.datamodel.registry.register_default(numba.types.NamedTuple)
+class _WholeTuple(core.datamodel.models.TupleModel):
+    """A named tuple that is one argument of a function in machine code. As numba's own it would be as many as
+    there are words in its arrays, some two hundred, which each call takes from it and each function puts
+    together again: 40 % of all instructions to be translated."""
+
+    def get_argument_type(self) -> Any:
+        """The type of the argument, in LLVM."""
+        return self.get_value_type()
+
+    def as_argument(self, builder: Any, value: Any) -> Any:
+        """What a caller passes."""
+        return value
+
+    def from_argument(self, builder: Any, value: Any) -> Any:
+        """The value of what was passed."""
+        return value
+
+
 class _PartLibrary(core.codegen.JITCodeLibrary):
-    """Code that is linked into that of the callers, and neither optimised nor run by itself."""
+    """Code that is linked into that of the callers, and only there fully optimised and run."""
+
+    def _optimize_functions(self, ll_module: Any) -> None:
+        """Optimise lightly. Fully, loops about calls would be taken for small ones and doubled before what
+        is called is put in their place: the kernel would become twice as long, and slower."""
+        ll_module.data_layout = self._codegen._data_layout
+        for function in ll_module.functions:
+            if not function.is_declaration:
+                passes, builder = self._codegen._function_pass_manager(opt=1)
+                passes.run(function, builder)
 
     def finalize(self) -> None:
         for library in dict.fromkeys(self._linking_libraries):

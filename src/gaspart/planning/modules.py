@@ -69,7 +69,7 @@ def _file(module: str) -> Path | None:
 def digest(*roots: str | Path) -> str:
     """A short digest of the files of a closure."""
     total = hashlib.sha256()
-    for path in sorted(closure(*roots)):
+    for path in _in_order(closure(*roots)):
         total.update(_content(path))
     return total.hexdigest()[:12]
 
@@ -78,10 +78,15 @@ def digest(*roots: str | Path) -> str:
 def kernel_digest(*roots: str | Path) -> str:
     """The same of the compiled modules among them."""
     total = hashlib.sha256()
-    for path in sorted(closure(*roots)):
+    for path in _in_order(closure(*roots)):
         if path.is_relative_to(PACKAGE / "kernels"):
             total.update(_content(path))
     return total.hexdigest()[:12]
+
+
+def _in_order(paths: frozenset[Path]) -> list[Path]:
+    """By their text: paths compare their parts, which for a hundred closures takes 0.1 s."""
+    return sorted(paths, key=str)
 
 
 @cache

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, is_dataclass, replace
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -246,12 +246,14 @@ class Scene:
         """Plain lists and mappings, as in a scene file."""
 
         def plain(value: Any) -> Any:
+            if is_dataclass(value):
+                value = vars(value)
             if isinstance(value, dict):
                 return {k: plain(x) for k, x in value.items() if x is not None and (x or k not in _ABSENT)}
             return [plain(item) for item in value] if isinstance(value, tuple) else value
 
         faces = {name: surface_to_dict(surface) for name, surface in self.faces.items()}
-        return plain({**asdict(self), "faces": faces})
+        return plain({**vars(self), "faces": faces})
 
     @classmethod
     def from_dict(cls, mapping: dict, file: str | None = None) -> Scene:
