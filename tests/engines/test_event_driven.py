@@ -182,6 +182,24 @@ def test_a_checkpoint_goes_on_to_the_same_bits_and_counts():
     check_same(whole, again, "state.unwrapped", *WHOLE_TALLY)
 
 
+@pytest.mark.parametrize("boundary", ["periodic", "wall"])
+def test_a_checkpoint_goes_on_in_other_boxes(boundary):
+    """As when an unfinished run is resumed by a revision that chooses other boxes."""
+    scene = gp.Scene(gp.Container((20.0, 20.0), boundary), [gp.Species(100, 0.5, temperature=1.0)])
+    whole, *others = (gp.Simulation(scene, gp.EventDriven("boxes", n), seed=2) for n in (20, 3, 7))
+    unnamed, named = others
+    for end in (3.0, 3.1, 9.0):
+        whole.advance(until=end)
+        checkpoint = whole.checkpoint()
+        named.restore(checkpoint)
+        del checkpoint["boxes_per_side"]  # which older ones lack
+        unnamed.restore(checkpoint)
+    for sim in (whole, named, unnamed):
+        sim.advance(until=20.0)
+    for sim in others:
+        check_same(whole, sim, "state.unwrapped", "state.velocities", "tally.collisions", "tally.virial_sum")
+
+
 def test_clocks_that_start_again_lose_nothing():
     """Far beyond a lap of the clocks (some 1000 times of flight), contacts are as exact as at the start."""
     sim = gp.Simulation(gas(2, 10, 0.05), gp.EventDriven(), seed=3)

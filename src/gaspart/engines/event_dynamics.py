@@ -55,7 +55,7 @@ class EventDynamics:
         self._reference = state
         n = state.count
         search = chosen_search(scene, search, boxes_per_side is not None)
-        boxes, largest = boxes_and_largest(scene, boxes_per_side if search == "boxes" else 1)
+        self._grid, largest = boxes_and_largest(scene, boxes_per_side if search == "boxes" else 1)
         self._particles = model.Particles(
             flights=aligned((n,), model.flight_dtype(scene.dimension)),
             images=state.images.copy(),
@@ -65,13 +65,13 @@ class EventDynamics:
         self._flights["position"], self._flights["velocity"] = state.positions, state.velocities
         self._flights["radius"] = state.radii
         self._particles.predictions["partner"] = model.NONE
-        self._particles.predictions["box"] = boxes.coordinates(state.positions)
-        self._boxes = empty_lists(boxes, n, neighbour_lists(scene) if search == "lists" else None)
+        self._particles.predictions["box"] = self._grid.coordinates(state.positions)
+        self._boxes = empty_lists(self._grid, n, neighbour_lists(scene) if search == "lists" else None)
         self._queue = None if search == "pairs" else empty_queue(n)
         self._event_count = np.zeros(1, dtype=np.int64)
         if self._queue:
             self._event_count = self._queue.cursor[EVENT_COUNT:]
-        self._model, self._unit_mass = event_model(scene, state, seed, boxes, largest)
+        self._model, self._unit_mass = event_model(scene, state, seed, self._grid, largest)
         self._duration = self._model.law.duration if self._model.law else None
         self._piston = self._model.faces.piston if self._model.faces else None
         self._monitors, self._interval = monitors(self._model, n)
@@ -234,13 +234,17 @@ class EventDynamics:
         """The sum of what contacts and each face have taken or given since time 0, each counted positive."""
         return self._tally.exchanged
 
+    def _present(self) -> np.ndarray:
+        """The flights (N,) at the present time."""
+        flights = self._flights.copy()
+        if not (self._rest and self._rest.rests):
+            self._flight.advance_all(flights, self._clock, self._model.space, self._model.gravity)
+        return flights
+
     @property
     def state(self) -> State:
         """All particles at the present time."""
-        space = self._model.space
-        flights = self._flights.copy()
-        if not (self._rest and self._rest.rests):
-            self._flight.advance_all(flights, self._clock, space, self._model.gravity)
+        space, flights = self._model.space, self._present()
         positions, images = flights["position"].copy(), self._particles.images.copy()
         _wrap(positions, images, space)
         state = replace(
@@ -272,10 +276,11 @@ class EventDynamics:
         counts."""
         parts = {key: getattr(self, f"_{key}") for key in _NUMBERS}
         parts |= {"since": self._tally.since, "lost": self._tally.lost, **self._arrays()}
+        parts["boxes_per_side"] = self._grid.per_side
         return {key: np.array(value) for key, value in parts.items()}
 
     def restore(self, parts: dict[str, np.ndarray]) -> None:
-        """Go on from a checkpoint of the same scene and engine."""
+        """Go on from a checkpoint of the same scene and engine, whatever its number of boxes."""
         for key, array in self._arrays().items():
             array[...] = parts[key]
         for key in _NUMBERS:
@@ -284,7 +289,10 @@ class EventDynamics:
         self._begin_epoch(self._epoch)
         if self._boxes.lists:
             self._make_lists()
-        self._begin(anew=False)
+        alike = np.array_equal(parts.get("boxes_per_side", ()), self._grid.per_side)
+        if not alike:
+            self._particles.predictions["box"] = self._grid.coordinates(self._present()["position"])
+        self._begin(anew=not alike)
 
 
 def _wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:

@@ -16,13 +16,13 @@ from gaspart.state.boxes import Boxes, make_boxes, sides_for
 
 MOST = 256  # oversized particles, at most, where the program chooses
 _GAIN = 0.75  # largest share of the work that may remain if particles are taken out of the partition
-_BOXES = {2: (0.5, 1.6, 1.2), 3: (1.0, 3.0, 1.5)}  # per particle: in a dilute gas, more by density, at most
+_BOXES = {2: (0.53, 0.5, 0.8), 3: (1.0, 3.0, 1.5)}  # per particle: in a dilute gas, more by density, at most
 
 
 def boxes_per_particle(scene: Scene) -> float:
     """How many boxes there are for each particle. Eight particles are tested at once, so in a dilute gas of
     discs, which cross many boxes between contacts, wide ones are best; measured with 10^4 particles at
-    packing fractions of 0.01 to 0.35 (docs/performance.md). Not where gravity gathers the particles, or where
+    packing fractions of 0.01 to 0.4 (docs/performance.md). Not where gravity gathers the particles, or where
     kicks make most searches find nothing new: there is one each at least."""
     dilute, by_density, most = _BOXES[scene.dimension]
     best = min(dilute + by_density * scene.packing_fraction, most)

@@ -80,14 +80,20 @@ def searched(predictions, i):
 
 @inner_helper
 def fetch_predictions(predictions, queue, bucket):
-    """Fetch the predictions of the first particle in a bucket, and of the second in an earlier one."""
+    """Fetch the predictions of the third particle in a bucket, the second in a later one, the first in one
+    later still: each is found by those of the one before it."""
     head, mask = queue.head, len(queue.head) - 2
-    i = head[(bucket + _STRIDE) & mask]
-    if i >= 0:
-        fetch(predictions, i)
-    i = head[bucket & mask]
-    if i >= 0 and predictions[i].after >= 0:
-        fetch(predictions, predictions[i].after)
+    first = head[(bucket + 2 * _STRIDE) & mask]
+    if first >= 0:
+        fetch(predictions, first)
+    first = head[(bucket + _STRIDE) & mask]
+    if first >= 0 and predictions[first].after >= 0:
+        fetch(predictions, predictions[first].after)
+    first = head[bucket & mask]
+    if first >= 0:
+        second = predictions[first].after
+        if second >= 0 and predictions[second].after >= 0:
+            fetch(predictions, predictions[second].after)
 
 
 @inner_helper
