@@ -71,9 +71,11 @@ def list_others(particles, i, count, row, boxes, space, tally, gravity):
 
 
 @inner_helper
-def span(boxes, axis, at, crossed):
+def span(boxes, axis, at, crossed, dimension):
     """Which boxes to search along an axis, about that at a coordinate: first step and end (0..3), how many
-    there are, and how many of them are that box itself."""
+    there are, and how many of them are that box itself. Discs have one box along the third axis."""
+    if axis >= dimension:
+        return uint64(1), uint64(2), 1, 1
     low, end = uint64(0), uint64(3)
     if crossed:
         low = uint64(1 + crossed)
@@ -107,9 +109,9 @@ def find_contact(particles, number, boxes, space, tally, crossed, gravity):
     at = particles.predictions[i].box
     ax, ay, az = uint64(at[0]), uint64(at[1]), uint64(at[2])
     neighbour, shift = boxes.neighbour, boxes.shift
-    low_x, end_x, visits_x, itself_x = span(boxes, 0, ax, crossed[0])
-    low_y, end_y, visits_y, itself_y = span(boxes, 1, ay, crossed[1])
-    low_z, end_z, visits_z, itself_z = span(boxes, 2, az, crossed[2])
+    low_x, end_x, visits_x, itself_x = span(boxes, 0, ax, crossed[0], len(space.lengths))
+    low_y, end_y, visits_y, itself_y = span(boxes, 1, ay, crossed[1], len(space.lengths))
+    low_z, end_z, visits_z, itself_z = span(boxes, 2, az, crossed[2], len(space.lengths))
     tally.counts[BOX_VISITS] += visits_x * visits_y * visits_z
     tally.counts[PAIR_TESTS] -= itself_x * itself_y * itself_z
     within = crossed[0] == 0 and 0 < at[0] < boxes.per_side[0] - 1  # a row's three lie side by side

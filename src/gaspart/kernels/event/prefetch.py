@@ -25,9 +25,10 @@ _FETCHED = 2  # places of a box whose particles are fetched: few boxes hold more
 
 
 @inner_helper
-def steps(side):
-    """First step and end (0..3) of the boxes to search along an axis: all, or those on one side."""
-    return (uint64(1 + side), uint64(2 + side)) if side else (uint64(0), uint64(3))
+def steps(side, is_one):
+    """First step and end (0..3) of the boxes to search along an axis: all, or those on one side, or the only
+    one there is."""
+    return (uint64(1 + side), uint64(2 + side)) if side or is_one else (uint64(0), uint64(3))
 
 
 @inner_helper
@@ -37,9 +38,9 @@ def fetch_about(flights, boxes, at, side, members):
     neighbour = boxes.neighbour
     last_particle = uint32(len(flights) - 1)
     ax, ay, az = uint64(at[0]), uint64(at[1]), uint64(at[2])
-    low_x, end_x = steps(side[0])
-    low_y, end_y = steps(side[1])
-    low_z, end_z = steps(side[2])
+    low_x, end_x = steps(side[0], False)
+    low_y, end_y = steps(side[1], False)
+    low_z, end_z = steps(side[2], len(flights[0].position) == 2)
     for dz in range(low_z, end_z):
         z = neighbour[2, az, dz]
         for dy in range(low_y, end_y):
