@@ -76,7 +76,7 @@ def test_a_long_container_has_about_one_box_per_particle(lengths):
 
 
 @pytest.mark.parametrize(
-    ("dimension", "eta", "per_particle"), [(2, 0.01, 0.5), (2, 0.3, 1.0), (3, 0.01, 1.0), (3, 0.2, 1.5)]
+    ("dimension", "eta", "per_particle"), [(2, 0.01, 0.53), (2, 0.3, 0.68), (3, 0.01, 1.0), (3, 0.2, 1.5)]
 )
 def test_events_have_wide_boxes_where_a_gas_of_discs_is_dilute(dimension, eta, per_particle):
     scene = gas(dimension, 10_000, eta, "wall")

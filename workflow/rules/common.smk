@@ -155,12 +155,9 @@ def variant_of(experiment, point):
     return variant(POINTS[experiment][point])
 
 
-# Of what `warm` itself may compile, the same for all kinds of jobs: these need mostly the same kernels.
-KERNELS = kernel_digest(SCRIPTS / "warm.py", "gaspart.planning.variants")
-
-
 def stamp_of(wildcards):
-    return f"results/kernels/{KERNELS}/{variant_of(wildcards.experiment, wildcards.point)}.stamp"
+    point = point_of(wildcards)
+    return f"results/kernels/{kernel_digest(*sources(point.job))}/{variant_of(point.experiment, point.name)}.stamp"
 
 
 def task_of(wildcards):

@@ -76,9 +76,10 @@ def digest(*roots: str | Path) -> str:
 
 @cache
 def kernel_digest(*roots: str | Path) -> str:
-    """The same of the compiled modules among them."""
+    """The same of the compiled modules among them that `planning.variants.warm` may compile: jobs that need
+    the same ones share their stamps."""
     total = hashlib.sha256()
-    for path in _in_order(closure(*roots)):
+    for path in _in_order(closure(*roots) & closure("gaspart.planning.variants")):
         if path.is_relative_to(PACKAGE / "kernels"):
             total.update(_content(path))
     return total.hexdigest()[:12]
