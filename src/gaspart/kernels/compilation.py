@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -22,6 +23,7 @@ F = TypeVar("F", bound=Callable)
 _HERE = Path(__file__).parent
 
 
+@cache
 def source_digest() -> str:
     """A short digest of every module of this package: all compiled code is in it, and nothing else."""
     digest = hashlib.sha256()

@@ -16,7 +16,7 @@ WORK = {"pair_tests": "pair tests", "crossings": "crossings"}
 
 
 def price_of_features(ds: xr.Dataset) -> Figure:
-    """Time per event over the plain scene's, and the counted work per event, for each feature."""
+    """Time per event over that without the feature, and the counted work per event, for each feature."""
     figure, (left, right) = style.new((2.9,), (2.9,))
     names = list(dict.fromkeys(ds["feature"].values))
     place = {name: -k for k, name in enumerate(names)}
@@ -41,7 +41,7 @@ def price_of_features(ds: xr.Dataset) -> Figure:
         axis.legend(loc="upper right", ncols=2 if axis is right else 1)
     most = float((ds["ratio"] + ds["ratio_error"]).max())
     left.set_xlim(0.0, max(1.6, 1.1 * most))
-    left.set_xlabel("time per event over the plain scene's")
+    left.set_xlabel("time per event over that without the feature")
     right.set_xscale("log")
     right.set_xlabel("counted work per event")
     style.letters(left, right)

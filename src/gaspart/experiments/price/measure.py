@@ -1,6 +1,6 @@
-"""The cost of each feature of a scene relative to the plain scene, and that of absent features.
+"""The cost of each feature of a scene relative to that without it, and that of absent features.
 
-Each job times a scene and the plain one in turn, A B B A, so that what disturbs the machine disturbs both.
+Each job times a scene and the one without in turn, A B B A, so that what disturbs the machine disturbs both.
 Several jobs of one feature differ in their equilibration: their scatter is the uncertainty.
 """
 
@@ -19,10 +19,10 @@ WORK = ("pair_tests", "box_visits", "crossings")
 
 
 def price_of_features(points: list[grid.Point], settings: dict) -> xr.Dataset:
-    """Costs per event (a collision or a hit at a wall), and over those of the plain scene beside it.
+    """Costs per event (a collision or a hit at a wall), and over those of the scene without beside it.
 
-    Over point (a feature with an engine): engine, feature (which the plain scene lacks), seconds per event,
-    `ratio` over the plain one's in the same jobs with its error, which is the jobs' scatter, and the degrees
+    Over point (a feature with an engine): engine, feature (which the other scene lacks), seconds per event,
+    `ratio` over the other one's in the same jobs with its error, which is the jobs' scatter, and the degrees
     of freedom of that; counted `pair_tests`, `box_visits` and `crossings` per event. The plain scene beside
     itself has the ratio 1. Over kernel, if a point counts them: engine's name, `instructions`, and
     `stripped`, those of a kernel whose source lacks the features.
@@ -51,7 +51,7 @@ def _together(jobs: list[dict]) -> dict:
 
 def _row(point: grid.Point) -> dict:
     """One job: its costs per event, and the mean over its repeats of ln of the time per event over that of
-    the plain scene timed next to it."""
+    the scene without the feature, timed next to it."""
     with xr.open_dataset(point.path) as run:
         costs = per_event(run)
         engine, recorded = run.attrs["engine"], bool(run.attrs["recorded"])
