@@ -19,7 +19,7 @@ CORES ?= all
 PIP = .venv/bin/python -m pip --quiet --disable-pip-version-check
 SNAKEMAKE = .venv/bin/python -m snakemake --cores $(CORES)
 # Printed after Snakemake has ended, also if there was nothing to do.
-VERDICTS = @.venv/bin/python -c 'from gaspart.claims import summary; print(summary("results/tables/claims.csv"))'
+VERDICTS = @.venv/bin/python -c 'from gaspart.reproduction.claims import summary; print(summary("results/tables/claims.csv"))'
 
 all: setup
 	$(SNAKEMAKE) --quiet rules

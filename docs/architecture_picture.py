@@ -17,7 +17,7 @@ matplotlib.rcParams.update({"font.size": 8, "svg.fonttype": "none", "svg.hashsal
 import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.patches import FancyBboxPatch  # noqa: E402
 
-from gaspart.planning.modules import PACKAGE, imported  # noqa: E402
+from gaspart.reproduction.points.modules import PACKAGE, imported  # noqa: E402
 
 DOCS = Path(__file__).parent
 WIDTH, HEIGHT = 0.86, 0.62  # of a box; places are 1 apart

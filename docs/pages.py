@@ -14,10 +14,10 @@ from pathlib import Path
 
 import gaspart
 from gaspart import analysis, theory
-from gaspart.claims.captions import filled
 from gaspart.cli import commands
 from gaspart.cli.new import templates
-from gaspart.experiments.registry import families, titles
+from gaspart.reproduction.claims.captions import filled
+from gaspart.reproduction.families.registry import families, titles
 
 ROOT = Path(__file__).parents[1]
 GROUPS = {
@@ -143,7 +143,7 @@ def figures(folder):
             text += claims_of(ROOT / f"results/claims/{figure}.csv")
             text += f".. code-block:: sh\n\n   snakemake --cores all results/figures/{figure}.png\n\n"
         for kind, name in (("measure", "Measurement"), ("claims", "Claims")):
-            doc = importlib.import_module(f"gaspart.experiments.{family}.{kind}").__doc__
+            doc = importlib.import_module(f"gaspart.reproduction.families.{family}.{kind}").__doc__
             text += heading(name, "-") + f".. code-block:: text\n\n{indented(doc.strip())}\n"
         pages[f"figures/{family}.rst"] = text
     listed = "".join(f"   {family}\n" for family in titles())

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from numba.core.event import install_timer
 
 from gaspart.errors import SceneError
-from gaspart.planning.keys import POINT
+from gaspart.reproduction.points.keys import POINT
 from gaspart.yaml_text import dump_yaml
 
 ROOT = Path(__file__).parents[1]
@@ -150,7 +150,7 @@ def mutated_texts(draw):
 @cache
 def configs():
     """The smoke config's experiments, one of each kind, each as a config of its own with a figure."""
-    from gaspart.experiments.config import laid_over
+    from gaspart.reproduction.config import laid_over
 
     whole, _ = laid_over(ROOT / "config/smoke.yaml")
     found = {}

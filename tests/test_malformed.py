@@ -11,7 +11,7 @@ from malformed import NASTY, OBJECTS, SCENES, configs, extreme_configs, mutated,
 import gaspart as gp
 from gaspart.engines import engine_from_dict
 from gaspart.errors import SceneError
-from gaspart.experiments.config import check
+from gaspart.reproduction.config import check
 from gaspart.scene.faces import Piston, Sticky, Thermal, Vibrating, Well
 from gaspart.scene.walls import Plate, box_of_walls
 from gaspart.yaml_text import dump_yaml

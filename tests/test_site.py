@@ -14,7 +14,7 @@ import gaspart as gp
 from gaspart import theory
 from gaspart.cli import commands
 from gaspart.cli.new import templates
-from gaspart.experiments.registry import families
+from gaspart.reproduction.families.registry import families
 
 ROOT = Path(__file__).parents[1]
 needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")

@@ -22,7 +22,7 @@ _HOMES = {
     "Restitution": "scene.restitution",
     "Scene": "scene.scene",
     "SceneError": "errors",
-    "Simulation": "simulation.simulation",
+    "Simulation": "simulation",
     "SimulationError": "errors",
     "Species": "scene.species",
     "State": "state.state",

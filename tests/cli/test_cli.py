@@ -313,6 +313,6 @@ def test_advice_names_engine_length_cost_and_reason(folder, capsys):
 
 
 def test_the_cost_of_a_config(capsys, monkeypatch):
-    monkeypatch.setattr("gaspart.experiments.cost._speed", lambda gas, engine, precision: 1.0)
+    monkeypatch.setattr("gaspart.reproduction.cost._speed", lambda gas, engine, precision: 1.0)
     assert main(["advise", "--config", str(CONFIGS / "smoke.yaml")]) == 0
     assert "core-hours" in capsys.readouterr().out

@@ -13,7 +13,7 @@ from scenes import gas, measured_compressibility, mixtures
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.engines.step_limits import check_scene
+from gaspart.engines.step.limits import check_scene
 
 SEARCHES = (
     {"boxes_per_side": 1},

@@ -14,10 +14,11 @@ import numpy as np
 from scenes import gas
 
 import gaspart as gp
-from gaspart.kernels import flight, insertion, model
+from gaspart.kernels import insertion, model
 from gaspart.kernels.event import box_search as search
 from gaspart.kernels.event import candidates, prediction, prefetch
 from gaspart.kernels.obstacles import distance
+from gaspart.kernels.physics import flight
 from gaspart.kernels.step import neighbour_list as step_list
 from gaspart.kernels.step import resolve as step_contacts
 from gaspart.trajectory.correlator import Correlator

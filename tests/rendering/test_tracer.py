@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gaspart.kernels.ray_tracing import sky
+from gaspart.kernels.drawing.ray_tracing import sky
 from gaspart.rendering.camera import camera_for
 from gaspart.rendering.tracer import EDGE, FLOOR, NOTHING, SPHERE, cells, trace
 

@@ -12,8 +12,8 @@ from scenes import closest, gas
 
 import gaspart as gp
 from gaspart import compress
-from gaspart.kernels.contact import time_to_growing_contact
 from gaspart.kernels.event.box_lists import empty_lists
+from gaspart.kernels.physics.contact import time_to_growing_contact
 from gaspart.state import compression
 from gaspart.state.boxes import make_boxes
 from gaspart.state.initial import initial_state

@@ -13,7 +13,7 @@ from gaspart.errors import SceneError
 from gaspart.scene.container import Container
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
-from gaspart.simulation.simulation import Simulation
+from gaspart.simulation import Simulation
 from gaspart.tradeoff import table
 from gaspart.tradeoff.advice import EQUILIBRATION, QUANTILE, advise
 

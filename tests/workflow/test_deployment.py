@@ -3,7 +3,7 @@
 import pytest
 from workspace import ROOT, Workspace
 
-from gaspart.planning.overlay import laid_over
+from gaspart.reproduction.points.overlay import laid_over
 from gaspart.yaml_text import write_yaml
 
 pytestmark = pytest.mark.workflow

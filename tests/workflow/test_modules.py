@@ -11,8 +11,8 @@ from pathlib import Path
 import grimp
 import pytest
 
-from gaspart.experiments.registry import titles
-from gaspart.planning.modules import PACKAGE, closure, imported
+from gaspart.reproduction.families.registry import titles
+from gaspart.reproduction.points.modules import PACKAGE, closure, imported
 
 ROOT = Path(__file__).parents[2]
 LAYERS = [  # a module imports only from the packages above its own
@@ -29,14 +29,11 @@ LAYERS = [  # a module imports only from the packages above its own
     {"trajectory"},
     {"theory"},
     {"analysis"},
-    {"claims"},
     {"tradeoff"},
     {"rendering"},
-    {"planning"},
-    {"experiments"},
-    {"report"},
     {"inspection"},
     {"cli"},
+    {"reproduction"},
 ]
 
 
@@ -61,7 +58,7 @@ def test_no_imports_lead_in_a_circle():
 
 
 def test_all_compiled_code_is_in_kernels():
-    users = graph().find_modules_that_directly_import("gaspart.kernels.compilation")
+    users = graph().find_modules_that_directly_import("gaspart.kernels.compile.policy")
     outside = {name for name in users if not name.startswith("gaspart.kernels.")}
     for name in outside:  # what is left may read the digest or the compiler's settings, and compile nothing
         text = PACKAGE.joinpath(*name.split(".")[1:]).with_suffix(".py").read_text(encoding="utf-8")
@@ -98,11 +95,12 @@ def test_the_imports_that_are_searched_for_are_those_that_a_parser_finds():
 
 @pytest.mark.parametrize("family", titles())
 def test_a_stage_is_made_of_what_it_uses_and_of_no_engine_where_it_simulates_nothing(family):
-    part = {stage: closure(f"gaspart.experiments.{family}.{stage}") for stage in ("claims", "figure")}
+    folder = PACKAGE / "reproduction/families" / family
+    part = {stage: closure(folder / f"{stage}.py") for stage in ("claims", "figure")}
     for files in part.values():
         names = {path.relative_to(PACKAGE).parts[0] for path in files}
-        assert names.isdisjoint({"engines", "simulation", "trajectory", "planning"}), family
-    assert PACKAGE / f"experiments/{family}/measure.py" not in part["claims"] | part["figure"]
+        assert names.isdisjoint({"engines", "simulation.py", "trajectory"}), family
+    assert folder / "measure.py" not in part["claims"] | part["figure"]
 
 
 def test_tables_are_part_of_what_reads_them():
@@ -119,7 +117,7 @@ def test_tables_are_part_of_what_reads_them():
 )
 def test_a_job_imports_no_large_package_that_it_does_not_need(stage, needless):
     """Each is 0.1 to 1 s of every job: scipy.stats alone was 0.8 s."""
-    modules = [f"gaspart.experiments.{family}.{stage}" for family in titles()]
+    modules = [f"gaspart.reproduction.families.{family}.{stage}" for family in titles()]
     code = f"import sys, {', '.join(modules)}; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert not needless & set(done.stdout.split())

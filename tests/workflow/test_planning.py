@@ -8,8 +8,8 @@ from collections import Counter
 import pytest
 from workspace import ROOT, SMOKE
 
-from gaspart.planning.overlay import laid_over
-from gaspart.planning.points import points
+from gaspart.reproduction.points.overlay import laid_over
+from gaspart.reproduction.points.points import points
 from gaspart.yaml_text import dump_yaml, read_yaml
 
 pytestmark = pytest.mark.workflow
@@ -59,7 +59,7 @@ import sys
 before = set(sys.modules)
 sys.path.insert(0, {scripts!r})
 import _job
-from gaspart.kernels.numba_loading import load_numba
+from gaspart.kernels.compile.loading import load_numba
 load_numba(ours=True)
 import gaspart as gp
 discs = gp.Species(16, 0.5, temperature=1.0, arrangement="lattice")
@@ -111,14 +111,14 @@ def test_a_longer_run_reruns_its_experiment_only(smoke, tmp_path):
 @pytest.mark.parametrize(
     ("paths", "expected"),
     [
-        (["src/gaspart/experiments/virial/figure.py"], {"draw", "report", "all"}),
+        (["src/gaspart/reproduction/families/virial/figure.py"], {"draw", "report", "all"}),
         (
-            ["src/gaspart/experiments/virial/claims.py"],
+            ["src/gaspart/reproduction/families/virial/claims.py"],
             {"measure", "judge", "draw", "claims", "report", "all"},  # and the scatter of all claims
         ),
         (["src/gaspart/theory/virial.py"], {"measure", "judge", "draw", "claims", "report", "all"}),
-        (["src/gaspart/experiments/registry.py"], {"report", "all"}),
-        (["src/gaspart/experiments/config.py", "config/README.md"], set()),
+        (["src/gaspart/reproduction/families/registry.py"], {"report", "all"}),
+        (["src/gaspart/reproduction/config.py", "config/README.md"], set()),
     ],
 )
 def test_editing_modules_reruns_what_uses_them(smoke, paths, expected):
@@ -134,7 +134,7 @@ def test_editing_modules_reruns_what_uses_them(smoke, paths, expected):
 
 
 def test_editing_the_physics_of_a_contact_simulates_everything_again(smoke):
-    undo = smoke.edit("src/gaspart/kernels/contact.py", '"""', '"""Edited. ')
+    undo = smoke.edit("src/gaspart/kernels/physics/contact.py", '"""', '"""Edited. ')
     try:
         plan = smoke.plan(*SMOKE)
     finally:

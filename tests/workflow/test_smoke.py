@@ -9,8 +9,8 @@ import pytest
 from browser import CHROMIUM, found_by
 from digests import digests
 
-from gaspart.claims import KINDS, VERDICTS
-from gaspart.experiments.registry import families
+from gaspart.reproduction.claims import KINDS, VERDICTS
+from gaspart.reproduction.families.registry import families
 from gaspart.yaml_text import read_yaml
 
 pytestmark = pytest.mark.workflow

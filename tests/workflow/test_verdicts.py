@@ -4,10 +4,10 @@ import re
 import subprocess
 
 import pytest
-from claims.data import claim
+from reproduction.claims.data import claim
 from workspace import ROOT, copy_of_project, leave_one_figure
 
-from gaspart import claims
+from gaspart.reproduction import claims
 
 pytestmark = pytest.mark.workflow
 COUNTS = ["3 claims", "tests: 1 agree, 1 disagree", "families: 1 disagree"]

@@ -8,7 +8,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from gaspart.planning.overlay import laid_over
+from gaspart.reproduction.points.overlay import laid_over
 from gaspart.yaml_text import write_yaml
 
 ROOT = Path(__file__).parents[2]

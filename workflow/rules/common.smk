@@ -19,15 +19,15 @@ sys.path.insert(0, str(ROOT / "src"))
 if " " in sys.executable:
     sys.executable = shlex.quote(sys.executable)
 
-from gaspart.claims.captions import filled
-from gaspart.claims.table import summary
-from gaspart.experiments.config import check
-from gaspart.experiments.registry import families, titles
-from gaspart.planning import grid
-from gaspart.planning.modules import digest, kernel_digest
-from gaspart.planning.points import figure_points as grid_points
-from gaspart.planning.points import points
-from gaspart.planning.variants import task, variant
+from gaspart.reproduction.claims.captions import filled
+from gaspart.reproduction.claims.table import summary
+from gaspart.reproduction.config import check
+from gaspart.reproduction.families.registry import families, titles
+from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.modules import digest, kernel_digest
+from gaspart.reproduction.points.points import figure_points as grid_points
+from gaspart.reproduction.points.points import points
+from gaspart.reproduction.points.variants import task, variant
 from gaspart.errors import SceneError
 
 # A job on a cluster reads this file again, but need not validate ten thousand points again.
@@ -142,10 +142,10 @@ PARTS = {"measure": "measure", "judge": "claims", "draw": "figure"}
 
 def sources(stage, family=None):
     """The script of a stage and what it imports by name: a family's part, or a job's module."""
-    job = f"gaspart.experiments.jobs.{stage}"
+    job = f"gaspart.reproduction.jobs.{stage}"
     script = stage if (SCRIPTS / f"{stage}.py").exists() else "compute"
     named = (
-        [f"gaspart.experiments.{family}.{PARTS[stage]}"] if family else [job] if script == "compute" else []
+        [f"gaspart.reproduction.families.{family}.{PARTS[stage]}"] if family else [job] if script == "compute" else []
     )
     return [SCRIPTS / "_job.py", SCRIPTS / f"{script}.py", *named]
 

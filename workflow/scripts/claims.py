@@ -3,8 +3,8 @@
 from _job import job
 
 with job(snakemake):
-    from gaspart import claims
     from gaspart.files import whole_file
+    from gaspart.reproduction import claims
 
     with whole_file(snakemake.output[0]) as partial:
         claims.collect(snakemake.input.tables).to_csv(partial, index=False)

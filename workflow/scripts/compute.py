@@ -3,12 +3,12 @@
 from _job import function, job
 
 with job(snakemake):
-    from gaspart.kernels.numba_loading import load_numba
+    from gaspart.kernels.compile.loading import load_numba
 
     load_numba(ours=True)
     from gaspart.files import whole_file
 
-    run = function(f"gaspart.experiments.jobs.{snakemake.params.job}", "run")
+    run = function(f"gaspart.reproduction.jobs.{snakemake.params.job}", "run")
     data = run(snakemake.params.recipe)
     with whole_file(snakemake.output[0]) as partial:
         data.write(partial)

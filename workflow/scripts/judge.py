@@ -5,11 +5,11 @@ from _job import function, job
 with job(snakemake):
     import xarray as xr
 
-    from gaspart import claims
     from gaspart.files import whole_file
+    from gaspart.reproduction import claims
 
     dataset = xr.load_dataset(snakemake.input.dataset)
     figure = snakemake.wildcards.figure
-    judged = function(f"gaspart.experiments.{snakemake.params.family}.claims", figure)(dataset)
+    judged = function(f"gaspart.reproduction.families.{snakemake.params.family}.claims", figure)(dataset)
     with whole_file(snakemake.output[0]) as partial:
         claims.write(partial, figure, judged)

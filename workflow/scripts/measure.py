@@ -6,7 +6,7 @@ from _job import function, job
 
 with job(snakemake):
     from gaspart.files import whole_file
-    from gaspart.planning.grid import Point
+    from gaspart.reproduction.points.grid import Point
     from gaspart.trajectory import provenance
 
     figure = snakemake.wildcards.figure
@@ -14,7 +14,9 @@ with job(snakemake):
     tables = list(snakemake.input.tables)
     points = tables or [Point.from_dict(values) for values in snakemake.params.points]
     settings = {key: value for key, value in snakemake.params.settings.items() if key != "experiments"}
-    dataset = function(f"gaspart.experiments.{snakemake.params.family}.measure", figure)(points, settings)
+    dataset = function(f"gaspart.reproduction.families.{snakemake.params.family}.measure", figure)(
+        points, settings
+    )
     dataset.attrs.update(
         figure=figure,
         config=snakemake.params.title,

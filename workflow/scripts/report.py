@@ -39,7 +39,7 @@ def explanations(datasets):
     """What a reader may vary on the page, if its figures are there. datasets: {figure: path}."""
     import xarray as xr
 
-    from gaspart.report import explore
+    from gaspart.reproduction.report import explore
 
     if not {*explore.SERIES, explore.COSTS} <= datasets.keys():
         return None
@@ -52,9 +52,9 @@ with job(snakemake):
     from markupsafe import Markup, escape
 
     from gaspart import __version__
-    from gaspart.claims import table
     from gaspart.files import whole_file
-    from gaspart.report import page, references
+    from gaspart.reproduction.claims import table
+    from gaspart.reproduction.report import page, references
     from gaspart.trajectory import provenance
     from gaspart.yaml_text import read_yaml
 

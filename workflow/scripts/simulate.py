@@ -5,7 +5,7 @@ from pathlib import Path
 from _job import job
 
 with job(snakemake):
-    from gaspart.kernels.numba_loading import load_numba
+    from gaspart.kernels.compile.loading import load_numba
 
     load_numba(ours=True)
     from gaspart.engines import engine_from_dict

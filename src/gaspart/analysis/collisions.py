@@ -23,7 +23,7 @@ from gaspart.errors import SceneError, SimulationError
 from gaspart.files import Kind, begins_with, descriptor_path, writing
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of, number
-from gaspart.simulation.simulation import Simulation
+from gaspart.simulation import Simulation
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.trajectory.provenance import git_revision, versions
 

@@ -17,7 +17,7 @@ from gaspart.engines import TimeStepped
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
-from gaspart.simulation.simulation import Simulation
+from gaspart.simulation import Simulation
 from gaspart.trajectory.run import open_trajectory
 from gaspart.yaml_text import dump_yaml, parse_yaml
 

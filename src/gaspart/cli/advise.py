@@ -6,7 +6,7 @@ import argparse
 import math
 from typing import TYPE_CHECKING
 
-from gaspart.cli.arguments import Parser, UsageError, print_line, real, set_command
+from gaspart.cli.arguments import Parser, UsageError, of_configs, print_line, real, set_command
 from gaspart.cli.progress import waiting
 from gaspart.scene.scene import Scene
 
@@ -43,10 +43,8 @@ def _advise(given: argparse.Namespace) -> None:
     if (given.scene is None) == (given.config is None):
         raise UsageError("give a scene or --config, and not both")
     if given.config:
-        from gaspart.experiments.cost import predict
-
         with waiting("predicting the cost of every point"):
-            lines = predict(given.config)
+            lines = of_configs("advise")(given.config)
         print_line("\n".join(lines))
         return
     from gaspart.tradeoff.advice import advise

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable
+from importlib.metadata import entry_points
 from textwrap import fill
 from typing import Any, NoReturn, TypeVar
 
@@ -90,6 +91,13 @@ def add_output(parser: argparse.ArgumentParser, what: str, overwrite: str) -> No
 def add_trajectory(parser: argparse.ArgumentParser) -> None:
     """Add the argument of a command that reads a trajectory."""
     parser.add_argument("trajectory", metavar="FILE", help="trajectory of gaspart (.nc)")
+
+
+def of_configs(command: str) -> Callable:
+    """What a command does with a config of the workflow: an entry point, since the library does not import
+    the reproduction."""
+    (found,) = entry_points(group="gaspart.configs", name=command)
+    return found.load()
 
 
 def print_line(text: object) -> None:

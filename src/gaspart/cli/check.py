@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from gaspart.cli.arguments import CheckFailed, Parser, print_line, real, set_command, several
+from gaspart.cli.arguments import CheckFailed, Parser, of_configs, print_line, real, set_command, several
 from gaspart.errors import SceneError
 from gaspart.yaml_text import read_yaml
 
@@ -62,9 +62,9 @@ def _check(given: argparse.Namespace) -> None:
 
 def _written(path: Path, tolerance: float | None) -> list:
     """The checks of a YAML file: a scene, or a config of the workflow."""
-    from gaspart.inspection.written import judge_config, judge_scene
+    from gaspart.inspection.written import judge_scene
 
     content = read_yaml(path)
     if isinstance(content, dict) and ("experiments" in content or "figures" in content):
-        return judge_config(path)
+        return of_configs("check")(path)
     return judge_scene(path, tolerance)

@@ -12,7 +12,7 @@ from gaspart.cli.arguments import Parser, UsageError, print_line, set_command, s
 from gaspart.cli.progress import clear_line, progress, waiting
 from gaspart.errors import SceneError, shown
 from gaspart.interruption import set_note
-from gaspart.kernels.numba_loading import load_numba
+from gaspart.kernels.compile.loading import load_numba
 from gaspart.scene.scene import Scene
 
 if TYPE_CHECKING:

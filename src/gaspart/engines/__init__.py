@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from dataclasses import asdict
 
-from gaspart.engines.event_driven import EventDriven
-from gaspart.engines.time_stepped import TimeStepped
+from gaspart.engines.event.event_driven import EventDriven
+from gaspart.engines.step.time_stepped import TimeStepped
 from gaspart.errors import SceneError
 from gaspart.scene.validation import choice, from_mapping
 

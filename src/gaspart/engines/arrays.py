@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.piston import piston_of
-from gaspart.engines.vibration import motion_of
+from gaspart.engines.features.piston import piston_of
+from gaspart.engines.features.vibrating import motion_of
 from gaspart.kernels.model import (
     HARD,
     NONE,
@@ -69,7 +69,7 @@ def _viscous(scene: Scene) -> float | None:
     rule = scene.restitution
     if rule is None or rule.reference_speed is None:
         return None
-    from gaspart.kernels.viscoelastic import fifth_root, restitution_of
+    from gaspart.kernels.physics.viscoelastic import fifth_root, restitution_of
 
     first = (scene.species or scene.bodies)[0]
     least, most = 0.0, 1.0

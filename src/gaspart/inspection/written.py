@@ -1,16 +1,11 @@
-"""Validation of scene files, and of configs of the workflow."""
+"""Validation of scene files."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-
-from gaspart.experiments import config
 from gaspart.inspection.checks import Check, judge_places
 from gaspart.inspection.frames import Frames
-from gaspart.planning import grid
-from gaspart.planning.points import points
 from gaspart.scene.scene import Scene
 from gaspart.state.initial import initial_state
 
@@ -26,15 +21,3 @@ def judge_scene(path: Path, tolerance: float | None = None) -> list[Check]:
     periodic = scene.container.periodic
     checks += judge_places(Frames(state.positions[None], state.lengths, state.radii, periodic), tolerance)
     return checks
-
-
-def judge_config(path: Path) -> list[Check]:
-    """Every point of every grid, and every figure. Raises SceneError for a config that cannot be run.
-
-    A config next to `config.yaml` is merged over it, as in the workflow.
-    """
-    with config.checked(path) as merged:
-        made = [point for name in merged["experiments"] for point in points(merged, name)]
-        counts = np.array([grid.extents(point)[0] for point in made])
-    text = f"{len(merged['experiments'])} experiments of {len(made)} points, up to {counts.max()} particles; "
-    return [Check("config", True, text + f"{len(merged['figures'])} figures")]

@@ -4,7 +4,7 @@ Earlier samples lie side by side, so that the inner loop runs over them: each la
 particles in their order. It is compiled to vector instructions, and the bits do not depend on their width.
 """
 
-from gaspart.kernels.compilation import kernel
+from gaspart.kernels.compile.policy import kernel
 
 
 @kernel

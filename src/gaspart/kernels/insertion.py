@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gaspart.kernels.compilation import inner_helper, kernel
+from gaspart.kernels.compile.policy import inner_helper, kernel
 from gaspart.kernels.obstacles.distance import to_wall
-from gaspart.kernels.periodic import box_coordinate
+from gaspart.kernels.physics.periodic import box_coordinate
 from gaspart.kernels.prefetch import fetch
 
 BLOCK = 256  # trials of one block

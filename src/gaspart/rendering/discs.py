@@ -6,7 +6,7 @@ from itertools import product
 
 import numpy as np
 
-from gaspart.kernels.rasterizing import draw_discs, draw_segments
+from gaspart.kernels.drawing.rasterizing import draw_discs, draw_segments
 
 _MARGIN = 0.02  # of the picture's shorter side
 INK, PAPER = (0.16, 0.16, 0.16), (1.0, 1.0, 1.0)

@@ -18,7 +18,7 @@ from gaspart.rendering.labels import Labels, time_format
 from gaspart.rendering.particles import FASTEST, colours_of, legend_of
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
 from gaspart.scene.validation import count_of, number
-from gaspart.simulation.simulation import Simulation
+from gaspart.simulation import Simulation
 from gaspart.state.state import State
 
 if TYPE_CHECKING:

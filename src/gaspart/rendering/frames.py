@@ -20,7 +20,7 @@ from gaspart.scene.faces import Piston, Vibrating, pistons
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of
 from gaspart.scene.walls import Wall
-from gaspart.simulation.simulation import Simulation
+from gaspart.simulation import Simulation
 from gaspart.state.insertion import per_body
 from gaspart.state.state import State
 from gaspart.trajectory.run import open_trajectory

@@ -10,7 +10,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from gaspart.kernels.ray_tracing import EDGE, FLOOR, NOTHING, SPHERE, list_spheres, refine, render_once
+from gaspart.kernels.drawing.ray_tracing import (
+    EDGE,
+    FLOOR,
+    NOTHING,
+    SPHERE,
+    list_spheres,
+    refine,
+    render_once,
+)
 from gaspart.rendering.camera import Camera, edges_of, segments
 
 __all__ = ["EDGE", "FLOOR", "NOTHING", "SPHERE", "cells", "trace"]

@@ -20,7 +20,7 @@ from gaspart.rendering.frames import opened, particles_of
 from gaspart.rendering.particles import FASTEST, DrawnParticles
 from gaspart.rendering.style import COLOURS
 from gaspart.scene.validation import count_of
-from gaspart.simulation.simulation import Simulation
+from gaspart.simulation import Simulation
 from gaspart.state.state import State
 
 if TYPE_CHECKING:

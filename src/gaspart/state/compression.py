@@ -115,10 +115,11 @@ class _Growing:
     """The particles of a scene, at `scale` times their radii, in progress."""
 
     def __init__(self, scene: Scene, seed: int | tuple[int, ...], scale: float, end: float) -> None:
-        from gaspart.kernels import flight, model
+        from gaspart.kernels import model
         from gaspart.kernels.event import growth
         from gaspart.kernels.event.box_lists import empty_lists
         from gaspart.kernels.event.queue import empty_queue
+        from gaspart.kernels.physics import flight
 
         start = replace(scene, species=_scaled(scene, scale), faces={})
         positions, _ = random_insertion(start, stream(seed, _POSITIONS))

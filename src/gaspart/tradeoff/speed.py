@@ -12,7 +12,7 @@ from gaspart.engines import EventDriven, TimeStepped
 from gaspart.scene.container import Container
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
-from gaspart.simulation.simulation import Simulation
+from gaspart.simulation import Simulation
 from gaspart.tradeoff import table
 from gaspart.tradeoff.table import REFERENCE, STEP
 

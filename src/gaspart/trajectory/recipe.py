@@ -141,7 +141,7 @@ class Recipe:
 
     def header(self, revision: str) -> bytes:
         """The file before its first frame, as made by the present program at a git revision ("": none)."""
-        from gaspart.kernels.compilation import source_digest
+        from gaspart.kernels.compile.policy import source_digest
 
         scene, versions = self.scene, provenance.versions()
         groups = [(len(scene.species), body.radius, 1) for body in scene.bodies]

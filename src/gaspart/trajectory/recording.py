@@ -13,7 +13,7 @@ import numpy as np
 from gaspart.engines import TimeStepped
 from gaspart.errors import SimulationError
 from gaspart.interruption import Deferral, deferred, set_note
-from gaspart.simulation.simulation import Simulation
+from gaspart.simulation import Simulation
 from gaspart.state.state import State
 from gaspart.trajectory import amber
 from gaspart.trajectory.checkpoint import checkpoint_path, write_checkpoint

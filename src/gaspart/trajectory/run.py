@@ -20,7 +20,7 @@ from gaspart.errors import SceneError
 from gaspart.files import Kind, may_replace, output_path, place
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
-from gaspart.simulation.simulation import Simulation
+from gaspart.simulation import Simulation
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.checkpoint import checkpoint_path, read_checkpoint, remove_checkpoint
 from gaspart.trajectory.correlator import Correlations

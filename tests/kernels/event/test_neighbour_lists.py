@@ -8,8 +8,8 @@ from referee import check_same, events_of, restored, same_bits
 from scenes import gas, mixtures
 
 import gaspart as gp
-from gaspart.engines import event_search
-from gaspart.engines.event_search import chosen_search, distances, obstacle_to_lists
+from gaspart.engines.event import search as event_search
+from gaspart.engines.event.search import chosen_search, distances, obstacle_to_lists
 from gaspart.kernels.model import NUMBER_BITS
 
 

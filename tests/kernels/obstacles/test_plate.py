@@ -10,7 +10,7 @@ from referee import check_searches, events_of
 from scenes import check_outside_walls, partitioned
 
 import gaspart as gp
-from gaspart.kernels.ballistic import time_of_summit
+from gaspart.kernels.physics.ballistic import time_of_summit
 
 PLATE = gp.Plate((6.0, 4.0, 4.0), ((0.0, 4.0, 0.0), (0.0, 0.0, 4.0)))
 SEARCHES = pytest.mark.parametrize("search", ["boxes", "pairs"])

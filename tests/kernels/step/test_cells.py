@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gaspart.kernels.compilation import kernel
+from gaspart.kernels.compile.policy import kernel
 from gaspart.kernels.step.cells import Cells, divide_cells, order_part
 
 CELLS = 50

@@ -1,13 +1,13 @@
-"""The contact of the step kernels is that of `kernels.collision` and `kernels.contact`, bit for bit."""
+"""The contact of the step kernels is that of `kernels.physics`, bit for bit."""
 
 import numpy as np
 import pytest
 
-from gaspart.kernels import collision
-from gaspart.kernels.compilation import kernel
-from gaspart.kernels.contact import contact_root, exchange
+from gaspart.kernels.compile.policy import kernel
 from gaspart.kernels.model import Space, flight_dtype
-from gaspart.kernels.running_sum import net
+from gaspart.kernels.physics import collision
+from gaspart.kernels.physics.contact import contact_root, exchange
+from gaspart.kernels.physics.running_sum import net
 from gaspart.kernels.step.model import VIRIAL, StepModel, StepParticles, StepTally
 from gaspart.kernels.step.resolve import collide_smooth, entry_time, impulse_factors
 

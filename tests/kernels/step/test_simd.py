@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy import uint32, uint64
 
-from gaspart.kernels.compilation import kernel
+from gaspart.kernels.compile.policy import kernel
 from gaspart.kernels.model import Space
 from gaspart.kernels.step.model import StepParticles
 from gaspart.kernels.step.resolve import distance_squared

@@ -3,11 +3,11 @@ searches."""
 
 from math import inf
 
-from gaspart.kernels.compilation import inner_helper
-from gaspart.kernels.flight import time_of_contact
+from gaspart.kernels.compile.policy import inner_helper
 from gaspart.kernels.model import NONE, PAIR_TESTS
 from gaspart.kernels.obstacles.face import next_face
 from gaspart.kernels.obstacles.interior_wall import find_wall
+from gaspart.kernels.physics.flight import time_of_contact
 
 
 @inner_helper

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gaspart.kernels.compilation import inner_helper, inner_kernel
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.event.simd import PLACES
 from gaspart.kernels.memory import aligned
 from gaspart.kernels.simd import WIDTH

@@ -9,12 +9,12 @@ from math import inf
 
 from numpy import int64, uint64
 
-from gaspart.kernels.compilation import inner_helper, inner_kernel
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.event.box_lists import CANDIDATES
 from gaspart.kernels.event.candidates import NUMBER, X, Y, Z, image_bits, offset_of
 from gaspart.kernels.event.simd import PLACES, earliest, list_box
-from gaspart.kernels.flight import time_of_contact
 from gaspart.kernels.model import BOX_VISITS, PAIR_TESTS
+from gaspart.kernels.physics.flight import time_of_contact
 from gaspart.kernels.simd import WIDTH, lowest
 
 _WIDTH, _PLACES, _FULL = uint64(WIDTH), uint64(PLACES), uint64(CANDIDATES - 3 * PLACES - 1)

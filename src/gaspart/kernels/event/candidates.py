@@ -5,7 +5,7 @@ Words are unsigned, since numba makes reals of signed ones that meet these.
 
 from numpy import int64, uint64
 
-from gaspart.kernels.compilation import inner_helper
+from gaspart.kernels.compile.policy import inner_helper
 from gaspart.kernels.model import IMAGE_BITS, NUMBER_BITS
 
 NUMBER = uint64((1 << NUMBER_BITS) - 1)  # the bits of a candidate that name the particle

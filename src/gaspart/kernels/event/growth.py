@@ -7,9 +7,7 @@ those of `loop`; here every event predicts its particles anew.
 
 from math import inf, sqrt
 
-from gaspart.kernels.collision import gap_along
-from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
-from gaspart.kernels.contact import time_to_growing_contact, time_to_plane
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.event.box_lists import member, move, sort_in
 from gaspart.kernels.event.queue import (
     EVENT_COUNT,
@@ -20,9 +18,11 @@ from gaspart.kernels.event.queue import (
     soonest,
     time_of,
 )
-from gaspart.kernels.flight import advance, encounter
 from gaspart.kernels.model import COLLISIONS, NONE, VIRIAL
-from gaspart.kernels.running_sum import add
+from gaspart.kernels.physics.collision import gap_along
+from gaspart.kernels.physics.contact import time_to_growing_contact, time_to_plane
+from gaspart.kernels.physics.flight import advance, encounter
+from gaspart.kernels.physics.running_sum import add
 
 _PART = 2.0**-30  # of the rate of growth: particles part at least so fast
 

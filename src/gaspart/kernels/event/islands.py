@@ -6,10 +6,10 @@ events: gravity does not act on it until another particle meets one of it.
 
 from math import sqrt
 
-from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.event.scene_at_rest import RESTS, TOUCHES, stop
-from gaspart.kernels.flight import mark_resting
-from gaspart.kernels.periodic import nearest
+from gaspart.kernels.physics.flight import mark_resting
+from gaspart.kernels.physics.periodic import nearest
 
 
 @inner_helper

@@ -2,11 +2,11 @@
 
 from math import inf, sqrt
 
-from gaspart.kernels.compilation import inner_helper, kernel
-from gaspart.kernels.flight import advance
+from gaspart.kernels.compile.policy import inner_helper, kernel
 from gaspart.kernels.obstacles.well import mass_of
-from gaspart.kernels.rng import normal_pair
-from gaspart.kernels.running_sum import add
+from gaspart.kernels.physics.flight import advance
+from gaspart.kernels.physics.rng import normal_pair
+from gaspart.kernels.physics.running_sum import add
 
 
 @inner_helper

@@ -15,7 +15,7 @@ from math import inf
 
 from numpy import int64
 
-from gaspart.kernels.compilation import inner_helper, kernel
+from gaspart.kernels.compile.policy import inner_helper, kernel
 from gaspart.kernels.event.all_pairs import first_of_all
 from gaspart.kernels.event.box_lists import move
 from gaspart.kernels.event.islands import wake_island

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gaspart.kernels.compilation import inner_helper, inner_kernel
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 
 
 class Record(NamedTuple):

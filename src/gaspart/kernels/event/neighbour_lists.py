@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy import int64, uint32, uint64
 
-from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.event.candidates import NUMBER, X, Y, Z, image_bits, number_of, opposite
 from gaspart.kernels.event.simd import earliest, equal, nearer
 from gaspart.kernels.memory import aligned

@@ -8,10 +8,10 @@ between particles whose boxes are not. A particle that passes into another box s
 
 from math import inf, sqrt
 
-from gaspart.kernels.compilation import inner_helper, inner_kernel
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.event.box_lists import member
-from gaspart.kernels.flight import time_of_contact
 from gaspart.kernels.model import BOX_VISITS, NONE, PAIR_TESTS
+from gaspart.kernels.physics.flight import time_of_contact
 
 _SLACK = 1e-9  # by which neighbourhoods are drawn wider, so that rounding hides no contact
 

@@ -1,11 +1,11 @@
 """The contact of two particles in the event-driven engine."""
 
-from gaspart.kernels.collision import exchange_momentum, gap_along
-from gaspart.kernels.compilation import inner_helper
+from gaspart.kernels.compile.policy import inner_helper
 from gaspart.kernels.event.pressed_contact import least_parting, part, release_pair
-from gaspart.kernels.flight import advance
 from gaspart.kernels.model import COLLISIONS, VIRIAL
-from gaspart.kernels.running_sum import add
+from gaspart.kernels.physics.collision import exchange_momentum, gap_along
+from gaspart.kernels.physics.flight import advance
+from gaspart.kernels.physics.running_sum import add
 
 
 @inner_helper

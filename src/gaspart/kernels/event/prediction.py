@@ -5,17 +5,17 @@ from math import inf
 
 from numpy import int64
 
-from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.event.box_lists import sort_in
 from gaspart.kernels.event.box_search import find_contact
 from gaspart.kernels.event.neighbour_lists import is_renewed_first, next_renewal, search_list
 from gaspart.kernels.event.oversized import search_oversized
 from gaspart.kernels.event.queue import EVENT_COUNT, bucket_of, fill, reschedule
-from gaspart.kernels.flight import mark_resting
 from gaspart.kernels.model import NONE
 from gaspart.kernels.obstacles.face import next_face
 from gaspart.kernels.obstacles.interior_wall import find_wall
 from gaspart.kernels.obstacles.piston import next_piston
+from gaspart.kernels.physics.flight import mark_resting
 from gaspart.kernels.prefetch import fetch
 
 # No box was crossed: all is predicted anew. As int64, since numba compiles a function again for each type of

@@ -9,7 +9,7 @@ does not come is not used.
 
 from numpy import int64, uint32, uint64
 
-from gaspart.kernels.compilation import inner_helper
+from gaspart.kernels.compile.policy import inner_helper
 from gaspart.kernels.event.candidates import NUMBER, number_of
 from gaspart.kernels.event.neighbour_lists import cell_along
 from gaspart.kernels.event.queue import BUCKET

@@ -9,15 +9,15 @@ diameter, is counted as a negative loss.
 
 from math import sqrt
 
-from gaspart.kernels.collision import gap_along, push
-from gaspart.kernels.compilation import inner_helper, inner_kernel
-from gaspart.kernels.contact_duration import SHORTEST, meet_often
-from gaspart.kernels.flight import acceleration_of
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.model import LOSS
 from gaspart.kernels.obstacles.short_bounce import longest_rest
 from gaspart.kernels.obstacles.support import release
 from gaspart.kernels.obstacles.wedge import rest_in_wedge
-from gaspart.kernels.running_sum import add
+from gaspart.kernels.physics.collision import gap_along, push
+from gaspart.kernels.physics.contact_duration import SHORTEST, meet_often
+from gaspart.kernels.physics.flight import acceleration_of
+from gaspart.kernels.physics.running_sum import add
 
 
 @inner_helper

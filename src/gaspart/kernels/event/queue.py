@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gaspart.kernels.compilation import inner_helper, inner_kernel
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 
 BUCKET, FILLED, EVENT_COUNT = range(3)  # of Queue.cursor
 

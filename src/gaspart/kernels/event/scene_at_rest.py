@@ -1,9 +1,9 @@
 """Which particles of a scene under gravity have come to rest."""
 
-from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
-from gaspart.kernels.flight import acceleration_of, advance, flown
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.model import LOSS
-from gaspart.kernels.running_sum import add
+from gaspart.kernels.physics.flight import acceleration_of, advance, flown
+from gaspart.kernels.physics.running_sum import add
 
 TOUCHES, MOVES, RESTS = range(3)  # what `find_resting` marks
 _PAUSE = 4.0  # contact durations: the longest time without a contact of a particle that others support

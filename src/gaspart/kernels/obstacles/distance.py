@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from gaspart.kernels.compilation import inner_helper
+from gaspart.kernels.compile.policy import inner_helper
 
 SEGMENT = np.dtype([("start", "f8", 2), ("direction", "f8", 2), ("length", "f8")])
 """A row of a segment: its start, the unit vector along it, its length."""

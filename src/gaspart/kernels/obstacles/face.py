@@ -5,10 +5,7 @@ from math import inf
 
 from numpy import int64
 
-from gaspart.kernels.ballistic import time_against, time_along
-from gaspart.kernels.compilation import inner_helper, inner_kernel
-from gaspart.kernels.contact import time_to_plane
-from gaspart.kernels.flight import acceleration_of, advance, face_plane
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.model import BOX_FACES, NONE, PISTON, STICKY, THERMAL, THERMAL_NORMAL, VIBRATING
 from gaspart.kernels.obstacles.hard import bounce
 from gaspart.kernels.obstacles.piston import collide_piston, find_piston, is_piston
@@ -19,7 +16,10 @@ from gaspart.kernels.obstacles.support import release, release_after
 from gaspart.kernels.obstacles.thermal import collide_thermal
 from gaspart.kernels.obstacles.vibrating import collide_moving, find_vibrating, moves
 from gaspart.kernels.obstacles.well import mass_of, time_to_edge
-from gaspart.kernels.running_sum import add
+from gaspart.kernels.physics.ballistic import time_against, time_along
+from gaspart.kernels.physics.contact import time_to_plane
+from gaspart.kernels.physics.flight import acceleration_of, advance, face_plane
+from gaspart.kernels.physics.running_sum import add
 
 
 @inner_helper

@@ -2,17 +2,8 @@
 
 from math import sqrt
 
-from gaspart.kernels.collision import (
-    LEAST,
-    collide_wall_by_law,
-    fastest_component,
-    push,
-    velocity_of,
-)
-from gaspart.kernels.compilation import inner_helper, inner_kernel
-from gaspart.kernels.contact import normal_change
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.event.box_lists import box_of
-from gaspart.kernels.flight import advance
 from gaspart.kernels.model import NONE, WALLS
 from gaspart.kernels.obstacles.distance import to_wall
 from gaspart.kernels.obstacles.plate import time_to_plate
@@ -21,7 +12,16 @@ from gaspart.kernels.obstacles.segment import time_to_segment
 from gaspart.kernels.obstacles.short_bounce import longest_rest
 from gaspart.kernels.obstacles.support import is_resting_on, release
 from gaspart.kernels.obstacles.well import mass_of
-from gaspart.kernels.running_sum import add
+from gaspart.kernels.physics.collision import (
+    LEAST,
+    collide_wall_by_law,
+    fastest_component,
+    push,
+    velocity_of,
+)
+from gaspart.kernels.physics.contact import normal_change
+from gaspart.kernels.physics.flight import advance
+from gaspart.kernels.physics.running_sum import add
 
 
 @inner_helper

@@ -7,12 +7,12 @@ from the container's side inwards.
 
 from math import inf
 
-from gaspart.kernels.ballistic import flown, time_to_side
-from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
-from gaspart.kernels.flight import face_plane
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.model import NONE, PISTON_CLOCK, PISTON_PLACE, PISTON_VELOCITY
 from gaspart.kernels.obstacles.well import mass_of
-from gaspart.kernels.running_sum import add
+from gaspart.kernels.physics.ballistic import flown, time_to_side
+from gaspart.kernels.physics.flight import face_plane
+from gaspart.kernels.physics.running_sum import add
 
 
 @inner_helper

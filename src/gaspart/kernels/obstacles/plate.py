@@ -5,18 +5,18 @@ Everything is computed in the plate's own axes: along its two edges, and across 
 
 from math import inf
 
-from gaspart.kernels.ballistic import (
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
+from gaspart.kernels.obstacles.resting import time_to_leave
+from gaspart.kernels.obstacles.support import rests_on
+from gaspart.kernels.physics.ballistic import (
     flown,
     time_of_summit,
     time_to_contact_pulled,
     time_to_far_side,
     time_to_side,
 )
-from gaspart.kernels.compilation import inner_helper, inner_kernel
-from gaspart.kernels.contact import time_to_contact
-from gaspart.kernels.flight import acceleration_of
-from gaspart.kernels.obstacles.resting import time_to_leave
-from gaspart.kernels.obstacles.support import rests_on
+from gaspart.kernels.physics.contact import time_to_contact
+from gaspart.kernels.physics.flight import acceleration_of
 
 
 @inner_helper

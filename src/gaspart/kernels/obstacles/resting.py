@@ -6,13 +6,13 @@ wall becomes zero. The particle is released by the next contact that moves it, a
 
 from math import inf
 
-from gaspart.kernels.ballistic import time_to_side
-from gaspart.kernels.collision import velocity_of
-from gaspart.kernels.compilation import inner_helper, inner_kernel
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.model import LOSS
 from gaspart.kernels.obstacles.support import add_floors, add_plane, dot, find_pull, pressing, release, within
 from gaspart.kernels.obstacles.wedge import rest_in_wedge
-from gaspart.kernels.running_sum import add
+from gaspart.kernels.physics.ballistic import time_to_side
+from gaspart.kernels.physics.collision import velocity_of
+from gaspart.kernels.physics.running_sum import add
 
 _HOP = (
     2.0**20

@@ -2,12 +2,12 @@
 
 from math import inf
 
-from gaspart.kernels.ballistic import time_to_contact_pulled, time_to_far_side, time_to_side
-from gaspart.kernels.compilation import inner_kernel
-from gaspart.kernels.contact import time_to_contact
-from gaspart.kernels.flight import acceleration_of
+from gaspart.kernels.compile.policy import inner_kernel
 from gaspart.kernels.obstacles.resting import time_to_leave
 from gaspart.kernels.obstacles.support import rests_on
+from gaspart.kernels.physics.ballistic import time_to_contact_pulled, time_to_far_side, time_to_side
+from gaspart.kernels.physics.contact import time_to_contact
+from gaspart.kernels.physics.flight import acceleration_of
 
 
 @inner_kernel

@@ -4,10 +4,10 @@ The contact of a single particle with a floor then never ends. A particle that o
 only after much shorter bounces: otherwise it would take the energy of contacts that are elastic.
 """
 
-from gaspart.kernels.compilation import inner_helper
-from gaspart.kernels.contact_duration import SHORTEST, is_alone
+from gaspart.kernels.compile.policy import inner_helper
 from gaspart.kernels.model import LOSS
-from gaspart.kernels.running_sum import add
+from gaspart.kernels.physics.contact_duration import SHORTEST, is_alone
+from gaspart.kernels.physics.running_sum import add
 
 
 @inner_helper

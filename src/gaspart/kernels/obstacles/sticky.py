@@ -2,9 +2,9 @@
 
 from math import sqrt
 
-from gaspart.kernels.compilation import inner_kernel
+from gaspart.kernels.compile.policy import inner_kernel
 from gaspart.kernels.obstacles.well import mass_of
-from gaspart.kernels.running_sum import add
+from gaspart.kernels.physics.running_sum import add
 
 
 @inner_kernel

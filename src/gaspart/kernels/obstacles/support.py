@@ -5,9 +5,9 @@ Of gravity there remains what no wall supports: its projection on the directions
 
 from math import sqrt
 
-from gaspart.kernels.compilation import inner_helper, inner_kernel
-from gaspart.kernels.flight import face_plane
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.model import NONE
+from gaspart.kernels.physics.flight import face_plane
 
 _INTO = 2.0**-40  # of gravity: what leads less into a wall runs along it
 _PARALLEL = 2.0**-40  # squared sine of an angle between planes that are taken for one

@@ -2,11 +2,11 @@
 
 from math import sqrt
 
-from gaspart.kernels.compilation import inner_kernel
+from gaspart.kernels.compile.policy import inner_kernel
 from gaspart.kernels.model import THERMAL
 from gaspart.kernels.obstacles.well import mass_of
-from gaspart.kernels.rng import flux_speed, normal_pair
-from gaspart.kernels.running_sum import add
+from gaspart.kernels.physics.rng import flux_speed, normal_pair
+from gaspart.kernels.physics.running_sum import add
 
 
 @inner_kernel

@@ -8,14 +8,14 @@ remainder of a division (%) is exact, and so the same on every machine.
 
 from math import inf, sqrt
 
-from gaspart.kernels.ballistic import flown, time_to_side
-from gaspart.kernels.compilation import inner_helper, inner_kernel, kernel
-from gaspart.kernels.flight import acceleration_of, face_plane
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.model import NONE
 from gaspart.kernels.obstacles.hard import bounce
 from gaspart.kernels.obstacles.well import mass_of
-from gaspart.kernels.running_sum import add
-from gaspart.kernels.sine import TURN, sine_cosine
+from gaspart.kernels.physics.ballistic import flown, time_to_side
+from gaspart.kernels.physics.flight import acceleration_of, face_plane
+from gaspart.kernels.physics.running_sum import add
+from gaspart.kernels.physics.sine import TURN, sine_cosine
 
 _RESOLVED = 2.0**-52  # of clocks and of the period: the shortest step of a search
 _SLACK = 1.0 + 2.0**-20  # of the stroke: a particle further away needs no search

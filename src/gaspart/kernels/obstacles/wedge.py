@@ -6,11 +6,11 @@ for ever, in no time. It comes to rest between both; what remains is its velocit
 
 from math import sqrt
 
-from gaspart.kernels.collision import velocity_of
-from gaspart.kernels.compilation import inner_helper, inner_kernel
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.model import LOSS
 from gaspart.kernels.obstacles.support import dot, lies_on_floor
-from gaspart.kernels.running_sum import add
+from gaspart.kernels.physics.collision import velocity_of
+from gaspart.kernels.physics.running_sum import add
 
 _INTO = 2.0**-40  # of its speed: what leads less into a plane runs along it
 

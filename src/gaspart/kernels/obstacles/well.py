@@ -2,10 +2,10 @@
 
 from math import inf, sqrt
 
-from gaspart.kernels.compilation import inner_helper, inner_kernel
-from gaspart.kernels.flight import advance, face_plane
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.model import NONE, STICKY, WELL_EDGES
-from gaspart.kernels.running_sum import add
+from gaspart.kernels.physics.flight import advance, face_plane
+from gaspart.kernels.physics.running_sum import add
 
 
 @inner_kernel

@@ -11,15 +11,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gaspart.kernels.collision import collide_by_law
-from gaspart.kernels.compilation import inner_helper, inner_kernel
-from gaspart.kernels.contact import time_to_plane
-from gaspart.kernels.flight import advance, face_plane
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.model import LOSS as LOST
 from gaspart.kernels.model import NONE, STICKY, WELL_EDGES, Model, Tally
 from gaspart.kernels.obstacles.face import collide_face
 from gaspart.kernels.obstacles.well import cross_edge, time_to_edge
-from gaspart.kernels.running_sum import add, add_whole
+from gaspart.kernels.physics.collision import collide_by_law
+from gaspart.kernels.physics.contact import time_to_plane
+from gaspart.kernels.physics.flight import advance, face_plane
+from gaspart.kernels.physics.running_sum import add, add_whole
 from gaspart.kernels.step.model import LOSS, VIRIAL
 
 _SHORT = 2.0**-12  # of a step: bounces on a floor in less time are not distinguished

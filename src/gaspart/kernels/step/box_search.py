@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gaspart.kernels.compilation import inner_helper, inner_kernel
-from gaspart.kernels.periodic import box_coordinate
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
+from gaspart.kernels.physics.periodic import box_coordinate
 from gaspart.kernels.step.model import BOX_VISITS, PAIR_TESTS
 from gaspart.kernels.step.resolve import distance_squared, examine
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gaspart.kernels.compilation import inner_helper, inner_kernel
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.step.model import part_of
 
 ONE = np.uint32(1)  # whole numbers of this type index arrays without a test for negative ones

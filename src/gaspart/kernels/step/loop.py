@@ -8,7 +8,7 @@ arithmetic keeps the precision of the positions (float32 or float64): hence dt -
 
 from numpy import int64
 
-from gaspart.kernels.compilation import allocating_kernel, inner_allocating_kernel, inner_helper
+from gaspart.kernels.compile.policy import allocating_kernel, inner_allocating_kernel, inner_helper
 from gaspart.kernels.step.box_search import search_all, search_boxes, sort_in
 from gaspart.kernels.step.model import DISPLACEMENT, FASTEST, PAIR_TESTS, Search, Step
 from gaspart.kernels.step.resolve import count_left, in_order

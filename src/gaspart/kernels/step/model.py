@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gaspart.kernels.compilation import inner_helper
+from gaspart.kernels.compile.policy import inner_helper
 from gaspart.kernels.model import ContactLaw, Space
 
 COLLISIONS, PAIR_TESTS, BOX_VISITS, OVERLAPS_LEFT, MULTIPLE, REBUILDS, LATE, PASSED = range(8)

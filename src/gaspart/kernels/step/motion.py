@@ -6,9 +6,9 @@ has left the container.
 
 import numpy as np
 
-from gaspart.kernels.compilation import inner_allocating_kernel, inner_helper, inner_kernel
-from gaspart.kernels.periodic import nearest
-from gaspart.kernels.running_sum import add_whole
+from gaspart.kernels.compile.policy import inner_allocating_kernel, inner_helper, inner_kernel
+from gaspart.kernels.physics.periodic import nearest
+from gaspart.kernels.physics.running_sum import add_whole
 from gaspart.kernels.step.boundaries import is_free, meet_faces
 from gaspart.kernels.step.model import DISPLACEMENT, FASTEST
 

@@ -9,7 +9,7 @@ wait for it.
 
 import numpy as np
 
-from gaspart.kernels.compilation import inner_allocating_kernel, inner_helper, inner_kernel
+from gaspart.kernels.compile.policy import inner_allocating_kernel, inner_helper, inner_kernel
 from gaspart.kernels.prefetch import fetch
 from gaspart.kernels.simd import lowest
 from gaspart.kernels.step.model import DISPLACEMENT, part_of

@@ -3,18 +3,18 @@
 The order - time of contact, lower index, higher index - does not depend on slots, boxes or threads, so
 neither does any bit of the result.
 
-A contact is that of `kernels.contact`. Its form here keeps float32, collides particles as they were at the
-time of the contact without moving them there, and passes only a part of the elastic impulse where there is
-restitution: tests/kernels/step/test_resolve.py compares it bit for bit with `collision.collide_smooth`.
+A contact is that of `kernels.physics.contact`. Its form here keeps float32, collides particles as they were
+at the time of the contact without moving them there, and passes only a part of the elastic impulse where
+there is restitution: tests/kernels/step/test_resolve.py compares it bit for bit with `collision.collide_smooth`.
 """
 
 import numpy as np
 
-from gaspart.kernels.compilation import inner_allocating_kernel, inner_helper, inner_kernel
-from gaspart.kernels.contact import contact_root, exchange
-from gaspart.kernels.periodic import nearest
+from gaspart.kernels.compile.policy import inner_allocating_kernel, inner_helper, inner_kernel
+from gaspart.kernels.physics.contact import contact_root, exchange
+from gaspart.kernels.physics.periodic import nearest
+from gaspart.kernels.physics.running_sum import add
 from gaspart.kernels.prefetch import fetch
-from gaspart.kernels.running_sum import add
 from gaspart.kernels.step.boundaries import collide_flights
 from gaspart.kernels.step.model import (
     COLLISIONS,

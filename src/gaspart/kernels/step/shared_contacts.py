@@ -11,14 +11,14 @@ from typing import NamedTuple
 import numpy as np
 from numba import prange
 
-from gaspart.kernels.compilation import (
+from gaspart.kernels.compile.policy import (
     inner_allocating_kernel,
     inner_helper,
     inner_kernel,
     inner_parallel_kernel,
 )
 from gaspart.kernels.model import Space
-from gaspart.kernels.running_sum import add
+from gaspart.kernels.physics.running_sum import add
 from gaspart.kernels.step.model import LOSS, VIRIAL, StepModel, StepParticles, StepTally, part_of
 from gaspart.kernels.step.resolve import fetch_ahead, resolve, resolve_all
 

@@ -8,7 +8,7 @@ tuples in tuples to threads: a `StepModel` or a `Space` is taken apart before an
 import numpy as np
 from numba import prange
 
-from gaspart.kernels.compilation import (
+from gaspart.kernels.compile.policy import (
     inner_allocating_kernel,
     inner_helper,
     inner_kernel,

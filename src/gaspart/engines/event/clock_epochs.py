@@ -1,0 +1,68 @@
+"""Epochs of the event-driven engine's clocks, which restart from zero so that they lose no precision."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from gaspart.engines.arrays import face_energy
+from gaspart.engines.features.vibrating import greatest_speed
+from gaspart.scene.faces import pistons
+from gaspart.scene.scene import Scene
+
+_LENGTH = 10  # an epoch of the clocks is some 2^10 times of flight over a diameter
+_AT_REST = 2.0**960  # the epoch of a scene in which nothing moves
+_OTHER = 2.0**10  # by which speeds must have changed for epochs of another length
+QUIET = 64
+"""Epochs without an event after which epochs are doubled."""
+
+
+class Epochs:
+    """How long the epochs of a scene are, with masses of at least `lightest`.
+
+    The speed for times of flight is the rms speed, with the largest gain by gravity and walls, among them
+    twice the speed that its load gives a piston.
+    """
+
+    def __init__(self, scene: Scene, lightest: float) -> None:
+        gained = 0.0  # the square of the largest speed that the scene itself gives
+        if scene.gravity is not None:
+            lengths = scene.container.lengths
+            gained += 2.0 * sum(abs(g) * length for g, length in zip(scene.gravity, lengths, strict=True))
+        if scene.faces and scene.count:
+            gained += face_energy(scene) / lightest + (2.0 * greatest_speed(scene)) ** 2
+            gained += sum(
+                8.0 * face.pressure * scene.container.volume / face.mass for _, face in pistons(scene)
+            )
+        self._gained = gained
+        self._diameter = 2 * scene.smallest_radius
+        self._across = max(scene.container.lengths)
+
+    def speed(self, velocities: np.ndarray) -> float:
+        """The speed for times of flight, with velocities (N, d)."""
+        square = float((velocities**2).sum(axis=1).mean()) if len(velocities) else 0.0
+        return math.sqrt(square + self._gained)
+
+    def length(self, speed: float, present: float = 0.0) -> float:
+        """The time after which clocks start again from zero: a power of two, so that it scales with the
+        units.
+
+        A `present` length is kept until speeds have changed by a factor of 2^10: a cooling gas needs longer
+        epochs, since the work of an epoch does not depend on its length.
+        """
+        length = _power_of_two(self._diameter / speed, _LENGTH) if speed > 0.0 else _AT_REST
+        return present if present / _OTHER < length < present * _OTHER else length
+
+    def quiet(self, speed: float, length: float, number: int) -> float:
+        """The length of an epoch after a `number` of them without an event: twice the last one, until it is
+        a time of flight through the container. The clocks are then as precise as the positions."""
+        most = _power_of_two(self._across / speed, 0) if speed > 0.0 else length
+        doublings = min(max(number - QUIET, 0), max(0, math.frexp(most)[1] - math.frexp(length)[1]))
+        return math.ldexp(length, doublings)
+
+
+def _power_of_two(time: float, more: int) -> float:
+    """The next power of two above a time, times 2^more; at most `_AT_REST`."""
+    _, exponent = math.frexp(time)
+    return min(math.ldexp(1.0, exponent + more), _AT_REST) if time < _AT_REST else _AT_REST

@@ -1,0 +1,1 @@
+"""The time-stepped engine: overlaps found after each step (Frederickx & Meerts 2010)."""

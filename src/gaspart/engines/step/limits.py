@@ -1,0 +1,174 @@
+"""What the time-stepped engine can model, and with what settings."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaspart.engines.features.vibrating import vibrating_faces
+from gaspart.errors import SceneError, SimulationError
+from gaspart.scene.faces import pistons
+from gaspart.scene.geometry import ball_volume
+from gaspart.scene.scene import Scene
+from gaspart.state.state import State
+
+if TYPE_CHECKING:
+    from gaspart.engines.step.time_stepped import TimeStepped
+
+_OVERSIZED = 16  # at most so many particles are tested against all others
+_LARGER = 2.0  # radii of the next smaller particle: larger ones are among them
+_SINGLE = 1e9  # the largest length or speed in float32, whose squares are multiplied with each other
+_RESOLVED = 1e5  # diameters in the longest side, at most: float32 then resolves contacts to a hundredth
+MOST_BODIES = 2**28
+"""An entry of the neighbour list holds two slots and eight marks in 64 bits
+(`kernels.step.neighbour_list`)."""
+
+MISSED, MISSED_MOST = 0.01, 0.1
+"""The part of all contacts that a step may miss before the engine warns, and refuses."""
+CONTACTS, CONTACTS_MOST = {True: 2.5, False: 0.5}, {True: 5.0, False: 1.0}
+"""Contacts of a particle in a step, with several passes or with one, before the engine warns, and refuses. Up
+to the first the pressure is correct to about 1 % (measured: docs/time-stepped.md)."""
+
+LATE_MOST, PASSED_MOST, FEW = 0.25, 0.01, 2
+"""The part of all contacts that may be found a step too late; and with particles half-way through each other
+by then; FEW are allowed in any case. In gases, up to a step of which the engine warns, they are 0.05 and
+0.004."""
+
+
+def oversized_particles(state: State) -> np.ndarray:
+    """(N,) which particles are too large for boxes and cells: a few, much larger than all the others."""
+    order = np.argsort(state.radii, kind="stable")
+    sizes = state.radii[order]
+    oversized = np.zeros(state.count, dtype=bool)
+    for few in range(1, min(_OVERSIZED, state.count - 1) + 1):
+        if sizes[-few] > _LARGER * sizes[-few - 1]:
+            oversized[order[-few:]] = True
+    return oversized
+
+
+def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
+    """Raise SceneError for what this engine does not model."""
+    if state.count >= MOST_BODIES:
+        raise SceneError(
+            "count", state.count, f"the time-stepped engine takes {MOST_BODIES - 1} particles at most"
+        )
+    law, fixed = scene.restitution, np.isinf(state.masses).any()
+    falls, none = scene.gravity is not None, "this one has none"
+    for key, value, what in (
+        ("restitution", law if law and law.normal < 1.0 and falls else None, "with gravity, " + none),
+        ("restitution.reference_speed", law.reference_speed if law else None, none),
+        ("restitution.contact_duration", law.contact_duration or None if law else None, none),
+        ("thermostat", scene.thermostat, none),
+        ("walls", scene.walls or None, none),
+        ("faces", next((face for _, face in (*vibrating_faces(scene), *pistons(scene))), None), none),
+        ("fixed", True if fixed and falls else None, "this one has no fixed particles under gravity"),
+    ):
+        if value is not None:
+            raise SceneError(key, value, f'needs the "event" engine; {what}')
+    reach = 2.0 * state.radii.max(initial=0.0)
+    if oversized.any():
+        reach = state.radii[oversized].min() + state.radii.max()
+    for length, periodic in zip(scene.container.lengths, scene.container.periodic, strict=True):
+        if periodic and length < reach:
+            rule = "the time-stepped engine needs periodic sides of two largest diameters"
+            raise SceneError("lengths", scene.container.lengths, rule)
+
+
+def check_precision(engine: TimeStepped, scene: Scene, state: State) -> None:
+    """Raise SceneError for steps in which particles move by less than their positions are rounded by, or so
+    far that the rounding is as large as the container; and, in float32, for lengths and speeds whose squares
+    it cannot hold, and particles so small in their container that it cannot resolve where they touch."""
+    longest, speeds = max(scene.container.lengths), np.sqrt((state.velocities**2).sum(axis=1))
+    typical, fastest = math.sqrt(float((speeds**2).mean())) if state.count else 0.0, speeds.max(initial=0.0)
+    moved, rounding = typical * engine.time_step, float(np.finfo(engine.precision).eps)
+    if moved * rounding > longest:
+        rule = f"moves particles so far that {engine.precision} does not resolve a length of {longest:g}"
+        raise SceneError("time_step", engine.time_step, rule)
+    if 0.0 < moved < 0.5 * rounding * longest:
+        rule = f"moves particles by less than {engine.precision} resolves in a length of {longest:g}"
+        raise SceneError("time_step", engine.time_step, rule)
+    if engine.precision != "float32" or not state.count:
+        return
+    sizes = {"lengths": longest, "radius": scene.smallest_radius, "speed": fastest, "speed (rms)": typical}
+    for key, value in sizes.items():
+        if value and not 1.0 / _SINGLE <= value <= _SINGLE:
+            rule = f"float32 needs lengths and speeds of {1 / _SINGLE:g} to {_SINGLE:g}; take float64"
+            raise SceneError(key, float(value), rule)
+    if 2.0 * scene.smallest_radius * _RESOLVED < longest:
+        rule = f"float32 does not resolve contacts of this size in a length of {longest:g}; take float64"
+        raise SceneError("radius", scene.smallest_radius, rule)
+
+
+def missed_contacts(time_step: float, several: bool, state: State) -> float:
+    """The part of all contacts that a step misses: pairs that touch and part again within it.
+
+    (2/3) (v_th dt / sigma)^2 of a dilute gas of spheres, 1/4 instead of 2/3 for discs, v_th = sqrt(kT/m);
+    four times that if only growing overlaps are resolved (with one pass, not `several`). From the flux of
+    pairs through chords that they cross within a step. v_th is that of each species now; the mean over the
+    pairs that collide.
+    """
+    square, radius, number = [], [], []
+    for kind in np.unique(state.species):
+        of = state.species == kind
+        square.append((state.velocities[of] ** 2).mean())
+        radius.append(state.radii[of].mean())
+        number.append(of.sum())
+    square, radius, number = (np.array(values, dtype=float) for values in (square, radius, number))
+    sigma = radius[:, None] + radius
+    relative = 0.5 * (square[:, None] + square)
+    pairs = number[:, None] * (number - np.eye(len(number)))
+    rate = np.maximum(0.0, pairs) * sigma ** (state.dimension - 1) * np.sqrt(relative)
+    if not rate.sum() > 0.0:
+        return 0.0
+    missed = relative * (time_step / sigma) ** 2
+    factor = {2: 1.0 / 4.0, 3: 2.0 / 3.0}[state.dimension] * (1.0 if several else 4.0)
+    return float(factor * (rate * missed).sum() / rate.sum())
+
+
+def check_step(engine: TimeStepped, state: State) -> None:
+    """Raise SceneError for a step with which the engine would be far off, warn of one with errors of
+    percents, and name the step that would do."""
+    if state.count < 2:
+        return
+    several = engine.passes > 1
+    missed = missed_contacts(engine.time_step, several, state)
+    met = contacts_per_step(engine.time_step, state)
+    worst = max(math.sqrt(missed / MISSED), met / CONTACTS[several])
+    if worst <= 1.0:
+        return
+    rule = (
+        f"misses {100 * missed:.2g} % of all contacts (fit is {100 * MISSED:g} %), and a particle has "
+        f"{met:.2g} in a step (fit is {CONTACTS[several]:g}); "
+        f"a step of {engine.time_step / worst:.2g} would do"
+    )
+    if missed > MISSED_MOST or met > CONTACTS_MOST[several]:
+        raise SceneError("time_step", engine.time_step, rule)
+    warnings.warn(f"gaspart: time_step = {engine.time_step:g} {rule}", stacklevel=4)
+
+
+def check_late(engine: TimeStepped, time: float, met: int, late: int, passed: int) -> None:
+    """Raise SimulationError if contacts are found a step too late, or particles pass through each other:
+    speeds have become so high, or gaps are so narrow, that the step is too long."""
+    most = [max(FEW, part * met) for part in (LATE_MOST, PASSED_MOST)]
+    if engine.passes > 1 and (late > most[0] or passed > most[1]):
+        raise SimulationError(
+            f"at time {time:g} {late} of {met} contacts were found a step too late, {passed} of them"
+            f" with particles half-way through each other: a step of {engine.time_step:g} is too long"
+        )
+
+
+def contacts_per_step(time_step: float, state: State) -> float:
+    """How often a particle meets another in a step: Enskog's rate for equal particles of the same packing
+    fraction, with the contact value of Carnahan & Starling (1969), of Henderson (1975) for discs."""
+    spheres = state.dimension == 3
+    ball = ball_volume(state.dimension) * float((state.radii**state.dimension).mean())
+    density = state.count / float(state.lengths.prod())
+    eta = min(density * ball, 0.7)  # higher only where a face stops centres
+    contact = (1.0 - 0.5 * eta) / (1.0 - eta) ** 3 if spheres else (1.0 - 0.4375 * eta) / (1.0 - eta) ** 2
+    diameter = 2.0 * (ball / ball_volume(state.dimension)) ** (1.0 / state.dimension)
+    thermal = math.sqrt(math.pi * float((state.velocities**2).mean()))
+    around = 4.0 * diameter**2 if spheres else 2.0 * diameter
+    return density * around * contact * thermal * time_step

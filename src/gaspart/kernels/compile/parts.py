@@ -1,0 +1,158 @@
+"""How functions are compiled that only kernels call.
+
+numba optimises every function and makes machine code of it, and optimises it again within each function that
+calls it, up to the kernel that Python calls. These are only translated, and left to the last: what runs is
+that one, and the others would be most of the time that a first run takes. Their translations are kept in
+files, for other kernels that call them: most do not depend on what a scene requires.
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+from typing import Any, ClassVar
+
+from gaspart.kernels.compile.files import KernelCache, KernelContents
+from gaspart.kernels.compile.loading import load_numba
+
+numba: Any = load_numba()
+core: Any = numba.core
+
+# numba numbers the functions of a process, to give those of one name different names in machine code. What
+# several processes have translated meets in one kernel: so no two of them may count from the same number.
+core.bytecode.FunctionIdentity._unique_ids = itertools.count(int.from_bytes(os.urandom(7), "big"))
+
+
+@core.datamodel.registry.register_default(numba.types.NamedTuple)
+class _WholeTuple(core.datamodel.models.TupleModel):
+    """A named tuple that is one argument of a function in machine code. As numba's own it would be as many as
+    there are words in its arrays, some two hundred, which each call takes from it and each function puts
+    together again: 40 % of all instructions to be translated."""
+
+    def get_argument_type(self) -> Any:
+        """The type of the argument, in LLVM."""
+        return self.get_value_type()
+
+    def as_argument(self, builder: Any, value: Any) -> Any:
+        """What a caller passes."""
+        return value
+
+    def from_argument(self, builder: Any, value: Any) -> Any:
+        """The value of what was passed."""
+        return value
+
+
+class _PartLibrary(core.codegen.JITCodeLibrary):
+    """Code that is linked into that of the callers, and only there fully optimised and run."""
+
+    def _optimize_functions(self, ll_module: Any) -> None:
+        """Optimise lightly. Fully, loops about calls would be taken for small ones and doubled before what
+        is called is put in their place: the kernel would become twice as long, and slower."""
+        ll_module.data_layout = self._codegen._data_layout
+        for function in ll_module.functions:
+            if not function.is_declaration:
+                passes, builder = self._codegen._function_pass_manager(opt=1)
+                passes.run(function, builder)
+
+    def finalize(self) -> None:
+        for library in dict.fromkeys(self._linking_libraries):
+            self._reload_init.update(library._reload_init)
+            self._final_module.link_in(library._get_module_for_linking(), preserve=True)
+        self._finalize_dynamic_globals()
+        self._finalized = True
+
+
+def _known_as(described: Any, environment: Any, library: _PartLibrary) -> Any:
+    """What numba identifies a function by: what Python would call, here without code."""
+    no_code = 0
+    return numba._dynfunc.make_function(
+        described.lookup_module(), described.qualname, "", no_code, environment, (library,)
+    )
+
+
+class _Pass(core.compiler_machinery.LoweringPass):
+    def __init__(self) -> None:
+        """numba's is abstract."""
+        super().__init__()
+
+
+@core.compiler_machinery.register_pass(mutates_CFG=False, analysis_only=False)
+class _BeginPart(_Pass):
+    _name = "begin_part"
+
+    def run_pass(self, state: Any) -> bool:
+        state.library = _PartLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.flags.no_compile = True
+        return True
+
+
+@core.compiler_machinery.register_pass(mutates_CFG=False, analysis_only=False)
+class _OfferPart(_Pass):
+    """Let other functions call it."""
+
+    _name = "offer_part"
+
+    def run_pass(self, state: Any) -> bool:
+        described = state.cr.fndesc
+        known_as = _known_as(described, state.cr.env, state.library)
+        state.cr = state.cr._replace(cfunc=known_as)
+        state.targetctx.insert_user_function(known_as, described, [state.library])
+        state.reload_init.extend(state.library._reload_init)
+        return True
+
+
+class PartCompiler(core.compiler.CompilerBase):
+    """numba's own compiler but for these two passes."""
+
+    def define_pipelines(self) -> list:
+        """The passes of numba with a first and a last one around its translation to LLVM."""
+        passes = core.compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
+        passes.add_pass_after(_BeginPart, core.typed_passes.AnnotateTypes)
+        passes.add_pass_after(_OfferPart, core.typed_passes.NativeLowering)
+        passes.finalize()
+        return [passes]
+
+
+class _PartContents(KernelContents):
+    """What is in the file of a part: its translation, with those of the parts that it calls."""
+
+    def reduce(self, result: Any) -> tuple:
+        """The contents of the file, of a result of the compiler."""
+        library, described = result.library, result.fndesc
+        described.typemap = described.calltypes = None  # as numba does: these need not be kept
+        environments = result.environment, tuple(result._find_referenced_environments())
+        code = library._final_module.as_bitcode()
+        return library.name, code, described, environments, result.signature, result.reload_init
+
+    def rebuild(self, target_context: Any, payload: tuple) -> Any:
+        """A result of the compiler, of the contents of the file."""
+        name, code, described, (environment, referenced), signature, reload_init = payload
+        for initialise in reload_init:
+            initialise()
+        library = _PartLibrary(target_context.codegen(), name)
+        library._final_module = core.codegen.ll.parse_bitcode(code)
+        library._reload_init.update(reload_init)
+        library._finalized = True
+        return core.compiler.CompileResult(
+            typing_context=target_context.typing_context,
+            target_context=target_context,
+            entry_point=_known_as(described, environment, library),
+            typing_error=None,
+            type_annotation="",
+            signature=signature,
+            objectmode=False,
+            lifted=(),
+            fndesc=described,
+            library=library,
+            call_helper=None,
+            environment=environment,
+            metadata=None,
+            reload_init=reload_init,
+            referenced_envs=referenced,
+        )
+
+
+class PartCache(KernelCache):
+    """numba's cache of a part."""
+
+    _impl_class: ClassVar = _PartContents

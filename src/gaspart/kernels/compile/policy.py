@@ -1,0 +1,93 @@
+"""How kernels are compiled: one policy, in one place.
+
+IEEE arithmetic in the order written (no fastmath), so that the same source gives the same bits on every
+x86-64 machine; cached on disk, under a digest of the sources, because numba does not notice when a helper
+in another file changes.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+from gaspart.kernels.compile.cache import usable_cache
+from gaspart.kernels.compile.files import KernelCache
+from gaspart.kernels.compile.loading import load_numba
+from gaspart.kernels.compile.parts import PartCache, PartCompiler
+
+numba = load_numba()
+F = TypeVar("F", bound=Callable)
+_KERNELS = Path(__file__).parents[1]
+
+
+@cache
+def source_digest() -> str:
+    """A short digest of every module of `kernels`: all compiled code is in it, and nothing else."""
+    digest = hashlib.sha256()
+    for path in sorted(_KERNELS.rglob("*.py")):
+        digest.update(path.relative_to(_KERNELS).as_posix().encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+_UNWRAPPED = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_INNER = {**_UNWRAPPED, "pipeline_class": PartCompiler}
+_CACHE = usable_cache(source_digest())
+
+
+def _compile(function: F, **options: Any) -> F:
+    compiled = numba.njit(nogil=True, error_model="numpy", **options)(function)
+    if _CACHE:
+        before = numba.config.CACHE_DIR
+        numba.config.CACHE_DIR = str(_CACHE)
+        try:
+            cache = PartCache if "pipeline_class" in options else KernelCache
+            compiled._cache = cache(function, options)
+        finally:
+            numba.config.CACHE_DIR = before
+    return compiled
+
+
+def kernel(function: F) -> F:
+    """Compile `function` with numba under the package's policy. It must not make arrays.
+
+    Without numba's reference counting, that is: counting the arrays that pass between helpers costs several
+    times what the helpers compute.
+    """
+    return _compile(function, _nrt=False)
+
+
+def helper(function: F) -> F:
+    """The same for a small function that is inlined where it is used: LLVM by itself leaves a call, which
+    passes every array as seven words."""
+    return _compile(function, _nrt=False, forceinline=True)
+
+
+def allocating_kernel(function: F) -> F:
+    """The same for a function that makes arrays."""
+    return _compile(function)
+
+
+def inner_kernel(function: F) -> F:
+    """A kernel that only kernels call: without the way in from Python, which for a function that takes an
+    engine's arrays takes longer to compile than what it does."""
+    return _compile(function, _nrt=False, **_INNER)
+
+
+def inner_helper(function: F) -> F:
+    """The same for a function that is inlined."""
+    return _compile(function, _nrt=False, forceinline=True, **_INNER)
+
+
+def inner_allocating_kernel(function: F) -> F:
+    """The same for a function that makes arrays."""
+    return _compile(function, **_INNER)
+
+
+def inner_parallel_kernel(function: F) -> F:
+    """The same for a function whose `prange` loops are shared among threads. What its parts write must not
+    depend on one another, so that it does not matter which is done when."""
+    return _compile(function, parallel=True, **_UNWRAPPED)

@@ -1,0 +1,241 @@
+"""The compiled part of the ray tracer (see `rendering.tracer`): rays, shadows and the light of the sky."""
+
+import math
+
+from gaspart.kernels.compile.policy import (
+    helper,
+    inner_helper,
+    inner_kernel,
+    kernel,
+)
+
+SUBRAYS = 4
+NOTHING, FLOOR, EDGE, SPHERE = 0, 2, 4, 6
+"""What a pixel shows; sphere i is SPHERE + 2 i, and 1 is added in the shadow."""
+
+_AMBIENT, _LAMP, _GLOSS = 0.55, 0.75, 0.18
+_HAZE = 0.22  # what the far end of the container loses of its colour
+_FLOOR_LIGHT, _EDGE_LIGHT = 0.72, 0.16
+_EDGE_PIXELS = 0.8  # half the width of the container's edges
+
+
+@kernel
+def list_spheres(lowest, highest, numbers, places, listed):
+    """Count the spheres of each cell in `places`; or, where `listed` has room, put them at their places."""
+    for i in range(len(lowest)):
+        for x in range(lowest[i, 0], highest[i, 0] + 1):
+            for y in range(lowest[i, 1], highest[i, 1] + 1):
+                for z in range(lowest[i, 2], highest[i, 2] + 1):
+                    c = (x * numbers[1] + y) * numbers[2] + z
+                    if len(listed):
+                        listed[places[c]] = i
+                    places[c] += 1
+
+
+@helper
+def _cell(x, low, side, number):
+    return min(max(int((x - low) / side), 0), number - 1)
+
+
+@inner_helper
+def _dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@inner_helper
+def _along(o, d, t):
+    return o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]
+
+
+@inner_kernel
+def _hit(o, d, sphere):
+    """Distance at which a ray from outside enters a sphere, or infinity."""
+    to = (sphere[0] - o[0], sphere[1] - o[1], sphere[2] - o[2])
+    b = _dot(to, d)
+    miss = _along(to, d, -b)
+    inside = sphere[3] * sphere[3] - _dot(miss, miss)
+    if inside < 0.0:
+        return math.inf
+    t = b - math.sqrt(inside)
+    return t if t > 1e-6 * sphere[3] else math.inf
+
+
+@inner_kernel
+def _nearest(o, d, spheres, grid, any_will_do):
+    """Distance and index of the first sphere that a ray meets: infinity and -1 if there is none."""
+    low, side, numbers, first, listed, _ = grid
+    enter, leave = 0.0, math.inf
+    for k in range(3):
+        if d[k] == 0.0:
+            if not low[k] <= o[k] <= low[k] + side * numbers[k]:
+                return math.inf, -1
+        else:
+            a, b = (low[k] - o[k]) / d[k], (low[k] + side * numbers[k] - o[k]) / d[k]
+            enter, leave = max(enter, min(a, b)), min(leave, max(a, b))
+    if enter > leave:
+        return math.inf, -1
+    at = _along(o, d, enter)
+    x = _cell(at[0], low[0], side, numbers[0])
+    y = _cell(at[1], low[1], side, numbers[1])
+    z = _cell(at[2], low[2], side, numbers[2])
+    best, found = math.inf, -1
+    while 0 <= x < numbers[0] and 0 <= y < numbers[1] and 0 <= z < numbers[2]:
+        c = (x * numbers[1] + y) * numbers[2] + z
+        for n in range(first[c], first[c + 1]):
+            t = _hit(o, d, spheres[listed[n]])
+            if t < best:
+                best, found = t, listed[n]
+                if any_will_do:
+                    return best, found
+        to_x = (low[0] + (x + (d[0] > 0.0)) * side - o[0]) / d[0] if d[0] != 0.0 else math.inf
+        to_y = (low[1] + (y + (d[1] > 0.0)) * side - o[1]) / d[1] if d[1] != 0.0 else math.inf
+        to_z = (low[2] + (z + (d[2] > 0.0)) * side - o[2]) / d[2] if d[2] != 0.0 else math.inf
+        if best <= min(to_x, to_y, to_z):
+            break
+        if to_x <= to_y and to_x <= to_z:
+            x += 1 if d[0] > 0.0 else -1
+        elif to_y <= to_z:
+            y += 1 if d[1] > 0.0 else -1
+        else:
+            z += 1 if d[2] > 0.0 else -1
+    return best, found
+
+
+@kernel
+def sky(p, n, spheres, grid):
+    """The part of the sky over a place p of a surface with the normal n that near spheres leave free.
+
+    A sphere of radius r whose centre is at the distance h r, at an angle of cosine c to the normal, takes
+    c / h^2 of the light of an even sky if it is wholly above the horizon (exact); as it sets, that is led
+    to 0. Only what is nearer than a cell's side counts, fading out, and each sphere once, in the first of
+    the 27 cells that has it.
+    """
+    low, side, numbers, first, listed, lowest = grid
+    free = 1.0
+    cx = _cell(p[0], low[0], side, numbers[0])
+    cy = _cell(p[1], low[1], side, numbers[1])
+    cz = _cell(p[2], low[2], side, numbers[2])
+    lx, ly, lz = max(cx - 1, 0), max(cy - 1, 0), max(cz - 1, 0)
+    for x in range(lx, min(cx + 2, numbers[0])):
+        for y in range(ly, min(cy + 2, numbers[1])):
+            for z in range(lz, min(cz + 2, numbers[2])):
+                c = (x * numbers[1] + y) * numbers[2] + z
+                for m in range(first[c], first[c + 1]):
+                    s = spheres[listed[m]]
+                    r = s[3]
+                    to = (s[0] - p[0], s[1] - p[1], s[2] - p[2])
+                    distance = math.sqrt(_dot(to, to))
+                    gap = (distance - r) / side
+                    rise = _dot(to, n) / r
+                    if gap >= 1.0 or rise <= -1.0 or distance <= r * (1.0 + 1e-9):
+                        continue
+                    own = lowest[listed[m]]
+                    if x > max(lx, own[0]) or y > max(ly, own[1]) or z > max(lz, own[2]):
+                        continue
+                    share = rise if rise > 1.0 else 0.25 * (1.0 + rise) ** 2
+                    free *= 1.0 - (1.0 - gap) ** 2 * share * (r / distance) ** 3
+    return free
+
+
+@inner_kernel
+def _edge(o, d, edges, thickness):
+    """Distance of the nearest edge that a ray passes by less than `thickness` times that distance."""
+    best = math.inf
+    for m in range(len(edges)):
+        e = edges[m]
+        w, u = (o[0] - e[0], o[1] - e[1], o[2] - e[2]), (e[3], e[4], e[5])
+        b = _dot(d, u)
+        s = (_dot(u, w) - b * _dot(d, w)) / max(1.0 - b * b, 1e-12)
+        s = min(max(s, 0.0), e[6])
+        gap = (s * u[0] - w[0], s * u[1] - w[1], s * u[2] - w[2])
+        t = _dot(gap, d)
+        beside = _dot(gap, gap) - t * t
+        if 0.0 < t < best and beside < (thickness * t) ** 2:
+            best = t
+    return best
+
+
+@inner_kernel
+def _look(o, d, forward, light, scales, scene, grid, thickness):
+    """Red, green and blue along a ray, and what is seen there."""
+    spheres, colours, edges, lengths = scene
+    t, i = _nearest(o, d, spheres, grid, False)
+    shown = SPHERE + 2 * i if i >= 0 else NOTHING
+    down = -o[2] / d[2] if d[2] < 0.0 else math.inf
+    if down < t:
+        p = _along(o, d, down)
+        if 0.0 <= p[0] <= lengths[0] and 0.0 <= p[1] <= lengths[1]:
+            t, shown = down, FLOOR
+    edge = _edge(o, d, edges, thickness)
+    if edge < t * (1.0 + 1e-9):
+        t, shown = edge, EDGE
+    if shown == NOTHING:
+        return 1.0, 1.0, 1.0, NOTHING
+    haze = _HAZE * min(max((t * _dot(d, forward) - scales[2]) / (scales[3] - scales[2]), 0.0), 1.0)
+    if shown == EDGE:
+        grey = _EDGE_LIGHT + haze * (1.0 - _EDGE_LIGHT)
+        return grey, grey, grey, EDGE
+    p = _along(o, d, t)
+    n, colour = (0.0, 0.0, 1.0), (_FLOOR_LIGHT, _FLOOR_LIGHT, _FLOOR_LIGHT)
+    if shown != FLOOR:
+        r = spheres[i, 3]
+        n = (p[0] - spheres[i, 0]) / r, (p[1] - spheres[i, 1]) / r, (p[2] - spheres[i, 2]) / r
+        colour = colours[i, 0], colours[i, 1], colours[i, 2]
+    lamp, gloss = max(_dot(n, light), 0.0), 0.0
+    if lamp > 0.0:
+        if _nearest(p, light, spheres, grid, True)[1] >= 0:
+            lamp = 0.0
+            shown += 1
+        elif shown != FLOOR:
+            half = (light[0] - d[0], light[1] - d[1], light[2] - d[2])
+            gloss = _GLOSS * (_dot(n, half) / math.sqrt(_dot(half, half))) ** 40
+    bright = _AMBIENT * (0.75 + 0.25 * n[2]) * sky(p, n, spheres, grid) + _LAMP * lamp
+    return (
+        (bright * colour[0] + gloss) * (1.0 - haze) + haze,
+        (bright * colour[1] + gloss) * (1.0 - haze) + haze,
+        (bright * colour[2] + gloss) * (1.0 - haze) + haze,
+        shown,
+    )
+
+
+@inner_kernel
+def _pixel(column, row, image, view, scales, scene, grid):
+    """What is seen at a place of the picture, in pixels from its upper left corner."""
+    height, width = image.shape[0], image.shape[1]
+    across = (2.0 * column / width - 1.0) * scales[0]
+    along = (1.0 - 2.0 * row / height) * scales[1]
+    d = (
+        view[1, 0] + across * view[2, 0] + along * view[3, 0],
+        view[1, 1] + across * view[2, 1] + along * view[3, 1],
+        view[1, 2] + across * view[2, 2] + along * view[3, 2],
+    )
+    norm = math.sqrt(_dot(d, d))
+    o, forward = (view[0, 0], view[0, 1], view[0, 2]), (view[1, 0], view[1, 1], view[1, 2])
+    light = (view[4, 0], view[4, 1], view[4, 2])
+    d = (d[0] / norm, d[1] / norm, d[2] / norm)
+    return _look(o, d, forward, light, scales, scene, grid, 2.0 * _EDGE_PIXELS * scales[0] / width)
+
+
+@kernel
+def render_once(image, shown, view, scales, scene, grid):
+    """One ray through the middle of every pixel."""
+    for row in range(shown.shape[0]):
+        for column in range(shown.shape[1]):
+            seen = _pixel(column + 0.5, row + 0.5, image, view, scales, scene, grid)
+            image[row, column, 0], image[row, column, 1], image[row, column, 2] = seen[0], seen[1], seen[2]
+            shown[row, column] = seen[3]
+
+
+@kernel
+def refine(image, places, view, scales, scene, grid):
+    """Many rays through the pixels at places (M, 2), row and column."""
+    for n in range(len(places)):
+        row, column = places[n, 0], places[n, 1]
+        red, green, blue = 0.0, 0.0, 0.0
+        for m in range(SUBRAYS * SUBRAYS):
+            x, y = column + (m % SUBRAYS + 0.5) / SUBRAYS, row + (m // SUBRAYS + 0.5) / SUBRAYS
+            seen = _pixel(x, y, image, view, scales, scene, grid)
+            red += min(seen[0], 1.0) / SUBRAYS**2
+            green += min(seen[1], 1.0) / SUBRAYS**2
+            blue += min(seen[2], 1.0) / SUBRAYS**2
+        image[row, column, 0], image[row, column, 1], image[row, column, 2] = red, green, blue

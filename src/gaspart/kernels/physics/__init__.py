@@ -1,0 +1,1 @@
+"""Physics that all engines share: contacts, collisions, flight, random numbers."""

@@ -1,0 +1,162 @@
+"""When do falling bodies touch: the roots of flights under a uniform pull.
+
+Two bodies that fall alike move straight relative to each other, so these are needed only where one of the two
+does not fall: a wall, the side of a box, a fixed body, a body that lies on a floor. As in `contact`, a body
+that touches and approaches does so now, and every root is taken in the form that does not cancel.
+"""
+
+from math import inf, sqrt
+
+from gaspart.kernels.compile.policy import helper, inner_helper, kernel
+
+_HALVINGS = 2200  # bisection alone narrows any interval of floats to two neighbours in fewer
+
+
+@inner_helper
+def flown(x, v, pull, time):
+    """Where a coordinate x of speed v is after `time` under `pull` (Spencer 2022, Eq. 1)."""
+    return x + (v + 0.5 * pull * time) * time
+
+
+@helper
+def time_against(gap, speed, pull):
+    """Time to cross `gap` at `speed` >= 0 against a `pull` > 0 that slows it down; inf if it turns before.
+
+    The smaller root of pull t^2 / 2 - speed t + gap = 0 (Spencer 2022, Eqs. 12 and 14).
+    """
+    if gap <= 0.0:
+        return 0.0
+    square = speed * speed - 2.0 * pull * gap
+    if square < 0.0:
+        return inf
+    return 2.0 * gap / (speed + sqrt(square))
+
+
+@helper
+def time_along(gap, speed, pull):
+    """Time until a `gap` is crossed in the direction of `pull` > 0, begun at `speed` (negative: away).
+
+    The larger root of gap - speed t - pull t^2 / 2 = 0. If the gap is not even open (>= 0) when the way back
+    begins, as rounding may leave it for a body that has just left a floor, that is the time.
+    """
+    if speed >= 0.0:
+        if gap <= 0.0:
+            return 0.0
+        return 2.0 * gap / (speed + sqrt(speed * speed + 2.0 * pull * gap))
+    if 0.5 * speed * speed + pull * gap <= 0.0:
+        return -speed / pull
+    return (sqrt(max(0.0, speed * speed + 2.0 * pull * gap)) - speed) / pull
+
+
+@inner_helper
+def time_to_side(gap, closing, pull):
+    """Time until a body touches the side that it is on: `gap` from it, approaching at `closing`, drawn
+    towards it by `pull`; inf if it never does."""
+    if pull > 0.0:
+        return time_along(gap, closing, pull)
+    if closing <= 0.0:
+        return inf
+    if pull < 0.0:
+        return time_against(gap, closing, -pull)
+    return max(0.0, gap / closing)
+
+
+@inner_helper
+def time_to_far_side(gap, closing, pull):
+    """The same for the side that it is not on yet (gap < 0): it must pass the line, turn and come back."""
+    if closing >= 0.0 or pull <= 0.0:
+        return inf
+    square = closing * closing + 2.0 * pull * gap
+    return (sqrt(square) - closing) / pull if square > 0.0 else inf
+
+
+@inner_helper
+def _polynomial(c0, c1, c2, c3, c4, t):
+    return (((c4 * t + c3) * t + c2) * t + c1) * t + c0
+
+
+@inner_helper
+def _root_between(c0, c1, c2, c3, c4, low, high):
+    """A root of the quartic between `low` and `high`, where its signs differ: Newton within bisection."""
+    falls = _polynomial(c0, c1, c2, c3, c4, low) > 0.0
+    t = 0.5 * (low + high)
+    for _ in range(_HALVINGS):
+        value = _polynomial(c0, c1, c2, c3, c4, t)
+        if value == 0.0:
+            return t
+        if (value > 0.0) == falls:
+            low = t
+        else:
+            high = t
+        slope = ((4.0 * c4 * t + 3.0 * c3) * t + 2.0 * c2) * t + c1
+        step = t - value / slope if slope != 0.0 else high
+        if not (step > low and step < high) or abs(step - t) > 0.5 * (high - low):
+            step = 0.5 * (low + high)
+        if step == t or step == low or step == high:  # noqa: SIM109 - compiled
+            return step
+        t = step
+    return t
+
+
+@kernel
+def time_to_contact_pulled(gap, rv, vv, ra, va, aa):
+    """Time until two bodies touch whose separation is r + v t + a t^2 / 2; inf if they never do.
+
+    gap = r.r - sigma^2, rv = r.v, vv = v.v, ra = r.a, va = v.a, aa = a.a > 0. The first time at which they
+    touch or overlap and approach: the quartic f(t) = |r(t)|^2 - sigma^2 is looked at between the roots of
+    its derivative, and those between the roots of its second, so that no grazing contact is passed over.
+    """
+    c0, c1, c2, c3, c4 = gap, 2.0 * rv, vv + ra, va, 0.25 * aa
+    # f'' = 2 c2 + 6 c3 t + 12 c4 t^2 splits time into stretches in which f' is monotonic
+    first = second = 0.0
+    square = 9.0 * c3 * c3 - 24.0 * c4 * c2
+    if square > 0.0:
+        q = -3.0 * c3 - sqrt(square) if c3 > 0.0 else -3.0 * c3 + sqrt(square)
+        one = q / (12.0 * c4)
+        other = 2.0 * c2 / q if q != 0.0 else 0.0
+        first, second = max(0.0, min(one, other)), max(0.0, max(one, other))
+    last = max(second, sqrt(sqrt(abs(gap) / c4)), sqrt(vv / aa))
+    while last < inf and not (
+        _polynomial(c1, 2.0 * c2, 3.0 * c3, 4.0 * c4, 0.0, last) > 0.0
+        and _polynomial(c0, c1, c2, c3, c4, last) > 0.0
+    ):
+        last = 2.0 * last if last > 0.0 else 1.0
+    if last == inf:
+        return inf
+    start = 0.0
+    slope = c1
+    for part in range(3):
+        stop = first if part == 0 else (second if part == 1 else last)
+        if stop <= start and part < 2:
+            continue
+        end_slope = _polynomial(c1, 2.0 * c2, 3.0 * c3, 4.0 * c4, 0.0, stop)
+        turn = stop
+        if (slope < 0.0 and end_slope > 0.0) or (slope > 0.0 and end_slope < 0.0):
+            turn = _root_between(c1, 2.0 * c2, 3.0 * c3, 4.0 * c4, 0.0, start, stop)
+        # f falls from `start` to `turn`, or from `turn` to `stop`, or nowhere in this stretch
+        at_once = slope < 0.0 or (slope == 0.0 and end_slope < 0.0)
+        if at_once or end_slope < 0.0:
+            low, high = (start, turn) if at_once else (turn, stop)
+            if _polynomial(c0, c1, c2, c3, c4, low) <= 0.0:
+                return low
+            if _polynomial(c0, c1, c2, c3, c4, high) <= 0.0:
+                return _root_between(c0, c1, c2, c3, c4, low, high)
+        start, slope = stop, end_slope
+    return inf
+
+
+@kernel
+def time_of_summit(rv, vv, ra, va, aa):
+    """When the distance of such two bodies is greatest between two approaches; inf if there is only one."""
+    c1, c2, c3, c4 = 2.0 * rv, vv + ra, va, 0.25 * aa
+    square = 9.0 * c3 * c3 - 24.0 * c4 * c2
+    if square <= 0.0:
+        return inf
+    first, second = (-3.0 * c3 - sqrt(square)) / (12.0 * c4), (-3.0 * c3 + sqrt(square)) / (12.0 * c4)
+    slopes = 2.0 * c2, 3.0 * c3, 4.0 * c4
+    if not (
+        _polynomial(c1, slopes[0], slopes[1], slopes[2], 0.0, first) > 0.0
+        and _polynomial(c1, slopes[0], slopes[1], slopes[2], 0.0, second) < 0.0
+    ):
+        return inf
+    return _root_between(c1, slopes[0], slopes[1], slopes[2], 0.0, first, second)

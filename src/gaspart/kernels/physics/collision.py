@@ -1,0 +1,219 @@
+"""What passes between two particles that touch, or a particle and a wall.
+
+Smooth elastic particles exchange momentum alone. A `ContactLaw` adds restitution, spins and fixed particles
+(Spencer 2022, section 2.2); it works with three components, of which 2D leaves the third or the first two 0.
+"""
+
+from math import sqrt
+
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
+from gaspart.kernels.model import LOSS
+from gaspart.kernels.physics.contact import (
+    exchange,
+    exchange_equal,
+    normal_change,
+    tangential_impulse,
+)
+from gaspart.kernels.physics.contact_duration import keep, restitution_at_wall, restitution_of_pair
+from gaspart.kernels.physics.periodic import nearest
+from gaspart.kernels.physics.running_sum import add
+from gaspart.kernels.physics.viscoelastic import normal_restitution
+
+LEAST = (
+    2.0**-48
+)  # of the particles' speed: they part at least so fast, or rounding would let them meet for ever
+
+
+@inner_helper
+def gap_along(flights, i, j, axis, space):
+    """The separation of two particles along an axis, by the nearest image; 0 along a third axis in 2D."""
+    if axis >= len(space.lengths):
+        return 0.0
+    gap = flights[j].position[axis] - flights[i].position[axis]
+    return nearest(gap, space.lengths[axis], space.periodic[axis])
+
+
+@inner_helper
+def speed_along(flights, i, axis, space):
+    """The velocity of a particle along an axis; 0 along a third axis in 2D."""
+    return flights[i].velocity[axis] if axis < len(space.lengths) else 0.0
+
+
+@inner_helper
+def velocity_of(flights, i, space):
+    """(3,) the velocity of a particle."""
+    return (
+        speed_along(flights, i, 0, space),
+        speed_along(flights, i, 1, space),
+        speed_along(flights, i, 2, space),
+    )
+
+
+@inner_helper
+def push(flights, i, factor, vector, space):
+    """Add factor * vector (3,) to the velocity of a particle."""
+    for k in range(len(space.lengths)):
+        flights[i].velocity[k] += factor * vector[k]
+
+
+@inner_helper
+def fastest_component(flights, i, space):
+    """The largest component of a particle's velocity."""
+    fastest = 0.0
+    for k in range(len(space.lengths)):
+        fastest = max(fastest, abs(flights[i].velocity[k]))
+    return fastest
+
+
+@inner_helper
+def collide_smooth(flights, i, j, rr, rv, space, masses):
+    """An elastic contact of smooth particles. Returns |r . dp|."""
+    if masses is None:
+        to_i = to_j = exchange_equal(rr, rv)
+        virial = abs(rv)
+    else:
+        to_i, to_j = exchange(rr, rv, masses[i], masses[j])
+        virial = masses[i] * abs(to_i) * rr
+    for k in range(len(space.lengths)):
+        gap = gap_along(flights, i, j, k, space)
+        flights[i].velocity[k] += to_i * gap
+        flights[j].velocity[k] -= to_j * gap
+    return virial
+
+
+@inner_helper
+def spin_of(flights, i, law):
+    """(3,) the spin of a particle times its radius."""
+    radius = flights[i].radius
+    return radius * law.spins[i, 0], radius * law.spins[i, 1], radius * law.spins[i, 2]
+
+
+@inner_helper
+def slip(velocity, spin, normal):
+    """(3,) the tangential relative velocity of two surfaces, from the relative velocity of the centres and
+    the sum of the spins, times radius, with `normal` the unit vector from the first to the second; Spencer
+    2022, Eq. 30."""
+    x, y, z = normal
+    gx = velocity[0] + (spin[1] * z - spin[2] * y)
+    gy = velocity[1] + (spin[2] * x - spin[0] * z)
+    gz = velocity[2] + (spin[0] * y - spin[1] * x)
+    along = gx * x + gy * y + gz * z
+    return gx - along * x, gy - along * y, gz - along * z
+
+
+@inner_helper
+def lose(approach, mobility, normal, usual, law, tally):
+    """Count the energy that the normal part of a contact takes, with this restitution; and what the `usual`
+    one would have taken more."""
+    add(tally.sums, LOSS, 0.5 * (1.0 - normal * normal) * approach * approach / mobility)
+    keep(0.5 * (normal * normal - usual * usual) * approach * approach / mobility, law.duration)
+
+
+@inner_helper
+def rub(velocity, mobility, lever, tangential, law, tally):
+    """(3,) the tangential impulse on the first of two surfaces with a tangential relative velocity (3,).
+    mobility, lever, tangential: as in `contact.tangential_impulse`."""
+    factor = tangential_impulse(mobility, lever, tangential)
+    gx, gy, gz = velocity
+    square = gx * gx + gy * gy + gz * gz
+    lost = 0.5 * (1.0 - tangential) * factor * square
+    add(tally.sums, LOSS, lost)
+    usual = 0.5 * (1.0 - law.tangential) * tangential_impulse(mobility, lever, law.tangential) * square
+    keep(usual - lost, law.duration)
+    return -factor * gx, -factor * gy, -factor * gz
+
+
+@inner_helper
+def add_spin(flights, i, normal, impulse, law):
+    """Add the spin that an impulse (3,) gives at the surface point in the direction `normal`; Spencer 2022,
+    Eq. 26."""
+    factor = flights[i].radius * law.inverse_inertia[i]
+    law.spins[i, 0] += factor * (normal[1] * impulse[2] - normal[2] * impulse[1])
+    law.spins[i, 1] += factor * (normal[2] * impulse[0] - normal[0] * impulse[2])
+    law.spins[i, 2] += factor * (normal[0] * impulse[1] - normal[1] * impulse[0])
+
+
+@inner_kernel
+def exchange_with_vibration(i, j, approach, mobility, vibrations):
+    """Exchange the normal energy of two particles and that of the mode that one of them has.
+
+    This keeps the measure v dv dE and is its own inverse in time. Returns the speed at which they part, or -1
+    if neither has a mode.
+    """
+    if vibrations is None:
+        return -1.0
+    for particle in (i, j):
+        energy = vibrations[particle]
+        if energy >= 0.0:
+            vibrations[particle] = 0.5 * approach * approach / mobility
+            return sqrt(2.0 * energy * mobility)
+    return -1.0
+
+
+@inner_kernel
+def collide_by_law(flights, i, j, rr, rv, space, tally, law):
+    """A contact under a law (Spencer 2022, Eq. 39). Returns |r . dp|."""
+    mobility_i, mobility_j = law.inverse_mass[i], law.inverse_mass[j]
+    mobility = mobility_i + mobility_j
+    length = sqrt(rr)
+    normal = (
+        gap_along(flights, i, j, 0, space) / length,
+        gap_along(flights, i, j, 1, space) / length,
+        gap_along(flights, i, j, 2, space) / length,
+    )
+    least = LEAST * max(fastest_component(flights, i, space), fastest_component(flights, j, space))
+    approach = -rv / length
+    radius_i, radius_j = flights[i].radius, flights[j].radius
+    radius = radius_i * radius_j / (radius_i + radius_j)
+    usual = normal_restitution(approach, radius, mobility, law.normal, law.viscous)
+    normal_part, tangential_part = restitution_of_pair(flights, i, j, usual, law, law.duration)
+    parting = exchange_with_vibration(i, j, approach, mobility, law.vibrations)
+    if parting >= 0.0:
+        impulse = (approach + max(parting, least)) / mobility
+    else:
+        impulse = normal_change(approach, normal_part, least) / mobility
+    lose(approach, mobility, normal_part, usual, law, tally)
+    if law.tangential > -1.0:
+        a, b = velocity_of(flights, i, space), velocity_of(flights, j, space)
+        s, t = spin_of(flights, i, law), spin_of(flights, j, law)
+        velocity = (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+        sliding = slip(velocity, (s[0] + t[0], s[1] + t[1], s[2] + t[2]), normal)
+        lever = radius_i * radius_i * law.inverse_inertia[i] + radius_j * radius_j * law.inverse_inertia[j]
+        friction = rub(sliding, mobility, lever, tangential_part, law, tally)
+        push(flights, i, mobility_i, friction, space)
+        push(flights, j, -mobility_j, friction, space)
+        add_spin(flights, i, normal, friction, law)
+        add_spin(flights, j, normal, friction, law)
+    push(flights, i, -impulse * mobility_i, normal, space)
+    push(flights, j, impulse * mobility_j, normal, space)
+    return impulse * length
+
+
+@inner_kernel
+def collide_wall_by_law(flights, i, normal, least, space, tally, law):
+    """A contact with a wall in the direction of the unit vector `normal` (3,) (Spencer 2022, Eq. 40); the
+    particle parts from it at `least` so fast. Returns the momentum given to the wall along that direction."""
+    mobility = law.inverse_mass[i]
+    velocity = velocity_of(flights, i, space)
+    approach = normal[0] * velocity[0] + normal[1] * velocity[1] + normal[2] * velocity[2]
+    radius = flights[i].radius
+    usual = normal_restitution(approach, radius, mobility, law.normal, law.viscous)
+    normal_part, tangential_part = restitution_at_wall(flights, i, usual, law, law.duration)
+    change = normal_change(approach, normal_part, least)
+    lose(approach, mobility, normal_part, usual, law, tally)
+    if law.tangential > -1.0:
+        lever = radius * radius * law.inverse_inertia[i]
+        sliding = slip(velocity, spin_of(flights, i, law), normal)
+        friction = rub(sliding, mobility, lever, tangential_part, law, tally)
+        push(flights, i, mobility, friction, space)
+        add_spin(flights, i, normal, friction, law)
+    push(flights, i, -change, normal, space)
+    return change / mobility
+
+
+@inner_helper
+def exchange_momentum(flights, i, j, rr, rv, model, tally, law):
+    """What passes at a contact, by the law if there is one. Returns |r . dp|."""
+    if law is None:
+        return collide_smooth(flights, i, j, rr, rv, model.space, model.masses)
+    return collide_by_law(flights, i, j, rr, rv, model.space, tally, law)

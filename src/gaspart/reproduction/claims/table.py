@@ -1,0 +1,141 @@
+"""Tables of judged claims: written per figure as CSV, read, collected and counted."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from gaspart.files import whole_file
+from gaspart.reproduction.claims.claim import KINDS, Claim
+from gaspart.reproduction.claims.judging import (
+    VERDICTS,
+    family_test,
+    judge,
+    reason,
+)
+
+if TYPE_CHECKING:
+    import pandas
+
+_STATED = (
+    "measured",
+    "uncertainty",
+    "degrees_of_freedom",
+    "required_uncertainty",
+    "expected",
+    "allowance",
+    "lowest",
+    "highest",
+)
+_JUDGED = ("deviation_sigma", "scattered")
+COLUMNS = (
+    *("figure", "claim", "kind", "form"),
+    *_STATED,
+    *("source", "allowance_source"),
+    *_JUDGED,
+    "verdict",
+    "why",
+    "fails_if",
+)
+"""Columns of a claims table, in this order. allowance: the uncertainty of the expected value; lowest,
+highest: the stated bounds, NaN for a value; scattered: 1 where `deviation_sigma` is a standard Gaussian
+number if the claim is true (`Claim.is_scattered`), else 0."""
+PLURALS = {"test": "tests", "identity": "identities", "reproduction": "reproductions", "family": "families"}
+COUNTED = {"agrees": "agree", "disagrees": "disagree"}
+
+
+def write(path: str | Path, figure: str, claims: Sequence[Claim]) -> None:
+    """Judge the claims of `figure` and write them, with their joint test, as CSV with COLUMNS, atomically.
+
+    Raises ValueError if two claims have the same text: their rows could not be distinguished.
+    """
+    claims = [*claims, *family_test(claims)]
+    texts = [claim.claim for claim in claims]
+    for text in texts:
+        if texts.count(text) > 1:
+            raise ValueError(f"{figure}: the claim {text!r} occurs twice")
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    with whole_file(path) as partial, partial.open("w", newline="", encoding="utf-8") as file:
+        table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        table.writeheader()
+        for claim, verdict in zip(claims, judge(claims), strict=True):
+            table.writerow({"figure": figure, **_row(claim, verdict)})
+
+
+def _row(claim: Claim, verdict: str) -> dict[str, str]:
+    """A judged claim by column."""
+    lowest, highest = claim.bounds or (math.nan, math.nan)
+    return {
+        "claim": claim.claim,
+        "kind": claim.kind,
+        "form": claim.form,
+        "measured": f"{claim.measured.value:.10g}",
+        "uncertainty": f"{claim.measured.error:.4g}",
+        "degrees_of_freedom": f"{claim.measured.freedom:.4g}",
+        "required_uncertainty": f"{claim.required:.4g}",
+        "expected": f"{claim.expected.value:.10g}",
+        "allowance": f"{claim.expected.error:.4g}",
+        "lowest": f"{lowest:.10g}",
+        "highest": f"{highest:.10g}",
+        "source": claim.source,
+        "allowance_source": claim.allowance_source,
+        "deviation_sigma": f"{claim.deviation_sigma:.3f}",
+        "scattered": f"{claim.is_scattered:d}",
+        "verdict": verdict,
+        "why": reason(claim, verdict),
+        "fails_if": claim.fails_if,
+    }
+
+
+def read(path: str | Path) -> list[dict[str, Any]]:
+    """Rows of a claims table as dictionaries by column; the numbers as floats, NaN where pandas left none.
+
+    Raises ValueError, naming the file, if its columns are not COLUMNS or a number or verdict is invalid.
+    """
+    with Path(path).open(newline="", encoding="utf-8") as file:
+        table = csv.DictReader(file)
+        if tuple(table.fieldnames or ()) != COLUMNS:
+            raise ValueError(f"{path}: not a claims table (its columns must be {', '.join(COLUMNS)})")
+        rows = list(table)
+    numbers = (*_STATED, *_JUDGED)
+    for row in rows:
+        try:
+            row.update({name: math.nan if row[name] == "" else float(row[name]) for name in numbers})
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"{path}: {error} in the row {row['claim']!r}") from None
+        if row["verdict"] not in VERDICTS:
+            raise ValueError(f"{path}: verdict: {row['verdict']!r} (must be one of {', '.join(VERDICTS)})")
+    return rows
+
+
+def collect(paths: Iterable[str | Path]) -> pandas.DataFrame:
+    """All claims of several tables as one pandas DataFrame with COLUMNS, in the order of `paths`."""
+    import pandas
+
+    return pandas.DataFrame([row for path in paths for row in read(path)], columns=list(COLUMNS))
+
+
+def counts(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, int]]:
+    """How many claims of each kind have each verdict: {kind: {verdict: number}}, in the order of KINDS and
+    VERDICTS, without those that do not occur."""
+    pairs = [(row["kind"], row["verdict"]) for row in rows]
+    return {
+        kind: {verdict: pairs.count((kind, verdict)) for verdict in VERDICTS if (kind, verdict) in pairs}
+        for kind in KINDS
+        if any(kind == one for one, _ in pairs)
+    }
+
+
+def summary(path: str | Path) -> str:
+    """What a claims table states: the number of claims, a line for each kind, "tests: 205 agree, 3 disagree",
+    and a line for each claim that disagrees. Raises ValueError as `read` does."""
+    rows = read(path)
+    lines = [f"{len(rows)} claims"]
+    for kind, found in counts(rows).items():
+        parts = (f"{number} {COUNTED.get(verdict, verdict)}" for verdict, number in found.items())
+        lines.append(f"{PLURALS[kind]}: {', '.join(parts)}")
+    lines += [f"disagrees: {row['figure']}: {row['claim']}" for row in rows if row["verdict"] == "disagrees"]
+    return "\n".join(lines)

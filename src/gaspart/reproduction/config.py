@@ -1,0 +1,203 @@
+"""Validation of a config before any job starts: an error is one line with file, key, value and rule."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import chdir, contextmanager
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from gaspart.errors import SceneError, unknown_word
+from gaspart.kinds import Kind
+from gaspart.reproduction.points import grid, keys
+from gaspart.reproduction.points.overlay import laid_over
+from gaspart.reproduction.points.points import figure_points, points
+from gaspart.reproduction.schema import schema
+from gaspart.scene.validation import finite, size
+from gaspart.yaml_text import DEEPEST, MOST_VALUES, read_yaml
+
+
+@contextmanager
+def checked(path: str | Path) -> Iterator[dict[str, Any]]:
+    """The valid config of a file, with its scene folder as the working directory.
+
+    The scene folder is the folder above a file in a folder named `config`; else the folder of the file.
+    Raises SceneError.
+    """
+    merged, files = laid_over(Path(path))
+    folder = files[-1].parent
+    with chdir(folder.parent if folder.name == "config" else folder):
+        check(merged, files)
+        yield merged
+
+
+def check(config: dict, files: Sequence[str | Path] = ()) -> dict[tuple[str, str], dict]:
+    """Validate a merged config against the schema, then every point's scene and engine.
+
+    files: the YAML files that were merged, in that order; an error names the last one that holds the key.
+    Returns the recipes of all points, which must be made for it, by experiment and name. Raises SceneError.
+    """
+    contents = [(str(file), read_yaml(file)) for file in files]
+    try:
+        _check_values(config)
+        _against(schema(), config, "")
+        recipes = {
+            (experiment, name): recipe
+            for experiment in config["experiments"]
+            for name, recipe in _experiment(config, experiment)
+        }
+        for figure in config["figures"]:
+            figure_points(config, figure)
+        for animation, block in config.get("animations", {}).items():
+            _animation(config, animation, block)
+        return recipes
+    except SceneError as error:
+        raise error.inside("", error.file or _file_of(error.key, contents)) from None
+
+
+def _check_values(config: object) -> None:
+    """Raise SceneError unless a config is a tree of mappings, lists and plain values, not too deep and not
+    too large, whose numbers are finite and neither too large nor too small to compute with."""
+    left = [("", config, 0)]  # a stack, so that a deep config does not exhaust Python's own
+    for count in range(MOST_VALUES):
+        if not left:
+            return
+        where, value, depth = left.pop()
+        if depth > DEEPEST:
+            raise SceneError(where, count, f"values may be nested {DEEPEST} deep")
+        if isinstance(value, dict):
+            for key in value:
+                if not isinstance(key, str):
+                    rule = "a key must be text: write it in quotes"
+                    raise SceneError(f"{where}.{key!s:.100}".lstrip("."), key, rule)
+            left += [(f"{where}.{key}".lstrip("."), item, depth + 1) for key, item in value.items()]
+        elif isinstance(value, list):
+            left += [(where, item, depth + 1) for item in value]
+        elif isinstance(value, int | float) and not isinstance(value, bool):
+            number = finite(value)
+            if number is None:
+                raise SceneError(where, value, "must be a finite number")
+            size(where, number)
+        elif value is not None and not isinstance(value, str | bool):
+            raise SceneError(where, value, "must be text, a number, a list or a mapping: quotes make it text")
+    raise SceneError("config", len(left), f"there may be {MOST_VALUES} values")
+
+
+def _animation(config: dict, animation: str, block: dict | None) -> None:
+    """Refuse a film of an experiment that the config does not have, or that makes no trajectories."""
+    experiment = block["experiment"] if block else None
+    kinds = {name: made.get("job", "simulate") for name, made in config["experiments"].items()}
+    if block and kinds.get(experiment) != "simulate":
+        rule = "must be the name of an experiment that makes trajectories"
+        raise SceneError(f"animations.{animation}.experiment", experiment, rule)
+    figure = block.get("figure") if block else None
+    if figure is not None and figure not in config["figures"]:
+        raise SceneError(f"animations.{animation}.figure", figure, unknown_word(figure, config["figures"]))
+
+
+def _experiment(config: dict, experiment: str) -> Iterator[tuple[str, dict]]:
+    """Validate the values of the grid, one by one, then the scene and the engine of every point. Yields the
+    name and the recipe of each."""
+    where = f"experiments.{experiment}"
+    for key, value in _grid_values(config["experiments"][experiment].get("grid")):
+        if key.startswith(keys.PREFIX):  # a value of a scene file, which the scene validates
+            continue
+        if key not in keys.POINT:
+            raise SceneError(f"{where}.grid.{key}", value, unknown_word(key, keys.POINT))
+        _against(keys.POINT[key], value, f"{where}.grid.{key}")
+    for point in points(config, experiment):
+        grid.check(point)
+        try:
+            yield point.name, grid.recipe(point)
+        except SceneError as error:
+            located = error.file or error.key.startswith(where)
+            raise error if located else error.inside(f"{where}[{point.name}]") from None
+
+
+@cache
+def _validator() -> Any:
+    """The validator of JSON schemas, with a test for uniqueness in a time linear in the length of a list."""
+    from jsonschema import Draft202012Validator, ValidationError
+    from jsonschema.validators import extend
+
+    def unique(validator: object, wanted: bool, items: object, schema: dict) -> Iterable[ValidationError]:
+        words = [item for item in items if isinstance(item, str)] if isinstance(items, list) else []
+        if wanted and len(set(words)) < len(words):
+            yield ValidationError("not unique")
+
+    return extend(Draft202012Validator, {"uniqueItems": unique})
+
+
+def _against(kind: Kind, value: object, where: str) -> None:
+    """Raise SceneError with the most relevant rule of a part of the schema that ``value`` breaks."""
+    from jsonschema.exceptions import best_match
+
+    error = best_match(_validator()(kind).iter_errors(value))
+    if error is None:
+        return
+    key = ".".join(part for part in (where, *(str(part) for part in error.absolute_path)) if part)
+    if error.validator == "additionalProperties":
+        known, patterns = error.schema.get("properties", {}), error.schema.get("patternProperties", {})
+        unknown = next(
+            name
+            for name in error.instance
+            if name not in known and not any(re.search(pattern, name) for pattern in patterns)
+        )
+        rule_text = unknown_word(unknown, known)
+        raise SceneError(f"{key}.{unknown}".lstrip("."), error.instance[unknown], rule_text)
+    if error.validator == "required":
+        missing = next(name for name in error.validator_value if name not in error.instance)
+        raise SceneError(f"{key}.{missing}".lstrip("."), None, "is required")
+    raise SceneError(key or "config", error.instance, _rule(error.validator, error.validator_value))
+
+
+def _rule(validator: str, wanted: Any) -> str:
+    """A JSON schema's keyword in words."""
+    if validator == "type":
+        names = [wanted] if isinstance(wanted, str) else wanted
+        return f"must be of type {' or '.join(names)}"
+    words = {
+        "exclusiveMinimum": "must be greater than",
+        "minimum": "must be at least",
+        "exclusiveMaximum": "must be less than",
+        "maximum": "must be at most",
+        "enum": "must be one of",
+        "minItems": "must have this many items at least:",
+        "maxItems": "must have this many items at most:",
+        "minProperties": "must have this many entries at least:",
+        "uniqueItems": "must not name anything twice",
+        "maxLength": "must have this many characters at most:",
+        "pattern": "must match",
+    }
+    bound = "" if validator == "uniqueItems" else f" {wanted}"
+    return words.get(validator, f"breaks the schema's {validator}:") + bound
+
+
+def _grid_values(block: Any) -> Iterator[tuple[str, object]]:
+    """Every (key, value) that a grid holds; an empty list is refused by gaspart.reproduction.points."""
+    if isinstance(block, list):
+        for part in block:
+            yield from _grid_values(part)
+        return
+    for key, values in (block or {}).items():
+        for value in values if isinstance(values, list) else [values]:
+            yield key, value
+
+
+def _file_of(key: str, contents: list[tuple[str, Any]]) -> str | None:
+    """The last of the files, given with their contents, that holds the longest part of ``key``."""
+    parts = key.replace("[", ".").split(".")
+    dotted = parts.index("scene") if "scene" in parts else len(parts)  # `scene.` and what follows is one key
+    parts[dotted:] = [".".join(parts[dotted:])]
+
+    def depth(content: tuple[str, Any]) -> int:
+        block, reached = content[1], 0
+        for part in parts:
+            if not isinstance(block, dict) or part not in block:
+                break
+            block, reached = block[part], reached + 1
+        return reached
+
+    return max(reversed(contents), key=depth)[0] if contents else None

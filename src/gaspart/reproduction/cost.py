@@ -1,0 +1,72 @@
+"""What a config costs, in core-hours, predicted from the measured speeds."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from gaspart import theory
+from gaspart.errors import SceneError
+from gaspart.reproduction.config import checked
+from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.points.points import points
+from gaspart.tradeoff import speed, table
+from gaspart.tradeoff.advice import Gas, plain_gas
+
+
+def predict(path: str) -> list[str]:
+    """Lines with the core-hours of each experiment of a config, and of all, on this machine.
+
+    A config beside `config.yaml` is merged over that, as in the workflow. Raises SceneError.
+    """
+    lines, total, unknown = [], 0.0, []
+    with checked(path) as config:
+        for experiment in config["experiments"]:
+            costs = [_seconds(point) for point in points(config, experiment)]
+            known = [seconds for seconds in costs if seconds is not None]
+            if len(known) < len(costs):
+                unknown.append(experiment)
+                continue
+            total += sum(known)
+            lines.append(f"{experiment:28s} {sum(known) / 3600.0:10.4f} core-hours")
+    lines.append(f"{'all of them':28s} {total / 3600.0:10.4f} core-hours")
+    if unknown:
+        rule = "not predicted (other jobs, or scenes whose collisions no theory counts)"
+        lines.append(f"{rule}: {', '.join(unknown)}")
+    return lines
+
+
+def _seconds(point: Point) -> float | None:
+    """Processor time of a point's simulations, from the theoretical number of contacts; None where it is
+    unknown."""
+    if point.job != "simulate":
+        return None
+    scene = grid.scene(point)
+    try:
+        gas = plain_gas(scene)
+    except SceneError:
+        return None
+    engine = grid.engine(point)
+    # Where discs or spheres freeze, the pressure is constant, and the number of contacts nearly so.
+    densest = theory.HIGHEST_PACKING_FRACTION[gas.dimension]
+    fluid = replace(gas, packing_fraction=min(gas.packing_fraction, densest))
+    contacts = 0.5 * gas.count * fluid.collision_rate * grid.schedule(point).duration * point.replicas
+    if engine.name == "event":
+        each = table.seconds(gas.dimension, gas.packing_fraction, "event")
+        return contacts * each * _speed(gas, "event", "float64")
+    step = engine.time_step * gas.thermal_speed / gas.diameter
+    known = [made for precision, made in table.steps(gas.dimension) if precision == "float64"]
+    nearest = min(known, key=lambda one: abs(math.log(one / step)))
+    each = table.seconds(gas.dimension, gas.packing_fraction, "step", "float64", nearest)
+    # Shorter steps than any in the table cost in proportion to their number.
+    return (
+        contacts * each * max(1.0, nearest / step) * _speed(gas, "step", "float64")
+        if math.isfinite(each)
+        else None
+    )
+
+
+def _speed(gas: Gas, engine: str, precision: str) -> float:
+    """Relative speed at the nearest power of ten of the number of particles, so that few sizes are timed."""
+    return speed.factor(gas.dimension, engine, precision, 10 ** round(math.log10(max(gas.count, 10))))

@@ -1,0 +1,161 @@
+"""Claims about walls that adsorb particles."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from gaspart.analysis.statistics import combine, fit_polynomial, fit_power_law
+from gaspart.reproduction.claims import Claim, Estimate
+from gaspart.reproduction.families.shared.claims import deviations, rows
+from gaspart.theory.adsorption import planck_constant, slow_flux_share
+
+LANGMUIR = (
+    "Boltzmann factor of the well (exact for an ideal gas; Langmuir's formula, source A section 4.5); what "
+    "spheres close to each other is subtracted, to first order in their density"
+)
+OWN_LENGTH = (
+    "equilibrium of an ideal gas with a step well: the length is its width (exact); what spheres close to "
+    "each other is subtracted, to first order in their density"
+)
+
+
+def adsorption(ds: xr.Dataset) -> list[Claim]:
+    """Slope, prefactor, hard layer, and the detailed balance that the source's own rule violates."""
+    kinds = {kind: ds.isel(point=np.flatnonzero(ds["kind"] == kind)) for kind in ("ideal", "layer", "sticky")}
+    return [*_ideal(kinds["ideal"]), *_layer(kinds["layer"]), *_sticky(kinds["sticky"], kinds["ideal"])]
+
+
+def _combined(ds: xr.Dataset, name: str) -> Estimate:
+    mean = combine(ds[name].values, ds[f"{name}_error"].values)
+    return Estimate(mean.value, mean.error)
+
+
+def _ideal(ds: xr.Dataset) -> list[Claim]:
+    claims = []
+    for width in np.unique(ds["width"]):
+        same = ds.isel(point=np.flatnonzero(ds["width"] == width))
+        claims.append(
+            Claim(
+                claim=f"length in place of the thermal wavelength over the well's width, width {width:g}",
+                measured=_combined(same, "length") / width,
+                expected=1.0,
+                required=0.01,
+                source=OWN_LENGTH,
+                fails_if="an additional prefactor: particles enter or leave against the Boltzmann factor",
+            )
+        )
+        for depth in np.unique(same["depth"]):
+            line = same.isel(point=np.flatnonzero(same["depth"] == depth))
+            if line.sizes["point"] > 1:
+                claims += _slopes(line, float(depth))
+    return claims
+
+
+def _slopes(ds: xr.Dataset, depth: float) -> list[Claim]:
+    """Dependence on temperature of one well."""
+    slope = fit_polynomial(
+        1.0 / ds["temperature"].values, ds["log_ratio"].values, ds["log_ratio_error"].values
+    )
+    per_length = planck_constant(1.0, ds["mass"].values, ds["temperature"].values)
+    planck, error = (per_length * ds[name].values for name in ("length", "length_error"))
+    power = fit_power_law(ds["temperature"].values, planck, error)
+    return [
+        Claim(
+            claim=f"slope of ln(N_ads/N_gas) against 1/kT over the depth, depth {depth:g}",
+            measured=Estimate(slope.values[1], slope.errors[1]) / depth,
+            expected=1.0,
+            required=0.005,
+            source=LANGMUIR,
+            fails_if="particles leave the well with less, or more, than its depth",
+        ),
+        Claim(
+            claim=f"power of T in h = lambda sqrt(2 pi m k T), lambda that length, depth {depth:g}",
+            measured=Estimate(power.exponent, power.exponent_error),
+            expected=0.5,
+            required=0.02,
+            source=f"{OWN_LENGTH}; Planck's constant would be constant, the power 0",
+            fails_if="a length that depends on T: a thermal wavelength, and so Planck's constant, at -1/2",
+        ),
+    ]
+
+
+def _layer(ds: xr.Dataset) -> list[Claim]:
+    """Coverages by the gas' pressure; and that its activity is not what counts where the coverage is low."""
+    what = "coverage over that of hard discs at the gas' pressure"
+    source = (
+        "spheres in a layer thinner than their diameter, as hard discs (virial series to B10), at the "
+        "density P/kT that a hard wall has at contact (exact where the coverage is low), and to first order "
+        "in the gas' density what the layer closes to it (scaled-particle theory), and in 1/N what a gas of "
+        "N loses to the layer"
+    )
+    lowest = float(ds["depth"].min()) if ds.sizes["point"] else 0.0
+    claims = [
+        Claim(
+            claim=f"{what}, depth {float(row['depth']):g}",
+            measured=Estimate.of(row, "filling"),
+            expected=1.0,
+            required=0.04,
+            source=source,
+            alternative=_by_activity(row) if float(row["depth"]) == lowest else None,
+            fails_if="adsorbed spheres do not collide with each other, or each has a site of its own; or the "
+            "gas' activity takes the place of its pressure",
+        )
+        for row in rows(ds, "point")
+    ]
+    if not claims:
+        return []
+    return [
+        *claims,
+        Claim(
+            claim=f"{what}, mean of all depths",
+            measured=_combined(ds, "filling"),
+            expected=1.0,
+            required=0.005,
+            source=source,
+            fails_if="adsorbed spheres close as much of the gas' room as single ones, or a part of it twice",
+        ),
+        Claim.joint(
+            claim=f"{what}, all depths",
+            deviations=deviations(ds, "filling", 1.0),
+            source=source,
+            fails_if="uncertainties too small, as from time blocks that are not independent",
+        ),
+    ]
+
+
+def _by_activity(row: xr.Dataset) -> float:
+    """What the coverage would be if the layer felt nothing of the gas in front of it."""
+    return float(row["filling"] / row["filling_by_activity"])
+
+
+def _sticky(ds: xr.Dataset, wells: xr.Dataset) -> list[Claim]:
+    power = fit_power_law(ds["gas_density"].values, ds["coverage"].values, ds["coverage_error"].values)
+    slow = float(slow_flux_share(ds["slow_speed"].values[0]))
+    return [
+        Claim.at_most(
+            claim="sticky rule: power of the gas' density in the coverage of a wall at low coverage",
+            measured=Estimate(power.exponent, power.exponent_error),
+            bound=0.2,
+            required=0.1,
+            source="the gas both brings and frees particles, both as its density; Henry's law requires 1",
+            fails_if="a coverage that is proportional to the pressure, as under detailed balance",
+        ),
+        Claim.at_most(
+            claim="sticky rule: slow particles that leave the wall, over those that would in equilibrium",
+            measured=_combined(ds, "slow_share") / slow,
+            bound=0.5,
+            required=0.1,
+            source="slow particles stick, and none is sent back so slowly: only those slowed down when freed "
+            "remain",
+            fails_if="a wall that sends back as many slow particles as it takes",
+        ),
+        Claim(
+            claim="wells: share of the particles that leave below sqrt(kT/m)",
+            measured=_combined(wells, "slow_share"),
+            expected=slow_flux_share(1.0),
+            required=0.005,
+            source="flux of a Maxwellian, 1 - e^(-1/2) (exact)",
+            fails_if="a well that selects particles by their speed",
+        ),
+    ]

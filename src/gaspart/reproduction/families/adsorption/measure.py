@@ -1,0 +1,261 @@
+"""Adsorption on a wall: the amount, the coverage, and the speeds of desorption.
+
+The wall is the face x_low, a well or a sticky one; opposite is a wall at the temperature. Runs are cut into
+`blocks` of each replica, which are assumed independent; errors are the jackknife's over them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from gaspart.analysis.statistics import jackknife
+from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.points import grid
+from gaspart.scene.faces import Sticky, Well, thermal_face
+from gaspart.theory.adsorption import (
+    excess_in_well,
+    excess_of_few,
+    layer_activity,
+    layer_diameter,
+    length_in_langmuirs_formula,
+)
+from gaspart.theory.geometry import body_volume
+from gaspart.theory.potential import excess_chemical_potential, packing_fraction_at
+from gaspart.theory.state import compressibility_factor
+from gaspart.trajectory.run import open_trajectory
+
+_REACH = 4.0  # of the histogram of speeds, in units of sqrt(kT/m)
+
+
+@dataclass(frozen=True)
+class Holder:
+    """An adsorbing wall, and the gas next to it; lengths in the scene's units.
+
+    kind: "ideal" (a gas dilute also in the well), "layer" (a well narrower than a particle) or "sticky";
+    depth and width of the well, 0 if there is none; momentum below which particles stick, or 0; outside: the
+    length along x that centres of the gas can reach.
+    """
+
+    kind: str
+    temperature: float
+    depth: float
+    width: float
+    momentum: float
+    mass: float
+    radius: float
+    area: float
+    outside: float
+
+    @classmethod
+    def of(cls, point: grid.Point) -> Holder:
+        """From a point of one species in three dimensions, between x_low and a thermal x_high."""
+        scene = grid.scene(point)
+        face, species = scene.faces["x_low"], scene.species[0]
+        low, high = (ends[0] for ends in scene.reach(species.radius))
+        kind, depth, width, momentum = "sticky", 0.0, 0.0, 0.0
+        match face:
+            case Well(depth, width):
+                kind = "layer" if width < species.radius else "ideal"
+            case Sticky(momentum):
+                pass
+        return cls(
+            kind=kind,
+            temperature=thermal_face(scene, "x_high").temperature,
+            depth=depth,
+            width=width,
+            momentum=momentum,
+            mass=species.mass,
+            radius=species.radius,
+            area=scene.container.lengths[1] * scene.container.lengths[2],
+            outside=high - low - width,
+        )
+
+    def held(self, height: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+        """Whether particles are held: in the well, or without a velocity along x, as only stuck particles
+        are.
+
+        height: of centres above the lowest place, of any shape, and velocity along x of the same.
+        """
+        return height < self.width if self.kind != "sticky" else velocity == 0.0
+
+    def coverage(self, count: float | np.ndarray) -> float | np.ndarray:
+        """The share of the wall's area that so many particles cover."""
+        return count * body_volume(2, 2.0 * self.radius) / self.area
+
+    def gas_density(self, count: np.ndarray) -> np.ndarray:
+        """The number density of so many particles at least a diameter from both walls and from the well."""
+        return count / ((self.outside - 4.0 * self.radius) * self.area)
+
+    def activity(self, density: float | np.ndarray) -> float | np.ndarray:
+        """The pressure of the gas in k_B T, as the coverage of a layer whose particles do not
+        interact: beta P w e^{depth/kT} pi sigma^2 / 4, a packing fraction (0 without a well)."""
+        eta = density * body_volume(3, 2.0 * self.radius)
+        pressure = density * compressibility_factor(eta, 3)
+        return pressure * self._hold
+
+    def ideal_ratio(self, held: np.ndarray, others: np.ndarray) -> np.ndarray:
+        """The ratio of so many particles in the well to the others, of an ideal gas in their place."""
+        densities = held / (self.width * self.area), others / (self.outside * self.area)
+        excess = excess_in_well(*densities, 2.0 * self.radius, self.width, self.outside)
+        return held / others * np.exp(-excess)
+
+    def filling(self, held: float, density: float, others: float) -> float:
+        """The coverage of a layer of so many particles over that of hard discs in equilibrium with a gas of
+        this density and so many others."""
+        diameter, coverage = 2.0 * self.radius, float(self.coverage(held))
+        width = self.width / diameter
+        discs = coverage * float(layer_diameter(width)) ** 2
+        activity = float(layer_activity(self.activity(density), discs, density * diameter**3, width))
+        return discs / float(packing_fraction_at(activity, 2)) / (1.0 + excess_of_few(activity, held, others))
+
+    @property
+    def _hold(self) -> float:
+        return self.width * np.exp(self.depth / self.temperature) * body_volume(2, 2.0 * self.radius)
+
+    def fugacity(self, density: float | np.ndarray) -> float | np.ndarray:
+        """The same with the gas' activity, rho exp(mu_excess / kT), in the place of its pressure: what it
+        would be if the layer felt nothing of the gas in front of it."""
+        eta = density * body_volume(3, 2.0 * self.radius)
+        return density * np.exp(excess_chemical_potential(eta, 3)) * self._hold
+
+
+def adsorption(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Adsorption on a wall, by point.
+
+    settings: `blocks` of each replica, `layer_blocks` where the wall holds a layer; `near`, the distance
+    from the edge of the well, or from where particles stick, within which the velocities of leaving
+    particles are read; `bins` of their speeds.
+
+    Dimensions point, bin. Of every point: kind, temperature, depth, width, momentum, mass and outside, as in
+    `Holder`; with _error: held, the mean number of held particles; ratio, of it to the others; coverage, the
+    share of the wall's area that they cover; gas_density far from both walls; flux (bin), the density of the
+    normal speeds of particles that leave, in units of sqrt(kT/m), and slow_share, that of those below
+    `slow_speed`, the sticky wall's limit (1 for wells; NaN both for layers). Of wide wells, whose gas is
+    ideal but for what spheres close to each other: log_ratio, ln of the ideal gas's ratio, and length, which
+    takes the place of the thermal wavelength in it. Of layers: activity, beta P w e^(depth/kT) pi sigma^2/4,
+    and filling, the coverage over that of hard discs in equilibrium with the gas (see
+    `theory.adsorption.layer_activity`); filling_by_activity, the same with the gas's activity alone in the
+    place of its pressure. `_freedom` are the degrees of freedom of the errors.
+    """
+    edges = np.linspace(0.0, _REACH, settings["bins"] + 1)
+    return from_rows("point", [_measured(point, settings) for point in points], ("bin",)).assign_coords(
+        experiment=("point", [point.experiment for point in points]),
+        speed=("bin", 0.5 * (edges[1:] + edges[:-1])),
+    )
+
+
+def _measured(point: grid.Point, settings: dict) -> dict:
+    """The values of one point."""
+    holder = Holder.of(point)
+    slow = holder.momentum / np.sqrt(holder.mass * holder.temperature) or 1.0
+    layer = holder.kind == "layer"
+    number = settings["layer_blocks"] if layer else settings["blocks"]
+    blocks = [
+        counts_of(holder, *part, settings, slow)
+        for path in point.replica_paths
+        for part in _parts(holder, point, path, number)
+    ]
+    held, free, far, slowly, flux = (np.array(series) for series in zip(*blocks, strict=True))
+    bins, absent = settings["bins"], (np.nan, np.nan)
+    estimates = _amounts(holder, held, free, far) | {"log_ratio": absent, "length": absent}
+    if holder.kind == "ideal":
+        estimates |= _well(holder, held, free)
+    if layer:  # hardly any particle leaves it
+        estimates |= {"flux": (np.full(bins, np.nan),) * 2, "slow_share": absent}
+        estimates |= _isotherm(holder, held, free, far)
+    else:
+        estimates |= _desorption(slowly, flux, _REACH / bins)
+        estimates |= {"activity": absent, "filling": absent, "filling_by_activity": absent}
+    facts = ("kind", "temperature", "depth", "width", "momentum", "mass", "outside")
+    row = entries(estimates, len(held) - 1) | {name: getattr(holder, name) for name in facts}
+    return row | {"slow_speed": slow}
+
+
+def _amounts(holder: Holder, held: np.ndarray, free: np.ndarray, far: np.ndarray) -> dict[str, tuple]:
+    """(value, error) of the adsorbed amount by name: the number, its ratio to the free particles and the
+    coverage; and of the density of the gas."""
+    return {
+        "held": jackknife(lambda inside: inside, held),
+        "ratio": jackknife(lambda inside, others: inside / others, held, free),
+        "coverage": jackknife(holder.coverage, held),
+        "gas_density": jackknife(holder.gas_density, far),
+    }
+
+
+def _well(holder: Holder, held: np.ndarray, free: np.ndarray) -> dict[str, tuple]:
+    """(value, error) of the ratio that an ideal gas would have, and of the length that follows from it."""
+    depth = holder.depth / holder.temperature
+
+    def length(inside: np.ndarray, others: np.ndarray) -> np.ndarray:
+        return length_in_langmuirs_formula(holder.ideal_ratio(inside, others), depth, holder.outside)
+
+    return {
+        "log_ratio": jackknife(lambda *counted: np.log(holder.ideal_ratio(*counted)), held, free),
+        "length": jackknife(length, held, free),
+    }
+
+
+def _desorption(slowly: np.ndarray, flux: np.ndarray, width: float) -> dict[str, tuple]:
+    """(value, error) of the density of normal speeds in bins of a width, and of the share of slow ones."""
+    return {
+        "flux": jackknife(lambda share: share / (share.sum() * width), flux),
+        "slow_share": jackknife(lambda some, share: some / share.sum(), slowly, flux),
+    }
+
+
+def _isotherm(holder: Holder, held: np.ndarray, free: np.ndarray, far: np.ndarray) -> dict[str, tuple]:
+    """(value, error) of the activity of the gas, and of the coverage over that of hard discs in equilibrium
+    with it."""
+
+    def activity(counted: np.ndarray) -> float | np.ndarray:
+        return holder.activity(holder.gas_density(counted))
+
+    def filling(inside: np.ndarray, counted: np.ndarray, others: np.ndarray) -> float:
+        density = holder.gas_density(counted)
+        return holder.filling(float(inside), float(density), float(others))
+
+    def by_activity(inside: np.ndarray, counted: np.ndarray) -> np.ndarray:
+        return holder.coverage(inside) / packing_fraction_at(holder.fugacity(holder.gas_density(counted)), 2)
+
+    return {
+        "activity": jackknife(activity, far),
+        "filling": jackknife(filling, held, far, free),
+        "filling_by_activity": jackknife(by_activity, held, far),
+    }
+
+
+def counts_of(holder: Holder, height: np.ndarray, velocity: np.ndarray, settings: dict, slow: float) -> tuple:
+    """Means over the frames of one block: held particles, the others, those of the gas that are a diameter
+    and more from both walls (and from the well); and of those that leave near the wall, the flux below the
+    speed `slow`, and (bins,) by speed.
+
+    height (T, N): of centres above the lowest place; velocity (T, N) along x.
+    """
+    held = holder.held(height, velocity)
+    above = height - holder.width
+    far = (above > 2.0 * holder.radius) & (above < holder.outside - 2.0 * holder.radius)
+    leaving = ~held & (above < settings["near"]) & (velocity > 0.0)
+    speed = velocity[leaving] / np.sqrt(holder.temperature / holder.mass)
+    # a particle is near for a time proportional to 1 / speed
+    flux = np.histogram(speed, settings["bins"], (0.0, _REACH), weights=speed)[0]
+    frames = len(height)
+    parts = held.sum(), (~held).sum(), far.sum(), speed[speed < slow].sum(), flux
+    return tuple(part / frames for part in parts)
+
+
+def _parts(
+    holder: Holder, point: grid.Point, path: str, blocks: int
+) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """(height, velocity) of each block of a run, without its equilibration."""
+    first = grid.schedule(point).equilibration_frames + 1
+    with open_trajectory(path) as trajectory:
+        height = trajectory["coordinates"][first:, :, 0].values.astype(float) - holder.radius
+        velocity = trajectory["velocities"][first:, :, 0].values.astype(float)
+    if len(height) < blocks:
+        raise ValueError(f"blocks: {blocks} (more than the {len(height)} frames of {path})")
+    parts = (np.array_split(series, blocks) for series in (height, velocity))
+    return zip(*parts, strict=True)

@@ -1,0 +1,102 @@
+"""Theory of a large particle's motion: Langevin's equation, and the linear Boltzmann equation of a light
+one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from gaspart import theory
+from gaspart.errors import SceneError
+from gaspart.reproduction.points import grid
+from gaspart.theory.homogeneous import relaxing_speeds
+from gaspart.theory.tagged import tagged_paths
+
+HEAVY = 10.0
+"""Mass over that of a gas particle above which Langevin's equation is taken as exact. It is a sphere's in the
+limit of a large ratio; the velocity autocorrelation of one of equal mass decays 0.6 % more slowly up to half
+a friction time."""
+GROUPS, MOST = 200, 300
+"""Of paths of the linear Boltzmann equation, each as many as the point has replicas, up to MOST: the
+statistical error of theory is the measurement's over sqrt(200), which is negligible, or that of 60 000
+paths."""
+GAS = 100_000
+"""Gas particles from whose speeds those that hit are drawn."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """Theory's predictions for a point. share: the large particle's part of all mass where momentum is
+    conserved (all axes periodic), else 0."""
+
+    mass: float
+    gas_mass: float
+    radius: float
+    temperature: float
+    contact: float
+    friction: float
+    diffusion: float
+    share: float
+    mean_free_path: float
+
+    @property
+    def is_light(self) -> bool:
+        """Whether it is too light for Langevin's equation."""
+        return self.mass <= HEAVY * self.gas_mass
+
+
+def setting_of(point: grid.Point) -> Setting:
+    """The setting of a point's scene; SceneError for one that has not one particle and one species."""
+    scene, where = grid.scene(point), f"experiments.{point.experiment}.scene"
+    if len(scene.bodies) != 1 or len(scene.species) != 1:
+        raise SceneError(where, point.settings.get("scene"), "must have one entry of bodies and one species")
+    body, gas = scene.bodies[0], scene.species[0]
+    temperature = gas.temperature
+    if temperature is None:
+        temperature = gas.mass * (gas.speed or 0.0) ** 2 / 3.0
+    contact = body.radius + gas.radius
+    lower, upper = scene.reach(gas.radius)
+    room = math.prod(b - a for a, b in zip(lower, upper, strict=True))
+    density = gas.count / (room - theory.body_volume(3, 2.0 * contact))
+    friction = float(theory.friction_rate(density, contact, body.mass, gas.mass, temperature))
+    conserved = all(scene.container.periodic)
+    return Setting(
+        mass=body.mass,
+        gas_mass=gas.mass,
+        radius=body.radius,
+        temperature=temperature,
+        contact=contact,
+        friction=friction,
+        diffusion=float(theory.tagged_diffusion(friction, body.mass, gas.mass, temperature)),
+        share=body.mass / (body.mass + gas.count * gas.mass) if conserved else 0.0,
+        mean_free_path=1.0 / (math.sqrt(2.0) * math.pi * density * (2.0 * gas.radius) ** 2),
+    )
+
+
+def light_paths(point: grid.Point, setting: Setting) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Paths of the linear Boltzmann equation from rest, sampled as the point's runs, in GROUPS: times (T,),
+    displacements and velocities (T, N, 3).
+
+    A gas of equal speeds relaxes by its own collisions meanwhile.
+    """
+    gas, times = grid.scene(point).species[0], grid.schedule(point)
+    frames = times.equilibration_frames + times.samples
+    # n pi d^2, from the mean free path of Maxwell's gas, 1 / (sqrt(2) n pi d^2)
+    own = 1.0 / (math.sqrt(2.0) * setting.mean_free_path)
+    middle = times.sample_interval * (np.arange(frames) + 0.5)
+    if gas.speed is not None:
+        speeds = gas.speed * relaxing_speeds(GAS, gas.speed * middle, own)
+    else:
+        thermal = math.sqrt(setting.temperature / setting.gas_mass)
+        even = (np.arange(GAS) + 0.5) / GAS
+        speeds = [np.asarray(theory.maxwell_ppf(even, 3, thermal**2))] * frames
+    hits = own * (setting.contact / (2.0 * gas.radius)) ** 2
+    time = times.sample_interval * np.arange(frames + 1)
+    size = min(point.replicas, MOST)
+    ratio = setting.mass / setting.gas_mass
+    made = tagged_paths(speeds, times.sample_interval, hits, ratio, GROUPS * size)
+    for group in np.split(np.arange(GROUPS * size), GROUPS):
+        yield time, made.displacements[:, group], made.velocities[:, group]

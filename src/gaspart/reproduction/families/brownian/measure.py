@@ -1,0 +1,188 @@
+"""A large particle among small ones: its paths, its mean-squared displacement, its friction.
+
+The scene's first particle is the tracked one; its gas is the first species. Theory's time is that of the
+friction: 1 / `friction`, from the actual gas density, outside the large particle. What is expected of a
+heavy particle is Langevin's equation, of one that is not much heavier than a gas particle `expected`'s.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from gaspart import theory
+from gaspart.analysis.correlations import Curves, correlate
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.statistics import bootstrap, means_of
+from gaspart.errors import SceneError
+from gaspart.reproduction.families.brownian.expected import Setting, light_paths, setting_of
+from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.points import grid
+from gaspart.trajectory.run import open_trajectory
+
+LONGEST = 8.0
+"""Friction times up to which curves are taken."""
+FRICTION_TO, DIFFUSION_AT = 0.5, 5.0
+"""Friction times up to which the velocity autocorrelation gives the friction, from all lags, and at which the
+msd gives the diffusion."""
+NAMES = {
+    "equipartition": "equipartition",
+    "friction": "measured_friction",
+    "diffusion": "measured_diffusion",
+}
+"""Columns of the numbers that are derived from measured paths; `friction` and `diffusion` are theory's."""
+
+
+def _followed(point: grid.Point) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Of each replica: times (T,), displacements and velocities of the first particle (T, 1, 3)."""
+    if not point.settings.get("displacements", False):
+        raise SceneError(f"experiments.{point.experiment}.displacements", False, "must be true")
+    for path in point.replica_paths:
+        with open_trajectory(path) as dataset:
+            yield (
+                dataset["time"].values.astype(float),
+                dataset["displacements"].values[:, :1, :3],
+                dataset["velocities"].values[:, :1, :3].astype(float),
+            )
+
+
+def brownian_paths(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """The first `paths` ways of each point, and how far all of its replicas have come in the end.
+
+    Lengths are the scene's. `end_chi_square`: of the components of all ends, each over the variance that is
+    expected from rest. That of the Langevin equation has the share of the gas, as in `brownian_msd`, with its
+    drift of mean square (1 - share) share k_B T / M along each axis (its momentum is drawn with the
+    velocities). Dimensions point, path, frame, axis.
+    """
+    rows = []
+    for point in points:
+        setting = setting_of(point)
+        found = list(_followed(point))
+        ends = np.array([moved[-1, 0] for _, moved, _ in found])
+        duration = float(found[0][0][-1])
+        variance = _end_variance(point, setting, duration)
+        shown = np.array([moved[:, 0] for _, moved, _ in found[: settings["paths"]]])
+        rows.append(
+            {
+                **_facts(point, setting),
+                "duration": duration,
+                "way": shown,
+                "end_variance": variance,
+                "end_chi_square": float((ends**2).sum() / variance),
+                "end_freedom": ends.size,
+            }
+        )
+    return from_rows("point", rows, ("path", "frame", "axis"))
+
+
+def _end_variance(point: grid.Point, setting: Setting, duration: float) -> float:
+    """Expected mean square of a component of the displacement at the end."""
+    if setting.is_light:
+        return float(np.mean([(moved[-1] ** 2).mean() for _, moved, _ in light_paths(point, setting)]))
+    rest = 1.0 - setting.share
+    variance = theory.langevin_msd_from_rest(
+        duration, rest**2 * setting.diffusion, setting.friction / rest, dimension=1
+    )
+    return float(variance + rest * setting.share * setting.temperature / setting.mass * duration**2)
+
+
+def brownian_msd(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Mean-squared displacement and velocity autocorrelation of the large particle, and the quantities
+    derived from them.
+
+    In a periodic container the gas as a whole drifts, and absorbs the momentum that the particle loses:
+    with `share` s and friction g the correlation is (k_B T / M)(1 - s)(exp(-g' t) + s), g' = g / (1 - s).
+    The constant part is subtracted from correlation and msd; what follows is brought to an infinite gas:
+    `equipartition` is M <V^2> / (3 k_B T (1 - s)), `measured_friction` (1 - s) times the decay rate, the
+    slope of ln C until FRICTION_TO, `measured_diffusion` D times the msd at DIFFUSION_AT over that of the
+    Langevin equation. `equal_speeds` and `stepped`: of the gas at the start, and by the time-stepped engine.
+    `expected_...`: the same of theory, with the statistical error of its direct simulation, if it is one.
+
+    Dimensions point, lag: `time` in 1 / g', `vacf` in (1 - s) k_B T / M, `msd` in 6 (1 - s) k_B T / (M g'^2),
+    `expected_vacf` and `expected_msd`. Errors: standard errors over replicas (bootstrap for the numbers).
+    """
+    return from_rows("point", [_statistics(point) for point in points], ("lag",))
+
+
+def _statistics(point: grid.Point) -> dict:
+    setting = setting_of(point)
+    curves, found = _reduced(point, setting, _followed(point))
+    row = {**_facts(point, setting), **curves}
+    row |= entries({NAMES[name]: one for name, one in found.items()})
+    if setting.is_light:
+        infinite = replace(setting, share=0.0)
+        predicted, expected = _reduced(point, infinite, light_paths(point, setting))
+        row |= {f"expected_{name}": predicted[name][: len(curves["time"])] for name in ("vacf", "msd")}
+    else:
+        time = curves["time"]
+        row |= {"expected_vacf": np.exp(-time), "expected_msd": theory.langevin_msd(time, 1.0 / 6.0, 1.0)}
+        exact = {"equipartition": 1.0, "friction": setting.friction, "diffusion": setting.diffusion}
+        expected = {name: Estimate(value) for name, value in exact.items()}
+    return row | entries({f"expected_{name}": one for name, one in expected.items()})
+
+
+def _reduced(
+    point: grid.Point, setting: Setting, paths: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray]]
+) -> tuple[dict[str, np.ndarray], dict[str, Estimate]]:
+    """The correlations of paths in reduced units, with errors, and the quantities derived from them."""
+    rest = 1.0 - setting.share
+    rate, curves = setting.friction / rest, _curves(point, setting, paths)
+    time = rate * curves[0].time
+    if time[-1] < DIFFUSION_AT:
+        longer = math.ceil(2.0 * DIFFUSION_AT / rate)
+        where = f"experiments.{point.experiment}[{point.name}].duration"
+        raise SceneError(where, point.settings.get("duration"), f"must be {longer} or more")
+    equilibrium = setting.temperature / setting.mass
+    drift = rest * setting.share * equilibrium
+    vacf = np.array([one.correlation for one in curves]) - drift
+    msd = np.array([one.msd for one in curves]) - 3.0 * drift * curves[0].time ** 2
+    late = int(np.argmin(np.abs(time - DIFFUSION_AT)))
+    early = time[1 : max(2, np.searchsorted(time, FRICTION_TO) + 1)]
+    langevin = float(theory.langevin_msd(time[late], setting.diffusion, 1.0)) * rest**2 / rate
+    both = np.concatenate([vacf[:, : early.size + 1], msd[:, [late]]], axis=1)
+
+    def decay(x: np.ndarray) -> float:
+        """Slope of the line through -ln C / C(0), which is 0 at the first lag."""
+        logarithm = np.log(x[:, 1:-1].mean(axis=0) / x[:, 0].mean())
+        return -float(early @ logarithm / (early @ early))
+
+    derived = {
+        "equipartition": lambda x: x[:, 0].mean() / (rest * equilibrium),
+        "friction": lambda x: rest * rate * decay(x),
+        "diffusion": lambda x: x[:, -1].mean() / langevin * setting.diffusion,
+    }
+    curves_of = {
+        "msd": means_of(msd * rate**2 / (6.0 * rest * equilibrium)),
+        "vacf": means_of(vacf / (rest * equilibrium)),
+    }
+    return {"time": time, **entries(curves_of)}, {
+        name: bootstrap(function, both) for name, function in derived.items()
+    }
+
+
+def _curves(
+    point: grid.Point, setting: Setting, paths: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray]]
+) -> list[Curves]:
+    """Time correlations of each of the paths, after equilibration."""
+    drop = grid.schedule(point).equilibration_frames
+    rate, curves = setting.friction / (1.0 - setting.share), []
+    for time, moved, velocities in paths:
+        interval = (time[-1] - time[0]) / (len(time) - 1)
+        lags = min(math.ceil(LONGEST / (rate * interval)), (len(time) - drop) // 2) + 1
+        curves.append(correlate(moved[drop:], velocities[drop:], interval, lags))
+    return curves
+
+
+def _facts(point: grid.Point, setting: Setting) -> dict:
+    """The columns of every row."""
+    return {
+        "equal_speeds": grid.scene(point).species[0].speed is not None,
+        "stepped": point.settings.get("engine") == "step",
+        "replicas": point.replicas,
+        "is_light": setting.is_light,
+        **vars(setting),
+    }

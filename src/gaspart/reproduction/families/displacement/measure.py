@@ -1,0 +1,257 @@
+"""Mean-squared displacement: from ballistic to diffusive, and the diffusion coefficient where there is one.
+
+Everything is in reduced units, in which the particles' diameter, mass and temperature are 1. The temperature
+2 E' / (d (N - 1)) is each replica's own, E' the energy about the centre of mass, whose drift is taken out of
+displacements and velocities. One species. Errors are standard errors of the mean over replicas.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import xarray as xr
+from scipy.integrate import cumulative_simpson
+
+from gaspart import theory
+from gaspart.analysis.correlations import Curves, between, line
+from gaspart.analysis.statistics import fit_polynomial, means_of
+from gaspart.errors import SceneError
+from gaspart.reproduction.families.shared.curves import reduced_curves
+from gaspart.reproduction.families.shared.rows import from_rows
+from gaspart.reproduction.points import grid
+
+SETTLE_COLLISIONS, SETTLE_SHEAR_TIMES = 12.0, 3.0
+"""D is the slope of the msd from this many collisions per particle, or decay times of the container's slowest
+shear mode, whichever is later, to twice that time."""
+SHORT_INTERVAL = 0.5
+"""A run sampled at least this often (collisions per particle) is there for short times: its velocity
+autocorrelation is integrated (Simpson's rule, good to 1e-4 at this spacing), and no D is taken from it."""
+GREEN_KUBO_FROM, GREEN_KUBO_TO = 8.0, 16.0
+"""Collisions per particle between which the integral is compared with the slope of the msd."""
+LOGARITHM_FROM = 30.0
+"""Collisions per particle after which hydrodynamic modes describe discs' velocity autocorrelation."""
+
+
+def replicas(point: grid.Point, longest: float) -> list[Curves]:
+    """The curves of each replica, to the lag `longest` (reduced time) or to the last one that they have.
+
+    Raises SceneError for a point without displacements or lags, or a single replica.
+    """
+    where = f"experiments.{point.experiment}"
+    if not point.settings.get("displacements", False):
+        raise SceneError(f"{where}.displacements", False, "must be true")
+    if point.replicas < 2:
+        raise SceneError(f"{where}.replicas", point.replicas, "must be at least 2")
+    found = [reduced_curves(point, path, longest) for path in point.replica_paths]
+    # Temperatures differ a little, so the last lag may.
+    shortest = min(len(one.time) for one in found)
+    return [Curves(*(array[:shortest] for array in vars(one).values())) for one in found]
+
+
+def msd_spheres(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Mean-squared displacement and diffusion coefficient of spheres; see `_spheres` for a point's numbers.
+
+    Dimensions point and lag (NaN beyond a point's own lags). `largest`: the long run with the most particles
+    at its packing fraction. `in_series`: one of three or more sizes at one packing fraction; through these
+    goes the line size_intercept + size_slope / L, or with Yeh and Hummer's slope one from `size_limit`.
+    Raises SceneError for a run too short for its straight stretch.
+    """
+    dataset = _dataset([_spheres(point) for point in points], 3)
+    eta, count = dataset["packing_fraction"].values.round(6), dataset["count"].values
+    long = np.isfinite(dataset["diffusion"].values)
+    same = long & long[:, None] & (eta == eta[:, None])
+    dataset["largest"] = ("point", long & (np.where(same, count, 0).max(axis=1) == count))
+    dataset["in_series"] = ("point", long & (same.sum(axis=1) >= 3))
+    if dataset["in_series"].any():
+        series = dataset.isel(point=dataset["in_series"].values)
+        table = 1.0 / series["side"], series["diffusion"], series["diffusion_error"]
+        fit = fit_polynomial(*table)
+        predicted = -float((series["correction"] * series["side"])[0])
+        dataset["size_limit"] = float(fit_polynomial(*table, powers=(0,), fixed={1: predicted}).values[0])
+        for name, value, error in zip(("size_intercept", "size_slope"), fit.values, fit.errors, strict=True):
+            dataset[name], dataset[f"{name}_error"] = value, error
+    return dataset
+
+
+def msd_discs(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Mean-squared displacement of discs and the growth of its slope with ln t; see `_discs`."""
+    return _dataset([_discs(point) for point in points], 2)
+
+
+def _state(point: grid.Point) -> dict:
+    """Theory's predictions for a point's scene: collision rate, decay time of the slowest shear mode ..."""
+    dimension = point.settings["dimension"]
+    count, radius, lengths = grid.extents(point)
+    eta = count * theory.body_volume(dimension, 2.0 * radius) / math.prod(lengths)
+    density = theory.number_density(eta, dimension)
+    viscosity = float(theory.enskog_viscosity(eta, dimension))
+    side = lengths[0] / (2.0 * radius)
+    spreading = float(theory.enskog_diffusion(eta, dimension)) + viscosity / density
+    return {
+        "count": count,
+        "packing_fraction": eta,
+        "side": side,
+        "collision_rate": float(theory.collision_rate(eta, dimension)),
+        "mean_free_path": float(theory.mean_free_path(eta, dimension)),
+        "viscosity": viscosity,
+        "shear_time": (side / (2.0 * math.pi)) ** 2 / spreading,
+        "sound_time": side / float(theory.speed_of_sound(eta, dimension)),
+    }
+
+
+def _common(point: grid.Point, state: dict, curves: list[Curves]) -> dict:
+    """The columns of every point: its state, its sampling in collisions per particle, its curves."""
+    time = np.mean([one.time for one in curves], axis=0)
+    rows = {
+        **state,
+        "experiment": point.experiment,
+        "replicas": len(curves),
+        "interval": float(time[1] * state["collision_rate"]),
+        "time": time,
+        **_mean("msd", [one.msd for one in curves]),
+        **_mean("running", [one.running for one in curves]),
+    }
+    if rows["interval"] > SHORT_INTERVAL:
+        return {
+            **rows,
+            **_absent("integral_difference"),
+            **_absent("correlation", "integral", empty=np.full(time.size, np.nan)),
+        }
+    return {**rows, **_green_kubo(curves, state["collision_rate"], point.settings["dimension"])}
+
+
+def _absent(*names: str, empty: float | np.ndarray = math.nan) -> dict:
+    """Entries, and those of their errors, for quantities that a point does not measure."""
+    values = {key: empty for name in names for key in (name, f"{name}_error")}
+    return values | {f"{name}_freedom": math.nan for name in names}
+
+
+def _spheres(point: grid.Point) -> dict:
+    """D, D of the infinite system, and the curves.
+
+    Of N particles whose total momentum is zero, D is (N - 1) / N of that of N particles without this
+    condition (exact for a dilute gas, where the others carry -1 / (N - 1) of a particle's momentum each): all
+    curves are multiplied by N / (N - 1). The rest of the finite size is hydrodynamic: Yeh and Hummer's
+    correction with Enskog's viscosity, to which rho D is added, because a particle leaves a vortex by its own
+    diffusion too: each mode decays with nu + D, as in the long-time tail (Ernst, Hauge and van Leeuwen 1970);
+    half of it in a dilute gas. Its uncertainty is that of the viscosity, 5 % (15 % above packing
+    fraction 0.3), and (2 pi mean free path / side)^2 of it, the next order of hydrodynamics in the slowest
+    mode, but not more than all of it.
+    """
+    state = _state(point)
+    start = max(SETTLE_COLLISIONS / state["collision_rate"], SETTLE_SHEAR_TIMES * state["shear_time"])
+    factor = state["count"] / (state["count"] - 1.0)
+    curves = [
+        Curves(one.time, factor * one.msd, factor * one.correlation, factor * one.running)
+        for one in replicas(point, 2.0 * start)
+    ]
+    rows = _common(point, state, curves)
+    if rows["interval"] <= SHORT_INTERVAL:
+        return {**rows, **_absent("diffusion")}
+    time = rows["time"]
+    if time[-1] + time[1] < 2.0 * start:
+        where = f"experiments.{point.experiment}[{point.name}]: collisions per particle"
+        needed = math.ceil(4.0 * start * state["collision_rate"])
+        rule = f"must be {needed} or more, and `lags` reach half of it, for a straight stretch of the msd"
+        raise SceneError(where, round(grid.schedule(point).samples * rows["interval"]), rule)
+    slopes = []
+    for one in curves:
+        inside = between(one.time, start, 2.0 * start)
+        slopes.append(line(one.time[inside], one.msd[inside]) / 6.0)
+    diffusion = _mean("diffusion", slopes)
+    carried = float(theory.number_density(state["packing_fraction"], 3)) * diffusion["diffusion"]
+    correction = float(theory.yeh_hummer(state["side"], state["viscosity"] + carried))
+    rough = 0.05 if state["packing_fraction"] <= 0.3 + 1e-9 else 0.15
+    next_order = (2.0 * math.pi * state["mean_free_path"] / state["side"]) ** 2
+    return {
+        **rows,
+        **diffusion,
+        "correction": correction,
+        "correction_uncertainty": correction * min(1.0, math.hypot(rough, next_order)),
+        "fit_from": start,
+        "fit_to": 2.0 * start,
+    }
+
+
+def _discs(point: grid.Point) -> dict:
+    """The slope of D(t), the msd's derivative over 2d, against ln t, and the curves; `slope_expected`, that
+    of the hydrodynamic modes of the container, fitted in the same way.
+
+    Until sound has crossed the container a particle is not affected by its size, but is affected at once by
+    the fact that the total momentum is zero: without this condition all would share a velocity of mean square
+    d / N. So 1 / N is added to the correlation, t / N to D(t) and d t^2 / N to the msd, exact until then; the
+    curves end there.
+    """
+    state = _state(point)
+    start = LOGARITHM_FROM / state["collision_rate"]
+    stop = max(state["sound_time"], 2.0 * start)
+    share = 1.0 / state["count"]
+    curves = [
+        Curves(
+            one.time,
+            one.msd + 2.0 * share * one.time**2,
+            one.correlation + share,
+            one.running + share * one.time,
+        )
+        for one in replicas(point, stop)
+    ]
+    rows = _common(point, state, curves)
+    if rows["interval"] <= SHORT_INTERVAL:
+        return {**rows, **_absent("logarithmic_slope"), "slope_expected": math.nan}
+    slopes = []
+    for one in curves:
+        inside = between(one.time, start, stop)
+        slopes.append(line(np.log(one.time[inside]), one.running[inside]))
+    time = rows["time"][between(rows["time"], start, stop)]
+    running = theory.diffusion_modes(time, state["packing_fraction"], 2, state["count"])
+    expected = line(np.log(time), running)
+    slope = _mean("logarithmic_slope", slopes)
+    return {**rows, **slope, "slope_expected": expected, "fit_from": start, "fit_to": stop}
+
+
+def _green_kubo(curves: list[Curves], rate: float, dimension: int) -> dict:
+    """The integral of the velocity autocorrelation, and how far it is from the msd's slope.
+
+    `integral_difference`: (slope of the twice integrated correlation) / (slope of the msd over 2d) - 1, both
+    by a line from GREEN_KUBO_FROM to GREEN_KUBO_TO collisions per particle; the first from velocities alone,
+    the second from displacements alone.
+    """
+    integrals = [cumulative_simpson(one.correlation, x=one.time, initial=0.0) for one in curves]
+    differences = []
+    for one, integral in zip(curves, integrals, strict=True):
+        inside = between(one.time * rate, GREEN_KUBO_FROM, GREEN_KUBO_TO)
+        twice = cumulative_simpson(integral, x=one.time, initial=0.0)
+        einstein = line(one.time[inside], one.msd[inside]) / (2.0 * dimension)
+        differences.append(line(one.time[inside], twice[inside]) / einstein - 1.0)
+    return {
+        **_mean("correlation", [one.correlation for one in curves]),
+        **_mean("integral", integrals),
+        **_mean("integral_difference", differences),
+    }
+
+
+def _mean(name: str, samples: list) -> dict:
+    """Mean over replicas, its standard error and the degrees of freedom of that, as three entries."""
+    mean, error = means_of(samples)
+    return {name: mean, f"{name}_error": error, f"{name}_freedom": len(samples) - 1}
+
+
+UNITS = {
+    "side": "diameter",
+    "mean_free_path": "diameter",
+    "msd": "diameter^2",
+    **dict.fromkeys(("time", "fit_from", "fit_to", "shear_time", "sound_time"), "reduced time"),
+    **dict.fromkeys(
+        ("running", "integral", "diffusion", "correction", "correction_uncertainty", "logarithmic_slope"),
+        "diameter^2 / reduced time",
+    ),
+    "collision_rate": "1 / reduced time",
+    "interval": "collisions per particle",
+}
+
+
+def _dataset(rows: list[dict], dimension: int) -> xr.Dataset:
+    """One dataset of all points; what a point does not have is NaN."""
+    about = {"dimension": dimension, "reduced_time": "diameter sqrt(mass / temperature)"}
+    return from_rows("point", rows, ("lag",), UNITS).assign_attrs(about)

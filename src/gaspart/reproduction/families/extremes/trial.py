@@ -1,0 +1,149 @@
+"""One scene of the table in one engine: drifts, missed contacts, and the verdict."""
+
+from __future__ import annotations
+
+import math
+import time
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from gaspart.engines import EventDriven, TimeStepped
+from gaspart.errors import SceneError, SimulationError
+from gaspart.reproduction.families.extremes.rows import Row
+from gaspart.simulation import ENERGY_DRIFT, Simulation
+from gaspart.state.state import State
+
+ENGINES: dict[str, Callable[[Row], EventDriven | TimeStepped]] = {
+    "event": lambda row: EventDriven(),
+    "event, all pairs": lambda row: EventDriven("pairs"),
+    "step": lambda row: TimeStepped(row.time_step),
+    "step, float32": lambda row: TimeStepped(row.time_step, precision="float32"),
+}
+PASSES, REFUSED, FAILS = "passes", "refused", "fails"
+OVERLAP = {"event": 1e-9, "step": 0.01}
+"""Largest permitted overlap, in contact distances, by the engine's name."""
+MISCOUNTED = 0.03
+"""The permitted relative error of a gas's number of contacts with time steps, in addition to statistical
+error."""
+MOST_EVENTS, MOST_TESTS = 10_000_000, 50_000_000
+"""Contacts after which an event-driven run ends; with the search of all pairs, pair tests."""
+CHECKS = 8
+"""How often a run is checked for overlaps."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The outcome of one scene in one engine.
+
+    verdict; message: of the refusal or failure; energy, momentum: relative drifts (momentum nan where walls
+    absorb some); overlap: the deepest observed, in contact distances; contacts: of particles and walls, and
+    how many were missed (negative: spurious); seconds; bits: a digest of the last state.
+    """
+
+    verdict: str
+    message: str = ""
+    energy: float = math.nan
+    momentum: float = math.nan
+    overlap: float = math.nan
+    contacts: int = -1
+    missed: int = 0
+    seconds: float = math.nan
+    bits: bytes = b""
+
+
+def attempt(row: Row, engine: str, referee: Outcome | None = None) -> Outcome:
+    """Run a row in one of `ENGINES`; where the exact number of contacts is not known, `referee` gives it."""
+    start = time.perf_counter()
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # of steps with errors of per cents
+            outcome = _run(row, engine, referee)
+    except (SceneError, SimulationError) as refusal:
+        outcome = {"verdict": REFUSED, "message": str(refusal)}
+    return Outcome(**outcome, seconds=time.perf_counter() - start)
+
+
+def _run(row: Row, engine: str, referee: Outcome | None) -> dict:
+    simulation = Simulation(row.scene(), ENGINES[engine](row), seed=1)
+    overlap = 0.0
+    for check in range(1, CHECKS + 1):
+        if not _advance(simulation, row.duration * check / CHECKS):
+            return {
+                "verdict": FAILS,
+                "message": "not at its end after the largest permitted number of contacts",
+            }
+        overlap = max(overlap, deepest_overlap(simulation.state, simulation.scene.container.periodic))
+        simulation.check_invariants()
+    tally, state = simulation.tally, simulation.state
+    contacts = int(tally.collisions + tally.wall_hits.sum())
+    before = simulation.initial_state
+    found = {
+        "energy": energy_drift(before, state, tally.dissipated_energy),
+        "momentum": momentum_drift(before, state) if all(simulation.scene.container.periodic) else math.nan,
+        "overlap": overlap,
+        "contacts": contacts,
+        "bits": state.positions.tobytes() + state.velocities.tobytes(),
+    }
+    expected = row.contacts
+    if expected is None and referee is not None and referee.verdict == PASSES:
+        expected = referee.contacts
+    found["missed"] = 0 if expected is None else expected - contacts
+    if engine == "event" and row.contacts is None and referee is not None and referee.bits:
+        found["missed"] = found["missed"] or int(found["bits"] != referee.bits)
+    return {"verdict": PASSES, **found} | _faults(row, simulation.engine, found, expected)
+
+
+def _advance(simulation: Simulation, until: float) -> bool:
+    """Advance to a time; whether it was reached within the permitted contacts."""
+    if isinstance(simulation.engine, TimeStepped):
+        simulation.advance(until=until)
+        return True
+    all_pairs = simulation.engine.search == "pairs"
+    most = MOST_TESTS // max(1, simulation.scene.count) ** 2 if all_pairs else MOST_EVENTS
+    simulation.advance(until=until, max_events=most)
+    return simulation.time >= until * (1.0 - 1e-12)
+
+
+def _faults(row: Row, engine: EventDriven | TimeStepped, found: dict, expected: int | None) -> dict:
+    """The verdict, if any of the numbers shows that the run is incorrect."""
+    drift = ENERGY_DRIFT[getattr(engine, "precision", "float64")]
+    allowed = 0.0
+    if row.chaotic and engine.name == "step" and expected:
+        allowed = 4.0 * math.sqrt(expected) + MISCOUNTED * expected
+    for what, measured, most in (
+        ("energy", found["energy"], drift),
+        ("momentum", found["momentum"], drift),
+        ("overlap", found["overlap"], OVERLAP[engine.name]),
+        ("missed", abs(found["missed"]), allowed),
+    ):
+        if measured > most or (what != "momentum" and math.isnan(measured)):
+            return {"verdict": FAILS, "message": f"{what} = {measured:g}: more than {most:g}"}
+    return {}
+
+
+def energy_drift(before: State, after: State, dissipated: float) -> float:
+    """Relative to the kinetic energy, and to what a fall through the container brings."""
+    scale = max(before.kinetic_energy, after.kinetic_energy)
+    if after.gravity is not None:
+        scale += float(after.masses.sum() * (abs(after.gravity) @ after.lengths))
+    return abs(after.energy + dissipated - before.energy) / (scale or 1.0)
+
+
+def momentum_drift(before: State, after: State) -> float:
+    """Relative to the sum of the sizes of all momenta."""
+    scale = float((before.masses * before.speeds).sum())
+    return float(np.abs(after.momentum - before.momentum).max()) / (scale or 1.0)
+
+
+def deepest_overlap(state: State, periodic: tuple[bool, ...]) -> float:
+    """Of any pair, in contact distances, looking at all pairs."""
+    deepest = 0.0
+    for n in range(state.count - 1):
+        apart = state.positions[n + 1 :] - state.positions[n]
+        apart -= np.where(periodic, state.lengths * np.rint(apart / state.lengths), 0.0)
+        sigma = state.radii[n + 1 :] + state.radii[n]
+        deepest = max(deepest, float((1.0 - np.sqrt((apart**2).sum(axis=1)) / sigma).max()))
+    return deepest

@@ -1,0 +1,214 @@
+"""A dense fluid between two hard walls: layers, the contact theorem, and the pressure against the width."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from gaspart import theory
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.statistics import average, correlated_mean, fit_polynomial, mean_of, means_of
+from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.points import grid
+from gaspart.state.random import stream
+from gaspart.trajectory.run import open_trajectory
+
+NEAR = 0.2
+"""Depth, in diameters, of the layer from which the density at contact is extrapolated, by a cubic."""
+_BINS, _BLOCKS = 20, 16
+
+
+@dataclass(frozen=True)
+class Slit:
+    """One run between walls at z = 0 and z = H, reduced by the diameter and k_B T.
+
+    pressure: (samples,) from the momentum given to both walls in each interval; heights: (samples, N) of
+    centres above the contact plane of the nearer wall; width H; area of one wall; positions: (samples, N,
+    3) and sides (3,).
+    """
+
+    pressure: np.ndarray
+    heights: np.ndarray
+    width: float
+    area: float
+    positions: np.ndarray
+    sides: np.ndarray
+
+
+def thin_film(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Profiles and pressures of slits of several widths, whose numbers of spheres are those of one chemical
+    potential.
+
+    settings: bulk_packing_fraction of the fluid with which all slits are (nearly) in equilibrium;
+    insertions, the number of Widom's trial insertions for each width; theory_widths [first, last, number]
+    of the curve.
+
+    Returns over `width` (surface to surface, in diameters): pressure, contact (rho(0), k_B T = 1), each
+    with _error; truncation, the cubic's error for the density functional's contact value;
+    chemical_potential with _error; at_bulk, the pressure at exactly the bulk's chemical potential, to first
+    order, with _error; functional_pressure; count. Over `bin`: place, density, density_error of the widest
+    slit, and functional, at these places. Of the widest slit: middle, the density in the middle two
+    diameters, with _error. Over `theory_width`: curve. Attributes: bulk_density, bulk_pressure,
+    bulk_chemical_potential; period, period_error of the damped oscillation.
+    """
+    points = sorted(points, key=lambda point: grid.extents(point)[2][2])
+    bulk = theory.number_density(settings["bulk_packing_fraction"], 3)
+    potential = math.log(bulk) + float(theory.excess_chemical_potential(settings["bulk_packing_fraction"], 3))
+    rows, truncation, functional, widths = [], [], [], []
+    for point in points:
+        slits = [read_slit(point, path) for path in point.replica_paths]
+        widths.append(slits[0].width)
+        place, density = theory.white_bear_slit(bulk, slits[0].width)
+        functional.append(density[0])
+        rows.append(_estimates(slits, settings["insertions"] // len(slits), point))
+        truncation.append(_truncation(place, density) * rows[-1]["contact"])
+    dataset = from_rows("width", rows).assign_coords(width=widths)
+    # The chemical potentials differ slightly from the bulk's.
+    lacking, response = potential - dataset["chemical_potential"], _responses(bulk, widths)
+    dataset["at_bulk"] = dataset["pressure"] + response * lacking
+    uncertain = response * dataset["chemical_potential_error"]
+    dataset["at_bulk_error"] = np.hypot(dataset["pressure_error"], uncertain)
+    dataset["truncation"], dataset["functional_pressure"] = ("width", truncation), ("width", functional)
+    dataset["count"] = "width", [grid.extents(point)[0] for point in points]
+    first, last, number = settings["theory_widths"]
+    curve = np.linspace(first, last, int(number))
+    dataset["curve"] = "theory_width", np.array([theory.white_bear_slit(bulk, w, 0.02)[1][0] for w in curve])
+    dataset = dataset.assign_coords(theory_width=curve).merge(_profile(slits, place, density))
+    dataset.attrs |= {
+        "bulk_density": bulk,
+        "bulk_pressure": bulk * float(theory.compressibility_factor(settings["bulk_packing_fraction"], 3)),
+        "bulk_chemical_potential": potential,
+        "functional_bulk_pressure": theory.white_bear_pressure(bulk),
+    }
+    excess = dataset["at_bulk"] - dataset.attrs["bulk_pressure"]
+    dataset.attrs["period"], dataset.attrs["period_error"] = _period(dataset, excess)
+    excess = dataset["functional_pressure"] - dataset.attrs["functional_bulk_pressure"]
+    dataset.attrs["functional_period"], _ = _period(dataset, excess)
+    return dataset
+
+
+def _responses(bulk: float, widths: list[float]) -> np.ndarray:
+    """dP/dmu of slits of fixed widths, by the density functional; that of a bulk, rho (Gibbs and Duhem),
+    holds for the widest only."""
+    densities = bulk * np.array([0.99, 1.01])
+    eta = theory.packing_fraction(densities, 3)
+    potentials = np.log(densities) + theory.excess_chemical_potential(eta, 3)
+    pressures = [[theory.white_bear_slit(rho, w, 0.02)[1][0] for rho in densities] for w in widths]
+    return np.diff(pressures, axis=1)[:, 0] / np.diff(potentials)
+
+
+def _estimates(slits: list[Slit], insertions: int, point: grid.Point) -> dict[str, float]:
+    """Pressure, density at contact and chemical potential: means over the replicas."""
+    potentials = [_widom(slit, insertions, point.seed(k)) for k, slit in enumerate(slits)]
+    return entries({
+        "pressure": average([correlated_mean(slit.pressure).estimate for slit in slits]),
+        "contact": average([_contact(slit) for slit in slits]),
+        "chemical_potential": average(potentials),
+    })  # fmt: skip
+
+
+def _truncation(place: np.ndarray, density: np.ndarray) -> float:
+    """Relative error of the extrapolation by a cubic, for the density functional's profile (B,)."""
+    near = place <= NEAR
+    cubic = fit_polynomial(place[near], density[near], powers=range(4)).values[0]
+    return abs(cubic / density[0] - 1.0)
+
+
+def read_slit(point: grid.Point, path: str) -> Slit:
+    """A trajectory of spheres between walls across the third axis. Raises OSError for a file that cannot be
+    read."""
+    schedule, (count, radius, lengths) = grid.schedule(point), grid.extents(point)
+    first, mass, diameter = schedule.equilibration_frames, point.settings.get("mass", 1.0), 2.0 * radius
+    with open_trajectory(path) as trajectory:
+        # Momentum along the walls is conserved: the temperature is that of the motion about it.
+        drift = trajectory["velocities"][0].values.astype(float).mean(axis=0)[:2]
+        energy = float(trajectory["kinetic_energy"][first:].mean()) - 0.5 * mass * count * (drift @ drift)
+        impulse = np.diff(trajectory["wall_impulse"][first:].values, axis=0)[:, 4:6].sum(axis=1)
+        positions = trajectory["coordinates"][first + 1 :].values.astype(float) / diameter
+    temperature = 2.0 * energy / (3 * count - 2)
+    sides = np.array(lengths) / diameter
+    area = sides[0] * sides[1]
+    force = impulse / (2.0 * schedule.sample_interval)
+    height = np.minimum(positions[..., 2], sides[2] - positions[..., 2]) - 0.5
+    return Slit(
+        force * diameter / (temperature * area), height, float(sides[2]), float(area), positions, sides
+    )
+
+
+def _contact(slit: Slit) -> Estimate:
+    """Density extrapolated to the contact plane, with the scatter of blocks of frames as its error."""
+    edges = np.linspace(0.0, NEAR, _BINS + 1)
+    blocks = []
+    for frames in np.array_split(slit.heights, _BLOCKS):
+        counts = np.histogram(frames, edges)[0] / (len(frames) * 2.0 * slit.area * edges[1])
+        blocks.append(fit_polynomial(edges[:-1] + 0.5 * edges[1], counts, powers=range(4)).values[0])
+    return mean_of(blocks)
+
+
+def _widom(slit: Slit, insertions: int, seed: int | tuple[int, ...]) -> Estimate:
+    """mu / k_B T = ln[(N + 1) / (V p)], p the chance that a further sphere fits (Widom, J. Chem. Phys. 39,
+    2808 (1963)).
+
+    V is the volume accessible to centres; lengths in diameters, no thermal wavelength.
+    """
+    from scipy.spatial import cKDTree
+
+    frames = slit.positions[:: max(1, len(slit.positions) // 64)]
+    per_frame = insertions // len(frames)
+    rng, chances = stream(seed, 7), []
+    periodic = np.array([slit.sides[0], slit.sides[1], 0.0])
+    for positions in frames:
+        inside = positions.copy()
+        inside[:, :2] %= periodic[:2]
+        trials = rng.random((per_frame, 3)) * (slit.sides - [0.0, 0.0, 1.0]) + [0.0, 0.0, 0.5]
+        nearest = cKDTree(inside, boxsize=periodic).query(trials, distance_upper_bound=1.0)[0]
+        chances.append(np.isinf(nearest).mean())
+    chance = mean_of(chances)
+    volume = slit.area * (slit.width - 1.0)
+    if chance.value == 0.0:
+        return Estimate(math.nan, math.inf)
+    potential = math.log((slit.positions.shape[1] + 1) / (volume * chance.value))
+    return Estimate(potential, chance.error / chance.value, chance.freedom)
+
+
+def _profile(slits: list[Slit], place: np.ndarray, functional: np.ndarray) -> xr.Dataset:
+    """Density above the nearer wall of the widest slit, to its middle, and its mean around the middle."""
+    edges = np.linspace(0.0, 0.5 * (slits[0].width - 1.0), 4 * _BINS * round(slits[0].width / 4.0) + 1)
+    blocks, middle = [], []
+    for slit in slits:
+        for frames in np.array_split(slit.heights, _BLOCKS):
+            counts = np.histogram(frames, edges)[0]
+            blocks.append(counts / (len(frames) * 2.0 * slit.area * edges[1]))
+            inner = frames > edges[-1] - 1.0
+            middle.append(inner.sum() / (len(frames) * 2.0 * slit.area))
+    density, error = means_of(blocks)
+    centre = edges[:-1] + 0.5 * edges[1]
+    return xr.Dataset(
+        {
+            "place": ("bin", centre),
+            "density": ("bin", density),
+            "density_error": ("bin", error),
+            "functional": ("bin", np.interp(centre, place, functional)),
+            **entries({"middle": mean_of(middle)}),
+        }
+    )
+
+
+def _period(dataset: xr.Dataset, excess: xr.DataArray) -> tuple[float, float]:
+    """Of a damped oscillation fitted to the excess of the pressure over the bulk's against the width, with
+    the errors of the measured one; NaN through fewer than six widths."""
+    from scipy.optimize import curve_fit
+
+    if dataset.sizes["width"] < 6:
+        return math.nan, math.nan
+
+    def wave(width: np.ndarray, amplitude: float, decay: float, period: float, phase: float) -> np.ndarray:
+        return amplitude * np.exp(-(width - 2.0) / decay) * np.cos(2.0 * np.pi * (width - phase) / period)
+
+    start, error = (1.5, 1.0, 1.0, 2.0), dataset["at_bulk_error"].values
+    seen = dataset["width"].values, excess.values
+    values, covariance = curve_fit(wave, *seen, start, error, absolute_sigma=True)
+    return float(values[2]), float(np.sqrt(covariance[2, 2]))

@@ -1,0 +1,238 @@
+"""Rough and inelastic gases: how rotation and translation share energy, Haff's cooling, clusters.
+
+Time is measured in collisions per particle, s = 2 N_coll / N. Temperatures are per degree of freedom, T_tr =
+m <v^2> / d about the centre of mass (N - 1 particles count), T_rot = I <w^2>, in units of T_tr at the start
+of the run.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from gaspart import theory
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.statistics import average, bootstrap, correlated_mean, fit_polynomial, mean_of, means_of
+from gaspart.errors import SceneError
+from gaspart.reproduction.families.granular.runs import inertia, law, read_runs
+from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.points import grid
+from gaspart.scene.scene import Scene
+from gaspart.trajectory.run import open_trajectory
+
+RELAXED = 3.0
+"""Collisions per particle after which an inelastic gas has relaxed from Maxwell's distribution to its own."""
+
+MIXING, MIXED = 0.5, 1.6
+"""Times t sqrt(k_B T / m) / h between rough walls at a distance h, up to which energy passes into spins at a
+rate that depends on the moment of inertia, and from which on the difference is below 1 %."""
+
+
+def equipartition(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """How the energies of rough discs become equal, that they do, and what they do when contacts dissipate.
+
+    Points whose container has walls are particles that meet only these. Of the others those whose tangential
+    restitution is below 1 are cooling, and the rest in equilibrium if they have an equilibration; without,
+    they start without spins. settings: `steady_from`, see `_cooling`.
+
+    Returns, over `start` and `frame`: collisions, translation, rotation, with errors; over `start`: inertia q
+    = I / (m R^2), rate and its error, of T_tr - T_rot's decay per collision of a particle at the start. Over
+    `equilibrium`: equilibrium_inertia, equilibrium_ratio T_rot / T_tr and its error. Over `cooling` and
+    `step`: cooling_collisions, cooling_ratio; over `cooling`: tangential, cooling_inertia, steady_ratio and
+    its error. Over `walls` and `moment`: wall_time, wall_translation, wall_rotation, with errors; over
+    `walls`: wall_dimension, wall_inertia, exchange and wall_ratio (see `_walls`) and their errors.
+    """
+    between = [point for point in points if not all(grid.scene(point).container.periodic)]
+    points = [point for point in points if point not in between]
+    rough = [point for point in points if law(point).tangential == 1.0]
+    still = [point for point in rough if grid.schedule(point).equilibration_frames]
+    cooled = [_cooling(point, settings["steady_from"]) for point in points if point not in rough]
+    return xr.merge([
+        from_rows("start", [_start(point) for point in rough if point not in still], ("frame",), units={}),
+        from_rows("equilibrium", [_equilibrium(point) for point in still], units={}),
+        from_rows("cooling", cooled, ("step",), units={}),
+        from_rows("walls", [_walls(point) for point in between], ("moment",), units={}),
+    ])  # fmt: skip
+
+
+def _start(point: grid.Point) -> dict:
+    runs = read_runs(point)
+    samples = np.stack([[run.collisions, run.translation, run.rotation] for run in runs])
+    rate = bootstrap(lambda chosen: _initial_decay(*chosen.mean(axis=0)), samples, repeats=200)
+    temperatures = {
+        "translation": means_of([run.translation for run in runs]),
+        "rotation": means_of([run.rotation for run in runs]),
+    }
+    return {
+        "collisions": samples[:, 0].mean(axis=0),
+        "inertia": inertia(point),
+        **entries(temperatures),
+        **entries({"rate": rate}),
+    }
+
+
+def _initial_decay(collisions: np.ndarray, translation: np.ndarray, rotation: np.ndarray) -> float:
+    """- d ln (T_tr - T_rot) / ds at s = 0, of a parabola in s from there down to a fifth of the difference,
+    whose noise is much the same at all s."""
+    difference = translation - rotation
+    used = (difference > 0.2) & (collisions > 0.0)
+    logarithm = -np.log(difference[used])
+    return float(fit_polynomial(collisions[used], logarithm, 1.0 / difference[used], powers=(1, 2)).values[0])
+
+
+def _equilibrium(point: grid.Point) -> dict:
+    """T_rot / T_tr of the mean energies, of a run of conserved energy. Blocks: frames may be correlated."""
+    runs = read_runs(point)
+    mean = average([correlated_mean(run.rotation).estimate for run in runs])
+    translation = float(np.mean([run.translation.mean() for run in runs]))
+    ratio = mean.value / translation
+    # The energy is conserved, 2 (N-1) T_tr + N T_rot: what one has more the other has less.
+    error = mean.error / mean.value * ratio * (1.0 + 0.5 * ratio)
+    return {
+        "equilibrium_inertia": inertia(point),
+        **entries({"equilibrium_ratio": Estimate(ratio, error, mean.freedom)}),
+    }
+
+
+def _cooling(point: grid.Point, steady_from: float) -> dict:
+    """The ratio of the mean temperatures of all replicas, frame by frame, and its mean over the frames later
+    than `steady_from` collisions per particle."""
+    runs = read_runs(point)
+    collisions = np.mean([run.collisions for run in runs], axis=0)
+    late = collisions > steady_from
+    # Later frames are colder: each counts by its own temperature.
+    weights = 1.0 / np.mean([run.translation for run in runs], axis=0)[late]
+    samples = np.stack([[run.rotation[late] * weights, run.translation[late] * weights] for run in runs])
+    steady = bootstrap(lambda chosen: np.divide(*chosen.mean(axis=(0, 2))), samples, repeats=200)
+    rotation = np.mean([run.rotation for run in runs], axis=0)
+    return {
+        "tangential": law(point).tangential,
+        "cooling_inertia": inertia(point),
+        "cooling_collisions": collisions,
+        "cooling_ratio": rotation / np.mean([run.translation for run in runs], axis=0),
+        **entries({"steady_ratio": steady}),
+    }
+
+
+def _walls(point: grid.Point) -> dict:
+    """Of particles between two rough walls, over T_par at the start: T_par = m <v^2> of each direction along
+    the walls, and T_rot = I <w^2> of each spin that a hit changes, which are as many.
+
+    `exchange`: T_rot over theory's, by least squares until MIXING; `wall_ratio`: T_rot / T_par after MIXED,
+    over theory's. wall_time: t sqrt(k_B T / m) / h.
+    """
+    scene = grid.scene(point)
+    kind, along = scene.species[0], np.array(scene.container.periodic)
+    if kind.temperature is None:
+        raise SceneError(
+            f"experiments.{point.experiment}.scene", None, "must state the particles' temperature"
+        )
+    (gap,) = np.array(scene.container.lengths)[~along] - 2.0 * kind.radius
+    samples = []
+    for path in point.replica_paths:
+        with open_trajectory(path) as trajectory:
+            squares = (trajectory["velocities"].values.astype(float) ** 2).sum(axis=1)
+            rotation = 2.0 * trajectory["kinetic_energy"].values - kind.mass * squares.sum(axis=1)
+            time = trajectory["time"].values * np.sqrt(kind.temperature / kind.mass) / gap
+        translation = kind.mass * squares[:, along].sum(axis=1)
+        samples.append(np.stack([translation, rotation]) / translation[0])
+    expected = 0.5 * (1.0 - theory.rough_wall_difference(time, inertia(point)))
+    early, late = time <= MIXING, time >= MIXED
+    weights = expected[early] / (expected[early] @ expected[early])
+    ratio = expected[late].sum() / (1.0 - expected[late]).sum()
+    estimates = {
+        "exchange": bootstrap(lambda chosen: weights @ chosen.mean(axis=0)[1, early], np.array(samples)),
+        "wall_ratio": bootstrap(
+            lambda chosen: np.divide(*chosen[:, ::-1, late].mean(axis=(0, 2))) / ratio, np.array(samples)
+        ),
+    }
+    mean, error = means_of(samples)
+    temperatures = {"wall_translation": (mean[0], error[0]), "wall_rotation": (mean[1], error[1])}
+    return {
+        "wall_dimension": scene.dimension,
+        "wall_inertia": inertia(point),
+        "wall_time": time,
+        **entries(temperatures),
+        **entries(estimates),
+    }
+
+
+def cooling(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Haff's law in dilute inelastic gases, and how a dense and large one leaves it.
+
+    settings: `clustering`, the experiments of the latter; `cells_per_side`, into which its container is cut.
+
+    Returns, over `gas` and `frame`: collisions, time (over Haff's t_H), temperature and its error; over
+    `gas`: dimension, restitution, rate and its error (-d ln T / ds, per replica between `RELAXED` and the
+    end), exponent and its error (of T against 1 + t / t_H). Over `clusters` and `step`: cluster_collisions;
+    cluster_excess, T over exp(-rate s) of theory, and its error; variance, of the number of particles in a
+    cell over its mean, and its error; over `clusters`: cluster_restitution. Over `body`: x, y, at the end of
+    one run of the least restitution; attrs side, radius.
+    """
+    apart = [point for point in points if point.experiment in settings["clustering"]]
+    gases = from_rows("gas", [_gas(point) for point in points if point not in apart], ("frame",), units={})
+    cells = settings["cells_per_side"]
+    clusters = from_rows("clusters", [_clusters(point, cells) for point in apart], ("step",), units={})
+    shown = min(apart, key=lambda point: law(point).normal)
+    return xr.merge([gases, clusters, _picture(shown)], combine_attrs="drop_conflicts")
+
+
+def _gas(point: grid.Point) -> dict:
+    scene, runs = grid.scene(point), read_runs(point)
+    restitution, dimension, kind = law(point).normal, scene.dimension, scene.species[0]
+    rates, exponents, times = [], [], []
+    for run in runs:
+        frequency = theory.collision_rate(
+            scene.packing_fraction, dimension, 2.0 * kind.radius, run.start, kind.mass
+        )
+        times.append(run.time / theory.haff_time(restitution, dimension, float(frequency)))
+        late = np.flatnonzero(run.collisions >= RELAXED)
+        first, logarithm = late[0], np.log(run.translation)
+        rates.append((logarithm[first] - logarithm[-1]) / (run.collisions[-1] - run.collisions[first]))
+        exponents.append(np.polyfit(np.log1p(times[-1][late]), logarithm[late], 1)[0])
+    return {
+        "dimension": dimension,
+        "count": scene.count,
+        "restitution": restitution,
+        "collisions": np.mean([run.collisions for run in runs], axis=0),
+        "time": np.mean(times, axis=0),
+        **entries({"temperature": means_of([run.translation for run in runs])}),
+        **entries({"rate": mean_of(rates), "exponent": mean_of(exponents)}),
+    }
+
+
+def _clusters(point: grid.Point, cells: int) -> dict:
+    scene, runs = grid.scene(point), read_runs(point)
+    collisions = np.mean([run.collisions for run in runs], axis=0)
+    restitution = law(point).normal
+    rate = theory.cooling_rate(restitution, scene.dimension)
+    # Of logarithms: after so many collisions replicas differ by factors.
+    excess, relative = means_of([np.log(run.translation) + rate * run.collisions for run in runs])
+    variances = [_number_variance(path, scene, cells) for path in point.replica_paths]
+    return {
+        "cluster_restitution": restitution,
+        "cluster_collisions": collisions,
+        **entries({"cluster_excess": (np.exp(excess), np.exp(excess) * relative)}),
+        **entries({"variance": means_of(variances)}),
+    }
+
+
+def _number_variance(path: str, scene: Scene, cells: int) -> np.ndarray:
+    """(T,) variance of the number of particles in a cell, over its mean: 1 for independent particles."""
+    with open_trajectory(path) as trajectory:
+        positions = trajectory["coordinates"].values.astype(float)
+    # Single precision may put a particle that is about to leave on the boundary itself.
+    place = np.minimum((positions / scene.container.lengths * cells).astype(int), cells - 1)
+    cell = place @ cells ** np.arange(place.shape[2])
+    counts = np.stack([np.bincount(frame, minlength=cells ** place.shape[2]) for frame in cell])
+    return counts.var(axis=1) / counts.mean(axis=1)
+
+
+def _picture(point: grid.Point) -> xr.Dataset:
+    with open_trajectory(point.replica_path(0)) as trajectory:
+        positions = trajectory["coordinates"][-1].values
+    units = {"units": "scene length"}
+    return xr.Dataset(
+        {"x": ("body", positions[:, 0], units), "y": ("body", positions[:, 1], units)},
+        attrs={"side": grid.scene(point).container.lengths[0], "radius": grid.scene(point).largest_radius},
+    )

@@ -1,0 +1,259 @@
+"""Claims about gases under gravity."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from gaspart.reproduction.claims import Claim, Estimate
+from gaspart.reproduction.families.shared.claims import is_source, rows
+from gaspart.theory.gravity import ideal_heat_capacity
+
+HYDROSTATICS = "hydrostatics dP/dz = -m g rho"
+REFERENCE = "virial series to B10 with a linear tail (Clisby and McCoy 2006)"
+EXCHANGE = "exchange of two discs of one size costs (M - m) g dz (exact at any density)"
+C = "notebooks of source C's code (tms-ninja/billiards)"
+DILUTE = 0.01
+"""Packing fraction up to which a column counts as an ideal gas."""
+
+
+def barometric(ds: xr.Dataset) -> list[Claim]:
+    """The barometric formula, the equation of state from the weight of the column, and one temperature."""
+    claims = []
+    for row in rows(ds, "point"):
+        if _is_source(row):
+            claims += _source_column(row)
+            continue
+        at, discs = _at(row), row.isel(species=0)
+        if str(row["experiment"].values).endswith("_large"):
+            # Heat takes as long to cross it as a stretch lasts: only what is local is independent in each.
+            claims += [_balance(row, at), *_pressures(row, at)]
+            continue
+        claims += [
+            _slope(discs, "discs", at, 0.005 if _dilute(row) else 0.01),
+            Claim(
+                claim=f"temperature against height, d ln T / dz over -1/(scale height), {at}",
+                measured=-Estimate.of(row, "temperature_gradient"),
+                expected=0.5 / float(row["count"]),
+                required=0.005,
+                source="an isothermal column (Maxwell 1867); at fixed energy 1/C_V more, 2Nk in a high one",
+                fails_if="a column that is warmer at one end: not in equilibrium, or an engine that heats",
+            ),
+            _balance(row, at),
+        ]
+        claims += [_mean_height(discs, "discs", at)] if _dilute(row) else _pressures(row, at)
+    return claims
+
+
+def separation(ds: xr.Dataset) -> list[Claim]:
+    """Each species has its own scale height in a dilute gas; their ratio is exponential at any density."""
+    claims = []
+    for row in rows(ds, "point"):
+        at = _at(row)
+        claims += [_species_temperature(row, at), _balance(row, at)]
+        if _is_source(row):
+            claims += _source_mixture(row)
+            continue
+        claims.append(
+            Claim(
+                claim=f"slope of ln(heavy/light) over -(M - m) g / kT, {at}",
+                measured=Estimate.of(row, "exchange_ratio"),
+                expected=1.0,
+                required=0.01 if _dilute(row) else 0.02,
+                source=EXCHANGE,
+                fails_if="species that do not separate according to their weights, or runs too short for it",
+            )
+        )
+        if _dilute(row):
+            species = list(zip(rows(row, "species"), ("light", "heavy"), strict=True))
+            claims += [_slope(one, name, at, 0.005) for one, name in species]
+            claims += [_mean_height(one, name, at) for one, name in species]
+        else:
+            claims += _pressures(row, at)
+    return claims
+
+
+def _source_column(row: xr.Dataset) -> list[Claim]:
+    """Source C's column where it samples it: the same state, and not yet in equilibrium."""
+    return [
+        _collisions(row),
+        Claim.within(
+            claim="temperature of the source's column over the source's, in its sample",
+            kind="reproduction",
+            measured=Estimate.of(row, "temperature") / row.attrs["source_temperature"],
+            expected=1.0,
+            half_width=0.02,
+            source=f"{C}, gravity: {row.attrs['source_temperature']:g}, fitted to ten bins of speeds, of a "
+            "sample that is shorter than a period of the oscillation",
+            fails_if="a column that falls, bounces or heats up otherwise",
+        ),
+        Claim.at_most(
+            claim="amplitude of the oscillation of the temperature in the source's sample, in per cent",
+            kind="reproduction",
+            measured=Estimate.of(row, "ringing") * 100.0,
+            bound=1.0,
+            required=0.3,
+            source=f"{C}, gravity: takes the column to be in equilibrium after its collisions",
+            why="the oscillation after the fall decays as slowly as sound does over 200 diameters",
+            fails_if="a column that still rings more than the accuracy of the other claims",
+        ),
+        _balance(row, _at(row)),
+    ]
+
+
+def _source_mixture(row: xr.Dataset) -> list[Claim]:
+    """Source C's mixture at the end of its run: as far separated as the source's, and not in equilibrium."""
+    reported = np.array(row.attrs["source_shares"])
+    measured, error = row["share"].values, row["share_error"].values
+    return [
+        _collisions(row),
+        Claim.joint(
+            claim="share of light discs in ten layers, over the source's",
+            kind="reproduction",
+            deviations=(measured - reported) / (np.sqrt(2.0) * error),
+            source=f"{C}, separation, last picture: as many discs in a layer, so the error is as large",
+            fails_if="discs that diffuse through each other, or fall, faster or more slowly",
+        ),
+        Claim.at_most(
+            claim="slope of ln(heavy/light) over -(M - m) g / kT, the source's mixture at the end of its run",
+            kind="reproduction",
+            measured=Estimate.of(row, "exchange_ratio"),
+            bound=0.9,
+            required=0.05,
+            source=f"{EXCHANGE}; {C}, separation, does not state that its run has arrived there",
+            fails_if="a mixture that separates within the source's collisions",
+        ),
+    ]
+
+
+def _collisions(row: xr.Dataset) -> Claim:
+    """Of the source's own run until its end; one run, whose collisions are counted."""
+    reported = row.attrs["source_collisions"]
+    count = float(row["collisions"])
+    return Claim.within(
+        claim=f"collisions until the source's {reported:.1e}, over them",
+        kind="reproduction",
+        measured=Estimate(count, np.sqrt(count)) / reported,
+        expected=1.0,
+        half_width=0.01,
+        source=f"{C}: the time at which its run ends; walls count, and its grid is square",
+        fails_if="an engine that misses contacts or makes up others, or another scene than the source's",
+    )
+
+
+def _species_temperature(row: xr.Dataset, at: str) -> Claim:
+    return Claim(
+        claim=f"temperature of the heavy over that of the light discs, {at}",
+        measured=Estimate.of(row.isel(species=-1), "species_temperature_ratio"),
+        expected=1.0,
+        required=0.01,
+        source="equipartition",
+        fails_if="species that do not share their energy",
+    )
+
+
+def _is_source(row: xr.Dataset) -> bool:
+    return is_source(str(row["experiment"].values))
+
+
+def _dilute(row: xr.Dataset) -> bool:
+    return float(row["packing_fraction"].max()) < DILUTE
+
+
+def _at(row: xr.Dataset) -> str:
+    density = "dilute" if _dilute(row) else "dense"
+    whose = "the source's " if _is_source(row) else ""
+    return f"{whose}{density} column of {float(row['count']):g} discs"
+
+
+def _slope(one: xr.Dataset, name: str, at: str, required: float) -> Claim:
+    """Of one species."""
+    return Claim(
+        claim=f"slope of the chemical potential of the {name} over -m g / kT, {at}",
+        measured=Estimate.of(one, "slope_ratio"),
+        expected=1.0,
+        required=required,
+        source="ln rho + mu_excess(rho) + m g z / kT is uniform in equilibrium; in a dilute gas ln rho alone",
+        fails_if="a density that does not decay exponentially with its own scale height",
+    )
+
+
+def _mean_height(one: xr.Dataset, name: str, at: str) -> Claim:
+    """Of one species."""
+    return Claim(
+        claim=f"mean height of the {name} over the ideal gas's, {at}",
+        measured=Estimate.of(one, "mean_height_ratio"),
+        expected=1.0 + float(one["packing_fraction"].max()),
+        required=0.01,
+        source="<z> = kT/mg - H/(exp(mgH/kT) - 1); B2 raises it by the packing fraction at the floor (first "
+        "order, high column)",
+        fails_if="a gas that does not fill its container according to Boltzmann's factor",
+    )
+
+
+def _pressures(row: xr.Dataset, at: str) -> list[Claim]:
+    return [
+        Claim(
+            claim="pressure that carries the weight above over rho kT Z(eta), "
+            f"eta from {low:g} to {high:g}, {at}",
+            measured=Estimate.of(part, "range_ratio"),
+            expected=1.0,
+            required=0.01,
+            source=f"{HYDROSTATICS}, Z of the {REFERENCE}",
+            fails_if="a density profile that is not the equation of state's",
+        )
+        for part in rows(row, "range")
+        if np.isfinite(part["range_ratio"])
+        for low, high in [(float(part["range_low"]), float(part["range_high"]))]
+    ]
+
+
+def _balance(row: xr.Dataset, at: str) -> Claim:
+    return Claim.at_most(
+        claim=f"(floor - ceiling - weight - gain of momentum) over the weight, {at}",
+        kind="identity",
+        measured=Estimate(row["imbalance"], 1e-9),
+        bound=1e-8,
+        required=1e-8,
+        source="balance of momentum (exact)",
+        fails_if="impulses on floor and ceiling that are not those of the particles",
+    )
+
+
+def heat_capacity(ds: xr.Dataset) -> list[Claim]:
+    """Heat capacity from neighbouring energies and from fluctuations."""
+    claims = []
+    for row in rows(ds, "pair"):
+        x = abs(float(row["x"]))
+        kind, at = "test" if x else "identity", f"gravity {float(row['gravity']):g}"
+        ideal = f"d/2 + 1 - x^2 e^x/(e^x - 1)^2 = {float(ideal_heat_capacity(x, 2)):.4f}"
+        finite = f"{ideal}, here for {ds.attrs['count']} particles at the runs' energies"
+        claims.append(
+            Claim(
+                claim=f"heat capacity C_V/Nk as dE/dT, {at}",
+                kind=kind,
+                measured=_rounded(row, "slope"),
+                expected=row["slope_expected"],
+                required=0.02,
+                source=finite,
+                fails_if="an energy that is not distributed over height and motion by Boltzmann's factor",
+            )
+        )
+        for number, run in enumerate(rows(row, "run"), start=1):
+            claims.append(
+                Claim(
+                    claim=f"heat capacity C_V/Nk from fluctuations, {at}, run {number}",
+                    kind=kind,
+                    measured=_rounded(run, "fluctuation"),
+                    expected=run["fluctuation_expected"],
+                    required=0.03,
+                    source=f"Lebowitz, Percus and Verlet (1967); {finite}",
+                    fails_if="fluctuations that are not the microcanonical ones: not ergodic, or energy lost",
+                )
+            )
+    return claims
+
+
+def _rounded(row: xr.Dataset, name: str) -> Estimate:
+    """An estimate whose error is at least that of rounding: without gravity it is exact."""
+    return Estimate.of(row, name) + Estimate(0.0, 1e-9)

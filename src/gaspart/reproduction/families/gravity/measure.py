@@ -1,0 +1,315 @@
+"""Gases under gravity: profiles of one and of two kinds of discs, and the heat capacity.
+
+Every run is cut into stretches of time, `blocks` of a replica; the stretches of all replicas are taken as
+independent, and errors are the jackknife's over them. The temperature is always that of the kinetic energy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.statistics import jackknife
+from gaspart.reproduction.families.gravity import source
+from gaspart.reproduction.families.shared.claims import is_source
+from gaspart.reproduction.families.shared.columns import (
+    Field,
+    field,
+    profile,
+    stretches,
+    temperature,
+)
+from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.points import grid
+from gaspart.state.initial import initial_state
+from gaspart.theory.geometry import body_volume
+from gaspart.theory.gravity import (
+    hydrostatic_profiles,
+    ideal_energy_moments,
+    ideal_mean_height,
+    lebowitz_percus_verlet,
+)
+from gaspart.theory.potential import excess_chemical_potential
+from gaspart.theory.state import compressibility_factor
+from gaspart.trajectory.run import open_trajectory
+
+
+def barometric(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Density, temperature and pressure against height of one kind of discs; see `profiles`.
+
+    settings: also `source_collisions` and `source_temperature`, of the source's sample.
+    """
+    made = profiles(points, settings, source.ringing)
+    return made.assign_attrs(
+        source_collisions=settings["source_collisions"], source_temperature=settings["source_temperature"]
+    )
+
+
+def separation(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """The same of heavy and light discs of one size, and the slope of their ratio; see `profiles`.
+
+    settings: also `source_collisions` before the source's sample, and `source_shares` in it, of the light
+    discs in equal layers of the container.
+    """
+    shares = settings["source_shares"]
+    made = profiles(points, settings, lambda point: source.shares(point, len(shares)))
+    return made.assign_attrs(source_collisions=settings["source_collisions"], source_shares=shares)
+
+
+def profiles(points: list[grid.Point], settings: dict, of_source: Callable[[grid.Point], dict]) -> xr.Dataset:
+    """Columns of discs of one size under gravity, point by point.
+
+    settings: `bins` of height; `blocks`, the time blocks of each replica; `clear`, the diameters next to
+    floor and ceiling that are left out of every comparison (layers there are real, and not hydrostatics);
+    `ranges`, pairs of packing fractions between which the equation of state is averaged. of_source: further
+    numbers of a point that is the source's own run.
+
+    Dimensions point, species, bin, range, layer (of the source's shares). `pressure_ratio` is the pressure
+    that carries the weight of what is above over rho T Z(eta) of the reference; `slope_ratio` that of
+    ln eta_i + mu_excess against height over -m_i g / T; `exchange_ratio` that of ln (eta_1 / eta_0) over
+    -(m_1 - m_0) g / T, which for particles of one size is exact at any density: given their places, which of
+    them is heavy has no other energy.
+    """
+    rows = [_column(point, settings) for point in points]
+    for row, point in zip(rows, points, strict=True):
+        if is_source(point.experiment):
+            row |= {"collisions": source.collisions(point)} | of_source(point)
+    by_bin = ("temperature_ratio", "packing_fraction", "compressibility", "pressure_ratio")
+    by_bin += ("height", "used", "log_ratio", "log_ratio_expected")
+    by_species = ("mass", "slope_ratio", "mean_height_ratio", "species_temperature_ratio")
+    axes = {
+        **dict.fromkeys(("density", "hydrostatic"), ("species", "bin")),
+        **dict.fromkeys(by_bin, ("bin",)),
+        **dict.fromkeys(by_species, ("species",)),
+        "range_ratio": ("range",),
+        "share": ("layer",),
+    }
+    low, high = np.array(settings["ranges"], dtype=float).T
+    dataset = from_rows("point", rows, axes).assign_coords(
+        experiment=("point", [point.experiment for point in points]),
+        range_low=("range", low),
+        range_high=("range", high),
+    )
+    return dataset.assign_attrs(clear=settings["clear"])
+
+
+_PARTS = ("", "_error", "_freedom")
+"""Of the names of the variables that are an estimate."""
+
+
+@dataclass(frozen=True)
+class Bins:
+    """The bins of height of one column, and what follows from averages in them.
+
+    place: the column; masses (S,) of its species; height (B,) of the middles, width of each; used (B,), which
+    are clear of floor and ceiling. Arguments of the methods are averages over time: density (S, B); energy
+    (B,), density times temperature; pressure (B,); temperature, of the entire column.
+    """
+
+    place: Field
+    masses: np.ndarray
+    height: np.ndarray
+    width: float
+    used: np.ndarray
+
+    @classmethod
+    def of(cls, place: Field, number: int, clear: float) -> Bins:
+        """`number` bins, of which those within `clear` diameters of floor and ceiling are not used."""
+        width = place.height / number
+        height = (np.arange(number) + 0.5) * width
+        margin = clear * place.diameter + 0.5 * width
+        masses = [place.masses[place.species == n][0] for n in range(int(place.species.max()) + 1)]
+        used = (height > margin) & (height < place.height - margin)
+        return cls(place, np.array(masses), height, width, used)
+
+    def packing_fraction(self, density: np.ndarray) -> np.ndarray:
+        """(B,) of all species."""
+        return density.sum(axis=0) * body_volume(2, self.place.diameter)
+
+    def pressure_ratio(self, density: np.ndarray, pressure: np.ndarray, energy: np.ndarray) -> np.ndarray:
+        """(B,) pressure over that of the reference at this density and temperature."""
+        return pressure / (energy * compressibility_factor(self.packing_fraction(density), 2))
+
+    def slope_ratio(self, density: np.ndarray, temperature: float) -> np.ndarray:
+        """(S,) slopes of ln eta_i + mu_excess(eta) over -m_i g / T."""
+        volume = body_volume(2, self.place.diameter)
+        excess = excess_chemical_potential(self.packing_fraction(density), 2)
+        with np.errstate(divide="ignore"):
+            slopes = [self._slope(np.log(row * volume) + excess, row) for row in density]
+        return -np.array(slopes) * temperature / (self.masses * self.place.strength)
+
+    def log_ratio(self, density: np.ndarray) -> np.ndarray:
+        """(B,) ln of the last over the first species' density."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.log(density[-1] / density[0])
+
+    def exchange_ratio(self, density: np.ndarray, temperature: float) -> float:
+        """Slope of `log_ratio` over -(M - m) g / T; NaN for one species."""
+        if self.masses.size < 2:
+            return np.nan
+        slope = self._slope(self.log_ratio(density), density[0] * density[-1] / density.sum(axis=0))
+        return -slope * temperature / ((self.masses[-1] - self.masses[0]) * self.place.strength)
+
+    def temperature_gradient(self, energy: np.ndarray, density: np.ndarray) -> float:
+        """dT/dz over the mean weight of a particle: d ln T / dz in scale heights."""
+        total = density.sum(axis=0)
+        return self._slope(energy / total, total) / (self.place.weight / len(self.place.masses))
+
+    def mean_height_ratio(self, height: np.ndarray, temperature: float) -> np.ndarray:
+        """(S,) mean heights over those of ideal gases."""
+        return height / ideal_mean_height(self.place.height, self.masses * self.place.strength / temperature)
+
+    def exchange_line(self, value: np.ndarray, error: np.ndarray, temperature: float) -> np.ndarray:
+        """(B,) what `log_ratio` is if its slope is exact, through its weighted mean over the used bins."""
+        line = -(self.masses[-1] - self.masses[0]) * self.place.strength / temperature * self.height
+        known = self.used & np.isfinite(error) & (error > 0.0)
+        if self.masses.size < 2 or not known.any():
+            return line
+        return line + np.average((value - line)[known], weights=1.0 / error[known] ** 2)
+
+    def hydrostatics(self, density: np.ndarray, temperature: float) -> np.ndarray:
+        """(S, B) hydrostatic densities with as many particles of each kind as there are in the used bins."""
+        first, last = np.flatnonzero(self.used)[[0, -1]]
+        z = np.linspace(first, last + 1, 8 * (last - first + 1) + 1) * self.width
+        numbers = density[:, self.used].sum(axis=1) * self.width
+        weights = self.masses * self.place.strength / temperature
+        curves = hydrostatic_profiles(z, numbers, weights, 2, self.place.diameter)
+        shown = np.full(density.shape, np.nan)
+        shown[:, self.used] = [np.interp(self.height[self.used], z, curve) for curve in curves]
+        return shown
+
+    def _slope(self, y: np.ndarray, weight: np.ndarray) -> float:
+        """Of the line through the used bins where something was; variances are as 1 / weight."""
+        seen = self.used & (weight > 0.0)
+        return float(np.polyfit(self.height[seen], y[seen], 1, w=np.sqrt(weight[seen]))[0])
+
+
+def _column(point: grid.Point, settings: dict) -> dict:
+    """The numbers of one point."""
+    place, found = field(point), stretches(point, settings["blocks"])
+    bins = Bins.of(place, settings["bins"], settings["clear"])
+    parts = [profile(place, stretch, settings["bins"]) for stretch in found]
+    density = np.array([part.density for part in parts])
+    pressure = np.array([part.pressure for part in parts])
+    # A block without particles in a bin has no temperature there, and weight 0.
+    energy = np.array([np.nan_to_num(part.temperature) * part.density.sum(axis=0) for part in parts])
+    warm = np.array([temperature(place, stretch) for stretch in found])
+    own = [place.species == n for n in range(bins.masses.size)]
+    heights = np.array([[stretch.heights[:, kind].mean() for kind in own] for stretch in found])
+    kinetic = np.array([[stretch.energies[:, kind].mean() for kind in own] for stretch in found])
+    eta = bins.packing_fraction(density.mean(axis=0))
+    ranges = [bins.used & (eta >= low) & (eta < high) for low, high in settings["ranges"]]
+
+    def range_ratio(*means: np.ndarray) -> np.ndarray:
+        ratio = bins.pressure_ratio(*means)
+        return np.array([ratio[mask].mean() if mask.any() else np.nan for mask in ranges])
+
+    with np.errstate(invalid="ignore", divide="ignore"):  # empty bins
+        made = {
+            "density": jackknife(lambda rho: rho, density),
+            "packing_fraction": jackknife(bins.packing_fraction, density),
+            "temperature": jackknife(lambda t: t, warm),
+            "temperature_ratio": jackknife(lambda e, rho, t: e / rho.sum(axis=0) / t, energy, density, warm),
+            "temperature_gradient": jackknife(bins.temperature_gradient, energy, density),
+            "compressibility": jackknife(lambda e, p: p / e, energy, pressure),
+            "pressure_ratio": jackknife(bins.pressure_ratio, density, pressure, energy),
+            "range_ratio": jackknife(range_ratio, density, pressure, energy),
+            "slope_ratio": jackknife(bins.slope_ratio, density, warm),
+            "exchange_ratio": jackknife(bins.exchange_ratio, density, warm),
+            "log_ratio": jackknife(bins.log_ratio, density),
+            "mean_height_ratio": jackknife(bins.mean_height_ratio, heights, warm),
+            "species_temperature_ratio": jackknife(lambda k: k / k[0], kinetic),
+        }
+    row = entries(made, len(found) - 1)
+    return row | {
+        "height": bins.height,
+        "used": bins.used,
+        "mass": bins.masses,
+        "strength": place.strength,
+        "top": place.height,
+        "count": len(place.masses),
+        "mean_density": len(place.masses) / (place.width * place.height),
+        "hydrostatic": bins.hydrostatics(row["density"], row["temperature"]),
+        "log_ratio_expected": bins.exchange_line(*made["log_ratio"], row["temperature"]),
+        "imbalance": max(abs(s.floor - s.ceiling - place.weight - s.gain) / place.weight for s in found),
+    }
+
+
+def heat_capacity(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Heat capacity of a dilute gas in a box of finite height, in two ways, against x = m g H / (k_B T).
+
+    Points come in pairs of one scene at two energies. From them, C = dE/dT; and from the fluctuations of the
+    kinetic energy in each run, at constant energy, `lebowitz_percus_verlet`. What an ideal gas of as many
+    particles and the same energy gives for both is exact: `..._expected`. settings: `blocks` of each replica.
+
+    Dimensions pair, run (of a pair). Raises ValueError for points that are not such pairs.
+    """
+    if len(points) % 2:
+        raise ValueError(f"points: {len(points)} (must be pairs)")
+    runs = [_energies(point, settings["blocks"]) for point in points]
+    pairs = list(zip(runs[::2], runs[1::2], strict=True))
+    if (
+        any(one["gravity"] != other["gravity"] for one, other in pairs)
+        or len({run["count"] for run in runs}) > 1
+    ):
+        raise ValueError("points: the two of a pair must differ in their energy only")
+    rows = [_pair(*pair) for pair in pairs]
+    return from_rows("pair", rows, ("run",)).assign_attrs(count=runs[0]["count"])
+
+
+def _pair(colder: dict, warmer: dict) -> dict:
+    """The variables of two runs at two energies, and C = dE/dT from both."""
+    row = {
+        name: np.array([colder[name], warmer[name]]) for name in colder if name not in ("count", "gravity")
+    }
+    rise = np.diff(row["energy"])[0] / colder["count"]
+    cold, warm = (Estimate(*(run[f"temperature{part}"] for part in _PARTS)) for run in (colder, warmer))
+    return row | {
+        **entries({"slope": Estimate(rise) / (warm - cold)}),
+        "slope_expected": rise / np.diff(row["temperature_expected"])[0],
+        "x": row["run_x"].mean(),
+        "gravity": colder["gravity"],
+    }
+
+
+def _energies(point: grid.Point, blocks: int) -> dict:
+    """Temperature and fluctuations, measured and expected, of one point of a single replica."""
+    place, scene = field(point), grid.scene(point)
+    if point.replicas != 1 or place.across:
+        raise ValueError(f"{point.path}: must be one run between walls, whose energy is known")
+    start = initial_state(scene, point.seed(0))
+    potential = place.masses @ (start.positions[:, 1] - 0.5 * place.diameter) * place.strength
+    energy, count = start.kinetic_energy + potential, len(place.masses)
+    force = place.weight / count
+    with open_trajectory(point.replica_path(0)) as trajectory:
+        kinetic = trajectory["kinetic_energy"].values[grid.schedule(point).equilibration_frames + 1 :]
+    parts = kinetic[: len(kinetic) // blocks * blocks].reshape(blocks, -1) / count
+
+    shift = parts.mean()  # the squares of the deviations lose no digits where the energy hardly changes
+    fluctuation, spread = jackknife(
+        lambda mean, square: lebowitz_percus_verlet(
+            count * (mean + shift), count**2 * (square - mean**2), count, 2
+        ),
+        (parts - shift).mean(axis=1),
+        ((parts - shift) ** 2).mean(axis=1),
+    )
+    temperature, error = jackknife(lambda mean: mean, parts.mean(axis=1))
+    mean, variance = ideal_energy_moments(float(energy), count, place.height, force, 2)
+    return {
+        "count": count,
+        "gravity": place.strength,
+        "energy": energy,
+        "temperature": float(temperature),
+        "temperature_error": float(error),
+        "temperature_freedom": blocks - 1,
+        "temperature_expected": mean / count,
+        "run_x": force * place.height / float(temperature),
+        "fluctuation": float(fluctuation),
+        "fluctuation_error": float(spread),
+        "fluctuation_freedom": blocks - 1,
+        "fluctuation_expected": lebowitz_percus_verlet(mean, variance, count, 2),
+    }

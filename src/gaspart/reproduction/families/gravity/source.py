@@ -1,0 +1,67 @@
+"""What source C's own runs under gravity show, beside what its notebooks report.
+
+The sample of such a point begins where the collisions of the source end.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import curve_fit
+
+from gaspart.reproduction.families.shared.columns import field, stretches
+from gaspart.reproduction.points import grid
+from gaspart.trajectory.run import open_trajectory
+
+_FALL = 0.3
+"""Part of the time before the sample in which the oscillation is large, and not yet harmonic."""
+
+
+def collisions(point: grid.Point) -> float:
+    """Collisions and hits of walls before the sample, which the source counts alike."""
+    with open_trajectory(point.replica_path(0)) as trajectory:
+        frame = trajectory.isel(frame=grid.schedule(point).equilibration_frames)
+        return float(frame["collisions"] + frame["wall_hits"].sum())
+
+
+def ringing(point: grid.Point) -> dict[str, float]:
+    """Amplitude of the oscillation of the kinetic energy where the sample begins, over its mean.
+
+    Of a fit of mean + e^{-t / decay} (a cos w t + b sin w t) to all frames after the fall, with t from where
+    the sample begins. The error is that of the fit, from the scatter of the frames.
+    """
+    begin = grid.schedule(point).equilibration
+    with open_trajectory(point.replica_path(0)) as trajectory:
+        time, kinetic = trajectory["time"].values, trajectory["kinetic_energy"].values
+    late = time > _FALL * begin
+    time, kinetic = time[late] - begin, kinetic[late] / kinetic[late].mean()
+
+    def model(t: np.ndarray, mean: float, a: float, b: float, w: float, decay: float) -> np.ndarray:
+        return mean + np.exp(-t / decay) * (a * np.cos(w * t) + b * np.sin(w * t))
+
+    frequencies = np.linspace(2.0, 30.0, 600) * np.pi / np.ptp(time)
+    power = np.abs(np.exp(1j * np.outer(frequencies, time)) @ (kinetic - 1.0))
+    start = (1.0, 0.01, 0.01, frequencies[power.argmax()], 0.5 * begin)
+    (_, a, b, _, _), covariance = curve_fit(model, time, kinetic, start)
+    amplitude = float(np.hypot(a, b))
+    direction = np.array([a, b]) / amplitude
+    return {
+        "ringing": amplitude,
+        "ringing_error": float(np.sqrt(direction @ covariance[1:3, 1:3] @ direction)),
+        "ringing_freedom": len(time) - len(start),
+    }
+
+
+def shares(point: grid.Point, layers: int) -> dict[str, np.ndarray]:
+    """Share of the first species in equal layers of the container, (layers,).
+
+    Its error is the binomial one of a single frame: the frames of one sample are close to each other, and so
+    are those of the composition of a layer. The source has one frame.
+    """
+    place, [sample] = field(point), stretches(point, 1)
+    edges = np.linspace(-0.5, 0.5, layers + 1) * (place.height + place.diameter) + 0.5 * place.height
+    first, second = (
+        np.histogram(sample.heights[:, place.species == kind], edges)[0] / len(sample.heights)
+        for kind in (0, 1)
+    )
+    share = first / (first + second)
+    return {"share": share, "share_error": np.sqrt(share * (1.0 - share) / (first + second))}

@@ -1,0 +1,72 @@
+"""How a gas between a hot and a cold wall comes to its steady state, from one temperature everywhere."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gaspart.reproduction.points import grid
+from gaspart.theory.enskog import enskog_conductivity, mean_free_path
+from gaspart.theory.geometry import packing_fraction
+from gaspart.theory.heat import TEMPERATURE_JUMP, Slab, steady_part
+from gaspart.trajectory.run import open_trajectory
+
+FRAMES = 40
+"""First frames of a run that show the approach."""
+HEAT_CAPACITY = 2.5
+"""Of a particle at constant pressure, in a dilute gas of spheres."""
+
+
+NO_APPROACH = dict.fromkeys(
+    ("approach_time", "approach", "approach_error", "expected_approach"), np.full(FRAMES, np.nan)
+)
+"""What `approach` returns, for gases that it does not describe."""
+
+
+def approach(point: grid.Point, slab: Slab) -> dict[str, np.ndarray]:
+    """The temperature of the particles nearer to the hot wall minus that of the others, in the first frames
+    of a gas of spheres of mass 1 whose steady state is `slab`.
+
+    Returns approach_time, approach, approach_error and expected_approach, (FRAMES,) each, with NaN beyond the
+    end of a short run: the mean over replicas; its standard error for Maxwellian velocities, the squares of
+    whose components have the relative variance 2; and that of the heat equation.
+    """
+    scene = grid.scene(point)
+    middle = scene.smallest_radius + 0.5 * slab.position[-1]
+    differences, variances = [], []
+    for path in point.replica_paths:
+        with open_trajectory(path) as trajectory:
+            part = trajectory.isel(frame=slice(FRAMES))
+            time = part["time"].values
+            hot = part["coordinates"].values[:, :, 0] < middle
+            squares = (part["velocities"].values.astype(float) ** 2).mean(axis=2)
+        halves = [np.mean(squares, axis=1, where=side) for side in (hot, ~hot)]
+        numbers = [side.sum(axis=1) for side in (hot, ~hot)]
+        differences.append(halves[0] - halves[1])
+        variances.append(sum(2.0 / 3.0 * one**2 / n for one, n in zip(halves, numbers, strict=True)))
+    density = scene.species[0].count / (slab.position[-1] * np.prod(scene.container.lengths[1:]))
+    found = {
+        "approach_time": time,
+        "approach": np.mean(differences, axis=0),
+        "approach_error": np.sqrt(np.sum(variances, axis=0)) / len(variances),
+        "expected_approach": expected_approach(time, slab, float(density), 2.0 * scene.smallest_radius),
+    }
+    rest = (0, FRAMES - len(time))
+    return {name: np.pad(one.astype(float), rest, constant_values=np.nan) for name, one in found.items()}
+
+
+def expected_approach(time: np.ndarray, slab: Slab, density: float, diameter: float) -> np.ndarray:
+    """The same by the heat equation, which ends at the difference of the steady `slab`, with the conductivity
+    of the mean density and temperature; jumps at the walls lengthen the gap."""
+    hot = slab.position < 0.5 * slab.position[-1]
+    steady = _average(slab, hot) - _average(slab, ~hot)
+    eta = packing_fraction(density, 3, diameter)
+    temperature = 0.5 * (slab.temperature[0] + slab.temperature[-1])
+    conductivity = enskog_conductivity(eta, 3, diameter, temperature)
+    length = slab.position[-1] + 2.0 * TEMPERATURE_JUMP * mean_free_path(eta, 3, diameter)
+    return steady * steady_part(time, float(length), float(conductivity / (HEAT_CAPACITY * density)))
+
+
+def _average(slab: Slab, side: np.ndarray) -> float:
+    """The mean temperature of the particles of one half."""
+    place, number = slab.position[side], slab.density[side]
+    return float(np.trapezoid(number * slab.temperature[side], place) / np.trapezoid(number, place))

@@ -1,0 +1,129 @@
+"""The gap between two thermal walls: its size, and what its particles and walls do, averaged over blocks of
+time.
+
+The walls are the two faces of the first axis, whose positions count from the hot one on, where centres can
+be.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.statistics import steady_mean
+from gaspart.reproduction.points import grid
+from gaspart.scene.faces import thermal_face
+from gaspart.scene.scene import Scene
+from gaspart.trajectory.run import open_trajectory
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Between the walls: length, where centres can be; area of a wall; temperatures of the walls, the hot one
+    is x_low; dimension."""
+
+    length: float
+    area: float
+    hot: float
+    cold: float
+    dimension: int
+
+    @classmethod
+    def of(cls, scene: Scene) -> Gap:
+        """That of a scene whose walls are thermal."""
+        lower, upper = scene.reach(scene.smallest_radius)
+        walls = thermal_face(scene, "x_low").temperature, thermal_face(scene, "x_high").temperature
+        area = float(np.prod(scene.container.lengths[1:]))
+        return cls(upper[0] - lower[0], area, *walls, scene.dimension)
+
+    def bin_of(self, positions: np.ndarray, bins: int) -> np.ndarray:
+        """Which of equal bins across the gap each position lies in."""
+        return np.clip((positions * (bins / self.length)).astype(int), 0, bins - 1)
+
+
+def block_length(time: np.ndarray, blocks: int, path: str) -> int:
+    """The number of frames in each of `blocks` of equal length, after the first frame.
+
+    Raises ValueError if there are too few.
+    """
+    length = (len(time) - 1) // blocks
+    if length < 1:
+        raise ValueError(f"blocks: {blocks} (more than the {len(time) - 1} intervals of {path})")
+    return length
+
+
+def sums(bin_of: np.ndarray, weights: np.ndarray | None, blocks: int, bins: int) -> np.ndarray:
+    """(blocks, bins): the sum of weights (or the number) of particles in each bin, over each block of frames.
+
+    bin_of, weights: (T, N), of T frames in all.
+    """
+    block = np.repeat(np.arange(blocks), len(bin_of) // blocks)[:, None]
+    slot = (bin_of + block * bins).ravel()
+    found = np.bincount(slot, None if weights is None else weights.ravel(), minlength=blocks * bins)
+    return found.reshape(blocks, bins)
+
+
+@dataclass(frozen=True)
+class Averages:
+    """Averages over K time blocks: given (K,) and taken (K,), the fluxes out of the hot and into the cold
+    wall; density (K, B) of particles in bins, energy (K, B) theirs per volume, as a temperature; imbalance,
+    the largest difference between the energy given by the walls and that gained by the particles, over the
+    heat conducted. stored (R, K/R + 1, 2): the particles' energy, and its first moment about the middle, at
+    the ends of the blocks of each replica; heat: conducted in all."""
+
+    given: np.ndarray
+    taken: np.ndarray
+    density: np.ndarray
+    energy: np.ndarray
+    imbalance: float
+    stored: np.ndarray
+    heat: float
+
+    def flux(self, blocks: slice = slice(None)) -> Estimate:
+        """The steady flux, from the mean of both walls in some of the blocks: without what changes the
+        energy of the particles or moves it, which is bounded."""
+        changes = np.diff(self.stored, axis=1).reshape(-1, 2)[blocks]
+        return steady_mean(0.5 * (self.given + self.taken)[blocks], *changes.T)
+
+    def wall_ratio(self) -> Estimate:
+        """Heat into the cold over heat out of the hot wall. They differ by the energy that the particles have
+        gained (exact), in a steady state the difference of independent energies at both ends of a replica."""
+        replicas, ends, _ = self.stored.shape
+        spread = self.stored[:, :, 0].std(axis=1, ddof=1)
+        error = np.sqrt(2.0 * np.sum(spread**2)) / self.heat
+        return Estimate(self.taken.sum() / self.given.sum(), error, replicas * (ends - 1))
+
+
+def averages(point: grid.Point, gap: Gap, blocks: int, bins: int) -> Averages:
+    """Of the measured part of all replicas of particles of mass 1, each cut into `blocks`.
+
+    Raises ValueError for too few frames.
+    """
+    first = grid.schedule(point).equilibration_frames
+    radius = grid.scene(point).smallest_radius
+    heats, densities, energies, missing, stored, conducted = [], [], [], [], [], 0.0
+    for path in point.replica_paths:
+        with open_trajectory(path) as trajectory:
+            part = trajectory.isel(frame=slice(first, None))
+            time, heat, kinetic = (part[name].values for name in ("time", "wall_energy", "kinetic_energy"))
+            places = part["coordinates"].values[:, :, 0]
+            squares = (part["velocities"].values.astype(float) ** 2).sum(axis=2)
+        length = block_length(time, blocks, path)
+        used = length * blocks
+        ends = heat[: used + 1 : length, :2]
+        heats.append(np.diff(ends, axis=0) / np.diff(time[: used + 1 : length])[:, None] / gap.area)
+        through = heat - heat[0]
+        missing.append(abs(through.sum(axis=1) + kinetic - kinetic[0]).max() / abs(through[-1]).max())
+        moment = 0.5 * (squares * (places - radius - 0.5 * gap.length)).sum(axis=1)
+        stored.append(np.stack([kinetic, moment], axis=1)[: used + 1 : length])
+        conducted += abs(ends[-1] - ends[0]).mean()
+        places, squares = places[1:], squares[1:]
+        bin_of = gap.bin_of(places[:used] - radius, bins)
+        volume = length * gap.area * gap.length / bins
+        densities.append(sums(bin_of, None, blocks, bins) / volume)
+        energies.append(sums(bin_of, squares[:used] / gap.dimension, blocks, bins) / volume)
+    given, taken = np.concatenate(heats).T
+    profiles = np.concatenate(densities), np.concatenate(energies)
+    return Averages(-given, taken, *profiles, float(max(missing)), np.array(stored), float(conducted))

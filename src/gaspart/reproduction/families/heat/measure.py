@@ -1,0 +1,219 @@
+"""Heat between two walls, through gases and metals: fluxes, profiles, and what a degree of temperature costs.
+
+Positions are those of `gap`. Runs are cut into stretches of time, whose averages are taken as independent;
+errors are the jackknife's.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from gaspart.analysis.statistics import fit_polynomial, jackknife
+from gaspart.reproduction.families.heat.approach import NO_APPROACH, approach
+from gaspart.reproduction.families.heat.gap import (
+    Gap,
+    averages,
+    block_length,
+    sums,
+)
+from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.points import grid
+from gaspart.scene.faces import thermal_face
+from gaspart.scene.scene import Scene
+from gaspart.state.insertion import per_body
+from gaspart.theory.enskog import mean_free_path
+from gaspart.theory.geometry import packing_fraction
+from gaspart.theory.heat import conducting_slab, dilute_fourier_flux, free_molecular_flux
+from gaspart.trajectory.run import open_trajectory
+
+FLUID = 0.1
+"""Knudsen number up to which a gas is compared with Fourier's law."""
+_PROFILES = ("position", "used", "density", "temperature", "slab_density", "slab_temperature")
+INNER = dict.fromkeys(_PROFILES, ("bin",)) | {name.removesuffix("_error"): ("frame",) for name in NO_APPROACH}
+"""The further dimension of the arrays of `heat_conduction_gas`."""
+
+
+def heat_conduction_gas(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Flux through gases of one kind of particles, and their profiles.
+
+    settings: `bins` across the gap; `blocks` of each replica; `clear`, the mean free paths next to the walls
+    that are left out where profiles are compared with Fourier's law.
+
+    Dimensions point, bin; `_error` and `_freedom`, the degrees of freedom of the error. `flux` is the steady
+    flux through both walls, `wall_ratio` cold over hot, `half_ratio` the second over the first half of the
+    run; `free` and `fourier` theory's fluxes for particles that collide
+    with nothing but walls, and for a gas so dilute that only its conductivity counts. Where the Knudsen
+    number is below FLUID, three dimensions, walls of full accommodation: `slab_flux` of Fourier's law with
+    jumps, its profiles, `profile_ratio` the mean of T over it, and `jump`, the temperature jumps in units of
+    the mean free path times the slope: T^(3/2), a straight line away from the walls, continued to both of
+    them. Of these gases, over `frame`, how they come to the steady state (see `approach`): approach_time,
+    approach, and expected_approach.
+    """
+    return from_rows("point", [_gas(point, settings) for point in points], INNER)
+
+
+def _gas(point: grid.Point, settings: dict) -> dict:
+    """The numbers of one point."""
+    scene = grid.scene(point)
+    gap, diameter = Gap.of(scene), 2.0 * scene.smallest_radius
+    found = averages(point, gap, settings["blocks"], settings["bins"])
+    position = (np.arange(settings["bins"]) + 0.5) * gap.length / settings["bins"]
+    number = scene.species[0].count / (gap.area * gap.length)
+    path = float(mean_free_path(packing_fraction(number, gap.dimension, diameter), gap.dimension, diameter))
+    components = thermal_face(scene, "x_low").components
+    half = len(found.given) // 2
+    estimates = {
+        "flux": found.flux(),
+        "wall_ratio": found.wall_ratio(),
+        "half_ratio": found.flux(slice(half, None)) / found.flux(slice(half)),
+    }
+    profiles = {
+        "density": jackknife(lambda n: n, found.density),
+        "temperature": jackknife(lambda e, n: e / n, found.energy, found.density),
+    }
+    row = {
+        "dimension": gap.dimension,
+        "normal": components == "normal",
+        "number": number,
+        "knudsen": path / gap.length,
+        "length": gap.length,
+        "hot": gap.hot,
+        "cold": gap.cold,
+        "imbalance": found.imbalance,
+        "free": free_molecular_flux(number, gap.hot, gap.cold, gap.dimension, components=components),
+        "full": free_molecular_flux(number, gap.hot, gap.cold, gap.dimension),
+        "fourier": np.nan,
+        "slab_flux": np.nan,
+        "position": position,
+        "slab_temperature": np.full(position.shape, np.nan),
+        "slab_density": np.full(position.shape, np.nan),
+        "used": (position > settings["clear"] * path) & (position < gap.length - settings["clear"] * path),
+    } | NO_APPROACH
+    made = dict.fromkeys(("profile_ratio", "jump"), (np.nan, np.nan))
+    if gap.dimension == 3:
+        row["fourier"] = dilute_fourier_flux(gap.length, gap.hot, gap.cold, diameter)
+    if row["knudsen"] < FLUID and gap.dimension == 3 and components == "all":
+        slab = conducting_slab(gap.length, number, gap.hot, gap.cold, diameter)
+        row |= {"slab_flux": slab.flux, **approach(point, slab)}
+        for name in ("temperature", "density"):
+            row[f"slab_{name}"] = np.interp(position, slab.position, getattr(slab, name))
+        used = row["used"]
+        made["profile_ratio"] = jackknife(
+            lambda e, n: (e / n / row["slab_temperature"])[used].mean(), found.energy, found.density
+        )
+        made["jump"] = jackknife(
+            lambda e, n: _jump(gap, position[used], e[used], n[used], diameter), found.energy, found.density
+        )
+    return row | entries(estimates) | entries(profiles) | entries(made, len(found.given) - 1)
+
+
+def _jump(gap: Gap, position: np.ndarray, energy: np.ndarray, density: np.ndarray, diameter: float) -> float:
+    """Mean over the walls of |T_gas - T_wall| / (l dT/dx), from bins (B,) away from them."""
+    slope, start = np.polyfit(position, (energy / density) ** 1.5, 1)
+    power = start + slope * np.array([0.0, gap.length])
+    gas = power ** (2.0 / 3.0)
+    gradient = -slope / (1.5 * np.sqrt(gas))
+    path = mean_free_path(packing_fraction(energy.mean() / gas, 3, diameter), 3, diameter)
+    return float(np.mean(np.array([gap.hot - gas[0], gas[1] - gap.cold]) / (path * gradient)))
+
+
+def heat_conduction_metal(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Electrons, all particles that move, among fixed vibrating scatterers: profiles between walls of two
+    temperatures, and the specific heat between walls of one.
+
+    settings: `bins` across the gap; `blocks` of a run. Several replicas, which differ in the places of their
+    scatterers if these are random, are one block each: their scatter is the uncertainty. `expected` is the
+    heat capacity N_e d/2 + N_s, `electrons_part` what the electrons have of it.
+
+    Dimensions point, bin: electrons, the temperature of the electrons; modes, the mean energy of a mode; and
+    `share`, the mean over the bins of modes over electrons; `bend`, the second-order coefficient of the
+    electrons' temperature against position; hot, cold, flux, position. Over point
+    too: energy_ratio, E / T over the expected heat capacity, log_fluctuation, the logarithm of var E / T^2
+    over it (both with T of the walls, and NaN between different ones; the variance about the known mean,
+    which has no bias where samples are correlated, and whose logarithm is closer to Gaussian),
+    mode_ratio, the mean energy of all modes over T. `slope` is dE/dT over the expected, from a line
+    through the points in equilibrium, of which there must be two. `regular` are points whose scatterers are
+    given one by one, on a grid, instead of placed at random.
+    """
+    ds = from_rows("point", [_metal(point, settings) for point in points], ("bin",))
+    still = ds.isel(point=np.flatnonzero(ds["hot"] == ds["cold"]))
+    warm, energy = still["hot"].values, (still["energy_ratio"] * still["hot"]).values
+    fit = fit_polynomial(warm, energy, still["energy_ratio_error"].values * warm, powers=(0, 1))
+    return ds.assign(slope=fit.values[1], slope_error=fit.errors[1])
+
+
+def _metal(point: grid.Point, settings: dict) -> dict:
+    """The numbers of one point."""
+    scene = grid.scene(point)
+    gap, fixed = Gap.of(scene), per_body(scene, "fixed").astype(bool)
+    bins, blocks = settings["bins"], settings["blocks"] if point.replicas == 1 else 1
+    capacity = 0.5 * gap.dimension * np.sum(~fixed) + np.sum(fixed)
+    first = grid.schedule(point).equilibration_frames
+    tables, totals, squares, heats, modes = [], [], [], [], []
+    for path in point.replica_paths:
+        with open_trajectory(path) as trajectory:
+            part = trajectory.isel(frame=slice(first, None))
+            time, heat = part["time"].values, part["wall_energy"].values[:, :2]
+            places = part["coordinates"].values[1:, :, 0]
+            speeds = (part["velocities"].values[1:, ~fixed].astype(float) ** 2).sum(axis=2)
+            vibrations = part["vibrations"].values[1:, fixed].astype(float)
+        length = block_length(time, blocks, path)
+        used = length * blocks
+        bin_of = gap.bin_of(places[:used] - scene.smallest_radius, bins)
+        here, there = bin_of[:, ~fixed], bin_of[:, fixed]
+        speeds, vibrations = speeds[:used], vibrations[:used]
+        table = [
+            sums(where, weights, blocks, bins)
+            for where, weights in (
+                (here, None),
+                (here, speeds / gap.dimension),
+                (there, None),
+                (there, vibrations),
+            )
+        ]
+        tables.append(np.stack(table, axis=1))
+        energy = (0.5 * speeds.sum(axis=1) + vibrations.sum(axis=1)).reshape(blocks, length)
+        totals.append(energy.mean(axis=1))
+        squares.append(((energy - capacity * gap.hot) ** 2).mean(axis=1))
+        modes.append(vibrations.mean(axis=1).reshape(blocks, length).mean(axis=1))
+        ends = slice(None, used + 1, length)
+        heats.append(np.diff(heat[ends], axis=0) / np.diff(time[ends])[:, None] / gap.area)
+    bodies, kinetic, scatterers, vibrating = np.moveaxis(np.concatenate(tables), 1, 0)
+    given, taken = np.concatenate(heats).T
+    total, square, mode = (np.concatenate(values) for values in (totals, squares, modes))
+    warm = gap.hot if gap.hot == gap.cold else np.nan
+    made = {
+        "electrons": jackknife(lambda k, n: k / n, kinetic, bodies),
+        "modes": jackknife(lambda v, s: v / s, vibrating, scatterers),
+        "share": jackknife(lambda k, n, v, s: (v / s * n / k).mean(), kinetic, bodies, vibrating, scatterers),
+        "flux": jackknife(lambda out, into: 0.5 * (into - out), given, taken),
+        "bend": jackknife(_bend, kinetic, bodies),
+        "energy_ratio": jackknife(lambda e: e / (capacity * warm), total),
+        "mode_ratio": jackknife(lambda e: e / warm, mode),
+        "log_fluctuation": jackknife(lambda q: np.log(q / (capacity * warm**2)), square),
+    }
+    return entries(made, len(total) - 1) | {
+        "electrons_part": 1.0 - np.sum(fixed) / capacity,
+        "expected": capacity,
+        "gap_over_path": gap.length / _path(scene, gap, fixed),
+        "regular": bool(scene.bodies),
+        "hot": gap.hot,
+        "cold": gap.cold,
+        "position": (np.arange(bins) + 0.5) / bins,
+    }
+
+
+def _path(scene: Scene, gap: Gap, fixed: np.ndarray) -> float:
+    """Mean free path of electrons among discs: pi times the free area over the discs' perimeter (exact)."""
+    contact = per_body(scene, "radius")[fixed] + scene.smallest_radius
+    return float((gap.length * gap.area - np.pi * np.sum(contact**2)) / (2.0 * np.sum(contact)))
+
+
+def _bend(kinetic: np.ndarray, number: np.ndarray) -> float:
+    """Second-order coefficient of the temperature against position over the gap, from sums in bins, without
+    the outermost, where electrons come from a wall directly; NaN for fewer than five bins."""
+    if number.size < 5:
+        return np.nan
+    position = (np.arange(number.size) + 0.5) / number.size
+    return float(np.polyfit(position[1:-1], (kinetic / number)[1:-1], 2)[0])

@@ -1,0 +1,234 @@
+r"""Random sequential insertion: failed attempts per particle, and saturation.
+
+With k particles in the container an attempt succeeds with the probability that a random point is free, the
+available fraction; failures before the next success are geometric. Time is counted in attempts per volume
+of a particle, :math:`t = T v / V` for T attempts. Late insertion fills single small holes, whose sizes are
+uniform down to zero, so :math:`\eta_s - \eta(t) \propto t^{-1/d}` (Feder 1980, Swendsen 1981):
+a straight line in :math:`t^{-1/d}` leads to the saturation :math:`\eta_s`, although no run ever reaches it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from gaspart import theory
+from gaspart.analysis.statistics import fit_polynomial, mean_of
+from gaspart.reproduction.points import grid
+
+SAMPLES = 24
+"""Times, equally spaced in ln t, at which a window's line is fitted."""
+TIMES = 60
+"""Times, equally spaced in ln t, at which the growing packing fraction is kept for the figure."""
+
+
+@dataclass(frozen=True)
+class Fill:
+    """All replicas of one container: `failures` (replica, body) before each particle, -1 for one never
+    placed, and `attempts` (replica,) in all; body: packing fraction of one particle; dimension."""
+
+    failures: np.ndarray
+    attempts: np.ndarray
+    body: float
+    dimension: int
+
+    @property
+    def placed(self) -> np.ndarray:
+        """(replica,) particles placed."""
+        return (self.failures >= 0).sum(axis=1)
+
+    @property
+    def last_time(self) -> float:
+        """The time t that every replica reached."""
+        return float(self.attempts.min()) * self.body
+
+    def packing_fraction(self, times: np.ndarray) -> np.ndarray:
+        """(replica, times): packing fraction at the times t."""
+        attempts = times / self.body
+        placed_at = [np.cumsum(one[one >= 0] + 1) for one in self.failures]
+        return self.body * np.array([np.searchsorted(one, attempts, side="right") for one in placed_at])
+
+    def trials(self) -> tuple[np.ndarray, np.ndarray]:
+        """(replica, body) failures and successes at each number of particles; zero beyond the end."""
+        successes = (self.failures >= 0).astype(int)
+        failures = np.where(self.failures >= 0, self.failures, 0)
+        for k, placed in enumerate(self.placed):
+            if placed < failures.shape[1]:  # the attempts after the last success belong to the state after it
+                failures[k, placed] = self.attempts[k] - failures[k].sum() - placed
+        return failures, successes
+
+
+def fill_failures(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Failures per particle against packing fraction, and the saturation, of every container.
+
+    settings: `bins`, number of packing-fraction bins up to the densest fill; `windows`, list of the ratios of
+    the last time to the first one of the fitted window (the first is the one claimed); `saturated`, the
+    experiments that are filled to saturation; `dilute`, the packing fraction up to which failures are
+    compared with the low-density expansion.
+
+    Returns over `container` (the experiment's name): dimension, side_over_diameter, rule, replicas, placed
+    (mean); final and final_spread, mean and standard deviation of the packing fraction of a single fill at
+    its end; last_time, in t; failures_per_body with its error at packing_fraction, each (container, bin), NaN
+    without attempts; filled (container, sample), mean packing fraction at `time` (container, sample);
+    saturation with its error (container, window) and the degrees of freedom of that (container), NaN for
+    those not in `saturated`, and slope of its line in t^(-1/d); approach and its error: exponent p of eta_s -
+    eta ~ t^-p with the literature's eta_s (saturated periodic containers only); dilute_failures with error:
+    failures over those expected at low density (periodic containers only). Attribute dilute_up_to.
+    """
+    fills = [_read(point) for point in points]
+    names = [
+        point.experiment if point.name == "single" else f"{point.experiment}/{point.name}" for point in points
+    ]
+    windows = settings["windows"]
+    saturated = [point.experiment in settings["saturated"] for point in points]
+    periodic = [grid.scene(point).container.periodic[0] for point in points]
+
+    curves = np.array([np.transpose(failures_by_density(one, settings["bins"])) for one in fills])
+    ends = np.array([
+        [saturation(one, window) if ends else (np.nan,) * 3 for window in windows]
+        for one, ends in zip(fills, saturated, strict=True)
+    ])  # fmt: skip
+    times = np.array([np.geomspace(1.0, max(one.last_time, 1.0), TIMES) for one in fills])
+    filled = np.array([one.packing_fraction(t).mean(axis=0) for one, t in zip(fills, times, strict=True)])
+    approach = np.array([
+        approach_exponent(one, windows[0]) if ends and free else (np.nan, np.nan)
+        for one, ends, free in zip(fills, saturated, periodic, strict=True)
+    ])  # fmt: skip
+    dilute = np.array([
+        dilute_failures(one, settings["dilute"]) if free else (np.nan, np.nan)
+        for one, free in zip(fills, periodic, strict=True)
+    ])  # fmt: skip
+    containers, bins, ends_of = "container", ("container", "bin"), ("container", "window")
+    samples = ("container", "sample")
+    return xr.Dataset(
+        {
+            **_columns(bins, curves, "packing_fraction", "failures_per_body", "failures_per_body_error"),
+            **_columns(ends_of, ends, "saturation", "saturation_error", "saturation_slope"),
+            "saturation_freedom": ("container", [len(one.attempts) - 1 for one in fills]),
+            "time": (samples, times, {"units": "attempts v / V"}),
+            "filled": (samples, filled, {"units": "1"}),
+            **_columns(containers, approach, "approach", "approach_error"),
+            **_columns(containers, dilute, "dilute_failures", "dilute_failures_error"),
+            **_properties(points, fills),
+        },
+        coords={"container": names, "window": np.array(windows, dtype=float)},
+        attrs={"dilute_up_to": settings["dilute"]},
+    )
+
+
+def _columns(dimensions: str | tuple[str, ...], table: np.ndarray, *names: str) -> dict[str, tuple]:
+    """Variables from the last axis of a table."""
+    return {name: (dimensions, table[..., k], {"units": "1"}) for k, name in enumerate(names)}
+
+
+def _properties(points: list[grid.Point], fills: list[Fill]) -> dict[str, tuple]:
+    """Variables of the containers and of their state at the end."""
+    sides = [min(grid.extents(point)[2]) / (2.0 * grid.extents(point)[1]) for point in points]
+    final = [one.placed * one.body for one in fills]
+    return {
+        "dimension": ("container", [one.dimension for one in fills]),
+        "side_over_diameter": ("container", sides, {"units": "1"}),
+        "rule": ("container", [_rule(point) for point in points]),
+        "replicas": ("container", [len(one.attempts) for one in fills]),
+        "placed": ("container", [float(one.placed.mean()) for one in fills]),
+        "final": ("container", [float(end.mean()) for end in final], {"units": "1"}),
+        "final_spread": ("container", [float(end.std(ddof=1)) for end in final], {"units": "1"}),
+        "last_time": ("container", [one.last_time for one in fills], {"units": "attempts v / V"}),
+    }
+
+
+def _read(point: grid.Point) -> Fill:
+    with xr.open_dataset(point.path) as dataset:
+        return Fill(
+            failures=dataset["failures"].values.astype(np.int64),
+            attempts=dataset["attempts"].values.astype(np.int64),
+            body=float(dataset.attrs["packing_fraction_per_body"]),
+            dimension=point.settings["dimension"],
+        )
+
+
+def _rule(point: grid.Point) -> str:
+    if grid.scene(point).container.periodic[0]:
+        return "periodic"
+    return "centres_to_walls" if point.settings.get("centres_to_walls", False) else "wall"
+
+
+def failures_by_density(fill: Fill, bins: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Mean packing fraction, failures per particle placed, and its standard error: each (bins,).
+
+    The bins are of equal width from 0 to the densest fill. NaN where less than half of the replicas placed a
+    particle: those that did are a biased sample. Error: jackknife over the replicas, but no less than the
+    geometric distribution's own scatter.
+    """
+    failures, successes = fill.trials()
+    states = np.arange(failures.shape[1])
+    bin_of = np.minimum(states * bins // max(int(fill.placed.max()), 1), bins - 1)
+    result = np.full((3, bins), np.nan)
+    for k in range(bins):
+        lost, won = failures[:, bin_of == k].sum(axis=1), successes[:, bin_of == k].sum(axis=1)
+        if 2 * np.count_nonzero(won) < len(won) or not won.sum():
+            continue
+        ratio = lost.sum() / won.sum()
+        tried = (failures + successes)[:, bin_of == k].sum(axis=0) > 0
+        own = np.sqrt(ratio * (1.0 + ratio) / won.sum())
+        result[:, k] = states[bin_of == k][tried].mean() * fill.body, ratio, max(own, _jackknife(lost, won))
+    return result[0], result[1], result[2]
+
+
+def _jackknife(numerator: np.ndarray, denominator: np.ndarray) -> float:
+    """Standard error of sum(numerator) / sum(denominator) over replicas; 0 if undetermined."""
+    count = len(numerator)
+    left = denominator.sum() - denominator
+    if np.any(left == 0):  # all successes in one replica, or only one replica: nothing to omit
+        return 0.0
+    without = (numerator.sum() - numerator) / left
+    return float(np.sqrt((count - 1) / count * np.sum((without - without.mean()) ** 2)))
+
+
+def saturation(fill: Fill, window: float) -> tuple[float, float, float]:
+    """Packing fraction at t = infinity, its standard error from the replicas (at least two), and the slope.
+
+    A straight line of eta against t^(-1/d), by least squares to SAMPLES times equally spaced in ln t between
+    last_time / window and last_time, for each replica.
+    """
+    times = np.geomspace(fill.last_time / window, fill.last_time, SAMPLES)
+    x = times ** (-1.0 / fill.dimension)
+    lines = np.array([fit_polynomial(x, eta).values for eta in fill.packing_fraction(times)])
+    ends = mean_of(lines[:, 0])
+    return ends.value, ends.error, float(lines[:, 1].mean())
+
+
+def approach_exponent(fill: Fill, window: float) -> tuple[float, float]:
+    """p of eta_s - eta ~ t^-p, eta_s the literature's, and its standard error (jackknife over replicas)."""
+    times = np.geomspace(fill.last_time / window, fill.last_time, SAMPLES)
+    gap = theory.RSA_SATURATION[fill.dimension] - fill.packing_fraction(times)
+
+    def exponent(mean_gap: np.ndarray) -> float:
+        if np.any(mean_gap <= 0.0):
+            return np.nan
+        return -fit_polynomial(np.log(times), np.log(mean_gap)).values[1]
+
+    count = len(gap)
+    without = np.array([exponent((gap.sum(axis=0) - one) / (count - 1)) for one in gap])
+    error = np.sqrt((count - 1) / count * np.sum((without - without.mean()) ** 2))
+    return float(exponent(gap.mean(axis=0))), float(error)
+
+
+def dilute_failures(fill: Fill, up_to: float) -> tuple[float, float]:
+    """Failures below the packing fraction `up_to`, over those expected, and the ratio's standard error.
+
+    Expected: for each particle k the `theory.failures_per_body` at k particles. Error: the geometric
+    distribution's, sqrt(sum of f (1 + f)) over the sum of f.
+    """
+    failures, _ = fill.trials()
+    states = np.arange(failures.shape[1])
+    below = (states * fill.body <= up_to) & (states < fill.placed.min())
+    expected = theory.failures_per_body(states[below] * fill.body, fill.dimension)
+    replicas = len(failures)
+    total = replicas * expected.sum()
+    if total == 0.0:
+        return np.nan, np.nan
+    scatter = np.sqrt(replicas * np.sum(expected * (1.0 + expected)))
+    return float(failures[:, below].sum() / total), float(scatter / total)

@@ -1,0 +1,53 @@
+"""Claims about the densest random packings."""
+
+from __future__ import annotations
+
+import xarray as xr
+
+from gaspart import theory
+from gaspart.reproduction.claims import Claim, Estimate
+from gaspart.reproduction.families.shared.claims import rows
+
+
+def densest_fill(dataset: xr.Dataset) -> list[Claim]:
+    """Grown until they jam, spheres are denser than 0.60 and have six contacts each; inserted, they end
+    below saturation."""
+    claims = []
+    for one in rows(dataset, "packing"):
+        claims += _compressed(one) if str(one["rule"].values) == "compressed" else [_inserted(one)]
+    return claims
+
+
+def _compressed(one: xr.Dataset) -> list[Claim]:
+    return [
+        Claim.at_least(
+            claim="packing fraction of spheres grown until they jam",
+            measured=Estimate(one["packing_fraction"], one["error"], one["freedom"]),
+            bound=0.60,
+            required=5e-3,
+            source="Lubachevsky and Stillinger 1990: random packings end at 0.60 to 0.65",
+            fails_if="contacts of growing spheres are wrong, or growth stops before they jam",
+        ),
+        Claim.within(
+            claim="contacts per sphere that does not rattle, in a jammed packing",
+            measured=Estimate(one["contacts"], one["contacts_error"], one["freedom"]),
+            expected=6.0,
+            half_width=0.5,
+            source="Donev, Torquato and Stillinger, Phys. Rev. E 71, 011105 (2005): isostatic, 2d contacts",
+            fails_if="growth is too fast to find all contacts, or spheres crystallise",
+        ),
+    ]
+
+
+def _inserted(one: xr.Dataset) -> Claim:
+    rule, side = str(one["rule"].values), float(one["length"][0]) / (2.0 * float(one["radius"]))
+    saturation = theory.insertion_saturation(3, side, rule)
+    return Claim.at_most(
+        claim=f"packing fraction of random insertion, {rule.replace('_', ' ')} (L/σ = {side:.3g}), "
+        "over saturation",
+        measured=Estimate(one["packing_fraction"], one["error"], one["freedom"]) / saturation,
+        bound=1.0,
+        required=0.02,
+        source="Zhang and Torquato 2013, with the wall excess of fill_failures",
+        fails_if="overlaps are accepted",
+    )

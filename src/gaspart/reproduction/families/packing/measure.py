@@ -1,0 +1,73 @@
+"""The densest random packings: packing fractions, and contacts per particle."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from scipy.spatial import cKDTree
+
+from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.points import grid
+
+TOUCH = 1e-4
+"""Gap, in diameters, up to which two particles of a jammed packing count as touching: contacts that carry the
+reduced pressure of 10^6 have gaps of some 10^-6, and few other neighbours are as near."""
+BACKBONE = 4
+"""Contacts that hold a sphere in place; one with fewer rattles in its cage."""
+
+
+def densest_fill(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Packing fractions with standard errors over replicas, contacts per sphere where the spheres were grown,
+    and the first replica of each packing for the picture.
+
+    Returns a dataset: packing_fraction, error, contacts, contacts_error (packing,), contacts of those that do
+    not rattle, NaN for insertions; rule (packing,); position (packing, body, axis), radius (packing,), length
+    (packing, axis). freedom: that of the errors.
+    """
+    rows = []
+    for point in points:
+        made = xr.load_dataset(point.path)
+        fractions, positions, radii = (
+            made[name].values for name in ("packing_fraction", "position", "radius")
+        )
+        length, compressed = made["length"].values, point.settings.get("arrangement") == "compressed"
+        rule = "centres_to_walls" if point.settings.get("centres_to_walls") else point.settings["boundary"]
+        touching = [np.nan]
+        if compressed:
+            touching = [contacts(*one, length) for one in zip(positions, radii, strict=True)]
+        fraction, error = _mean(fractions)
+        rows.append(
+            {
+                "rule": "compressed" if compressed else rule,
+                "packing_fraction": fraction,
+                "error": error,
+                "freedom": max(1, fractions.size - 1),
+                **entries({"contacts": _mean(np.array(touching))}),
+                "position": positions[0],
+                "radius": float(radii[0]),
+                "length": length,
+            }
+        )
+    inner = {"position": ("body", "axis"), "length": ("axis",)}
+    return from_rows("packing", rows, inner, dict.fromkeys(("position", "radius", "length"), "length"))
+
+
+def _mean(values: np.ndarray) -> tuple[float, float]:
+    """Mean and its standard error."""
+    error = values.std(ddof=1) / np.sqrt(len(values)) if len(values) > 1 else np.nan
+    return float(values.mean()), float(error)
+
+
+def contacts(positions: np.ndarray, radius: float, lengths: np.ndarray) -> float:
+    """Contacts per sphere of a periodic packing (N, 3), of those spheres that do not rattle: each has at
+    least four contacts with others that do not. An isostatic packing has 6, less 6/N."""
+    tree = cKDTree(positions % lengths, boxsize=lengths)
+    pairs = tree.query_pairs(2.0 * radius * (1.0 + TOUCH), output_type="ndarray")
+    held = np.ones(len(positions), dtype=bool)
+    while True:
+        pairs = pairs[held[pairs].all(axis=1)]
+        degree = np.bincount(pairs.ravel(), minlength=len(positions))
+        loose = held & (degree < BACKBONE)
+        if not loose.any():
+            return 2.0 * len(pairs) / max(1, int(held.sum()))
+        held &= ~loose

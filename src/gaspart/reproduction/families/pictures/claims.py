@@ -1,0 +1,89 @@
+"""Claims about the scenes that are drawn."""
+
+from __future__ import annotations
+
+import math
+
+import xarray as xr
+
+from gaspart import theory
+from gaspart.reproduction.claims import Claim, Estimate
+from gaspart.scene.geometry import ball_volume
+
+
+def gas_render(ds: xr.Dataset) -> list[Claim]:
+    """All are present, as dilute as the source states, without overlaps after a step, with Maxwell's mean
+    speed."""
+    resolved = float(ds["resolved"])
+    expected = 2.0 * resolved**2 / ds.attrs["count"]
+    scatter = math.sqrt(max(expected, 1.0))
+    return [
+        _number(ds),
+        Claim.within(
+            claim="packing fraction of the spheres drawn",
+            kind="reproduction",
+            measured=Estimate(_drawn_fraction(ds)),
+            expected=0.001,
+            half_width=0.0005,
+            source="Frederickx and Meerts (2010): about 0.1 %",
+            fails_if="another radius or container than the source's",
+        ),
+        Claim(
+            claim="pairs that overlap at the end of a step",
+            measured=Estimate(ds["overlaps"], scatter),
+            expected=expected,
+            required=scatter,
+            source=f"almost none of the {resolved:.3g} found: a particle in two contacts (at most, Poisson)",
+            fails_if="overlaps that a step finds and does not resolve",
+        ),
+        Claim(
+            claim="mean speed",
+            measured=Estimate.of(ds, "mean_speed"),
+            expected=theory.mean_speed(3, float(ds["mean_square_speed"]) / 3.0),
+            required=0.02 * float(ds["mean_speed"]),
+            source="Maxwell at the temperature <v^2>/3",
+            fails_if="speeds that are not Maxwell's",
+        ),
+    ]
+
+
+def brownian_render(ds: xr.Dataset) -> list[Claim]:
+    """All are present, and none overlaps another."""
+    return [
+        _number(ds),
+        Claim(
+            claim="pairs that overlap",
+            kind="identity",
+            measured=Estimate(ds["overlaps"]),
+            expected=0.0,
+            required=0.0,
+            source="hard spheres (exact)",
+            fails_if="a particle that has entered another",
+        ),
+        Claim(
+            claim="packing fraction of the spheres drawn",
+            kind="identity",
+            measured=Estimate(_drawn_fraction(ds), 1e-12),
+            expected=ds.attrs["packing_fraction"],
+            required=1e-9,
+            source="the scene's",
+            fails_if="a particle that is not drawn, or not in its size",
+        ),
+    ]
+
+
+def _number(ds: xr.Dataset) -> Claim:
+    return Claim(
+        claim="spheres drawn",
+        kind="identity",
+        measured=Estimate(ds.sizes["body"]),
+        expected=ds.attrs["count"],
+        required=0.0,
+        source="the scene's number of particles",
+        fails_if="a particle that is lost",
+    )
+
+
+def _drawn_fraction(ds: xr.Dataset) -> float:
+    volume = ball_volume(3) * float((ds["radius"] ** 3).sum())
+    return volume / float(ds["length"].prod())

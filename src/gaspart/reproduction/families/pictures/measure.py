@@ -1,0 +1,94 @@
+"""Scenes as they are to be drawn, and what can be counted in them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+from scipy.spatial import cKDTree
+
+from gaspart.reproduction.points import grid
+from gaspart.trajectory.run import open_trajectory
+
+ROUNDING = 1e-5
+"""Depth, in diameters, up to which an overlap is put down to the single precision of frames."""
+
+
+def gas_render(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """The last frame of the first replica, and what is counted in the last frames of all; see `_scene`."""
+    return _scene(points[0])
+
+
+def brownian_render(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """The same for the large sphere in its gas."""
+    return _scene(points[0])
+
+
+def _scene(point: grid.Point) -> xr.Dataset:
+    """Particles of one frame, and counts over replicas.
+
+    `overlaps`: pairs that overlap by more than rounding. `resolved`: with the time-stepped engine, the
+    collisions of the step before each frame, overlaps that it found and put right; with the other none.
+    `mean_speed` of the last species, with the standard error over particles.
+    """
+    scene, overlaps, collisions, speeds = grid.scene(point), [], [], []
+    for path in point.replica_paths:
+        with open_trajectory(path) as dataset:
+            last = dataset.isel(frame=-1)
+            places, radii = last["coordinates"].values.astype(float), dataset["radius"].values
+            overlaps.append(
+                overlapping(places, radii, np.array(scene.container.lengths), scene.container.periodic)
+            )
+            rate = np.diff(dataset["collisions"].values[-2:]) / np.diff(dataset["time"].values[-2:])
+            collisions.append(float(rate[0]))
+            velocities = last["velocities"].values.astype(float)
+            speeds.append(np.sqrt((velocities**2).sum(axis=1)))
+            if len(overlaps) == 1:
+                shown, kind = places, dataset["type"].values
+    gas = kind == len(scene.species) - 1
+    chosen = np.concatenate([one[gas] for one in speeds])
+    step = point.settings["time_step"] if point.settings.get("engine") == "step" else 0.0
+    return xr.Dataset(
+        {
+            "position": (("body", "axis"), shown, {"units": "length"}),
+            "radius": ("body", radii, {"units": "length"}),
+            "species": ("body", kind),
+            "speed": ("body", speeds[0], {"units": "length/time"}),
+            "length": ("axis", np.array(scene.container.lengths), {"units": "length"}),
+            "overlaps": float(sum(overlaps)),
+            "resolved": step * sum(collisions),
+            "mean_speed": float(chosen.mean()),
+            "mean_speed_error": float(chosen.std(ddof=1) / math.sqrt(len(chosen))),
+            "mean_square_speed": float((chosen**2).mean()),
+        },
+        attrs={"count": scene.count, "packing_fraction": scene.packing_fraction},
+    )
+
+
+def overlapping(places: np.ndarray, radii: np.ndarray, lengths: np.ndarray, periodic: Sequence[bool]) -> int:
+    """How many pairs of particles (N, d) overlap by more than rounding.
+
+    The few particles that are larger than twice the median radius are compared with all others.
+    """
+    box = np.where(periodic, lengths, 0.0)
+
+    def deep(i: int | np.ndarray, j: np.ndarray) -> int:
+        gap = np.abs(places[i] - places[j])
+        gap = np.where(box > 0.0, np.minimum(gap, np.abs(box - gap)), gap)
+        touch = radii[i] + radii[j]
+        return int(
+            (np.sqrt((gap**2).sum(axis=-1)) < touch - 2.0 * ROUNDING * np.minimum(radii[i], radii[j])).sum()
+        )
+
+    is_large = radii > 2.0 * np.median(radii)
+    small, large = np.flatnonzero(~is_large), np.flatnonzero(is_large)
+    wrapped = np.where(box > 0.0, places % np.where(box > 0.0, box, 1.0), places)
+    tree = cKDTree(wrapped[small], boxsize=np.where(box > 0.0, box, 0.0))
+    pairs = tree.query_pairs(2.0 * radii[small].max(), output_type="ndarray")
+    found = deep(small[pairs[:, 0]], small[pairs[:, 1]])
+    for n, i in enumerate(large):
+        others = np.concatenate([small, large[n + 1 :]])
+        found += deep(np.full(len(others), i), others)
+    return found

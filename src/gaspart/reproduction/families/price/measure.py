@@ -1,0 +1,77 @@
+"""The cost of each feature of a scene relative to that without it, and that of absent features.
+
+Each job times a scene and the one without in turn, A B B A, so that what disturbs the machine disturbs both.
+Several jobs of one feature differ in their equilibration: their scatter is the uncertainty.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.families.shared.timings import log_ratios, per_event, ratio_of_jobs
+from gaspart.reproduction.points import grid
+from gaspart.scene.scene import Scene
+
+PLAIN = "plain"
+WORK = ("pair_tests", "box_visits", "crossings")
+
+
+def price_of_features(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Costs per event (a collision or a hit at a wall), and over those of the scene without beside it.
+
+    Over point (a feature with an engine): engine, feature (which the other scene lacks), seconds per event,
+    `ratio` over the other one's in the same jobs with its error, which is the jobs' scatter, and the degrees
+    of freedom of that; counted `pair_tests`, `box_visits` and `crossings` per event. The plain scene beside
+    itself has the ratio 1. Over kernel, if a point counts them: engine's name, `instructions`, and
+    `stripped`, those of a kernel whose source lacks the features.
+    """
+    jobs = [_row(point) for point in points if point.job == "measure_cost"]
+    groups: dict[tuple, list[dict]] = {}
+    for job in jobs:
+        groups.setdefault((job["engine"], job["feature"]), []).append(job)
+    rows = [_together(group) for group in groups.values()]
+    dataset = from_rows("point", rows)
+    for point in points:
+        if point.job == "count_instructions":
+            dataset = dataset.merge(xr.load_dataset(point.path).rename(engine="kernel"))
+    return dataset
+
+
+def _together(jobs: list[dict]) -> dict:
+    """The row of several jobs of one feature; NaN errors for a single one."""
+    return {
+        "engine": jobs[0]["engine"],
+        "feature": jobs[0]["feature"],
+        **{name: float(np.mean([job[name] for job in jobs])) for name in ("seconds", *WORK)},
+        **entries({"ratio": ratio_of_jobs([job["log_ratio"] for job in jobs])}),
+    }
+
+
+def _row(point: grid.Point) -> dict:
+    """One job: its costs per event, and the mean over its repeats of ln of the time per event over that of
+    the scene without the feature, timed next to it."""
+    with xr.open_dataset(point.path) as run:
+        costs = per_event(run)
+        engine, recorded = run.attrs["engine"], bool(run.attrs["recorded"])
+        log_ratio = float(log_ratios(run, costs["events"].values)[0])
+    own = costs.isel(partition=0)
+    return {
+        "engine": engine,
+        "feature": _feature(grid.scene(point), recorded),
+        "log_ratio": log_ratio,
+        **{name: float(own[name]) for name in ("seconds", *WORK)},
+    }
+
+
+def _feature(scene: Scene, recorded: bool) -> str:
+    """The feature of a scene that a plain periodic gas of equal spheres lacks."""
+    has = {
+        "recording": recorded,
+        "gravity": scene.gravity is not None,
+        "walls": "wall" in scene.container.boundary,
+        "spin": scene.rough,
+        "two masses": len({kind.mass for kind in scene.species}) > 1,
+    }
+    return next((name for name, there in has.items() if there), PLAIN)

@@ -1,0 +1,130 @@
+r"""One packing fraction at several radii, one number of particles at several radii: cost, and Z.
+
+Predicted counts (periodic container of side L, n boxes of width w = L/n a side, N particles):
+
+- crossings of the boundaries between boxes, per particle and time, from kinetic theory (exact):
+  :math:`d\, \langle |v_x| \rangle (n-1)/L = d \sqrt{2 k_B T / (\pi m)}\,(n-1)/(n w)`, since the periodic face
+  of the container, one of the n boundaries of an axis, is counted apart;
+- the time-stepped engine's pair tests per particle and step, each pair in neighbouring boxes once: half
+  of the other particles in the 3^d boxes around a particle, which hold the fraction f of the volume:
+  :math:`\tfrac12 [f N + (S - 1) - f S]`, S = S(0) the structure factor at zero wave number,
+  :math:`1/S = d(\eta Z)/d\eta`: :math:`\rho \int (g - 1) = S - 1` is the hole that a particle makes around
+  itself, and -f S what the others make up for because their number is fixed. Holds if correlations end
+  within w;
+- per collision, everything depends on the packing fraction and the boxes per particle alone: a larger
+  radius in the same container is the same gas magnified. There remain terms of order 1/N, and of order
+  1/n at the periodic faces.
+"""
+
+from __future__ import annotations
+
+import math
+
+import xarray as xr
+
+from gaspart import theory
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.statistics import average, correlated_mean
+from gaspart.reproduction.families.shared.pressure import (
+    Run,
+    combine_runs,
+    read_run,
+    totals,
+)
+from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.points import grid
+from gaspart.scene.scene import Scene
+
+_STEP = 1e-4
+
+
+def radius_grid(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Z and counted work of periodic points, of both engines.
+
+    An experiment whose points have one packing fraction is the series "packing fraction", else "count".
+
+    Returns over `point`: series, engine ("event" or "step"), radius, count, packing_fraction, boxes_per_side.
+    Event-driven points: Z, Z_error (corrected to the infinite system), finite_size, reference and its error;
+    crossings, per particle and time over the kinetic theory's, and its error; pair_tests, box_visits
+    and crossings_counted, per collision; crossings_expected, the same from kinetic theory and Enskog's rate.
+    Time-stepped points: pair_tests and box_visits per particle and step, pair_tests_expected. NaN elsewhere.
+    """
+    experiments = {point.experiment for point in points}
+    fixed = {
+        name: len({round(grid.scene(p).packing_fraction, 9) for p in points if p.experiment == name}) == 1
+        for name in experiments
+    }
+    series = ["packing fraction" if fixed[point.experiment] else "count" for point in points]
+    return from_rows("point", [_row(point) for point in points]).assign(
+        series=("point", series),
+        engine=("point", [point.settings.get("engine", "event") for point in points]),
+    )
+
+
+def _row(point: grid.Point) -> dict[str, float]:
+    scene, per_side = grid.scene(point), grid.engine(point).boxes_per_side
+    assert isinstance(per_side, tuple), "every point of this figure gives its boxes"
+    eta, dimension = scene.packing_fraction, scene.dimension
+    row = {
+        "radius": scene.largest_radius,
+        "count": scene.count,
+        "packing_fraction": eta,
+        "boxes_per_side": per_side[0],
+    }
+    runs = [read_run(point, path) for path in point.replica_paths]
+    counted = totals(runs)
+    if point.settings.get("engine") == "step":
+        searches = counted["steps"] * scene.count
+        return row | {
+            "pair_tests": counted["pair_tests"] / searches,
+            "box_visits": counted["box_visits"] / searches,
+            "pair_tests_expected": expected_pair_tests(scene.count, per_side[0], eta, dimension),
+        }
+    z = combine_runs(runs).z
+    shift = float(theory.finite_size_correction(eta, dimension, scene.count, ensemble="canonical"))
+    width = scene.container.lengths[0] / per_side[0] / (2.0 * scene.largest_radius)
+    return row | {
+        **entries({"Z": z - shift, "crossings": _crossings(runs, scene, per_side[0])}),
+        "finite_size": shift,
+        "reference": float(theory.compressibility_factor(eta, dimension)),
+        "reference_error": float(theory.compressibility_uncertainty(eta, dimension)),
+        "collisions": counted["collisions"],
+        "pair_tests": counted["pair_tests"] / counted["collisions"],
+        "box_visits": counted["box_visits"] / counted["collisions"],
+        "crossings_counted": counted["crossings"] / counted["collisions"],
+        "crossings_expected": crossings_per_collision(eta, width, per_side[0], dimension),
+    }
+
+
+def _crossings(runs: list[Run], scene: Scene, per_side: int) -> Estimate:
+    """Crossings per particle and time over the kinetic theory's."""
+    between = scene.dimension * (per_side - 1) / scene.container.lengths[0] * math.sqrt(2.0 / math.pi)
+    ratios = [run.counters["crossings"] / (scene.count * run.interval * between * run.speed) for run in runs]
+    return average([correlated_mean(ratio).estimate for ratio in ratios])
+
+
+def crossings_per_collision(packing_fraction: float, width: float, per_side: int, dimension: int) -> float:
+    """Boundaries between boxes that are crossed for each collision; width of a box in diameters.
+
+    2 d sqrt(2 / pi) (n - 1) / (n w nu), nu Enskog's rate of one particle with k_B T = m = sigma = 1.
+    """
+    rate = float(theory.collision_rate(packing_fraction, dimension))
+    return 2.0 * dimension * math.sqrt(2.0 / math.pi) * (per_side - 1) / (per_side * width * rate)
+
+
+def expected_pair_tests(count: int, per_side: int, packing_fraction: float, dimension: int) -> float:
+    """Pair tests per particle and step of the time-stepped engine in a periodic container (see the
+    module)."""
+    share = (3.0 / per_side) ** dimension if per_side > 3 else 1.0
+    compressibility = structure_factor(packing_fraction, dimension)
+    return 0.5 * (share * count + (compressibility - 1.0) - share * compressibility)
+
+
+def structure_factor(packing_fraction: float, dimension: int) -> float:
+    """S(0) = 1 / (d(eta Z) / d eta) of the reference equation of state: the relative fluctuation of N."""
+
+    def pressure(eta: float) -> float:
+        return eta * float(theory.compressibility_factor(eta, dimension))
+
+    low, high = max(0.0, packing_fraction - _STEP), packing_fraction + _STEP
+    return (high - low) / (pressure(high) - pressure(low))

@@ -1,0 +1,43 @@
+"""The figures, by family: found in the folders of this package.
+
+The folder of a family states its `TITLE`, its `CHAPTER` of the report and its `FIGURES` in `__init__.py`,
+which imports nothing heavy, and holds a function of the name of each figure in `measure.py`, `claims.py` and
+`figure.py`. `FIGURES` declares the settings of each figure: the kind of each key, with its meaning.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+
+from gaspart.kinds import Kind
+
+
+@cache
+def _packages() -> dict[str, ModuleType]:
+    """The package of each family, in alphabetical order."""
+    names = sorted(path.parent.name for path in Path(__file__).parent.glob("*/figure.py"))
+    return {name: import_module(f"gaspart.reproduction.families.{name}") for name in names}
+
+
+def titles() -> dict[str, str]:
+    """The title of each family, in alphabetical order of the families."""
+    return {name: package.TITLE for name, package in _packages().items()}
+
+
+def chapters() -> dict[str, str]:
+    """The chapter of the report in which each family stands."""
+    return {name: package.CHAPTER for name, package in _packages().items()}
+
+
+@cache
+def families() -> dict[str, str]:
+    """The family of each figure."""
+    return {figure: name for name, package in _packages().items() for figure in package.FIGURES}
+
+
+def settings() -> dict[str, dict[str, Kind]]:
+    """The settings of each figure's measurement."""
+    return {figure: keys for package in _packages().values() for figure, keys in package.FIGURES.items()}

@@ -1,0 +1,249 @@
+"""What space partitioning gains: the cost of a step, or of an event, against the particles and the boxes.
+
+Every point is a `measure_cost` job: one gas, timed with one or several partitions. What is meant by work,
+time and ideal numbers, and where their errors come from, stands in `families.shared.timings`.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gaspart.analysis import statistics
+from gaspart.analysis.estimate import Estimate
+from gaspart.reproduction.families.scaling.ideal_boxes import ideal_boxes as ideal_boxes
+from gaspart.reproduction.families.scaling.remarks import huge_sphere, near_boxes
+from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.families.shared.timings import (
+    extrapolate,
+    ideal,
+    listed,
+    one_box,
+    penalty,
+    per_body,
+    per_event,
+    trend,
+    weights,
+)
+from gaspart.reproduction.points import grid
+from gaspart.theory import partition as theory
+
+
+def naive_scaling(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """One box: the cost of a step against the number of particles N.
+
+    Over ``count``: ``pair_tests`` per step, ``seconds`` per step with ``seconds_error``. Scalars:
+    ``exponent`` of the time in N with ``exponent_error`` from the scatter; ``tests_excess``, the largest
+    relative difference of the pair tests from N(N-1)/2; ``test_seconds``, the cost of a pair test, from
+    time = a N + b tests.
+    """
+    made = one_box([xr.load_dataset(point.path) for point in points])
+    count, tests, seconds = (made[name].values.astype(float) for name in ("count", "pair_tests", "seconds"))
+    exponent, error = trend(count, seconds)
+    parts = weights(seconds, made.seconds_error.values, count, tests)
+    return made.assign(
+        exponent=exponent,
+        exponent_error=error,
+        tests_excess=np.abs(tests / (0.5 * count * (count - 1.0)) - 1.0).max(),
+        test_seconds=parts.values[1],
+        test_seconds_error=parts.errors[1],
+    )
+
+
+def box_count(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """One gas: cost against the number of boxes, time-stepped and event-driven.
+
+    settings: ``round_per_side``, the boxes per side that source A found quicker for their round width;
+    ``source_boxes_per_body``, the ideal number in its figure 6.
+
+    Over ``scan`` (the scan that has one box): costs as in `per_body`; ``expected_tests`` with
+    ``tests_spread`` and ``expected_visits``; the boxes that a particle would search, with each
+    pair tested once, if it left out those that it does not touch (``touched``: within a radius) or those
+    that can hold no partner (``in_reach``: within a diameter).
+    Over (``container``, ``fine``): ``fine_seconds`` ... of the two other scans, in containers whose sides
+    (``container_side``) do and do not give round widths. Over ``power``: ``advantage``, see `_advantages`.
+    Over ``sector``: ``sector_seconds`` ... as in `per_event`. Scalars: as in `ideal`; ``source_penalty``, the
+    time at the source's number over the least, with error; of the sectors, how
+    many neighbourhoods are searched at an event (``event_searches``) and at a crossing
+    (``crossing_searches``), from pair tests = discs in a neighbourhood x (a + b crossings), and
+    ``crossing_exponent``, of the crossings per event in the number of planes between sectors; with errors.
+    Points that are timed in turn `without` something: see `remarks`.
+    """
+    near = [xr.load_dataset(point.path) for point in points if point.settings.get("near_boxes")]
+    huge = [xr.load_dataset(point.path) for point in points if "scene" in point.settings]
+    runs = [xr.load_dataset(point.path) for point in points if "without" not in point.settings]
+    sectors = next(run for run in runs if run.engine == "event")
+    stepped = [run for run in runs if run.engine == "step"]
+    main = next(run for run in stepped if 1 in run.boxes)
+    fine = sorted((run for run in stepped if 1 not in run.boxes), key=lambda run: run.side)
+    costs, events = per_body(main), per_event(sectors)
+    pair = xr.concat([per_body(run) for run in fine], "container")
+    pair = pair.rename(_names("fine", pair))
+    sides = settings["round_per_side"]
+    powers = [
+        {"round_per_side": side, **entries({"advantage": advantage})}
+        for side, advantage in zip(sides, _advantages(pair, sides), strict=True)
+    ]
+    return xr.merge(
+        [
+            costs.assign(_expected(main)).rename(partition="scan"),
+            pair.rename(partition="fine"),
+            events.rename(partition="sector", **_names("sector", events)),
+            near_boxes(near),
+            from_rows("power", powers),
+        ]
+    ).assign(
+        **ideal(costs, main.dimension),
+        **huge_sphere(huge),
+        **_crossings(events, sectors),
+        count=main.attrs["count"],
+        radius=main.radius,
+        source_boxes_per_body=settings["source_boxes_per_body"],
+        **entries({"source_penalty": penalty(costs, settings["source_boxes_per_body"])}),
+        container_side=("container", [run.side for run in fine]),
+    )
+
+
+def _crossings(events: xr.Dataset, run: xr.Dataset) -> dict[str, Any]:
+    """What crossings between sectors cost, for `box_count`."""
+    others = (run.attrs["count"] - 1.0) * theory.neighbour_share(
+        events.boxes_per_side.values, run.dimension, run.side, run.radius
+    )
+    searches = statistics.fit_polynomial(events.crossings.values, events.pair_tests.values / others)
+    crossings = statistics.fit_power_law(events.boxes_per_side.values - 1.0, events.crossings.values)
+    return {
+        "event_searches": searches.values[0],
+        "event_searches_error": searches.errors[0],
+        "crossing_searches": searches.values[1],
+        "crossing_searches_error": searches.errors[1],
+        "crossing_exponent": crossings.exponent,
+        "crossing_exponent_error": crossings.exponent_error,
+    }
+
+
+def linear_scaling(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """The cost of a step with the cheapest partition of each gas, against the number of particles N.
+
+    settings: ``source_figures``, radius and range of counts of source A's figures 8, 9 and 10;
+    ``naive_count``, to which the naive method is extrapolated; ``source_years``, A's estimate for it.
+    Over ``gas`` (points with several partitions): ``count``, ``radius``, costs of the cheapest partition as
+    in `per_body`, and ``work``, pair tests and box visits together. Over ``naive`` (points with one box):
+    ``naive_count``, ``naive_seconds`` per step, with error. Over ``part`` (A's figures): ``part_low``,
+    ``part_high``, ``part_radius``, and ``exponent`` of the time per step in N, with error. Over ``listed``
+    (points without partition): see `listed`.
+    Scalars: ``work_exponent`` of the work per step over all gases, with error; ``extrapolated_count``,
+    ``extrapolated_seconds`` of one naive step there (with error), ``extrapolated_ratio``, its time over the
+    partitioned step's (relative error in ``extrapolated_ratio_error``); ``source_years``.
+    """
+    runs = sorted(
+        (xr.load_dataset(point.path) for point in points), key=lambda run: (run.attrs["count"], run.radius)
+    )
+    naive = one_box([run for run in runs if run.boxes.values.tolist() == [1]])
+    lists = [run for run in runs if not run.boxes.values.any()]
+    runs = [run for run in runs if run.sizes["partition"] > 1]
+    costs = [per_body(run) for run in runs]
+    gases = xr.concat([cost.isel(partition=int(np.argmin(cost.seconds.values))) for cost in costs], "gas")
+    count = np.array([run.attrs["count"] for run in runs], dtype=float)
+    radius = np.array([run.radius for run in runs])
+    seconds = count * gases.seconds.values
+    work = (gases.pair_tests + gases.box_visits).values
+    work_exponent, work_error = trend(count, count * work)
+    parts = []
+    for part in settings["source_figures"]:
+        low, high = part["counts"]
+        chosen = (radius == part["radius"]) & (low <= count) & (count <= high)
+        row = {"part_low": low, "part_high": high, "part_radius": part["radius"]}
+        parts.append(row | entries({"exponent": trend(count[chosen], seconds[chosen])}))
+    carried = extrapolate(naive, settings["naive_count"])
+    step, step_error = seconds[-1], count[-1] * gases.seconds_error.values[-1]
+    scale = settings["naive_count"] / count[-1]
+    ratio = carried[0] / (scale * step)
+    gases = gases.assign(count=("gas", count.astype(int)), radius=("gas", radius))
+    naive = naive.rename(count="naive_count", **_names("naive", naive))
+    return xr.merge([gases, naive, listed(lists, gases), from_rows("part", parts)]).assign(
+        work=("gas", work),
+        work_exponent=work_exponent,
+        work_exponent_error=work_error,
+        extrapolated_count=settings["naive_count"],
+        extrapolated_seconds=carried[0],
+        extrapolated_seconds_error=carried[1],
+        extrapolated_ratio=ratio,
+        extrapolated_ratio_error=ratio * math.hypot(carried[1] / carried[0], step_error / step),
+        source_years=settings["source_years"],
+    )
+
+
+def event_scaling(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """The cost of an event, by each method of searching for the next one, against the number of particles N.
+
+    settings: ``fit_from``, for each search the least N in the fits. Over ``run``: ``search``, ``dimension``,
+    ``count``, and costs as in `per_event`. Over ``method`` (a ``method_search`` in a ``method_dimension``):
+    the exponents of time (``exponent``) and of pair tests (``work_exponent``) per event in N, with errors
+    from the scatter. Scalar ``pairs_excess``: the largest relative difference of the pair tests of search
+    "pairs" from N(N-1)/2 for every event and one for the look that finds none left.
+    """
+    runs = sorted(
+        (xr.load_dataset(point.path) for point in points),
+        key=lambda run: (run.search, run.dimension, run.attrs["count"]),
+    )
+    costs = xr.concat([per_event(run).isel(partition=0) for run in runs], "run")
+    search = np.array([run.search for run in runs])
+    dimension = np.array([run.dimension for run in runs])
+    count = np.array([run.attrs["count"] for run in runs], dtype=float)
+    methods = list(dict.fromkeys(zip(search.tolist(), dimension.tolist(), strict=True)))
+    fits = []
+    for name, d in methods:
+        chosen = (search == name) & (dimension == d) & (count >= settings["fit_from"][name])
+        exponents = {
+            "exponent": trend(count[chosen], costs.seconds.values[chosen]),
+            "work_exponent": trend(count[chosen], costs.pair_tests.values[chosen]),
+        }
+        fits.append({"method_search": name, "method_dimension": d, **entries(exponents)})
+    events = costs.events.values
+    all_pairs = 0.5 * count * (count - 1.0) * (events + 1.0) / events
+    excess = np.abs(costs.pair_tests.values / all_pairs - 1.0)[search == "pairs"]
+    return xr.merge([costs, from_rows("method", fits)]).assign(
+        search=("run", search),
+        dimension=("run", dimension),
+        count=("run", count.astype(int)),
+        pairs_excess=float(excess.max()) if excess.size else math.nan,
+    )
+
+
+def _names(prefix: str, costs: xr.Dataset) -> dict[str, Any]:
+    return {str(name): f"{prefix}_{name}" for name in costs.data_vars}
+
+
+def _expected(run: xr.Dataset) -> dict:
+    """Expected counts per particle of a scan, for `box_count`."""
+    gas = {"dimension": run.dimension, "side": run.side, "radius": run.radius}
+    count, sides = run.attrs["count"], run.boxes_per_side.values
+    tests = np.array([theory.expected_pair_tests(count, int(n), **gas) for n in sides]) / count
+    width = run.side / sides
+    return {
+        "expected_tests": ("partition", tests[:, 0]),
+        "tests_spread": ("partition", tests[:, 1]),
+        "expected_visits": ("partition", [theory.expected_box_visits(int(n), **gas) for n in sides]),
+        "touched": ("partition", 0.5 + 0.5 * theory.boxes_in_reach(width, run.radius, run.dimension)),
+        "in_reach": ("partition", 0.5 + 0.5 * theory.boxes_in_reach(width, 2.0 * run.radius, run.dimension)),
+    }
+
+
+def _advantages(fine: xr.Dataset, round_per_side: list[int]) -> list[Estimate]:
+    """By how much (ln of time) each of these partitions is quicker than those within an eighth of it, in the
+    container of the lower side (round widths), less the same in the other.
+
+    Both scans have the same work, so what does not depend on round numbers cancels. The uncertainty is the
+    scatter of those other partitions: their times differ by up to one per cent from process to process,
+    which repeats in one process do not show.
+    """
+    n = fine.fine_boxes_per_side.values[0]
+    difference = np.log(fine.fine_seconds.values[1]) - np.log(fine.fine_seconds.values[0])
+    others = [difference[(n != one) & (np.abs(n / one - 1.0) <= 0.125)] for one in round_per_side]
+    freedom = sum(near.size - 1 for near in others)
+    scatter = math.sqrt(sum(near.size * near.var() for near in others) / freedom)
+    return [
+        Estimate(difference[n == one][0] - near.mean(), scatter * math.sqrt(1.0 + 1.0 / near.size), freedom)
+        for one, near in zip(round_per_side, others, strict=True)
+    ]

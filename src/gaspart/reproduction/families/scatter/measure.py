@@ -1,0 +1,57 @@
+"""How the deviations of all claims scatter: from the other figures' tables, instead of simulations."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from scipy.special import ndtr
+
+from gaspart.reproduction.claims import read
+
+BINS = 10
+"""Classes of equal probability, in which true claims are equally frequent."""
+
+
+def claims_scatter(tables: Sequence[str | Path], settings: dict) -> xr.Dataset:
+    """Deviations of the values that figures claim, and whether they are distributed as their errors state.
+
+    tables: paths of claims tables, one for each figure. settings: none.
+
+    Over `claim`: deviation in standard deviations; figure, the number of its figure; scattered, whether the
+    deviation is a standard Gaussian number if the claim is true: without an allowance for the uncertainty of
+    the theory, which makes deviations smaller. Over `name`, the figures: number of scattered claims, and
+    their chi_square. Over `class`: counts of the scattered claims in classes of equal probability.
+    """
+    found = {Path(path).stem: [row for row in read(path) if _is_deviation(row)] for path in tables}
+    rows = [
+        (n, row["deviation_sigma"], row["scattered"] == 1.0)
+        for n, one in enumerate(found.values())
+        for row in one
+    ]
+    figure, deviation, scattered = (
+        (np.array(column) for column in zip(*rows, strict=True)) if rows else (np.empty(0),) * 3
+    )
+    scattered = scattered.astype(bool)
+    own = [deviation[scattered & (figure == n)] for n in range(len(found))]
+    counts = np.histogram(ndtr(deviation[scattered]), BINS, (0.0, 1.0))[0]
+    units = {"units": "1"}
+    return xr.Dataset(
+        {
+            "deviation": ("claim", deviation, units),
+            "figure": ("claim", figure.astype(int), units),
+            "scattered": ("claim", scattered),
+            "number": ("name", np.array([len(values) for values in own], dtype=int), units),
+            "chi_square": ("name", np.array([np.sum(values**2) for values in own], dtype=float), units),
+            "counts": ("class", counts, units),
+        },
+        coords={"name": list(found)},
+    )
+
+
+def _is_deviation(row: dict) -> bool:
+    """Whether a row states a value, and deviates from it by a finite number."""
+    is_value = row["form"] == "value" and row["kind"] == "test" and row["verdict"] != "no verdict"
+    return bool(is_value and np.isfinite(row["deviation_sigma"]) and row["uncertainty"] > 0.0)

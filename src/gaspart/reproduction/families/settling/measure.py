@@ -1,0 +1,226 @@
+"""Piles of discs that come to rest, and the flow of discs through an orifice.
+
+Units of all results: the mean diameter d of the discs, their mass m and the strength g of gravity.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from gaspart.reproduction.families.shared.rows import from_rows
+from gaspart.reproduction.points import grid
+from gaspart.scene.scene import Scene
+from gaspart.theory.granular import DISCHARGE_EXPONENT
+from gaspart.trajectory.run import open_trajectory
+
+_FILLED = 0.84  # packing fraction of a filling of discs of two sizes (random close packing)
+
+
+def settling(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Piles (points without interior walls) and flows through the orifice between two walls (the others).
+
+    settings: `gap`, `start`, `head` (see FIGURES).
+    Returns over `pile` and `frame` time, kinetic (energy of a disc) and contacts (per disc, with walls); over
+    `pile` duration (of contacts), rest (the time from which on nothing moves, NaN if there is none),
+    contacts at the end (final_contacts), the kinetic energy at the end over that of `_lasting` (residual),
+    the largest displacement after rest (0 without), and the largest rise of the energy from frame to frame
+    over its initial value; over `orifice` its width, the rate of flow with its
+    error, the ratio of the rates in the first and the second half of it (head_ratio), and that of a liquid
+    (liquid_ratio); over `orifice` and `flow_frame` the discs `left` at `flow_time`; and the parameters of
+    `_fit`.
+    """
+    walls = [bool(grid.scene(point).walls) for point in points]
+    piles = [
+        _pile(grid.scene(point), path, settings["gap"])
+        for point, flows in zip(points, walls, strict=True)
+        if not flows
+        for path in point.replica_paths
+    ]
+    flows = [_flow(point, settings) for point, flows in zip(points, walls, strict=True) if flows]
+    return from_rows("pile", piles, ("frame",)).merge(_flows(flows))
+
+
+def _diameter(radii: np.ndarray) -> float:
+    return float(2.0 * radii.mean())
+
+
+def _pile(scene: Scene, path: str, gap: float) -> dict:
+    """One pile, gravity along -y: see `settling`."""
+    with open_trajectory(path) as trajectory:
+        time, radii = trajectory["time"].values, trajectory["radius"].values.astype(float)
+        positions = trajectory["coordinates"].values.astype(float)
+        velocities = trajectory["velocities"].values.astype(float)
+    diameter, strength = _diameter(radii), math.hypot(*(scene.gravity or ()))
+    mass = scene.species[0].mass
+    kinetic = 0.5 * mass * (velocities**2).sum(axis=(1, 2))
+    energy = kinetic - mass * positions.sum(axis=1) @ np.array(scene.gravity)
+    still = np.flatnonzero(kinetic > 0.0)[-1] + 1  # the first frame of those that are all at rest
+    rests = still < len(time)
+    contacts = np.array([count_contacts(scene, frame, radii, gap * diameter) for frame in positions])
+    unit = math.sqrt(diameter / strength)
+    return {
+        "time": time / unit,
+        "kinetic": kinetic / (len(radii) * mass * strength * diameter),
+        "contacts": contacts / len(radii),
+        "duration": scene.contact_duration / unit,
+        "rest": time[still] / unit if rests else math.nan,
+        "final_contacts": contacts[-1] / len(radii),
+        "residual": kinetic[-1] / (len(radii) * _lasting(scene, positions[-1])),
+        "displacement": np.abs(positions[still:] - positions[-1]).max(initial=0.0) / diameter,
+        "rise": max(np.diff(energy).max(), 0.0) / energy[0],
+    }
+
+
+def _lasting(scene: Scene, positions: np.ndarray) -> float:
+    """Mean kinetic energy of discs of a speed g h t_c, at depths h below the surface of a pile: slower discs
+    meet their neighbours within t_c, and lose no energy.
+
+    A disc at this depth carries a weight of h discs. Neighbours with a gap s that move with v give it the
+    force m v^2 / s, and meet after s / v = v / (g h).
+    """
+    height = 2.0 * positions[:, 1].mean()
+    speed = math.hypot(*(scene.gravity or ())) * height * scene.contact_duration
+    return scene.species[0].mass * speed**2 / 6.0
+
+
+def count_contacts(scene: Scene, positions: np.ndarray, radii: np.ndarray, gap: float) -> int:
+    """Pairs of discs, and discs and faces of the container, that are less than `gap` apart.
+
+    positions (N, 2), radii (N,), gap: in the scene's units.
+    """
+    apart = np.hypot(*(positions[:, None] - positions).transpose(2, 0, 1)) - radii[:, None] - radii
+    low, high = positions - radii[:, None], positions + radii[:, None] - np.array(scene.container.lengths)
+    return int((apart[np.triu_indices(len(radii), 1)] < gap).sum() + (low < gap).sum() + (high > -gap).sum())
+
+
+@dataclass(frozen=True)
+class Flow:
+    """The flow through one orifice, R replicas. width: of the orifice; count: discs whose passage is timed;
+    rates (R,); ratios (R,): rate in the first half of the discs over that in the second; liquid: the same of
+    a liquid, sqrt of the head; time, left (frames,): of the first replica, discs above the orifice."""
+
+    width: float
+    count: float
+    rates: np.ndarray
+    ratios: np.ndarray
+    liquid: float
+    time: np.ndarray
+    left: np.ndarray
+
+    @property
+    def rate(self) -> float:
+        """Geometric mean of the rates."""
+        return float(np.exp(np.log(self.rates).mean()))
+
+
+def _flow(point: grid.Point, settings: dict) -> Flow:
+    """The flow of a point. Raises ValueError if fewer discs leave the hopper than are to be timed."""
+    scene = grid.scene(point)
+    _, left_end, right_end, _ = sorted(end for wall in scene.walls for end in wall.corners.values())
+    height, width = left_end[1], right_end[0] - left_end[0]
+    filled = _FILLED * scene.container.lengths[0]  # area of discs in a unit of height
+    intervals, seen = [], []
+    for path in point.replica_paths:
+        with open_trajectory(path) as trajectory:
+            time, radii = trajectory["time"].values, trajectory["radius"].values.astype(float)
+            left = (trajectory["coordinates"].values[..., 1] > height).sum(axis=1)
+        first = settings["start"] * len(radii)
+        last = settings["head"] * width * filled / (math.pi * (radii**2).mean())
+        levels = np.array([first, 0.5 * (first + last), last])
+        if not left[-1] < last < first:
+            raise ValueError(
+                f"duration: {left[-1]} discs are left in the hopper of {path} (must be below {last:.0f}, and "
+                f"that below {first:.0f})"
+            )
+        intervals.append(np.diff(np.interp(-levels, -left, time)))
+        seen.append((time, left))
+    diameter, strength = _diameter(radii), math.hypot(*(scene.gravity or ()))
+    unit = math.sqrt(diameter / strength)
+    early, late = np.array(intervals).T
+    heads = 0.5 * (levels[:-1] + levels[1:])
+    return Flow(
+        width=width / diameter,
+        count=first - last,
+        rates=(first - last) / (early + late) * unit,
+        ratios=late / early,
+        liquid=math.sqrt(heads[0] / heads[1]),
+        time=seen[0][0] / unit,
+        left=seen[0][1],
+    )
+
+
+def _flows(flows: list[Flow]) -> xr.Dataset:
+    """The variables over `orifice`, the narrowest first, and those of the fits.
+
+    The relative variance of a rate is taken to be inversely proportional to the number of discs, by one
+    factor for all orifices, which is measured by all replicas; likewise that of a ratio.
+    """
+    flows = sorted(flows, key=lambda flow: flow.width)
+    width, rate = np.array([(flow.width, flow.rate) for flow in flows]).T
+    error, freedom = _relative_errors(flows, "rates")
+    ratio = np.array([np.exp(np.log(flow.ratios).mean()) for flow in flows])
+    ratio_error, _ = _relative_errors(flows, "ratios")
+    degrees = np.full(len(flows), freedom)
+    columns = {
+        "width": ("orifice", width, {"units": "diameters"}),
+        "rate": ("orifice", rate, {"units": "sqrt(g / d)"}),
+        "rate_error": ("orifice", rate * error),
+        "rate_freedom": ("orifice", degrees),
+        "head_ratio": ("orifice", ratio),
+        "head_ratio_error": ("orifice", ratio * ratio_error),
+        "head_ratio_freedom": ("orifice", degrees),
+        **_fit(width, rate, error, freedom),
+    }
+    series = [
+        {"liquid_ratio": flow.liquid, "flow_time": flow.time, "left": flow.left.astype(float)}
+        for flow in flows
+    ]
+    return from_rows("orifice", series, ("flow_frame",)).assign(columns)
+
+
+def _relative_errors(flows: list[Flow], name: str) -> tuple[np.ndarray, int]:
+    """(orifices,) errors of the means of the logarithms of `name`, and their degrees of freedom."""
+    logarithms = [np.log(getattr(flow, name)) for flow in flows]
+    freedom = sum(len(values) - 1 for values in logarithms)
+    scatter = sum(
+        flow.count * ((values - values.mean()) ** 2).sum()
+        for flow, values in zip(flows, logarithms, strict=True)
+    )
+    discs = np.array([flow.count * len(flow.rates) for flow in flows])
+    return np.sqrt(scatter / freedom / discs), freedom
+
+
+def _fit(width: np.ndarray, rate: np.ndarray, error: np.ndarray, freedom: int) -> dict:
+    """rate = amplitude (width - offset)^exponent, fitted to the logarithms with their errors: with the
+    exponent as a parameter, and with that of Beverloo's law (beverloo_amplitude, beverloo_offset and the
+    chi_square of this fit). The offset is not negative."""
+    from scipy.optimize import curve_fit
+
+    def law(
+        width: np.ndarray, amplitude: float, offset: float, exponent: float = DISCHARGE_EXPONENT
+    ) -> np.ndarray:
+        return np.log(amplitude) + exponent * np.log(width - offset)
+
+    start = (rate[-1] / width[-1] ** DISCHARGE_EXPONENT, 0.5 * width.min(), DISCHARGE_EXPONENT)
+    bounds = ((0.0, 0.0, 0.0), (np.inf, 0.95 * width.min(), 2.0 * DISCHARGE_EXPONENT))
+    data = (width, np.log(rate))
+    fixed, _ = curve_fit(
+        lambda width, amplitude, offset: law(width, amplitude, offset),
+        *data, start[:2], error, True, bounds=(bounds[0][:2], bounds[1][:2]),
+    )  # fmt: skip
+    free, covariance = curve_fit(law, *data, start, error, True, bounds=bounds)
+    errors = np.sqrt(np.diag(covariance))
+    deviations = (np.log(rate) - law(width, *fixed)) / error
+    names = ("amplitude", "offset", "exponent")
+    found = {name: ((), value) for name, value in zip(names, free, strict=True)}
+    found |= {f"{name}_error": ((), value) for name, value in zip(names, errors, strict=True)}
+    return found | {
+        "exponent_freedom": ((), freedom),
+        "beverloo_amplitude": ((), fixed[0]),
+        "beverloo_offset": ((), fixed[1]),
+        "chi_square": ((), float((deviations**2).sum())),
+    }

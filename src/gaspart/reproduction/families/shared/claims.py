@@ -1,0 +1,42 @@
+"""Parts of claims that several modules share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gaspart.reproduction.claims import Claim, Estimate
+
+SOURCE_A, SOURCE_C = "Frederickx & Meerts 2010", "Spencer 2022"
+OTHER_MACHINE = "on this machine, and by this program, tests and boxes have other relative costs"
+"""Why an optimum that source A reports need not be the one found here."""
+PARTICLES = {2: "discs", 3: "spheres"}
+"""Names of the particles in each dimension."""
+MODE_COUPLING = "hydrodynamic modes of the container, transport coefficients Enskog's (gaspart.theory.modes)"
+
+
+def is_source(experiment: str) -> bool:
+    """Whether the experiment, by its name, is source C's own scene."""
+    return experiment.endswith("_source")
+
+
+def rows(dataset: xr.Dataset, dimension: str) -> list[xr.Dataset]:
+    """The dataset at each position along `dimension`; an empty list if it has no such dimension."""
+    return [dataset.isel({dimension: position}) for position in range(dataset.sizes.get(dimension, 0))]
+
+
+def deviations(dataset: xr.Dataset, measured: str, expected: str | float) -> np.ndarray:
+    """measured - expected of two variables of one dimension, or of one and an exact number, in the standard
+    deviations of their difference (see `Estimate.of` and `Estimate.deviation`)."""
+    differences = []
+    for at in rows(dataset, str(dataset[measured].dims[0])):
+        stated = Estimate.of(at, expected) if isinstance(expected, str) else Estimate(expected)
+        differences.append(Estimate.of(at, measured) - stated)
+    return np.array([difference.deviation for difference in differences])
+
+
+def exponent(what: str, dataset: xr.Dataset, name: str = "exponent", **others: Any) -> Claim:
+    """The exponent `name` of a dataset lies in a band. others: as of `Claim.within`."""
+    return Claim.within(claim=f"exponent of the {what}", measured=Estimate.of(dataset, name), **others)

@@ -1,0 +1,34 @@
+"""The time correlations that a point's runs have accumulated, in reduced units."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from gaspart.analysis.correlations import Curves, accumulated
+from gaspart.errors import SceneError
+from gaspart.reproduction.points import grid
+from gaspart.trajectory.run import open_trajectory
+
+
+def reduced_curves(point: grid.Point, path: str, longest: float) -> Curves:
+    """The curves of one replica, to the lag `longest` (reduced time) or to the last one that it has.
+
+    The particles' diameter, mass and temperature are 1: the temperature 2 E' / (d (N - 1)) is the replica's
+    own, E' the energy about the centre of mass. One species. Raises SceneError for a point without `lags`.
+    """
+    if "lags" not in point.settings:
+        raise SceneError(f"experiments.{point.experiment}.lags", None, "is required")
+    count, radius, _ = grid.extents(point)
+    with open_trajectory(path) as trajectory:
+        curves = accumulated(trajectory)
+    thermal_speed, diameter = math.sqrt(curves.correlation[0] * count / (count - 1)), 2.0 * radius
+    interval = curves.time[1] * thermal_speed / diameter
+    lags = min(len(curves.time), math.ceil(longest / interval) + 1)
+    return Curves(
+        interval * np.arange(lags),
+        curves.msd[:lags] / diameter**2,
+        curves.correlation[:lags] / thermal_speed**2,
+        curves.running[:lags] / (diameter * thermal_speed),
+    )

@@ -1,0 +1,153 @@
+"""Claims about speeds: kinetic theory during relaxation, Maxwell's distribution in equilibrium."""
+
+from __future__ import annotations
+
+import xarray as xr
+
+from gaspart import theory
+from gaspart.reproduction.claims import Claim, Estimate
+from gaspart.reproduction.families.shared.claims import rows
+from gaspart.theory.speeds import RELAXATION_UNCERTAINTY, Relaxation
+
+ENGINES = {"step": "time-stepped", "event": "event-driven"}
+BOLTZMANN = "homogeneous Boltzmann equation from equal speeds (gaspart.theory.homogeneous)"
+MONTE_CARLO = "statistical error of the Monte Carlo solution"
+MAXWELL = "Maxwell's distribution (exact)"
+KOLMOGOROV_LIMIT, KOLMOGOROV_SCATTER = 1.818, 0.26
+"""sqrt(n) times the Kolmogorov distance is above 1.818 with probability 0.0027, and scatters by 0.26."""
+
+
+def speed_relaxation(ds: xr.Dataset) -> list[Claim]:
+    """Kurtosis, never-hit fraction and collisions at each time of source A's figure 11, for each engine."""
+    dimension, rate = ds.attrs["dimension"], ds.attrs["collision_rate"]
+    relaxation = theory.relaxation(dimension)
+    claims = []
+    for run in rows(ds, "engine"):
+        by = f"{ENGINES[run['engine'].item()]} engine"
+        for frame in ds["shown"].values:
+            claims += _frame(run.isel(frame=int(frame)), by, relaxation)
+        claims += [
+            _collisions(run.isel(frame=-1), by, relaxation, rate),
+            Claim(
+                claim=f"initial slope of the kurtosis per collision and particle ({by})",
+                measured=Estimate.of(run, "initial_slope"),
+                expected=theory.initial_kurtosis_slope(dimension),
+                required=0.015,
+                source="Boltzmann's collision integral (exact)",
+                fails_if="the first collisions do not scatter as hard spheres do",
+            ),
+            Claim.at_most(
+                claim=f"relative drift of the energy ({by})",
+                kind="identity",
+                measured=Estimate(run["temperature_drift"].max()),
+                bound=1e-12,
+                required=1e-12,
+                source="elastic collisions (exact)",
+                fails_if="an impulse that is not elastic to rounding",
+            ),
+        ]
+    return claims
+
+
+def _frame(row: xr.Dataset, by: str, relaxation: Relaxation) -> list[Claim]:
+    """At one time. The scatter of the runs includes that of the collisions."""
+    collisions = float(row["collisions"])
+    when = f"at t = {float(row['time']):g} ({by})"
+    return [
+        Claim(
+            claim=f"kurtosis of the speeds {when}",
+            measured=Estimate.of(row, "kurtosis"),
+            expected=Estimate(relaxation.kurtosis(collisions), RELAXATION_UNCERTAINTY),
+            required=0.01,
+            source=BOLTZMANN,
+            allowance_source=MONTE_CARLO,
+            fails_if="collisions that do not scatter isotropically, or a wrong count of them",
+        ),
+        Claim(
+            claim=f"fraction of particles never hit {when}",
+            measured=Estimate.of(row, "never_hit"),
+            expected=Estimate(relaxation.never_hit(collisions), RELAXATION_UNCERTAINTY),
+            required=0.005,
+            source=BOLTZMANN,
+            allowance_source=MONTE_CARLO,
+            fails_if="collisions that prefer some particles, or a wall that changes a speed",
+        ),
+    ]
+
+
+def _collisions(last: xr.Dataset, by: str, relaxation: Relaxation, rate: float) -> Claim:
+    time = float(last["time"])
+    return Claim(
+        claim=f"collisions per particle until t = {time:g} ({by})",
+        measured=Estimate.of(last, "collisions"),
+        expected=Estimate(relaxation.collisions(rate * time), 3.0 * RELAXATION_UNCERTAINTY),
+        required=0.03,
+        source="Enskog's rate during relaxation, between walls (exact at low density)",
+        allowance_source=MONTE_CARLO,
+        fails_if="contacts missed or counted twice; 1.2 % of them would be missed if the walls' effect were "
+        "ignored",
+    )
+
+
+def speed_distribution_spheres(ds: xr.Dataset) -> list[Claim]:
+    """Maxwell's distribution at each packing fraction, in 3D."""
+    return distribution(ds)
+
+
+def speed_distribution_discs(ds: xr.Dataset) -> list[Claim]:
+    """Maxwell's distribution in 2D."""
+    return distribution(ds)
+
+
+def distribution(ds: xr.Dataset) -> list[Claim]:
+    """Chi-square, Kolmogorov's distance, kurtosis and temperature of every point."""
+    return [claim for row in rows(ds, "point") for claim in _equilibrium(row, ds.attrs["dimension"])]
+
+
+def _equilibrium(row: xr.Dataset, dimension: int) -> list[Claim]:
+    at = f"at packing fraction {float(row['packing_fraction']):.3g}"
+    samples, count = int(row["samples"]), int(row["count"])
+    kurtosis, temperature = theory.kurtosis(dimension, count), float(row["given_temperature"])
+    return [
+        Claim.chi_square(
+            claim=f"chi-square of {samples} speeds against Maxwell's distribution, {at}",
+            chi_square=float(row["chi_square"]),
+            degrees_of_freedom=int(row["degrees_of_freedom"]),
+            source=MAXWELL,
+            fails_if="speeds that are not Maxwell's, or snapshots that are not independent",
+        ),
+        Claim.at_most(
+            claim=f"Kolmogorov distance times sqrt(samples), {at}",
+            measured=Estimate(float(row["kolmogorov_distance"]) * samples**0.5, KOLMOGOROV_SCATTER),
+            bound=KOLMOGOROV_LIMIT,
+            required=KOLMOGOROV_SCATTER,
+            source=MAXWELL,
+            fails_if="a cumulative distribution that deviates from Maxwell's anywhere",
+        ),
+        Claim(
+            claim=f"kurtosis of the speeds, {at}",
+            measured=Estimate.of(row, "kurtosis"),
+            expected=kurtosis,
+            required=0.01 * kurtosis,
+            source=f"Maxwell's, at fixed energy and {count} particles (exact)",
+            fails_if="a tail too heavy or too light: not yet in equilibrium",
+        ),
+        Claim(
+            claim=f"temperature <v^2>/{dimension}, {at}",
+            kind="identity",
+            measured=Estimate(row["temperature"], 1e-12 * temperature),
+            expected=temperature,
+            required=1e-9 * temperature,
+            source="conservation of energy (exact)",
+            fails_if="energy is not conserved to rounding",
+        ),
+        Claim.at_least(
+            claim=f"collisions per particle between snapshots, {at}",
+            kind="identity",
+            measured=Estimate(row["collisions_between"]),
+            bound=3.0,
+            required=1.0,
+            source="independent samples are 3 or more collisions per particle apart",
+            fails_if="snapshots taken too close for a chi-square test",
+        ),
+    ]

@@ -1,0 +1,299 @@
+"""Speeds of the particles: relaxation from equal speeds, and the distribution in equilibrium.
+
+Speeds are given as u = v / sqrt(<v^2>), root-mean-square speed 1: at fixed energy that is the unit of the
+sources (all speeds 1 at first, temperature 1/d). Collisions per particle are s = 2 N_collisions / N, counted.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from gaspart import theory
+from gaspart.analysis.statistics import histogram_chi_square, mean_of
+from gaspart.errors import SceneError
+from gaspart.reproduction.families.shared.rows import from_rows
+from gaspart.reproduction.points import grid
+from gaspart.scene.scene import Scene
+from gaspart.trajectory.run import open_trajectory
+
+
+@dataclass(frozen=True)
+class Run:
+    """One replica. Frames are those kept; T frames, N particles, d axes.
+
+    time (T,); collisions (T,), per particle since the start; velocities (T, N, d), single precision as
+    stored; first (N, d), the velocities at time 0; temperature (T,), 2 E / (d N) from the energy in double
+    precision.
+    """
+
+    time: np.ndarray
+    collisions: np.ndarray
+    velocities: np.ndarray
+    first: np.ndarray
+    temperature: np.ndarray
+
+    @property
+    def speeds(self) -> np.ndarray:
+        """(T, N) speeds over the root-mean-square speed, in double precision."""
+        square = np.einsum("tnd,tnd->tn", self.velocities, self.velocities, dtype=float)
+        return np.sqrt(square / square.mean(axis=1, keepdims=True))
+
+
+def runs(point: grid.Point, drop: int) -> list[Run]:
+    """The replicas of a point without their first `drop` frames."""
+    dimension = point.settings["dimension"]
+    found = []
+    for path in point.replica_paths:
+        with open_trajectory(path) as dataset:
+            velocities = dataset["velocities"].values[:, :, :dimension]
+            count = velocities.shape[1]
+            found.append(
+                Run(
+                    time=dataset["time"].values[drop:].astype(float),
+                    collisions=2.0 * dataset["collisions"].values[drop:] / count,
+                    velocities=velocities[drop:],
+                    first=velocities[0],
+                    temperature=2.0 * dataset["kinetic_energy"].values[drop:] / (dimension * count),
+                )
+            )
+    return found
+
+
+def kurtosis(speeds: np.ndarray) -> np.ndarray:
+    """<u^4> / <u^2>^2 over the last axis (exact definition); 1 for equal speeds."""
+    square = speeds**2
+    return (square**2).mean(axis=-1) / square.mean(axis=-1) ** 2
+
+
+def never_hit(velocities: np.ndarray, first: np.ndarray) -> np.ndarray:
+    """(T,) fraction of particles that no other particle has hit.
+
+    A wall only reverses the sign of a component, so |v_k| of such a particle keeps its bits in every
+    component; a collision changes them all (but for exceptions of probability 0).
+    """
+    return (np.abs(velocities) == np.abs(first)).all(axis=-1).mean(axis=-1)
+
+
+def shared_error(samples: list[np.ndarray]) -> list[np.ndarray]:
+    """Standard errors of the means over axis 0 of groups of runs of the same physics, (R_g, ...) each.
+
+    The groups are assumed to have the same scatter, which is estimated from all of them about their own
+    means: a group of few runs has no good estimate of its own. Needs more runs than groups.
+    """
+    freedom = sum(len(group) for group in samples) - len(samples)
+    if freedom < 1:
+        raise ValueError(f"samples: {len(samples)} groups (at least one must have two runs)")
+    squares = sum(((group - group.mean(axis=0)) ** 2).sum(axis=0) for group in samples)
+    return [np.sqrt(squares / freedom / len(group)) for group in samples]
+
+
+def speed_relaxation(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Kurtosis, fraction never hit and histogram during relaxation from equal speeds to Maxwell's
+    distribution.
+
+    One point for each engine, of the same scene and sampling. settings: `times`, those of the histograms
+    (each must be a sampled one), `bins` of the histograms up to speed `highest` (over root-mean-square).
+
+    Dimensions engine, frame, snapshot, bin. Errors are those of the mean over replicas, from the scatter of
+    all runs, with their degrees of freedom. Raises SceneError if the points differ or a time is not sampled.
+    """
+    dimension = points[0].settings["dimension"]
+    groups = [runs(point, drop=0) for point in points]
+    scene = grid.scene(points[0])
+    time = groups[0][0].time
+    _require_alike(points, groups)
+    shown = np.array([_frame_at(time, chosen) for chosen in settings["times"]])
+    edges = np.linspace(0.0, settings["highest"], settings["bins"] + 1)
+
+    dataset = xr.Dataset(
+        coords={
+            "engine": [point.settings.get("engine", "event") for point in points],
+            "time": ("frame", time, {"units": "scene time"}),
+            "shown": ("snapshot", shown, {"units": "1", "long_name": "frame of each histogram"}),
+            "lower": ("bin", edges[:-1], {"units": "root-mean-square speed"}),
+            "upper": ("bin", edges[1:], {"units": "root-mean-square speed"}),
+        },
+        attrs={
+            "dimension": dimension,
+            "count": scene.count,
+            "packing_fraction": scene.packing_fraction,
+            "collision_rate": _rate_between_walls(scene, groups[0][0].temperature[0]),
+        },
+    )
+    freedom = sum(len(group) - 1 for group in groups)
+    measures = {
+        "collisions": lambda run: run.collisions,
+        "kurtosis": lambda run: kurtosis(run.speeds),
+        "never_hit": lambda run: never_hit(run.velocities, run.first),
+        "density": lambda run: np.stack([_density(speeds, edges) for speeds in run.speeds[shown]]),
+        "temperature_drift": lambda run: np.abs(run.temperature / run.temperature[0] - 1.0),
+    }
+    for name, function in measures.items():
+        samples = [np.stack([function(run) for run in group]) for group in groups]
+        axes = ("engine", "snapshot", "bin") if name == "density" else ("engine", "frame")
+        units = {"units": "1"}
+        dataset[name] = (axes, np.stack([group.mean(axis=0) for group in samples]), units)
+        dataset[f"{name}_error"] = (axes, np.stack(shared_error(samples)), units)
+        dataset[f"{name}_freedom"] = freedom
+    slopes = [
+        np.array([_initial_slope(run.collisions, kurtosis(run.speeds)) for run in group]) for group in groups
+    ]
+    dataset["initial_slope"] = ("engine", np.array([values.mean() for values in slopes]), {"units": "1"})
+    dataset["initial_slope_error"] = ("engine", np.array(shared_error(slopes)), {"units": "1"})
+    dataset["initial_slope_freedom"] = freedom
+    dataset["replicas"] = ("engine", np.array([len(group) for group in groups]), {"units": "1"})
+    return dataset
+
+
+def _require_alike(points: list[grid.Point], groups: list[list]) -> None:
+    """Raise SceneError unless all points, with a group of runs each, have the first's scene and times."""
+    scene, time = grid.scene(points[0]), groups[0][0].time
+    for point, group in zip(points, groups, strict=True):
+        if grid.scene(point) != scene or any(
+            run.time.shape != time.shape or not np.allclose(run.time, time) for run in group
+        ):
+            raise SceneError(
+                f"experiments.{point.experiment}", point.name, "must be the others' scene and times"
+            )
+
+
+def _rate_between_walls(scene: Scene, temperature: float) -> float:
+    """Collisions per particle and time of a dilute gas whose centres are confined to the container.
+
+    Enskog's rate times (N - 1) / N, as a particle has N - 1 partners, and times the chance that the other
+    particle of a contact, at distance sigma in the direction n, lies within the walls too: the mean over n of
+    prod_k (1 - sigma |n_k| / L_k) to first order in sigma / L, with <|n_k|> = 1/2 in 3D, 2/pi in 2D. Exact to
+    that order for a dilute gas, whose density is uniform up to the walls.
+    """
+    diameter = 2.0 * scene.largest_radius
+    accessible = [upper - lower for lower, upper in zip(*scene.reach(scene.largest_radius), strict=True)]
+    fraction = float(scene.packing_fraction * np.prod(scene.container.lengths) / np.prod(accessible))
+    mean_cosine = {2: 2.0 / np.pi, 3: 0.5}[scene.dimension]
+    share = 1.0 - mean_cosine * sum(
+        diameter / length
+        for length, periodic in zip(accessible, scene.container.periodic, strict=True)
+        if not periodic
+    )
+    share *= (scene.count - 1) / scene.count
+    return float(theory.collision_rate(fraction, scene.dimension, diameter, temperature) * share)
+
+
+def _frame_at(time: np.ndarray, chosen: float) -> int:
+    frame = int(np.argmin(np.abs(time - chosen)))
+    if abs(time[frame] - chosen) > 1e-6 * max(1.0, abs(chosen)):
+        raise SceneError("figures.speed_relaxation.times", chosen, "must be a sampled time")
+    return frame
+
+
+def _density(speeds: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Fraction of the speeds per bin and width; those beyond the last edge count in the norm."""
+    return np.histogram(speeds, edges)[0] / speeds.size / np.diff(edges)
+
+
+def _initial_slope(s: np.ndarray, values: np.ndarray) -> float:
+    """dK/ds at s = 0 of the cubic through K(0) = 1 and, by least squares, the frames up to s = 1.5."""
+    early = (s > 0.0) & (s <= 1.5)
+    design = s[early, None] ** np.arange(1, 4)
+    return float(np.linalg.lstsq(design, values[early] - 1.0, rcond=None)[0][0])
+
+
+def speed_distribution_spheres(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Maxwell's distribution in 3D; see `distribution`."""
+    return distribution(points, settings)
+
+
+def speed_distribution_discs(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Maxwell's distribution in 2D; see `distribution`."""
+    return distribution(points, settings)
+
+
+def distribution(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Speeds in equilibrium, of all snapshots and replicas, against Maxwell's distribution without a fit.
+
+    Snapshots are the frames after equilibration; how many collisions per particle lie between them is in
+    `collisions_between` (they are independent samples from about 3 on). settings: `bins` of the histogram
+    up to speed `highest` (over root-mean-square), `classes` of equal probability for chi-square.
+
+    Fluctuations of the kurtosis decay like its mean, exp(-rate s): what successive snapshots still share at
+    that spacing is in the kurtosis' error.
+
+    Dimensions point, bin, step (of the cumulative distribution). The temperature is that of the conserved
+    energy, so <u^2> = 1 exactly in every snapshot, which takes one degree of freedom from chi-square.
+    """
+    dimension = points[0].settings["dimension"]
+    edges = np.linspace(0.0, settings["highest"], settings["bins"] + 1)
+    steps = np.linspace(0.0, settings["highest"], 201)
+    rows = [_distribution(point, dimension, edges, steps, settings["classes"]) for point in points]
+    inner = {**dict.fromkeys(("density", "expected", "residual"), ("bin",)), "difference": ("step",)}
+    dataset = from_rows("point", rows, inner, units={}).assign_coords(
+        lower=("bin", edges[:-1], {"units": "root-mean-square speed"}),
+        upper=("bin", edges[1:], {"units": "root-mean-square speed"}),
+        speed=("step", steps, {"units": "root-mean-square speed"}),
+    )
+    return dataset.assign_attrs(dimension=dimension)
+
+
+def _distribution(
+    point: grid.Point, dimension: int, edges: np.ndarray, steps: np.ndarray, classes: int
+) -> dict:
+    """The numbers of one point. Speeds are over the root-mean-square speed: Maxwell's temperature is 1/d."""
+    temperature = 1.0 / dimension
+    found = runs(point, drop=grid.schedule(point).equilibration_frames)
+    speeds = np.concatenate([run.speeds.ravel() for run in found])
+    cumulative = lambda u: theory.maxwell_cdf(u, dimension, temperature)  # noqa: E731
+    chance = np.diff(cumulative(edges))
+    share = np.histogram(speeds, edges)[0] / speeds.size
+    width = np.diff(edges)
+    deviation = np.sqrt(chance * (1.0 - chance) / speeds.size)
+    test = histogram_chi_square(speeds, cumulative, classes)
+    ordered = np.sort(speeds)
+    fourth = mean_of(np.concatenate([kurtosis(run.speeds) for run in found]))
+    between = min(float(np.diff(run.collisions).min()) for run in found)
+    memory = np.exp(-theory.KURTOSIS_RELAXATION_RATE[dimension] * between)
+    energy = np.concatenate([run.temperature for run in found])
+    scene = grid.scene(point)
+    return {
+        "density": share / width,
+        "density_error": deviation / width,
+        "expected": chance / width,
+        "residual": (share - chance) / deviation,
+        "difference": np.searchsorted(ordered, steps, side="right") / speeds.size - cumulative(steps),
+        "kolmogorov_distance": _kolmogorov_distance(cumulative(ordered)),
+        "chi_square": test.chi_square,
+        "degrees_of_freedom": test.degrees_of_freedom - 1,
+        "kurtosis": fourth.value,
+        "kurtosis_error": fourth.error * np.sqrt((1.0 + memory) / (1.0 - memory)),
+        "samples": speeds.size,
+        "snapshots": sum(len(run.time) for run in found),
+        "replicas": len(found),
+        "temperature": float(energy.mean()),
+        "temperature_spread": float(np.ptp(energy)),
+        "given_temperature": _given_temperature(point),
+        "collisions_before": min(float(run.collisions[0]) for run in found),
+        "collisions_between": between,
+        "collisions_in_all": float(np.mean([run.collisions[-1] for run in found])),
+        "engine": point.settings.get("engine", "event"),
+        "count": scene.count,
+        "packing_fraction": scene.packing_fraction,
+    }
+
+
+def _given_temperature(point: grid.Point) -> float:
+    """m v^2 / d of the speed that all particles were given."""
+    settings = point.settings
+    if "speed" not in settings:
+        raise SceneError(
+            f"experiments.{point.experiment}.speed", None, "is required: all particles start with it"
+        )
+    return settings.get("mass", 1.0) * settings["speed"] ** 2 / settings["dimension"]
+
+
+def _kolmogorov_distance(cumulative: np.ndarray) -> float:
+    """Largest |empirical - theoretical| cumulative probability; `cumulative`: the latter at the samples."""
+    count = len(cumulative)
+    above = np.arange(1, count + 1) / count - cumulative
+    below = cumulative - np.arange(count) / count
+    return float(max(above.max(), below.max()))

@@ -1,0 +1,272 @@
+"""The cost of accuracy: errors and costs of the time-stepped engine relative to the event-driven one.
+
+Errors are those of the job `compare` and costs those of the job `measure_cost`, of the same gases and
+settings. The diffusion coefficient is that of Enskog's theory, kT / m over the rate at which a particle
+forgets its velocity, taken from the memory after about one collision per particle.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from gaspart import theory
+from gaspart.analysis import statistics
+from gaspart.analysis.estimate import Estimate
+from gaspart.reproduction.families.shared.accuracy import (
+    add_costs,
+    costs,
+    errors,
+    setting_name,
+)
+from gaspart.reproduction.families.shared.pressure import pressure
+from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.points import grid
+from gaspart.tradeoff import table
+from gaspart.tradeoff.table import EQUILIBRATION, LEAST, PRECISIONS, QUANTILE, REFERENCE, STEP
+
+OBSERVABLES = ("collision_rate", "Z", "D")
+SEEN = 3.5
+"""An error counts as seen, in fits of its order, if it is so many standard errors from 0."""
+FITTED = 3
+"""Errors that a fit of their order needs at least: two have an order whatever their law, also where an error
+changes its sign."""
+
+
+def speed_accuracy(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Errors and costs over the time steps of each gas and setting.
+
+    points: `compare` jobs; `measure_cost` jobs of both engines; and runs of the time-stepped engine long
+    enough to see its errors in its steady state. settings: ``order_up_to``, the largest error that the fits
+    of the order take; ``accuracies`` of the frontier.
+
+    Over (``row``, ``step``), NaN beyond a row's own: ``time_step``; ``bias`` and ``bias_error`` (also over
+    ``observable``), relative to the exact run, an error being that of the snapshots and at least that of one
+    contact; ``missed``, ``made_up`` as parts of all contacts; ``energy_drift``, ``deepest_overlap`` (worst);
+    ``seconds`` (processor time per exact collision, with ``seconds_error``) and ``pair_tests`` (per exact
+    collision), NaN where not timed. Over ``row``: ``dimension``, ``packing_fraction``, ``setting``,
+    ``contacts`` (of the exact runs), ``event_seconds`` with its error. Over (``row``, ``observable``):
+    ``order`` of the error in the time step, with ``order_error`` (NaN without `FITTED` errors of one sign).
+    Over (``gas``, ``observable``, ``accuracy``): see `frontier`. Over ``steady``: gas and setting of long
+    runs, and ``build_up`` with error, the relative error of their Z minus that of the paired runs. Over
+    ``timed``, all gases in which the event-driven engine was timed: ``timed_dimension``,
+    ``timed_packing_fraction``, ``timed_seconds`` (per collision) with its error.
+    """
+    rows = [errors(point) for point in points if point.job == "compare"]
+    rows = sorted(rows, key=lambda row: (-row["dimension"], row["packing_fraction"]))
+    timed = [costs(point) for point in points if point.job == "measure_cost"]
+    for row in rows:
+        add_costs(row, timed)
+    inner = {name: ("observable", "step")[2 - np.ndim(value) :] for name, value in rows[0].items()}
+    dataset = from_rows("row", rows, inner).assign_coords(
+        observable=list(OBSERVABLES), accuracy=settings["accuracies"]
+    )
+    orders = np.array([_orders(row, settings["order_up_to"]) for row in rows])
+    dataset["order"] = (("row", "observable"), orders[..., 0])
+    dataset["order_error"] = (("row", "observable"), orders[..., 1])
+    steady = [_steady(point, rows) for point in points if point.job == "simulate"]
+    dataset = dataset.assign(from_rows("steady", steady)).merge(frontier(dataset))
+    return dataset.assign(from_rows("timed", [_timed(one) for one in timed if one["setting"] == "event"]))
+
+
+def frontier(dataset: xr.Dataset) -> xr.Dataset:
+    """The cheapest time-stepped setting whose error, with two standard errors of it, is within each accuracy;
+    and with what is known to build up over many steps.
+
+    Over ``gas``: ``gas_dimension``, ``gas_packing_fraction``. Over (``gas``, ``observable``, ``accuracy``):
+    ``best_seconds`` per exact collision (NaN if none is known to reach it), ``best_ratio`` of it to the
+    event-driven engine's with ``best_ratio_error``, ``best_step``, ``best_setting``.
+    """
+    gases = list(dict.fromkeys(zip(dataset.dimension.values, dataset.packing_fraction.values, strict=True)))
+    shape = (len(gases), dataset.sizes["observable"], dataset.sizes["accuracy"])
+    found = {name: np.full(shape, np.nan) for name in ("seconds", "ratio", "ratio_error", "step")}
+    chosen = np.full(shape, "none", dtype=object)
+    for g, (dimension, fraction) in enumerate(gases):
+        of = dataset.isel(
+            row=np.flatnonzero((dataset.dimension == dimension) & (dataset.packing_fraction == fraction))
+        )
+        within = (np.abs(of.bias) + 2.0 * of.bias_error).values
+        built_up = [_built_up(dataset, of.isel(row=k)) for k in range(of.sizes["row"])]
+        within[:, OBSERVABLES.index("Z")] += np.array(built_up)[:, None]
+        cost = of.seconds.values
+        for o in range(shape[1]):
+            for a, accuracy in enumerate(dataset.accuracy.values):
+                fit = np.where((within[:, o] <= accuracy) & np.isfinite(cost), cost, np.inf)
+                best = np.unravel_index(np.argmin(fit), fit.shape)
+                if not np.isfinite(fit[best]):
+                    continue
+                event, event_error = (float(of[name][best[0]]) for name in ("event_seconds", "event_error"))
+                ratio = cost[best] / event
+                spread = np.hypot(float(of.seconds_error.values[best]) / cost[best], event_error / event)
+                values = (cost[best], ratio, ratio * spread, float(of.time_step.values[best]))
+                for name, value in zip(found, values, strict=True):
+                    found[name][g, o, a] = value
+                chosen[g, o, a] = str(of.setting.values[best[0]])
+    axes = ("gas", "observable", "accuracy")
+    return xr.Dataset(
+        {f"best_{name}": (axes, values) for name, values in found.items()}
+        | {
+            "best_setting": (axes, chosen.astype(str)),
+            "gas_dimension": ("gas", [int(dimension) for dimension, _ in gases]),
+            "gas_packing_fraction": ("gas", [float(fraction) for _, fraction in gases]),
+        }
+    )
+
+
+def time_to_accuracy(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """The cost of a required accuracy in gases that the model was not fitted to, measured and by the model.
+
+    points: as for `speed_accuracy`, of gases that are not in the model's table; and timings of its reference
+    gas, which scale the table's times to this machine. settings: ``counts`` of particles, ``accuracies``.
+
+    Over (``gas``, ``observable``, ``count``, ``accuracy``, ``engine``): ``measured`` and ``model``, processor
+    time in s of the cheapest setting (see `gaspart.tradeoff.advice`), NaN where there is none. Without
+    ``engine``: ``regret``, measured cost of the setting that the model picks over that of the measured best,
+    with ``regret_error`` from the timings.
+    """
+    timed = [costs(point) for point in points if point.job == "measure_cost"]
+    rows = [errors(point) for point in points if point.job == "compare"]
+    for row in rows:
+        add_costs(row, timed)
+    speeds = _speeds(timed)
+    gases = sorted({(row["dimension"], row["packing_fraction"]) for row in rows})
+    shape = (len(gases), len(OBSERVABLES), len(settings["counts"]), len(settings["accuracies"]))
+    measured, model = np.full((*shape, 2), np.nan), np.full((*shape, 2), np.nan)
+    regret, error = np.full(shape, np.nan), np.full(shape, np.nan)
+    for g, o, c, a in np.ndindex(shape):
+        choices = _total_costs(
+            [row for row in rows if (row["dimension"], row["packing_fraction"]) == gases[g]],
+            o, settings["counts"][c], settings["accuracies"][a], speeds,
+        )  # fmt: skip
+        for e in range(2):
+            of = choices[choices[:, 0] == e]
+            if of.size:
+                measured[g, o, c, a, e], model[g, o, c, a, e] = of[:, 1].min(), of[:, 2].min()
+        if choices.size and np.isfinite(choices[:, 2].min()):
+            picked = choices[np.argmin(choices[:, 2])]
+            regret[g, o, c, a] = picked[1] / choices[:, 1].min()
+            error[g, o, c, a] = picked[3] * regret[g, o, c, a]
+    axes = ("gas", "observable", "count", "accuracy")
+    return xr.Dataset(
+        {
+            "measured": (
+                (*axes, "engine"),
+                np.where(np.isfinite(measured), measured, np.nan),
+                {"units": "s"},
+            ),
+            "model": ((*axes, "engine"), np.where(np.isfinite(model), model, np.nan), {"units": "s"}),
+            "regret": (axes, regret),
+            "regret_error": (axes, error),
+            "gas_dimension": ("gas", [dimension for dimension, _ in gases]),
+            "gas_packing_fraction": ("gas", [fraction for _, fraction in gases]),
+        },
+        coords={
+            "observable": list(OBSERVABLES),
+            "count": settings["counts"],
+            "accuracy": settings["accuracies"],
+            "engine": ["event", "step"],
+        },
+    )
+
+
+def _speeds(timed: list[dict]) -> dict[tuple[str, str], float]:
+    """Time of this machine over the table's, for each engine and precision, from the reference gas."""
+    found = {}
+    for one in timed:
+        if one["gas"] != (3, REFERENCE) or one["setting"] not in ("event", *PRECISIONS):
+            continue
+        engine = "event" if one["setting"] == "event" else "step"
+        precision = PRECISIONS.get(one["setting"], "float64")
+        at = 0 if engine == "event" else int(np.argmin(np.abs(one["time_step"] - STEP)))
+        event = next(other for other in timed if other["gas"] == one["gas"] and other["setting"] == "event")
+        here = one["seconds"][at] / event["collisions"][0]
+        found[engine, precision] = here / table.seconds(
+            3, REFERENCE, engine, precision, STEP * (engine == "step")
+        )
+    return found
+
+
+def _total_costs(rows: list[dict], observable: int, count: int, accuracy: float, speeds: dict) -> np.ndarray:
+    """(settings, 4): 0 for the event-driven engine or 1, measured cost, the model's, relative error of the
+    first; inf for a setting that does not reach the accuracy."""
+    dimension, fraction = rows[0]["dimension"], rows[0]["packing_fraction"]
+    name = OBSERVABLES[observable]
+    noise = table.noise(dimension, fraction, name)
+
+    def cost(bias: float, each: float) -> float:
+        room = (accuracy - bias) / QUANTILE
+        if room <= 0.0 or not np.isfinite(each):
+            return np.inf
+        return (max(noise / room**2, 0.5 * count * LEAST) + 0.5 * count * EQUILIBRATION) * each
+
+    known = table.seconds(dimension, fraction, "event") * speeds["event", "float64"]
+    event = rows[0]["event_seconds"]
+    found = [(0, cost(0.0, event), cost(0.0, known), rows[0]["event_error"] / event)]
+    for row in rows:
+        precision = PRECISIONS[row["setting"]]
+        bounds = np.abs(row["bias"][observable]) + 2.0 * row["bias_error"][observable]
+        for n, step in enumerate(row["time_step"]):
+            each = table.seconds(dimension, fraction, "step", precision, step) * speeds["step", precision]
+            bias = table.bias(dimension, fraction, precision, step, name)
+            spread = row["seconds_error"][n] / row["seconds"][n]
+            found.append((1, cost(bounds[n], row["seconds"][n]), cost(bias, each), spread))
+    return np.array(found)
+
+
+def _orders(row: dict, largest: float) -> list[tuple[float, float]]:
+    """The order of each observable's error in the time step, with its error, scaled by the scatter."""
+    found = []
+    for bias, error in zip(row["bias"], row["bias_error"], strict=True):
+        size = np.abs(bias)
+        seen = (size > SEEN * error) & (size < largest)
+        if seen.sum() < FITTED or np.unique(np.sign(bias[seen])).size > 1:
+            found.append((np.nan, np.nan))
+            continue
+        law = statistics.fit_power_law(row["time_step"][seen], size[seen], error[seen])
+        scatter = max(1.0, law.chi_square / max(1, law.degrees_of_freedom)) ** 0.5
+        found.append((law.exponent, law.exponent_error * scatter))
+    return found
+
+
+def _built_up(dataset: xr.Dataset, at: xr.Dataset) -> float:
+    """The largest error of Z of a gas and setting that builds up over many steps, 0 if none is seen."""
+    if "steady" not in dataset.dims:
+        return 0.0
+    same = (
+        (dataset.steady_dimension == at.dimension)
+        & (dataset.steady_packing_fraction == at.packing_fraction)
+        & (dataset.steady_setting == at.setting)
+        & (np.abs(dataset.build_up) > SEEN * dataset.build_up_error)
+    )
+    return float(np.abs(dataset.build_up).where(same, 0.0).max())
+
+
+def _timed(run: dict) -> dict:
+    """The time of a collision of the event-driven engine, in the gas of a timing."""
+    dimension, fraction = run["gas"]
+    return {
+        "timed_dimension": dimension,
+        "timed_packing_fraction": fraction,
+        "timed_seconds": float(run["seconds"][0] / run["collisions"][0]),
+        "timed_error": float(run["error"][0] / run["collisions"][0]),
+    }
+
+
+def _steady(point: grid.Point, rows: list[dict]) -> dict:
+    """The error of Z in a long run of the time-stepped engine, minus that of the paired runs of its gas."""
+    own = point.settings
+    long, fraction, dimension = pressure(point).z, own["packing_fraction"], own["dimension"]
+    name = setting_name(own.get("rewind", True), own.get("passes", 4), own.get("precision", "float64"))
+    gas = (dimension, fraction, name)
+    row = next(row for row in rows if (row["dimension"], row["packing_fraction"], row["setting"]) == gas)
+    at = int(np.argmin(np.abs(row["time_step"] - own["time_step"])))
+    exact = float(theory.compressibility_factor(fraction, dimension))
+    count = grid.extents(point)[0]
+    exact += float(theory.finite_size_correction(fraction, dimension, count, ensemble="canonical"))
+    return {
+        "steady_dimension": dimension,
+        "steady_packing_fraction": fraction,
+        "steady_setting": name,
+        "steady_step": own["time_step"],
+        **entries({"build_up": long / exact - Estimate(1.0 + row["bias"][1, at], row["bias_error"][1, at])}),
+    }

@@ -1,0 +1,81 @@
+"""Steady beds of inelastic discs over a vibrating floor."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gaspart.analysis.statistics import means_of
+from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.points import grid
+from gaspart.scene.faces import Vibrating
+from gaspart.trajectory.run import open_trajectory
+
+_FLOOR = 2  # the number of the face y_low
+
+
+def vibrated_bed(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """Temperature, energy flows and density of vibrated beds of one kind of discs, of mass 1.
+
+    settings: `bins` of the density profile, and `highest`, the height up to which it reaches, over T/g.
+    Returns over `bed`: sine, 1 if the floor is one, 0 for a sawtooth; restitution; layers, (N - 1) d /
+    width; packing_fraction that an ideal gas of the measured temperature has at the floor;
+    speed, that of the sawtooth or the rms speed of the sine; temperature, of both components; given and
+    lost, the energies per time that the floor gives and contacts take, over the weight; height, the mean
+    height above the floor's lowest place times g over the vertical temperature; and over (bed, bin) density,
+    the share of discs in a bin over its width, in units of T/g, at `place`. All with errors from replicas.
+    """
+    edges = _edges(settings)
+    units = {"temperature": "energy", **dict.fromkeys(("speed", "given", "lost"), "length / time")}
+    beds = from_rows("bed", [_bed(point, settings) for point in points], ("bin",), units)
+    return beds.assign_coords(place=("bin", 0.5 * (edges[1:] + edges[:-1])))
+
+
+def _edges(settings: dict) -> np.ndarray:
+    return np.linspace(0.0, settings["highest"], settings["bins"] + 1)
+
+
+def _bed(point: grid.Point, settings: dict) -> dict[str, Any]:
+    scene = grid.scene(point)
+    floor, species, law = scene.faces["y_low"], scene.species[0], scene.restitution
+    assert isinstance(floor, Vibrating) and law is not None and scene.gravity is not None
+    width, sine = scene.container.lengths[0], floor.waveform == "sine"
+    row: dict[str, Any] = {
+        "sine": int(sine),
+        "restitution": law.normal,
+        "layers": (species.count - 1) * 2.0 * species.radius / width,
+        "speed": floor.greatest_speed / math.sqrt(2.0) if sine else floor.greatest_speed,
+    }
+    runs = [read_run(point, path, settings) for path in point.replica_paths]
+    row |= entries({name: means_of([run[name] for run in runs]) for name in runs[0]}, len(runs) - 1)
+    weight = species.count * -scene.gravity[1] / width
+    row["packing_fraction"] = math.pi * species.radius**2 * weight / row["temperature"]
+    return row
+
+
+def read_run(point: grid.Point, path: str, settings: dict) -> dict[str, Any]:
+    """The means of one trajectory without its equilibration, by the names of `vibrated_bed`."""
+    scene, first = grid.scene(point), grid.schedule(point).equilibration_frames
+    assert scene.gravity is not None
+    gravity, radius = -scene.gravity[1], scene.species[0].radius
+    with open_trajectory(path) as trajectory:
+        velocities = trajectory["velocities"].values[first:].astype(float)
+        heights = trajectory["coordinates"].values[first:, :, 1].astype(float) - radius
+        time = trajectory["time"].values[first:]
+        given = -trajectory["wall_energy"].values[first:, _FLOOR]
+        lost = trajectory["dissipated_energy"].values[first:]
+    across, along = (velocities**2).mean(axis=(0, 1))
+    temperature = 0.5 * (across + along)
+    weight = scene.count * gravity * (time[-1] - time[0])
+    edges = _edges(settings)
+    counts, _ = np.histogram(heights * gravity / temperature, edges)
+    return {
+        "temperature": temperature,
+        "given": (given[-1] - given[0]) / weight,
+        "lost": (lost[-1] - lost[0]) / weight,
+        "height": heights.mean() * gravity / along,
+        "density": counts / (heights.size * np.diff(edges)),
+    }

@@ -1,0 +1,91 @@
+"""Pressure from the momentum transferred to the walls of the container.
+
+Everything is in reduced units: the particles' diameter, mass and temperature are 1. Along a periodic axis the
+total momentum is conserved: the temperature is that of the motion about it, k_B T = 2 E' / (d N - p) with p
+periodic axes.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from gaspart import theory
+from gaspart.analysis.statistics import average, correlated_mean
+from gaspart.errors import SceneError
+from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.points import grid
+from gaspart.trajectory.run import open_trajectory
+
+
+def wall_pressure(points: list[grid.Point], settings: dict) -> xr.Dataset:
+    """The pressure on the walls of containers that have them on some or all axes, with theory for each.
+
+    Returns over `point`: pressure with its error, the mean force on a wall over the area that centres can
+    touch; whole_pressure, the same force over the full area of the wall; bulk_pressure, of an infinite fluid
+    with as many particles per volume of the container; expected with its error, theory for this container;
+    density, particles per volume of the container, and packing_fraction; temperature, with force, the
+    pressure in the scene's own units, and its error; hits; count, dimension, axes with walls, length along
+    them. Raises SceneError for containers without walls, or with walled sides of several lengths.
+    """
+    units = {"length": "diameters", "density": "1 / sigma^d", "temperature": "scene's energy"}
+    pressures = ("pressure", "whole_pressure", "bulk_pressure", "expected")
+    units |= dict.fromkeys(pressures, "k_B T / sigma^d")
+    return from_rows("point", [_row(point) for point in points], units=units)
+
+
+def _row(point: grid.Point) -> dict:
+    scene = grid.scene(point)
+    dimension, count, diameter = scene.dimension, scene.count, 2.0 * scene.largest_radius
+    lengths = np.array(scene.container.lengths) / diameter
+    walled = ~np.array(scene.container.periodic)
+    if not walled.any() or np.ptp(lengths[walled]) > 1e-9 * lengths.max():
+        raise SceneError(point.path, scene.container.boundary, "needs walls, all of one distance")
+    touched = np.where(walled, lengths - 1.0, lengths)
+    length, axes = float(lengths[walled][0]), int(walled.sum())
+    expected, expected_error = theory.wall_pressure(length, count / touched.prod(), count, dimension, axes)
+    replicas = [_replica(point, path, walled, diameter) for path in point.replica_paths]
+    # Mean over walls of force over area, per replica: an area is the volume over the length across it.
+    accessible = [(force * touched[walled]).mean(axis=1) / touched.prod() for force, _, _ in replicas]
+    pressure = average([correlated_mean(one).estimate for one in accessible])
+    share = touched.prod() / touched[walled][0] * lengths[walled][0] / lengths.prod()
+    density = count / float(lengths.prod())
+    eta = float(theory.packing_fraction(density, dimension))
+    return {
+        **entries({"pressure": pressure}),
+        "whole_pressure": pressure.value * share,
+        "bulk_pressure": density * float(theory.compressibility_factor(eta, dimension)),
+        "expected": expected,
+        "expected_error": expected_error,
+        "density": density,
+        "packing_fraction": eta,
+        "temperature": float(np.mean([temperature for _, temperature, _ in replicas])),
+        "hits": float(sum(hits for _, _, hits in replicas)),
+        "count": count,
+        "dimension": dimension,
+        "axes": axes,
+        "length": length,
+    }
+
+
+def _replica(
+    point: grid.Point, path: str, walled: np.ndarray, diameter: float
+) -> tuple[np.ndarray, float, int]:
+    """One replica: (samples, w) force on a wall of each walled axis, in reduced units; the temperature in
+    the scene's; the number of hits."""
+    schedule = grid.schedule(point)
+    first, dimension = schedule.equilibration_frames, len(walled)
+    with open_trajectory(path) as trajectory:
+        if trajectory.sizes["frame"] != first + schedule.samples + 1:
+            raise ValueError(f"{path}: {trajectory.sizes['frame']} frames are not those of {point.path}")
+        impulse = np.diff(trajectory["wall_impulse"][first:, : 2 * dimension].values, axis=0)
+        hits = np.diff(trajectory["wall_hits"][first:, : 2 * dimension].values, axis=0).sum()
+        drift = trajectory["velocities"][first].values[:, :dimension].astype(float).mean(axis=0)
+        energy = float(trajectory["kinetic_energy"][first:].mean())
+        count = trajectory.sizes["atom"]
+    drift = np.where(walled, 0.0, drift)
+    mass = grid.scene(point).species[0].mass
+    freedom = dimension * count - int((~walled).sum())
+    temperature = (2.0 * energy - mass * count * float(drift @ drift)) / freedom
+    mean = 0.5 * impulse.reshape(len(impulse), dimension, 2).sum(axis=2)[:, walled]
+    return mean / schedule.sample_interval * diameter / temperature, temperature, hits

@@ -1,0 +1,114 @@
+"""What an absent feature leaves in the machine code of a kernel.
+
+Optional physics is passed to kernels as None, and numba removes the branches on it. Here they are removed
+from the source of the kernels instead, in a copy of the package, and the instructions of both are counted.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from gaspart.reproduction.jobs.data import PointData
+
+FEATURES = {
+    "collapse", "duration", "faces", "gravity", "law", "masses", "motion", "oversized", "piston", "record",
+    "rules", "support", "vibrations", "viscous", "walls",
+}  # fmt: skip
+"""Arguments of the kernels that are None for a plain gas."""
+ENGINES = ("event", "step")
+_PACKAGE = Path(__file__).parents[2]
+
+
+class Strip(ast.NodeTransformer):
+    """Resolves every test of whether a feature is None as if it is, and removes what follows a return."""
+
+    def _known(self, test: ast.expr) -> bool | None:
+        match test:
+            case ast.Compare(ast.Name(name), [ast.Is() | ast.IsNot() as is_or_not], [ast.Constant(None)]):
+                return isinstance(is_or_not, ast.Is) if name in FEATURES else None
+        return None
+
+    def visit_If(self, node: ast.If) -> ast.stmt | list[ast.stmt]:
+        """Keep the branch that is taken."""
+        self.generic_visit(node)
+        known = self._known(node.test)
+        if known is None:
+            return node
+        return (node.body if known else node.orelse) or ast.Pass()
+
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.stmt:
+        """Drop the statements after a return that has become unconditional."""
+        self.generic_visit(node)
+        returns = [k for k, statement in enumerate(node.body) if isinstance(statement, ast.Return)]
+        if returns:
+            del node.body[returns[0] + 1 :]
+        return node
+
+    def visit_IfExp(self, node: ast.IfExp) -> ast.AST:
+        """Keep the value that is taken."""
+        self.generic_visit(node)
+        known = self._known(node.test)
+        return node if known is None else node.body if known else node.orelse
+
+
+def stripped(source: str) -> str:
+    """A module's source without the branches of absent features."""
+    return ast.unparse(ast.fix_missing_locations(Strip().visit(ast.parse(source))))
+
+
+def run(recipe: dict) -> PointData:
+    """Instructions of each engine's main kernel for the recipe's scene, which should be a plain gas.
+
+    Returns over engine: `instructions`, and `stripped`, those without the branches of absent features. Both
+    are compiled in separate processes with separate caches.
+    """
+    found = []
+    with tempfile.TemporaryDirectory() as folder:
+        for strip in (False, True):
+            package = Path(folder) / str(strip) / "gaspart"
+            shutil.copytree(_PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
+            if strip:
+                for module in package.joinpath("kernels").rglob("*.py"):
+                    module.write_text(stripped(module.read_text(encoding="utf-8")), encoding="utf-8")
+            environment = {"PYTHONPATH": str(package.parent), "GASPART_CACHE": str(package.parent / "cache")}
+            done = subprocess.run(
+                [sys.executable, "-m", __name__, json.dumps(recipe["scene"])],
+                env={**os.environ, **environment},
+                capture_output=True,
+                text=True,
+                check=True,
+            )
+            found.append([int(line) for line in done.stdout.split()])
+    own, bare = found
+    return PointData(
+        {"instructions": ("engine", own), "stripped": ("engine", bare)}, {"engine": ("engine", list(ENGINES))}
+    )
+
+
+def count(scene: dict) -> None:
+    """Print the number of instructions of each engine's main kernel for a scene."""
+    import gaspart as gp
+    from gaspart.kernels.event import loop as event_loop
+    from gaspart.kernels.step import loop as step_loop
+
+    kernels: dict[Any, Any] = {
+        gp.EventDriven(): event_loop.run,
+        gp.TimeStepped(0.01): step_loop.run_steps,
+    }
+    for engine, kernel in kernels.items():
+        gp.Simulation(gp.Scene.from_dict(scene), engine).advance(duration=0.1)
+        (code,) = kernel.inspect_asm().values()
+        lines = [line.strip() for line in code.splitlines() if line.startswith("\t")]
+        print(sum(not line.startswith((".", "#")) for line in lines))
+
+
+if __name__ == "__main__":
+    count(json.loads(sys.argv[1]))

@@ -1,0 +1,101 @@
+"""Loschmidt's echo: run a gas, reverse all velocities, run it back, and measure the distance from its initial
+state.
+
+Exact mechanics returns. Rounding errors grow by exp(lambda) with every collision of a particle, in both
+directions, so the echo's distance shows how long the memory of the initial state lasts, and its growth
+is the largest Lyapunov exponent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from gaspart.engines import EventDriven, TimeStepped, engine_from_dict
+from gaspart.reproduction.jobs.data import PointData
+from gaspart.scene.scene import Scene
+from gaspart.simulation import Simulation
+from gaspart.state.state import State
+
+DISPLACEMENT = 1e-10
+"""Root-mean-square displacement, in diameters, from which the exact flow's divergence is measured."""
+_SLACK = 1e-6  # of a time step: so that rounding of the duration loses no step
+
+
+def echo(
+    scene: Scene,
+    engine: EventDriven | TimeStepped,
+    seeds: Sequence[tuple[int, ...]],
+    equilibration: float,
+    interval: float,
+    samples: int,
+) -> PointData:
+    """Echoes from equilibrium states of a scene, one for each seed.
+
+    Returns over ``seed`` and ``sample``, of runs of 1 ... `samples` intervals: ``collisions`` per particle
+    before the reversal, twice the number of contacts over that of particles; ``echo``, the root-mean-square
+    distance from the initial state after the return, in diameters; ``divergence``, that of two event-driven
+    runs which start `DISPLACEMENT` apart, at the reversal. Attributes: the gas (`side` in diameters) and
+    engine.
+    """
+    shape = (len(seeds), samples)
+    found = {name: np.empty(shape) for name in ("collisions", "echo", "divergence")}
+    slack = _SLACK * getattr(engine, "time_step", 0.0)
+    for n, seed in enumerate(seeds):
+        equilibrium = Simulation(scene, EventDriven(), seed=seed)
+        equilibrium.advance(duration=equilibration)
+        state = equilibrium.state
+        there = engine.start(scene, state)
+        start = there.state  # rounded to the engine's precision
+        pair = [EventDriven().start(scene, one) for one in (state, _displaced(state, seed))]
+        for k in range(samples):
+            time = (k + 1) * interval
+            there.advance(state.time + time + slack)
+            reversed_state = replace(there.state, time=0.0, velocities=-there.state.velocities)
+            back = engine.start(scene, reversed_state)
+            back.advance(time + slack)
+            for one in pair:
+                one.advance(state.time + time)
+            found["collisions"][n, k] = 2.0 * there.tally.collisions / state.count
+            found["echo"][n, k] = _distance(start, back.state)
+            found["divergence"][n, k] = _distance(pair[0].state, pair[1].state)
+    return PointData(
+        {name: (("seed", "sample"), values) for name, values in found.items()},
+        attributes={
+            "count": scene.count,
+            "dimension": scene.dimension,
+            "side": max(scene.container.lengths) / (2.0 * scene.largest_radius),
+            "packing_fraction": scene.packing_fraction,
+            "engine": engine.name,
+            "precision": getattr(engine, "precision", "float64"),
+            "time_step": getattr(engine, "time_step", 0.0),
+        },
+    )
+
+
+def _displaced(state: State, seed: tuple[int, ...]) -> State:
+    """All particles displaced at random, by so little that only touching ones can overlap."""
+    away = np.random.default_rng(seed).standard_normal(state.positions.shape)
+    away *= DISPLACEMENT * 2.0 * state.radii.max() / np.sqrt((away**2).sum(axis=1).mean())
+    inside = np.clip(state.positions + away, state.radii[:, None], state.lengths - state.radii[:, None])
+    return replace(state, positions=inside)
+
+
+def _distance(one: State, other: State) -> float:
+    """Root-mean-square distance of all particles between walls, in diameters."""
+    apart = ((one.positions - other.positions) ** 2).sum(axis=1)
+    return float(np.sqrt(apart.mean()) / (2.0 * one.radii.max()))
+
+
+def run(recipe: dict) -> PointData:
+    """`echo` of a point's recipe."""
+    return echo(
+        Scene.from_dict(recipe["scene"]),
+        engine_from_dict(recipe["engine"]),
+        seeds=[tuple(seed) for seed in recipe["seeds"]],
+        equilibration=recipe["equilibration"],
+        interval=recipe["interval"],
+        samples=recipe["samples"],
+    )

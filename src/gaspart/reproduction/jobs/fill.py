@@ -1,0 +1,69 @@
+"""Random sequential insertion into a container up to saturation, with all failures counted."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gaspart.kernels.insertion import Task, place
+from gaspart.reproduction.jobs.data import PointData
+from gaspart.scene.scene import Scene
+from gaspart.state.boxes import make_boxes, sides_for
+from gaspart.state.insertion import empty_arrays
+from gaspart.state.random import stream
+
+CHUNK = 1 << 16
+
+
+def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> PointData:
+    """Offer the container ``attempts`` random positions for each particle of the scene's one species; once
+    per seed.
+
+    The scene's count is the largest number of particles, which may exceed saturation: insertion
+    stops when all are placed or the attempts (``attempts`` times the count) are used up.
+
+    Returns a dataset: ``failures`` (replica, body), failed attempts before each particle was placed, -1
+    for one never placed; ``placed`` and ``attempts`` (replica,).
+    Attributes: packing_fraction_per_body, side, radius.
+    """
+    runs = [_fill_once(scene, attempts * scene.count, seed) for seed in seeds]
+    return PointData(
+        {
+            "failures": (("replica", "body"), np.array([failures for failures, _ in runs]), {"units": "1"}),
+            "placed": ("replica", np.array([(failures >= 0).sum() for failures, _ in runs]), {"units": "1"}),
+            "attempts": ("replica", np.array([used for _, used in runs]), {"units": "1"}),
+        },
+        attributes={
+            "packing_fraction_per_body": scene.packing_fraction / scene.count,
+            "side": list(scene.container.lengths),
+            "radius": scene.largest_radius,
+        },
+    )
+
+
+def _fill_once(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarray, int]:
+    """Failures before each particle (N,), -1 for one never placed; and the number of attempts."""
+    before, used, _ = insert(scene, attempts, seed)
+    return before, used
+
+
+def insert(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarray, int, np.ndarray]:
+    """Failures before each particle (N,), -1 for one never placed; the number of attempts; and the positions
+    (M, d) of those placed."""
+    boxes = make_boxes(scene, sides_for(scene), images=False)
+    lower, upper = scene.reach(scene.largest_radius)
+    placed, grid, block = empty_arrays(scene, boxes, np.full(scene.count, scene.largest_radius))
+    rng, number, failures, used = stream(seed), 0, 0, 0
+    none = np.empty(0, dtype=np.int64)
+    while number < scene.count and used < attempts:
+        draws = rng.random((min(CHUNK, attempts - used), scene.dimension))
+        task = Task(number, scene.count, failures, attempts + 1, lower, upper)
+        number, failures, tried = place(draws, placed, grid, block, task, none, None)
+        used += tried
+    return placed.failures, used, placed.positions[:number]
+
+
+def run(recipe: dict) -> PointData:
+    """`fill` of a point's recipe."""
+    return fill(
+        Scene.from_dict(recipe["scene"]), recipe["attempts"], [tuple(seed) for seed in recipe["seeds"]]
+    )

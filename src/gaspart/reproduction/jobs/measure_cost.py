@@ -1,0 +1,146 @@
+"""The cost of a run: work that is counted, the same on every machine, and time that is measured.
+
+Every timing starts from one and the same state, so the repeated timings of an engine are of exactly the
+same work, and differ by what disturbs the clock alone; and engines that differ in their partition are timed
+in turn, in alternating order, so that a machine that slows down favours none of them.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from gaspart.engines import EventDriven, TimeStepped, engine_from_dict
+from gaspart.engines.arrays import EventLog
+from gaspart.errors import SimulationError
+from gaspart.reproduction.jobs.data import PointData
+from gaspart.scene.scene import Scene
+from gaspart.simulation import Simulation
+from gaspart.state.initial import initial_state
+from gaspart.state.state import State
+
+COUNTED = ("steps", "collisions", "wall_hits", "pair_tests", "box_visits", "crossings")
+_SLACK = 1e-6  # of a time step: so that rounding of the duration loses no step
+
+
+def measure_cost(
+    scene: Scene,
+    engines: Sequence[EventDriven | TimeStepped],
+    seed: tuple[int, ...],
+    equilibration: float,
+    stretch: float,
+    repeats: int,
+    record: bool = False,
+    rival: tuple[Scene, Sequence[EventDriven | TimeStepped]] | None = None,
+) -> PointData:
+    """Time `repeats` times, with each of the engines, the same stretch of simulated time of the same gas.
+
+    equilibration, stretch: in the scene's time; record: write down all events, and forget them; rival: a
+    scene and engines, timed in turn with these and without a record: the last partitions.
+    Returns a dataset over ``partition`` (the engines, in their order) and ``repeat``: ``seconds``
+    (partition, repeat), processor time of the advance alone (filling the container, setting up and compiling
+    are left out); over ``partition``: ``boxes`` in all, ``boxes_per_side`` (of the first axis; both 0 if the
+    engine chooses itself), ``duration`` (scene's time) and the counts of the tally. Attributes: count,
+    dimension, radius, side (first axis), packing_fraction, engine, search (event-driven) or time_step,
+    recorded.
+
+    Raises SceneError, and SimulationError if the counted work of a repeat differs from the first one's.
+    """
+    # By the shortest step: a longer one leaves overlaps, which would count against a shorter one.
+    careful = min(engines, key=lambda engine: getattr(engine, "time_step", 0.0))
+    runs = []
+    for made, chosen, recorded in [(scene, engines, record), *([(*rival, False)] if rival else [])]:
+        start = _start(made, careful, seed, equilibration)
+        runs += [(made, start, engine, recorded) for engine in chosen]
+    seconds = np.empty((len(runs), repeats))
+    counts: list[dict] = [{}] * len(runs)
+    for repeat in range(repeats):
+        order = range(len(runs))
+        for n in order if repeat % 2 == 0 else reversed(order):
+            seconds[n, repeat], counted = _timed(*runs[n], stretch)
+            if not counts[n]:
+                counts[n] = counted
+            elif counted != counts[n]:
+                raise SimulationError(f"the same run twice: counted {counts[n]}, then {counted}")
+    columns = {name: ("partition", np.array([counted[name] for counted in counts])) for name in counts[0]}
+    sides = [_sides(engine, one.dimension) for one, _, engine, _ in runs]
+    return PointData(
+        {
+            "seconds": (("partition", "repeat"), seconds, {"units": "s"}),
+            "boxes": ("partition", np.array([int(np.prod(side)) for side in sides])),
+            "boxes_per_side": ("partition", np.array([side[0] for side in sides])),
+            **columns,
+        },
+        attributes={
+            "count": scene.count,
+            "dimension": scene.dimension,
+            "radius": scene.largest_radius,
+            "side": scene.container.lengths[0],
+            "packing_fraction": scene.packing_fraction,
+            "engine": engines[0].name,
+            "search": getattr(engines[0], "search", ""),
+            "time_step": getattr(engines[0], "time_step", 0.0),
+            "recorded": int(record),
+        },
+    )
+
+
+def _start(
+    scene: Scene, engine: EventDriven | TimeStepped, seed: tuple[int, ...], equilibration: float
+) -> State:
+    """The state from which everything is timed. No partition or search changes a bit of it."""
+    if equilibration <= 0.0:
+        return initial_state(scene, seed)
+    quick: EventDriven | TimeStepped = EventDriven()
+    if isinstance(engine, TimeStepped):
+        quick = replace(engine, boxes_per_side=None, near_boxes=False)
+    simulation = Simulation(scene, quick, seed=seed)
+    simulation.advance(duration=equilibration)
+    return simulation.state
+
+
+def _timed(
+    scene: Scene, state: State, engine: EventDriven | TimeStepped, record: bool, stretch: float
+) -> tuple[float, dict]:
+    """Processor time of one stretch, in s, and what was counted in it."""
+    dynamics = engine.start(scene, state)
+    log = EventLog(scene.dimension, scene.rough) if record else None
+    step = getattr(engine, "time_step", 0.0)
+    # This loads the kernels, and the first step touches all memory.
+    dynamics.advance(state.time + step * (1 + _SLACK), log=log)
+    dynamics.reset_tally()
+    target = dynamics.time + stretch + step * _SLACK
+    start = time.process_time()
+    dynamics.advance(target, log=log)
+    seconds = time.process_time() - start
+    tally = dynamics.tally
+    counted = {name: int(np.sum(getattr(tally, name))) for name in COUNTED}
+    return seconds, {"duration": tally.time, **counted}
+
+
+def _sides(engine: EventDriven | TimeStepped, dimension: int) -> tuple[int, ...]:
+    """Boxes along each axis; zeros if the engine chooses them itself."""
+    if getattr(engine, "search", "boxes") not in ("automatic", "boxes"):
+        return (1,) * dimension
+    given = engine.boxes_per_side or 0
+    return given if isinstance(given, tuple) else (given,) * dimension
+
+
+def run(recipe: dict) -> PointData:
+    """`measure_cost` of a point's recipe."""
+    return measure_cost(
+        *_scene_and_engines(recipe),
+        seed=tuple(recipe["seeds"][0]),
+        equilibration=recipe["equilibration"],
+        stretch=recipe["stretch"],
+        repeats=recipe["repeats"],
+        record=recipe["record"],
+        rival=recipe["rival"] and _scene_and_engines(recipe["rival"]),
+    )
+
+
+def _scene_and_engines(recipe: dict) -> tuple[Scene, list[EventDriven | TimeStepped]]:
+    return Scene.from_dict(recipe["scene"]), [engine_from_dict(engine) for engine in recipe["engines"]]

@@ -1,0 +1,42 @@
+"""The engine that `engine: auto` of a config stands for."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from gaspart.errors import SceneError
+from gaspart.reproduction.points import keys
+from gaspart.tradeoff import speed
+
+if TYPE_CHECKING:
+    from gaspart.scene.scene import Scene
+
+
+def chosen(settings: dict, scene: Scene, where: str) -> dict:
+    """The settings of a point with `engine: auto`, with those of the engine that it stands for.
+
+    The choice is that of the table's machine, so that a config means the same everywhere. A length is set
+    only if none is given. Raises SceneError.
+    """
+    from gaspart.tradeoff.advice import EQUILIBRATION, advise
+
+    if "accuracy" not in settings:
+        raise SceneError(f"{where}.accuracy", None, "is required with engine: auto")
+    try:
+        found = advise(
+            scene, settings.get("observable", "Z"), settings["accuracy"], speed_of=speed.as_measured
+        )
+    except SceneError as error:
+        raise error.inside(where) from None
+    engine = found.setting.engine
+    made = {key: value for key, value in settings.items() if key not in keys.ENGINES["auto"]} | {
+        "engine": engine.name
+    }
+    if engine.name == "step":
+        made |= {"time_step": engine.time_step, "precision": engine.precision}
+    if not keys.LENGTHS.keys() & settings.keys():
+        made["collisions_per_body"] = math.ceil(found.collisions_per_body)
+        made.setdefault("replicas", found.replicas)
+        made.setdefault("equilibration", EQUILIBRATION)
+    return made

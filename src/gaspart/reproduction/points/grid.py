@@ -1,0 +1,270 @@
+"""Engine, schedule and recipe of a point of a grid.
+
+Planning a workflow reads every point of every grid, so slow imports are made inside functions.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from gaspart.errors import SceneError
+from gaspart.reproduction.points.keys import ENGINES, LENGTHS, SCANS
+from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.points.point_scene import check_scene, extents, scene
+from gaspart.scene.geometry import ball_volume
+from gaspart.scene.validation import LARGEST, SMALLEST
+
+if TYPE_CHECKING:
+    from gaspart.engines import EventDriven, TimeStepped
+    from gaspart.scene.scene import Scene
+    from gaspart.scene.species import Species
+
+_MOST_INTERVALS = 2.0**53  # above, float64 does not distinguish their numbers
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """When a run is sampled, in the scene's time; the first ``equilibration_frames`` frames are dropped."""
+
+    duration: float
+    sample_interval: float
+    equilibration_frames: int
+    samples: int
+
+    @property
+    def equilibration(self) -> float:
+        """The time before the measurement."""
+        return self.equilibration_frames * self.sample_interval
+
+
+def check(point: Point) -> None:
+    """Refuse settings that contradict each other, with SceneError; the cheap part, without a scene."""
+    settings, where = point.settings, f"experiments.{point.experiment}"
+    check_scene(point)
+    if point.job == "fill":
+        if "attempts" not in settings:
+            raise SceneError(f"{where}.attempts", None, "is required with job: fill")
+        return
+    if point.job == "pack":
+        if ("attempts" in settings) == (settings.get("arrangement") == "compressed"):
+            rule = "is required with job: pack, unless the arrangement is compressed"
+            raise SceneError(f"{where}.attempts", settings.get("attempts"), rule)
+        return
+    if point.job == "count_instructions":
+        return
+    engine = settings.get("engine", "event")
+    if engine == "step" and "time_step" not in settings:
+        raise SceneError(f"{where}.time_step", None, "must be given with engine: step")
+    for key in (*ENGINES["event"], *ENGINES["step"]):
+        if key in settings and key not in ENGINES[engine]:
+            raise SceneError(f"{where}.{key}", settings[key], f"has no meaning with engine: {engine}")
+    if settings.get("record_events") and (point.job, engine) != ("measure_cost", "event"):
+        rule = "has a meaning with job: measure_cost and engine: event only"
+        raise SceneError(f"{where}.record_events", True, rule)
+    if "without" in settings and point.job != "measure_cost":
+        raise SceneError(f"{where}.without", settings["without"], "has a meaning with job: measure_cost only")
+    if point.job == "compare" and engine != "step":
+        raise SceneError(f"{where}.engine", engine, "must be step with job: compare")
+    if "boxes_per_side" in settings and "boxes_per_body" in settings:
+        raise SceneError(f"{where}.boxes_per_body", settings["boxes_per_body"], "excludes boxes_per_side")
+    lengths = [key for key in LENGTHS if key in settings]
+    if len(lengths) != 1:
+        raise SceneError(where, lengths, f"exactly one of {', '.join(LENGTHS)} must be given")
+    if lengths == ["steps"] and engine != "step":
+        raise SceneError(f"{where}.steps", settings["steps"], f"has no meaning with engine: {engine}")
+
+
+def engine(point: Point) -> EventDriven | TimeStepped:
+    """The point's engine. Raises SceneError."""
+    from gaspart.engines import EventDriven, TimeStepped
+
+    check(point)
+    name = point.settings.get("engine", "event")
+    chosen = {key: point.settings[key] for key in ENGINES[name] if key in point.settings}
+    if isinstance(chosen.get("boxes_per_side"), list):
+        chosen["boxes_per_side"] = tuple(chosen["boxes_per_side"])
+    count, radius, lengths = extents(point)
+    if "boxes_per_body" in chosen:
+        chosen["boxes_per_side"] = boxes_per_side(chosen.pop("boxes_per_body"), count, radius, lengths)
+    given = chosen.get("boxes_per_side", 1)
+    sides = given if isinstance(given, tuple) else (given,) * len(lengths)
+    if len(sides) != len(lengths):
+        raise SceneError("boxes_per_side", given, "must be one number, or one per axis")
+    for length, boxes in zip(lengths, sides, strict=True):
+        if boxes > 1 and length / boxes < 2.0 * radius:  # found before any job starts
+            rule = f"boxes must not be narrower than the largest diameter, {2.0 * radius:g}"
+            raise SceneError("boxes_per_side", given, rule)
+    return EventDriven(**chosen) if name == "event" else TimeStepped(**chosen)
+
+
+def engines(point: Point) -> list:
+    """The engines that a ``measure_cost`` or ``compare`` job runs in turn: the point's own, or one for each
+    value of its scan (``scan_boxes_per_side``, ``scan_boxes_per_body`` or ``scan_time_steps``; the same
+    partition is timed once).
+
+    Raises SceneError.
+    """
+    settings = point.settings
+    given = [key for key in SCANS if key in settings]
+    if not given:
+        return [engine(point)]
+    where = f"experiments.{point.experiment}.{given[0]}"
+    if given == ["scan_time_steps"]:
+        own = engine(point)
+        if own.name != "step":
+            raise SceneError(where, settings[given[0]], "has no meaning with engine: event")
+        return [replace(own, time_step=step) for step in settings[given[0]]]
+    if len(given) > 1 or "boxes_per_side" in settings or "boxes_per_body" in settings:
+        raise SceneError(where, settings[given[0]], "a scan excludes every other choice of boxes")
+    if not settings[given[0]]:
+        raise SceneError(where, settings[given[0]], "must not be empty")
+    partitions = settings[given[0]]
+    if given[0] == "scan_boxes_per_body":
+        partitions = [boxes_per_side(per_body, *extents(point)) for per_body in partitions]
+    own = engine(replace(point, settings={**settings, "boxes_per_side": 1}))
+    return [replace(own, boxes_per_side=partition) for partition in dict.fromkeys(partitions)]
+
+
+def boxes_per_side(per_body: float, count: int, radius: float, lengths: tuple[float, ...]) -> tuple[int, ...]:
+    """(d,) boxes per axis: nearly cubic ones, ``per_body`` for each particle, none smaller than a
+    diameter."""
+    edge = (math.prod(lengths) / (per_body * count)) ** (1.0 / len(lengths))
+    return tuple(max(1, min(round(length / edge), int(length / (2.0 * radius)))) for length in lengths)
+
+
+def schedule(point: Point) -> Schedule:
+    """Duration and sampling of a point's runs, in the scene's time.
+
+    The length is divided into ``samples`` intervals (whole time steps with the step engine); the
+    equilibration, rounded up to complete intervals, precedes it.
+    """
+    check(point)
+    settings, where = point.settings, f"experiments.{point.experiment}"
+    unit = next(key for key in LENGTHS if key in settings)
+    scale = _unit_of_time(point, unit)
+    samples = settings.get("samples", 1)
+    interval = settings[unit] * scale / samples
+    if not SMALLEST <= interval <= LARGEST:
+        rule = f"makes a sample interval of {interval:g}, which must be from {SMALLEST:g} to {LARGEST:g}"
+        raise SceneError(f"{where}.{unit}", settings[unit], rule)
+    if settings.get("engine") == "step":
+        step = settings["time_step"]
+        interval = step * max(1, round(interval / step))
+    before = settings.get("equilibration", 0) * scale / interval
+    if not before < _MOST_INTERVALS:
+        rule = f"makes {before:g} sample intervals, which must be less than {_MOST_INTERVALS:g}"
+        raise SceneError(f"{where}.equilibration", settings["equilibration"], rule)
+    dropped = math.ceil(before * (1.0 - 1e-12))
+    return Schedule(interval * (dropped + samples), interval, dropped, samples)
+
+
+def recipe(point: Point) -> dict:
+    """The parameters of the point's job, in plain values: all that its result depends on, and nothing
+    else."""
+    check(point)
+    made = {
+        "scene": scene(point).to_dict(),
+        "seeds": [list(point.seed(k)) for k in range(point.replicas)],
+    }
+    if point.job == "fill":
+        return {**made, "attempts": point.settings["attempts"]}
+    if point.job == "pack":
+        return {**made, "attempts": point.settings.get("attempts")}
+    if point.job == "count_instructions":
+        return made
+    from gaspart.engines import engine_to_dict
+
+    times = schedule(point)
+    follow, count = point.settings.get("follow"), extents(point)[0]
+    if follow is not None and follow > count:
+        raise SceneError(f"experiments.{point.experiment}.follow", follow, f"there are {count} particles")
+    if point.job in ("measure_cost", "compare"):
+        recording: dict = {}
+        if point.job == "measure_cost":
+            recording = {"record": point.settings.get("record_events", False), "rival": rival(point)}
+        return {
+            **made,
+            **recording,
+            "engines": _engines_to_dicts(point),
+            "equilibration": times.equilibration,
+            "stretch": times.sample_interval,
+            "repeats": times.samples,
+        }
+    if point.job == "echo":
+        return {
+            **made,
+            "engine": engine_to_dict(engine(point)),
+            "equilibration": times.equilibration,
+            "interval": times.sample_interval,
+            "samples": times.samples,
+        }
+    correlations = None
+    if "lags" in point.settings:
+        lags = min(point.settings["lags"], (times.samples + 1) // 2)
+        correlations = {"interval": times.sample_interval, "lags": lags, "start": times.equilibration}
+    return {
+        **made,
+        "engine": engine_to_dict(engine(point)),
+        "duration": times.duration,
+        "sample_interval": times.duration if correlations else times.sample_interval,
+        "displacements": point.settings.get("displacements", False),
+        "follow": follow,
+        "correlations": correlations,
+    }
+
+
+def rival(point: Point) -> dict | None:
+    """The scene and the engines that are timed in turn with a point's own, which lack its keys `without`;
+    None if it has none."""
+    if "without" not in point.settings:
+        return None
+    left = {key: value for key, value in point.settings.items() if key not in point.settings["without"]}
+    beside = replace(point, settings=left)
+    return {"scene": scene(beside).to_dict(), "engines": _engines_to_dicts(beside)}
+
+
+def _engines_to_dicts(point: Point) -> list[dict]:
+    from gaspart.engines import engine_to_dict
+
+    return [engine_to_dict(chosen) for chosen in engines(point)]
+
+
+def _unit_of_time(point: Point, unit: str) -> float:
+    """The scene's time in one ``unit`` of length; for collisions per particle, from Enskog's rate."""
+    if unit == "duration":
+        return 1.0
+    if unit == "steps":
+        return point.settings["time_step"]
+    from gaspart import theory
+
+    key, given = f"experiments.{point.experiment}.collisions_per_body", point.settings[unit]
+    kind = _only_species(scene(point))
+    if kind is None:
+        rule = "is known only for one species of smooth particles without gravity or obstacles; give duration"
+        raise SceneError(key, given, rule)
+    count, radius, lengths = extents(point)
+    dimension = len(lengths)
+    temperature = kind.temperature
+    if temperature is None:
+        temperature = kind.mass * (kind.speed or 0.0) ** 2 / dimension
+    if not temperature > 0.0:
+        raise SceneError(key, given, "needs a temperature or a speed above zero")
+    fraction = count * ball_volume(dimension, radius) / math.prod(lengths)
+    try:
+        rate = theory.collision_rate(fraction, dimension, 2.0 * radius, temperature, kind.mass)
+    except ValueError as error:
+        raise SceneError(key, given, f"cannot be turned into a time: {error}") from None
+    if not 0.0 < rate < math.inf:
+        raise SceneError(key, given, f"cannot be turned into a time: the collision rate is {rate:g}")
+    return 1.0 / float(rate)
+
+
+def _only_species(made: Scene) -> Species | None:
+    """The species of a scene of one species and nothing else; None for any other scene."""
+    from gaspart.scene.scene import Scene
+
+    kinds = made.species
+    plain = Scene(made.container, kinds, centres_to_walls=made.centres_to_walls)
+    return kinds[0] if len(kinds) == 1 and not kinds[0].fixed and made == plain else None

@@ -1,0 +1,95 @@
+"""Modules of each stage of the workflow, found from their imports.
+
+A digest of these modules is a parameter of the stage's rules: editing one reruns the stages that use it, and
+no others. As inputs they would be half a million files for ten thousand points. Imports are found by a search
+of the text, since parsing the whole package would take most of the time of a plan; a test compares the result
+with that of a parser.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from functools import cache
+from pathlib import Path
+
+PACKAGE = Path(__file__).parents[2]
+_TYPES = re.compile(r"^if TYPE_CHECKING:\n(?:[ \t]+.*\n|\n)+", re.MULTILINE)
+_FROM = re.compile(r"^[ \t]*from (gaspart[\w.]*) import (\([^)]*\)|[^\n]*)", re.MULTILINE)
+_PLAIN = re.compile(r"^[ \t]*import (gaspart[\w.]*)", re.MULTILINE)
+
+
+@cache
+def closure(*roots: str | Path) -> frozenset[Path]:
+    """Files of the package that modules (dotted names) or scripts (paths) need, directly or not.
+
+    With a module that reads tables, the tables in the folder `data` beside it.
+    """
+    found: set[Path] = set()
+    queue = [root if isinstance(root, Path) else _file(root) for root in roots]
+    queue = [path for path in queue if path is not None]
+    found |= {path for path in queue if path.is_relative_to(PACKAGE)}
+    while queue:
+        for path in imported(queue.pop()) - found:
+            found.add(path)
+            queue.append(path)
+    folders = {path.parent for path in found}
+    return frozenset(found.union(*map(_tables, folders)))
+
+
+@cache
+def _tables(folder: Path) -> frozenset[Path]:
+    return frozenset(folder.glob("data/*.csv"))
+
+
+@cache
+def imported(path: Path) -> frozenset[Path]:
+    """Files of the package that a file imports itself, and the packages that hold them."""
+    text = _TYPES.sub("", path.read_text(encoding="utf-8"))
+    names = set(_PLAIN.findall(text))
+    for base, items in _FROM.findall(text):
+        names.add(base)
+        for item in items.strip("()").split(","):
+            names.add(f"{base}.{item.split('#')[0].strip().split(' as ')[0]}")
+    parents = {name.rsplit(".", depth)[0] for name in names for depth in range(1, name.count(".") + 1)}
+    return frozenset(file for name in names | parents if (file := _file(name)) is not None)
+
+
+@cache
+def _file(module: str) -> Path | None:
+    """The file of a module of the package; None if there is none of this name."""
+    path = PACKAGE.joinpath(*module.split(".")[1:])
+    for file in (path / "__init__.py", path.with_suffix(".py")):
+        if file.is_file():
+            return file
+    return None
+
+
+@cache
+def digest(*roots: str | Path) -> str:
+    """A short digest of the files of a closure."""
+    total = hashlib.sha256()
+    for path in _in_order(closure(*roots)):
+        total.update(_content(path))
+    return total.hexdigest()[:12]
+
+
+@cache
+def kernel_digest(*roots: str | Path) -> str:
+    """The same of the compiled modules among them that `warm` may compile: jobs that need
+    the same ones share their stamps."""
+    total = hashlib.sha256()
+    for path in _in_order(closure(*roots) & closure("gaspart.reproduction.points.variants")):
+        if path.is_relative_to(PACKAGE / "kernels"):
+            total.update(_content(path))
+    return total.hexdigest()[:12]
+
+
+def _in_order(paths: frozenset[Path]) -> list[Path]:
+    """By their text: paths compare their parts, which for a hundred closures takes 0.1 s."""
+    return sorted(paths, key=str)
+
+
+@cache
+def _content(path: Path) -> bytes:
+    return path.read_bytes()

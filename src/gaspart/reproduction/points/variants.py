@@ -1,0 +1,143 @@
+"""The name of the compiled kernels that a point needs, and a tiny run that compiles them."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import fields, is_dataclass
+from typing import TYPE_CHECKING, Any
+
+from gaspart.engines.event.search import chosen_search
+from gaspart.errors import SimulationError
+from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
+from gaspart.scene.species import LATTICES
+
+if TYPE_CHECKING:
+    from gaspart.scene.scene import Scene
+
+_FEW = 8  # particles and walls that a tiny run has of each kind
+_MATTER = {"species.Species", "bodies.Body", "restitution.Restitution"}  # whose properties are features
+# in every kernel, or in none
+_NO_FEATURE = ("container", "count", "radius", "speed", "temperature", "centres_to_walls", "region")
+_NO_FEATURE += ("components", "waveform")  # of faces: numbers to the kernels, as the boundary is
+# All that makes kernels have a law of contacts, as an entry of `Model`.
+_LAW = {"restitution.normal", "restitution.tangential", "species.moment_of_inertia"}
+
+
+def variant(point: Point) -> str:
+    """The kernels of a point: engine, search or precision, dimension, and a digest of the features of its
+    scene.
+
+    Kernels are compiled for features, not for numbers. Raises SceneError.
+    """
+    scene = grid.scene(point)
+    engine = "fill" if point.job in ("fill", "pack") else point.settings.get("engine", "event")
+    boxes = any(
+        key in point.settings
+        for key in ("boxes_per_side", "boxes_per_body", "scan_boxes_per_side", "scan_boxes_per_body")
+    )
+    if engine == "event":
+        choice = chosen_search(scene, point.settings.get("search", "automatic"), boxes)
+        choice = "boxes" if choice == "direct" else choice  # one box
+    elif engine == "step":
+        choice = "boxes" if boxes else "list"
+        choice += f"-{point.settings.get('precision', 'float64')}"
+        choice += "-threads" if point.settings.get("threads", 1) > 1 else ""
+    else:
+        choice = "random"
+    parts = [engine, choice, f"{scene.dimension}d"]
+    present = sorted(features(scene))
+    if present:
+        parts.append(hashlib.sha256(" ".join(present).encode()).hexdigest()[:8])
+    return "-".join(parts)
+
+
+def features(scene: Scene) -> set[str]:
+    """Dotted names of all that differs from its default in a scene and changes its kernels, with its value
+    where that is a word."""
+    found = set(_differing(scene)) - _MATTER
+    if len({kind.mass for kind in scene.kinds}) <= 1:
+        found -= {"species.mass", "bodies.mass"}  # equal masses are left out of the kernels
+    if found & _LAW:
+        found = (found - _LAW) | {"restitution"}
+    found.discard("restitution.contact_duration")
+    if scene.contact_duration > 0.0:  # by default under gravity
+        found.add("contact_duration")
+    if scene.vibrates:  # by a temperature too
+        found.add("vibrates")
+    if len({kind.radius for kind in scene.kinds}) > 1:
+        from gaspart.state.oversized import largest_in_boxes
+
+        if largest_in_boxes(scene) < scene.largest_radius:
+            found.add("oversized")
+    return found
+
+
+def _differing(thing: Any, prefix: str = "") -> Iterator[str]:
+    for field in fields(thing):
+        value, name = getattr(thing, field.name), f"{prefix}{field.name}"
+        required = field.default is field.default_factory  # both MISSING: no default
+        if field.name in _NO_FEATURE or value == field.default or value in LATTICES:
+            continue
+        if isinstance(value, dict):
+            value = tuple(value.values())
+        parts = value if isinstance(value, tuple) else (value,)
+        for part in parts:
+            if is_dataclass(part):
+                yield f"{name}.{type(part).__name__}"
+                yield from _differing(part, f"{name}.")
+            elif isinstance(part, str):
+                yield f"{name}={part}"
+            elif not required and part:  # an acceleration of zero is none
+                yield name
+
+
+def task(point: Point) -> str:
+    """The task of `warm` for a point, as JSON: its engine, and its scene with only a few particles if these
+    have all of its features."""
+    from gaspart.scene.scene import Scene
+
+    recipe, full = grid.recipe(point), grid.scene(point)
+    scene = {
+        key: value[:_FEW] if isinstance(value, list) else value for key, value in recipe["scene"].items()
+    }
+    for kind in scene.get("species", ()):
+        kind["count"] = min(kind["count"], _FEW)
+        if kind["arrangement"] in LATTICES:  # which need fewer kernels
+            kind["arrangement"] = "random"
+    if features(Scene.from_dict(scene)) != features(full):
+        scene = full.to_dict()
+    engine = recipe.get("engine") or recipe.get("engines", [None])[0]
+    if engine and engine["name"] == "event":  # not the one for only a few particles
+        search = chosen_search(full, engine.get("search", "automatic"), "boxes_per_side" in engine)
+        engine = {**engine, "search": search}
+    return json.dumps({"scene": scene, "engine": engine})
+
+
+def warm(job: str) -> None:
+    """Compile and cache all kernels of a `task` by a tiny run."""
+    from gaspart.engines import engine_from_dict
+    from gaspart.scene.scene import Scene
+    from gaspart.simulation import Simulation
+    from gaspart.state.initial import initial_state
+
+    given = json.loads(job)
+    scene = Scene.from_dict(given["scene"])
+    if given["engine"] is None:
+        initial_state(scene, seed=1)
+        return
+    settings = dict(given["engine"])
+    if "boxes_per_side" in settings:  # one box does for a tiny run
+        settings["boxes_per_side"] = 1
+    simulation = Simulation(scene, engine_from_dict(settings), seed=1)
+    if "time_step" in settings:
+        limits = {"duration": 4 * settings["time_step"]}
+    else:
+        limits = {"duration": 1.0, "max_work": 1000}
+    with suppress(SimulationError):  # a collapse; everything has been compiled before
+        simulation.advance(**limits)
+        simulation.restore(simulation.checkpoint())
+        simulation.advance(**limits)

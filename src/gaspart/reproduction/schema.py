@@ -1,0 +1,158 @@
+"""The JSON schema of a config, and what is generated from the declarations of all keys.
+
+`python -m gaspart.reproduction.schema`, run in the folder of the project, writes the schemas of configs and
+scene files for editors, and the reference page.
+"""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from gaspart.kinds import Kind, names, record
+from gaspart.reproduction.families import registry
+from gaspart.reproduction.points import keys
+
+_DRAFT = "https://json-schema.org/draft/2020-12/schema"
+_EXPERIMENTS = names("the experiments whose points the figure is made of, in this order")
+_ENDS = {"exclusiveMinimum": "> ", "minimum": "≥ ", "exclusiveMaximum": "< ", "maximum": "≤ "}
+_TYPES = {"array": "list", "boolean": "`true` or `false`", "integer": "whole number", "object": "mapping"}
+_TYPES |= {"string": "text"}
+_INTRODUCTION = """# Reference of all keys
+
+Generated from the declarations in the code by `python -m gaspart.reproduction.schema`; do not edit it.
+What the keys are for is explained in [the config page](config.md).
+For editors, `workflow/schemas` has the same rules as JSON schemas.
+A key without a default is required. A default of *none* means that the key is absent.
+"""
+
+
+@cache
+def schema() -> Kind:
+    """The JSON schema of a config. Scenes and engines are validated by themselves when a point makes them."""
+    figures = {
+        figure: record({"experiments": _EXPERIMENTS, **settings})
+        for figure, settings in registry.settings().items()
+    }
+    return {"$schema": _DRAFT, **record(keys.config(figures))}
+
+
+def scene_schema() -> Kind:
+    """The JSON schema of a scene file; rules that concern several keys are not part of it."""
+    from gaspart.scene.keys import schema_of
+    from gaspart.scene.scene import Scene
+
+    return {"$schema": _DRAFT, **schema_of(Scene)}
+
+
+def documents() -> dict[str, str]:
+    """The text of each generated file, by its path from the folder of the project."""
+    schemas = {"config": schema(), "scene": scene_schema()}
+    found = {
+        f"workflow/schemas/{name}.schema.json": json.dumps(content, indent=1, ensure_ascii=False) + "\n"
+        for name, content in schemas.items()
+    }
+    return {**found, "docs/reference.md": reference()}
+
+
+def reference() -> str:
+    """The reference page, in Markdown: every key with its kind, default and meaning."""
+    top, scene = schema()["properties"], scene_schema()
+    parts = [_INTRODUCTION, "## Config\n", _table(_outline(top))]
+    parts += ["### Experiment\n", _table(_outline(keys.EXPERIMENT))]
+    for title, tables in (
+        ("Point: one species in a container (exactly three of the first four)", keys.EXTENTS | keys.GAS),
+        ("Point: a scene file", keys.SCENE_FILE),
+        ("Point: engine", keys.ENGINE | keys.SCANS),
+        *((f"Point: engine `{name}`", table) for name, table in keys.ENGINES.items()),
+        ("Point: length (exactly one of them)", keys.LENGTHS),
+        ("Point: run", keys.RUN),
+        ("Animation", keys.ANIMATION),
+    ):
+        parts += [f"### {title}\n", _table(tables)]
+    parts.append("## Settings of figures\n\nEach figure also has `experiments`, whose points it measures.\n")
+    for figure, settings in registry.settings().items():
+        if settings:
+            parts += [f"### `{figure}`\n", _table(settings)]
+    parts += ["## Scene file\n", _table(scene["properties"])]
+    for name, part in _parts(scene):
+        parts += [f"### {name}\n\n{part['description']}\n", _table(part["properties"])]
+    return "\n".join(parts)
+
+
+def _parts(scene: Kind) -> list[tuple[str, Kind]]:
+    """The mappings inside a scene file, each with its title."""
+    found: dict[str, Kind] = {}
+    left = list(scene["properties"].values())
+    while left:
+        kind = left.pop(0)
+        if "title" in kind:
+            found[kind["title"]] = kind
+        inner = [kind[name] for name in ("items", "additionalProperties") if isinstance(kind.get(name), dict)]
+        left += [*kind.get("properties", {}).values(), *kind.get("anyOf", ()), *inner]
+    return list(found.items())
+
+
+def _outline(table: dict[str, Kind]) -> dict[str, Kind]:
+    """The same keys without those inside their mappings, which have tables of their own."""
+    return {name: {**kind, "properties": {}} for name, kind in table.items()}
+
+
+def _table(kinds: dict[str, Kind]) -> str:
+    rows = ["| key | value | default | meaning |", "| --- | --- | --- | --- |"]
+    for name, kind in kinds.items():
+        default = _default(kind["default"]) if "default" in kind else ""
+        rows.append(f"| `{name}` | {in_words(kind)} | {default} | {kind.get('description', '')} |")
+    return "\n".join([*rows, ""])
+
+
+def _default(value: Any) -> str:
+    return "*none*" if value is None else f"`{json.dumps(value)}`"
+
+
+def in_words(kind: Kind) -> str:
+    """The kind of a value in words: `number > 0 and ≤ 0.1, or list of 2 to 3`."""
+    if "title" in kind:
+        return kind["title"]
+    if "const" in kind:
+        return f"`{kind['const']}`"
+    if "enum" in kind:
+        return ", ".join(f"`{value}`" for value in kind["enum"] if value is not None)
+    if "anyOf" in kind:
+        return " or ".join(dict.fromkeys(map(in_words, kind["anyOf"])))
+    given = kind.get("type", "anything")
+    types = [name for name in ([given] if isinstance(given, str) else given) if name != "null"]
+    return " or ".join(_typed(kind, name) for name in types)
+
+
+def _typed(kind: Kind, name: str) -> str:
+    """One of the types of a kind, with the rules for it."""
+    word = _TYPES.get(name, name)
+    if name in ("number", "integer"):
+        rules = [f"{sign}{kind[end]:.10g}" for end, sign in _ENDS.items() if end in kind]
+        return f"{word} {' and '.join(rules)}".rstrip()
+    if name == "object" and kind.get("properties"):
+        return "mapping of " + ", ".join(
+            f"`{key}` ({in_words(item)})" for key, item in kind["properties"].items()
+        )
+    if name != "array":
+        return word
+    least, most = kind.get("minItems", 0), kind.get("maxItems")
+    if most == 0:
+        return "empty list"
+    size = "" if most is None else f" {most}" if least == most else f" {least} to {most}"
+    item = f" ({in_words(kind['items'])})" if "items" in kind else ""
+    return f"{word} of{size} values{item}" if size else f"{word}{item}"
+
+
+def main() -> None:
+    """Write all generated files."""
+    for path, text in documents().items():
+        Path(path).parent.mkdir(exist_ok=True)
+        Path(path).write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,1 +1,0 @@
-"""A scene under an engine: Simulation."""

@@ -1,0 +1,73 @@
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from reproduction.claims.data import claim
+
+from gaspart.reproduction import claims
+from gaspart.reproduction.claims import Estimate, judge
+
+
+def test_table_goes_out_and_comes_back(tmp_path):
+    path = tmp_path / "claims" / "virial_discs.csv"
+    made = [
+        claim(np.float64(1.234), np.float32(0.01), 0.02, Estimate(1.23, 0.004)),
+        replace(claim(9.0, text='Z at "0.2", dense'), measured=Estimate(9.0, 0.01, 5)),
+        claim(error=math.nan, kind="reproduction", text="Z at 0.3"),
+    ]
+    claims.write(path, "virial_discs", made)
+    assert path.read_text().splitlines()[0] == ",".join(claims.COLUMNS)
+    rows = claims.read(path)
+    *alone, family = rows
+    assert [row["verdict"] for row in alone] == judge(made) == ["agrees", "disagrees", "inconclusive"]
+    assert [row["claim"] for row in alone] == [one.claim for one in made]
+    assert (family["kind"], family["form"], family["verdict"]) == ("family", "distribution", "disagrees")
+    assert rows[0]["measured"] == 1.234
+    assert (rows[0]["source"], rows[0]["allowance"]) == ("theory", 0.004)
+    assert (rows[0]["degrees_of_freedom"], rows[1]["degrees_of_freedom"]) == (math.inf, 5.0)
+    assert [row["scattered"] for row in rows] == [0.0, 1.0, 0.0, 0.0]
+    assert rows[2]["why"] == "not measured in this run"
+    assert rows[0]["deviation_sigma"] == pytest.approx(made[0].deviation_sigma, abs=1e-3)
+    assert not list(path.parent.glob("*.partial"))
+
+    table = claims.collect([path, path])
+    assert tuple(table.columns) == claims.COLUMNS
+    assert len(table) == 8
+    table.to_csv(path, index=False)
+    assert claims.summary(path).splitlines() == [
+        "8 claims",
+        "tests: 2 agree, 2 disagree",
+        "reproductions: 2 inconclusive",
+        "families: 2 disagree",
+        *[
+            'disagrees: virial_discs: Z at "0.2", dense',
+            f"disagrees: virial_discs: {family['claim']}",
+        ]
+        * 2,
+    ]
+    assert claims.counts(claims.read(path))["test"] == {"agrees": 2, "disagrees": 2}
+
+
+def test_collecting_nothing_gives_an_empty_table(tmp_path):
+    table = claims.collect([])
+    assert tuple(table.columns) == claims.COLUMNS
+    table.to_csv(tmp_path / "claims.csv", index=False)
+    assert claims.summary(tmp_path / "claims.csv") == "0 claims"
+
+
+def test_two_claims_with_one_text_are_refused(tmp_path):
+    with pytest.raises(ValueError, match="occurs twice"):
+        claims.write(tmp_path / "a.csv", "figure", [claim(), claim()])
+    assert not (tmp_path / "a.csv").exists()
+
+
+def test_foreign_tables_are_refused(tmp_path):
+    path = tmp_path / "other.csv"
+    path.write_text("a,b\n1,2\n")
+    with pytest.raises(ValueError, match=r"other\.csv: not a claims table"):
+        claims.read(path)
+    claims.write(path, "figure", [claim()])
+    path.write_text(path.read_text().replace(",agrees,", ",perhaps,"))
+    with pytest.raises(ValueError, match="verdict: 'perhaps'"):
+        claims.read(path)

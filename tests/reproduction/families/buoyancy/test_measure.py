@@ -1,0 +1,85 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from reproduction.families.buoyancy.data import HEIGHT, RADIUS, SMALL, STRENGTH, WIDTH, dilute_fluid, stretch
+from reproduction.families.gravity.data import point
+
+import gaspart as gp
+from gaspart.reproduction.families.buoyancy import measure as buoyancy
+
+SETTINGS = {"bins": 30, "blocks": 8, "clear": 2, "far": 5.0, "near": 3.0, "source_density": 0.2}
+COUNT = 30
+
+
+@pytest.fixture
+def points(tmp_path):
+    """A point with the disc held fast at height 20 above the small discs' lowest, and one with it free."""
+    body = gp.Body((12.0, 20.0 + SMALL), (0.0, 0.0), RADIUS, mass=0.5)
+    scene = gp.Scene(
+        gp.Container((WIDTH, HEIGHT + 2 * SMALL), ("periodic", "wall")),
+        [gp.Species(COUNT, SMALL)],
+        bodies=[body],
+        gravity=(0.0, -STRENGTH),
+    )
+    scene.to_file(tmp_path / "scene.yaml")
+    return [point(tmp_path / "scene.yaml", **{"scene.bodies.0.fixed": fixed}) for fixed in (True, False)]
+
+
+@pytest.fixture
+def runs(monkeypatch):
+    """Stands in for the trajectories: a list of stretches."""
+    made = []
+    monkeypatch.setattr(buoyancy, "stretches", lambda point, number: made)
+    return made
+
+
+def test_in_a_dilute_gas_the_radius_that_counts_is_r_more(points, runs):
+    rng = np.random.default_rng(1)
+    density = COUNT * STRENGTH / -np.expm1(-STRENGTH * HEIGHT) * np.exp(-STRENGTH * 20.0) / WIDTH
+    displaced = density * np.pi * (RADIUS + SMALL) ** 2
+    place = np.tile([12.0, 20.0], (1500, 1))
+    runs += [
+        stretch(dilute_fluid(rng, 1500, COUNT, place), displaced * factor)
+        for factor in rng.normal(1.0, 0.02, 8)
+    ]
+    row = buoyancy._fixed(points[0], SETTINGS)
+    assert row["force"] == pytest.approx(displaced, rel=0.03)
+    assert row["missing"] == pytest.approx(displaced, abs=4.0 * row["missing_error"] + 0.03 * displaced)
+    assert row["missing_error"] < 0.05 * displaced
+    for way in ("force", "count"):
+        assert row[f"{way}_radius"] == pytest.approx(1.0, abs=4.0 * row[f"{way}_radius_error"] + 0.1)
+        assert 0.0 < row[f"{way}_radius_error"] < 0.25
+    assert row["radius_expected"] == pytest.approx(1.0, abs=0.05)
+    assert row["packing_fraction"] == pytest.approx(density * np.pi / 4.0, rel=0.05)
+
+
+def test_a_free_disc_is_lifted_by_what_it_displaces(points, runs):
+    rng = np.random.default_rng(2)
+    for _ in range(8):
+        # So light a gas carries nothing: the disc's own weight alone counts, M g / T = 0.025.
+        chance = rng.random(400)
+        low, high = RADIUS - SMALL, HEIGHT - RADIUS + SMALL
+        height = low - np.log1p(-chance * -np.expm1(-0.025 * (high - low))) / 0.025
+        place = np.stack([WIDTH * rng.random(400), height], axis=-1)
+        runs.append(stretch(dilute_fluid(rng, 400, COUNT, place), 0.0))
+    row = buoyancy._free(points[1], SETTINGS)
+    bare = low + 1.0 / 0.025 - (high - low) / np.expm1(0.025 * (high - low))
+    assert row["height"] == pytest.approx(bare, abs=4.0 * row["height_error"])
+    assert row["lowest"] == low and row["mass"] == 0.5
+    # Theory knows of the gas, thin as it is: a disc of mass 0.5 displaces 1.4 at the floor, and rises.
+    assert row["expected"] > bare + 1.0
+    assert row["expected_spread"] == pytest.approx(row["spread"], rel=0.1)
+
+
+def test_the_source_s_discs_are_apart_from_those_in_the_fluid_of_the_fixed_ones(points, runs):
+    rng = np.random.default_rng(3)
+    place = np.tile([12.0, 20.0], (20, 1))
+    runs += [stretch(dilute_fluid(rng, 20, COUNT, place), 1.0 + n) for n in range(8)]
+    own = replace(points[1], experiment="column_source", name="own")
+    ds = buoyancy.buoyancy([*points, own], SETTINGS)
+    assert dict(ds.sizes) == {"fixed": 1, "free": 1, "source": 1, "height": 201}
+    assert float(ds["source_density"][0]) == pytest.approx(0.5 / (np.pi * RADIUS**2))
+    assert float(ds["source_highest"][0]) == HEIGHT - (RADIUS - SMALL)
+    assert ds.attrs["source_density"] == 0.2
+    assert "source" not in buoyancy.buoyancy(points, SETTINGS).sizes

@@ -1,0 +1,65 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gaspart import theory
+from gaspart.reproduction.families.film import measure as film
+from gaspart.reproduction.points import grid
+from gaspart.trajectory.run import run
+
+
+def slit(rng, density, width, samples, side=6.0):
+    """Bodies that do not interact, uniform between the walls, and the pressure that they exert."""
+    count = round(density * side**2 * (width - 1.0))
+    positions = rng.random((samples, count, 3)) * [side, side, width - 1.0] + [0.0, 0.0, 0.5]
+    height = np.minimum(positions[..., 2], width - positions[..., 2]) - 0.5
+    sides = np.array([side, side, width])
+    return film.Slit(rng.normal(density, 0.01, samples), height, width, side**2, positions, sides)
+
+
+def test_contact_density_of_uniform_bodies_is_their_density():
+    rng = np.random.default_rng(1)
+    one = slit(rng, 0.5, 5.0, 600)
+    density = film._contact(one)
+    assert abs(density.value - 0.5) < 4.0 * density.error < 0.2
+
+
+def test_insertion_into_a_dilute_gas_of_points_counts_their_spheres():
+    # Each of the 29 points forbids a ball of radius 1, on average 3/16 less of it within 1 of either wall.
+    rng = np.random.default_rng(2)
+    one = slit(rng, 0.1, 9.0, 64)
+    potential = film._widom(one, 64_000, 3)
+    forbidden = 4.0 / 3.0 * np.pi * (1.0 - 2.0 * (3.0 / 16.0) / 8.0)
+    expected = np.log(30 / 288.0) - 29 * np.log(1.0 - forbidden / 288.0)
+    assert potential.value == pytest.approx(expected, abs=4.0 * potential.error + 0.005)
+    assert potential.error < 0.01
+
+
+def test_a_real_slit_obeys_the_contact_theorem(tmp_path):
+    settings = {
+        "dimension": 3, "count": 60, "radius": 0.5, "side": [5.0, 5.0, 5.0], "temperature": 2.0,
+        "boundary": ["periodic", "periodic", "wall"], "arrangement": "lattice",
+        "duration": 120, "equilibration": 5, "samples": 256,
+    }  # fmt: skip
+    point = grid.Point("test", "single", "simulate", settings, str(tmp_path), 7)
+    path = point.replica_path(0)
+    Path(path).parent.mkdir(parents=True)
+    schedule = grid.schedule(point)
+    run(
+        grid.scene(point),
+        grid.engine(point),
+        point.seed(0),
+        schedule.duration,
+        schedule.sample_interval,
+        path,
+    )
+    dataset = film.thin_film(
+        [point], {"bulk_packing_fraction": 0.3, "insertions": 6400, "theory_widths": [2.0, 3.0, 2]}
+    )
+    error = float(np.hypot(dataset["contact_error"], dataset["pressure_error"])[0])
+    assert abs(float(dataset["contact"][0] - dataset["pressure"][0])) < 4.0 * error
+    assert error < 0.1 * float(dataset["pressure"][0])
+    mean = float((dataset["density"] * 2.0 * (dataset["place"][1] - dataset["place"][0])).sum())
+    assert mean == pytest.approx(60 / 25.0, rel=1e-6)
+    assert dataset.attrs["bulk_density"] == pytest.approx(theory.number_density(0.3, 3))

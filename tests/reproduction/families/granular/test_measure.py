@@ -1,0 +1,120 @@
+"""What is read of rough and inelastic runs: exactly, and what comes out of small ones."""
+
+import numpy as np
+import pytest
+
+import gaspart as gp
+from gaspart import theory
+from gaspart.reproduction.families.granular import measure as granular
+from gaspart.reproduction.families.granular.runs import read_run
+from gaspart.reproduction.points import grid
+
+
+def made(tmp_path, name, scene, **settings):
+    """A point of a scene file, with its runs."""
+    scene.to_file(tmp_path / f"{name}.yaml")
+    settings = {"scene": str(tmp_path / f"{name}.yaml"), "replicas": 4} | settings
+    point = grid.Point(name, "single", "simulate", settings, str(tmp_path), 1)
+    recipe = grid.recipe(point)
+    (tmp_path / name / "single").mkdir(parents=True)
+    for seed, path in zip(recipe["seeds"], point.replica_paths, strict=True):
+        gp.run(
+            grid.scene(point),
+            grid.engine(point),
+            seed=tuple(seed),
+            duration=recipe["duration"],
+            sample_interval=recipe["sample_interval"],
+            path=path,
+        )
+    return point
+
+
+def gas(count=256, dimension=2, packing_fraction=0.02, **scene):
+    side = float((count * theory.body_volume(dimension) / packing_fraction) ** (1 / dimension))
+    inertia = {"moment_of_inertia": 0.125} if dimension == 2 else {}
+    return gp.Scene(
+        gp.Container((side,) * dimension, "periodic"),
+        [gp.Species(count, 0.5, temperature=2.0, **inertia)],
+        **scene,
+    )
+
+
+def test_rough_discs_share_as_theory_says(tmp_path):
+    rough = gas(restitution=gp.Restitution(1.0, 1.0))
+    lossy = gas(restitution=gp.Restitution(1.0, 0.5))
+    points = [
+        made(tmp_path, "start", rough, duration=40.0, samples=10),
+        made(tmp_path, "still", rough, duration=400.0, samples=64, equilibration=60.0),
+        made(tmp_path, "lossy", lossy, duration=300.0, samples=40),
+    ]
+    ds = granular.equipartition(points, {"steady_from": 10.0})
+    assert ds["inertia"].item() == pytest.approx(0.5)
+    assert ds["translation"][0, 0] == 1.0 and ds["rotation"][0, 0] == pytest.approx(0.0, abs=1e-6)
+    assert abs(ds["rate"].item() - 2.0 / 3.0) < 4.0 * ds["rate_error"].item() < 0.5
+    assert abs(ds["equilibrium_ratio"].item() - 1.0) < 4.0 * ds["equilibrium_ratio_error"].item() < 0.3
+    assert abs(ds["steady_ratio"].item() - theory.rough_ratio(0.5, 0.5)) < 0.1
+    # the energy of a gas without losses is conserved: 2 (N - 1) T_tr + N T_rot, less the drift's own
+    run = read_run(points[0], points[0].replica_path(0))
+    total = 2.0 * 255 * run.translation + 256 * run.rotation
+    assert total == pytest.approx(np.full(11, total[0]), rel=2e-3)
+
+
+def test_rough_walls_mix_velocity_and_spin_as_theory_says(tmp_path):
+    scene = gp.Scene(
+        gp.Container((4000.0, 10.0002), ("periodic", "wall")),
+        [gp.Species(2048, 0.0001, mass=2.0, temperature=4.0, moment_of_inertia=0.6e-8)],
+        restitution=gp.Restitution(1.0, 1.0),
+    )
+    ds = granular.equipartition(
+        [made(tmp_path, "walls", scene, duration=18.0, samples=18)], {"steady_from": 1.0}
+    )
+    row = ds.isel(walls=0)
+    assert float(row["wall_inertia"]) == pytest.approx(0.3)
+    assert row["wall_time"][-1] == pytest.approx(18.0 * np.sqrt(2.0) / 10.0)
+    assert row["wall_translation"][0] == 1.0 and row["wall_rotation"][0] == pytest.approx(0.0, abs=1e-6)
+    total = row["wall_translation"] + row["wall_rotation"]
+    assert total.values == pytest.approx(np.ones(19), abs=0.01)  # hardly any collisions
+    for name in ("exchange", "wall_ratio"):
+        assert abs(row[name] - 1.0) < 4.0 * row[f"{name}_error"] < 0.2, name
+
+
+def test_between_rough_walls_the_start_must_be_maxwellian(tmp_path):
+    scene = gp.Scene(
+        gp.Container((40.0, 10.0), ("periodic", "wall")),
+        [gp.Species(2, 0.0001, speed=1.0)],
+        restitution=gp.Restitution(1.0, 1.0),
+    )
+    with pytest.raises(gp.SceneError, match="temperature"):
+        granular.equipartition(
+            [made(tmp_path, "walls", scene, duration=1.0, samples=1)], {"steady_from": 1.0}
+        )
+
+
+def test_an_inelastic_gas_cools_as_haff_says_and_the_number_variance_is_counted(tmp_path):
+    points = [
+        made(tmp_path, "haff", gas(restitution=gp.Restitution(0.8)), duration=200.0, samples=16),
+        made(
+            tmp_path,
+            "dense",
+            gas(packing_fraction=0.2, restitution=gp.Restitution(0.9)),
+            duration=9.0,
+            samples=3,
+        ),
+    ]
+    ds = granular.cooling(points, {"clustering": ["dense"], "cells_per_side": 4})
+    assert abs(ds["rate"].item() - theory.cooling_rate(0.8, 2)) < 4.0 * ds["rate_error"].item() < 0.05
+    assert abs(ds["exponent"].item() + 2.0) < 0.15
+    assert ds.sizes["body"] == 256 and ds.attrs["side"] > 0.0
+    assert ds["cluster_excess"].values == pytest.approx(np.ones((1, 4)), rel=0.1)
+    assert np.all((ds["variance"].values > 0.1) & (ds["variance"].values < 1.0))
+
+
+def test_number_variance_of_equal_cells_is_zero_and_of_one_cell_is_largest(monkeypatch):
+    import xarray as xr
+
+    scene = gp.Scene(gp.Container((4.0, 4.0), "periodic"), [gp.Species(8, 0.1)])
+    even = np.array([[x + 0.5, y + 0.5] for x in (0, 1) for y in (0, 1)] * 2)
+    frames = np.stack([2.0 * even, np.full((8, 2), 4.0)])  # the last on the upper boundary
+    positions = xr.Dataset({"coordinates": (("frame", "atom", "spatial"), frames)})
+    monkeypatch.setattr(granular, "open_trajectory", lambda path: positions)
+    assert granular._number_variance("made up", scene, 2) == pytest.approx([0.0, 6.0])

@@ -1,0 +1,35 @@
+"""The pictures of the densest packings."""
+
+import numpy as np
+from reproduction.families.drawn import draw, varied
+from reproduction.families.packing.data import packings
+
+from gaspart.reproduction.families.packing import figure as packing
+
+
+def test_the_first_and_the_last_packing_are_drawn_with_their_packing_fractions(monkeypatch):
+    drawn = []
+
+    def picture(bodies, size, colours):
+        drawn.append(bodies)
+        return np.full((*size, 3), len(drawn), dtype=np.uint8)
+
+    monkeypatch.setattr(packing, "picture", picture)
+    ds = varied(packings(), "packing_fraction", "error")
+    axes = draw(packing.densest_fill, ds).axes
+    titles = [axis.get_title() for axis in axes]
+    assert "periodic" in titles[0] and "0.3760(10)" in titles[0]
+    assert "jammed" in titles[1] and "0.6410(10)" in titles[1]
+    for k, (axis, bodies) in enumerate(zip(axes, drawn[-2:], strict=True)):
+        one = ds.isel(packing=k)
+        assert np.all(axis.images[0].get_array() == k + 3)
+        assert np.array_equal(bodies.positions, one["position"])
+        assert np.all(bodies.radii == float(one["radius"]))
+        assert np.array_equal(bodies.lengths, one["length"])
+
+
+def test_packings_of_fewer_particles_are_drawn_without_the_missing_ones():
+    ds = packings()
+    ds["position"][0, 5:] = np.nan
+    image = draw(packing.densest_fill, ds).axes[0].images[0].get_array()
+    assert image.shape == (700, 700, 3) and np.ptp(image) > 100

@@ -1,0 +1,52 @@
+import numpy as np
+import pytest
+import xarray as xr
+from reproduction.families.drawn import draw
+
+from gaspart.reproduction.families.pictures import figure as pictures
+
+
+@pytest.fixture
+def dataset():
+    rng = np.random.default_rng(1)
+    return xr.Dataset({
+        "position": (("body", "axis"), rng.uniform(1, 9, (20, 3))),
+        "radius": ("body", rng.uniform(0.4, 0.6, 20)),
+        "species": ("body", np.arange(20) // 19),
+        "speed": ("body", rng.uniform(0, 2, 20)),
+        "length": ("axis", np.array([10.0, 11.0, 12.0])),
+    })  # fmt: skip
+
+
+@pytest.mark.parametrize("function", [pictures.gas_render, pictures.brownian_render])
+def test_the_picture_is_drawn_with_a_pixel_for_each_dot(dataset, function):
+    figure = draw(function, dataset)
+    image = figure.axes[0].images[0].get_array()
+    assert image.shape == (1260, 1680, 3)
+    saturated = np.ptp(image.astype(int), axis=-1) > 60
+    assert 0.002 < saturated.mean() < 0.5
+
+
+@pytest.mark.parametrize(
+    ("function", "colour"), [(pictures.gas_render, "speed"), (pictures.brownian_render, "species")]
+)
+def test_the_particles_of_the_data_set_are_drawn(monkeypatch, dataset, function, colour):
+    drawn, coloured = [], []
+
+    def picture(bodies, size, colours):
+        drawn.append(bodies)
+        return np.zeros((*size[::-1], 3), dtype=np.uint8)
+
+    monkeypatch.setattr(pictures, "picture", picture)
+    monkeypatch.setattr(pictures, "colours_of", lambda bodies, by: coloured.append(by))
+    figure = draw(function, dataset)
+    bodies = drawn[-1]
+    assert coloured == 2 * [colour]
+    columns = {"positions": "position", "radii": "radius", "species": "species", "speeds": "speed"}
+    for name, column in {**columns, "lengths": "length"}.items():
+        assert np.array_equal(getattr(bodies, name), dataset[column])
+    scales = figure.axes[1:]
+    assert len(scales) == (colour == "speed")
+    for scale in scales:
+        fastest = pictures.FASTEST * float(np.sqrt((dataset["speed"] ** 2).mean()))
+        assert "speed" in scale.get_xlabel() and scale.get_xlim() == pytest.approx((0.0, fastest))

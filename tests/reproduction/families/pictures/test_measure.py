@@ -1,0 +1,48 @@
+import numpy as np
+import pytest
+
+from gaspart.reproduction.families.pictures import measure as pictures
+from gaspart.reproduction.points import grid
+
+CUBE = np.full(3, 10.0)
+
+
+@pytest.mark.parametrize(
+    ("second", "periodic", "expected"),
+    [
+        ([2.9, 2.0, 2.0], False, 1),
+        ([3.0 - 1e-6, 2.0, 2.0], False, 0),  # rounding
+        ([3.01, 2.0, 2.0], False, 0),
+        ([2.0, 2.0, 9.9], False, 0),
+        ([2.0, 2.0, 9.9], True, 0),
+    ],
+)
+def test_overlapping_pairs(second, periodic, expected):
+    places = np.array([[2.0, 2.0, 2.0], second, [7.0, 7.0, 7.0]])
+    assert pictures.overlapping(places, np.full(3, 0.5), CUBE, (periodic,) * 3) == expected
+
+
+def test_overlaps_across_a_face_and_with_a_large_body():
+    places = np.array([[0.2, 5.0, 5.0], [9.6, 5.0, 5.0], [5.0, 5.0, 5.0], [5.0, 7.4, 5.0], [5.0, 8.1, 5.0]])
+    radii = np.array([0.5, 0.5, 2.0, 0.5, 0.5])
+    assert pictures.overlapping(places, radii, CUBE, (False,) * 3) == 2
+    assert pictures.overlapping(places, radii, CUBE, (True, False, False)) == 3
+
+
+def test_a_scene_is_counted_and_kept_for_drawing(tmp_path):
+    from gaspart.trajectory.run import run
+
+    settings = {
+        "scene": "config/scenes/brownian.yaml",
+        "scene.species.0.count": 200,
+        "duration": 2.0,
+        "samples": 1,
+    }
+    point = grid.Point("brownian_render", "single", "simulate", settings, str(tmp_path), 1)
+    (tmp_path / "brownian_render/single").mkdir(parents=True)
+    run(grid.scene(point), grid.engine(point), 1, 2.0, 2.0, point.replica_path(0))
+    ds = pictures.brownian_render([point], {})
+    assert ds.sizes["body"] == ds.attrs["count"] == 201
+    assert float(ds["overlaps"]) == 0.0 and float(ds["resolved"]) == 0.0
+    assert ds["radius"].values.tolist() == [10.0] + [0.5] * 200
+    assert float(ds["mean_speed"]) == pytest.approx(1.0, abs=0.1)

@@ -1,0 +1,38 @@
+"""Made-up echoes with a known growth."""
+
+import numpy as np
+import xarray as xr
+
+from gaspart.reproduction.families.reversibility import measure as reversibility
+from gaspart.reproduction.points import grid
+
+SIDE = 8.7
+
+
+def echoes(growth, engine="event", first=None, jump_after=None, seeds=6, samples=30):
+    """What `echo` gives if errors grow from a coordinate's rounding by exp(growth) a collision."""
+    rng = np.random.default_rng(2)
+    s = np.linspace(1.0, 30.0, samples) + np.zeros((seeds, 1))
+    growth = growth * (1.0 + 0.02 * rng.standard_normal((seeds, 1)))
+    distance = np.minimum((first or SIDE * 2.0**-53) * np.exp(growth * s), 3.0)
+    if jump_after is not None:
+        distance = np.where(s > jump_after, 2.0, distance)
+    apart = np.minimum(1e-10 * np.exp(growth * s), 3.0)
+    attributes = {"count": 125, "dimension": 3, "side": SIDE, "packing_fraction": 0.1, "time_step": 0.0}
+    return xr.Dataset(
+        {
+            name: (("seed", "sample"), values)
+            for name, values in (("collisions", s), ("echo", distance), ("divergence", apart))
+        },
+        attrs=attributes | {"engine": engine, "precision": "float64"},
+    )
+
+
+def measurement(folder, growth=1.47, jump_after=8.0):
+    """What `measure.reversibility` makes of one gas by both engines; steps forget all at once."""
+    points = []
+    (folder / "gas").mkdir()
+    for name, run in (("event", echoes(growth)), ("step", echoes(growth, "step", jump_after=jump_after))):
+        points.append(grid.Point("gas", name, "echo", {}, str(folder), 1))
+        run.to_netcdf(points[-1].path)
+    return reversibility.reversibility(points, {})

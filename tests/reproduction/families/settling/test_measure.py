@@ -1,0 +1,86 @@
+"""What is read of piles and flows: exactly, and what comes out of small ones."""
+
+import math
+
+import numpy as np
+import pytest
+from reproduction.families.granular.test_measure import made
+
+import gaspart as gp
+from gaspart.reproduction.families.settling import measure
+
+SETTINGS = {"gap": 1e-3, "start": 0.8, "head": 0.6}
+
+
+def pile(count=12, **law):
+    kinds = [gp.Species(count // 2, radius, temperature=1.0) for radius in (0.45, 0.55)]
+    law = gp.Restitution(0.5, **law)
+    return gp.Scene(gp.Container((4.0, 12.0)), kinds, gravity=(0.0, -2.0), restitution=law)
+
+
+def hopper(count=80, width=5.0):
+    """An orifice of this width in the floor of a hopper, 10 wide."""
+    region = ((0.0, 200.0), (10.0, 214.0))
+    ends = 5.0 - 0.5 * width, 5.0 + 0.5 * width
+    return gp.Scene(
+        gp.Container((10.0, 214.0)),
+        [gp.Species(count, 0.5, region=region)],
+        gravity=(0.0, -1.0),
+        restitution=gp.Restitution(0.5, 0.0, 0.01),
+        walls=[gp.Wall((0.0, 200.0), (ends[0], 200.0)), gp.Wall((ends[1], 200.0), (10.0, 200.0))],
+    )
+
+
+def test_contacts_are_those_of_discs_and_walls():
+    """Three discs in a row, the first in a corner; the gap to the third is 0.01."""
+    scene = gp.Scene(gp.Container((10.0, 10.0)))
+    positions = np.array([[0.5, 0.5], [1.5, 0.5], [2.51, 1.0]])
+    radii = np.full(3, 0.5)
+    assert measure.count_contacts(scene, positions, radii, 1e-6) == 3 + 1
+    apart = math.hypot(1.01, 0.5) - 1.0
+    assert measure.count_contacts(scene, positions, radii, 1.01 * apart) == 5
+    assert measure.count_contacts(scene, positions, radii, 0.99 * apart) == 4
+
+
+def test_piles_and_flows_are_read(tmp_path):
+    points = [
+        made(tmp_path, "pile", pile(contact_duration=0.005), duration=30.0, samples=60),
+        *(
+            made(
+                tmp_path, f"hopper{width:g}", hopper(width=width), duration=30.0, samples=120,
+                boxes_per_side=[8, 140], replicas=2,
+            )
+            for width in (3.0, 4.0, 5.0)
+        ),
+    ]  # fmt: skip
+    ds = measure.settling(points, SETTINGS)
+    assert ds.sizes["pile"] == 4 and ds.sizes["orifice"] == 3
+    assert ds["duration"].values == pytest.approx(np.full(4, 0.005 * math.sqrt(2.0)))
+    assert (ds["residual"] < 1.0).all() and (ds["displacement"] == 0.0).all() and (ds["rise"] < 1e-6).all()
+    assert abs(ds["final_contacts"].mean() - 2.0) < 0.2
+    assert ds["width"].values == pytest.approx([3.0, 4.0, 5.0])
+    assert (np.diff(ds["rate"]) > 0.0).all() and (ds["rate_error"] < 0.2 * ds["rate"]).all()
+    for n in range(3):  # what passes while the flow is timed: the slope of the discs that are left
+        time, left = ds["flow_time"][n].values, ds["left"][n].values
+        assert left[0] == 80 and left[-1] < 20
+        timed = (left < 64) & (left > 40)
+        slope = np.polyfit(time[timed], left[timed], 1)[0]
+        assert ds["rate"][n] == pytest.approx(-slope, rel=0.3)
+
+
+def test_a_flow_that_ends_too_early_is_refused(tmp_path):
+    point = made(tmp_path, "short", hopper(), duration=1.0, samples=4, boxes_per_side=[8, 140], replicas=1)
+    with pytest.raises(ValueError, match="duration"):
+        measure.settling([point], SETTINGS)
+
+
+def test_a_law_is_fitted_to_its_own_numbers():
+    width = np.array([4.0, 6.0, 9.0, 14.0])
+    found = measure._fit(width, 0.7 * (width - 1.2) ** 1.3, np.full(4, 0.01), 5)
+    assert found["exponent"][1] == pytest.approx(1.3, abs=1e-4)
+    assert found["offset"][1] == pytest.approx(1.2, abs=1e-3)
+    assert found["amplitude"][1] == pytest.approx(0.7, rel=1e-3)
+    assert found["chi_square"][1] > 1.0
+    found = measure._fit(width, 0.7 * (width - 1.2) ** 1.5, np.full(4, 0.01), 5)
+    assert found["beverloo_offset"][1] == pytest.approx(1.2, abs=1e-4)
+    assert found["chi_square"][1] < 1e-6

@@ -1,0 +1,88 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gaspart import theory
+from gaspart.reproduction.families.shared.pressure import (
+    COUNTED,
+    Run,
+    combine_runs,
+    pressure,
+    read_run,
+)
+from gaspart.reproduction.points import grid
+from gaspart.trajectory.run import run
+
+
+def small_point(tmp_path, **settings):
+    values = {
+        "dimension": 2, "count": 64, "radius": 0.5, "packing_fraction": 0.2, "boundary": "periodic",
+        "temperature": 2.0, "collisions_per_body": 400, "equilibration": 20, "samples": 40, "replicas": 2,
+    }  # fmt: skip
+    return grid.Point("test", "single", "simulate", values | settings, str(tmp_path), 7)
+
+
+def simulate(point):
+    schedule = grid.schedule(point)
+    for k in range(point.replicas):
+        path = point.replica_path(k)
+        Path(path).parent.mkdir(parents=True, exist_ok=True)
+        times = schedule.duration, schedule.sample_interval
+        run(grid.scene(point), grid.engine(point), point.seed(k), *times, path)
+
+
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory):
+    point = small_point(tmp_path_factory.mktemp("points"))
+    simulate(point)
+    return point, pressure(point)
+
+
+def test_z_of_a_small_gas_is_the_canonical_one(measured):
+    _, found = measured
+    expected = theory.compressibility_factor(0.2, 2)
+    expected += theory.finite_size_correction(0.2, 2, 64, ensemble="canonical")
+    assert found.z.error < 0.01
+    assert abs((found.z - expected).deviation) < 4.0
+
+
+def test_the_error_is_nearly_that_of_independent_collisions(measured):
+    _, found = measured
+    expected = (found.z.value - 1.0) / np.sqrt(found.counters["collisions"])
+    assert 0.6 < found.z.error / expected < 1.8
+
+
+def test_collision_rate_is_enskogs(measured):
+    _, found = measured
+    expected = theory.collision_rate(0.2, 2) * theory.collision_rate_finite_size_factor(0.2, 2, 64)
+    assert abs((found.collision_rate - expected).deviation) < 4.0
+
+
+def test_equilibration_is_dropped(measured):
+    point, _ = measured
+    one = read_run(point, point.replica_path(0))
+    assert len(one.z) == point.settings["samples"]
+
+
+def test_a_file_of_another_point_is_refused(measured):
+    point, _ = measured
+    other = grid.Point.from_dict(point.to_dict() | {"settings": point.settings | {"samples": 30}})
+    with pytest.raises(ValueError, match="not the frames"):
+        read_run(other, point.replica_path(0))
+
+
+def made_up(mean, spread, seed, samples=64):
+    rng = np.random.default_rng(seed)
+    z = mean + spread * rng.standard_normal(samples)
+    counters = dict.fromkeys(COUNTED, np.ones(samples))
+    return Run(z=z, rate=z, interval=1.0, counters=counters, speed=1.0)
+
+
+def test_replicas_that_agree_have_a_small_chi_square_and_others_do_not():
+    alike = combine_runs([made_up(2.0, 0.1, seed) for seed in range(6)])
+    assert alike.degrees_of_freedom == 5 and alike.chi_square < 20.0
+    assert alike.z.error == pytest.approx(0.1 / np.sqrt(6 * 64), rel=0.2)
+    apart = combine_runs([made_up(2.0 + 0.1 * seed, 0.1, seed) for seed in range(6)])
+    assert apart.chi_square > 100.0
+    assert alike.counters["collisions"] == 6 * 64

@@ -1,0 +1,52 @@
+from reproduction.claims.data import judged
+from reproduction.families.tradeoff.data import speed_accuracy_measurement, time_to_accuracy_measurement
+
+from gaspart.reproduction.claims import judge
+from gaspart.reproduction.families.tradeoff import claims as tradeoff
+
+
+def verdicts(dataset):
+    return judged(tradeoff.speed_accuracy(dataset))
+
+
+def test_orders_losses_and_frontier_agree_where_theory_holds(tmp_path):
+    found = verdicts(speed_accuracy_measurement(tmp_path))
+    assert set(found.values()) == {"agrees"}
+    assert any("order of the error of Z" in claim and "no rewinding" in claim for claim in found)
+    assert any("collisions lost to steps of 0.16" in claim for claim in found)
+
+
+def test_contacts_late_by_half_a_step_are_noticed(tmp_path):
+    dataset = speed_accuracy_measurement(tmp_path)
+    dataset["order"] = dataset.order * 0.5
+    found = verdicts(dataset)
+    assert sum(verdict == "disagrees" for verdict in found.values()) == 3
+
+
+def test_the_cheaper_engine_is_reported_without_a_verdict(tmp_path):
+    dataset = speed_accuracy_measurement(tmp_path)
+    dataset["gas_packing_fraction"] = dataset.gas_packing_fraction * 0.0 + 0.3
+    found = [verdict for claim, verdict in verdicts(dataset).items() if "time of steps over" in claim]
+    assert set(found) == {"no verdict"}
+
+
+def test_an_accuracy_that_no_step_is_known_to_reach_leaves_the_number_of_claims(tmp_path):
+    dataset = speed_accuracy_measurement(tmp_path)
+    dataset["gas_packing_fraction"] = dataset.gas_packing_fraction * 0.0 + 0.3
+    known = verdicts(dataset)
+    dataset["best_seconds"] = dataset.best_seconds.where(dataset.accuracy > dataset.accuracy.min())
+    unknown = verdicts(dataset)
+    assert unknown.keys() == known.keys()
+    (text,) = (claim for claim in known if "time of steps for" in claim)
+    assert unknown[text] == "inconclusive"
+
+
+def choice(dataset):
+    claims = tradeoff.time_to_accuracy(dataset)
+    return dict(zip(("event", "step", "choice"), judge(claims), strict=True))
+
+
+def test_a_model_that_predicts_the_costs_agrees_and_one_that_does_not_is_noticed():
+    assert choice(time_to_accuracy_measurement()) == dict.fromkeys(("event", "step", "choice"), "agrees")
+    wrong = choice(time_to_accuracy_measurement(more_expensive=4.0))
+    assert wrong == {"event": "agrees", "step": "disagrees", "choice": "disagrees"}

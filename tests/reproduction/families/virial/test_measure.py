@@ -1,0 +1,42 @@
+import numpy as np
+import pytest
+from reproduction.families.virial.data import ETA, FITS, equation_of_state
+
+from gaspart import theory
+from gaspart.reproduction.families.virial.measure import fit_coefficients, fit_table
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_exact_data_give_the_exact_coefficients(dimension):
+    z = theory.virial_with_tail(ETA, dimension)
+    fit, held_error = fit_coefficients(ETA, z, 1e-4 * (z - 1.0), dimension, free=5, held=True)
+    exact, _ = theory.virial_coefficients(dimension, 5)
+    assert fit.values == pytest.approx(exact[1:], rel=1e-6)
+    assert np.all(held_error >= 0.0) and np.all(held_error < fit.errors * 10)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_fitted_coefficients_scatter_as_their_errors_say(dimension):
+    exact, _ = theory.virial_coefficients(dimension, 4)
+    fits = [equation_of_state(dimension, seed=seed).isel(fit=0) for seed in range(60)]
+    pulls = np.array([
+        (fit["coefficient"].values[:3] - exact[1:]) / fit["coefficient_error"].values[:3] for fit in fits
+    ])  # fmt: skip
+    assert np.allclose(pulls.mean(axis=0), 0.0, atol=0.5)
+    assert np.allclose(pulls.std(axis=0), 1.0, atol=0.3)
+
+
+def test_a_cut_series_is_biased():
+    z = theory.compressibility_factor(ETA, 2)
+    fit, held_error = fit_coefficients(ETA, z, 1e-4 * (z - 1.0), 2, free=4, held=False)
+    assert fit.values[2] > 1.3 * theory.virial_coefficients(2, 4)[0][3]  # B4 takes up what was cut
+    assert not held_error.any()
+
+
+def test_choices_with_too_few_points_are_left_out():
+    dataset = equation_of_state(2).drop_dims(["fit", "order"])
+    few = dataset.isel(packing_fraction=slice(0, 4))
+    table = fit_table(few, FITS)
+    assert table["free"].values.tolist() == [4]
+    nothing = fit_table(dataset.isel(packing_fraction=slice(0, 2)), FITS)
+    assert nothing.sizes["fit"] == 0

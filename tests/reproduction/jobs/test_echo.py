@@ -1,0 +1,21 @@
+"""There and back."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from gaspart.engines import EventDriven, TimeStepped
+from gaspart.reproduction.jobs.echo import DISPLACEMENT, echo
+from gaspart.scene.scene import Container, Scene, Species
+
+GAS = Scene(Container((8.0,) * 3), species=(Species(40, 0.5, temperature=1.0),))
+
+
+@pytest.mark.parametrize("engine", [EventDriven(), TimeStepped(0.01)], ids=["event", "step"])
+def test_a_short_way_leads_back_to_the_start_and_a_long_one_does_not(engine):
+    run = xr.Dataset(*echo(GAS, engine, [(1,), (2,)], 1.0, 10.0, 5))
+    assert (run.echo[:, -1] > 0.1).all()
+    short = xr.Dataset(*echo(GAS, engine, [(1,), (2,)], 1.0, 0.5, 2))
+    assert (short.echo < 1e-11).all()
+    assert (np.diff(short.collisions, axis=1) > 0.0).all()
+    assert (short.divergence > 0.5 * DISPLACEMENT).all() and (short.divergence < 1e-6).all()

@@ -1,0 +1,98 @@
+"""Counted work against exact numbers, and what a timing holds."""
+
+import pytest
+import xarray as xr
+
+from gaspart.engines import EventDriven, TimeStepped
+from gaspart.errors import SceneError, SimulationError
+from gaspart.reproduction.jobs import measure_cost as cost
+from gaspart.reproduction.jobs.measure_cost import measure_cost
+from gaspart.scene.container import Container
+from gaspart.scene.scene import Scene
+from gaspart.scene.species import Species
+from gaspart.theory.partition import expected_box_visits, expected_pair_tests
+
+GAS = Scene(Container((20.0,) * 3), species=(Species(400, 0.1, speed=1.0),))
+DISCS = Scene(Container((30.0,) * 2), species=(Species(40, 0.5, speed=1.0),))
+
+
+def measured(engines, scene=GAS, equilibration=0.0, stretch=0.1, repeats=2):
+    return xr.Dataset(*measure_cost(scene, engines, (1, 2), equilibration, stretch, repeats))
+
+
+def test_one_box_tests_each_pair_once():
+    run = measured([TimeStepped(0.01, boxes_per_side=1, passes=1)])
+    assert run.steps.values.tolist() == [10]
+    assert run.pair_tests.values.tolist() == [10 * 400 * 399 // 2]
+    assert run.box_visits.values.tolist() == [10 * 400]
+
+
+def test_boxes_follow_the_uniform_density():
+    sides = [2, 4, 8, 20]
+    run = measured([TimeStepped(0.01, boxes_per_side=n, passes=1) for n in sides], repeats=1)
+    assert run.boxes.values.tolist() == [n**3 for n in sides]
+    for n, part in enumerate(sides):
+        mean, spread = expected_pair_tests(400, part, 3, 20.0, 0.1)
+        assert run.pair_tests.values[n] / 10 == pytest.approx(mean, abs=4.0 * spread + 1e-9)
+        visits = expected_box_visits(part, 3, 20.0, 0.1)
+        assert run.box_visits.values[n] / 4000 == pytest.approx(visits, rel=0.05)
+
+
+def test_every_partition_starts_from_the_same_state_and_is_timed_as_often():
+    run = measured(
+        [TimeStepped(0.01, boxes_per_side=n, passes=1) for n in (1, 10)], repeats=3, equilibration=0.05
+    )
+    assert run.seconds.shape == (2, 3)
+    assert (run.seconds > 0.0).all()
+    assert run.collisions.values[0] == run.collisions.values[1]
+    assert run.duration.values == pytest.approx(0.1)
+    assert run.attrs["count"] == 400
+
+
+def test_short_steps_do_not_start_from_what_long_ones_left():
+    dense = Scene(Container((10.0,) * 3, "periodic"), species=(Species(570, 0.5, temperature=1.0),))
+    steps = (0.2, 0.01)
+    run = measured([TimeStepped(step) for step in steps], dense, equilibration=1.6, stretch=0.4, repeats=1)
+    alone = measured([TimeStepped(0.01)], dense, equilibration=1.6, stretch=0.4, repeats=1)
+    assert run.collisions.values[1] == alone.collisions.values[0]
+
+
+def test_all_pairs_at_every_event():
+    run = measured([EventDriven(search="pairs")], DISCS, stretch=10.0)
+    events = int((run.collisions + run.wall_hits)[0])
+    assert events > 10
+    assert int(run.pair_tests[0]) == (events + 1) * 40 * 39 // 2
+
+
+def test_searches_have_the_same_events():
+    runs = [
+        measured([EventDriven(search=search)], DISCS, 5.0, 10.0) for search in ("pairs", "direct", "boxes")
+    ]
+    assert len({int(run.collisions[0]) for run in runs}) == 1
+    assert len({int(run.wall_hits[0]) for run in runs}) == 1
+    tests = [int(run.pair_tests[0]) for run in runs]
+    assert tests[0] > tests[1] > tests[2]
+
+
+def test_a_rival_is_timed_with_engines_of_its_own():
+    """The same gas, searched in all boxes instead of those within reach: from the same state."""
+    near = [TimeStepped(0.01, boxes_per_side=n, passes=1, near_boxes=True) for n in (4, 8)]
+    wide = [TimeStepped(0.01, boxes_per_side=n, passes=1) for n in (4, 8)]
+    run = xr.Dataset(*measure_cost(GAS, near, (1, 2), 0.05, 0.1, 2, rival=(GAS, wide)))
+    assert run.seconds.shape == (4, 2)
+    assert run.boxes_per_side.values.tolist() == [4, 8, 4, 8]
+    assert len(set(run.collisions.values.tolist())) == 1
+    assert (run.box_visits.values[:2] < 0.3 * run.box_visits.values[2:]).all()
+    assert run.pair_tests.values[2:].tolist() == measured(wide, equilibration=0.05).pair_tests.values.tolist()
+
+
+def test_refuses_boxes_below_a_diameter():
+    with pytest.raises(SceneError, match="boxes_per_side"):
+        measured([TimeStepped(0.01, boxes_per_side=101)])
+
+
+def test_work_that_differs_between_repeats_is_an_error(monkeypatch):
+    timed, counts = cost._timed, iter([{"steps": 1}, {"steps": 2}])
+    monkeypatch.setattr(cost, "_timed", lambda *given: (timed(*given)[0], next(counts)))
+    with pytest.raises(SimulationError, match="twice"):
+        measured([TimeStepped(0.01, boxes_per_side=4)])

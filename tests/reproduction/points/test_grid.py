@@ -1,0 +1,207 @@
+"""From a config to the points of its grids, and from a point to the recipe of its job."""
+
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from gaspart import theory
+from gaspart.errors import SceneError
+from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.points import points
+from gaspart.scene.scene import Scene
+
+POINT = {
+    "dimension": 2,
+    "count": 100,
+    "radius": 0.5,
+    "packing_fraction": 0.2,
+    "boundary": "periodic",
+    "temperature": 2.0,
+    "collisions_per_body": 50,
+    "equilibration": 3,
+    "samples": 10,
+}
+
+
+def config(point=None, grid=None, job="simulate", seed=1):
+    block = {"job": job, "point": {**POINT, **(point or {})}}
+    if grid is not None:
+        block["grid"] = grid
+    return {"seed": seed, "points": "results/points", "experiments": {"gas": block}, "figures": {}}
+
+
+def only(**arguments):
+    (point,) = points(config(**arguments), "gas")
+    return point
+
+
+def test_the_product_of_a_mapping_is_taken_and_a_list_is_concatenated():
+    product = points(config(grid={"packing_fraction": [0.1, 0.2], "count": [10, 20]}), "gas")
+    assert [point.name for point in product] == [
+        "packing_fraction=0.1,count=10",
+        "packing_fraction=0.1,count=20",
+        "packing_fraction=0.2,count=10",
+        "packing_fraction=0.2,count=20",
+    ]
+    listed = points(config(grid=[{"count": [10, 20]}, {"count": 40, "radius": 0.25}]), "gas")
+    assert [point.name for point in listed] == ["count=10", "count=20", "count=40,radius=0.25"]
+    assert listed[2].settings["radius"] == 0.25
+
+
+def test_without_a_grid_there_is_one_point():
+    assert only().name == "single"
+
+
+def test_adding_a_value_changes_neither_names_nor_seeds_nor_recipes_of_the_others():
+    before = points(config(grid={"packing_fraction": [0.1, 0.3]}), "gas")
+    after = {
+        point.name: point for point in points(config(grid={"packing_fraction": [0.05, 0.1, 0.3]}), "gas")
+    }
+    for point in before:
+        assert after[point.name] == point
+        assert grid.recipe(after[point.name]) == grid.recipe(point)
+
+
+def test_seeds_differ_between_replicas_points_and_config_seeds():
+    first, second = points(config(grid={"count": [10, 20]}), "gas")
+    other = points(config(grid={"count": [10, 20]}, seed=2), "gas")[0]
+    seeds = [first.seed(0), first.seed(1), second.seed(0), other.seed(0)]
+    assert len(set(seeds)) == 4
+    assert all(0 <= word < 2**32 for seed in seeds for word in seed)
+
+
+def test_a_seed_is_the_same_today_and_tomorrow():
+    assert only().seed(0) == (2184986234, 2333639417, 659378589, 2926825994)
+
+
+def test_null_takes_a_key_back():
+    point = only(point={"packing_fraction": None, "side": 20.0})
+    assert "packing_fraction" not in point.settings
+    assert grid.scene(point).container.lengths == (20.0, 20.0)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"count": 100, "radius": 0.5, "packing_fraction": 0.2, "side": None},
+        {"count": 100, "radius": 0.5, "packing_fraction": None, "side": math.sqrt(math.pi * 25 / 0.2)},
+        {"count": 100, "radius": None, "packing_fraction": 0.2, "side": math.sqrt(math.pi * 25 / 0.2)},
+        {"count": None, "radius": 0.5, "packing_fraction": 0.2, "side": math.sqrt(math.pi * 25 / 0.2)},
+    ],
+)
+def test_any_three_of_count_radius_packing_fraction_and_side_make_the_same_scene(given):
+    scene = grid.scene(only(point=given))
+    assert scene.count == 100
+    assert scene.largest_radius == pytest.approx(0.5, rel=1e-14)
+    assert scene.packing_fraction == pytest.approx(0.2, rel=1e-14)
+
+
+def test_paths_by_kind_of_job():
+    assert only().path == "results/points/gas/single"
+    assert only(point={"replicas": 2}).replica_paths == [
+        "results/points/gas/single/replica-0.nc",
+        "results/points/gas/single/replica-1.nc",
+    ]
+    assert only(job="measure_cost").path == "results/points/gas/single.nc"
+
+
+def test_collisions_per_body_become_time_by_enskogs_rate():
+    schedule = grid.schedule(only())
+    rate = theory.collision_rate(0.2, 2, 1.0, 2.0, 1.0)
+    assert schedule.sample_interval == pytest.approx(50 / rate / 10)
+    assert schedule.equilibration_frames == 1  # 3 collisions per body in intervals of 5, rounded up
+    assert schedule.duration == pytest.approx(11 * schedule.sample_interval)
+
+
+def test_a_fixed_speed_counts_as_the_temperature_it_relaxes_to():
+    by_speed = grid.schedule(only(point={"temperature": None, "speed": 2.0}))
+    assert by_speed == grid.schedule(only(point={"temperature": 2.0}))
+
+
+def test_steps_are_sampled_at_whole_time_steps():
+    steps = {"engine": "step", "time_step": 0.03, "collisions_per_body": None, "steps": 1000, "samples": 7}
+    schedule = grid.schedule(only(point={**steps, "equilibration": 0}))
+    assert schedule.sample_interval / 0.03 == pytest.approx(143, rel=1e-14)
+    assert schedule.equilibration_frames == 0
+
+
+def test_boxes_per_body_are_never_smaller_than_a_diameter():
+    assert grid.boxes_per_side(1.0, 1000, 0.1, (10.0, 10.0, 10.0)) == (10, 10, 10)
+    assert grid.boxes_per_side(1000.0, 1000, 0.5, (10.0, 20.0)) == (10, 20)
+    assert grid.boxes_per_side(1e-6, 10, 0.5, (10.0, 10.0)) == (1, 1)
+
+
+def test_a_scan_is_timed_beside_the_same_partitions_without_a_key_of_the_engine():
+    steps = {"engine": "step", "time_step": 0.01, "scan_boxes_per_side": [3, 6], "near_boxes": True}
+    recipe = grid.recipe(only(point=steps | {"without": ["near_boxes"]}, job="measure_cost"))
+    beside = recipe["rival"]
+    assert beside["scene"] == recipe["scene"]
+    assert [engine["near_boxes"] for engine in recipe["engines"] + beside["engines"]] == [True] * 2 + [
+        False
+    ] * 2
+    assert [engine["boxes_per_side"] for engine in recipe["engines"] + beside["engines"]] == [3, 6, 3, 6]
+
+
+def test_a_recipe_is_plain_and_makes_the_same_scene():
+    point = only(point={"replicas": 2})
+    recipe = grid.recipe(point)
+    assert Scene.from_dict(recipe["scene"]) == grid.scene(point)
+    assert recipe["seeds"] == [list(point.seed(0)), list(point.seed(1))]
+    assert eval(repr(recipe), {"__builtins__": {}}) == recipe  # Snakemake compares the text of parameters
+
+
+@pytest.mark.parametrize(
+    ("arguments", "key"),
+    [
+        ({"grid": {"count": []}}, "experiments.gas.grid.count"),
+        ({"grid": []}, "experiments.gas.grid"),
+        ({"grid": {"count": [10, 10]}}, "experiments.gas.grid"),
+        ({"grid": {"arrangement": ["../away"]}}, "experiments.gas.grid.arrangement"),
+        ({"point": {"side": 20.0}}, "experiments.gas"),
+        ({"point": {"count": None}}, "experiments.gas"),
+        ({"point": {"duration": 1.0}}, "experiments.gas"),
+        ({"point": {"time_step": 0.1}}, "experiments.gas.time_step"),
+        ({"point": {"engine": "step"}}, "experiments.gas.time_step"),
+        ({"point": {"collisions_per_body": None, "steps": 10}}, "experiments.gas.steps"),
+        ({"point": {"boxes_per_side": 2, "boxes_per_body": 1}}, "experiments.gas.boxes_per_body"),
+        ({"point": {"temperature": None}}, "experiments.gas.collisions_per_body"),
+        ({"point": {"packing_fraction": 0.72}}, "experiments.gas.collisions_per_body"),
+        ({"point": {"count": None, "side": [20.0, 20.0, 20.0]}}, "experiments.gas.side"),
+        ({"job": "fill"}, "experiments.gas.attempts"),
+    ],
+)
+def test_what_contradicts_itself_is_refused_by_its_key(arguments, key):
+    with pytest.raises(SceneError) as refused:
+        for point in points(config(**arguments), "gas"):
+            grid.recipe(point)
+    assert refused.value.key == key
+    assert "\n" not in str(refused.value)
+
+
+def test_planning_imports_nothing_heavy():
+    heavy = ["numpy", "numba", "xarray"]
+    names = "gaspart.reproduction.points.grid, gaspart.reproduction.config"
+    code = f"import sys, {names}; print([m for m in {heavy} if m in sys.modules])"
+    source = Path(grid.__file__).parents[1]
+    result = subprocess.run(
+        [sys.executable, "-c", code], cwd=source, capture_output=True, text=True, check=True
+    )
+    assert result.stdout.strip() == "[]"
+
+
+def test_engine_auto_becomes_the_engine_for_the_accuracy():
+    wanted = {"engine": "auto", "accuracy": 0.01, "collisions_per_body": None, "equilibration": None}
+    point = only(point=wanted)
+    assert point.settings["engine"] in ("event", "step")
+    assert point.settings["collisions_per_body"] >= 20 and "accuracy" not in point.settings
+    finer = only(point={**wanted, "accuracy": 0.001})
+    runs = [grid.schedule(one).duration * one.replicas for one in (point, finer)]
+    assert runs[1] > 30 * runs[0]
+    assert only(point={**wanted, "collisions_per_body": 7}).settings["collisions_per_body"] == 7
+    with pytest.raises(SceneError, match="accuracy.*required"):
+        only(point={"engine": "auto"})
+    with pytest.raises(SceneError, match="accuracy.*needs engine: auto"):
+        only(point={"accuracy": 0.01})

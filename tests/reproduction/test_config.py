@@ -1,0 +1,298 @@
+"""Invalid configs, and how they are reported."""
+
+import ast
+import copy
+import math
+import re
+import sys
+import tomllib
+from datetime import date
+from importlib.metadata import packages_distributions
+from pathlib import Path
+
+import pytest
+from malformed import one_line
+
+from gaspart.errors import SceneError
+from gaspart.reproduction.config import check, laid_over
+from gaspart.reproduction.cost import predict
+from gaspart.reproduction.validation import judge_config
+from gaspart.yaml_text import dump_yaml, read_yaml
+
+ROOT = Path(__file__).parents[2]
+GOOD = {
+    "title": "a test",
+    "seed": 1,
+    "points": "results/points",
+    "experiments": {
+        "gas": {
+            "point": {
+                "dimension": 2,
+                "count": 100,
+                "radius": 0.5,
+                "temperature": 1.0,
+                "duration": 10.0,
+            },
+            "grid": {"packing_fraction": [0.1, 0.2]},
+        }
+    },
+    "figures": {"radius_grid": {"experiments": ["gas"]}},
+}
+
+
+def with_value(keys, value):
+    config = copy.deepcopy(GOOD)
+    block = config
+    for key in keys[:-1]:
+        block = block.setdefault(key, {})
+    block[keys[-1]] = value
+    return config
+
+
+def test_a_good_config_passes():
+    check(GOOD)
+
+
+POINT = ("experiments", "gas", "point")
+GRID = ("experiments", "gas", "grid")
+FIGURE = ("figures", "radius_grid")
+ONE = "experiments.gas[packing_fraction=0.1"
+DENSE = "experiments.gas[packing_fraction=0.95]"
+
+
+@pytest.mark.parametrize(
+    ("keys", "value", "key", "rule"),
+    [
+        (("sed",), 1, "sed", "unknown key"),
+        (("seed",), -1, "seed", "must be at least 0"),
+        (("points",), "/tmp/elsewhere", "points", "must match"),
+        (("points",), "results/../elsewhere", "points", "must match"),
+        (("experiments",), {}, "experiments", "entries at least"),
+        (("experiments", "gas", "gird"), {}, "experiments.gas.gird", "unknown key"),
+        ((*POINT, "maas"), 1.0, "experiments.gas.point.maas", "unknown key"),
+        ((*POINT, "mass"), -1.0, "experiments.gas.point.mass", "must be greater than 0"),
+        ((*POINT, "mass"), math.nan, "experiments.gas.point.mass", "must be a finite number"),
+        ((*POINT, "temperature"), math.inf, "experiments.gas.point.temperature", "must be a finite number"),
+        ((*POINT, "count"), 1.5, "experiments.gas.point.count", "must be of type integer"),
+        ((*POINT, "count"), "many", "experiments.gas.point.count", "must be of type integer"),
+        ((*POINT, "dimension"), 4, "experiments.gas.point.dimension", "must be one of [2, 3]"),
+        ((*POINT, "boundary"), "door", "experiments.gas[packing_fraction=0.1].boundary", "must be one of"),
+        ((*POINT, "speed"), 1.0, "experiments.gas[packing_fraction=0.1].temperature", "not both"),
+        (
+            (*POINT, "boxes_per_side"),
+            1000,
+            "experiments.gas[packing_fraction=0.1].boxes_per_side",
+            "narrower than the largest diameter",
+        ),
+        ((*GRID, "packing_fraction"), [], "experiments.gas.grid.packing_fraction", "must not be empty"),
+        ((*GRID, "packing_fraction"), [0.1, -0.1], "experiments.gas.grid.packing_fraction", "greater than 0"),
+        ((*GRID, "packing_fraction"), [0.95], f"{DENSE}.packing_fraction", "close packing"),
+        ((*GRID, "packing"), [0.1], "experiments.gas.grid.packing", "unknown key"),
+        ((*FIGURE, "experiments"), ["gass"], "figures.radius_grid.experiments", "name of an experiment"),
+        (("figures", "virial_disks"), {"experiments": ["gas"]}, "figures.virial_disks", "unknown key"),
+        ((*FIGURE, "colour"), "red", "figures.radius_grid.colour", "unknown key"),
+    ],
+)  # fmt: skip
+def test_each_mistake_is_one_line_with_key_value_and_rule(keys, value, key, rule):
+    with pytest.raises(SceneError) as refused:
+        check(with_value(keys, value))
+    assert refused.value.key == key
+    assert rule in refused.value.rule
+    assert "\n" not in str(refused.value)
+
+
+def test_a_key_that_is_missing_is_named():
+    config = copy.deepcopy(GOOD)
+    del config["seed"]
+    with pytest.raises(SceneError, match="seed = None: is required"):
+        check(config)
+
+
+def test_the_last_file_that_holds_the_key_is_named(tmp_path):
+    default, own = tmp_path / "config.yaml", tmp_path / "own.yaml"
+    default.write_text(dump_yaml(GOOD))
+    own.write_text(dump_yaml({"experiments": {"gas": {"point": {"mass": -2.0}}}}))
+    config = with_value((*POINT, "mass"), -2.0)
+    with pytest.raises(SceneError) as refused:
+        check(config, [str(default), str(own)])
+    assert refused.value.file == str(own)
+    with pytest.raises(SceneError) as refused:
+        check(with_value(("seed",), -1), [str(default), str(own)])
+    assert refused.value.file == str(default)
+
+
+@pytest.mark.parametrize(
+    ("keys", "value", "key", "rule"),
+    [
+        ((3,), 1, "3", "a key must be text"),
+        ((*GRID, 3), [1], "experiments.gas.grid.3", "a key must be text"),
+        (("title",), date(2001, 2, 3), "title", "must be text, a number"),
+        (("title",), [[[]]], "title", "must be of type string"),
+        (("seed",), 10**400, "seed", "must be a finite number"),
+        (("points",), "results/points\n", "points", "must match"),
+        (("experiments", "gas\n"), GOOD["experiments"]["gas"], "experiments", "must match"),
+        (("animations",), {"gas\n": None}, "animations", "must match"),
+        ((*POINT, "radius"), 1e300, "experiments.gas.point.radius", "of a size from"),
+        ((*POINT, "radius"), 1e-300, "experiments.gas.point.radius", "of a size from"),
+        ((*POINT, "count"), 1e20, f"{ONE}].count", "must be at most"),
+        ((*POINT, "dimension"), 2.0, None, None),
+        ((*POINT, "replicas"), 2.0, None, None),
+        ((*POINT, "replicas"), 10**9, "experiments.gas.point.replicas", "must be at most 10000"),
+        ((*POINT, "boxes_per_side"), [3, 3, 3], f"{ONE}].boxes_per_side", "per axis"),
+        ((*GRID, "boxes_per_side"), [[1, 1, 1]], f"{ONE},boxes_per_side=1x1x1].boxes_per_side", "per axis"),
+        ((*POINT, "duration"), 1e60, None, None),
+        ((*POINT, "equilibration"), 1e60, "experiments.gas.equilibration", "makes 1e+59 sample intervals"),
+        ((*POINT, "scene.x"), 1, "experiments.gas.scene.x", "but there is no scene"),
+        ((*GRID, "mass"), list(range(1, 100_001)), "experiments.gas.grid", "may have 100000 points"),
+        ((*GRID, "scene.x"), ["a" * 300], "experiments.gas.grid", "name of a point may have 200"),
+        ((*GRID, "scene./x"), [1], "experiments.gas.grid", "may hold letters, digits"),
+    ],
+)  # fmt: skip
+def test_values_that_cannot_be_computed_with_are_named(keys, value, key, rule):
+    config = with_value(keys, value)
+    if key is None:
+        check(config)
+        return
+    with pytest.raises(SceneError) as refused:
+        check(config)
+    assert refused.value.key == key
+    assert rule in refused.value.rule
+    assert str(refused.value).isprintable()
+
+
+def test_a_config_that_is_too_deep_or_too_large_or_contains_itself_is_refused():
+    deep, wide, own = {}, [1] * 10, {}
+    for _ in range(10_000):
+        deep = {"a": deep}
+    for _ in range(10):
+        wide = [wide] * 10
+    own["a"] = own
+    for value in (deep, wide, own):
+        with pytest.raises(SceneError, match="nested 64 deep|there may be"):
+            check(with_value(("title",), value))
+
+
+@pytest.mark.parametrize("scene", ["\0", "\ud800", "", ".", "nowhere.yaml", "a" * 5000])
+def test_a_scene_file_that_cannot_be_is_one_line(scene):
+    config = copy.deepcopy(GOOD)
+    config["experiments"]["gas"] = {"point": {"scene": scene, "duration": 1.0}}
+    with pytest.raises(SceneError) as refused:
+        check(config)
+    assert str(refused.value).isprintable()
+
+
+def test_the_unknown_key_is_named_not_one_of_the_scene():
+    config = copy.deepcopy(GOOD)
+    config["experiments"]["gas"]["point"] = {"scene.x": 1, "maas": 2}
+    with pytest.raises(SceneError, match="experiments.gas.point.maas = 2: unknown key"):
+        check(config)
+
+
+def test_without_a_dimension_there_is_no_scene():
+    config = copy.deepcopy(GOOD)
+    del config["experiments"]["gas"]["point"]["dimension"]
+    with pytest.raises(SceneError, match="experiments.gas.dimension = None: is required"):
+        check(config)
+
+
+def test_a_scene_without_bodies_has_no_points(tmp_path):
+    (tmp_path / "empty.yaml").write_text("container: {lengths: [9.0, 9.0]}\n")
+    config = copy.deepcopy(GOOD)
+    point = {"scene": str(tmp_path / "empty.yaml"), "duration": 1.0, "boxes_per_body": 1.0}
+    config["experiments"]["gas"] = {"point": point}
+    with pytest.raises(SceneError, match="needs at least one particle"):
+        check(config)
+
+
+def test_names_that_are_many_and_of_all_types_are_refused_at_once():
+    names = [f"a{n}" if n % 2 else n for n in range(20_000)]
+    assert not one_line(check, with_value((*FIGURE, "experiments"), names))
+
+
+@pytest.mark.parametrize("folder", [".", "config"])
+def test_a_config_may_lie_anywhere_and_its_scenes_beside_it(tmp_path, monkeypatch, folder):
+    """In a folder `config`, scenes are looked for in the folder above, where the workflow runs."""
+    (tmp_path / folder).mkdir(exist_ok=True)
+    (tmp_path / "gas.yaml").write_text(
+        "container: {lengths: [9, 9]}\nspecies: [{count: 3, radius: 0.5, speed: 1}]\n"
+    )
+    config = copy.deepcopy(GOOD)
+    config["experiments"]["gas"] = {"point": {"scene": "gas.yaml", "duration": 1.0}}
+    own = tmp_path / folder / "own.yaml"
+    own.write_text(dump_yaml(config))
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    (config_check,) = judge_config(own)
+    assert str(config_check) == "ok    config: 1 experiments of 1 points, up to 3 particles; 1 figures"
+    assert predict(own)[0].startswith("gas")
+    own.write_text("experiments: [3]\n")
+    for command in (judge_config, predict):
+        with pytest.raises(SceneError, match="own.yaml: "):
+            command(own)
+
+
+def test_a_key_that_stands_twice_in_a_file_is_refused(tmp_path):
+    own = tmp_path / "own.yaml"
+    own.write_text("seed: 1\nseed: 2\n")
+    with pytest.raises(SceneError, match=r"own.yaml: line 2, column 1 = 'seed': is a duplicate key"):
+        check(GOOD, [own])
+
+
+def test_an_overlay_changes_no_other_experiment_that_an_alias_shares(tmp_path):
+    (tmp_path / "config.yaml").write_text("a: &a {point: {mass: 1}}\nb: *a\n")
+    (tmp_path / "own.yaml").write_text("a: {point: {mass: 2}}\n")
+    merged, _ = laid_over(tmp_path / "own.yaml")
+    assert merged == {"a": {"point": {"mass": 2}}, "b": {"point": {"mass": 1}}}
+    (tmp_path / "own.yaml").write_text("[1]\n")
+    with pytest.raises(SceneError, match="own.yaml: config = .1.: must be a mapping"):
+        laid_over(tmp_path / "own.yaml")
+
+
+def test_all_that_gaspart_imports_and_reads_comes_with_it():
+    """`pip install .` and the extras of single features, without that of the workflow, give every command all
+    it needs; only the report, which no command makes, needs that extra."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    distributions = packages_distributions()
+    own = {*sys.stdlib_module_names, "gaspart", "_typeshed"}
+    needed = set()
+    for path in (ROOT / "src/gaspart").rglob("*.py"):
+        if "report" in path.parts:
+            continue
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                needed |= {alias.name.split(".")[0] for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+                needed.add(node.module.split(".")[0])
+    extras = project["project"]["optional-dependencies"]
+    required = sum((extras[name] for name in ("film", "order", "gsd")), project["project"]["dependencies"])
+    names = {re.split("[<>=]", name)[0].lower() for name in required}
+    for module in needed - own - {"coverage", "cycler", "PIL"}:  # the last two come with matplotlib
+        assert {name.lower() for name in distributions[module]} & names, module
+    packed = project["tool"]["setuptools"]["package-data"]
+    found = {
+        file
+        for package, patterns in packed.items()
+        for pattern in patterns
+        for file in (ROOT / "src" / package.replace(".", "/")).glob(pattern)
+    }
+    for file in (ROOT / "src/gaspart").rglob("*"):
+        if file.is_file() and "__pycache__" not in file.parts and file.suffix != ".py":
+            assert file in found, file
+
+
+def test_the_projects_configs_are_valid_and_smoke_has_no_experiment_of_its_own():
+    full, smoke = (read_yaml(ROOT / f"config/{name}.yaml") for name in ("config", "smoke"))
+    check(full)
+    assert set(smoke["experiments"]) <= set(full["experiments"])
+    assert smoke["points"] != full["points"]
+
+
+def test_a_film_is_of_trajectories():
+    check(with_value(["animations"], {"gas": {"experiment": "gas", "colour": "speed"}, "no": None}))
+    for wrong, complaint in (
+        ({"experiment": "oil"}, "animations.gas.experiment = 'oil': must be the name of an experiment"),
+        ({"colour": "speed"}, "animations.gas.experiment = None: is required"),
+        ({"experiment": "gas", "colour": "red"}, "animations.gas.colour = 'red': must be one of"),
+    ):
+        with pytest.raises(SceneError, match=complaint):
+            check(with_value(["animations"], {"gas": wrong}))

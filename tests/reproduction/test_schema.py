@@ -1,0 +1,128 @@
+"""Schemas and the reference page: current, and the same rules as those of the program."""
+
+import copy
+import re
+from pathlib import Path
+
+import jsonschema
+import pytest
+from malformed import SCENES
+
+from gaspart.reproduction.config import check
+from gaspart.reproduction.families.registry import families, settings
+from gaspart.reproduction.points import keys
+from gaspart.reproduction.points.overlay import laid_over
+from gaspart.reproduction.schema import (
+    documents,
+    in_words,
+    scene_schema,
+    schema,
+)
+from gaspart.yaml_text import read_yaml
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.mark.parametrize("path", documents())
+def test_the_generated_files_are_current(path):
+    """If not: python -m gaspart.reproduction.schema."""
+    assert (ROOT / path).read_text(encoding="utf-8") == documents()[path]
+
+
+@pytest.mark.parametrize("content", [schema(), scene_schema()], ids=["config", "scene"])
+def test_a_schema_is_one(content):
+    jsonschema.Draft202012Validator.check_schema(content)
+
+
+def described(kind):
+    """All parts of a schema that state a key, with the key."""
+    for name, part in kind.get("properties", {}).items():
+        yield name, part
+        yield from described(part)
+    for name in ("items", "additionalProperties"):
+        if isinstance(kind.get(name), dict):
+            yield from described(kind[name])
+    for part in kind.get("anyOf", ()):
+        yield from described(part)
+
+
+def test_every_key_has_a_meaning():
+    figures = schema()["properties"]["figures"]["properties"]
+    for content in (schema(), scene_schema()):
+        for name, part in described(content):
+            assert name in figures or part["description"], name
+
+
+@pytest.mark.parametrize("family", sorted(set(families().values())))
+def test_every_setting_of_a_figure_is_declared_and_used(family):
+    modules = (ROOT / f"src/gaspart/reproduction/families/{family}").glob("*.py")
+    text = "\n".join(path.read_text(encoding="utf-8") for path in modules)
+    used = set(re.findall(r'(?<!\.)\bsettings(?:\[|\.get\()"(\w+)"', text))
+    declared = {
+        key for figure in families() if families()[figure] == family for key in settings()[figure]
+    } - {"experiments"}
+    assert declared <= used
+    assert used - declared <= set(keys.POINT)  # of a point
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_the_schema_of_scenes_accepts_scenes(scene):
+    jsonschema.validate(scene, scene_schema())
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "config/scenes").glob("*.yaml")), ids=lambda path: path.stem)
+def test_the_schema_of_scenes_accepts_the_scene_files(path):
+    jsonschema.validate(read_yaml(path), scene_schema())
+
+
+@pytest.mark.parametrize(
+    ("place", "value"),
+    [
+        (("colour",), "red"),
+        (("species", 0, "mass"), 0.0),
+        (("species", 0, "count"), 2.5),
+        (("species", 0, "arrangement"), "neat"),
+        (("bodies", 0, "position"), [1.0]),
+        (("container", "boundary"), "fog"),
+        (("faces", "x_low", "kind"), "cold"),
+        (("faces", "left"), {"kind": "thermal", "temperature": 1.0}),
+        (("restitution", "normal"), 1.5),
+    ],
+)
+def test_the_schema_of_scenes_refuses_what_the_program_refuses(place, value):
+    scene = copy.deepcopy(SCENES[0])
+    *way, last = place
+    block = scene
+    for key in way:
+        block = block[key]
+    block[last] = value
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(scene, scene_schema())
+
+
+def test_the_schema_of_configs_is_the_one_that_is_checked():
+    config, _ = laid_over(ROOT / "config/smoke.yaml")
+    jsonschema.validate(config, schema())
+    check(config)
+
+
+def test_the_tables_of_the_engines_follow_from_the_keys():
+    assert set(keys.ENGINES["event"]) == {"search", "boxes_per_side", "boxes_per_body"}
+    assert {"time_step", "skin", "boxes_per_side"} <= set(keys.ENGINES["step"])
+    whole = {"dimension", "count", "samples", "steps", "attempts", "follow", "lags"}
+    assert whole | {"replicas", "passes", "threads"} == keys.WHOLE
+
+
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [
+        (keys.POINT["packing_fraction"], "number > 0 and < 1"),
+        (keys.POINT["search"], "`automatic`, `boxes`, `lists`, `direct`, `pairs`"),
+        (keys.POINT["side"], "number > 0 or list of 2 to 3 values (number > 0)"),
+        (keys.POINT["replicas"], "whole number ≥ 1 and ≤ 10000"),
+        (settings()["virial_discs"]["fits"]["items"]["properties"]["held"], "`true` or `false`"),
+        (settings()["stability_extremes"]["experiments"], "empty list"),
+    ],
+)
+def test_a_kind_in_words(kind, words):
+    assert in_words(kind) == words
