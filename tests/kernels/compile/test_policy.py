@@ -107,14 +107,3 @@ def test_what_one_process_translates_another_loads_for_another_kernel(tmp_path):
         command = [sys.executable, program, name]
         done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
         assert done.stdout == f"True\n{hits}\n"
-
-
-def test_no_two_processes_number_their_functions_alike():
-    """Else two functions of one name, from two processes, would be one in the kernel that calls both."""
-    numbering = "numba.core.bytecode.FunctionIdentity._unique_ids"
-    code = f"import gaspart.kernels.compile.policy, numba; print(next({numbering}))"
-    numbers = {
-        subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
-        for _ in range(2)
-    }
-    assert len(numbers) == 2

@@ -15,9 +15,10 @@ _LOOKED_FOR = {"coverage", "scipy.linalg.cython_blas"}
 def load_numba(ours: bool = False) -> ModuleType:
     """numba, and all that it would load with a first kernel.
 
-    This makes half a million objects, which stay. So the garbage collector looks through them neither now nor
-    later, nor when the process ends. ours: whether no kernels but those of gaspart will run in this process;
-    what numba looks for and they do not use is then hidden from it.
+    This makes half a million objects, which stay, so the garbage collector does not look through them now.
+    ours: whether this process is one of gaspart's, and no other program's. Then the collector does so neither
+    later nor when the process ends, and what numba looks for and kernels of gaspart do not use is hidden from
+    it.
     """
     if "numba.np.arraymath" in sys.modules:
         return import_module("numba")
@@ -31,7 +32,8 @@ def load_numba(ours: bool = False) -> ModuleType:
     finally:
         for name in hidden:
             del sys.modules[name]
-        gc.freeze()
+        if ours:
+            gc.freeze()
         if collecting:
             gc.enable()
     return numba

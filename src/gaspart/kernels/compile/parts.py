@@ -10,6 +10,9 @@ from __future__ import annotations
 
 import itertools
 import os
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any, ClassVar
 
 from gaspart.kernels.compile.files import KernelCache, KernelContents
@@ -18,28 +21,46 @@ from gaspart.kernels.compile.loading import load_numba
 numba: Any = load_numba()
 core: Any = numba.core
 
-# numba numbers the functions of a process, to give those of one name different names in machine code. What
-# several processes have translated meets in one kernel: so no two of them may count from the same number.
-core.bytecode.FunctionIdentity._unique_ids = itertools.count(int.from_bytes(os.urandom(7), "big"))
+_FIRST = 2**32  # of the numbers below; numba counts from 1
+_numbers = itertools.count(_FIRST + int.from_bytes(os.urandom(7), "big"))
+
+
+@contextmanager
+def _own_numbers() -> Iterator[None]:
+    """Number what is compiled meanwhile, functions of numba included, as no other process does.
+
+    numba numbers the functions of a process, to give those of one name different names in machine code. What
+    several processes have translated meets in one kernel, so that no two of them may count from one number.
+    """
+    identity = core.bytecode.FunctionIdentity
+    before, identity._unique_ids = identity._unique_ids, _numbers
+    try:
+        yield
+    finally:
+        identity._unique_ids = before
 
 
 @core.datamodel.registry.register_default(numba.types.NamedTuple)
 class _WholeTuple(core.datamodel.models.TupleModel):
-    """A named tuple that is one argument of a function in machine code. As numba's own it would be as many as
-    there are words in its arrays, some two hundred, which each call takes from it and each function puts
-    together again: 40 % of all instructions to be translated."""
+    """A named tuple of gaspart is one argument of a function in machine code; one of others is as many as
+    there are words in its arrays, as numba has it. For a `Model` these are some two hundred, which each call takes
+    from it and each function puts together again: 40 % of all instructions to be translated."""
+
+    @property
+    def _whole(self) -> bool:
+        return self._fe_type.instance_class.__module__.startswith("gaspart.")
 
     def get_argument_type(self) -> Any:
         """The type of the argument, in LLVM."""
-        return self.get_value_type()
+        return self.get_value_type() if self._whole else super().get_argument_type()
 
     def as_argument(self, builder: Any, value: Any) -> Any:
         """What a caller passes."""
-        return value
+        return value if self._whole else super().as_argument(builder, value)
 
     def from_argument(self, builder: Any, value: Any) -> Any:
         """The value of what was passed."""
-        return value
+        return value if self._whole else super().from_argument(builder, value)
 
 
 class _PartLibrary(core.codegen.JITCodeLibrary):
@@ -101,8 +122,17 @@ class _OfferPart(_Pass):
         return True
 
 
-class PartCompiler(core.compiler.CompilerBase):
-    """numba's own compiler but for these two passes."""
+class KernelCompiler(core.compiler.Compiler):
+    """numba's own compiler, with numbers of our own."""
+
+    def compile_extra(self, func: Any) -> Any:
+        """Compile a function of Python."""
+        with _own_numbers():
+            return super().compile_extra(func)
+
+
+class PartCompiler(KernelCompiler):
+    """The same with two more passes."""
 
     def define_pipelines(self) -> list:
         """The passes of numba with a first and a last one around its translation to LLVM."""
@@ -115,6 +145,13 @@ class PartCompiler(core.compiler.CompilerBase):
 
 class _PartContents(KernelContents):
     """What is in the file of a part: its translation, with those of the parts that it calls."""
+
+    def check_cachable(self, data: Any) -> bool:
+        """Whether other processes may use a result of the compiler: not where it calls a function of numba
+        that this process had compiled before for others, under a number that those may have given too."""
+        names = (one.name for one in data.library._final_module.functions if not one.is_declaration)
+        numbers = (int(number) for name in names for number in re.findall(r"B\d+v(\d+)", name))
+        return super().check_cachable(data) and all(number >= _FIRST for number in numbers)
 
     def reduce(self, result: Any) -> tuple:
         """The contents of the file, of a result of the compiler."""

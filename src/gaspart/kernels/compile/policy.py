@@ -8,17 +8,28 @@ in another file changes.
 from __future__ import annotations
 
 import hashlib
+import warnings
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
 from gaspart.kernels.compile.cache import usable_cache
-from gaspart.kernels.compile.files import KernelCache
 from gaspart.kernels.compile.loading import load_numba
-from gaspart.kernels.compile.parts import PartCache, PartCompiler
 
 numba = load_numba()
+KNOWN = "0.68"
+"""The release of numba whose internals `files` and `parts` use. Another one compiles in its usual way, to the
+same bits: several times as long, and in every process again."""
+_known = numba.__version__.startswith(f"{KNOWN}.")
+if _known:
+    from gaspart.kernels.compile.files import KernelCache
+    from gaspart.kernels.compile.parts import KernelCompiler, PartCache, PartCompiler
+else:
+    warnings.warn(
+        f"gaspart: numba {numba.__version__} is not {KNOWN}: kernels compile more slowly, and are not kept",
+        stacklevel=2,
+    )
 F = TypeVar("F", bound=Callable)
 _KERNELS = Path(__file__).parents[1]
 
@@ -34,18 +45,21 @@ def source_digest() -> str:
 
 
 _UNWRAPPED = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-_INNER = {**_UNWRAPPED, "pipeline_class": PartCompiler}
-_CACHE = usable_cache(source_digest())
+_CACHE = usable_cache(source_digest()) if _known else None
 
 
-def _compile(function: F, **options: Any) -> F:
+def _compile(function: F, part: bool = False, **options: Any) -> F:
+    """part: whether only kernels call the function."""
+    if part:
+        options |= _UNWRAPPED
+    if _known:
+        options["pipeline_class"] = PartCompiler if part else KernelCompiler
     compiled = numba.njit(nogil=True, error_model="numpy", **options)(function)
     if _CACHE:
         before = numba.config.CACHE_DIR
         numba.config.CACHE_DIR = str(_CACHE)
         try:
-            cache = PartCache if "pipeline_class" in options else KernelCache
-            compiled._cache = cache(function, options)
+            compiled._cache = (PartCache if part else KernelCache)(function, options)
         finally:
             numba.config.CACHE_DIR = before
     return compiled
@@ -74,17 +88,17 @@ def allocating_kernel(function: F) -> F:
 def inner_kernel(function: F) -> F:
     """A kernel that only kernels call: without the way in from Python, which for a function that takes an
     engine's arrays takes longer to compile than what it does."""
-    return _compile(function, _nrt=False, **_INNER)
+    return _compile(function, part=True, _nrt=False)
 
 
 def inner_helper(function: F) -> F:
     """The same for a function that is inlined."""
-    return _compile(function, _nrt=False, forceinline=True, **_INNER)
+    return _compile(function, part=True, _nrt=False, forceinline=True)
 
 
 def inner_allocating_kernel(function: F) -> F:
     """The same for a function that makes arrays."""
-    return _compile(function, **_INNER)
+    return _compile(function, part=True)
 
 
 def inner_parallel_kernel(function: F) -> F:

@@ -5,7 +5,7 @@ neither does any bit of the result.
 
 A contact is that of `kernels.physics.contact`. Its form here keeps float32, collides particles as they were
 at the time of the contact without moving them there, and passes only a part of the elastic impulse where
-there is restitution: tests/kernels/step/test_resolve.py compares it bit for bit with `collision.collide_smooth`.
+there is restitution: a test compares it bit for bit with `collision.collide_smooth` (test_resolve.py).
 """
 
 import numpy as np
