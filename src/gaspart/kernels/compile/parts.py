@@ -43,8 +43,8 @@ def _own_numbers() -> Iterator[None]:
 @core.datamodel.registry.register_default(numba.types.NamedTuple)
 class _WholeTuple(core.datamodel.models.TupleModel):
     """A named tuple of gaspart is one argument of a function in machine code; one of others is as many as
-    there are words in its arrays, as numba has it. For a `Model` these are some two hundred, which each call takes
-    from it and each function puts together again: 40 % of all instructions to be translated."""
+    there are words in its arrays, as numba has it. For a `Model` these are some two hundred, which each call
+    takes from it and each function puts together again: 40 % of all instructions to be translated."""
 
     @property
     def _whole(self) -> bool:
