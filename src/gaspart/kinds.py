@@ -63,7 +63,6 @@ def record(keys: dict[str, Kind], meaning: str = "", **more: Any) -> Kind:
 
 def nullable(kind: Kind) -> Kind:
     """The same kind or null, which counts as absent."""
-    if "enum" in kind:
-        return {**kind, "enum": [*kind["enum"], None]}
-    types = kind["type"]
-    return {**kind, "type": [*([types] if isinstance(types, str) else types), "null"]}
+    key, none = ("enum", None) if "enum" in kind else ("type", "null")
+    values = [kind[key]] if isinstance(kind[key], str) else kind[key]
+    return kind if none in values else {**kind, key: [*values, none]}

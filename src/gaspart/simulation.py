@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import gaspart
-from gaspart.engines import EventDriven, TimeStepped
+from gaspart.engines import Engine
 from gaspart.engines.arrays import EventLog
 from gaspart.errors import SceneError, SimulationError
 from gaspart.scene.scene import Scene
@@ -50,9 +50,7 @@ class Simulation:
     Raises SceneError if the scene cannot be set up, or the engine cannot model it.
     """
 
-    def __init__(
-        self, scene: Scene, engine: EventDriven | TimeStepped, seed: int | tuple[int, ...] = 0
-    ) -> None:
+    def __init__(self, scene: Scene, engine: Engine, seed: int | tuple[int, ...] = 0) -> None:
         self.scene, self.engine, self.seed = scene, engine, seed
         self._log: EventLog | None = None
         self._advanced = False
@@ -183,7 +181,7 @@ class Simulation:
 
     @record_events.setter
     def record_events(self, wanted: bool) -> None:
-        if wanted and not isinstance(self.engine, EventDriven):
+        if wanted and not self.engine.records_events:
             raise SceneError("record_events", wanted, 'needs the "event" engine')
         self._log = EventLog(self.scene.dimension, self.scene.rough) if wanted else None
 

@@ -105,7 +105,7 @@ def test_open_trajectory_gives_every_number_its_name(written):
         assert data["face"].values.tolist()[:3] == ["x low", "x high", "y low"]
         assert np.array_equal(data["radius"], states[0].radii)
         assert np.array_equal(data["type"], states[0].species)
-        for name in amber.counters("event"):
+        for name in amber.counters(gp.EventDriven()):
             assert np.array_equal(data[name], [getattr(tally, name) for tally in tallies]), name
         assert np.array_equal(data["kinetic_energy"], [state.kinetic_energy for state in states])
         displacements = np.array([state.unwrapped - states[0].unwrapped for state in states])
@@ -154,7 +154,7 @@ def test_a_file_states_its_recipe(tmp_path):
 @pytest.mark.parametrize("length", range(1000, 9000, 500))
 def test_frames_begin_where_the_header_ends(tmp_path, length):
     """Whatever its length: the library returns memory by the page, with more than the header."""
-    layout = amber.Layout(3, 2, [], 0, "event", [], 0)
+    layout = amber.Layout(3, 2, [], 0, amber.counters(gp.EventDriven()), [], 0)
     header = layout.header({"note": "x" * length}, np.ones(3), np.zeros(3, int))
     frame = np.zeros(1, layout.frame)
     frame["time"] = 7.0

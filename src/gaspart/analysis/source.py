@@ -13,7 +13,6 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.engines import TimeStepped
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
@@ -184,10 +183,10 @@ def repeated(simulation: Simulation) -> xr.Dataset:
         raise SceneError("simulation", "at time 0", "has not advanced")
     frames = int(np.clip(_MOST // (3 * max(1, scene.count) * scene.dimension), 33, REPEATED))
     times = np.linspace(0.0, simulation.time, frames)
-    if isinstance(engine, TimeStepped):  # half a step more, so that rounding does not cost one
-        steps = max(1, round(simulation.time / engine.time_step) // (frames - 1))
-        times = np.append(0.0, (steps * np.arange(1, frames) + 0.5) * engine.time_step)
-        times = times[times < simulation.time + engine.time_step]
+    if step := engine.quantum:  # half a step more, so that rounding does not cost one
+        steps = max(1, round(simulation.time / step) // (frames - 1))
+        times = np.append(0.0, (steps * np.arange(1, frames) + 0.5) * step)
+        times = times[times < simulation.time + step]
     again, rows, pistons = Simulation(scene, engine, simulation.seed), [], []
     for time in times:
         again.advance(until=time)

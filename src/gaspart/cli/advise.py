@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from gaspart.cli.arguments import Parser, UsageError, of_configs, print_line, real, set_command
 from gaspart.cli.progress import waiting
+from gaspart.engines import TimeStepped
 from gaspart.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -82,8 +83,8 @@ def _lines(advice: Advice) -> list[str]:
 
 def _name(setting: Setting) -> str:
     engine = setting.engine
-    if engine.name == "event":
-        return "event, float64"
+    if not isinstance(engine, TimeStepped):
+        return f"{engine.name}, float64"
     return f"step, time_step {engine.time_step:.4g}, {engine.precision}, {engine.passes} passes"
 
 

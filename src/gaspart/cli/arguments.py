@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable
-from importlib.metadata import entry_points
 from textwrap import fill
 from typing import Any, NoReturn, TypeVar
 
@@ -96,6 +95,8 @@ def add_trajectory(parser: argparse.ArgumentParser) -> None:
 def of_configs(command: str) -> Callable:
     """What a command does with a config of the workflow: an entry point, since the library does not import
     the reproduction."""
+    from importlib.metadata import entry_points  # 0.02 s
+
     (found,) = entry_points(group="gaspart.configs", name=command)
     return found.load()
 
@@ -122,3 +123,8 @@ def several(kind: Callable[[str], T]) -> Callable[[str], tuple[T, ...]]:
             raise argparse.ArgumentTypeError(f"{text!r} {rule}") from None
 
     return read
+
+
+def alone(numbers: tuple[int, ...]) -> int | tuple[int, ...]:
+    """One number by itself, or several as they are."""
+    return numbers[0] if len(numbers) == 1 else numbers

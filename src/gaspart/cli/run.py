@@ -8,9 +8,11 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaspart.cli.arguments import Parser, UsageError, print_line, set_command, several
+from gaspart.cli.arguments import Parser, UsageError, alone, print_line, set_command, several
+from gaspart.cli.engine_options import add_setting, as_option, engine_settings, one_of
 from gaspart.cli.progress import clear_line, progress, waiting
-from gaspart.errors import SceneError, shown
+from gaspart.engines import ENGINES, engine_from_dict
+from gaspart.errors import SceneError
 from gaspart.interruption import set_note
 from gaspart.kernels.compile.loading import load_numba
 from gaspart.scene.scene import Scene
@@ -18,10 +20,6 @@ from gaspart.scene.scene import Scene
 if TYPE_CHECKING:
     from gaspart.trajectory.correlator import Correlations
 
-_ENGINE_SETTINGS = (
-    *("time_step", "boxes_per_side", "precision", "rewind", "search"),
-    *("passes", "skin", "near_boxes", "threads"),
-)
 _PREPARING = "placing particles, compiling kernels (once for each kind of scene)"
 
 _EXAMPLES = """examples:
@@ -40,7 +38,7 @@ def add_run(parser: Parser) -> None:
     add, integers = parser.add_argument, several(int)
     add("scene", help="scene file (YAML)")
     add("-o", "--output", required=True, metavar="FILE", help="trajectory (AMBER NetCDF)")
-    add("--engine", default="event", metavar="NAME", help="event (default; exact) or step")
+    add("--engine", default="event", metavar="NAME", help=f"{one_of(ENGINES)}; default: event")
     add("--duration", type=float, required=True, metavar="T", help="duration of the run, in the scene's unit")
     text = "time between frames, of which the duration is a multiple"
     add("--sample-interval", type=float, required=True, metavar="T", help=text)
@@ -57,28 +55,8 @@ def add_run(parser: Parser) -> None:
         metavar="T,L[,START]",
         help="accumulate time correlations of samples every T, up to L of them apart, from START on",
     )
-    text = "step engine: duration of a step, of which the sample interval is a multiple"
-    add("--time-step", type=float, metavar="T", help=text)
-    add(
-        "--boxes-per-side",
-        type=integers,
-        metavar="N[,N...]",
-        help="boxes of the partition: one number for all sides, or one for each",
-    )
-    add("--precision", metavar="TYPE", help="step engine: float64 (default) or float32")
-    text = "step engine: collide pairs at their positions after the step, not at contact"
-    add("--no-rewind", dest="rewind", action="store_false", default=None, help=text)
-    add(
-        "--passes",
-        type=int,
-        metavar="N",
-        help="step engine: largest number of searches for overlaps in a step; default: 4",
-    )
-    add("--skin", type=float, metavar="L", help="step engine: skin of the neighbour list; default: automatic")
-    text = "step engine: search only boxes within reach of a contact"
-    add("--near-boxes", action="store_true", default=None, help=text)
-    add("--threads", type=int, metavar="N", help="step engine: number of threads; default: 1")
-    add("--search", metavar="NAME", help="event engine: automatic (default), boxes, lists, direct or pairs")
+    for name, kind in engine_settings().items():
+        add_setting(parser, name, kind)
     add("--force", action="store_true", help="replace a trajectory of another run")
     _add_progress(parser)
 
@@ -100,23 +78,20 @@ def _add_progress(parser: argparse.ArgumentParser) -> None:
 
 def _run(given: argparse.Namespace) -> None:
     set_note("no state was saved yet; the same command starts it again")
-    from gaspart.engines import engine_from_dict
     from gaspart.trajectory.run import run
 
-    settings = {key: getattr(given, key) for key in _ENGINE_SETTINGS if getattr(given, key) is not None}
-    if "boxes_per_side" in settings:
-        settings["boxes_per_side"] = _alone(settings["boxes_per_side"])
+    settings = {key: getattr(given, key) for key in engine_settings() if getattr(given, key) is not None}
     scene, correlations = Scene.from_file(given.scene), _correlations(given.correlations)
     try:
         engine = engine_from_dict({"name": given.engine, **settings})
     except SceneError as error:
-        raise UsageError(_as_option(error, given.engine)) from None
+        raise UsageError(as_option(error, given.engine)) from None
     with waiting(_PREPARING, given.quiet) as started:
         load_numba(ours=True)
         path = run(
             scene,
             engine,
-            seed=_alone(given.seed),
+            seed=alone(given.seed),
             duration=given.duration,
             sample_interval=given.sample_interval,
             path=given.output,
@@ -130,14 +105,6 @@ def _run(given: argparse.Namespace) -> None:
     _report(path)
 
 
-def _as_option(error: SceneError, engine: str) -> str:
-    """An error of the engine's settings in terms of the options that state them."""
-    name = error.key.removeprefix("engine.")
-    option = {"name": "--engine", "rewind": "--no-rewind"}.get(name, f"--{name.replace('_', '-')}")
-    rule = f"has no meaning with --engine {engine}" if "unknown key" in error.rule else error.rule
-    return f"{option}: {'is required' if error.value is None else f'{shown(error.value)}: {rule}'}"
-
-
 def _correlations(given: tuple[float, ...] | None) -> Correlations | None:
     if given is None:
         return None
@@ -146,10 +113,6 @@ def _correlations(given: tuple[float, ...] | None) -> Correlations | None:
     from gaspart.trajectory.correlator import Correlations
 
     return Correlations(given[0], int(given[1]), *given[2:])
-
-
-def _alone(numbers: tuple[int, ...]) -> int | tuple[int, ...]:
-    return numbers[0] if len(numbers) == 1 else numbers
 
 
 def _resume(given: argparse.Namespace) -> None:

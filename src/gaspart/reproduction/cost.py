@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 
 from gaspart import theory
+from gaspart.engines import TimeStepped
 from gaspart.errors import SceneError
 from gaspart.reproduction.config import checked
 from gaspart.reproduction.points import grid
@@ -52,7 +53,7 @@ def _seconds(point: Point) -> float | None:
     densest = theory.HIGHEST_PACKING_FRACTION[gas.dimension]
     fluid = replace(gas, packing_fraction=min(gas.packing_fraction, densest))
     contacts = 0.5 * gas.count * fluid.collision_rate * grid.schedule(point).duration * point.replicas
-    if engine.name == "event":
+    if not isinstance(engine, TimeStepped):
         each = table.seconds(gas.dimension, gas.packing_fraction, "event")
         return contacts * each * _speed(gas, "event", "float64")
     step = engine.time_step * gas.thermal_speed / gas.diameter

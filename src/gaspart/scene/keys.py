@@ -52,6 +52,11 @@ FLAG = Rule(validation.flag, kinds.FLAG)
 POSITION = Rule(validation.vector, _numbers(2, 3))
 VECTOR = Rule(_sized, _numbers(2, 3))
 """Like POSITION, with its largest component 0 or of an acceptable size."""
+_AXES = {"minItems": 2, "maxItems": 3}
+PER_SIDE = Rule(
+    validation.per_side, {**kinds.COUNT, "type": ["integer", "array"], "items": kinds.COUNT, **_AXES}
+)
+"""Boxes of a partition: a number for all sides, or one for each."""
 
 
 def vector(dimension: int) -> Rule:
@@ -78,9 +83,12 @@ def between(least: float, most: float) -> Rule:
     return Rule(partial(validation.number, rule=rule, least=least, most=most), kind)
 
 
-def count(most: int) -> Rule:
-    """A whole number from 0 to `most`."""
-    return Rule(partial(validation.count_of, most=most), {"type": "integer", "minimum": 0, "maximum": most})
+def count(most: int | None = None, least: int = 0) -> Rule:
+    """A whole number from `least` to `most`."""
+    if most is None:
+        return Rule(partial(validation.count_of, least=least), {"type": "integer", "minimum": least})
+    kind = {"type": "integer", "minimum": least, "maximum": most}
+    return Rule(partial(validation.count_of, least=least, most=most), kind)
 
 
 def choice(*words: str) -> Rule:

@@ -23,6 +23,8 @@ SMALLEST, LARGEST = 1e-60, 1e60
 """Of quantities: contacts multiply four of them, and the product must neither vanish nor overflow."""
 MOST_BODIES = 2**31 - 1
 """Of a scene or a species: indices of particles have 32 bits."""
+MOST_BOXES = 2**26
+"""Of a partition: more exceed the memory of a common machine."""
 MOST_LISTED = 50_000
 """Species, single particles or walls of a scene, each of which is written in the scene's text."""
 
@@ -131,6 +133,16 @@ def choice(key: str, value: Any, known: Iterable[str]) -> str:
     if not isinstance(value, str) or value not in known:
         raise SceneError(key, value, f"must be one of {tuple(known)}")
     return value
+
+
+def per_side(key: str, value: Any) -> int | tuple[int, ...]:
+    """Boxes per side: a number, or a tuple of one per axis, of at most `MOST_BOXES` boxes."""
+    given = value if isinstance(value, (tuple, list)) else (value,)
+    sides = tuple(count_of(key, n, least=1) for n in given)
+    if math.prod(sides) > MOST_BOXES or len(sides) > 3:
+        rule = f"must be one number, or one per axis, of at most {MOST_BOXES} boxes"
+        raise SceneError(key, value, rule)
+    return sides if isinstance(value, (tuple, list)) else sides[0]
 
 
 def set_fields(instance: object, **values: object) -> None:

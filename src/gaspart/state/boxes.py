@@ -13,12 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.scene import validation
 from gaspart.scene.scene import Scene
-from gaspart.scene.validation import count_of
 
 NOWHERE = -1
-MOST_BOXES = 2**26
-"""Limit on the number of boxes: more exceed the memory of a common machine."""
 
 
 @dataclass(frozen=True)
@@ -52,16 +50,6 @@ class Boxes:
     def index_of(self, position: np.ndarray) -> int:
         """The linear index of the box that holds a position (d,)."""
         return int(self.coordinates(position[None])[0] @ self.strides)
-
-
-def check_boxes_per_side(given: object) -> None:
-    """Raise SceneError unless this is a number of boxes, or a list of one per axis, of at most `MOST_BOXES`
-    boxes."""
-    sides = given if isinstance(given, (tuple, list)) else (given,)
-    total = math.prod(count_of("boxes_per_side", n, least=1) for n in sides)
-    if total > MOST_BOXES or len(sides) > 3:
-        rule = f"must be one number, or one per axis, of at most {MOST_BOXES} boxes"
-        raise SceneError("boxes_per_side", given, rule)
 
 
 def narrowest_box(scene: Scene) -> float:
@@ -102,7 +90,7 @@ def make_boxes(
     Raises SceneError if a box would be narrower than the largest diameter.
     """
     lengths = scene.container.lengths
-    check_boxes_per_side(boxes_per_side)
+    validation.per_side("boxes_per_side", boxes_per_side)
     given = boxes_per_side
     if not isinstance(given, (tuple, list)):
         given = (given,) * len(lengths)

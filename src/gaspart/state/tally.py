@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
+
+ENERGY, IMPULSE = "mass length^2/time^2", "mass length/time"
+"""Units of sums."""
 
 
 @dataclass
@@ -27,18 +30,18 @@ class Tally:
 
     time: float
     collisions: int
-    wall_hits: np.ndarray
-    wall_impulse: np.ndarray
-    wall_energy: np.ndarray
-    virial_sum: float
+    wall_hits: np.ndarray = field(metadata={"per_face": True})
+    wall_impulse: np.ndarray = field(metadata={"per_face": True, "units": IMPULSE})
+    wall_energy: np.ndarray = field(metadata={"per_face": True, "units": ENERGY})
+    virial_sum: float = field(metadata={"units": ENERGY})
     pair_tests: int
     box_visits: int
     crossings: int = 0
     worst_contact: float = 0.0
-    dissipated_energy: float = 0.0
+    dissipated_energy: float = field(default=0.0, metadata={"units": ENERGY})
     elastic_contacts: int = 0
-    retained_energy: float = 0.0
-    thermostat_energy: float = 0.0
+    retained_energy: float = field(default=0.0, metadata={"units": ENERGY})
+    thermostat_energy: float = field(default=0.0, metadata={"units": ENERGY})
     steps: int = 0
     overlaps_left: int = 0
     deepest_overlap: float = 0.0

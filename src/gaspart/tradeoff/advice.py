@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from gaspart import theory
-from gaspart.engines import EventDriven, TimeStepped
+from gaspart.engines import Engine, EventDriven, TimeStepped
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
@@ -52,7 +52,7 @@ class Setting:
     all replicas; seconds: of processor time, equilibration included; half_width: of the 95 % interval,
     relative."""
 
-    engine: EventDriven | TimeStepped
+    engine: Engine
     bias: float
     contacts: float
     seconds: float
@@ -188,7 +188,7 @@ def advise(
     )
 
 
-def _engines(gas: Gas) -> Iterator[tuple[EventDriven | TimeStepped, str, float]]:
+def _engines(gas: Gas) -> Iterator[tuple[Engine, str, float]]:
     """(engine, precision, its time step in the table's unit) of all settings to compare."""
     yield EventDriven(), "float64", 0.0
     unit = gas.diameter / gas.thermal_speed
@@ -196,9 +196,7 @@ def _engines(gas: Gas) -> Iterator[tuple[EventDriven | TimeStepped, str, float]]
         yield TimeStepped(step * unit, precision=precision), precision, step
 
 
-def _setting(
-    gas: Gas, wish: _Wish, engine: EventDriven | TimeStepped, precision: str, step: float
-) -> Setting | None:
+def _setting(gas: Gas, wish: _Wish, engine: Engine, precision: str, step: float) -> Setting | None:
     """Cost and error of one setting; None if its time step is too inaccurate or was not measured."""
     bias = 0.0
     if engine.name == "step":

@@ -15,6 +15,7 @@ from typing import BinaryIO
 
 import numpy as np
 
+from gaspart.engines import ENGINES, Engine
 from gaspart.state.tally import Tally
 from gaspart.trajectory.correlator import SUMS
 
@@ -22,10 +23,7 @@ NOTE = (
     "Reduced units: lengths and times are in the scene's own units, masses relative to the reference "
     "species, k_B = 1. Picosecond and angstrom stand for these, because readers of AMBER files insist on it."
 )
-_STEPS = ("steps", "overlaps_left", "deepest_overlap", "multiple_contacts", "rebuilds")
-"""Of the time-stepped engine; in other files they would be zero."""
-
-_PER_FACE = tuple(field.name for field in fields(Tally) if field.type == "np.ndarray")
+_PER_FACE = tuple(field.name for field in fields(Tally) if field.metadata.get("per_face"))
 MAGIC = b"CDF\x02"
 """The first bytes of a netCDF-3 file of 64-bit offsets."""
 FRAME_COUNT_AT = 4
@@ -50,10 +48,11 @@ BOOKKEEPING = ("header_bytes", "header_crc32", "frame_bytes")
 MOST_FRAMES = 2**31 - 1
 
 
-def counters(engine: str) -> tuple[str, ...]:
-    """Sums since time 0 that a file of this engine has, one variable each."""
-    absent = ("time",) if engine == "step" else ("time", *_STEPS)
-    return tuple(field.name for field in fields(Tally) if field.name not in absent)
+def counters(engine: Engine) -> tuple[str, ...]:
+    """Sums since time 0 that a file of this engine has, one variable each; those of other engines alone would
+    be zero."""
+    others = {name for kind in ENGINES.values() for name in kind.counters} - set(engine.counters)
+    return tuple(field.name for field in fields(Tally) if field.name not in {"time", *others})
 
 
 def face_names(dimension: int, walls: int = 0) -> list[str]:
@@ -66,7 +65,7 @@ class Layout:
     """The variables of one frame, in their order in the file: name -> (type, dimensions, attributes).
 
     count: particles in the file; extra: which variables of `_EXTRA` the file has; walls: the number of
-    interior walls; engine: by whose name the counters are chosen; sums: of the correlations, from lag 0 to
+    interior walls; counters: names of those that the file has; sums: of the correlations, from lag 0 to
     `lags`.
     """
 
@@ -76,7 +75,7 @@ class Layout:
         dimension: int,
         extra: Collection[str],
         walls: int,
-        engine: str,
+        counters: Collection[str],
         sums: Collection[str],
         lags: int,
     ) -> None:
@@ -98,7 +97,7 @@ class Layout:
             "kinetic_energy": (">f8", (), {"long_name": "kinetic energy of all bodies"}),
             **{
                 name: (">f8", ("face",) if name in _PER_FACE else (), faces if name in _PER_FACE else {})
-                for name in counters(engine)
+                for name in counters
             },
             "coordinates": (">f4", _VECTORS, {"units": "angstrom"}),
             "velocities": (">f4", _VECTORS, {"units": "angstrom/picosecond"}),

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 
-from gaspart.engines import EventDriven, TimeStepped, engine_from_dict, engine_to_dict
+from gaspart.engines import Engine, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.files import descriptor_path
 from gaspart.scene.faces import pistons
@@ -52,7 +52,7 @@ class Recipe:
     """
 
     scene: Scene
-    engine: EventDriven | TimeStepped
+    engine: Engine
     seed: int | tuple[int, ...]
     duration: float
     sample_interval: float
@@ -70,8 +70,9 @@ class Recipe:
         if self.follow is not None:
             if count_of("follow", self.follow, least=1) > self.scene.count:
                 raise SceneError("follow", self.follow, f"there are {self.scene.count} particles")
-        if isinstance(self.engine, TimeStepped):
-            multiple("sample_interval", self.sample_interval, "time_step", self.engine.time_step)
+        object.__setattr__(self, "engine", self.engine.resolved(self.scene))
+        if self.engine.quantum:
+            multiple("sample_interval", self.sample_interval, "time_step", self.engine.quantum)
         if self.frames > amber.MOST_FRAMES:
             rule = "makes more frames than a file can hold"
             raise SceneError("sample_interval", self.sample_interval, rule)
@@ -81,8 +82,8 @@ class Recipe:
     def _check_correlations(self, asked: Correlations) -> None:
         """Refuse correlations that this run cannot have, with SceneError."""
         interval = "correlations.interval", asked.interval
-        if isinstance(self.engine, TimeStepped):
-            multiple(*interval, "time_step", self.engine.time_step)
+        if self.engine.quantum:
+            multiple(*interval, "time_step", self.engine.quantum)
         if asked.start > 0.0:
             multiple("correlations.start", asked.start, *interval)
         samples = (self.frames - 1) * self.samples_per_frame - asked.first
@@ -123,7 +124,8 @@ class Recipe:
         sums, lags = [], 0
         if self.correlations:
             sums, lags = sums_of(self.displacements), self.correlations.lags
-        return amber.Layout(self.stored_count, scene.dimension, extra, walls, self.engine.name, sums, lags)
+        counters = amber.counters(self.engine)
+        return amber.Layout(self.stored_count, scene.dimension, extra, walls, counters, sums, lags)
 
     def attributes(self) -> dict:
         """The recipe as the file's attributes, from which `read_recipe` restores it."""

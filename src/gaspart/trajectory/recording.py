@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from gaspart.engines import TimeStepped
 from gaspart.errors import SimulationError
 from gaspart.interruption import Deferral, deferred, set_note
 from gaspart.simulation import Simulation
@@ -26,7 +25,6 @@ Progress = Callable[[float, float, int], None]
 
 _STRETCH = 0.1  # seconds of work between two looks at the clock and at signals, to within a factor of 2
 _PROGRESS = 0.5  # seconds between two reports of progress
-_FIRST_STRETCH = {"event": 256, "step": 1}  # events with crossings and predictions, steps
 
 
 class Recording:
@@ -53,7 +51,7 @@ class Recording:
         if recipe.correlations:
             masses = simulation.initial_state.masses
             self._correlator = Correlator(recipe.correlations, recipe.scene, masses, recipe.displacements)
-        self._stretch = _FIRST_STRETCH[recipe.engine.name]
+        self._stretch = recipe.engine.first_stretch
         self._saved = self._reported = time.monotonic()
 
     def restore(self, arrays: dict[str, np.ndarray]) -> None:
@@ -135,8 +133,7 @@ class Recording:
     def _approach(self, number: int, interval: float) -> Iterator[None]:
         """Advance to the time number x interval by stretches."""
         simulation, recipe = self._simulation, self._recipe
-        if isinstance(recipe.engine, TimeStepped):
-            step = recipe.engine.time_step
+        if step := recipe.engine.quantum:
             goal = number * multiple("interval", interval, "time_step", step)
             while (done := simulation.tally.steps) < goal:
                 # half a step more than required, so that rounding does not cost a step
@@ -178,7 +175,7 @@ class Recording:
             "cell_lengths": lengths,
             "cell_angles": np.full(3, 90.0),
             "kinetic_energy": state.kinetic_energy,
-            **{name: getattr(tally, name) for name in amber.counters(self._recipe.engine.name)},
+            **{name: getattr(tally, name) for name in amber.counters(self._recipe.engine)},
             "coordinates": state.positions[followed],
             "velocities": state.velocities[followed],
             **(self._correlator.sums() if self._correlator else {}),

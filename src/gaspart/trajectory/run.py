@@ -10,17 +10,19 @@ import fcntl
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 
-from gaspart.engines import EventDriven, TimeStepped
+from gaspart.engines import Engine
 from gaspart.errors import SceneError
 from gaspart.files import Kind, may_replace, output_path, place
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
 from gaspart.simulation import Simulation
+from gaspart.state.tally import ENERGY, Tally
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.checkpoint import checkpoint_path, read_checkpoint, remove_checkpoint
 from gaspart.trajectory.correlator import Correlations
@@ -48,9 +50,9 @@ _REDUCED = {
 }
 _UNUSED = ["spatial", "cell_spatial", "cell_angular", "checksum"]
 """Variables of a file that `open_trajectory` does not read: names of axes, and what detects damage."""
-_ENERGIES = ("kinetic_energy", "wall_energy", "virial_sum", "dissipated_energy", "vibrations")
-_UNITS = dict.fromkeys(_ENERGIES, "mass length^2/time^2") | {
-    "wall_impulse": "mass length/time",
+_UNITS = {field.name: field.metadata["units"] for field in fields(Tally) if "units" in field.metadata} | {
+    "kinetic_energy": ENERGY,
+    "vibrations": ENERGY,
     "velocity_product_sum": "length^2/time^2",
     "squared_displacement_sum": "length^2",
     "displacement_velocity_sum": "length^2/time",
@@ -120,7 +122,7 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
 
 def run(
     scene: Scene,
-    engine: EventDriven | TimeStepped,
+    engine: Engine,
     seed: int | tuple[int, ...],
     duration: float,
     sample_interval: float,

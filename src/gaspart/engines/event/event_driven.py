@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar, Literal
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, ClassVar
 
-from gaspart.engines.event.dynamics import EventDynamics
+from gaspart.engines.engine import Engine, register
 from gaspart.errors import SceneError
-from gaspart.scene.scene import Scene
-from gaspart.scene.validation import choice
-from gaspart.state.boxes import check_boxes_per_side
-from gaspart.state.state import State
+from gaspart.scene.keys import PER_SIDE, choice, declared
+
+if TYPE_CHECKING:
+    from gaspart.engines.event.dynamics import EventDynamics
+    from gaspart.scene.scene import Scene
+    from gaspart.state.state import State
 
 SEARCHES = ("automatic", "boxes", "lists", "direct", "pairs")
 
 
+@register
 @dataclass(frozen=True)
-class EventDriven:
+class EventDriven(Engine):
     """From one event to the next, exactly.
 
     search: "boxes", with one next event per particle in a queue; "lists", the same with neighbour lists;
@@ -31,18 +34,41 @@ class EventDriven:
     box, which must be fewer than the others.
     """
 
-    search: str = "automatic"
-    boxes_per_side: int | tuple[int, ...] | None = None
+    search: str = field(
+        default="automatic", metadata=declared(choice(*SEARCHES), "how the next event is found")
+    )
+    boxes_per_side: int | tuple[int, ...] | None = field(
+        default=None,
+        metadata=declared(PER_SIDE, "number of boxes, or one for each axis; by default chosen"),
+    )
 
-    name: ClassVar[Literal["event"]] = "event"
+    name: ClassVar[str] = "event"
+    title: ClassVar[str] = "event-driven"
+    records_events: ClassVar[bool] = True
+    first_stretch: ClassVar[int] = 256  # events with crossings and predictions
 
     def __post_init__(self) -> None:
-        choice("search", self.search, SEARCHES)
+        super().__post_init__()
         if self.search not in ("automatic", "boxes") and self.boxes_per_side is not None:
             raise SceneError("boxes_per_side", self.boxes_per_side, 'needs search "boxes"')
-        if self.boxes_per_side is not None:
-            check_boxes_per_side(self.boxes_per_side)
+
+    def _search(self, scene: Scene) -> str:
+        from gaspart.engines.event.search import chosen_search
+
+        return chosen_search(scene, self.search, self.boxes_per_side is not None)
+
+    def variant(self, scene: Scene) -> str:
+        """The search; of "direct" that of boxes, of which it has one."""
+        search = self._search(scene)
+        return "boxes" if search == "direct" else search
+
+    def for_few(self, scene: Scene) -> EventDriven:
+        """With the search for this scene, not the one for a few particles, and one box if there are any."""
+        boxes = None if self.boxes_per_side is None else 1
+        return EventDriven(search=self._search(scene), boxes_per_side=boxes)
 
     def start(self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0) -> EventDynamics:
         """Set the engine up for a scene in a given state; `seed` is that of thermal walls and kicks."""
+        from gaspart.engines.event.dynamics import EventDynamics
+
         return EventDynamics(scene, state, seed, self.search, self.boxes_per_side)

@@ -2,33 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import ClassVar, Literal
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, ClassVar
 
-import numpy as np
-from numpy.typing import DTypeLike
-
-from gaspart.engines.arrays import EventLog, write_internal
-from gaspart.engines.step.limits import (
-    check_late,
-    check_precision,
-    check_scene,
-    check_step,
-    oversized_particles,
-)
+from gaspart.engines.engine import Engine, register
 from gaspart.errors import SceneError
-from gaspart.scene.scene import Scene
-from gaspart.scene.validation import choice, count_of, number
-from gaspart.state.boxes import check_boxes_per_side
-from gaspart.state.state import State
-from gaspart.state.tally import Tally
+from gaspart.scene.keys import FLAG, PER_SIDE, POSITIVE, choice, count, declared
+
+if TYPE_CHECKING:
+    from gaspart.engines.step.dynamics import StepDynamics
+    from gaspart.scene.scene import Scene
+    from gaspart.state.state import State
 
 PRECISIONS = ("float64", "float32")
-_MOST_STEPS = 2.0**53  # above, float64 does not distinguish their numbers
 
 
+@register
 @dataclass(frozen=True)
-class TimeStepped:
+class TimeStepped(Engine):
     """Small steps; pairs that overlap after a step collide as they were at their contact.
 
     time_step: in the scene's time unit. boxes_per_side: search the boxes of a grid, a number of them or one
@@ -44,244 +35,67 @@ class TimeStepped:
     The result is the same, bit for bit, for any boxes_per_side, near_boxes, skin and threads.
     """
 
-    time_step: float
-    boxes_per_side: int | tuple[int, ...] | None = None
-    precision: str = "float64"
-    rewind: bool = True
-    passes: int = 4
-    skin: float | None = None
-    near_boxes: bool = False
-    threads: int = 1
+    time_step: float = field(metadata=declared(POSITIVE, "duration of a step"))
+    boxes_per_side: int | tuple[int, ...] | None = field(
+        default=None,
+        metadata=declared(PER_SIDE, "number of boxes, or one for each axis; by default a neighbour list"),
+    )
+    precision: str = field(
+        default="float64", metadata=declared(choice(*PRECISIONS), "floating-point type of the state")
+    )
+    rewind: bool = field(
+        default=True,
+        metadata=declared(FLAG, "overlapping particles are moved back to the time of their contact"),
+    )
+    passes: int = field(
+        default=4, metadata=declared(count(least=1), "how often a step searches for overlaps, at most")
+    )
+    skin: float | None = field(
+        default=None,
+        metadata=declared(
+            POSITIVE, "distance by which a neighbour list reaches farther than a contact; by default chosen"
+        ),
+    )
+    near_boxes: bool = field(
+        default=False, metadata=declared(FLAG, "with boxes: search only the boxes within reach of a contact")
+    )
+    threads: int = field(
+        default=1, metadata=declared(count(least=1), "number of threads that share a run's work")
+    )
 
-    name: ClassVar[Literal["step"]] = "step"
+    name: ClassVar[str] = "step"
+    title: ClassVar[str] = "time-stepped"
+    counters: ClassVar[tuple[str, ...]] = (
+        "steps",
+        "overlaps_left",
+        "deepest_overlap",
+        "multiple_contacts",
+        "rebuilds",
+    )
 
     def __post_init__(self) -> None:
-        step = number("time_step", self.time_step, "must be positive", above=0.0)
-        object.__setattr__(self, "time_step", step)
-        choice("precision", self.precision, PRECISIONS)
-        for key in ("rewind", "near_boxes"):
-            if not isinstance(getattr(self, key), bool):
-                raise SceneError(key, getattr(self, key), "must be true or false")
-        for key in ("passes", "threads"):
-            count_of(key, getattr(self, key), least=1)
-        if self.boxes_per_side is not None:
-            check_boxes_per_side(self.boxes_per_side)
-        if self.skin is not None:
-            if self.boxes_per_side is not None:
-                raise SceneError("skin", self.skin, "excludes boxes_per_side")
-            object.__setattr__(self, "skin", number("skin", self.skin, "must be positive", above=0.0))
+        super().__post_init__()
+        if self.skin is not None and self.boxes_per_side is not None:
+            raise SceneError("skin", self.skin, "excludes boxes_per_side")
         if self.near_boxes and self.boxes_per_side is None:
             raise SceneError("near_boxes", True, "needs boxes_per_side")
 
+    @property
+    def quantum(self) -> float:
+        """A step."""
+        return self.time_step
+
+    def variant(self, scene: Scene) -> str:
+        """The search, the precision, and whether threads share the work."""
+        search = "list" if self.boxes_per_side is None else "boxes"
+        return f"{search}-{self.precision}" + ("-threads" if self.threads > 1 else "")
+
+    def for_few(self, scene: Scene) -> TimeStepped:
+        """With one box, if there are any."""
+        return self if self.boxes_per_side is None else replace(self, boxes_per_side=1)
+
     def start(self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0) -> StepDynamics:
         """Set the engine up for a scene in a given state; `seed` is that of thermal walls."""
+        from gaspart.engines.step.dynamics import StepDynamics
+
         return StepDynamics(self, scene, state, seed)
-
-
-class StepDynamics:
-    """A scene under way; its time is a whole number of steps."""
-
-    def __init__(self, engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...]) -> None:
-        from gaspart.engines.step import arrays as step_arrays
-        from gaspart.engines.step import search as step_search
-        from gaspart.kernels.physics import running_sum
-        from gaspart.kernels.step import loop
-        from gaspart.kernels.step import model as layout
-
-        oversized = oversized_particles(state)
-        check_scene(scene, state, oversized)
-        check_precision(engine, scene, state)
-        check_step(engine, state)
-        self._arrays, self._loop, self._layout, self._sums = step_arrays, loop, layout, running_sum
-        self._engine, self._scene, self._reference = engine, scene, state
-        self._real = np.dtype(engine.precision).type
-        self._unit_mass, _ = step_arrays.masses_of(scene, state)
-        ordinary = state.radii[~oversized]
-        self._particles = step_arrays.empty_particles(engine, scene, state, len(ordinary))
-        slots = np.argsort(oversized, kind="stable")  # oversized particles last
-        self._place(slots, state.positions, state.velocities, state.images)
-        self._search = step_search.search_for(engine, scene, state, ordinary)
-        self._model = step_arrays.model_for(engine, scene, state, seed, ordinary)
-        self._threads = engine.threads if engine.threads > 1 else None
-        self._largest = step_arrays.largest_terms(scene, state, self._unit_mass)
-        self._lost = np.zeros(2)  # net and gross, before the tally began
-        self._start, self._steps = state.time, 0
-        self._count()
-
-    def _place(
-        self, slots: np.ndarray, positions: np.ndarray, velocities: np.ndarray, images: np.ndarray
-    ) -> None:
-        """Put the particles into their slots: (N,) which particle is in each."""
-        particles = self._particles
-        particles.positions[...] = positions[slots].T
-        particles.velocities[...] = velocities[slots].T
-        particles.images[...] = images.T
-        particles.radii[...] = self._reference.radii[slots]
-        particles.index[...] = slots
-
-    def _by_particle(self, values: np.ndarray, dtype: DTypeLike) -> np.ndarray:
-        """(N, d) of the particles in their own order, from (d, N) by slot."""
-        found = np.empty(values.shape[::-1], dtype)
-        found[self._particles.index] = values.T
-        return found
-
-    def reset_tally(self) -> None:
-        """Begin to count anew."""
-        self._lost = np.array([self.dissipated, self.exchanged])
-        self._count()
-
-    def _count(self) -> None:
-        """Set the tally to zero."""
-        if self._model.rules:
-            self._model.rules.heat[:] = 0
-        faces = 2 * self._scene.dimension
-        self._tally = self._arrays.step_tally(faces, self._engine.threads, self._largest)
-        self._since = self._steps
-
-    @property
-    def dissipated(self) -> float:
-        """The energy that contacts and thermal walls have taken since time 0."""
-        return float(self._lost[0]) + self._sums.net(*self._loss, self._heat) * self._unit_mass
-
-    @property
-    def exchanged(self) -> float:
-        """The sum of what contacts and each face have taken or given since time 0, each counted positive."""
-        gross = self._sums.net(*self._loss) + float(np.abs(self._heat.sum(axis=1)).sum())
-        return float(self._lost[1]) + gross * self._unit_mass
-
-    @property
-    def _heat(self) -> np.ndarray:
-        """(2d, 2) what each face was given by particles that left it at its temperature, since the tally
-        began, in two parts, in units of the unit mass."""
-        if self._model.rules is None:
-            return np.zeros((2 * self._scene.dimension, 2))
-        return self._sums.whole_parts(self._model.rules.heat, self._largest[1])
-
-    @property
-    def _loss(self) -> tuple[np.ndarray, np.ndarray]:
-        """The energy that contacts of particles (2,) and with walls (threads, 2) have taken, likewise."""
-        tally = self._tally
-        return tally.sums[self._layout.LOSS], self._sums.whole_parts(tally.wall_loss, self._largest[1])
-
-    @property
-    def time(self) -> float:
-        """The time reached, at the end of a step."""
-        return self._start + self._steps * self._engine.time_step
-
-    def advance(
-        self, until: float, most: int | None = None, log: EventLog | None = None, work: int | None = None
-    ) -> None:
-        """Step to the last whole step not after `until` (to within 1e-9 of a step).
-
-        Raises SceneError for what only the event-driven engine can do, count or record events, and for a time
-        that is not within 2^53 steps.
-        """
-        for key, limit in (("max_events", most), ("max_work", work)):
-            if limit is not None:
-                raise SceneError(key, limit, 'needs the "event" engine; this one makes whole steps only')
-        if log is not None:
-            raise SceneError(
-                "record_events", True, 'needs the "event" engine; this one makes whole steps only'
-            )
-        steps = (until - self._start) / self._engine.time_step
-        if not steps < _MOST_STEPS:
-            rule = f"must be within {_MOST_STEPS:g} steps of {self._engine.time_step:g}"
-            raise SceneError("until", until, rule)
-        target = int(np.floor(steps * (1.0 + 4e-16) + 1e-9))
-        if target > self._steps:
-            if self._threads is not None:
-                from numba import config, set_num_threads
-
-                set_num_threads(min(self._threads, config.NUMBA_NUM_THREADS))
-            self._run(target - self._steps)
-            self._steps = target
-            layout, counts = self._layout, self._tally.counts
-            found = (int(counts[n]) for n in (layout.COLLISIONS, layout.LATE, layout.PASSED))
-            check_late(self._engine, self.time, *found)
-
-    def _run(self, steps: int) -> None:
-        """Let the kernel make so many steps; or, if none, only a list."""
-        settings = self._real(self._engine.time_step), self._engine.rewind, self._engine.passes
-        pairs = self._loop.run_steps(
-            self._particles, self._search, self._model, settings, steps, self._tally, self._threads
-        )
-        self._search = self._search._replace(pairs=pairs)
-
-    @property
-    def state(self) -> State:
-        """All particles at the present time, in float64 whatever the precision."""
-        state = replace(
-            self._reference,
-            time=self.time,
-            positions=self._by_particle(self._particles.positions, float),
-            velocities=self._by_particle(self._particles.velocities, float),
-            images=self._particles.images.T.astype(self._reference.images.dtype),
-        )
-        if self._model.rules:
-            write_internal(
-                state, self._scene, self._model.law, self._model.rules.model.faces, self._unit_mass
-            )
-        return state
-
-    @property
-    def tally(self) -> Tally:
-        """What was counted since the last `reset_tally`."""
-        layout, counts, sums = self._layout, self._tally.counts, self._tally.sums
-        extremes = self._tally.extremes
-        impulse = self._sums.whole_parts(self._tally.wall_impulse.sum(axis=0), self._largest[0])
-        return Tally(
-            time=(self._steps - self._since) * self._engine.time_step,
-            collisions=int(counts[layout.COLLISIONS]),
-            wall_hits=self._tally.wall_hits.sum(axis=0),
-            wall_impulse=impulse.sum(axis=-1) * self._unit_mass,
-            wall_energy=self._heat.sum(axis=1) * self._unit_mass,
-            virial_sum=self._sums.net(sums[layout.VIRIAL]) * self._unit_mass,
-            pair_tests=int(counts[layout.PAIR_TESTS]),
-            box_visits=int(counts[layout.BOX_VISITS]),
-            worst_contact=float(extremes[layout.WORST]),
-            steps=self._steps - self._since,
-            overlaps_left=int(counts[layout.OVERLAPS_LEFT]),
-            deepest_overlap=float(extremes[layout.DEEPEST]),
-            multiple_contacts=int(counts[layout.MULTIPLE]),
-            rebuilds=int(counts[layout.REBUILDS]),
-            dissipated_energy=self._sums.net(*self._loss) * self._unit_mass,
-        )
-
-    def checkpoint(self) -> dict[str, np.ndarray]:
-        """Everything that a continuation to the same bits needs."""
-        particles = self._particles
-        return {
-            "steps": np.array(self._steps),
-            "since": np.array(self._since),
-            "lost": self._lost.copy(),
-            "positions": self._by_particle(particles.positions, self._real),
-            "velocities": self._by_particle(particles.velocities, self._real),
-            "images": particles.images.T.copy(),
-            "slots": particles.index.copy(),
-            **({} if self._search.cells is None else {"origin": self._search.cells.origin.copy()}),
-            **{key: array.copy() for key, array in self._arrays.changing(self._model).items()},
-            "reach": self._particles.bounds.copy(),
-            **{key: np.array(value) for key, value in self._tally._asdict().items()},
-        }
-
-    def restore(self, parts: dict[str, np.ndarray]) -> None:
-        """Go on from a checkpoint of the same scene and engine."""
-        self._place(*(parts[key] for key in ("slots", "positions", "velocities", "images")))
-        if self._search.cells is not None and parts["reach"][self._layout.DISPLACEMENT] < np.inf:
-            self._list_from(parts["origin"])
-        self._particles.bounds[...] = parts["reach"]
-        for key in ("counts", "sums", "extremes", "wall_hits", "wall_impulse", "wall_loss"):
-            getattr(self._tally, key)[...] = parts[key]
-        for key, array in self._arrays.changing(self._model).items():
-            array[...] = parts[key]
-        self._steps, self._since = int(parts["steps"]), int(parts["since"])
-        self._lost = parts["lost"].copy()
-
-    def _list_from(self, origin: np.ndarray) -> None:
-        """Make the list again that was made when particles were at `origin` (d, N), by slot."""
-        particles = self._particles
-        now = particles.positions.copy()
-        particles.positions[...] = origin
-        particles.bounds[self._layout.DISPLACEMENT] = np.inf  # no list is as old as that
-        self._run(0)
-        particles.positions[...] = now

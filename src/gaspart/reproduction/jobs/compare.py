@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gaspart.engines import EventDriven, TimeStepped, engine_from_dict
+from gaspart.engines import Engine, EventDriven, TimeStepped, engine_from_dict
 from gaspart.engines.arrays import EventLog
 from gaspart.errors import SceneError
 from gaspart.reproduction.jobs.data import PointData
@@ -84,7 +84,7 @@ def compare(
     )
 
 
-def _run(scene: Scene, engine: EventDriven | TimeStepped, state: State, duration: float) -> dict:
+def _run(scene: Scene, engine: Engine, state: State, duration: float) -> dict:
     """The results of one engine after a time."""
     dynamics = engine.start(scene, state)
     dynamics.advance(state.time + duration)

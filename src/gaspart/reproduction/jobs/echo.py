@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gaspart.engines import EventDriven, TimeStepped, engine_from_dict
+from gaspart.engines import Engine, EventDriven, engine_from_dict
 from gaspart.reproduction.jobs.data import PointData
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
@@ -26,7 +26,7 @@ _SLACK = 1e-6  # of a time step: so that rounding of the duration loses no step
 
 def echo(
     scene: Scene,
-    engine: EventDriven | TimeStepped,
+    engine: Engine,
     seeds: Sequence[tuple[int, ...]],
     equilibration: float,
     interval: float,

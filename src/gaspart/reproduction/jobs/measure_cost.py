@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gaspart.engines import EventDriven, TimeStepped, engine_from_dict
+from gaspart.engines import Engine, EventDriven, TimeStepped, engine_from_dict
 from gaspart.engines.arrays import EventLog
 from gaspart.errors import SimulationError
 from gaspart.reproduction.jobs.data import PointData
@@ -28,13 +28,13 @@ _SLACK = 1e-6  # of a time step: so that rounding of the duration loses no step
 
 def measure_cost(
     scene: Scene,
-    engines: Sequence[EventDriven | TimeStepped],
+    engines: Sequence[Engine],
     seed: tuple[int, ...],
     equilibration: float,
     stretch: float,
     repeats: int,
     record: bool = False,
-    rival: tuple[Scene, Sequence[EventDriven | TimeStepped]] | None = None,
+    rival: tuple[Scene, Sequence[Engine]] | None = None,
 ) -> PointData:
     """Time `repeats` times, with each of the engines, the same stretch of simulated time of the same gas.
 
@@ -88,13 +88,11 @@ def measure_cost(
     )
 
 
-def _start(
-    scene: Scene, engine: EventDriven | TimeStepped, seed: tuple[int, ...], equilibration: float
-) -> State:
+def _start(scene: Scene, engine: Engine, seed: tuple[int, ...], equilibration: float) -> State:
     """The state from which everything is timed. No partition or search changes a bit of it."""
     if equilibration <= 0.0:
         return initial_state(scene, seed)
-    quick: EventDriven | TimeStepped = EventDriven()
+    quick: Engine = EventDriven()
     if isinstance(engine, TimeStepped):
         quick = replace(engine, boxes_per_side=None, near_boxes=False)
     simulation = Simulation(scene, quick, seed=seed)
@@ -102,9 +100,7 @@ def _start(
     return simulation.state
 
 
-def _timed(
-    scene: Scene, state: State, engine: EventDriven | TimeStepped, record: bool, stretch: float
-) -> tuple[float, dict]:
+def _timed(scene: Scene, state: State, engine: Engine, record: bool, stretch: float) -> tuple[float, dict]:
     """Processor time of one stretch, in s, and what was counted in it."""
     dynamics = engine.start(scene, state)
     log = EventLog(scene.dimension, scene.rough) if record else None
@@ -121,11 +117,11 @@ def _timed(
     return seconds, {"duration": tally.time, **counted}
 
 
-def _sides(engine: EventDriven | TimeStepped, dimension: int) -> tuple[int, ...]:
+def _sides(engine: Engine, dimension: int) -> tuple[int, ...]:
     """Boxes along each axis; zeros if the engine chooses them itself."""
     if getattr(engine, "search", "boxes") not in ("automatic", "boxes"):
         return (1,) * dimension
-    given = engine.boxes_per_side or 0
+    given = getattr(engine, "boxes_per_side", None) or 0
     return given if isinstance(given, tuple) else (given,) * dimension
 
 
@@ -142,5 +138,5 @@ def run(recipe: dict) -> PointData:
     )
 
 
-def _scene_and_engines(recipe: dict) -> tuple[Scene, list[EventDriven | TimeStepped]]:
+def _scene_and_engines(recipe: dict) -> tuple[Scene, list[Engine]]:
     return Scene.from_dict(recipe["scene"]), [engine_from_dict(engine) for engine in recipe["engines"]]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from gaspart.engines import TimeStepped
 from gaspart.errors import SceneError
 from gaspart.reproduction.points import keys
 from gaspart.tradeoff import speed
@@ -33,7 +34,7 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
     made = {key: value for key, value in settings.items() if key not in keys.ENGINES["auto"]} | {
         "engine": engine.name
     }
-    if engine.name == "step":
+    if isinstance(engine, TimeStepped):
         made |= {"time_step": engine.time_step, "precision": engine.precision}
     if not keys.LENGTHS.keys() & settings.keys():
         made["collisions_per_body"] = math.ceil(found.collisions_per_body)

@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from gaspart import engines as known_engines
+from gaspart.engines.engine import required
 from gaspart.errors import SceneError
 from gaspart.reproduction.points.keys import ENGINES, LENGTHS, SCANS
 from gaspart.reproduction.points.point import Point
@@ -17,7 +19,7 @@ from gaspart.scene.geometry import ball_volume
 from gaspart.scene.validation import LARGEST, SMALLEST
 
 if TYPE_CHECKING:
-    from gaspart.engines import EventDriven, TimeStepped
+    from gaspart.engines import Engine
     from gaspart.scene.scene import Scene
     from gaspart.scene.species import Species
 
@@ -55,12 +57,14 @@ def check(point: Point) -> None:
     if point.job == "count_instructions":
         return
     engine = settings.get("engine", "event")
-    if engine == "step" and "time_step" not in settings:
-        raise SceneError(f"{where}.time_step", None, "must be given with engine: step")
-    for key in (*ENGINES["event"], *ENGINES["step"]):
+    kind = known_engines.ENGINES[engine]
+    for key in required(kind):
+        if key not in settings:
+            raise SceneError(f"{where}.{key}", None, f"must be given with engine: {engine}")
+    for key in {key: None for keys in ENGINES.values() for key in keys}:
         if key in settings and key not in ENGINES[engine]:
             raise SceneError(f"{where}.{key}", settings[key], f"has no meaning with engine: {engine}")
-    if settings.get("record_events") and (point.job, engine) != ("measure_cost", "event"):
+    if settings.get("record_events") and not (point.job == "measure_cost" and kind.records_events):
         rule = "has a meaning with job: measure_cost and engine: event only"
         raise SceneError(f"{where}.record_events", True, rule)
     if "without" in settings and point.job != "measure_cost":
@@ -72,31 +76,27 @@ def check(point: Point) -> None:
     lengths = [key for key in LENGTHS if key in settings]
     if len(lengths) != 1:
         raise SceneError(where, lengths, f"exactly one of {', '.join(LENGTHS)} must be given")
-    if lengths == ["steps"] and engine != "step":
+    if lengths == ["steps"] and "time_step" not in settings:
         raise SceneError(f"{where}.steps", settings["steps"], f"has no meaning with engine: {engine}")
 
 
-def engine(point: Point) -> EventDriven | TimeStepped:
+def engine(point: Point) -> Engine:
     """The point's engine. Raises SceneError."""
-    from gaspart.engines import EventDriven, TimeStepped
-
     check(point)
     name = point.settings.get("engine", "event")
     chosen = {key: point.settings[key] for key in ENGINES[name] if key in point.settings}
-    if isinstance(chosen.get("boxes_per_side"), list):
-        chosen["boxes_per_side"] = tuple(chosen["boxes_per_side"])
     count, radius, lengths = extents(point)
     if "boxes_per_body" in chosen:
         chosen["boxes_per_side"] = boxes_per_side(chosen.pop("boxes_per_body"), count, radius, lengths)
     given = chosen.get("boxes_per_side", 1)
-    sides = given if isinstance(given, tuple) else (given,) * len(lengths)
+    sides = tuple(given) if isinstance(given, (list, tuple)) else (given,) * len(lengths)
     if len(sides) != len(lengths):
         raise SceneError("boxes_per_side", given, "must be one number, or one per axis")
     for length, boxes in zip(lengths, sides, strict=True):
         if boxes > 1 and length / boxes < 2.0 * radius:  # found before any job starts
             rule = f"boxes must not be narrower than the largest diameter, {2.0 * radius:g}"
             raise SceneError("boxes_per_side", given, rule)
-    return EventDriven(**chosen) if name == "event" else TimeStepped(**chosen)
+    return known_engines.ENGINES[name](**chosen)
 
 
 def engines(point: Point) -> list:
@@ -112,9 +112,9 @@ def engines(point: Point) -> list:
         return [engine(point)]
     where = f"experiments.{point.experiment}.{given[0]}"
     if given == ["scan_time_steps"]:
-        own = engine(point)
-        if own.name != "step":
-            raise SceneError(where, settings[given[0]], "has no meaning with engine: event")
+        own: Any = engine(point)
+        if own.quantum is None:
+            raise SceneError(where, settings[given[0]], f"has no meaning with engine: {own.name}")
         return [replace(own, time_step=step) for step in settings[given[0]]]
     if len(given) > 1 or "boxes_per_side" in settings or "boxes_per_body" in settings:
         raise SceneError(where, settings[given[0]], "a scan excludes every other choice of boxes")
@@ -149,7 +149,7 @@ def schedule(point: Point) -> Schedule:
     if not SMALLEST <= interval <= LARGEST:
         rule = f"makes a sample interval of {interval:g}, which must be from {SMALLEST:g} to {LARGEST:g}"
         raise SceneError(f"{where}.{unit}", settings[unit], rule)
-    if settings.get("engine") == "step":
+    if "time_step" in settings:
         step = settings["time_step"]
         interval = step * max(1, round(interval / step))
     before = settings.get("equilibration", 0) * scale / interval

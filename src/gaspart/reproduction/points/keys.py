@@ -6,6 +6,9 @@ A figure's own settings are declared in the `__init__.py` of its family.
 
 from __future__ import annotations
 
+from typing import Any
+
+from gaspart import engines
 from gaspart.kinds import (
     COUNT,
     NOT_NEGATIVE,
@@ -21,6 +24,7 @@ from gaspart.kinds import (
     positive,
     record,
 )
+from gaspart.scene.keys import schema_of
 
 PREFIX = "scene."
 """Start of a key that replaces a value of the scene file: ``scene.species.0.mass``."""
@@ -77,50 +81,29 @@ ENGINE: dict[str, Kind] = {
     "engine": choice(
         "`auto` is the cheapest engine for an `accuracy`, with its time step and precision, and the length "
         "of the run if none is given (see `gaspart advise`)",
-        *("event", "step", "auto"),
+        *(*engines.ENGINES, "auto"),
         default="event",
     )
 }
 
-_BOXES: dict[str, Kind] = {
-    "boxes_per_side": described(
-        {**COUNT, "type": ["integer", "array"], "items": COUNT, **_PER_AXIS},
-        "number of boxes, or one for each axis; by default the engine chooses (step: a neighbour list)",
-        default=None,
-    ),
-    "boxes_per_body": positive(
-        "instead of `boxes_per_side`: nearly cubic boxes, so many for each particle, none smaller than a "
-        "diameter",
-        default=None,
-    ),
-}
+_BOXES_PER_BODY = positive(
+    "instead of `boxes_per_side`: nearly cubic boxes, so many for each particle, none smaller than a "
+    "diameter",
+    default=None,
+)
+
+
+def _settings(engine: Any) -> dict[str, Kind]:
+    """The keys of an engine, as its fields declare them. What it requires, a point with another does not."""
+    declared = schema_of(engine)
+    made = {name: {"default": None, **kind} for name, kind in declared["properties"].items()}
+    for name in declared.get("required", ()):
+        made[name]["description"] += "; required"
+    return {**made, **({"boxes_per_body": _BOXES_PER_BODY} if "boxes_per_side" in made else {})}
+
 
 ENGINES: dict[str, dict[str, Kind]] = {
-    "event": {
-        "search": choice(
-            "how the next event is found",
-            "automatic",
-            "boxes",
-            "lists",
-            "direct",
-            "pairs",
-            default="automatic",
-        ),
-        **_BOXES,
-    },
-    "step": {
-        "time_step": positive("time step; required", default=None),
-        "precision": choice("floating-point type of the state", "float64", "float32", default="float64"),
-        "rewind": flag("overlapping particles are moved back to the time of their contact", default=True),
-        "passes": count("how often a step searches for overlaps; the engine chooses", default=None),
-        "skin": positive(
-            "distance by which a neighbour list reaches farther than a contact; the engine chooses",
-            default=None,
-        ),
-        "near_boxes": flag("with boxes: search only the boxes within reach", default=False),
-        "threads": count("number of threads that share a run's work", default=1),
-        **_BOXES,
-    },
+    **{name: _settings(engine) for name, engine in engines.ENGINES.items()},
     "auto": {
         "accuracy": positive(
             "relative accuracy, half of a 95 % interval; required", exclusiveMaximum=1, default=None
@@ -152,7 +135,7 @@ LENGTHS: dict[str, Kind] = {
         default=None,
     ),
     "duration": positive("length in the scene's time", default=None),
-    "steps": count("length in time steps; needs `engine: step`", default=None),
+    "steps": count("length in time steps; needs an engine that makes steps", default=None),
 }
 """Exactly one of them is given."""
 
@@ -194,10 +177,22 @@ RUN: dict[str, Kind] = {
     ),
 }
 
-_ENGINE_KEYS: dict[str, Kind] = {name: kind for keys in ENGINES.values() for name, kind in keys.items()}
+
+def _of_any_engine() -> dict[str, Kind]:
+    """The keys of all engines; what one means is stated for each engine that has another meaning of it."""
+    found: dict[str, Kind] = {}
+    for engine, keys in ENGINES.items():
+        for name, kind in keys.items():
+            meaning = kind["description"]
+            known = found.setdefault(name, {**kind, "default": None})["description"]
+            if meaning not in known:
+                found[name] = {**found[name], "description": f"{known}; {engine}: {meaning}"}
+    return found
+
+
 POINT: dict[str, Kind] = {
     name: kind if name == "dimension" else nullable(kind)
-    for name, kind in (EXTENTS | GAS | SCENE_FILE | ENGINE | _ENGINE_KEYS | SCANS | LENGTHS | RUN).items()
+    for name, kind in (EXTENTS | GAS | SCENE_FILE | ENGINE | _of_any_engine() | SCANS | LENGTHS | RUN).items()
 }
 """All keys of a point; null takes a key back."""
 

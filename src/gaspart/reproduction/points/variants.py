@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import fields, is_dataclass
 from typing import TYPE_CHECKING, Any
 
-from gaspart.engines.event.search import chosen_search
+from gaspart.engines import Engine, EventDriven, engine_from_dict, engine_to_dict
 from gaspart.errors import SimulationError
 from gaspart.reproduction.points import grid
 from gaspart.reproduction.points.point import Point
@@ -34,25 +34,21 @@ def variant(point: Point) -> str:
     Kernels are compiled for features, not for numbers. Raises SceneError.
     """
     scene = grid.scene(point)
-    engine = "fill" if point.job in ("fill", "pack") else point.settings.get("engine", "event")
-    boxes = any(
-        key in point.settings
-        for key in ("boxes_per_side", "boxes_per_body", "scan_boxes_per_side", "scan_boxes_per_body")
-    )
-    if engine == "event":
-        choice = chosen_search(scene, point.settings.get("search", "automatic"), boxes)
-        choice = "boxes" if choice == "direct" else choice  # one box
-    elif engine == "step":
-        choice = "boxes" if boxes else "list"
-        choice += f"-{point.settings.get('precision', 'float64')}"
-        choice += "-threads" if point.settings.get("threads", 1) > 1 else ""
-    else:
-        choice = "random"
-    parts = [engine, choice, f"{scene.dimension}d"]
+    parts = ["fill", "random", f"{scene.dimension}d"]
+    if point.job not in ("fill", "pack"):
+        engine = _engine(point)
+        parts = [engine.name, engine.variant(scene), f"{scene.dimension}d"]
     present = sorted(features(scene))
     if present:
         parts.append(hashlib.sha256(" ".join(present).encode()).hexdigest()[:8])
     return "-".join(parts)
+
+
+def _engine(point: Point) -> Engine:
+    """The engine of a point, or the first of several, which differ in numbers only."""
+    if point.job == "count_instructions":
+        return EventDriven()
+    return grid.engines(point)[0] if point.job in ("measure_cost", "compare") else grid.engine(point)
 
 
 def features(scene: Scene) -> set[str]:
@@ -111,15 +107,13 @@ def task(point: Point) -> str:
     if features(Scene.from_dict(scene)) != features(full):
         scene = full.to_dict()
     engine = recipe.get("engine") or recipe.get("engines", [None])[0]
-    if engine and engine["name"] == "event":  # not the one for only a few particles
-        search = chosen_search(full, engine.get("search", "automatic"), "boxes_per_side" in engine)
-        engine = {**engine, "search": search}
+    if engine:
+        engine = engine_to_dict(engine_from_dict(engine).for_few(full))
     return json.dumps({"scene": scene, "engine": engine})
 
 
 def warm(job: str) -> None:
     """Compile and cache all kernels of a `task` by a tiny run."""
-    from gaspart.engines import engine_from_dict
     from gaspart.scene.scene import Scene
     from gaspart.simulation import Simulation
     from gaspart.state.initial import initial_state
@@ -129,14 +123,10 @@ def warm(job: str) -> None:
     if given["engine"] is None:
         initial_state(scene, seed=1)
         return
-    settings = dict(given["engine"])
-    if "boxes_per_side" in settings:  # one box does for a tiny run
-        settings["boxes_per_side"] = 1
-    simulation = Simulation(scene, engine_from_dict(settings), seed=1)
-    if "time_step" in settings:
-        limits = {"duration": 4 * settings["time_step"]}
-    else:
-        limits = {"duration": 1.0, "max_work": 1000}
+    engine = engine_from_dict(given["engine"]).resolved(scene)
+    simulation = Simulation(scene, engine, seed=1)
+    step = engine.quantum
+    limits: dict = {"duration": 4 * step} if step else {"duration": 1.0, "max_work": 1000}
     with suppress(SimulationError):  # a collapse; everything has been compiled before
         simulation.advance(**limits)
         simulation.restore(simulation.checkpoint())

@@ -62,7 +62,8 @@ def radius_grid(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 
 def _row(point: grid.Point) -> dict[str, float]:
-    scene, per_side = grid.scene(point), grid.engine(point).boxes_per_side
+    scene, engine = grid.scene(point), grid.engine(point)
+    per_side = getattr(engine, "boxes_per_side", None)
     assert isinstance(per_side, tuple), "every point of this figure gives its boxes"
     eta, dimension = scene.packing_fraction, scene.dimension
     row = {

@@ -1,0 +1,62 @@
+"""Options for the settings of the engines, made from their declarations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cache
+from typing import Any
+
+from gaspart.cli.arguments import Parser, alone, several
+from gaspart.engines import ENGINES
+from gaspart.errors import SceneError, shown
+from gaspart.kinds import Kind
+from gaspart.scene.keys import schema_of
+
+
+@cache
+def engine_settings() -> dict[str, Kind]:
+    """The settings of all engines, by name; the meaning of each says of which engine it is."""
+    found: dict[str, Kind] = {}
+    for name, engine in ENGINES.items():
+        for key, kind in schema_of(engine)["properties"].items():
+            meaning = f"{name} engine: {kind['description']}"
+            known = found.get(key)
+            found[key] = {**kind, "description": f"{known['description']}; {meaning}" if known else meaning}
+    return found
+
+
+def add_setting(parser: Parser, name: str, kind: Kind) -> None:
+    """Add the option of a setting: a number, a word, or a flag that changes its default."""
+    option, meaning, default = name.replace("_", "-"), kind["description"], kind.get("default")
+    usual = "" if default is None else f"; default: {default}"
+    types = kind.get("type", ())
+    if types == "boolean":
+        option, action = (f"no-{option}", "store_false") if default else (option, "store_true")
+        meaning = f"switches off: {meaning}" if default else meaning
+        parser.add_argument(f"--{option}", dest=name, action=action, default=None, help=meaning)
+    elif "enum" in kind:
+        words = one_of(word for word in kind["enum"] if word is not None)
+        parser.add_argument(f"--{option}", metavar="NAME", help=f"{meaning}: {words}{usual}")
+    else:
+        sides = "array" in types
+        read: Any = _sides if sides else int if "integer" in types else float
+        metavar = "N[,N...]" if sides else "N" if read is int else "X"
+        parser.add_argument(f"--{option}", type=read, metavar=metavar, help=f"{meaning}{usual}")
+
+
+def _sides(text: str) -> int | tuple[int, ...]:
+    return alone(several(int)(text))
+
+
+def one_of(words: Iterable[str]) -> str:
+    """ "a, b or c"."""
+    *first, last = words
+    return f"{', '.join(first)} or {last}" if first else last
+
+
+def as_option(error: SceneError, engine: str) -> str:
+    """An error of the engine's settings in terms of the options that state them."""
+    name = error.key.removeprefix("engine.")
+    option = {"name": "--engine", "rewind": "--no-rewind"}.get(name, f"--{name.replace('_', '-')}")
+    rule = f"has no meaning with --engine {engine}" if "unknown key" in error.rule else error.rule
+    return f"{option}: {'is required' if error.value is None else f'{shown(error.value)}: {rule}'}"

@@ -1,0 +1,143 @@
+"""What an engine is: settings that a scene can be started with, and the dynamics that this gives.
+
+An engine is a frozen dataclass derived from `Engine`, each field of which declares its rule and its meaning
+(`scene.keys`): the options of the command line, the keys of a config and the reference page follow from them.
+`register` makes it known by its name.
+"""
+
+from __future__ import annotations
+
+from dataclasses import MISSING, asdict, dataclass, fields
+from typing import TYPE_CHECKING, ClassVar, Protocol, TypeVar
+
+from gaspart.errors import SceneError
+from gaspart.scene.keys import validate
+from gaspart.scene.validation import choice, from_mapping
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from gaspart.engines.arrays import EventLog
+    from gaspart.scene.scene import Scene
+    from gaspart.state.state import State
+    from gaspart.state.tally import Tally
+
+E = TypeVar("E", bound="type[Engine]")
+
+
+class Dynamics(Protocol):
+    """A scene in progress."""
+
+    @property
+    def time(self) -> float:
+        """The time reached."""
+
+    @property
+    def state(self) -> State:
+        """All particles now; a copy."""
+
+    @property
+    def tally(self) -> Tally:
+        """What was counted since the last `reset_tally`; a copy."""
+
+    @property
+    def dissipated(self) -> float:
+        """The energy that contacts and thermal walls have taken since time 0, less what kicks have given."""
+
+    @property
+    def exchanged(self) -> float:
+        """The sum of what contacts and each face have taken or given since time 0, each counted positive."""
+
+    def advance(
+        self, until: float, most: int | None = None, log: EventLog | None = None, work: int | None = None
+    ) -> None:
+        """Advance to the time `until`, or by so many events or so much work, and record events in `log`.
+
+        Raises SceneError for a limit that the engine does not have, and SimulationError, with the state kept,
+        for a run that cannot go on.
+        """
+
+    def reset_tally(self) -> None:
+        """Begin to count from zero."""
+
+    def checkpoint(self) -> dict[str, np.ndarray]:
+        """Arrays from which `restore` continues to the same bits."""
+
+    def restore(self, parts: dict[str, np.ndarray]) -> None:
+        """Continue from a checkpoint of the same scene and engine."""
+
+
+@dataclass(frozen=True)
+class Engine:
+    """Settings of an engine.
+
+    name: by which files, configs and the command line know it; title: in messages and captions;
+    records_events: whether its events can be recorded and counted; counters: fields of `Tally` that only
+    such an engine fills; first_stretch: the work, in events or steps, that a run begins with between two
+    looks at the clock.
+    """
+
+    name: ClassVar[str]
+    title: ClassVar[str]
+    records_events: ClassVar[bool] = False
+    counters: ClassVar[tuple[str, ...]] = ()
+    first_stretch: ClassVar[int] = 1
+
+    def __post_init__(self) -> None:
+        validate(self)
+
+    @property
+    def quantum(self) -> float | None:
+        """The time of which all times that it reaches are multiples; None if it stops at any time."""
+        return None
+
+    def resolved(self, scene: Scene) -> Engine:
+        """The same with the quantum that the scene decides, if it was left to it. Raises SceneError."""
+        return self
+
+    def variant(self, scene: Scene) -> str:
+        """The name of its compiled kernels for a scene, beside the scene's features."""
+        raise NotImplementedError
+
+    def for_few(self, scene: Scene) -> Engine:
+        """Settings with which the scene with only a few particles needs the same kernels."""
+        return self
+
+    def start(self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0) -> Dynamics:
+        """Set the engine up for a scene in a given state; `seed` is that of thermal walls and kicks.
+
+        Raises SceneError for what it does not model.
+        """
+        raise NotImplementedError
+
+
+ENGINES: dict[str, type[Engine]] = {}
+"""All engines, by name."""
+
+
+def register(engine: E) -> E:
+    """Make an engine known by its name."""
+    ENGINES[engine.name] = engine
+    return engine
+
+
+def required(engine: type[Engine]) -> list[str]:
+    """The settings that have no default."""
+    return [item.name for item in fields(engine) if item.default is MISSING]
+
+
+def engine_from_dict(mapping: dict) -> Engine:
+    """The engine described by {"name": name, setting: value, ...}. Raises SceneError."""
+    if not isinstance(mapping, dict):
+        raise SceneError("engine", mapping, "must be a mapping with a name")
+    settings = dict(mapping)
+    name = choice("engine.name", settings.pop("name", None), ENGINES)
+    return from_mapping(ENGINES[name], settings, "engine")
+
+
+def engine_to_dict(engine: Engine) -> dict:
+    """The mapping that `engine_from_dict` accepts."""
+    return {
+        "name": engine.name,
+        **{key: value for key, value in asdict(engine).items() if value is not None},
+    }
