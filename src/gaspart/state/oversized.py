@@ -22,7 +22,7 @@ _BOXES = {2: (0.53, 0.5, 0.8), 3: (1.0, 3.0, 1.5)}  # per particle: in a dilute 
 def boxes_per_particle(scene: Scene) -> float:
     """How many boxes there are for each particle. Eight particles are tested at once, so in a dilute gas of
     discs, which cross many boxes between contacts, wide ones are best; measured with 10^4 particles at
-    packing fractions of 0.01 to 0.4 (docs/performance.md). Not where gravity gathers the particles, or where
+    packing fractions of 0.01 to 0.4 (docs/design-notes.md). Not where gravity gathers the particles, or where
     kicks make most searches find nothing new: there is one each at least."""
     dilute, by_density, most = _BOXES[scene.dimension]
     best = min(dilute + by_density * scene.packing_fraction, most)
