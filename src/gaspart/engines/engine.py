@@ -11,6 +11,7 @@ from dataclasses import MISSING, asdict, dataclass, fields
 from typing import TYPE_CHECKING, ClassVar, Protocol, TypeVar
 
 from gaspart.errors import SceneError
+from gaspart.scene.features import FEATURES, features
 from gaspart.scene.keys import validate
 from gaspart.scene.validation import choice, from_mapping
 
@@ -73,14 +74,17 @@ class Engine:
 
     name: by which files, configs and the command line know it; title: in messages and captions;
     records_events: whether its events can be recorded and counted; counters: fields of `Tally` that only
-    such an engine fills; first_stretch: the work, in events or steps, that a run begins with between two
-    looks at the clock.
+    such an engine fills; models: names of the `scene.features` that it models, and excludes: pairs of them
+    that it does not model together; first_stretch: the work, in events or steps, that a run begins with
+    between two looks at the clock.
     """
 
     name: ClassVar[str]
     title: ClassVar[str]
     records_events: ClassVar[bool] = False
     counters: ClassVar[tuple[str, ...]] = ()
+    models: ClassVar[frozenset[str]] = frozenset()
+    excludes: ClassVar[tuple[tuple[str, str], ...]] = ()
     first_stretch: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
@@ -94,6 +98,19 @@ class Engine:
     def resolved(self, scene: Scene) -> Engine:
         """The same with the quantum that the scene decides, if it was left to it. Raises SceneError."""
         return self
+
+    def check_features(self, scene: Scene) -> None:
+        """Raise SceneError for features of a scene that this engine does not model, with those that do."""
+        present = features(scene)
+        missing = [(name, "none") for name in FEATURES if name in present - self.models]
+        together = [(name, other) for name, other in self.excludes if {name, other} <= present]
+        missing += [(name, f"none together with {FEATURES[other].meaning}") for name, other in together]
+        if missing:
+            name, what = missing[0]
+            others = (engine for engine in ENGINES.values() if name in engine.models and not engine.excludes)
+            able = " or ".join(f'"{engine.name}"' for engine in others if engine.name != self.name)
+            key, value = FEATURES[name].key, FEATURES[name].value(scene)
+            raise SceneError(key, value, f"needs the {able} engine; this one has {what}")
 
     def variant(self, scene: Scene) -> str:
         """The name of its compiled kernels for a scene, beside the scene's features."""

@@ -11,9 +11,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from gaspart.engines import ENGINES
 from gaspart.kinds import Kind, names, record
 from gaspart.reproduction.families import registry
 from gaspart.reproduction.points import keys
+from gaspart.scene.features import EXCLUDED, FEATURES
 
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
 _EXPERIMENTS = names("the experiments whose points the figure is made of, in this order")
@@ -27,6 +29,7 @@ What the keys are for is explained in [the config page](config.md).
 For editors, `workflow/schemas` has the same rules as JSON schemas.
 A key without a default is required. A default of *none* means that the key is absent.
 """
+_FEATURES = "## Features and engines\n\nWhich engine models what, and which features exclude each other.\n"
 
 
 @cache
@@ -79,7 +82,29 @@ def reference() -> str:
     parts += ["## Scene file\n", _table(scene["properties"])]
     for name, part in _parts(scene):
         parts += [f"### {name}\n\n{part['description']}\n", _table(part["properties"])]
+    parts += [_FEATURES, _models(), _excluded()]
     return "\n".join(parts)
+
+
+def _models() -> str:
+    """Which engine models which feature of a scene."""
+    rows = [f"| feature | {' | '.join(ENGINES)} |", f"| --- |{' --- |' * len(ENGINES)}"]
+    for name, feature in FEATURES.items():
+        marks = ("yes" if name in engine.models else "" for engine in ENGINES.values())
+        rows.append(f"| {feature.meaning} | {' | '.join(marks)} |")
+    for engine in ENGINES.values():
+        for pair in engine.excludes:
+            one, other = (FEATURES[name].meaning for name in pair)
+            rows += ["", f"Not together with engine `{engine.name}`: {one} and {other}."]
+    return "\n".join([*rows, ""])
+
+
+def _excluded() -> str:
+    """Which features exclude each other in any scene."""
+    rows = ["| feature | excludes | why |", "| --- | --- | --- |"]
+    for (one, other), why in EXCLUDED.items():
+        rows.append(f"| {FEATURES[one].meaning} | {FEATURES[other].meaning} | {why} |")
+    return "\n".join([*rows, ""])
 
 
 def _parts(scene: Kind) -> list[tuple[str, Kind]]:

@@ -17,12 +17,13 @@ from gaspart.errors import SceneError
 from gaspart.scene.container import Container
 from gaspart.scene.faces import SCHEMA as FACES_SCHEMA
 from gaspart.scene.faces import Sticky, Surface, check_faces, surface_from_dict, surface_to_dict
+from gaspart.scene.features import check_features
 from gaspart.scene.geometry import CLOSE_PACKING, ball_volume
 from gaspart.scene.keys import FLAG, VECTOR, checked_by_class, declared, instance_of, list_of, validate
 from gaspart.scene.limits import Nearby, check_region, check_room
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.species import SHARED, Body, Species
-from gaspart.scene.thermostat import Thermostat, check_thermostat
+from gaspart.scene.thermostat import Thermostat
 from gaspart.scene.validation import MOST_BODIES, from_mapping, vector
 from gaspart.scene.walls import WALL_RULE, Plate, Wall, check_walls, wall_kind
 from gaspart.yaml_text import read_yaml, write_yaml
@@ -83,15 +84,9 @@ class Scene:
         if self.count > MOST_BODIES:
             raise SceneError("count", self.count, f"there may be {MOST_BODIES} particles")
         self._check_gravity()
-        if self.centres_to_walls and self.rough:
-            rule = "rough particles (tangential above -1) touch walls with their surfaces"
-            raise SceneError("centres_to_walls", True, rule)
         check_walls(self)
         check_faces(self)
-        check_thermostat(self)
-        if self.vibrates and self.restitution is not None and self.restitution.normal != 1.0:
-            rule = "must be 1 where particles vibrate: energy would be lost twice"
-            raise SceneError("restitution.normal", self.restitution.normal, rule)
+        check_features(self)
         for n, kind in enumerate(self.species):
             if kind.count:
                 self._fits(f"species[{n}].radius", kind)

@@ -3,13 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
-from gaspart.errors import SceneError
 from gaspart.scene.keys import POSITIVE, declared, validate
-
-if TYPE_CHECKING:
-    from gaspart.scene.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -29,13 +24,3 @@ class Thermostat:
 
     def __post_init__(self) -> None:
         validate(self)
-
-
-def check_thermostat(scene: Scene) -> None:
-    """Raise SceneError for a scene in which kicks are not defined."""
-    if scene.thermostat is None:
-        return
-    if scene.gravity is not None and any(scene.gravity):
-        raise SceneError("thermostat", scene.thermostat, "needs a scene without gravity")
-    if any(face.kind != "thermal" for face in scene.faces.values()):
-        raise SceneError("thermostat", scene.thermostat, "needs faces that are hard or thermal")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from gaspart.engines.engine import Engine, register
 from gaspart.errors import SceneError
+from gaspart.scene.features import FEATURES
 from gaspart.scene.keys import PER_SIDE, choice, declared
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ class EventDriven(Engine):
     name: ClassVar[str] = "event"
     title: ClassVar[str] = "event-driven"
     records_events: ClassVar[bool] = True
+    models: ClassVar[frozenset[str]] = frozenset(FEATURES)
     first_stretch: ClassVar[int] = 256  # events with crossings and predictions
 
     def __post_init__(self) -> None:

@@ -37,6 +37,7 @@ class StepDynamics:
         from gaspart.kernels.step import loop
         from gaspart.kernels.step import model as layout
 
+        engine.check_features(scene)
         oversized = oversized_particles(state)
         check_scene(scene, state, oversized)
         check_precision(engine, scene, state)

@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.features.vibrating import vibrating_faces
 from gaspart.errors import SceneError, SimulationError
-from gaspart.scene.faces import pistons
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
@@ -50,24 +48,11 @@ def oversized_particles(state: State) -> np.ndarray:
 
 
 def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
-    """Raise SceneError for what this engine does not model."""
+    """Raise SceneError for so many particles, or so short a container, that this engine does not model."""
     if state.count >= MOST_BODIES:
         raise SceneError(
             "count", state.count, f"the time-stepped engine takes {MOST_BODIES - 1} particles at most"
         )
-    law, fixed = scene.restitution, np.isinf(state.masses).any()
-    falls, none = scene.gravity is not None, "this one has none"
-    for key, value, what in (
-        ("restitution", law if law and law.normal < 1.0 and falls else None, "with gravity, " + none),
-        ("restitution.reference_speed", law.reference_speed if law else None, none),
-        ("restitution.contact_duration", law.contact_duration or None if law else None, none),
-        ("thermostat", scene.thermostat, none),
-        ("walls", scene.walls or None, none),
-        ("faces", next((face for _, face in (*vibrating_faces(scene), *pistons(scene))), None), none),
-        ("fixed", True if fixed and falls else None, "this one has no fixed particles under gravity"),
-    ):
-        if value is not None:
-            raise SceneError(key, value, f'needs the "event" engine; {what}')
     reach = 2.0 * state.radii.max(initial=0.0)
     if oversized.any():
         reach = state.radii[oversized].min() + state.radii.max()

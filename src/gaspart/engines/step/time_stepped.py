@@ -65,6 +65,10 @@ class TimeStepped(Engine):
 
     name: ClassVar[str] = "step"
     title: ClassVar[str] = "time-stepped"
+    models: ClassVar[frozenset[str]] = frozenset(
+        ("gravity", "restitution", "roughness", "fixed", "vibrations", "centres_to_walls")
+    ) | {"thermal", "well", "sticky"}
+    excludes: ClassVar[tuple[tuple[str, str], ...]] = (("restitution", "gravity"), ("fixed", "gravity"))
     counters: ClassVar[tuple[str, ...]] = (
         "steps",
         "overlaps_left",

@@ -1,0 +1,109 @@
+"""What a scene has besides smooth, elastic particles in a hard or periodic container, each by a name.
+
+`FEATURES` is the table of all features, `EXCLUDED` that of pairs which no scene may have. An engine states
+those that it models (`Engine.models`): what it refuses, and the table in the documentation, follow from it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from gaspart.errors import SceneError
+
+if TYPE_CHECKING:
+    from gaspart.scene.scene import Scene
+
+
+class Feature(NamedTuple):
+    """A feature: the key of a scene that brings it, and value(scene), None where it is absent."""
+
+    meaning: str
+    key: str
+    value: Callable[[Scene], Any]
+
+
+def _face(kind: str) -> Feature:
+    """A kind of face of the container."""
+
+    def value(scene: Scene) -> str | None:
+        return kind if any(face.kind == kind for face in scene.faces.values()) else None
+
+    return Feature(f"{kind} faces of the container", "faces", value)
+
+
+def _law(key: str, meaning: str, value: Callable[[Any], Any]) -> Feature:
+    """A property of the law of contacts."""
+
+    def of_scene(scene: Scene) -> Any:
+        return value(scene.restitution) if scene.restitution is not None else None
+
+    return Feature(meaning, f"restitution.{key}", of_scene)
+
+
+FEATURES: dict[str, Feature] = {
+    "gravity": Feature("gravity", "gravity", lambda scene: scene.gravity),
+    "restitution": _law("normal", "inelastic contacts", lambda law: law.normal if law.normal < 1.0 else None),
+    "roughness": _law(
+        "tangential", "rough particles, with spins", lambda law: law.tangential if law.rough else None
+    ),
+    "viscoelasticity": _law(
+        "reference_speed",
+        "restitution that depends on the speed of a contact",
+        lambda law: law.reference_speed,
+    ),
+    "contact_duration": _law(
+        "contact_duration", "contacts that last", lambda law: law.contact_duration or None
+    ),
+    "thermostat": Feature("random kicks", "thermostat", lambda scene: scene.thermostat),
+    "walls": Feature("interior walls", "walls", lambda scene: scene.walls or None),
+    "fixed": Feature(
+        "fixed particles",
+        "fixed",
+        lambda scene: True if any(kind.fixed and getattr(kind, "count", 1) for kind in scene.kinds) else None,
+    ),
+    "vibrations": Feature(
+        "particles that store energy in a vibration",
+        "vibrates",
+        lambda scene: scene.vibrates or None,
+    ),
+    "centres_to_walls": Feature(
+        "walls that stop the centres of particles",
+        "centres_to_walls",
+        lambda scene: scene.centres_to_walls or None,
+    ),
+    **{kind: _face(kind) for kind in ("thermal", "well", "sticky", "vibrating", "piston")},
+}
+"""Name -> feature, in the order in which they are refused."""
+
+EXCLUDED: dict[tuple[str, str], str] = {
+    ("gravity", "piston"): "the energy of a piston is known only without gravity",
+    ("restitution", "piston"): "a piston needs elastic particles",
+    ("roughness", "piston"): "a piston needs smooth particles",
+    ("thermostat", "piston"): "a piston needs a gas that nothing else drives",
+    ("walls", "piston"): "a piston sweeps through the container",
+    ("fixed", "piston"): "a piston sweeps through the container",
+    ("vibrating", "piston"): "one face may move by itself, and no other then",
+    ("gravity", "thermostat"): "kicks are defined without gravity",
+    ("well", "thermostat"): "kicks need faces that are hard or thermal",
+    ("sticky", "thermostat"): "kicks need faces that are hard or thermal",
+    ("vibrating", "thermostat"): "kicks need faces that are hard or thermal",
+    ("restitution", "vibrations"): "energy would be lost twice",
+    ("roughness", "centres_to_walls"): "rough particles touch walls with their surfaces",
+}
+"""Pairs of features that no scene may have, and why."""
+
+
+def features(scene: Scene) -> frozenset[str]:
+    """The names of a scene's features."""
+    return frozenset(name for name, feature in FEATURES.items() if feature.value(scene) is not None)
+
+
+def check_features(scene: Scene) -> None:
+    """Raise SceneError for two features that exclude each other."""
+    present = features(scene)
+    for (name, other), why in EXCLUDED.items():
+        if name in present and other in present:
+            feature = FEATURES[name]
+            rule = f"excludes {FEATURES[other].meaning}: {why}"
+            raise SceneError(feature.key, feature.value(scene), rule)
