@@ -36,7 +36,7 @@ def requirements(*extras):
 def test_every_dependency_has_a_lower_bound_that_the_locked_version_satisfies():
     lock = (ROOT / "environment.txt").read_text(encoding="utf-8")
     for requirement in requirements(*project()["optional-dependencies"]):
-        assert [bound.operator for bound in requirement.specifier] == [">="], requirement
+        assert ">=" in {bound.operator for bound in requirement.specifier}, requirement
         locked = re.findall(rf"^{re.escape(requirement.name.lower())}==([^ ;]+)", lock, re.MULTILINE)
         assert locked and all(requirement.specifier.contains(version) for version in locked), requirement
 
@@ -57,11 +57,6 @@ def test_ci_runs_targets_that_the_makefile_has():
     targets = workflow["jobs"]["make"]["strategy"]["matrix"]["target"]
     rules = re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
     assert {"lint", "test", "smoke", "docs"} == set(targets) <= set(rules)
-
-
-def test_cleaning_keeps_the_description_of_the_results():
-    assert "!/results/README.md" in (ROOT / ".gitignore").read_text(encoding="utf-8").splitlines()
-    assert "$(filter-out results/README.md," in (ROOT / "Makefile").read_text(encoding="utf-8")
 
 
 def test_the_conda_environment_has_every_dependency_at_its_locked_version():
