@@ -124,7 +124,6 @@ def test_a_trajectory_of_gaspart_states_the_forces_on_its_particles(tmp_path):
         ("a.xyz", lambda path: path.write_text(""), "cannot be read"),
         ("a.xyz", lambda path: xyz(path, extended=False), "--lengths"),
         ("a.xyz", xyz, "--radius"),
-        ("a.nc", lambda path: lammps(path, sides=SIDES * [[1], [1], [2]]), "changes its size"),
     ],
 )
 def test_unreadable_files_are_reported_in_one_line(tmp_path, name, make, complaint):

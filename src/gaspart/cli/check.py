@@ -35,9 +35,17 @@ def add_check(parser: Parser) -> None:
         metavar="X,Y[,Z]",
         help="sides of the container, if the file has none",
     )
-    add("--boundary", metavar="NAME", help="periodic (default for other programs' files) or wall")
-    add("--time-step", type=real(above=0.0), metavar="T", help="time of a step (GSD) or of a frame (XYZ)")
+    text = "periodic or wall, of all axes or one for each, as periodic,periodic,wall; default: as in the file"
+    add("--boundary", type=_words, metavar="NAME[,...]", help=text)
+    text = "time of a step (GSD) or between frames (netCDF, XYZ)"
+    add("--time-step", type=real(above=0.0), metavar="T", help=text)
     add("--tolerance", type=real(least=0.0), metavar="X", help="allowed overlap, as a fraction of a diameter")
+
+
+def _words(text: str) -> str | tuple[str, ...]:
+    """One word, or several with commas between; `Container` refuses other ones."""
+    words = tuple(text.split(","))
+    return words[0] if len(words) == 1 else words
 
 
 def _check(given: argparse.Namespace) -> None:

@@ -60,17 +60,18 @@ def _tolerated(frames: Frames, tolerance: float | None) -> float:
 
 def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Check:
     """The deepest overlap of two particles, as a part of their contact distance."""
-    sides, most = np.where(frames.periodic, frames.lengths, 0.0), 2.0 * float(frames.radii.max())
-    if np.any((sides > 0.0) & (sides <= 2.0 * most)):
-        return Check("overlaps", None, "the container is too small to search them by nearest images")
     deepest, where = 0.0, 0
     for n in seen:
-        pairs = cKDTree(frames.positions[n], boxsize=sides).query_pairs(most, output_type="ndarray")
+        one = frames.at(n)
+        sides, most = np.where(one.periodic, one.lengths, 0.0), 2.0 * float(one.radii.max())
+        if np.any((sides > 0.0) & (sides <= 2.0 * most)):
+            return Check("overlaps", None, "the container is too small to search them by nearest images")
+        pairs = cKDTree(one.positions[0], boxsize=sides).query_pairs(most, output_type="ndarray")
         if len(pairs):
             first, second = pairs.T
-            gap = frames.positions[n][first] - frames.positions[n][second]
-            gap -= np.where(sides > 0.0, sides * np.round(gap / frames.lengths), 0.0)
-            contact = frames.radii[first] + frames.radii[second]
+            gap = one.positions[0][first] - one.positions[0][second]
+            gap -= np.where(sides > 0.0, sides * np.round(gap / one.lengths), 0.0)
+            contact = one.radii[first] + one.radii[second]
             worst = float((1.0 - np.sqrt((gap**2).sum(axis=1)) / contact).max())
             if worst > deepest:
                 deepest, where = worst, int(n)
@@ -86,7 +87,8 @@ def _inside(frames: Frames, tolerance: float | None) -> Check:
     walls = ~np.array(frames.periodic)
     if not walls.any():
         return Check("container", None, "periodic, so that nothing can leave it")
-    places, lengths = frames.positions[:, :, walls], frames.lengths[walls]
+    lengths = frames.lengths if frames.lengths_by_frame is None else frames.lengths_by_frame[:, None]
+    places, lengths = frames.positions[:, :, walls], lengths[..., walls]
     out = float(np.maximum(-places, places - lengths).max()) / (2.0 * float(frames.radii.min()))
     text = "all centres are inside" if out <= 0.0 else f"a centre is {out:.2g} diameters outside"
     return Check("container", out <= _tolerated(frames, tolerance), text)

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gaspart.errors import SceneError
-from gaspart.scene.container import Container
 from gaspart.scene.geometry import ball_volume
 
 
@@ -16,9 +14,10 @@ class Frames:
     """What can be judged of a trajectory of T frames of N particles.
 
     positions (T, N, d), on periodic axes inside the container [0, L]; velocities (T, N, d) and time (T,), or
-    None if the file does not state it; radii (N,); periodic (d,) whether each axis is; plain: whether
-    nothing but elastic contacts moves them, as far as the file knows; resolution: by how much a
-    position may be off, as a length.
+    None if the file does not state it; lengths (d,), radii and masses (N,), of the first frame where they
+    change; lengths_by_frame (T, d) and radii_by_frame (T, N) where they do; periodic (d,) whether each axis
+    is; plain: whether nothing but elastic contacts moves particles of one mass in a constant container, as
+    far as the file knows; resolution: by how much a position may be off, as a length.
     """
 
     positions: np.ndarray
@@ -29,6 +28,9 @@ class Frames:
     time: np.ndarray | None = None
     plain: bool = True
     resolution: float = 0.0
+    masses: np.ndarray | None = None
+    lengths_by_frame: np.ndarray | None = None
+    radii_by_frame: np.ndarray | None = None
 
     @property
     def count(self) -> int:
@@ -50,43 +52,16 @@ class Frames:
         """Volume (area) of all particles over that of the container."""
         return float(ball_volume(self.dimension) * (self.radii**self.dimension).sum() / np.prod(self.lengths))
 
-
-def complete_frames(
-    found: dict, path: str, radius: float | None, lengths: tuple[float, ...] | None, boundary: str | None
-) -> Frames:
-    """Frames from the result of a reader and the user's arguments, which take precedence.
-
-    found: positions (T, N, 3) or (T, N, d), and perhaps their `origin` (d,), lengths, radii, velocities,
-    time, boundary, plain, flat (two dimensions), resolution. Raises SceneError for missing or invalid
-    values.
-    """
-    positions = np.asarray(found["positions"])
-    if positions.ndim != 3 or positions.shape[0] < 1 or positions.shape[1] < 2:
-        raise SceneError("file", path, "needs at least one frame of at least two particles")
-    if not np.isfinite(positions).all():
-        raise SceneError("file", path, "has positions that are not finite")
-    flat = found.get("flat", positions.shape[2] == 3 and np.ptp(positions[:, :, 2]) == 0.0)
-    d = 2 if flat or positions.shape[2] == 2 else 3
-    sides = found.get("lengths") if lengths is None else np.array(lengths)
-    if sides is None or len(sides) < d or not (np.asarray(sides[:d]) > 0.0).all():
-        raise SceneError("lengths", lengths, f"{path} does not state them: give --lengths X,Y[,Z]")
-    radii = found.get("radii") if radius is None else np.full(positions.shape[1], radius)
-    if radii is None or not (np.asarray(radii) > 0.0).all():
-        raise SceneError("radius", radius, f"{path} does not state it: give --radius")
-    container = Container(tuple(float(x) for x in sides[:d]), boundary or found.get("boundary", "periodic"))
-    sides = np.array(container.lengths)
-    places = positions[:, :, :d].astype(float) - np.asarray(found.get("origin", np.zeros(3)))[:d]
-    wrapped = np.where(container.periodic, places - sides * np.floor(places / sides), places)
-    wrapped = np.where((wrapped >= sides) & container.periodic, 0.0, wrapped)  # rounding of -1e-17
-    velocities = found.get("velocities")
-    precision = np.finfo(positions.dtype).eps if positions.dtype.kind == "f" else 0.0
-    return Frames(
-        positions=wrapped,
-        lengths=sides,
-        radii=np.asarray(radii, dtype=float),
-        periodic=container.periodic,
-        velocities=None if velocities is None else np.asarray(velocities)[:, :, :d].astype(float),
-        time=found.get("time"),
-        plain=found.get("plain", True),
-        resolution=float(found.get("resolution", precision * max(np.abs(positions).max(), sides.max()))),
-    )
+    def at(self, frame: int) -> Frames:
+        """One frame, with the container and the radii that it has."""
+        lengths, radii, moving = self.lengths_by_frame, self.radii_by_frame, self.velocities
+        return replace(
+            self,
+            positions=self.positions[frame][None],
+            velocities=None if moving is None else moving[frame][None],
+            time=None if self.time is None else self.time[frame][None],
+            lengths=self.lengths if lengths is None else lengths[frame],
+            radii=self.radii if radii is None else radii[frame],
+            lengths_by_frame=None,
+            radii_by_frame=None,
+        )

@@ -1,0 +1,219 @@
+"""What the file of any program states about its particles, and the frames that follow from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gaspart.errors import SceneError
+from gaspart.inspection.frames import Frames
+from gaspart.scene.container import Container
+
+_SAME = 1e-6
+"""Relative change of a container's side that is attributed to rounding."""
+
+
+@dataclass
+class Contents:
+    """The fields of T frames of N particles, as a reader found them; None: the file does not state it.
+
+    positions (T, N, 2 or 3), as stored; velocities likewise; time (T,); steps (T,), which --time-step
+    multiplies; radii and masses (N,) or (T, N); ids (T, N), one for each particle, and species (T, N), which
+    identify them; lengths and origin (T, 3), a length of 0 for walls at an unknown distance; boundary (3,),
+    a word for each axis; centred: the origin is the middle of the container; flat: two dimensions; plain:
+    nothing but elastic contacts moves the particles, as far as the file states; resolution and
+    time_resolution: by how much a coordinate and a time may be off because of their type.
+    """
+
+    positions: np.ndarray
+    velocities: np.ndarray | None = None
+    time: np.ndarray | None = None
+    steps: np.ndarray | None = None
+    radii: np.ndarray | None = None
+    masses: np.ndarray | None = None
+    ids: np.ndarray | None = None
+    species: np.ndarray | None = None
+    lengths: np.ndarray | None = None
+    origin: np.ndarray | None = None
+    boundary: tuple[str, ...] | None = None
+    centred: bool = False
+    flat: bool | None = None
+    plain: bool = True
+    resolution: float = 0.0
+    time_resolution: float = 0.0
+
+
+@dataclass(frozen=True)
+class Given:
+    """The user's statements about a file, which take precedence over it; see `readers.read_frames`."""
+
+    radius: float | None = None
+    lengths: tuple[float, ...] | None = None
+    boundary: str | tuple[str, ...] | None = None
+    time_step: float | None = None
+
+
+def complete_frames(found: Contents, given: Given, path: str) -> Frames:
+    """Frames from the contents of a file and the user's statements.
+
+    Raises SceneError for missing, invalid or contradictory values.
+    """
+    shape = found.positions.shape
+    if len(shape) != 3 or shape[0] < 1 or shape[1] < 2:
+        raise SceneError("file", path, "needs at least one frame of at least two particles")
+    _require_finite("positions", found.positions, path)
+    if found.velocities is not None:
+        _require_finite("velocities", found.velocities, path)
+    _sort_by_id(found, path)
+    if found.lengths is None and given.lengths is None:
+        raise SceneError("lengths", None, "is not stated: give --lengths X,Y[,Z]", path)
+    radii = _per_frame(_radii(found, given, path))
+    d = _dimension(found, given, 2.0 * float(radii.max()))
+    sides, container = _container(found, given, d, path)
+    if found.centred:
+        origin = -0.5 * sides
+    else:
+        origin = np.zeros((1, d)) if found.origin is None else _per_frame(found.origin)[:, :d]
+    places = found.positions[:, :, :d].astype(float) - origin[:, None, :]
+    size = sides[:, None, :]
+    wrapped = np.where(container.periodic, places - size * np.floor(places / size), places)
+    wrapped = np.where((wrapped >= size) & container.periodic, 0.0, wrapped)  # rounding of -1e-17
+    masses = None if found.masses is None else _per_frame(found.masses)
+    alike = masses is None or np.ptp(masses) == 0.0
+    steady = len(sides) == 1 and len(radii) == 1
+    return Frames(
+        positions=wrapped,
+        lengths=sides[0],
+        radii=radii[0],
+        periodic=container.periodic,
+        velocities=None if found.velocities is None else found.velocities[:, :, :d].astype(float),
+        time=_times(found, given, path),
+        plain=found.plain and steady and alike,
+        resolution=found.resolution,
+        masses=None if masses is None else masses[0],
+        lengths_by_frame=sides if len(sides) > 1 else None,
+        radii_by_frame=radii if len(radii) > 1 else None,
+    )
+
+
+def _require_finite(name: str, values: np.ndarray, path: str) -> None:
+    """Refuse a file with values that are not finite, with the first frame of them."""
+    wrong = ~np.isfinite(values).all(axis=(1, 2))
+    if wrong.any():
+        raise SceneError("file", path, f"has {name} that are not finite or absent, in frame {wrong.argmax()}")
+
+
+def _sort_by_id(found: Contents, path: str) -> None:
+    """Bring the particles of every frame into the order of their ids. Refused: frames of other particles."""
+    if found.ids is None:
+        species = found.species
+        if species is not None and np.any(species != species[0]):
+            frame = np.argmax(np.any(species != species[0], axis=1))
+            rule = f"lists its particles in another order in frame {frame}, and has no ids to restore it"
+            raise SceneError("file", path, rule)
+        return
+    order = np.argsort(found.ids, axis=1, kind="stable")
+    ids = np.take_along_axis(found.ids, order, axis=1)
+    if np.any(ids[:, 1:] == ids[:, :-1]):
+        raise SceneError("file", path, "has two particles of the same id in a frame")
+    if np.any(ids != ids[0]):
+        frame = int(np.argmax(np.any(ids != ids[0], axis=1)))
+        rule = f"has other particles in frame {frame} than in frame 0, by their ids"
+        raise SceneError("file", path, f"{rule}: changing particles cannot be checked")
+    for name in ("positions", "velocities", "radii", "masses"):
+        values = getattr(found, name)
+        if values is None:
+            continue
+        if name in ("radii", "masses") and values.ndim == 1:
+            values = np.broadcast_to(values, order.shape)
+        index = order[:, :, None] if values.ndim == 3 else order
+        setattr(found, name, np.take_along_axis(values, index, axis=1))
+
+
+def _dimension(found: Contents, given: Given, diameter: float) -> int:
+    """2 or 3: as the file states it, or by whether anything happens along z.
+
+    Particles that stay at one z are discs, unless three sides are given; those of a single frame without
+    velocities only if the container is less than two diameters high, or no height is stated.
+    """
+    positions, velocities = found.positions, found.velocities
+    if positions.shape[2] == 2:
+        return 2
+    if found.flat is not None:
+        return 2 if found.flat else 3
+    moving = np.any(positions != positions[0]) or bool(velocities is not None and velocities.any())
+    along = velocities is not None and velocities.shape[2] == 3 and velocities[:, :, 2].any()
+    if along or np.ptp(positions[:, :, 2]) > 0.0 or (given.lengths is not None and len(given.lengths) == 3):
+        return 3
+    sides = given.lengths if found.lengths is None else found.lengths[0]
+    low = sides is None or len(sides) < 3 or not sides[2] > 2.0 * diameter
+    return 2 if moving or low else 3
+
+
+def _container(found: Contents, given: Given, d: int, path: str) -> tuple[np.ndarray, Container]:
+    """The sides, (1, d) or (T, d) if they change, and a container of those of the first frame."""
+    stated = None if found.lengths is None else np.asarray(found.lengths, dtype=float)[:, :d]
+    if given.lengths is not None:
+        if len(given.lengths) < d:
+            rule = f"must be {d} sides: the positions have {d} dimensions"
+            raise SceneError("lengths", given.lengths, rule, path)
+        sides = np.array([given.lengths[:d]], dtype=float)
+    else:
+        assert stated is not None, "see `complete_frames`"
+        sides = _per_frame(stated, _SAME)
+    walls = np.zeros(d, dtype=bool) if stated is None else (stated == 0.0).all(axis=0)
+    if not np.isfinite(sides).all() or not (sides > 0.0).all():
+        wrong = sides[np.argmin((sides > 0.0).all(axis=1) & np.isfinite(sides).all(axis=1))]
+        rule = "must be positive: give --lengths X,Y[,Z]"
+        if walls.any():
+            rule = "is 0 along an axis with walls, whose distance is not stated: give --lengths X,Y[,Z]"
+        raise SceneError("lengths", wrong.tolist(), rule, path)
+    boundary: str | tuple[str, ...] = tuple("wall" if wall else "periodic" for wall in walls)
+    if found.boundary is not None:
+        boundary = found.boundary[:d]
+    if given.boundary is not None:
+        boundary = given.boundary
+    return sides, Container(tuple(float(x) for x in sides[0]), boundary)
+
+
+def _radii(found: Contents, given: Given, path: str) -> np.ndarray:
+    """(N,) or (T, N)."""
+    if given.radius is not None:
+        return np.full(found.positions.shape[1], given.radius)
+    if found.radii is None:
+        raise SceneError("radius", None, "is not stated: give --radius", path)
+    if not (np.asarray(found.radii) > 0.0).all() or not np.isfinite(found.radii).all():
+        least = float(np.nan_to_num(found.radii, nan=-np.inf).min())
+        raise SceneError("radius", least, "must be positive and finite: give --radius", path)
+    return np.asarray(found.radii, dtype=float)
+
+
+def _times(found: Contents, given: Given, path: str) -> np.ndarray | None:
+    """(T,) times; None if the file states none, or the same in every frame, as of a field never set.
+
+    Times that are even within their resolution are made so: numbers in single precision or with few digits
+    deviate from it by more, the later they are.
+    """
+    frames = len(found.positions)
+    time, resolution = found.time, found.time_resolution
+    if given.time_step is not None:
+        steps = np.arange(frames) if found.steps is None else found.steps
+        time, resolution = given.time_step * np.asarray(steps, dtype=float), 0.0
+    if time is None or (frames > 1 and np.ptp(time) == 0.0):
+        return None
+    later = np.diff(time) > 0.0
+    if not np.isfinite(time).all() or not later.all():
+        frame = int(np.argmin(np.isfinite(time))) if later.all() else int(np.argmin(later)) + 1
+        remedy = "" if given.time_step is not None else ": give --time-step"
+        raise SceneError("file", path, f"has a time in frame {frame} that is not later than before{remedy}")
+    even = np.linspace(time[0], time[-1], frames)
+    return even if np.abs(time - even).max() <= resolution else time
+
+
+def _per_frame(values: np.ndarray, tolerance: float = 0.0) -> np.ndarray:
+    """(1, ...) if all frames have the same values, else (T, ...). values: (T, n), or (n,) of all frames."""
+    values = np.atleast_2d(values)
+    if np.abs(values - values[:1]).max(initial=0.0) <= tolerance * np.abs(values).max(initial=0.0):
+        return values[:1]
+    return values

@@ -1,0 +1,118 @@
+"""The contents of a GSD file of the schema hoomd, https://gsd.readthedocs.io/en/stable/schema-hoomd.html."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gaspart.errors import SceneError, optional
+from gaspart.files import descriptor_path
+from gaspart.inspection.contents import Contents, Given
+
+_TOPOLOGY = ("bonds", "angles", "dihedrals", "impropers", "constraints", "pairs")
+_SPHERE_RADIUS = "state/hpmc/sphere/radius"
+"""Radii of the types, as HOOMD 2 wrote them; other shapes have other names."""
+
+
+def read_gsd(path: Path, given: Given) -> Contents:
+    """All frames. A field that no frame states is unknown, although the schema gives it a default value.
+
+    The origin is the middle of the box. Raises SceneError for contents that cannot be checked, and what the
+    library raises for a file that cannot be read.
+    """
+    hoomd = optional("gsd.hoomd", "gsd", "GSD files")
+    with path.open("rb") as opened_file, hoomd.open(descriptor_path(opened_file), "r") as file:
+        frames = list(file)
+        chunks = set(file.file.find_matching_chunk_names(""))
+        old = _old_radii(file.file, chunks, path)
+    if not frames:
+        raise SceneError("file", str(path), "has no frames")
+    _require_same_count([frame.particles.N for frame in frames], path)
+    boxes = np.array([frame.configuration.box for frame in frames], dtype=float)
+    dimensions = {int(frame.configuration.dimensions) for frame in frames}
+    if len(dimensions) > 1:
+        raise SceneError("file", str(path), "changes its number of dimensions (configuration/dimensions)")
+    tilts = boxes[:, 3:4] if dimensions == {2} else boxes[:, 3:]
+    if np.any(tilts != 0.0):
+        tilted = boxes[np.argmax(np.any(tilts != 0.0, axis=1)), 3:].tolist()
+        raise SceneError("configuration/box", tilted, "a tilted box cannot be checked", str(path))
+    _refuse_bodies(frames, path)
+    positions = np.array([frame.particles.position for frame in frames])
+    extent = max(float(np.abs(positions).max(initial=0.0)), float(boxes.max()))
+    stated = {name: f"particles/{name}" in chunks for name in ("velocity", "mass", "diameter")}
+    return Contents(
+        positions=positions,
+        velocities=np.array([frame.particles.velocity for frame in frames]) if stated["velocity"] else None,
+        steps=np.array([float(frame.configuration.step) for frame in frames]),
+        radii=_radii(frames, stated["diameter"], old, given, path),
+        masses=np.array([frame.particles.mass for frame in frames]) if stated["mass"] else None,
+        lengths=boxes[:, :3] if "configuration/box" in chunks else None,
+        centred=True,
+        flat=dimensions == {2},
+        plain=not any(frame.particles.charge.any() for frame in frames)
+        and not any(getattr(frame, name).N for frame in frames for name in _TOPOLOGY),
+        resolution=float(np.finfo(positions.dtype).eps) * extent,
+    )
+
+
+def _require_same_count(counts: list[int], path: Path) -> None:
+    """Refuse a number of particles that changes."""
+    for n, count in enumerate(counts):
+        if count != counts[0]:
+            rule = f"has {count} particles in frame {n} and {counts[0]} in frame 0"
+            raise SceneError("file", str(path), f"{rule}: a changing number cannot be checked")
+
+
+def _refuse_bodies(frames: list[Any], path: Path) -> None:
+    """Refuse rigid bodies, whose particles may overlap one another."""
+    for n, frame in enumerate(frames):
+        if np.any(frame.particles.body >= 0):
+            rule = f"has rigid bodies in frame {n} (particles/body), which cannot be checked"
+            raise SceneError("file", str(path), rule)
+
+
+def _old_radii(file: Any, chunks: set[str], path: Path) -> np.ndarray | None:
+    """(types,) radii of the first frame's state of HOOMD 2, if there is one."""
+    shapes = {name.split("/")[2] for name in chunks if name.startswith("state/hpmc/")}
+    if shapes := shapes - {"integrate", "sphere"}:
+        raise SceneError("file", str(path), f"has particles that are no spheres: {', '.join(sorted(shapes))}")
+    return file.read_chunk(frame=0, name=_SPHERE_RADIUS) if _SPHERE_RADIUS in chunks else None
+
+
+def _radii(
+    frames: list[Any], diameters: bool, old: np.ndarray | None, given: Given, path: Path
+) -> np.ndarray | None:
+    """(T, N) radii by the diameters or by the shapes of the types. Refused: both, if they differ."""
+    by_diameter = 0.5 * np.array([frame.particles.diameter for frame in frames], dtype=float)
+    shapes = []
+    for frame in frames:
+        by_type = _of_shapes(frame.particles.type_shapes, path) if old is None else [float(x) for x in old]
+        known = np.array([by_type[n] if n < len(by_type) else np.nan for n in frame.particles.typeid])
+        shapes.append(known)
+    by_shape = np.array(shapes)
+    if not np.isfinite(by_shape).all():
+        return by_diameter if diameters else None
+    if given.radius is None and diameters and not np.allclose(by_shape, by_diameter, rtol=1e-6, atol=0.0):
+        rule = "states other sizes in particles/diameter than in particles/type_shapes: give --radius"
+        raise SceneError("file", str(path), rule)
+    return by_shape
+
+
+def _of_shapes(shapes: list[dict], path: Path) -> list[float]:
+    """Radii of the types, NaN where none is stated. Refused: shapes that are no spheres."""
+    radii = []
+    for shape in shapes:
+        kind = shape.get("type")
+        axes = {shape.get(axis) for axis in ("a", "b", "c")}
+        if kind is None:
+            radii.append(np.nan)
+        elif kind in ("Sphere", "Disk"):
+            radii.append(0.5 * float(shape["diameter"]))
+        elif kind == "Ellipsoid" and len(axes) == 1 and None not in axes:
+            radii.append(float(shape["a"]))
+        else:
+            rule = "has particles that are no spheres (particles/type_shapes): they cannot be checked"
+            raise SceneError("type", kind, rule, str(path))
+    return radii

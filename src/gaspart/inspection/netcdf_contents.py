@@ -1,0 +1,228 @@
+"""The contents of a netCDF file of AMBER's convention, https://ambermd.org/netcdf/nctraj.xhtml, version 1.0,
+with the variables that LAMMPS (`dump netcdf`) adds to it, or those of gaspart."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gaspart.errors import SceneError
+from gaspart.inspection.contents import Contents, Given
+from gaspart.state.insertion import per_body
+from gaspart.trajectory.amber import BOOKKEEPING
+from gaspart.trajectory.recipe import check_frames, open_descriptor, opened, read_recipe
+
+_RIGHT_ANGLE = 2e-5
+"""Degrees from 90 that are attributed to single precision."""
+_POSITIONS = ("coordinates", "unwrapped_coordinates", "scaled_coordinates")
+_LABELS = {"spatial": "xyz", "cell_spatial": "abc"}
+_REPLICAS = ("remd_indices", "remd_repidx", "remd_crdidx", "remd_values")
+_INTERACTIONS = ("forces", "q", "charge")
+_SECONDS = ("second", "microsecond", "nanosecond", "picosecond", "femtosecond", "atomic time unit")
+
+
+def read_netcdf(path: Path, given: Given) -> Contents:
+    """All frames. Raises SceneError for contents that cannot be checked, and what the library raises for a
+    file that cannot be read."""
+    own = _is_own(path)
+    if own:
+        check_frames(path)
+    with opened(path) if own else _foreign(path) as file:
+        _check_convention(file, path)
+        found = _contents(file, given, path)
+    if own:
+        _add_scene(found, path)
+    return found
+
+
+def _is_own(path: Path) -> bool:
+    """Whether gaspart wrote a file. Several attributes are tried, so that damage to one does not hide it."""
+    with path.open("rb") as file:
+        head = file.read(4096)
+    return any(name.encode() in head for name in BOOKKEEPING)
+
+
+@contextmanager
+def _foreign(path: Path) -> Iterator[Any]:
+    """A netCDF file of another program."""
+    with path.open("rb") as file, open_descriptor(file) as dataset:
+        yield dataset
+
+
+def _check_convention(file: Any, path: Path) -> None:
+    """Refuse another convention or version of it, and frames that are not of one system."""
+    conventions = re.split(r"[,\s]+", str(getattr(file, "Conventions", "")))
+    if not {"AMBER", "AMBERRESTART"} & set(conventions):
+        raise SceneError("Conventions", " ".join(conventions), "must be AMBER or AMBERRESTART", str(path))
+    version = str(getattr(file, "ConventionVersion", "1.0"))
+    if version != "1.0":
+        raise SceneError("ConventionVersion", version, "must be 1.0", str(path))
+    for name, label in _LABELS.items():
+        stated = _read(file, name)
+        if stated is not None and stated.dtype.kind == "S":
+            text = b"".join(stated.ravel().tolist()).decode("ascii", "replace").strip("\0 ")
+            if text not in ("", label):
+                raise SceneError(name, text, f"must be {label}", str(path))
+    temperatures = _read(file, "temp0")
+    exchanged = [name for name in _REPLICAS if name in file.variables]
+    if temperatures is not None and np.ptp(temperatures) != 0.0:
+        exchanged = ["temp0", *exchanged]
+    if exchanged:
+        raise SceneError("file", str(path), f"is of replica exchange ({exchanged[0]}), not of one system")
+
+
+def _read(file: Any, name: str) -> np.ndarray | None:
+    """The values of a variable, NaN where it was never filled; None if it does not exist, or is empty."""
+    if name not in file.variables:
+        return None
+    values = file[name][...]
+    absent = np.ma.getmaskarray(values)
+    if not absent.any():
+        return np.asarray(np.ma.getdata(values))
+    if absent.all():
+        return None
+    return np.ma.filled(values.astype(float) if values.dtype.kind in "iu" else values, np.nan)
+
+
+def _read_frames(file: Any, name: str, path: Path, width: int | None = None) -> np.ndarray | None:
+    """The same of a variable of every frame, or of the single one of a restart file."""
+    values = _read(file, name)
+    if values is None:
+        return None
+    values = values if file[name].dimensions[:1] == ("frame",) else values[None]
+    if width is not None and values.shape[1:] != (width,):
+        raise SceneError("file", str(path), f"has {name} of the shape {values.shape}, not (frame, {width})")
+    return values
+
+
+def _contents(file: Any, given: Given, path: Path) -> Contents:
+    """The fields of a file in which every frame has a complete set of particles."""
+    lengths = _read_frames(file, "cell_lengths", path, 3)
+    origin = _read_frames(file, "cell_origin", path, 3)
+    angles = _read_frames(file, "cell_angles", path, 3)
+    if angles is not None and lengths is not None and lengths.any():
+        tilted = np.any(np.abs(angles - 90.0) > _RIGHT_ANGLE, axis=1)
+        if tilted.any():
+            rule = "a tilted cell cannot be checked"
+            raise SceneError("cell_angles", angles[tilted.argmax()].tolist(), rule, str(path))
+    positions, resolution = _positions(file, given, lengths, origin, path)
+    time, time_resolution = _times(file)
+    if given.time_step is None:
+        _check_units(file, path)
+    radii = _read(file, "radius")
+    diameters = _read(file, "diameter") if radii is None else None
+    found = Contents(
+        positions=positions,
+        velocities=_read_frames(file, "velocities", path),
+        time=time,
+        radii=radii if diameters is None else 0.5 * diameters,
+        masses=_read(file, "mass"),
+        ids=_read_frames(file, "id", path),
+        lengths=lengths,
+        origin=origin,
+        plain=not any(np.any(values) for name in _INTERACTIONS if (values := _read(file, name)) is not None),
+        resolution=resolution,
+        time_resolution=time_resolution,
+    )
+    if "type" in file.variables and file["type"].ndim == 2:
+        found.species = _read_frames(file, "type", path)
+    _check_shapes(found, path)
+    return found
+
+
+def _positions(
+    file: Any, given: Given, lengths: np.ndarray | None, origin: np.ndarray | None, path: Path
+) -> tuple[np.ndarray, float]:
+    """(T, N, 3) positions, (T, N, 2) if z was never filled, and their resolution."""
+    name = next((name for name in _POSITIONS if name in file.variables), None)
+    if name is None or "atom" not in file.dimensions:
+        raise SceneError("file", str(path), "has no coordinates in frames: not AMBER's convention")
+    positions = _read_frames(file, name, path)
+    if positions is None or positions.ndim != 3:
+        raise SceneError("file", str(path), f"has no frame of {name}")
+    if positions.shape[2] == 3 and np.isnan(positions[:, :, 2]).all():
+        positions = positions[:, :, :2]
+    present = np.isfinite(positions).all(axis=2)
+    for n, count in enumerate(present.sum(axis=1)):
+        if count != positions.shape[1]:
+            rule = f"has {count} particles in frame {n}, of {positions.shape[1]}"
+            raise SceneError("file", str(path), f"{rule}: a changing number cannot be checked")
+    scale = 1.0
+    if name == "scaled_coordinates":
+        sides = lengths if given.lengths is None else np.array([given.lengths])
+        d = positions.shape[2]
+        if sides is None or sides.shape[1] < d or not (sides[:, :d] > 0.0).all():
+            rule = f"does not state them, and {name} are multiples of them: give --lengths X,Y[,Z]"
+            raise SceneError("lengths", None, f"{path} {rule}")
+        positions = positions * sides[:, None, :d]
+        positions += 0.0 if origin is None else origin[:, None, :d]
+        scale = float(sides.max())
+    kind, factor = file[name].dtype, abs(float(getattr(file[name], "scale_factor", 1.0)))
+    if kind.kind in "iu":
+        return positions, factor * scale
+    extent = np.abs(positions).max(initial=0.0 if lengths is None else float(np.nanmax(lengths)))
+    return positions, float(np.finfo(kind).eps * extent)
+
+
+def _times(file: Any) -> tuple[np.ndarray | None, float]:
+    """Times in double precision, also where LAMMPS has steps and a scale factor; their resolution."""
+    if "time" not in file.variables:
+        return None, 0.0
+    variable = file["time"]
+    variable.set_auto_scale(False)
+    time = _read_frames(file, "time", Path())
+    if time is None:
+        return None, 0.0
+    factor = float(getattr(variable, "scale_factor", 1.0))
+    eps = float(np.finfo(variable.dtype).eps) if variable.dtype.kind == "f" else 0.0
+    steps = eps > 0.0 and factor != 1.0 and bool(np.all(time == np.round(time)))
+    resolution = 0.0 if steps else eps * abs(factor) * float(np.nanmax(np.abs(time), initial=0.0))
+    return time.astype(float) * factor + float(getattr(variable, "add_offset", 0.0)), resolution
+
+
+def _check_units(file: Any, path: Path) -> None:
+    """Refuse velocities and times in different units of time, as of LAMMPS's `units electron`."""
+    units = [str(getattr(file.variables.get(name), "units", "")).lower() for name in ("velocities", "time")]
+    of_velocity, of_time = (unit.rpartition("/")[2].removesuffix("s") for unit in units)
+    if of_velocity in _SECONDS and of_time in _SECONDS and of_velocity != of_time:
+        rule = f"of time differ, {units[0]} and {units[1]}: give --time-step in the unit of the velocities"
+        raise SceneError("units", units, rule, str(path))
+
+
+def _check_shapes(found: Contents, path: Path) -> None:
+    """Refuse fields of another number of frames or particles than the positions."""
+    frames, count, _ = found.positions.shape
+    expected: dict[str, list[tuple[int, ...]]] = {
+        "velocities": [(frames, count, 3), (frames, count, 2)],
+        "time": [(frames,)],
+        "radii": [(count,), (frames, count)],
+        "masses": [(count,), (frames, count)],
+        "ids": [(frames, count)],
+        "species": [(frames, count)],
+        "lengths": [(frames, 3)],
+        "origin": [(frames, 3)],
+    }
+    for name, shapes in expected.items():
+        values = getattr(found, name)
+        if values is not None and values.shape not in shapes:
+            raise SceneError("file", str(path), f"has {name} of the shape {values.shape}, not {shapes[0]}")
+
+
+def _add_scene(found: Contents, path: Path) -> None:
+    """Add what the scene of a trajectory of gaspart states."""
+    scene = read_recipe(path).scene
+    elastic = scene.restitution is None or scene.restitution.smooth_and_elastic
+    quiet = scene.gravity is None and not scene.faces and not scene.walls and not scene.vibrates
+    free = not any(kind.fixed for kind in scene.kinds)
+    alike = len({kind.mass for kind in scene.kinds}) == 1  # of all, also where the file has only a part
+    d, frames, count = scene.dimension, len(found.positions), found.positions.shape[1]
+    found.boundary = tuple("periodic" if periodic else "wall" for periodic in scene.container.periodic)
+    found.flat = d == 2
+    found.lengths = np.broadcast_to(scene.container.lengths, (frames, d))
+    found.masses = per_body(scene, "mass")[:count].astype(float)
+    found.plain = bool(elastic and quiet and free and alike)
