@@ -244,7 +244,7 @@ def gas_of(frames=2, count=4, **changes):
         "positions": places,
         "velocities": rng.standard_normal((frames, count, 3)),
         "time": np.arange(1.0, frames + 1.0),
-        "radii": np.full((1, count), 0.5),
+        "radii": np.full((1, count), 0.45),
         "masses": None,
         "lengths": np.full((frames, 3), 8.0),
         "origin": np.zeros((frames, 3)),

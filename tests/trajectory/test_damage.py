@@ -95,11 +95,9 @@ def test_damage_to_a_trajectory_is_detected(tmp_path, capsys, complete, numbers)
         assert complains(capsys, "info", path), number
         assert complains(capsys, "check", path), number
         assert complains(capsys, "run", *scene_and_options(tmp_path)), number
-        try:
-            with gp.open_trajectory(path) as data:
-                data.load()
-        except gp.SceneError as error:
-            assert "\n" not in str(error)
+        with pytest.raises(gp.SceneError) as error, gp.open_trajectory(path) as data:
+            data.load()
+        assert "\n" not in str(error.value)
 
 
 def scene_and_options(folder):
@@ -166,6 +164,60 @@ def test_exchanged_frames_and_frames_of_another_run_are_detected(tmp_path, capsy
         path.write_bytes(header + b"".join(changed))
         assert main(["info", str(path)]) == 2
         assert f"frame {place} is damaged: its checksum does not match" in capsys.readouterr().err
+
+
+def test_only_frames_that_are_read_are_checked_and_each_once(tmp_path, complete, monkeypatch):
+    from gaspart.trajectory import frames as module
+
+    size = next(size for size in range(len(complete) // 17, 0, -1) if header_ends(complete, size))
+    spoilt = bytearray(complete)
+    spoilt[len(complete) - 7 * size + size // 2] ^= 1  # of frame 10
+    path, read = tmp_path / "run.nc", []
+    path.write_bytes(spoilt)
+    checked = module.damaged_frame
+    monkeypatch.setattr(module, "damaged_frame", lambda *given: read.extend(given[2]) or checked(*given))
+    with gp.open_trajectory(path) as data:
+        assert len(data.time.values) == 17 and read == []
+        assert data["coordinates"].isel(frame=[2, 3, 11]).values.shape == (3, 10, 2)
+        assert data["collisions"].isel(frame=slice(2, 5)).values.shape == (3,)
+        assert data["velocities"].isel(frame=-1, atom=4).values.shape == (2,)
+        assert data["radius"].values.shape == (10,)
+        assert read == [2, 3, 11, 4, 16]
+        for name in ("coordinates", "collisions", "wall_impulse"):
+            with pytest.raises(gp.SceneError, match="frame 10 is damaged: its checksum does not match"):
+                _ = data[name].values
+
+
+def test_a_damaged_frame_is_not_measured_nor_shown(tmp_path, capsys, complete):
+    size = next(size for size in range(len(complete) // 17, 0, -1) if header_ends(complete, size))
+    spoilt = bytearray(complete)
+    spoilt[len(complete) - size + size // 2] ^= 1  # of the last frame
+    path = tmp_path / "run.nc"
+    path.write_bytes(spoilt)
+    for command in (
+        ["measure", path, "Z"],
+        ["measure", path, "collision_rate"],
+        ["export", path, "-o", tmp_path / "a.data"],
+        ["render", path, "-o", tmp_path / "a.png"],
+        ["view", path, "-o", tmp_path / "a.html"],
+        ["info", path],
+        ["check", path],
+    ):
+        assert main([*map(str, command)]) == 2, command
+        assert "frame 16 is damaged: its checksum does not match" in capsys.readouterr().err
+    assert [*tmp_path.iterdir()] == [path]
+    assert main(["export", str(path), "-o", str(tmp_path / "a.data"), "--frame", "15"]) == 0
+
+
+def test_a_damaged_time_is_found_when_the_file_is_opened(tmp_path, complete):
+    size = next(size for size in range(len(complete) // 17, 0, -1) if header_ends(complete, size))
+    for time in (2.0, np.nan, 1e300):
+        spoilt = bytearray(complete)
+        at = len(complete) - 12 * size
+        spoilt[at : at + 8] = np.array(time, ">f8").tobytes()
+        (tmp_path / "run.nc").write_bytes(spoilt)
+        with pytest.raises(gp.SceneError, match="frame 5 is damaged"):
+            gp.open_trajectory(tmp_path / "run.nc")
 
 
 def header_ends(content, size):

@@ -15,7 +15,7 @@ import numpy as np
 from gaspart.errors import SceneError, optional
 from gaspart.files import Kind, begins_with, descriptor_path, output_path, writing
 from gaspart.state.insertion import per_body
-from gaspart.trajectory.recipe import opened, read_recipe
+from gaspart.trajectory.recipe import check_frames, opened, read_recipe
 
 KINDS = {
     ".gsd": Kind("a GSD file", begins_with(b"\xdf\x65" * 4)),
@@ -60,6 +60,7 @@ def _snapshot(path: Path, frame: int) -> Snapshot:
         if not -there <= frame < there:
             raise SceneError("frame", frame, f"the trajectory has {there}")
         frame %= there  # netCDF counts -1 from the allocated frames of an unfinished file
+        check_frames(path, range(frame, frame + 1))
         radii = np.asarray(file["radius"][:])
         return Snapshot(
             positions=np.asarray(file["coordinates"][frame], dtype=float),
@@ -84,12 +85,22 @@ def _write_gsd(path: Path, snapshot: Snapshot) -> None:
     frame.particles.N = len(snapshot.positions)
     frame.particles.types = [f"species_{n}" for n in range(int(snapshot.types.max()) + 1)]
     frame.particles.typeid = snapshot.types
+    frame.particles.type_shapes = _shapes(snapshot)
     frame.particles.position = snapshot.positions - 0.5 * sides
     frame.particles.velocity = snapshot.velocities
     frame.particles.diameter = snapshot.diameters
     frame.particles.mass = snapshot.masses
     with path.open("rb") as scratch, hoomd.open(descriptor_path(scratch), "w") as file:
         file.append(frame)
+
+
+def _shapes(snapshot: Snapshot) -> list[dict]:
+    """The sphere of each type, {} if its particles differ: a file without any size means a diameter of 1."""
+    shapes: list[dict] = []
+    for n in range(int(snapshot.types.max()) + 1):
+        sizes = np.unique(snapshot.diameters[snapshot.types == n]).tolist()
+        shapes.append({"type": "Sphere", "diameter": sizes[0]} if len(sizes) == 1 else {})
+    return shapes
 
 
 def _write_data(path: Path, snapshot: Snapshot) -> None:

@@ -22,7 +22,7 @@ from gaspart.scene.validation import count_of, number
 from gaspart.state.random import stream
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.correlator import Correlations, sums_of
-from gaspart.trajectory.frames import damaged_frame, frame_count
+from gaspart.trajectory.frames import CheckedFrames, damaged_frame, frame_count
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 if TYPE_CHECKING:
@@ -203,8 +203,13 @@ def open_netcdf(path: Path) -> netCDF4.Dataset:
 
     Raises SceneError for a file of another kind, truncated, or damaged in its header.
     """
-    with _checked(path) as (file, _, _):
-        return open_descriptor(file)
+    return open_checked(path)[0]
+
+
+def open_checked(path: Path) -> tuple[netCDF4.Dataset, CheckedFrames]:
+    """The same, and the record of which of its frames were checked; both are to be closed by the caller."""
+    with _checked(path) as (file, header, frames):
+        return open_descriptor(file), CheckedFrames(file, header, frames)
 
 
 def open_descriptor(file: BinaryIO) -> netCDF4.Dataset:
@@ -221,12 +226,18 @@ def opened(path: Path) -> Iterator[netCDF4.Dataset]:
         yield file
 
 
-def check_frames(path: Path, first: int | None = None) -> None:
-    """Read the frames of a trajectory, or so many of the first. SceneError if one is damaged."""
+def check_frames(path: Path, numbers: range | None = None) -> None:
+    """Read some frames of a trajectory, or all. SceneError if one is damaged."""
     with _checked(path) as (file, header, frames):
-        damaged = damaged_frame(file, header, frames if first is None else min(first, frames))
+        wanted = range(frames) if numbers is None else range(numbers.start, min(numbers.stop, frames))
+        damaged = damaged_frame(file.fileno(), header, wanted)
         if damaged is not None:
-            raise ValueError(f"frame {damaged} is damaged: its checksum does not match")
+            raise ValueError(damage(damaged))
+
+
+def damage(frame: int) -> str:
+    """The message about a frame whose checksum is wrong."""
+    return f"frame {frame} is damaged: its checksum does not match"
 
 
 def read_recipe(path: str | Path) -> Recipe:

@@ -32,7 +32,7 @@ from gaspart.trajectory.recipe import (
     Recipe,
     begun_as,
     check_frames,
-    open_netcdf,
+    open_checked,
     read_recipe,
     stored_recipe,
     stored_revision,
@@ -77,19 +77,24 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     number_density. Close it, or use it in a `with` statement.
 
     Raises SceneError for a file that is unreadable, truncated, damaged in its header, or not written by
-    gaspart. Frames are not checked: `gaspart info` does that.
+    gaspart; and, when values of a frame are read for the first time, if that frame is damaged: its checksum
+    covers all of its variables, so that the frame is read as a whole. Opening a file reads no frames but
+    their times.
     """
     import xarray as xr
 
+    from gaspart.trajectory.checked_store import CheckedStore
+
     path = Path(path)
-    file = open_netcdf(path)
+    file, checked = open_checked(path)
     try:
         recipe = stored_recipe(file, path)
+        store = CheckedStore(file, path, checked, recipe.sample_interval)
     except SceneError:
         file.close()
+        checked.close()
         raise
     scene = recipe.scene
-    store = xr.backends.NetCDF4DataStore(file)
     data = opened = xr.open_dataset(store, decode_times=False, drop_variables=_UNUSED)
     attributes = {**data.attrs, "count": scene.count, "dimension": scene.dimension}
     attributes |= {"packing_fraction": scene.packing_fraction, "number_density": scene.number_density}
@@ -116,7 +121,12 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
         if variable.dtype.kind in "fi":  # what is no length, time or energy is a number of things, or a ratio
             variable.attrs["units"] = _UNITS.get(name, _REDUCED.get(unit, unit))
     data.attrs = {key: value for key, value in attributes.items() if key not in amber.BOOKKEEPING}
-    data.set_close(opened.close)
+
+    def close() -> None:
+        opened.close()
+        checked.close()
+
+    data.set_close(close)
     return data
 
 
@@ -234,7 +244,7 @@ def _holds(path: Path, wanted: Recipe, frames: int) -> bool:
 def _can_keep(partial: Path, frames: int, overwrite: bool) -> bool:
     """Whether the first frames are undamaged. Raises SceneError if not, unless they may be replaced."""
     try:
-        check_frames(partial, frames)
+        check_frames(partial, range(frames))
     except SceneError as error:
         if overwrite:
             return False
