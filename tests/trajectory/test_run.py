@@ -12,6 +12,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart.trajectory import recording, run
+from gaspart.trajectory.amber import stored_header
 from gaspart.trajectory.recipe import multiple, read_recipe
 from gaspart.trajectory.run import checkpoint_path, partial_path
 
@@ -92,6 +93,37 @@ def test_a_run_under_way_belongs_to_one_process_and_is_not_replaced_by_another_r
         gp.resume(path)
     with pytest.raises(gp.SceneError, match=r"there is no other\.nc\.partial"):
         gp.resume(tmp_path / "other.nc")
+
+
+def test_what_is_no_complete_trajectory_is_not_called_complete(tmp_path):
+    path = tmp_path / "run.nc"
+    content = gp.run(gas(2, 10, 0.1), gp.EventDriven(), 1, 1.0, 0.5, path).read_bytes()
+    size = (len(content) - len(stored_header_of(path))) // 3
+    shorter = bytearray(content[:-size])
+    shorter[7] -= 1
+    for changed, rule in (
+        (b"CDF\x01" + bytes(100), "is not a trajectory written by gaspart"),
+        (b"my notes", "is not a readable NetCDF file"),
+        (content[:-1], "is truncated"),
+        (content[:-9] + b"9" + content[-8:], "frame 2 is damaged"),
+        (shorter, r"has 2 of 3 frames, and there is no run\.nc\.partial"),
+        (content, "is already complete"),
+    ):
+        path.write_bytes(changed)
+        with pytest.raises(gp.SceneError, match=rule):
+            gp.resume(path)
+
+
+def stored_header_of(path):
+    with path.open("rb") as file:
+        return stored_header(file)
+
+
+def test_a_trajectory_ends_in_nc(tmp_path):
+    for name in ("gas.txt", "gas", "gas.nc.partial", "gas.gsd"):
+        with pytest.raises(gp.SceneError, match="must end in .nc"):
+            gp.run(gas(2, 10, 0.1), gp.EventDriven(), 1, 1.0, 0.5, tmp_path / name)
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("moment", ["read_recipe", "begun_as", "may_replace", "_is_blank", "_locked"])

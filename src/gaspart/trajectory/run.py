@@ -165,13 +165,19 @@ def run(
     if the run breaks an invariant, with its state kept in `path.failed.npz`.
     """
     wanted = Recipe(scene, engine, seed, duration, sample_interval, displacements, follow, correlations)
-    return _carry_out(wanted, output_path(path), checkpoint_seconds, progress, overwrite)
+    path = output_path(path)
+    if (
+        path.suffix != ".nc" and not path.is_dir()
+    ):  # by which other programs, and `gaspart check`, recognise the format
+        raise SceneError("path", str(path), "must end in .nc: a trajectory is a netCDF file")
+    return _carry_out(wanted, path, checkpoint_seconds, progress, overwrite)
 
 
 def resume(path: str | Path, checkpoint_seconds: float = 30.0, progress: Progress | None = None) -> Path:
     """Finish the run that left `path.partial`, from its files only; returns `path`.
 
-    Raises SceneError if there is nothing to resume, or if another version of the program began it.
+    Raises SceneError if there is nothing to resume, if another version of the program began it, and for a
+    file at `path` that is no complete trajectory of gaspart.
     """
     path = Path(path)
     partial = partial_path(path)
@@ -185,7 +191,14 @@ def resume(path: str | Path, checkpoint_seconds: float = 30.0, progress: Progres
         if partial.exists():
             raise
         # not before: another process may finish the run at any moment
-        rule = "is already complete" if path.exists() else f"there is no {partial.name} to continue"
+        rule = f"there is no {partial.name} to continue"
+        if path.exists():
+            check_frames(path)  # raises SceneError for a damaged file, and one of another program
+            wanted = read_recipe(path)
+            with path.open("rb") as file:
+                found = frame_count(file)
+            missing = f"has {found} of {wanted.frames} frames, and {rule}"
+            rule = "is already complete" if found == wanted.frames else missing
         raise SceneError("path", str(path), rule) from None
     return _carry_out(wanted, path, checkpoint_seconds, progress, overwrite=False)
 
