@@ -567,9 +567,10 @@ def test_a_restart_file_is_a_frame(tmp_path):
 
 
 AMBER = """
-    Conventions ConventionVersion title application program programVersion spatial cell_spatial cell_angular time
-    coordinates velocities forces cell_lengths cell_angles scale_factor units temp0 remd_indices remd_repidx
-    remd_crdidx remd_values unwrapped_coordinates scaled_coordinates cell_origin radius diameter mass id type q
+    Conventions ConventionVersion title application program programVersion spatial cell_spatial cell_angular
+    time coordinates velocities forces cell_lengths cell_angles scale_factor units temp0 remd_indices
+    remd_repidx remd_crdidx remd_values unwrapped_coordinates scaled_coordinates cell_origin radius diameter
+    mass id type q
 """
 """Of AMBER's convention, and of LAMMPS in addition."""
 

@@ -166,9 +166,7 @@ def run(
     """
     wanted = Recipe(scene, engine, seed, duration, sample_interval, displacements, follow, correlations)
     path = output_path(path)
-    if (
-        path.suffix != ".nc" and not path.is_dir()
-    ):  # by which other programs, and `gaspart check`, recognise the format
+    if path.suffix != ".nc" and not path.is_dir():  # `gaspart check` knows the format by it
         raise SceneError("path", str(path), "must end in .nc: a trajectory is a netCDF file")
     return _carry_out(wanted, path, checkpoint_seconds, progress, overwrite)
 
