@@ -17,7 +17,10 @@ from hypothesis import strategies as st
 import gaspart as gp
 from gaspart.inspection import xyz_contents
 from gaspart.inspection.checks import judge_places
+from gaspart.inspection.netcdf_size import needed_bytes
 from gaspart.inspection.readers import read_frames
+
+RNG = np.random.default_rng(7)
 
 
 @dataclass
@@ -552,6 +555,32 @@ def test_coplanar_particles_are_discs_only_if_they_move_in_a_plane(tmp_path):
     assert read_frames(xyz(path, flat, ["1 2 4", "5 6 4"]), 0.5).dimension == 2
     assert read_frames(path, 0.5, (8.0, 8.0, 8.0)).dimension == 3
     refused(xyz(path, ROWS), "must be 3 sides", radius=0.5, lengths=(8.0, 8.0))
+
+
+@pytest.mark.parametrize("form", ["NETCDF3_CLASSIC", "NETCDF3_64BIT_OFFSET", "NETCDF3_64BIT_DATA", "NETCDF4"])
+@pytest.mark.parametrize("alone", [True, False])
+def test_a_truncated_netcdf_file_is_refused(tmp_path, form, alone):
+    """The library reads zeros where a file of the version 3 ends too early."""
+    path = tmp_path / "a.nc"
+    with netCDF4.Dataset(path, "w", format=form) as file:
+        file.setncatts({"Conventions": "AMBER", "ConventionVersion": "1.0", "note": "odd"})
+        for name, size in (("frame", None), ("atom", 3), ("spatial", 3)):
+            file.createDimension(name, size)
+        file.createVariable("spatial", "S1", ("spatial",))[:] = list("xyz")
+        file.createVariable("coordinates", "f4", ("frame", "atom", "spatial"))[:] = 1.0 + RNG.random(
+            (5, 3, 3)
+        )
+        if not alone:
+            file.createVariable("flag", "i1", ("frame", "atom"))[:] = np.ones((5, 3))
+    size = path.stat().st_size
+    needed = {True: size, False: size - 1}[alone]  # the last padding may be absent
+    if form != "NETCDF4":
+        with path.open("rb") as file:
+            assert needed_bytes(file) == needed
+    assert read_frames(path, 0.1, (8.0, 8.0, 8.0)).positions.shape == (5, 3, 3)
+    for kept in (needed - 1, needed - 50, 40):
+        path.write_bytes(path.read_bytes()[:kept])
+        refused(path, "cannot be read" if form == "NETCDF4" or kept == 40 else "is truncated", radius=0.1)
 
 
 def test_a_restart_file_is_a_frame(tmp_path):

@@ -3,6 +3,7 @@ with the variables that LAMMPS (`dump netcdf`) adds to it, or those of gaspart."
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,6 +14,7 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.inspection.contents import Contents, Given
+from gaspart.inspection.netcdf_size import needed_bytes
 from gaspart.state.insertion import per_body
 from gaspart.trajectory.amber import BOOKKEEPING
 from gaspart.trajectory.recipe import check_frames, open_descriptor, opened, read_recipe
@@ -49,9 +51,14 @@ def _is_own(path: Path) -> bool:
 
 @contextmanager
 def _foreign(path: Path) -> Iterator[Any]:
-    """A netCDF file of another program."""
-    with path.open("rb") as file, open_descriptor(file) as dataset:
-        yield dataset
+    """A netCDF file of another program. Refused: one that ends before its last value."""
+    with path.open("rb") as file:
+        needed, size = needed_bytes(file), os.fstat(file.fileno()).st_size
+        if needed is not None and size < needed:
+            rule = f"is truncated: {size} bytes, where its header states {needed}"
+            raise SceneError("file", str(path), rule)
+        with open_descriptor(file) as dataset:
+            yield dataset
 
 
 def _check_convention(file: Any, path: Path) -> None:
@@ -165,7 +172,8 @@ def _positions(
     kind, factor = file[name].dtype, abs(float(getattr(file[name], "scale_factor", 1.0)))
     if kind.kind in "iu":
         return positions, factor * scale
-    extent = np.abs(positions).max(initial=0.0 if lengths is None else float(np.nanmax(lengths)))
+    sides = np.zeros(1) if lengths is None else lengths[np.isfinite(lengths)]
+    extent = np.abs(positions).max(initial=float(sides.max(initial=0.0)))
     return positions, float(np.finfo(kind).eps * extent)
 
 
@@ -181,7 +189,7 @@ def _times(file: Any) -> tuple[np.ndarray | None, float]:
     factor = float(getattr(variable, "scale_factor", 1.0))
     eps = float(np.finfo(variable.dtype).eps) if variable.dtype.kind == "f" else 0.0
     steps = eps > 0.0 and factor != 1.0 and bool(np.all(time == np.round(time)))
-    resolution = 0.0 if steps else eps * abs(factor) * float(np.nanmax(np.abs(time), initial=0.0))
+    resolution = 0.0 if steps else eps * abs(factor) * float(np.abs(time[np.isfinite(time)]).max(initial=0.0))
     return time.astype(float) * factor + float(getattr(variable, "add_offset", 0.0)), resolution
 
 

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+
 from gaspart.errors import SceneError
 from gaspart.inspection.contents import Given, complete_frames
 from gaspart.inspection.frames import Frames
@@ -44,10 +46,10 @@ def read_frames(
     try:
         with path.open("rb"):
             pass
-        found = reader(path, given)
+        with np.errstate(all="ignore"):  # values that are not finite are refused
+            return complete_frames(reader(path, given), given, str(path))
     except SceneError:
         raise
-    except (OSError, RuntimeError, ValueError, KeyError, IndexError, TypeError) as error:
+    except (OSError, RuntimeError, ValueError, LookupError, TypeError, MemoryError) as error:
         reason = getattr(error, "strerror", None) or error
         raise SceneError("file", str(path), f"cannot be read: {reason}") from None
-    return complete_frames(found, given, str(path))
