@@ -103,12 +103,7 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     data = data.isel(spatial=slice(scene.dimension)).set_coords(["time", "radius", "type"])
     faces = amber.face_names(scene.dimension, len(scene.walls))
     if "piston" in data:
-        place, velocity = (data["piston"].isel(motion=n, drop=True) for n in (0, 1))
-        place.attrs, velocity.attrs = (
-            {"units": unit, "long_name": f"{name} of the piston along its axis"}
-            for unit, name in (("length", "place"), ("length/time", "velocity"))
-        )
-        data = data.drop_vars("piston").assign(piston_position=place, piston_velocity=velocity)
+        data = _with_piston(data)
     coordinates: dict = {"spatial": list("xyz"[: scene.dimension]), "face": faces}
     if recipe.correlations:
         lags = recipe.correlations.interval * np.arange(data.sizes["lag"])
@@ -128,6 +123,16 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
 
     data.set_close(close)
     return data
+
+
+def _with_piston(data: xr.Dataset) -> xr.Dataset:
+    """The motion of a piston as two variables with units."""
+    place, velocity = (data["piston"].isel(motion=n, drop=True) for n in (0, 1))
+    place.attrs, velocity.attrs = (
+        {"units": unit, "long_name": f"{name} of the piston along its axis"}
+        for unit, name in (("length", "place"), ("length/time", "velocity"))
+    )
+    return data.drop_vars("piston").assign(piston_position=place, piston_velocity=velocity)
 
 
 def run(
