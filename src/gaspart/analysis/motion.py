@@ -24,8 +24,10 @@ GROUPS = 16
 MOST_FRAMES = 1000
 """That are correlated; of a longer run, every second or third ..."""
 LINEAR_FROM = 12.0
-"""Collisions per particle, from which on the mean-squared displacement grows evenly."""
+"""Collisions per particle, from which on the mean-squared displacement grows evenly, if there is a D."""
 _DENSEST = 0.4915  # where spheres freeze, and the range of Erpenbeck and Wood ends
+_CONSTANT = 0.06  # of a slope: what it may change, as by the slow decay of correlations in a fluid
+_SIGNIFICANT = 4.0  # standard errors of 15 degrees of freedom: exceeded by chance once in a thousand
 _FARTHEST = 0.45  # of a side: the longest way between frames by which a particle is followed
 
 
@@ -45,9 +47,9 @@ def mean_squared_displacement(
 
     source: a trajectory, by its path or open, or a simulation; lags: their number (by default half of the
     frames); start: the time from which frames count (by default a quarter of the run). Of N particles whose
-    total momentum is zero it is multiplied by N / (N - 1). Theory: that of Enskog's diffusion coefficient
-    and an exponential velocity correlation. Raises SceneError for fewer than 16 moving particles, frames at
-    uneven times, and frames too far apart to follow particles across periodic faces.
+    total momentum is zero along an axis it is multiplied there by N / (N - 1). Theory: that of Enskog's
+    diffusion coefficient and an exponential velocity correlation. Raises SceneError for fewer than 16 moving
+    particles, frames at uneven times, and frames too far apart to follow particles across periodic faces.
     """
     with measured(source, start) as run:
         groups = _groups(run)
@@ -59,7 +61,7 @@ def mean_squared_displacement(
             ]
         )
         time = groups.interval * np.arange(number)
-        values, errors = means_of(found * _free(run))
+        values, errors = means_of(found)
         expected: dict[str, Any] = {}
         if run.fluid:
             eta, d = run.scene.packing_fraction, run.dimension
@@ -83,7 +85,7 @@ def velocity_autocorrelation(
         number = _lags(groups, lags)
         found = np.array([autocorrelation(velocity, number) for velocity in groups.velocities])
         time = groups.interval * np.arange(number)
-        values, errors = means_of(found * _free(run))
+        values, errors = means_of(found)
         expected: dict[str, Any] = {}
         if run.fluid:
             eta, d, own = run.scene.packing_fraction, run.dimension, run.particle
@@ -101,44 +103,94 @@ def velocity_autocorrelation(
 def diffusion_coefficient(source: Source, start: float | None = None) -> Observable:
     """D in length^2 / time, by the rise of the mean-squared displacement from 12 to 24 collisions a particle.
 
-    Arguments and condition of zero momentum as in `mean_squared_displacement`. Theory: of spheres in a
-    periodic cube, Erpenbeck and Wood's with the shift of Yeh and Hummer, half of which is its uncertainty.
-    Raises SceneError for discs that all move, whose squared displacement grows like t ln t, and for runs that
-    are too short.
+    Of a periodic container the mean over axes, a scalar; of one with walls that along each periodic axis,
+    (axis,): across walls displacements are bounded, and there is none. Arguments and condition of zero
+    momentum as in `mean_squared_displacement`. Theory: of spheres in a periodic cube, Erpenbeck and Wood's
+    with the shift of Yeh and Hummer, half of which is its uncertainty.
+
+    Raises SceneError without a periodic axis; for discs whose momentum lasts longer than these collisions, so
+    that their squared displacement grows like t ln t; where the slope from 6 to 12 collisions is another one,
+    so that there is no D; and for runs that are too short, or have too few frames.
     """
     with measured(source, start) as run:
-        if run.dimension == 2 and run.moving.all():
-            rule = "discs have no diffusion coefficient: their squared displacement grows like t ln t"
-            raise SceneError("container.lengths", run.scene.container.lengths, rule)
-        groups = _groups(run)
-        first, last = _linear_lags(run, groups)
-        time = (last - first) * groups.interval
-        rises = []
-        for path in groups.paths:
-            early, late = (
-                float(((path[lag:] - path[:-lag]) ** 2).sum(axis=2).mean()) for lag in (first, last)
-            )
-            rises.append((late - early) / (2 * run.dimension * time))
-        value, error = means_of(np.array(rises) * _free(run))
+        if not run.periodic.any():
+            rule = "has no periodic axis: displacements between walls are bounded, and there is no D"
+            raise SceneError("container.boundary", run.scene.container.boundary, rule)
+        _require_spheres(run, run.conserved)
+        lags = _linear_lags(run)
+        lasting = _lasting_momentum(run, lags[1] * _stride(run))
+        _require_spheres(run, lasting)
+        slopes = _slopes(_groups(run, about=lasting), lags)[..., run.periodic]
+        names = np.array(list("xyz"[: run.dimension]))[run.periodic]
+        along: dict[str, Any] = {"axis": (names, {"long_name": "axis"})}
+        if run.periodic.all():
+            slopes, along = slopes.mean(axis=2), {}
+        _require_constant(slopes)
+        values, errors = means_of(slopes[:, 1])
         about: dict[str, Any] = {
             "units": "length^2 / time",
             "long_name": "diffusion coefficient D",
             **_theory_of_d(run),
         }
-        return observable("diffusion_coefficient", {}, float(value), float(error), **about)
+        return observable("diffusion_coefficient", along, values, errors, **about)
 
 
-def _linear_lags(run: Run, groups: _Groups) -> tuple[int, int]:
-    """Frames between which the rise is taken. Raises SceneError where there are too few."""
+def _require_spheres(run: Run, lasting: np.ndarray) -> None:
+    """Raise SceneError for discs whose total momentum lasts along an axis."""
+    if run.dimension == 2 and lasting.any():
+        rule = "discs have no diffusion coefficient: their squared displacement grows like t ln t"
+        raise SceneError("container.lengths", run.scene.container.lengths, rule)
+
+
+def _linear_lags(run: Run) -> tuple[int, int, int]:
+    """How many frames 6, 12 and 24 collisions of a particle last. Raises SceneError for too few frames."""
+    stride = _stride(run)
+    interval = float(np.diff(run.time).mean()) * stride
     collisions = float(run.increments("collisions").sum())
     duration = float(run.time[-1] - run.time[0])
     rate = 2.0 * collisions / (run.moving.sum() * duration)
-    frames = len(groups.velocities[0])
-    if rate == 0.0 or frames * groups.interval * rate < 4.0 * LINEAR_FROM:
+    if rate * (duration + interval) < 4.0 * LINEAR_FROM:
         rule = f"must cover {4.0 * LINEAR_FROM:g} collisions of a particle or more"
         raise SceneError("duration", duration, rule)
-    first, last = (math.ceil(k * LINEAR_FROM / rate / groups.interval) for k in (1.0, 2.0))
-    return first, max(last, first + 1)
+    first, middle, last = (math.ceil(k * LINEAR_FROM / rate / interval) for k in (0.5, 1.0, 2.0))
+    middle = max(middle, first + 1)
+    last = max(last, middle + 1)
+    if len(run.time) < 2 * last * stride:
+        short = 0.5 * LINEAR_FROM
+        rule = f"is too long: frames {short / rate:.3g} apart, the time of {short:g} collisions, suffice"
+        raise SceneError("sample_interval", interval, rule)
+    return first, middle, last
+
+
+def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
+    """(d,) along which axes the total momentum of the moving particles is kept for so many frames: where it
+    is conserved, and where more than half of it is left, as with a few obstacles among many particles."""
+    momentum = np.einsum("tnd,n->td", run.velocities[:, run.moving], run.masses[run.moving])
+    left = (momentum[lag:] * momentum[:-lag]).mean(axis=0)
+    return run.conserved | (run.periodic & (left > 0.5 * (momentum**2).mean(axis=0)))
+
+
+def _slopes(groups: _Groups, lags: tuple[int, ...]) -> np.ndarray:
+    """(G, stretches, d) of the squared displacements between consecutive lags, over two."""
+    squares = np.array(
+        [[((path[lag:] - path[:-lag]) ** 2).mean(axis=(0, 1)) for lag in lags] for path in groups.paths]
+    )
+    return 0.5 * np.diff(squares, axis=1) / (groups.interval * np.diff(lags))[:, None]
+
+
+def _require_constant(slopes: np.ndarray) -> None:
+    """Raise SceneError if the slope of the second stretch differs from that of the first, (G, 2, ...), by
+    more than `_CONSTANT` of it, beyond its error."""
+    early, late = np.atleast_2d(slopes.mean(axis=0).T).T
+    change, error = means_of(slopes[:, 1] - slopes[:, 0])
+    beyond = np.abs(change) - _CONSTANT * np.abs(early) - _SIGNIFICANT * error
+    if (beyond > 0.0).any():
+        n = int(np.argmax(beyond))
+        rule = (
+            f"there is none: the slope of the squared displacement, over 2, changes from {early[n]:.3g} "
+            f"before {LINEAR_FROM:g} collisions to {late[n]:.3g} after them; measure msd"
+        )
+        raise SceneError("D", "not constant", rule)
 
 
 def _theory_of_d(run: Run) -> dict[str, Any]:
@@ -147,12 +199,6 @@ def _theory_of_d(run: Run) -> dict[str, Any]:
         return {}
     expected = theory.diffusion_in_cube(eta, float(sides[0]), **run.particle)
     return {"theory": expected, "source": "Erpenbeck and Wood, Yeh and Hummer"}
-
-
-def _free(run: Run) -> float:
-    """What turns the motion of particles of zero total momentum into that without this condition."""
-    count = int(run.moving.sum())
-    return count / (count - 1) if run.conserved.all() else 1.0
 
 
 def _lag(time: np.ndarray) -> dict[str, Any]:
@@ -167,26 +213,37 @@ def _lags(groups: _Groups, lags: int | None) -> int:
     return number
 
 
-def _groups(run: Run, paths: bool = True) -> _Groups:
-    """The moving particles in groups, about the centre of mass where its velocity is conserved."""
-    moving, stride = run.moving, -(-len(run.time) // MOST_FRAMES)
+def _groups(run: Run, paths: bool = True, about: np.ndarray | None = None) -> _Groups:
+    """The moving particles in groups, about the centre of mass along the axes `about` (d,), by default those
+    along which its velocity is conserved.
+
+    There its square for a particle of mass m is 1 - m / M of that without this condition, M the mass of all.
+    """
+    moving, stride = run.moving, _stride(run)
     if moving.sum() < GROUPS:
         raise SceneError("count", int(moving.sum()), f"an error needs {GROUPS} moving particles or more")
     steps = np.diff(run.time)
     if np.ptp(steps) > 1e-6 * steps.mean():
         raise SceneError("time", "frames at uneven times", "a correlation needs even ones")
-    split = np.array_split(np.arange(moving.sum()), GROUPS)
-    travelled = _unwrapped(run)[::stride, moving] if paths else None
-    if travelled is not None:
-        masses = run.masses[moving]
-        centre = np.einsum("tnd,n->td", travelled, masses) / masses.sum()
-        travelled = travelled - np.where(run.conserved, centre, 0.0)[:, None]
-    velocities = run.peculiar[::stride]
+    about = run.conserved if about is None else about
+    masses = run.masses[moving]
+    free = np.where(about, np.sqrt(masses.sum() / (masses.sum() - masses))[:, None], 1.0)
+
+    def parts(values: np.ndarray) -> list[np.ndarray]:
+        centre = np.einsum("tnd,n->td", values, masses) / masses.sum()
+        motion = free * (values - np.where(about, centre, 0.0)[:, None])
+        return [motion[:, part] for part in np.array_split(np.arange(len(masses)), GROUPS)]
+
     return _Groups(
-        paths=[] if travelled is None else [travelled[:, part] for part in split],
-        velocities=[velocities[:, part] for part in split],
+        paths=parts(_unwrapped(run)[::stride, moving]) if paths else [],
+        velocities=parts(run.velocities[::stride, moving]),
         interval=float(steps.mean()) * stride,
     )
+
+
+def _stride(run: Run) -> int:
+    """Of how many frames one is taken."""
+    return -(-len(run.time) // MOST_FRAMES)
 
 
 def _unwrapped(run: Run) -> np.ndarray:

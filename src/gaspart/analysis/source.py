@@ -15,6 +15,7 @@ import xarray as xr
 from gaspart import theory
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
+from gaspart.scene.species import Body, Species
 from gaspart.scene.validation import number
 from gaspart.simulation import Simulation
 from gaspart.trajectory.run import open_trajectory
@@ -73,10 +74,17 @@ class Run:
     @cached_property
     def masses(self) -> np.ndarray:
         """(N,), infinite for fixed particles; single particles come before species."""
-        parts = [(body, 1) for body in self.scene.bodies] + [
-            (kind, kind.count) for kind in self.scene.species
-        ]
-        return np.concatenate([np.full(k, np.inf if it.fixed else it.mass) for it, k in parts])
+        return np.concatenate([np.full(k, np.inf if it.fixed else it.mass) for it, k in self._parts])
+
+    @property
+    def _parts(self) -> list[tuple[Body | Species, int]]:
+        """The kinds of particles in the order of the file, each with its number."""
+        return [(it, 1) for it in self.scene.bodies] + [(it, it.count) for it in self.scene.species]
+
+    @cached_property
+    def radii(self) -> np.ndarray:
+        """(N,)."""
+        return np.concatenate([np.full(number, it.radius) for it, number in self._parts])
 
     @cached_property
     def moving(self) -> np.ndarray:
@@ -88,8 +96,13 @@ class Run:
 
     @property
     def conserved(self) -> np.ndarray:
-        """(d,) the axes along which the total momentum is: periodic ones, if no particle is fixed."""
-        return self.periodic & self.moving.all()
+        """(d,) the axes along which the total momentum is: periodic ones, if no particle is fixed and nothing
+        but smooth faces, which act along their normals, is in the container."""
+        scene = self.scene
+        heated = [face for face in scene.faces.values() if getattr(face, "temperature", None) is not None]
+        drawn = any(getattr(face, "components", "all") == "all" for face in heated)
+        rubbed = bool((~self.periodic).any()) and (scene.rough or drawn)
+        return self.periodic & (self.moving.all() and not scene.walls and not rubbed)
 
     @cached_property
     def peculiar(self) -> np.ndarray:
@@ -101,10 +114,28 @@ class Run:
 
     @cached_property
     def temperature(self) -> float:
-        """k_B T: twice the mean kinetic energy of flight per degree of freedom."""
-        energy = 0.5 * np.einsum("tnd,tnd,n->t", self.peculiar, self.peculiar, self.masses[self.moving])
+        """k_B T: twice the mean kinetic energy of flight per degree of freedom. Raises SceneError without
+        such a degree, as of one particle in a periodic container."""
         freedom = self.dimension * self.moving.sum() - self.conserved.sum()
+        if freedom < 1:
+            raise SceneError("count", int(self.moving.sum()), "too few moving particles for a temperature")
+        energy = 0.5 * np.einsum("tnd,tnd,n->t", self.peculiar, self.peculiar, self.masses[self.moving])
         return float(2.0 * energy.mean() / freedom)
+
+    @property
+    def falls(self) -> bool:
+        """Whether gravity acts."""
+        return bool(np.any(self.scene.gravity))
+
+    @property
+    def followed(self) -> bool:
+        """Whether only some of the particles are in the file."""
+        return self.data.sizes["atom"] < self.count
+
+    @property
+    def dissipates(self) -> bool:
+        """Whether contacts lose energy."""
+        return self.scene.restitution is not None and self.scene.restitution.dissipative
 
     @property
     def simple(self) -> bool:
@@ -113,7 +144,7 @@ class Run:
         scene = self.scene
         contacts = scene.restitution is None or scene.restitution.smooth_and_elastic
         kinds = {(it.radius, it.mass, it.fixed) for it in scene.kinds}
-        bare = scene.gravity is None and not scene.walls and not scene.faces
+        bare = not scene.walls and not scene.faces and scene.thermostat is None and not self.falls
         return bare and contacts and len(kinds) == 1 and not next(iter(kinds))[2]
 
     @property
