@@ -5,6 +5,8 @@ Uncertainties are the scatter of consecutive stretches of the run, or of groups 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,6 +19,9 @@ from gaspart.errors import SceneError
 from gaspart.scene.validation import choice, count_of, number
 
 STRETCHES = 16
+_POINTS = 2**14
+_RATIOS = {2: 1.32471795724474602596, 3: 1.22074408460575947536}
+"""Whose powers give evenly spread points: x^(d + 1) = x + 1 (Roberts 2018)."""
 MOST_FRAMES = 320
 """Frames, evenly spaced, that are searched for pairs of particles."""
 FASTEST = 4.0
@@ -96,10 +101,11 @@ def profile(
 ) -> Observable:
     """Profile of a property along an axis, (position,), mean over all frames.
 
-    of: "density", particles per volume, or "temperature" of the moving particles; axis: "x", "y" or "z", by
-    default the last one. Theory: the density of equal particles under gravity along this axis, by
-    hydrostatics with the fluid's equation of state; a uniform temperature without thermal faces. Raises
-    SceneError for an unknown property or axis, and for too few frames.
+    of: "density", moving particles per volume, without that from which fixed particles keep their centres
+    (NaN where nothing is left), or "temperature" of the moving particles (NaN where there are none); axis:
+    "x", "y" or "z", by default the last one. Errors are 0 where nothing moves. Theory: the density of equal
+    particles under gravity along this axis, by hydrostatics with the fluid's equation of state; a uniform
+    temperature in equilibrium. Raises SceneError for an unknown property or axis, and for too few frames.
     """
     choice("of", of, ("density", "temperature"))
     bins = count_of("bins", bins, least=2)
@@ -110,8 +116,10 @@ def profile(
         parts = np.array_split(np.arange(len(run.time)), min(STRETCHES, len(run.time)))
         if len(parts) < STRETCHES:
             raise SceneError("frames", len(run.time), f"an error needs {STRETCHES} or more")
-        measure = _density if of == "density" else _temperature
-        values, errors = means_of(np.array([measure(run, part, k, edges) for part in parts]))
+        measure = _density(run, k, edges) if of == "density" else partial(_temperature, run, k, edges)
+        samples = np.array([measure(part) for part in parts])
+        values, errors = means_of(samples - samples[0])  # no error of rounding where nothing moves
+        values += samples[0]
         middle = 0.5 * (edges[1:] + edges[:-1])
         expected = _theory_of_density(run, k, edges) if of == "density" else _theory_of_temperature(run)
         along = {"position": (middle, {"units": "length", "long_name": names[k]})}
@@ -148,14 +156,54 @@ def _chosen(run: Run, values: np.ndarray) -> np.ndarray:
     return values[:: -(-len(run.time) // MOST_FRAMES)]
 
 
-def _density(run: Run, part: np.ndarray, axis: int, edges: np.ndarray) -> np.ndarray:
-    count = np.histogram(run.positions[part][:, :, axis], edges)[0]
-    area = run.scene.container.volume / run.scene.container.lengths[axis]
-    whole = run.count / run.data.sizes["atom"]
-    return whole * count / (len(part) * area * np.diff(edges))
+def _density(run: Run, axis: int, edges: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+    """The function that gives the profile of a part of the frames. Raises SceneError for a file that holds
+    the first particles of several kinds only."""
+    stored = run.data.sizes["atom"]
+    if stored < run.count and len(run.scene.kinds) > 1:
+        raise SceneError("follow", stored, f"needs all {run.count} particles, of several kinds, in the file")
+    free, radii = np.isfinite(run.masses[:stored]), run.radii[:stored]
+    kinds = [free & (radii == radius) for radius in np.unique(radii[free])]
+    rooms = [_room(run, radii[members][0], axis, edges) for members in kinds]
+    empty = np.where(np.any(rooms, axis=0), 0.0, np.nan) if kinds else np.zeros(len(edges) - 1)
+
+    def density(part: np.ndarray) -> np.ndarray:
+        places, found = run.positions[part][:, :, axis], empty.copy()
+        for members, room in zip(kinds, rooms, strict=True):
+            count = np.histogram(places[:, members], edges)[0] * (run.count / stored)
+            found += np.divide(count, len(part) * room, out=np.zeros_like(room), where=room > 0.0)
+        return found
+
+    return density
 
 
-def _temperature(run: Run, part: np.ndarray, axis: int, edges: np.ndarray) -> np.ndarray:
+def _room(run: Run, radius: float, axis: int, edges: np.ndarray) -> np.ndarray:
+    """(bins,) volume of each bin, without that from which fixed particles keep centres of particles of this
+    radius: the share of `_POINTS` points, spread evenly over the bin."""
+    container, fixed = run.scene.container, ~np.isfinite(run.masses)
+    lengths, widths = np.array(container.lengths), np.diff(edges)
+    volumes = container.volume / lengths[axis] * widths
+    if not fixed.any():
+        return volumes
+    from scipy.spatial import cKDTree
+
+    ratio = _RATIOS[run.dimension] ** -np.arange(1.0, run.dimension + 1)
+    points = np.outer(np.arange(_POINTS), ratio) % 1.0 * lengths
+    across = points[:, axis] / lengths[axis]
+    centres = np.where(run.periodic, run.positions[0] % lengths, run.positions[0])
+    period = np.where(run.periodic, lengths, 0.0)
+    sizes = np.unique(run.radii[fixed])
+    trees = [cKDTree(centres[fixed & (run.radii == size)], boxsize=period) for size in sizes]
+    for n, width in enumerate(widths):
+        points[:, axis] = edges[n] + width * across
+        left = np.ones(_POINTS, dtype=bool)
+        for size, tree in zip(sizes, trees, strict=True):
+            left &= ~np.isfinite(tree.query(points, distance_upper_bound=size + radius)[0])
+        volumes[n] *= left.mean()
+    return volumes
+
+
+def _temperature(run: Run, axis: int, edges: np.ndarray, part: np.ndarray) -> np.ndarray:
     """Twice the kinetic energy of flight per degree of freedom; NaN in empty bins."""
     places = run.positions[part][:, run.moving, axis].ravel()
     moving = run.peculiar[part]
@@ -169,8 +217,7 @@ def _temperature(run: Run, part: np.ndarray, axis: int, edges: np.ndarray) -> np
 
 
 def _theory_of_temperature(run: Run) -> dict[str, Any]:
-    law = run.scene.restitution
-    if run.scene.faces or (law is not None and law.normal < 1.0):
+    if run.scene.faces or run.dissipates or run.scene.thermostat:
         return {}
     return {"theory": (run.temperature, 0.0), "source": "equilibrium"}
 
@@ -179,9 +226,11 @@ def _theory_of_density(run: Run, axis: int, edges: np.ndarray) -> dict[str, Any]
     scene, kinds = run.scene, run.scene.kinds
     field = 0.0 if scene.gravity is None else scene.gravity[axis]
     across = scene.gravity is not None and any(g for n, g in enumerate(scene.gravity) if n != axis)
-    equal = len({(kind.radius, kind.mass) for kind in kinds}) == 1 and run.moving.all()
+    equal = len({(kind.radius, kind.mass, kind.fixed) for kind in kinds}) == 1 and not kinds[0].fixed
     if not equal or scene.walls or scene.faces or across or not (field or run.periodic[axis]):
         return {}
+    if field and (run.dissipates or run.followed or not run.temperature > 0.0):
+        return {}  # in no equilibrium, or of unknown temperature
     if not field:
         return {"theory": (scene.number_density, 0.0), "source": "uniform"}
     lower, upper = scene.reach(kinds[0].radius)
