@@ -15,6 +15,7 @@ from gaspart.errors import SceneError
 from gaspart.trajectory.amber import face_names
 
 _BLOCKS = 16
+_SLIGHT = 1e-6  # of the weight: rounding of the momentum of single-precision velocities
 
 
 def compressibility_factor(source: Source, start: float | None = None) -> Observable:
@@ -31,6 +32,8 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
         require_elastic(run)
         if not run.moving.all():
             raise SceneError("species.fixed", True, "the virial of fixed particles is not a pressure")
+        if not run.temperature > 0.0:
+            raise SceneError("temperature", 0.0, "Z of particles at rest is not defined")
         scale = run.dimension * run.count * run.temperature
         z = 1.0 + run.increments("virial_sum") / (scale * np.diff(run.time))
         about: dict[str, Any] = {"units": "1", "long_name": "compressibility factor Z"}
@@ -51,8 +54,12 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
     """Pressure on each face of the container that is a wall, (face,): the momentum given to it per time and
     per area that centres can touch.
 
+    Contacts of particles at rest are no events: they press a floor with what gravity gives the particles and
+    no event takes (`_rest_on_floors`). Their thrust on side walls is not known: NaN while particles rest.
+
     source, start: as in `compressibility_factor`. Theory: that of equal particles between hard walls of one
-    distance (`gaspart.theory.wall_pressure`). Raises SceneError without walls and for too few frames.
+    distance (`gaspart.theory.wall_pressure`). Raises SceneError without walls, for too few frames, and where
+    particles rest in a scene with obstacles, which may carry them.
     """
     with measured(source, start) as run:
         d, walled = run.dimension, ~run.periodic
@@ -66,19 +73,56 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
         areas = np.repeat(touched.prod() / touched, 2)
         ends = np.linspace(0, len(run.time) - 1, blocks + 1).astype(int)
         impulse = np.diff(run.data["wall_impulse"].values[ends, : 2 * d], axis=0)
-        series = impulse / np.diff(run.time[ends])[:, None] / areas
+        series = (np.abs(impulse) + _rest_on_floors(run, ends)) / np.diff(run.time[ends])[:, None] / areas
         faces = np.array(face_names(d))
         chosen = np.repeat(walled, 2)
-        values, errors = means_of(np.abs(series[:, chosen]))
+        values, errors = means_of(series[:, chosen] - series[0, chosen])  # no error of rounding at rest
         return observable(
             "wall_pressure",
             {"face": (faces[chosen], {"long_name": "face of the container"})},
-            values,
+            values + series[0, chosen],
             errors,
             units="energy / length^d",
             long_name="pressure",
             **_theory_at_walls(run, touched),
         )
+
+
+def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
+    """(K, 2d) momentum that contacts at rest give each face between the frames `ends` (K + 1,).
+
+    On a floor it is the difference of both sides in the balance
+
+        change of the momentum = its gain by gravity + impulses of the lower face - those of the upper one.
+
+    On a ceiling it is 0; on side walls 0, or NaN if that of a floor is more than a millionth of the weight.
+    Raises SceneError if particles rest where something else than faces may carry them.
+    """
+    carried = np.zeros((len(ends) - 1, 2 * run.dimension))
+    if not run.falls or (run.followed and not run.dissipates):
+        return carried
+    if run.scene.walls or not run.moving.all():
+        refuse_rest(run, "obstacles may carry particles at rest, whose contacts give no impulse")
+        return carried
+    momentum = np.einsum("tnd,n->td", run.velocities[ends], run.masses)
+    weight = run.masses.sum() * np.array(run.scene.gravity)
+    gain = weight * np.diff(run.time[ends])[:, None]
+    impulse = np.abs(np.diff(run.data["wall_impulse"].values[ends, : 2 * run.dimension], axis=0))
+    missing = np.diff(momentum, axis=0) - gain - impulse[:, ::2] + impulse[:, 1::2]
+    floors = [2 * axis + (weight[axis] > 0.0) for axis in np.flatnonzero(weight)]
+    carried[:, floors] = (-np.sign(weight) * missing)[:, weight != 0.0]
+    if np.abs(carried[:, floors]).max() > _SLIGHT * np.abs(gain).max():
+        carried[:, np.repeat(weight == 0.0, 2)] = np.nan
+    return carried
+
+
+def refuse_rest(run: Run, rule: str) -> None:
+    """Raise SceneError, with a rule, if a particle rests under gravity in a frame after the first."""
+    if run.falls:
+        along = np.flatnonzero(run.scene.gravity or ())
+        resting = (run.velocities[1:, run.moving][..., along] == 0.0).any(axis=2).any(axis=0).sum()
+        if resting:
+            raise SceneError("particles at rest", int(resting), rule)
 
 
 def _theory_at_walls(run: Run, touched: np.ndarray) -> dict[str, Any]:
@@ -104,9 +148,12 @@ def collision_rate(source: Source, start: float | None = None) -> Observable:
 
     source, start: as in `compressibility_factor`. Theory: exact in equilibrium, with the contact value of
     the fluid's equation of state, corrected for the number of particles. Raises SceneError for too few
-    frames.
+    frames, and if particles come to rest.
     """
     with measured(source, start) as run:
+        if not run.moving.any():
+            raise SceneError("species.fixed", True, "fixed particles do not collide")
+        refuse_rest(run, "touch others without a collision, so that there is no rate")
         rate = 2.0 * run.increments("collisions") / (run.moving.sum() * np.diff(run.time))
         about: dict[str, Any] = {"units": "1 / time", "long_name": "collisions of a particle per time"}
         return scalar("collision_rate", rate, run.time, **about, **_theory_of_rate(run))

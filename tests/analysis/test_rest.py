@@ -1,0 +1,96 @@
+"""Observables of scenes in which particles rest, and of others that have no fluid's state."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+import gaspart as gp
+
+A = gp.analysis
+GRAVITY = (0.0, -1.0)
+
+
+def pile(count=100, **more):
+    """Discs that fall into a box 20 wide."""
+    species = [gp.Species(count, 0.5, temperature=1.0)]
+    law = gp.Restitution(normal=0.8)
+    return gp.Scene(gp.Container((20.0, 20.0)), species, gravity=GRAVITY, restitution=law, **more)
+
+
+@pytest.fixture(scope="module")
+def at_rest(tmp_path_factory):
+    """At rest from a time of about 40 on."""
+    path = tmp_path_factory.mktemp("pile") / "pile.nc"
+    return gp.run(pile(), gp.EventDriven(), 1, 80.0, 0.5, path)
+
+
+@pytest.mark.parametrize(("start", "error"), [(None, 0.01), (40.0, 1e-9)])
+def test_a_pile_presses_the_floor_by_its_weight(at_rest, start, error):
+    found = A.wall_pressure(at_rest, start=start)
+    pressure, errors = found.estimate, found.error
+    assert float(pressure.sel(face="y low")) == pytest.approx(100.0 / 19.0, abs=max(5.0 * error, 1e-6))
+    assert float(errors.sel(face="y low")) < error
+    assert float(pressure.sel(face="y high")) == 0.0
+    assert np.isnan(pressure.sel(face=["x low", "x high"])).all()  # a thrust that nothing measures
+
+
+def test_while_it_falls_the_floor_carries_what_the_balance_of_momentum_says(at_rest):
+    found = A.wall_pressure(at_rest, start=0.0)
+    with gp.open_trajectory(at_rest) as data:
+        momentum = data["velocities"].values[[0, -1], :, 1].astype(float).sum(axis=1)
+        weight = 100.0 + (momentum[1] - momentum[0]) / float(data["time"][-1])
+    assert float(found.estimate.sel(face="y low")) == pytest.approx(weight / 19.0, rel=1e-5)
+
+
+@pytest.mark.parametrize("engine", [gp.EventDriven(), gp.TimeStepped(time_step=0.005)])
+def test_without_rest_the_impulses_balance_gravity(engine):
+    species = [gp.Species(60, 0.5, temperature=4.0)]
+    scene = gp.Scene(gp.Container((16.0, 16.0)), species, gravity=(0.3, -1.0))
+    simulation = gp.Simulation(scene, engine, seed=1)
+    simulation.advance(duration=40.0)
+    found = A.wall_pressure(simulation)
+    plain = simulation.tally.wall_impulse[:4] / 40.0 / 15.0
+    assert np.isfinite(found.estimate).all()
+    assert found.estimate.values == pytest.approx(np.abs(plain), rel=0.15, abs=0.1)
+
+
+def test_rest_among_obstacles_is_refused(tmp_path):
+    post = gp.Body((10.0, 3.0), (0.0, 0.0), 1.0, fixed=True)
+    path = gp.run(pile(10, bodies=[post]), gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "a.nc")
+    with pytest.raises(gp.SceneError, match="particles at rest = .*obstacles may carry"):
+        A.wall_pressure(path)
+
+
+def test_what_rests_has_no_rate_of_collisions(at_rest):
+    with pytest.raises(gp.SceneError, match="particles at rest = 100"):
+        A.collision_rate(at_rest, start=40.0)
+
+
+@pytest.mark.parametrize("of", ["density", "temperature"])
+def test_profiles_of_a_pile_have_no_warnings_and_no_rounding(at_rest, of):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = A.profile(at_rest, of, bins=20, start=40.0)
+        A.profile(at_rest, of, bins=20)
+    assert found.theory is None
+    seen = found.error.values[np.isfinite(found.error.values)]
+    assert len(seen) and (seen == 0.0).all()
+    if of == "density":
+        assert float(found.estimate.sum()) * 20.0 == pytest.approx(100.0)
+
+
+def test_states_without_a_temperature_are_refused():
+    container = gp.Container((9.0, 9.0), "periodic")
+    for species, rule in (
+        (gp.Species(1, 0.5, speed=1.0), "too few moving particles"),
+        (gp.Species(20, 0.5), "Z of particles at rest"),
+    ):
+        simulation = gp.Simulation(gp.Scene(container, [species]), gp.EventDriven(), seed=1)
+        simulation.advance(duration=3.0)
+        with pytest.raises(gp.SceneError, match=rule):
+            A.compressibility_factor(simulation)
+    fixed = gp.Simulation(gp.Scene(container, [gp.Species(9, 0.5, fixed=True)]), gp.EventDriven(), seed=1)
+    fixed.advance(duration=3.0)
+    with pytest.raises(gp.SceneError, match="fixed particles do not collide"):
+        A.collision_rate(fixed)
