@@ -2,7 +2,8 @@
 # make test       set up, run all tests (among them the whole workflow, small)
 # make check-all  the linters, the tests, 2500 new random scenes for each property of the engines, and the slow tests
 # make smoke      all figures, small
-# make docs       the documentation site, with executed notebooks: results/docs/html/index.html
+# make docs       the documentation site, with executed notebooks: results/docs/html/index.html; after a complete
+#                 reproduction also docs/gallery.png, the picture of the README
 # make benchmark  the speed of the engines on this machine, which should run nothing else: results/tables/performance.csv
 # make coverage   which lines of src/gaspart the tests run (at least 95 %); compiles all kernels anew
 # make lint | report | clean | distclean
@@ -78,6 +79,7 @@ report: setup
 	$(SNAKEMAKE) report --quiet rules
 
 docs: setup
+	.venv/bin/python docs/gallery.py results docs/gallery.png
 	.venv/bin/python -m sphinx --quiet --fail-on-warning --jobs auto docs results/docs/html
 	@echo "documentation: results/docs/html/index.html"
 

@@ -1,9 +1,18 @@
-"""Some figures of a reproduction in one picture: python docs/gallery.py results/figures docs/gallery.png"""
+"""Some figures of a complete reproduction in one picture, that of the README and of the site's first page:
+
+    python docs/gallery.py results docs/gallery.png
+
+`make docs` runs this. The picture names the config and the revisions of its results (Pillow's `Image.text`).
+It is kept as it is where results are missing, or are not those of config/config.yaml.
+"""
 
 import sys
 from pathlib import Path
 
+import netCDF4
+import yaml
 from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 
 COLUMNS = (
     ("gas_render", "brownian_render"),
@@ -12,6 +21,23 @@ COLUMNS = (
     ("separation",),
 )
 WIDTH, GAP = 420, 12  # pixels
+CONFIG = Path(__file__).parents[1] / "config/config.yaml"
+
+
+def source(results: Path) -> dict[str, str]:
+    """The config and the revisions that the figures were measured from. Raises ValueError for another config,
+    and where a figure is missing."""
+    title = yaml.safe_load(CONFIG.read_text(encoding="utf-8"))["title"]
+    found = set()
+    for name in (name for names in COLUMNS for name in names):
+        measurement, figure = results / f"measurements/{name}.nc", results / f"figures/{name}.png"
+        if not (measurement.exists() and figure.exists()):
+            raise ValueError(f"{figure} or its measurement is missing")
+        with netCDF4.Dataset(measurement) as data:
+            if data.config != title:
+                raise ValueError(f"{measurement} is of '{data.config}', not of '{title}'")
+            found.add(data.git_revision)
+    return {"config": title, "revision": " ".join(sorted(found))}
 
 
 def _column(folder: Path, names: tuple[str, ...]) -> list[Image.Image]:
@@ -19,9 +45,12 @@ def _column(folder: Path, names: tuple[str, ...]) -> list[Image.Image]:
     return [picture.resize((WIDTH, round(picture.height * WIDTH / picture.width))) for picture in pictures]
 
 
-def gallery(folder: Path, path: Path) -> None:
-    """Write the figures of COLUMNS, from a folder of them, as one picture."""
-    columns = [_column(folder, names) for names in COLUMNS]
+def gallery(results: Path, path: Path) -> None:
+    """Write the figures of COLUMNS as one picture. Raises ValueError as `source`."""
+    about = PngInfo()
+    for key, text in source(results).items():
+        about.add_text(key, text)
+    columns = [_column(results / "figures", names) for names in COLUMNS]
     heights = [sum(picture.height for picture in column) + GAP * (len(column) - 1) for column in columns]
     page = Image.new("RGB", (len(columns) * (WIDTH + GAP) - GAP, max(heights)), "white")
     for k, column in enumerate(columns):
@@ -29,8 +58,11 @@ def gallery(folder: Path, path: Path) -> None:
         for picture in column:
             page.paste(picture, (k * (WIDTH + GAP), below))
             below += picture.height + GAP
-    page.save(path, optimize=True)
+    page.save(path, optimize=True, pnginfo=about)
 
 
 if __name__ == "__main__":
-    gallery(Path(sys.argv[1]), Path(sys.argv[2]))
+    try:
+        gallery(Path(sys.argv[1]), Path(sys.argv[2]))
+    except ValueError as error:
+        print(f"{sys.argv[2]} is kept: {error}")
