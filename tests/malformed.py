@@ -34,7 +34,15 @@ SCENES = [
     },
     {
         "container": {"lengths": [8.0, 9.0, 10.0], "boundary": "wall"},
-        "species": [{"count": 20, "radius": 0.2, "temperature": 1.0, "arrangement": "lattice"}],
+        "species": [
+            {
+                "count": 20,
+                "radius": 0.2,
+                "temperature": 1.0,
+                "exact_temperature": True,
+                "arrangement": "lattice",
+            }
+        ],
         "centres_to_walls": True,
         "faces": {
             "z_low": {"kind": "well", "depth": 1.0, "width": 0.5, "temperature": 1.0},

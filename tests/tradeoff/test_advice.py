@@ -1,10 +1,12 @@
 """Advice from a table of known errors, noises and times."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
 from gaspart import theory
+from gaspart.cli.advise import _lines
 from gaspart.errors import SceneError
 from gaspart.scene.container import Container
 from gaspart.scene.restitution import Restitution
@@ -18,6 +20,11 @@ def gas(fraction, count=1000, dimension=3, **more):
     side = (count * theory.body_volume(dimension) / fraction) ** (1.0 / dimension)
     species = Species(count, 0.5, temperature=1.0, arrangement="lattice")
     return Scene(Container((side,) * dimension, boundary="periodic"), species=(species,), **more)
+
+
+def between_walls(boundary):
+    """A gas whose Z is 1.28 far from walls: 200 spheres press by 1.53 N kT / V on those of this box."""
+    return Scene(Container((12.0,) * 3, boundary), species=(Species(200, 0.5, temperature=1.0),))
 
 
 def advice(fraction, accuracy, observable="Z", budget=None, speed_of=speed.as_measured, **more):
@@ -74,6 +81,15 @@ def test_equilibration_and_finite_size_are_reported():
     assert found.setting.seconds > 0.5 * 100 * EQUILIBRATION * table.seconds(3, 0.3, "event")
 
 
+@pytest.mark.parametrize(("exact", "scatter"), [(False, 0.5 * math.sqrt(2.0 / 3000.0)), (True, 0.0)])
+def test_drawn_velocities_add_a_scatter_that_is_stated(exact, scatter):
+    scene = gas(0.2)
+    particles = replace(scene.species[0], exact_temperature=exact)
+    found = advise(replace(scene, species=(particles,)), "D", 1e-2, None, speed.as_measured)
+    assert found.gas.scatter == pytest.approx(scatter)
+    assert any("exact_temperature: true" in line for line in _lines(found)) != exact
+
+
 @pytest.mark.parametrize(
     ("scene", "observable", "accuracy", "key"),
     [
@@ -81,6 +97,14 @@ def test_equilibration_and_finite_size_are_reported():
         (gas(0.2), "viscosity", 0.01, "observable"),
         (gas(0.2), "Z", 0.0, "accuracy"),
         (gas(0.2, dimension=2), "D", 0.01, "observable"),
+        (gas(0.005), "Z", 0.01, "packing_fraction = .*: advice is known from 0.0095"),
+        (between_walls(("wall",) * 3), "Z", 0.01, "container.boundary.*periodic containers"),
+        (
+            between_walls(("periodic", "periodic", "wall")),
+            "D",
+            0.01,
+            "container.boundary.*measure the pressure",
+        ),
     ],
 )
 def test_unmeasured_cases_are_refused(scene, observable, accuracy, key):

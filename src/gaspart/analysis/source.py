@@ -96,13 +96,8 @@ class Run:
 
     @property
     def conserved(self) -> np.ndarray:
-        """(d,) the axes along which the total momentum is: periodic ones, if no particle is fixed and nothing
-        but smooth faces, which act along their normals, is in the container."""
-        scene = self.scene
-        heated = [face for face in scene.faces.values() if getattr(face, "temperature", None) is not None]
-        drawn = any(getattr(face, "components", "all") == "all" for face in heated)
-        rubbed = bool((~self.periodic).any()) and (scene.rough or drawn)
-        return self.periodic & (self.moving.all() and not scene.walls and not rubbed)
+        """(d,) the axes along which the total momentum is."""
+        return np.array(self.scene.conserved_axes)
 
     @cached_property
     def peculiar(self) -> np.ndarray:

@@ -24,8 +24,9 @@ def add_advise(parser: Parser) -> None:
     """Add the arguments of the command to its parser."""
     text = (
         "The cheapest setting for a relative accuracy (half the width of a 95 % interval) of an observable "
-        "of a gas of one species, from measured errors and times; or, with --config, the cost of the "
-        "simulations of a config. The speed of this machine is measured by a run of a tenth of a second."
+        "of a gas of one species in a periodic container, from measured errors and times; or, with "
+        "--config, the cost of the simulations of a config. The speed of this machine is measured by a run "
+        "of a tenth of a second."
     )
     set_command(parser, _advise, text, _EXAMPLES)
     add = parser.add_argument
@@ -72,6 +73,11 @@ def _lines(advice: Advice) -> list[str]:
         f"predicted cost    {best.seconds:.3g} s of processor time",
         f"95 % half-width   {best.half_width:.2g} of {advice.observable} (steps: at most {best.bias:.1g})",
     ]
+    if advice.observable in ("D", "collision_rate") and gas.scatter:
+        text = (
+            f"{gas.scatter:.2g} of {advice.observable} from run to run, beyond this: exact_temperature: true"
+        )
+        lines.append(f"drawn velocities  {text} removes it")
     if not advice.within_budget:
         lines.append(f"the budget does not suffice for {advice.accuracy:g}")
     for other in advice.others:

@@ -30,7 +30,7 @@ from gaspart.yaml_text import read_yaml, write_yaml
 
 _TOUCH = 1e-12  # of a radius: overlap with a wall that rounding may show for a particle that touches it
 _CONTACT = 0.01  # of sqrt(d/g): the default duration of a contact
-_ABSENT = ("fixed", "walls", "faces")  # not written into a file unless there
+_ABSENT = ("fixed", "exact_temperature", "walls", "faces")  # not written into a file unless there
 
 
 @dataclass(frozen=True)
@@ -183,6 +183,18 @@ class Scene:
         """Whether any particle may store energy in a vibration: a fixed one, or one that sticks to a face."""
         sticky = any(isinstance(face, Sticky) for face in self.faces.values())
         return sticky or any(thing.vibrates for thing in self.kinds)
+
+    @property
+    def conserved_axes(self) -> tuple[bool, ...]:
+        """(d,) whether the total momentum along an axis is conserved: a periodic one, if no particle is fixed
+        and nothing but smooth faces, which act along their normals, is in the container."""
+        periodic = self.container.periodic
+        fixed = any(it.fixed for it in self.bodies) or any(it.fixed and it.count for it in self.species)
+        heated = [face for face in self.faces.values() if getattr(face, "temperature", None) is not None]
+        drawn = any(getattr(face, "components", "all") == "all" for face in heated)
+        rubbed = not all(periodic) and (self.rough or drawn)
+        free = not (fixed or self.walls or rubbed)
+        return tuple(free and along for along in periodic)
 
     @property
     def number_density(self) -> float:

@@ -51,7 +51,9 @@ class Species:
     """`count` like particles, placed by the program.
 
     Velocities are isotropic: of one fixed `speed`, or Maxwellian at `temperature`; with neither the particles
-    start at rest. `arrangement` is "random" (sequential insertion, in a `region` if there is one), "lattice",
+    start at rest. They are drawn: the kinetic temperature of N particles scatters about `temperature` by the
+    fraction sqrt(2 / (d N)), unless the species has an `exact_temperature`; all that have one are scaled
+    together. `arrangement` is "random" (sequential insertion, in a `region` if there is one), "lattice",
     "slab": a lattice whose empty sites all lie in one half, so that this half melts, or "compressed": grown
     to a density beyond that of insertion (see `compression`). A `fixed` particle with a `vibration` or a
     `temperature` has one mode of vibration: a contact exchanges its energy with the normal energy of the
@@ -66,6 +68,14 @@ class Species:
         default=None,
         metadata=declared(
             NOT_NEGATIVE, "instead of `speed`: of the initial Maxwellian velocities; of vibrations if fixed"
+        ),
+    )
+    exact_temperature: bool = field(
+        default=False,
+        metadata=declared(
+            FLAG,
+            "the initial velocities are scaled to exactly the `temperature`, after the mean velocity along "
+            "axes on which momentum is conserved was taken off",
         ),
     )
     arrangement: str = field(default="random", metadata=declared(choice(*ARRANGEMENTS), "initial positions"))
@@ -95,6 +105,8 @@ class Species:
             raise SceneError("temperature", self.temperature, "give speed or temperature, not both")
         if self.fixed and self.speed:
             raise SceneError("speed", self.speed, "a fixed species has none")
+        if self.exact_temperature and (self.temperature is None or self.fixed):
+            raise SceneError("exact_temperature", True, "needs the temperature of a species that moves")
         if self.vibration is not None and self.temperature is not None:
             raise SceneError("temperature", self.temperature, "give vibration or temperature, not both")
 

@@ -97,7 +97,36 @@ def _velocities(scene: Scene, rng: np.random.Generator) -> np.ndarray:
             parts.append(width * normals(rng, kind.count, scene.dimension))
         else:
             parts.append(np.zeros((kind.count, scene.dimension)))
-    return np.concatenate(parts)
+    velocities = np.concatenate(parts)
+    if any(kind.exact_temperature for kind in scene.species):
+        _make_exact(scene, velocities)
+    return velocities
+
+
+def _make_exact(scene: Scene, velocities: np.ndarray) -> None:
+    """Give the species of exact temperature, together, no mean velocity along axes on which momentum is
+    conserved, and the mean of m v^2 / kT per degree of freedom 1. With sums whose rounding is that of no
+    machine. Raises SceneError without a degree of freedom."""
+    first, parts = len(scene.bodies), []
+    for kind in scene.species:
+        if kind.exact_temperature and kind.temperature and kind.count:
+            parts.append((np.arange(first, first + kind.count), kind.mass, kind.temperature))
+        first += kind.count
+    if not parts:
+        return
+    chosen = np.concatenate([members for members, _, _ in parts])
+    masses, temperatures = (
+        np.concatenate([np.full(len(part[0]), part[k]) for part in parts]) for k in (1, 2)
+    )
+    axes = [k for k, conserved in enumerate(scene.conserved_axes) if conserved]
+    freedom = scene.dimension * len(chosen) - len(axes)
+    if freedom < 1:
+        raise SceneError("exact_temperature", True, "needs two particles or more")
+    moving = velocities[chosen]
+    for k in axes:
+        moving[:, k] -= math.fsum(masses * moving[:, k]) / math.fsum(masses)
+    energies = masses / temperatures * (moving**2).T
+    velocities[chosen] = moving * math.sqrt(freedom / math.fsum(energies.ravel()))
 
 
 def lattice(scene: Scene, rng: np.random.Generator, slab: bool = False) -> np.ndarray:

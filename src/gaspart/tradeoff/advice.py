@@ -38,6 +38,14 @@ class Gas:
     count: int
     diameter: float
     thermal_speed: float
+    drawn: bool = False
+    """Whether its velocities are drawn from a temperature, which a run has only on average."""
+
+    @property
+    def scatter(self) -> float:
+        """Relative standard deviation of D and of the collision rate, which are proportional to the square
+        root of the temperature, from the draw of N particles."""
+        return 0.5 * math.sqrt(2.0 / (self.dimension * self.count)) if self.drawn else 0.0
 
     @property
     def collision_rate(self) -> float:
@@ -116,12 +124,24 @@ def plain_gas(scene: Scene) -> Gas:
     if not temperature > 0.0:
         raise SceneError("temperature", temperature, "advice is for moving particles")
     speed = math.sqrt(temperature / kind.mass)
-    return Gas(dimension, scene.packing_fraction, kind.count, 2.0 * kind.radius, speed)
+    drawn = kind.temperature is not None and not kind.exact_temperature
+    return Gas(dimension, scene.packing_fraction, kind.count, 2.0 * kind.radius, speed, drawn)
 
 
 def gas_of(scene: Scene) -> Gas:
-    """The same for a fluid. Raises SceneError for a scene whose errors were not measured."""
+    """The same for a fluid in a periodic container. Raises SceneError for a scene whose errors were not
+    measured."""
     gas = plain_gas(scene)
+    container = scene.container
+    if not all(container.periodic):
+        rule = (
+            "advice is for periodic containers: walls change Z, D and the rate; measure the pressure on them"
+        )
+        raise SceneError("container.boundary", container.boundary, rule)
+    lowest = table.lowest(gas.dimension)
+    if gas.packing_fraction < lowest:
+        rule = f"advice is known from {lowest:g} on: more dilute gases were not measured"
+        raise SceneError("packing_fraction", gas.packing_fraction, rule)
     highest = theory.HIGHEST_PACKING_FRACTION[gas.dimension]
     if gas.packing_fraction > highest:
         rule = f"advice is for fluids, up to {highest:g}"

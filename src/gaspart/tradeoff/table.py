@@ -43,6 +43,12 @@ def read() -> tuple[dict, ...]:
     )
 
 
+def lowest(dimension: int) -> float:
+    """The lowest packing fraction at which costs were measured, less what the table may be exceeded by."""
+    eta, _, _ = _curve(dimension, "event", "float64", 0.0, "seconds")
+    return float(eta[0] / _BEYOND)
+
+
 def steps(dimension: int) -> list[tuple[str, float]]:
     """(precision, time_step) of all measured settings of the time-stepped engine."""
     found = (row for row in read() if row["engine"] == "step" and row["dimension"] == dimension)

@@ -57,6 +57,11 @@ GAS: dict[str, Kind] = {
     ),
     "mass": positive("mass of a particle", default=1.0),
     "temperature": positive("temperature of the Maxwellian velocities at the start", default=None),
+    "exact_temperature": flag(
+        "the velocities are scaled to exactly the `temperature`, without a mean velocity along axes on which "
+        "momentum is conserved",
+        default=False,
+    ),
     "speed": positive(
         "instead of `temperature`: one speed for all particles, in random directions", default=None
     ),

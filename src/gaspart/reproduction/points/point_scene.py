@@ -101,6 +101,7 @@ def _made(point: Point) -> Scene:
         mass=settings.get("mass", 1.0),
         speed=settings.get("speed"),
         temperature=settings.get("temperature"),
+        exact_temperature=settings.get("exact_temperature", False),
         arrangement=settings.get("arrangement", "random"),
     )
     container = Container(

@@ -22,6 +22,7 @@ _FEW = 8  # particles and walls that a tiny run has of each kind
 _MATTER = {"species.Species", "bodies.Body", "restitution.Restitution"}  # whose properties are features
 # in every kernel, or in none
 _NO_FEATURE = ("container", "count", "radius", "speed", "temperature", "centres_to_walls", "region")
+_NO_FEATURE += ("exact_temperature",)
 _NO_FEATURE += ("components", "waveform")  # of faces: numbers to the kernels, as the boundary is
 # All that makes kernels have a law of contacts, as an entry of `Model`.
 _LAW = {"restitution.normal", "restitution.tangential", "species.moment_of_inertia"}
