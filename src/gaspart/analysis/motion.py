@@ -116,6 +116,7 @@ def diffusion_coefficient(source: Source, start: float | None = None) -> Observa
         if not run.periodic.any():
             rule = "has no periodic axis: displacements between walls are bounded, and there is no D"
             raise SceneError("container.boundary", run.scene.container.boundary, rule)
+        _require_groups(run)
         _require_spheres(run, run.conserved)
         lags = _linear_lags(run)
         lasting = _lasting_momentum(run, lags[1] * _stride(run))
@@ -219,9 +220,8 @@ def _groups(run: Run, paths: bool = True, about: np.ndarray | None = None) -> _G
 
     There its square for a particle of mass m is 1 - m / M of that without this condition, M the mass of all.
     """
+    _require_groups(run)
     moving, stride = run.moving, _stride(run)
-    if moving.sum() < GROUPS:
-        raise SceneError("count", int(moving.sum()), f"an error needs {GROUPS} moving particles or more")
     steps = np.diff(run.time)
     if np.ptp(steps) > 1e-6 * steps.mean():
         raise SceneError("time", "frames at uneven times", "a correlation needs even ones")
@@ -239,6 +239,12 @@ def _groups(run: Run, paths: bool = True, about: np.ndarray | None = None) -> _G
         velocities=parts(run.velocities[::stride, moving]),
         interval=float(steps.mean()) * stride,
     )
+
+
+def _require_groups(run: Run) -> None:
+    """Raise SceneError for too few moving particles."""
+    if run.moving.sum() < GROUPS:
+        raise SceneError("count", int(run.moving.sum()), f"an error needs {GROUPS} moving particles or more")
 
 
 def _stride(run: Run) -> int:

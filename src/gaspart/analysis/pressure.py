@@ -105,14 +105,14 @@ def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
         refuse_rest(run, "obstacles may carry particles at rest, whose contacts give no impulse")
         return carried
     momentum = np.einsum("tnd,n->td", run.velocities[ends], run.masses)
-    weight = run.masses.sum() * np.array(run.scene.gravity)
-    gain = weight * np.diff(run.time[ends])[:, None]
+    pull = np.array(run.scene.gravity)
+    gain = run.masses.sum() * pull * np.diff(run.time[ends])[:, None]
     impulse = np.abs(np.diff(run.data["wall_impulse"].values[ends, : 2 * run.dimension], axis=0))
     missing = np.diff(momentum, axis=0) - gain - impulse[:, ::2] + impulse[:, 1::2]
-    floors = [2 * axis + (weight[axis] > 0.0) for axis in np.flatnonzero(weight)]
-    carried[:, floors] = (-np.sign(weight) * missing)[:, weight != 0.0]
+    floors = [2 * axis + (pull[axis] > 0.0) for axis in np.flatnonzero(pull)]
+    carried[:, floors] = (-np.sign(pull) * missing)[:, pull != 0.0]
     if np.abs(carried[:, floors]).max() > _SLIGHT * np.abs(gain).max():
-        carried[:, np.repeat(weight == 0.0, 2)] = np.nan
+        carried[:, np.repeat(pull == 0.0, 2)] = np.nan
     return carried
 
 

@@ -74,17 +74,22 @@ class Run:
     @cached_property
     def masses(self) -> np.ndarray:
         """(N,), infinite for fixed particles; single particles come before species."""
-        return np.concatenate([np.full(k, np.inf if it.fixed else it.mass) for it, k in self._parts])
+        return np.repeat([np.inf if it.fixed else it.mass for it, _ in self._parts], self._numbers)
 
     @property
     def _parts(self) -> list[tuple[Body | Species, int]]:
         """The kinds of particles in the order of the file, each with its number."""
         return [(it, 1) for it in self.scene.bodies] + [(it, it.count) for it in self.scene.species]
 
+    @property
+    def _numbers(self) -> np.ndarray:
+        """Particles of each of them."""
+        return np.array([number for _, number in self._parts], dtype=int)
+
     @cached_property
     def radii(self) -> np.ndarray:
         """(N,)."""
-        return np.concatenate([np.full(number, it.radius) for it, number in self._parts])
+        return np.repeat([it.radius for it, _ in self._parts], self._numbers)
 
     @cached_property
     def moving(self) -> np.ndarray:
@@ -104,18 +109,26 @@ class Run:
         """(T, M, d) velocities of the M moving particles about the centre of mass's, where that is
         conserved."""
         velocities, masses = self.velocities[:, self.moving], self.masses[self.moving]
+        if not self.conserved.any() or not len(masses):
+            return velocities
         drift = np.einsum("tnd,n->td", velocities, masses) / masses.sum()
         return velocities - np.where(self.conserved, drift, 0.0)[:, None]
 
     @cached_property
     def temperature(self) -> float:
-        """k_B T: twice the mean kinetic energy of flight per degree of freedom. Raises SceneError without
-        such a degree, as of one particle in a periodic container."""
-        freedom = self.dimension * self.moving.sum() - self.conserved.sum()
-        if freedom < 1:
-            raise SceneError("count", int(self.moving.sum()), "too few moving particles for a temperature")
+        """k_B T: twice the mean kinetic energy of flight per degree of freedom. Raises as `freedom`."""
         energy = 0.5 * np.einsum("tnd,tnd,n->t", self.peculiar, self.peculiar, self.masses[self.moving])
-        return float(2.0 * energy.mean() / freedom)
+        return float(2.0 * energy.mean() / self.freedom)
+
+    @property
+    def freedom(self) -> int:
+        """Degrees of freedom of flight, without those of a conserved momentum. Raises SceneError if there are
+        none, as of one particle in a periodic container."""
+        moving = int(self.moving.sum())
+        freedom = self.dimension * moving - int(self.conserved.sum())
+        if freedom < 1:
+            raise SceneError("count", moving, "too few moving particles for a temperature")
+        return freedom
 
     @property
     def falls(self) -> bool:

@@ -208,8 +208,7 @@ def _temperature(run: Run, axis: int, edges: np.ndarray, part: np.ndarray) -> np
     places = run.positions[part][:, run.moving, axis].ravel()
     moving = run.peculiar[part]
     energy = 0.5 * (moving**2).sum(axis=2) * run.masses[run.moving]
-    freedom = run.dimension * int(run.moving.sum())
-    share = freedom / (freedom - run.conserved.sum())
+    share = run.dimension * int(run.moving.sum()) / run.freedom
     count = np.histogram(places, edges)[0]
     total = np.histogram(places, edges, weights=energy.ravel())[0]
     with np.errstate(invalid="ignore", divide="ignore"):
