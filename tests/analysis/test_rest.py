@@ -1,7 +1,6 @@
 """Observables of scenes in which particles rest, and of others that have no fluid's state."""
 
 import warnings
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -95,37 +94,3 @@ def test_states_without_a_temperature_are_refused():
     fixed.advance(duration=3.0)
     with pytest.raises(gp.SceneError, match="fixed particles do not collide"):
         A.collision_rate(fixed)
-
-
-FUNCTIONS = (
-    A.compressibility_factor,
-    A.wall_pressure,
-    A.collision_rate,
-    A.mean_squared_displacement,
-    A.diffusion_coefficient,
-    A.velocity_autocorrelation,
-    A.profile,
-    lambda source, start: A.profile(source, "temperature", start=start),
-)
-
-
-@pytest.mark.parametrize("boundary", ["periodic", "wall", ("periodic", "wall")])
-@pytest.mark.parametrize("falls", [False, True])
-def test_degenerate_scenes_are_measured_or_refused_without_a_warning(boundary, falls):
-    kinds = [gp.Species(n, 0.5, speed=1.0) for n in (0, 1, 2, 20)]
-    kinds += [gp.Species(20, 0.5), gp.Species(20, 0.5, fixed=True)]
-    scenes = [gp.Scene(gp.Container((9.0, 9.0), boundary), [kind]) for kind in kinds]
-    scenes.append(gp.Scene(gp.Container((9.0, 9.0), boundary)))
-    for scene in scenes:
-        if falls and boundary != "periodic":
-            scene = replace(scene, gravity=GRAVITY)
-        simulation = gp.Simulation(scene, gp.EventDriven(search="direct"), seed=1)
-        simulation.advance(duration=6.0)
-        for function in FUNCTIONS:
-            with warnings.catch_warnings():
-                warnings.simplefilter("error")
-                try:
-                    found = function(simulation, start=0.0)
-                except gp.SceneError:
-                    continue
-            assert not np.isinf(found.estimate).any()

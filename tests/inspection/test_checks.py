@@ -102,7 +102,8 @@ def test_diffusion_of_a_random_walk_is_known():
         velocities=rng.standard_normal((400, 200, 3)),
         time=np.arange(400) * 0.1,
     )
-    value, error = diffusion(frames)
+    found = diffusion(frames)
+    value, error = found.value, found.error
     assert abs(value - 0.5 * sigma**2 / 0.1) < 4.0 * error
     assert error < 0.05 * value
     assert theory.collision_rate(frames.packing_fraction, 3) > 0.5  # or the lags would not fit

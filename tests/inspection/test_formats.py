@@ -309,7 +309,7 @@ def test_axes_that_are_not_periodic_have_no_images(tmp_path):
 def test_short_numbers_do_not_make_a_file_coarse(tmp_path):
     rows = ["0 0 0", "4.12345678 4.00000001 4.5", "4.12345678 4.00000001 5.41", "2.5 2.25 6.0"]
     passed, text, _ = overlaps(xyz(tmp_path / "a.xyz", rows), radius=0.5)
-    assert passed is False and "0.09 of a contact distance" in text and "up to 1e-05" in text
+    assert passed is False and "0.09 of a contact distance" in text and "up to 1e-07" in text
     rounded = ["0.00 1.00 1.00", "0.99 1.00 1.00"]
     assert overlaps(xyz(tmp_path / "a.xyz", rounded), radius=0.5)[0] is True
 

@@ -43,6 +43,39 @@ def test_kurtosis_of_a_few_particles_at_fixed_energy(dimension, zero_momentum):
     assert abs(measured.mean() - theory.kurtosis(dimension, count, zero_momentum)) < 4.0 * error
 
 
+@pytest.mark.parametrize("count", [8, 50])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_scatter_of_the_kurtosis_of_a_few_particles(dimension, count):
+    squares = (np.random.default_rng(6).standard_normal((200_000, count, dimension)) ** 2).sum(axis=2)
+    measured = (squares**2).mean(axis=1) / squares.mean(axis=1) ** 2
+    deviation, skewness = theory.kurtosis_scatter(dimension, count)
+    centred = measured - theory.kurtosis(dimension, count)
+    assert centred.std() == pytest.approx(deviation, rel=0.01)
+    assert (centred**3).mean() / deviation**3 == pytest.approx(skewness, rel=0.06)
+
+
+@pytest.mark.parametrize("zero_momentum", [False, True])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_speeds_of_a_few_particles_at_fixed_energy(dimension, zero_momentum):
+    count = 5
+    freedoms = dimension * (count - 1 if zero_momentum else count)
+    velocities = np.random.default_rng(7).standard_normal((100_000, count, dimension))
+    if zero_momentum:
+        velocities -= velocities.mean(axis=1, keepdims=True)
+    velocities *= np.sqrt(freedoms / (velocities**2).sum(axis=(1, 2), keepdims=True))  # k_B T = m = 1
+    one = velocities[:, 0] * np.sqrt(count / (count - 1) if zero_momentum else 1.0)
+    speeds = np.array([0.3, 1.0, 2.0, 2.6])
+    measured = (np.linalg.norm(one, axis=1)[:, None] < speeds).mean(axis=0)
+    expected = theory.maxwell_cdf(speeds, dimension, freedoms=freedoms)
+    assert np.abs(measured - expected).max() < 4.0 * 0.5 / np.sqrt(len(one))
+    assert np.abs(expected - theory.maxwell_cdf(speeds, dimension)).max() > 0.01  # which Maxwell's is not
+    assert theory.maxwell_cdf(np.sqrt(freedoms), dimension, freedoms=freedoms) == 1.0
+    many = theory.maxwell_cdf(speeds, dimension, freedoms=1e9)
+    np.testing.assert_allclose(many, theory.maxwell_cdf(speeds, dimension), rtol=1e-6)
+    with pytest.raises(ValueError, match="freedoms = .*: must be more than"):
+        theory.maxwell_cdf(1.0, dimension, freedoms=dimension)
+
+
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_relaxation_starts_with_the_exact_slopes(dimension):
     curve = theory.relaxation(dimension)

@@ -116,8 +116,8 @@ def diffusion_coefficient(source: Source, start: float | None = None) -> Observa
         if not run.periodic.any():
             rule = "has no periodic axis: displacements between walls are bounded, and there is no D"
             raise SceneError("container.boundary", run.scene.container.boundary, rule)
-        _require_groups(run)
         _require_spheres(run, run.conserved)
+        _require_groups(run)
         lags = _linear_lags(run)
         lasting = _lasting_momentum(run, lags[1] * _stride(run))
         _require_spheres(run, lasting)
@@ -134,6 +134,13 @@ def diffusion_coefficient(source: Source, start: float | None = None) -> Observa
             **_theory_of_d(run),
         }
         return observable("diffusion_coefficient", along, values, errors, **about)
+
+
+def _require_groups(run: Run) -> None:
+    """Raise SceneError for too few moving particles."""
+    count = int(run.moving.sum())
+    if count < GROUPS:
+        raise SceneError("count", count, f"an error needs {GROUPS} moving particles or more")
 
 
 def _require_spheres(run: Run, lasting: np.ndarray) -> None:
@@ -220,8 +227,8 @@ def _groups(run: Run, paths: bool = True, about: np.ndarray | None = None) -> _G
 
     There its square for a particle of mass m is 1 - m / M of that without this condition, M the mass of all.
     """
-    _require_groups(run)
     moving, stride = run.moving, _stride(run)
+    _require_groups(run)
     steps = np.diff(run.time)
     if np.ptp(steps) > 1e-6 * steps.mean():
         raise SceneError("time", "frames at uneven times", "a correlation needs even ones")
@@ -239,12 +246,6 @@ def _groups(run: Run, paths: bool = True, about: np.ndarray | None = None) -> _G
         velocities=parts(run.velocities[::stride, moving]),
         interval=float(steps.mean()) * stride,
     )
-
-
-def _require_groups(run: Run) -> None:
-    """Raise SceneError for too few moving particles."""
-    if run.moving.sum() < GROUPS:
-        raise SceneError("count", int(run.moving.sum()), f"an error needs {GROUPS} moving particles or more")
 
 
 def _stride(run: Run) -> int:

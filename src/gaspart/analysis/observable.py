@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 LEAST_INTERVALS = 16
 """Between frames: fewer allow no uncertainty of a mean."""
+_ROUNDING = 1e-12
+"""Relative scatter of a series that does not change."""
 _LONG = 32  # characters of a label, from which on it has two lines
 STRETCHES = 20
 """Of a run, whose means a plot of a scalar shows."""
@@ -48,11 +50,13 @@ class Observable(xr.Dataset):
 
     @property
     def deviation(self) -> xr.DataArray | None:
-        """Measured minus theory, in standard deviations of the difference; None without theory."""
+        """Measured minus theory, in standard deviations of the difference; None without theory. NaN where
+        that is 0, as of a quantity that does not change: nothing tells how likely a difference is."""
         if self.theory is None:
             return None
         unsure = self[f"{self.attrs['quantity']}_theory_error"]
-        return (self.estimate - self.theory) / np.hypot(self.error, unsure)
+        scale = (self.error**2 + unsure**2) ** 0.5
+        return (self.estimate - self.theory) / scale.where(scale > 0.0)
 
     def plot(self, theory: bool = False, axis: Axes | None = None) -> Axes:  # type: ignore[override]
         """Draw the values with bars of one standard deviation, a scalar as the means of consecutive stretches
@@ -120,9 +124,10 @@ def scalar(name: str, series: np.ndarray, edges: np.ndarray, **about: Any) -> Ob
     if len(series) < LEAST_INTERVALS:
         raise SceneError("frames", len(series) + 1, f"an error needs {LEAST_INTERVALS + 1} or more")
     found = correlated_mean(series, LEAST_INTERVALS).estimate
+    error = found.error if np.ptp(series) > _ROUNDING * abs(found.value) else 0.0
     stretches = [part.mean() for part in np.array_split(series, min(STRETCHES, len(series)))]
     ends = [part[[0, -1]].mean() for part in np.array_split(0.5 * (edges[1:] + edges[:-1]), len(stretches))]
-    result = observable(name, {}, found.value, found.error, **about)
+    result = observable(name, {}, found.value, error, **about)
     result["stretches"] = ("time", np.array(stretches), {"units": about["units"]})
     result["time"] = ("time", np.array(ends), {"units": "time", "long_name": "time"})
     return result.set_coords("time")

@@ -9,7 +9,14 @@ import numpy as np
 
 from gaspart import theory
 from gaspart.analysis.observable import Observable, observable, scalar
-from gaspart.analysis.source import Run, Source, measured, require_elastic, require_periodic
+from gaspart.analysis.source import (
+    Run,
+    Source,
+    measured,
+    require_collisions,
+    require_elastic,
+    require_periodic,
+)
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.trajectory.amber import face_names
@@ -25,15 +32,14 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
     trajectory, by its path or open, or a simulation; start: the time from which frames count (by default a
     quarter of the run). Theory is that of the fluid, with the correction of first order in 1/N.
 
-    Raises SceneError for walls, fixed particles, contacts that lose energy, and too few frames.
+    Raises SceneError for walls, fixed particles, contacts that lose energy, too few frames, and no collision.
     """
     with measured(source, start) as run:
         require_periodic(run)
         require_elastic(run)
         if not run.moving.all():
             raise SceneError("species.fixed", True, "the virial of fixed particles is not a pressure")
-        if not run.temperature > 0.0:
-            raise SceneError("temperature", 0.0, "Z of particles at rest is not defined")
+        require_collisions(run)
         scale = run.dimension * run.count * run.temperature
         z = 1.0 + run.increments("virial_sum") / (scale * np.diff(run.time))
         about: dict[str, Any] = {"units": "1", "long_name": "compressibility factor Z"}
@@ -105,14 +111,14 @@ def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
         refuse_rest(run, "obstacles may carry particles at rest, whose contacts give no impulse")
         return carried
     momentum = np.einsum("tnd,n->td", run.velocities[ends], run.masses)
-    pull = np.array(run.scene.gravity)
-    gain = run.masses.sum() * pull * np.diff(run.time[ends])[:, None]
+    weight = run.masses.sum() * np.array(run.scene.gravity)
+    gain = weight * np.diff(run.time[ends])[:, None]
     impulse = np.abs(np.diff(run.data["wall_impulse"].values[ends, : 2 * run.dimension], axis=0))
     missing = np.diff(momentum, axis=0) - gain - impulse[:, ::2] + impulse[:, 1::2]
-    floors = [2 * axis + (pull[axis] > 0.0) for axis in np.flatnonzero(pull)]
-    carried[:, floors] = (-np.sign(pull) * missing)[:, pull != 0.0]
+    floors = [2 * axis + (weight[axis] > 0.0) for axis in np.flatnonzero(weight)]
+    carried[:, floors] = (-np.sign(weight) * missing)[:, weight != 0.0]
     if np.abs(carried[:, floors]).max() > _SLIGHT * np.abs(gain).max():
-        carried[:, np.repeat(pull == 0.0, 2)] = np.nan
+        carried[:, np.repeat(weight == 0.0, 2)] = np.nan
     return carried
 
 
@@ -148,12 +154,13 @@ def collision_rate(source: Source, start: float | None = None) -> Observable:
 
     source, start: as in `compressibility_factor`. Theory: exact in equilibrium, with the contact value of
     the fluid's equation of state, corrected for the number of particles. Raises SceneError for too few
-    frames, and if particles come to rest.
+    frames, without a collision, and if particles come to rest.
     """
     with measured(source, start) as run:
         if not run.moving.any():
             raise SceneError("species.fixed", True, "fixed particles do not collide")
         refuse_rest(run, "touch others without a collision, so that there is no rate")
+        require_collisions(run)
         rate = 2.0 * run.increments("collisions") / (run.moving.sum() * np.diff(run.time))
         about: dict[str, Any] = {"units": "1 / time", "long_name": "collisions of a particle per time"}
         return scalar("collision_rate", rate, run.time, **about, **_theory_of_rate(run))

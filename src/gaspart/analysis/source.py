@@ -27,6 +27,7 @@ EQUILIBRATION = 0.25
 """The part of a run that is not measured, unless the caller states a time."""
 REPEATED = 129
 """Frames of a simulation, which is run again to measure it; fewer of many particles."""
+_AT_REST = 1e-24  # of a kinetic energy: a rounding error, squared
 _MOST = 20_000_000  # numbers that such frames hold
 _COUNTERS = ("collisions", "virial_sum", "wall_impulse")
 
@@ -74,22 +75,17 @@ class Run:
     @cached_property
     def masses(self) -> np.ndarray:
         """(N,), infinite for fixed particles; single particles come before species."""
-        return np.repeat([np.inf if it.fixed else it.mass for it, _ in self._parts], self._numbers)
+        return np.concatenate([np.full(k, np.inf if it.fixed else it.mass) for it, k in self._parts])
 
     @property
     def _parts(self) -> list[tuple[Body | Species, int]]:
         """The kinds of particles in the order of the file, each with its number."""
         return [(it, 1) for it in self.scene.bodies] + [(it, it.count) for it in self.scene.species]
 
-    @property
-    def _numbers(self) -> np.ndarray:
-        """Particles of each of them."""
-        return np.array([number for _, number in self._parts], dtype=int)
-
     @cached_property
     def radii(self) -> np.ndarray:
         """(N,)."""
-        return np.repeat([it.radius for it, _ in self._parts], self._numbers)
+        return np.concatenate([np.full(number, it.radius) for it, number in self._parts])
 
     @cached_property
     def moving(self) -> np.ndarray:
@@ -109,26 +105,27 @@ class Run:
         """(T, M, d) velocities of the M moving particles about the centre of mass's, where that is
         conserved."""
         velocities, masses = self.velocities[:, self.moving], self.masses[self.moving]
-        if not self.conserved.any() or not len(masses):
-            return velocities
-        drift = np.einsum("tnd,n->td", velocities, masses) / masses.sum()
+        drift = np.einsum("tnd,n->td", velocities, masses) / (masses.sum() or 1.0)  # of none: nothing
         return velocities - np.where(self.conserved, drift, 0.0)[:, None]
-
-    @cached_property
-    def temperature(self) -> float:
-        """k_B T: twice the mean kinetic energy of flight per degree of freedom. Raises as `freedom`."""
-        energy = 0.5 * np.einsum("tnd,tnd,n->t", self.peculiar, self.peculiar, self.masses[self.moving])
-        return float(2.0 * energy.mean() / self.freedom)
 
     @property
     def freedom(self) -> int:
-        """Degrees of freedom of flight, without those of a conserved momentum. Raises SceneError if there are
-        none, as of one particle in a periodic container."""
-        moving = int(self.moving.sum())
-        freedom = self.dimension * moving - int(self.conserved.sum())
+        """Degrees of freedom of flight. Raises SceneError if there is none, as of one particle in a periodic
+        container."""
+        freedom = self.dimension * int(self.moving.sum()) - int(self.conserved.sum())
         if freedom < 1:
-            raise SceneError("count", moving, "too few moving particles for a temperature")
+            raise SceneError("count", int(self.moving.sum()), "too few moving particles for a temperature")
         return freedom
+
+    @cached_property
+    def temperature(self) -> float:
+        """k_B T: twice the mean kinetic energy of flight per degree of freedom; 0 if it is only rounding of
+        the velocity of the centre of mass. Raises SceneError as `freedom`."""
+        freedom, masses = self.freedom, self.masses[self.moving]
+        velocities = self.velocities[:, self.moving]
+        energy = 0.5 * np.einsum("tnd,tnd,n->t", self.peculiar, self.peculiar, masses)
+        whole = 0.5 * np.einsum("tnd,tnd,n->t", velocities, velocities, masses)
+        return float(2.0 * energy.mean() / freedom) if energy.mean() > _AT_REST * whole.mean() else 0.0
 
     @property
     def falls(self) -> bool:
@@ -161,9 +158,16 @@ class Run:
         return self.simple and bool(self.periodic.all())
 
     @property
+    def of_fluid(self) -> bool:
+        """Whether it is such a gas, of two particles or more, within the range of the fluid's equation of
+        state."""
+        eta = self.scene.packing_fraction
+        return self.bulk and self.count > 1 and eta <= theory.HIGHEST_PACKING_FRACTION[self.dimension]
+
+    @property
     def fluid(self) -> bool:
-        """Whether it is such a gas within the range of the fluid's equation of state."""
-        return self.bulk and self.scene.packing_fraction <= theory.HIGHEST_PACKING_FRACTION[self.dimension]
+        """Whether it is such a gas that moves, so that there is theory of its motion."""
+        return self.of_fluid and self.temperature > 0.0
 
     @property
     def particle(self) -> dict[str, float]:
@@ -184,6 +188,12 @@ def require_periodic(run: Run) -> None:
     if not run.periodic.all():
         boundary = run.scene.container.boundary
         raise SceneError("container.boundary", boundary, "this observable needs a periodic container")
+
+
+def require_collisions(run: Run) -> None:
+    """Raise SceneError for a run whose measured part has none, so that nothing is known of their scatter."""
+    if not run.increments("collisions").any():
+        raise SceneError("collisions", 0, "none happened in the measured part; make a longer run")
 
 
 @contextmanager

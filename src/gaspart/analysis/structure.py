@@ -22,8 +22,10 @@ STRETCHES = 16
 _POINTS = 2**14
 _RATIOS = {2: 1.32471795724474602596, 3: 1.22074408460575947536}
 """Whose powers give evenly spread points: x^(d + 1) = x + 1 (Roberts 2018)."""
+_NEIGHBOURHOOD = {2: 7, 3: 13}  # a particle and those around it in a crystal
 MOST_FRAMES = 320
 """Frames, evenly spaced, that are searched for pairs of particles."""
+_CONSTANT = 1e-5  # relative change of an energy that is attributed to rounding
 FASTEST = 4.0
 """The histogram of speeds ends at this many thermal speeds sqrt(k_B T / m)."""
 
@@ -33,17 +35,20 @@ def speed_distribution(source: Source, bins: int = 40, start: float | None = Non
 
     source: a trajectory, by its path or open, or a simulation; bins: up to four thermal speeds; start: the
     time from which frames count (by default a quarter of the run). Velocities are those about the centre of
-    mass where that is conserved. The error is the scatter of groups of particles. Theory: Maxwell's, of the
-    run's own temperature. Raises SceneError for fewer than 16 moving particles.
+    mass where that is conserved, times sqrt(N / (N - 1)). The error is the scatter of groups of particles.
+    Theory: Maxwell's, of the run's own temperature; of one species at a constant kinetic energy the exact one
+    for their number. Raises SceneError for fewer than 16 moving particles, and for particles at rest.
     """
     bins = count_of("bins", bins, least=2)
     with measured(source, start) as run:
         if run.moving.sum() < STRETCHES:
             raise SceneError("count", int(run.moving.sum()), f"an error needs {STRETCHES} moving particles")
         masses, temperature = run.masses[run.moving], run.temperature
-        count = len(masses)
-        free = count / (count - 1) if run.conserved.all() else 1.0
-        speeds = np.sqrt(free * (run.peculiar**2).sum(axis=2))
+        if not temperature > 0.0:
+            raise SceneError("temperature", temperature, "particles at rest have no distribution")
+        free = np.where(run.conserved, len(masses) / (len(masses) - 1), 1.0)
+        squares = run.peculiar**2
+        speeds = np.sqrt((free * squares).sum(axis=2))
         edges = np.linspace(0.0, FASTEST * np.sqrt(temperature / masses.min()), bins + 1)
         # every group has a share of each species, which come one after the other
         groups = [speeds[:, first::STRETCHES] for first in range(STRETCHES)]
@@ -51,8 +56,12 @@ def speed_distribution(source: Source, bins: int = 40, start: float | None = Non
         values, errors = means_of(found)
         expected: dict[str, Any] = {}
         if np.ptp(masses) == 0.0:
-            share = np.diff(theory.maxwell_cdf(edges, run.dimension, temperature, masses[0]))
-            expected = {"theory": (share / np.diff(edges), 0.0), "source": "Maxwell's distribution"}
+            energy = squares.sum(axis=(1, 2))
+            fixed = np.ptp(energy) <= _CONSTANT * energy.mean()
+            freedoms = run.freedom if fixed else None
+            law = theory.maxwell_cdf(edges, run.dimension, temperature, masses[0], freedoms)
+            name = f"Maxwell's distribution{', of this number at fixed energy' if fixed else ''}"
+            expected = {"theory": (np.diff(law) / np.diff(edges), 0.0), "source": name}
         middle = 0.5 * (edges[1:] + edges[:-1])
         along = {"speed": (middle, {"units": "length / time", "long_name": "speed"})}
         about: dict[str, Any] = {"units": "time / length", "long_name": "density of speeds", **expected}
@@ -64,32 +73,47 @@ def rdf(
 ) -> Observable:
     """Radial distribution function g(r) of all particles of a periodic scene, (distance,), dimensionless.
 
-    Mean over up to 320 frames; furthest: the largest distance (five of the largest diameters, or just below
-    half of the shortest side). Theory: the value at contact of the fluid's equation of state, at the first
-    bins beyond the diameter only. Raises SceneError for walls, too few frames and too large a distance.
+    Pairs per those of N particles that are independent of one another, N (N - 1) / 2 pairs in the volume: 1
+    at every distance in an ideal gas of any number. Of a fluid it tends to 1 + (1 - S(0)) / N at large
+    distances, S(0) its reduced compressibility (Lebowitz and Percus, Phys. Rev. 122, 1675 (1961)). Mean
+    over up to 320 frames; furthest: the largest distance (five of the largest diameters, or just below half
+    of the shortest side). Theory: the value at contact that belongs to the pressure of N particles, at the
+    first bins beyond the diameter only. Raises SceneError for walls, fewer than two particles, too few
+    frames and too large a distance.
     """
     from gaspart.analysis.order import radial_distribution
 
     bins = count_of("bins", bins, least=2)
     with measured(source, start) as run:
         require_periodic(run)
-        lengths = run.scene.container.lengths
+        stored, lengths = run.data.sizes["atom"], run.scene.container.lengths
+        if stored < 2:
+            raise SceneError("count", stored, "a pair needs two particles")
         diameter, half = 2.0 * run.scene.largest_radius, 0.499 * min(lengths)
         rule = f"must be positive and below half of the shortest side, {half:.4g}"
         end = min(5.0 * diameter, half) if furthest is None else furthest
         end = number("furthest", end, rule, above=0.0, most=half)
         frames = _chosen(run, run.positions)
         found = [radial_distribution(part, lengths, bins, end) for part in np.array_split(frames, STRETCHES)]
-        values, errors = means_of(np.array([g for _, g in found]))
+        values, errors = means_of(stored / (stored - 1.0) * np.array([g for _, g in found], dtype=float))
         distance = np.asarray(found[0][0], dtype=float)
         expected: dict[str, Any] = {}
-        if run.fluid:
-            contact = float(theory.contact_value(run.scene.packing_fraction, run.dimension))
+        if run.of_fluid:
             near = (distance > diameter) & (distance < diameter + 1.5 * end / bins)
-            expected = {"theory": (np.where(near, contact, np.nan), np.nan), "source": "g at contact, from Z"}
+            at_contact = np.where(near, _contact_value(run), np.nan)
+            expected = {"theory": (at_contact, np.nan), "source": "g at contact, from Z of this number"}
         along = {"distance": (distance, {"units": "length", "long_name": "distance"})}
         about: dict[str, Any] = {"units": "1", "long_name": "radial distribution g(r)", **expected}
         return observable("rdf", along, values, errors, **about)
+
+
+def _contact_value(run: Run) -> float:
+    """g at contact of N particles of a fluid, of N (N - 1) / 2 pairs: from Z = 1 + 2^(d-1) eta g (N - 1) / N,
+    corrected to first order in 1/N."""
+    eta, d, count = run.scene.packing_fraction, run.dimension, run.count
+    excess = theory.compressibility_factor(eta, d) - 1.0
+    excess += theory.finite_size_correction(eta, d, count, "canonical")
+    return float(excess / (2.0 ** (d - 1) * eta) * count / (count - 1.0))
 
 
 def profile(
@@ -138,6 +162,11 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
 
     with measured(source, start) as run:
         require_periodic(run)
+        if run.data.sizes["atom"] < run.count:
+            rule = f"neighbours are among all {run.count} particles, which the file has not"
+            raise SceneError("follow", run.data.sizes["atom"], rule)
+        if run.count < _NEIGHBOURHOOD[run.dimension]:
+            raise SceneError("count", run.count, f"needs {_NEIGHBOURHOOD[run.dimension]} particles or more")
         lengths = run.scene.container.lengths
         frames, time = _chosen(run, run.positions), _chosen(run, run.time)
         if run.dimension == 2:

@@ -8,6 +8,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from gaspart.cli.arguments import Parser, UsageError, add_trajectory, print_line, real, set_command
 from gaspart.cli.progress import waiting
 from gaspart.errors import SceneError
@@ -75,8 +77,10 @@ def _print_scalar(name: str, found: Observable) -> None:
     line = f"{name} = {_with_error(found.estimate, found.error)}{'' if units == '1' else f' {units}'}"
     if found.theory is not None and found.deviation is not None:
         unsure = found[f"{found.estimate.name}_theory_error"]
-        line += f", theory {_with_error(found.theory, unsure)}: {float(found.deviation):+.1f} standard"
-        line += f" deviations ({found.attrs['source']})"
+        line += f", theory {_with_error(found.theory, unsure)}"
+        if np.isfinite(found.deviation):
+            line += f": {float(found.deviation):+.1f} standard deviations"
+        line += f" ({found.attrs['source']})"
     print_line(line)
 
 

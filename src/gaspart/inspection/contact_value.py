@@ -12,7 +12,9 @@ from scipy.spatial import cKDTree
 from gaspart.inspection.frames import Frames
 from gaspart.scene.geometry import ball_volume
 
-_WIDTH, _SHELLS, _DEGREE = 0.3, 15, 3
+WIDTH = 0.3
+"""Of the shells together, in diameters."""
+_SHELLS, _DEGREE = 15, 3
 FIT_ERROR = 0.005
 """Relative error of the cubic: 0.5 % for spheres at packing fraction 0.45, where g falls
 steepest (measured against the equation of state), less elsewhere."""
@@ -22,7 +24,7 @@ def contact_values(frames: Frames) -> np.ndarray:
     """(T,) g(sigma) of each frame of equal particles in a periodic container. Dimensionless."""
     n, d, sigma = frames.count, frames.dimension, frames.diameter
     assert sigma is not None, "requires equal particles"
-    edges = 1.0 + _WIDTH * np.linspace(0.0, 1.0, _SHELLS + 1)
+    edges = 1.0 + WIDTH * np.linspace(0.0, 1.0, _SHELLS + 1)
     volumes = ball_volume(d) * np.diff(edges**d)
     coefficients = _at_contact(edges, volumes, d)
     pairs = n * (n / np.prod(frames.lengths / sigma)) * volumes

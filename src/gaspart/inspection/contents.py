@@ -22,8 +22,9 @@ class Contents:
     multiplies; radii and masses (N,) or (T, N); ids (T, N), one for each particle, and species (T, N), which
     identify them; lengths and origin (T, 3), a length of 0 for walls at an unknown distance; boundary (3,),
     a word for each axis; centred: the origin is the middle of the container; flat: two dimensions; plain:
-    nothing but elastic contacts moves the particles, as far as the file states; resolution and
-    time_resolution: by how much a coordinate and a time may be off because of their type.
+    nothing but elastic contacts moves the particles, as far as the file states; isolated: the
+    file states that so it is; part: there are more particles; resolution and time_resolution: by how much a
+    coordinate and a time may be off because of their type.
     """
 
     positions: np.ndarray
@@ -40,6 +41,8 @@ class Contents:
     centred: bool = False
     flat: bool | None = None
     plain: bool = True
+    isolated: bool = False
+    part: bool = False
     resolution: float = 0.0
     time_resolution: float = 0.0
 
@@ -60,8 +63,8 @@ def complete_frames(found: Contents, given: Given, path: str) -> Frames:
     Raises SceneError for missing, invalid or contradictory values.
     """
     shape = found.positions.shape
-    if len(shape) != 3 or shape[0] < 1 or shape[1] < 2:
-        raise SceneError("file", path, "needs at least one frame of at least two particles")
+    if len(shape) != 3 or shape[0] < 1 or shape[1] < 1:
+        raise SceneError("file", path, "needs at least one frame of at least one particle")
     _require_finite("positions", found.positions, path)
     if found.velocities is not None:
         _require_finite("velocities", found.velocities, path)
@@ -90,6 +93,8 @@ def complete_frames(found: Contents, given: Given, path: str) -> Frames:
         velocities=None if found.velocities is None else found.velocities[:, :, :d].astype(float),
         time=_times(found, given, path),
         plain=found.plain and steady and alike,
+        isolated=found.isolated and steady and alike,
+        part=found.part,
         resolution=found.resolution,
         masses=None if masses is None else masses[0],
         lengths_by_frame=sides if len(sides) > 1 else None,

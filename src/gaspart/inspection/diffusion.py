@@ -7,10 +7,12 @@ import math
 import numpy as np
 
 from gaspart import theory
+from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
 from gaspart.inspection.frames import Frames
 
 _LINEAR_FROM = 12.0  # collisions per particle, from which on the displacement's square grows evenly
+_GROUPS = 32
 _DENSEST = 0.4915  # where spheres freeze, and the range of Erpenbeck and Wood ends
 
 
@@ -34,8 +36,13 @@ def why_not(frames: Frames) -> str | None:
     return None
 
 
-def diffusion(frames: Frames) -> tuple[float, float]:
-    """D and its standard error, by the rise of the mean-squared displacement from 12 to 24 collisions a
+def groups_of(frames: Frames) -> int:
+    """Number of groups of particles whose scatter gives the error."""
+    return min(frames.count, _GROUPS)
+
+
+def diffusion(frames: Frames) -> Estimate:
+    """D, by the rise of the mean-squared displacement from 12 to 24 collisions a
     particle.
 
     Of N particles whose total momentum is zero D is (N - 1) / N of its value without this condition; this is
@@ -50,8 +57,7 @@ def diffusion(frames: Frames) -> tuple[float, float]:
     ]  # (N,) each
     time = (last - first) * _interval(frames)
     rise = (squares[1] - squares[0]) / (6.0 * time) * n / (n - 1.0)
-    found = mean_of(np.array([part.mean() for part in np.array_split(rise, min(n, 32))]))
-    return found.value, found.error
+    return mean_of(np.array([part.mean() for part in np.array_split(rise, groups_of(frames))]))
 
 
 def expected_diffusion(frames: Frames) -> tuple[float, float]:

@@ -17,7 +17,8 @@ class Frames:
     None if the file does not state it; lengths (d,), radii and masses (N,), of the first frame where they
     change; lengths_by_frame (T, d) and radii_by_frame (T, N) where they do; periodic (d,) whether each axis
     is; plain: whether nothing but elastic contacts moves particles of one mass in a constant container, as
-    far as the file knows; resolution: by how much a position may be off, as a length.
+    far as the file knows; resolution: by how much a position may be off, as a length; isolated: whether the
+    file states that it is plain; part: whether there are more particles than the file has.
     """
 
     positions: np.ndarray
@@ -28,6 +29,8 @@ class Frames:
     time: np.ndarray | None = None
     plain: bool = True
     resolution: float = 0.0
+    isolated: bool = False
+    part: bool = False
     masses: np.ndarray | None = None
     lengths_by_frame: np.ndarray | None = None
     radii_by_frame: np.ndarray | None = None

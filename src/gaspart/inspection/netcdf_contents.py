@@ -223,9 +223,11 @@ def _check_shapes(found: Contents, path: Path) -> None:
 
 def _add_scene(found: Contents, path: Path) -> None:
     """Add what the scene of a trajectory of gaspart states."""
-    scene = read_recipe(path).scene
+    recipe = read_recipe(path)
+    scene = recipe.scene
     elastic = scene.restitution is None or scene.restitution.smooth_and_elastic
     quiet = scene.gravity is None and not scene.faces and not scene.walls and not scene.vibrates
+    quiet = quiet and scene.thermostat is None
     free = not any(kind.fixed for kind in scene.kinds)
     alike = len({kind.mass for kind in scene.kinds}) == 1  # of all, also where the file has only a part
     d, frames, count = scene.dimension, len(found.positions), found.positions.shape[1]
@@ -233,4 +235,5 @@ def _add_scene(found: Contents, path: Path) -> None:
     found.flat = d == 2
     found.lengths = np.broadcast_to(scene.container.lengths, (frames, d))
     found.masses = per_body(scene, "mass")[:count].astype(float)
-    found.plain = bool(elastic and quiet and free and alike)
+    found.plain = found.isolated = bool(elastic and quiet and free and alike)
+    found.part = recipe.stored_count < scene.count

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from gaspart.errors import SceneError
 from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
 
 _TABLES = Path(__file__).parent / "data"
@@ -51,14 +52,30 @@ def maxwell_pdf(speed: Numbers, dimension: int, temperature: float = 1.0, mass: 
 
 
 @checked
-def maxwell_cdf(speed: Numbers, dimension: int, temperature: float = 1.0, mass: float = 1.0) -> Values:
+def maxwell_cdf(
+    speed: Numbers,
+    dimension: int,
+    temperature: float = 1.0,
+    mass: float = 1.0,
+    freedoms: float | None = None,
+) -> Values:
     """Fraction of particles slower than `speed` (exact): incomplete gamma function P(d/2, m v^2 / 2 k_B
-    T)."""
-    from scipy.special import gammainc
+    T).
 
-    checked_dimension(dimension)
+    With `freedoms` D, of equal particles at the fixed energy D k_B T / 2 together: their velocities are
+    uniform on a sphere in D dimensions, d of which are those of one particle, and x = m v^2 / (D k_B T) has a
+    beta distribution: I_x(d/2, (D - d)/2) (exact). D is d N; or d (N - 1) for velocities about the centre of
+    mass times sqrt(N / (N - 1)). Raises SceneError for D <= d.
+    """
+    from scipy.special import betainc, gammainc
+
     energy = 0.5 * mass / temperature * np.maximum(np.asarray(speed, dtype=float), 0.0) ** 2
-    return gammainc(0.5 * dimension, energy)
+    half = 0.5 * checked_dimension(dimension)
+    if freedoms is None:
+        return gammainc(half, energy)
+    if not freedoms > dimension:
+        raise SceneError("freedoms", freedoms, f"must be more than the {dimension} of one particle")
+    return betainc(half, 0.5 * freedoms - half, np.minimum(2.0 * energy / freedoms, 1.0))
 
 
 @checked
@@ -84,6 +101,31 @@ def kurtosis(dimension: int, count: int | None = None, zero_momentum: bool = Fal
         return infinite
     freedoms = dimension * (count - 1 if zero_momentum else count)
     return infinite * freedoms / (freedoms + 2.0)
+
+
+@checked
+def kurtosis_scatter(dimension: int, count: int) -> tuple[float, float]:
+    """Standard deviation and skewness, over equilibrium, of the kurtosis of `count` particles at one time.
+
+    Of velocities uniform on a sphere in D = d N dimensions (exact): the kurtosis is N sum(q) / (sum e)^2 with
+    e = v^2 and q = e^2, which does not depend on sum(e) there. So its moment of order m is N^m <sum(q)^m> /
+    <(sum e)^2m> of independent normal velocities, whose <e^k> is d (d+2) ... (d+2k-2). A total momentum held
+    at zero changes it by a part 1/N (neglected).
+    """
+
+    def moment(freedoms: int, order: int) -> float:
+        return math.prod(freedoms + 2.0 * k for k in range(order))
+
+    n = float(count)
+    second, fourth, sixth = (moment(checked_dimension(dimension), k) for k in (2, 4, 6))
+    sums = (
+        n * second,
+        n * fourth + n * (n - 1.0) * second**2,
+        n * sixth + 3.0 * n * (n - 1.0) * fourth * second + n * (n - 1.0) * (n - 2.0) * second**3,
+    )
+    first, square, cube = (n**k * s / moment(dimension * count, 2 * k) for k, s in enumerate(sums, 1))
+    variance = square - first**2
+    return math.sqrt(variance), (cube - 3.0 * first * square + 2.0 * first**3) / variance**1.5
 
 
 def initial_kurtosis_slope(dimension: int) -> float:

@@ -1,0 +1,40 @@
+"""The deepest overlap of particles of any sizes, in time and memory that grow as their number."""
+
+from __future__ import annotations
+
+from itertools import chain, combinations_with_replacement
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+
+def deepest_overlap(
+    positions: np.ndarray, radii: np.ndarray, lengths: np.ndarray, periodic: tuple[bool, ...]
+) -> float:
+    """1 - distance / contact distance of the pair that overlaps most, 0 if none does, by nearest images.
+
+    positions (N, d), on periodic axes in [0, L]; radii (N,); lengths, periodic (d,). A particle wider than a
+    periodic side overlaps its own image. Particles are sorted into classes of sizes within a factor of two,
+    with a tree each: so a search reaches no farther than its pair of classes may touch.
+    """
+    sides = np.where(periodic, lengths, 0.0)
+    own = 1.0 - np.where(periodic, lengths, np.inf) / (2.0 * radii.max())
+    deepest = max(0.0, float(own.max()))
+    octave = np.floor(np.log2(radii / radii.min())).astype(int)
+    members = [np.flatnonzero(octave == k) for k in np.unique(octave)]
+    trees = [cKDTree(positions[one], boxsize=sides) for one in members]
+    for a, b in combinations_with_replacement(range(len(members)), 2):
+        reach = float(radii[members[a]].max() + radii[members[b]].max())
+        if a == b:
+            pairs = trees[a].query_pairs(reach, output_type="ndarray")
+        else:  # the larger ones ask: they are fewer where sizes differ much
+            near = trees[b].query_ball_tree(trees[a], reach)
+            asked = np.repeat(np.arange(len(near)), [len(one) for one in near])
+            pairs = np.stack([np.fromiter(chain.from_iterable(near), dtype=int), asked], axis=1)
+        if len(pairs):
+            first, second = members[a][pairs[:, 0]], members[b][pairs[:, 1]]
+            gap = positions[first] - positions[second]
+            gap -= np.where(sides > 0.0, lengths * np.round(gap / lengths), 0.0)
+            depth = 1.0 - np.sqrt((gap**2).sum(axis=1)) / (radii[first] + radii[second])
+            deepest = max(deepest, float(depth.max()))
+    return deepest

@@ -1,0 +1,37 @@
+"""The outcome of a check, in one line."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from gaspart.analysis.estimate import Estimate
+
+LIMIT = 4.0
+"""Standard errors from theory beyond which a check fails: by chance once in 16 000."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """The outcome of one check: whether it is passed (None: it could not be made), and why."""
+
+    name: str
+    passed: bool | None
+    text: str
+
+    def __str__(self) -> str:
+        word = {True: "ok", False: "WRONG", None: "-"}[self.passed]
+        return f"{word:6}{self.name}: {self.text}"
+
+
+def compared(
+    name: str, found: Estimate, theory: Estimate, basis: str, deviation: float | None = None
+) -> Check:
+    """Passed within `LIMIT` standard errors, those of both sides in quadrature.
+
+    basis: the source of theory, and how many samples there are; deviation: in standard errors, if it is not
+    the one of a normal or Student's distribution.
+    """
+    sigma = abs((found - theory).deviation if deviation is None else deviation)
+    text = f"{found.value:.5g} +- {found.error:.2g}, theory {theory.value:.5g}"
+    text += f" +- {theory.error:.2g}" if theory.error else ""
+    return Check(name, sigma <= LIMIT, f"{text}: {sigma:.1f} standard errors ({basis})")

@@ -1,0 +1,98 @@
+"""The clock of a trajectory, and how many independent samples it holds."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scenes import gas
+
+import gaspart as gp
+from gaspart.inspection.frames import Frames
+from gaspart.inspection.overlaps import deepest_overlap
+from gaspart.inspection.readers import read_frames
+from gaspart.inspection.samples import apart, collided, independent, moved, path, unevenness
+
+
+@pytest.mark.parametrize("boundary", ["periodic", "wall"])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_clock_counts_the_collisions_of_a_particle(dimension, boundary, tmp_path):
+    scene = gas(dimension, 300, 0.2, boundary)
+    file = gp.run(scene, gp.EventDriven(), 1, 5.0, 0.1, tmp_path / "a.nc")
+    with gp.open_trajectory(file) as run:
+        counted = 2.0 * run["collisions"].values / scene.count
+    found = collided(read_frames(file))
+    assert 0.7 * counted[-1] < found[-1] <= 1.05 * counted[-1]
+    assert (np.diff(found) >= 0.0).all()
+
+
+def test_nothing_happens_to_particles_in_flight_or_under_a_weak_thermostat():
+    rng = np.random.default_rng(1)
+    velocities = np.repeat(rng.standard_normal((1, 100, 3)), 20, axis=0)
+    still = Frames(np.zeros((20, 100, 3)), np.ones(3), np.ones(100), (True,) * 3, velocities)
+    assert collided(still)[-1] == 0.0
+    walk = np.cumsum(0.1 * rng.standard_normal(velocities.shape), axis=0)
+    assert collided(replace(still, velocities=velocities + walk))[-1] < 1.0
+
+
+def test_the_number_of_independent_samples():
+    assert independent(np.zeros(50), 1.0) == pytest.approx(1.0)
+    assert independent(1e3 * np.arange(50.0), 1.0) == pytest.approx(50.0)
+    times = np.sort(np.random.default_rng(2).random(40)) * 10.0
+    pairs = np.exp(-0.7 * np.abs(times[:, None] - times))
+    assert independent(times, 0.7) == pytest.approx(1.0 / pairs.mean())
+
+
+def test_ways_are_followed_across_faces():
+    steps = np.full((30, 5, 2), 0.3)
+    steps[:, 0] = -1.2  # the centre of mass stays
+    frames = Frames(np.cumsum(steps, axis=0) % 4.0, np.full(2, 4.0), np.ones(5), (True, True))
+    way = path(frames)
+    assert way[-1, 0] == pytest.approx(29 * np.array([-1.2, -1.2]))
+    assert moved(way, 1e3) is None and moved(way, 2.0) == 3  # 0.6 sqrt(2) sqrt(1 + ...) each
+    assert apart(way, 2.0) == list(range(0, 30, 3))
+
+
+def test_a_wave_is_uneven_and_random_places_are_not():
+    rng = np.random.default_rng(3)
+    for periodic in ((True, True), (False, True)):
+        x = rng.random((1, 500, 2))
+        frames = Frames(x, np.ones(2), np.full(500, 0.01), periodic)
+        assert unevenness(frames, 0, rng.random(500)) < 12.0
+        assert unevenness(frames, 0, np.where(x[0, :, 0] < 0.5, 1.0, 2.0)) > 100.0
+        assert unevenness(frames, 0, np.ones(500)) == 0.0
+
+
+@given(st.integers(0, 10**6))
+def test_the_deepest_overlap_is_that_of_all_pairs(seed):
+    rng = np.random.default_rng(seed)
+    count, d = rng.integers(1, 40), rng.integers(2, 4)
+    lengths, periodic = rng.uniform(1.0, 6.0, d), rng.integers(0, 2, d).astype(bool)
+    radii, places = 10.0 ** rng.uniform(-2.0, 0.2, count), rng.random((count, d)) * lengths
+    gap = places[:, None] - places
+    gap -= np.where(periodic, lengths * np.round(gap / lengths), 0.0)
+    depth = 1.0 - np.sqrt((gap**2).sum(axis=2)) / (radii[:, None] + radii)
+    np.fill_diagonal(depth, 0.0)
+    own = 1.0 - np.where(periodic, lengths, np.inf).min() / (2.0 * radii.max())
+    found = deepest_overlap(places, radii, lengths, tuple(periodic))
+    assert found == pytest.approx(max(0.0, depth.max(), own), abs=1e-12)
+
+
+def test_a_large_particle_does_not_make_all_small_ones_neighbours():
+    rng = np.random.default_rng(4)
+    places = rng.random((4000, 3)) * 30.0
+    places = places[((places - 15.0) ** 2).sum(axis=1) > 9.0**2]
+    places, radii = np.vstack([[[15.0] * 3], places]), np.append(8.0, np.full(len(places), 0.05))
+    reached = []
+
+    class Counted(np.ndarray):
+        """Positions that tell how many pairs are looked at."""
+
+        def __getitem__(self, key):
+            found = super().__getitem__(key)
+            reached.append(len(found))
+            return found
+
+    deepest_overlap(places.view(Counted), radii, np.full(3, 30.0), (False,) * 3)
+    assert sum(reached) < 10 * len(places)
