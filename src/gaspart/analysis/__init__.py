@@ -1,7 +1,8 @@
 """Observables with uncertainties. The functions below are the public ones, `gp.analysis`.
 
 Each takes a trajectory, by its path or open, or a `Simulation`, and returns an `Observable`: an
-xarray.Dataset with uncertainties, units and theory, which plots itself. They are loaded when first used.
+xarray.Dataset with uncertainties, units and theory, which plots itself. They are loaded when first
+used. `lyapunov_exponent` takes a simulation that has recorded its events.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ _HOMES = {
     "collision_rate": "pressure",
     "compressibility_factor": "pressure",
     "diffusion_coefficient": "motion",
+    "lyapunov_exponent": "lyapunov",
     "mean_squared_displacement": "motion",
     "order_parameter": "structure",
     "profile": "structure",

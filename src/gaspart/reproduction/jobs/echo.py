@@ -3,7 +3,7 @@ state.
 
 Exact mechanics returns. Rounding errors grow by exp(lambda) with every collision of a particle, in both
 directions, so the echo's distance shows how long the memory of the initial state lasts, and its growth
-is the largest Lyapunov exponent.
+is the largest Lyapunov exponent, which the linearised dynamics of the same gas give without rounding.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from gaspart.analysis.lyapunov import lyapunov_exponent
 from gaspart.engines import Engine, EventDriven, engine_from_dict
 from gaspart.reproduction.jobs.data import PointData
 from gaspart.scene.scene import Scene
@@ -21,6 +22,8 @@ from gaspart.state.state import State
 
 DISPLACEMENT = 1e-10
 """Root-mean-square displacement, in diameters, from which the exact flow's divergence is measured."""
+TANGENT_COLLISIONS = 100.0
+"""Collisions per particle over which the exponent of the linearised dynamics is measured, for each seed."""
 _SLACK = 1e-6  # of a time step: so that rounding of the duration loses no step
 
 
@@ -37,11 +40,13 @@ def echo(
     Returns over ``seed`` and ``sample``, of runs of 1 ... `samples` intervals: ``collisions`` per particle
     before the reversal, twice the number of contacts over that of particles; ``echo``, the root-mean-square
     distance from the initial state after the return, in diameters; ``divergence``, that of two event-driven
-    runs which start `DISPLACEMENT` apart, at the reversal. Attributes: the gas (`side` in diameters) and
-    engine.
+    runs which start `DISPLACEMENT` apart, at the reversal. Over ``seed``: ``exponent``, the largest Lyapunov
+    exponent per collision of a particle, of the event-driven engine; NaN of others. Attributes: the gas
+    (`side` in diameters) and engine.
     """
     shape = (len(seeds), samples)
     found = {name: np.empty(shape) for name in ("collisions", "echo", "divergence")}
+    exponents = np.full(len(seeds), np.nan)
     slack = _SLACK * getattr(engine, "time_step", 0.0)
     for n, seed in enumerate(seeds):
         equilibrium = Simulation(scene, EventDriven(), seed=seed)
@@ -61,8 +66,13 @@ def echo(
             found["collisions"][n, k] = 2.0 * there.tally.collisions / state.count
             found["echo"][n, k] = _distance(start, back.state)
             found["divergence"][n, k] = _distance(pair[0].state, pair[1].state)
+        if isinstance(engine, EventDriven):
+            exponents[n] = _exponent(equilibrium, samples * interval)
     return PointData(
-        {name: (("seed", "sample"), values) for name, values in found.items()},
+        {
+            **{name: (("seed", "sample"), values) for name, values in found.items()},
+            "exponent": ("seed", exponents),
+        },
         attributes={
             "count": scene.count,
             "dimension": scene.dimension,
@@ -73,6 +83,17 @@ def echo(
             "time_step": getattr(engine, "time_step", 0.0),
         },
     )
+
+
+def _exponent(equilibrium: Simulation, stretch: float) -> float:
+    """Of the run continued by stretches of time until `TANGENT_COLLISIONS`."""
+    equilibrium.reset_tally()
+    equilibrium.record_events = True
+    count = equilibrium.scene.count
+    while 2.0 * equilibrium.tally.collisions < TANGENT_COLLISIONS * count:
+        equilibrium.advance(duration=stretch)
+    tally = equilibrium.tally
+    return float(lyapunov_exponent(equilibrium).estimate) * count * tally.time / (2.0 * tally.collisions)
 
 
 def _displaced(state: State, seed: tuple[int, ...]) -> State:

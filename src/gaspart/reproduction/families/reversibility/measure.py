@@ -24,9 +24,9 @@ def reversibility(points: list[grid.Point], settings: dict) -> xr.Dataset:
     points: `echo` jobs. Over (``row``, ``sample``): ``collisions`` (mean) and ``echo`` (median over seeds, in
     diameters). Over ``row``: ``dimension``, ``packing_fraction``, ``count``, ``side`` (in diameters),
     ``engine``, ``precision``; ``growth`` of the logarithm of the echo per collision of a particle,
-    ``divergence`` of two exact runs likewise, and ``memory``, in collisions per particle, until the echo is
-    `FORGOTTEN`, each with its ``_error`` over the seeds; ``jumps``, the part of the echoes that leave the
-    window in one interval from its lower half.
+    ``divergence`` of two exact runs likewise, ``exponent``, of the linearised dynamics (NaN for time steps),
+    and ``memory``, in collisions per particle, until the echo is `FORGOTTEN`, each with its ``_error`` over
+    the seeds; ``jumps``, the part of the echoes that leave the window in one interval from its lower half.
     """
     rows = [_row(xr.load_dataset(point.path)) for point in points]
     rows = sorted(rows, key=lambda row: (row["dimension"], row["packing_fraction"]))
@@ -40,6 +40,7 @@ def _row(run: xr.Dataset) -> dict:
         "growth": [_slope(s, y, *WINDOW[precision]) for s, y in _pairs(run, "echo")],
         "divergence": [_slope(s, y, 1e-9, 1e-2) for s, y in _pairs(run, "divergence")],
         "memory": [_memory(s, y) for s, y in _pairs(run, "echo")],
+        "exponent": run.exponent.values,
     }
     row = {
         "dimension": run.attrs["dimension"],
