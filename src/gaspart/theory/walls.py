@@ -1,86 +1,84 @@
 r"""Hard particles between hard walls: what a container shifts in the pressure that its walls feel.
 
-Centres can touch a container that has walls on w of its d axes only within l = L - sigma on each of these,
-so that is the volume V to which the fluid's thermodynamics applies. With the surface tension gamma of the
-fluid at the plane of the centres and the free energy tau of an edge (3D) or corner (2D), the grand potential
-is, all walled sides being alike,
+Centres can touch a container that has walls on w of its d axes only within l_k = L_k - sigma on each of
+these, so that is the volume V to which the fluid's thermodynamics applies. With the surface tension gamma
+of the fluid at the plane of the centres, the free energy tau of an edge (3D; a corner in 2D) and kappa of a
+corner (3D), the grand potential is
 
-.. math:: \Omega / V = -P + 2 w \gamma / l + 2 w (w-1) \tau / l^2 .
+.. math:: \Omega / V = -P + \gamma s_1 + \tau s_2 + \kappa s_3, \quad
+          s_1 = \sum_i 2 / l_i, \quad s_2 = \sum_{i<j} 4 / l_i l_j, \quad s_3 = 8 / l_1 l_2 l_3 .
 
 Its derivative by the chemical potential is the number of particles, by one of the lengths the force on a
 wall:
 
-.. math:: N / V = \rho + 2 w \Gamma / l + 2 w (w-1) \Gamma_\tau / l^2, \qquad
+.. math:: N / V = \rho + \Gamma s_1 + \Gamma_\tau s_2 + \Gamma_\kappa s_3, \qquad
           F / A = P - 2 (w-1) \gamma / l - 2 (w-1)(w-2) \tau / l^2 ,
 
-with Gamma = - rho (d gamma / d rho) / (dP / d rho), likewise Gamma_tau, and rho the density of a bulk fluid
-of the same chemical potential. To second order in the density all of this is exact. Between two walls (w = 1)
-there are no edges and the walls feel just P. Everything here is in diameters and k_B T.
+the latter for equal lengths, with Gamma = - rho (d gamma / d rho) / (dP / d rho), likewise the others, and
+rho the density of a bulk fluid of the same chemical potential. Between two walls (w = 1) there are no edges
+and the walls feel just P. gamma, tau and kappa are exact to fifth order in the density, by cluster
+integrals (`clusters`). Everything here is in diameters and k_B T.
 """
 
 import math
-from collections.abc import Callable
-from functools import cache
-from pathlib import Path
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
 from gaspart.theory.geometry import number_density
-from gaspart.theory.state import compressibility_factor, compressibility_uncertainty, finite_size_correction
+from gaspart.theory.state import compressibility_factor, compressibility_uncertainty
 
-_TABLES = Path(__file__).parent / "data"
 _DENSEST = 0.49
-"""Where the table of the surface tension of spheres ends."""
-# To second order in rho, from the overlap of two centres in a box (exact): gamma = -coefficient rho^2 and
-# tau = coefficient rho^2.
-_SURFACE = {2: 1.0 / 3.0, 3: math.pi / 8.0}
-_EDGE = {2: 1.0 / 16.0, 3: 1.0 / 15.0}
-_THIRD_DISCS = 2.3560
-"""The third order of gamma for discs over the second, over eta: the cluster integral of three centres at a
-wall, by quasi-Monte Carlo (`tests/theory/test_walls.py`; 1e-4)."""
+"""Where the polynomials below end."""
+_SECOND_ORDER = {2: (-1.0 / 3.0, 1.0 / 16.0), 3: (-math.pi / 8.0, 1.0 / 15.0, -1.0 / 96.0)}
+"""Of gamma, tau and kappa in rho^2, from the overlap of two centres in a box (exact)."""
+_SHAPES: dict[int, tuple[tuple[float, ...], ...]] = {
+    2: ((1.0, 0.3564, 0.0695, -0.0916), (1.0, -4.5011, -1.1219, -0.004)),
+    3: (
+        (1.0, 1.2577, -0.195, -1.171),
+        (1.0, -8.425, -3.54, 11.05),
+        (1.0, -27.49, 137.6, -114.7),
+    ),
+}
+"""Polynomials in eta: gamma, tau and kappa times (1 - eta)^d over their second order. From the cluster
+integrals of three to five centres (`clusters.cluster_integrals`, 6 to 12 million samples of each, with that
+of the bulk, which is known, as a control variate) and the virial coefficients; good to one or two of the
+last digit, the last of each row to 0.1, 0.6 and 4 in 3D."""
 _STEP = 1e-4  # of the central differences, in packing fraction
+_STRETCH = 1e-3  # and in length, relative to it
 
 
-@cache
-def _shape(dimension: int) -> tuple[np.ndarray, np.ndarray]:
-    """Polynomials in eta for gamma (1 - eta)^d over its second-order form, which is 1 at eta = 0, and for its
-    uncertainty. Spheres: through the table's points to some 1e-4. Discs: exact to third order, and a tenth of
-    what (1 - eta)^-2 adds to that."""
-    if dimension == 2:
-        beyond = np.array([0.0, 0.0, 2.0 * _THIRD_DISCS - 1.0, -_THIRD_DISCS])
-        return np.array([1.0, _THIRD_DISCS - 2.0]), -0.1 * beyond
-    eta, tension, uncertainty = np.loadtxt(
-        _TABLES / "surface_tension_3d.csv", delimiter=",", skiprows=1, unpack=True
-    )
-    scale = -_SURFACE[3] * number_density(eta, 3) ** 2 / (1.0 - eta) ** 3
-    design = eta[:, None] ** np.arange(1, 6)
-    excess = np.linalg.lstsq(design, tension / scale - 1.0, rcond=None)[0]
-    spread = np.linalg.lstsq(design, -uncertainty / scale, rcond=None)[0]
-    return np.concatenate([[1.0], excess]), np.concatenate([[0.0], spread])
+def _element(packing_fraction: Numbers, dimension: int, kind: int, further: float = 0.0) -> Values:
+    """gamma, tau or kappa (kind 0, 1, 2), with a `further` coefficient of eta^4 in its polynomial."""
+    eta = np.asarray(packing_fraction, dtype=float)
+    shape = np.polynomial.polynomial.polyval(eta, (*_SHAPES[dimension][kind], further))
+    scale = _SECOND_ORDER[dimension][kind] * number_density(eta, dimension) ** 2
+    return scale / (1.0 - eta) ** dimension * shape
 
 
-def _tension(packing_fraction: Numbers, dimension: int, which: int) -> Values:
-    eta = checked_packing_fraction(packing_fraction, _DENSEST)
-    scale = -_SURFACE[checked_dimension(dimension)] * number_density(eta, dimension) ** 2
-    polynomial = np.polynomial.polynomial.polyval(eta, _shape(dimension)[which])
-    return scale / (1.0 - eta) ** dimension * polynomial
+def _unknown(dimension: int, kind: int) -> float:
+    """What the first coefficient that is left out may be: the larger of the last two that are known."""
+    return max(map(abs, _SHAPES[dimension][kind][-2:]))
 
 
 def surface_tension(packing_fraction: Numbers, dimension: int) -> Values:
     """gamma sigma^(d-1) / k_B T of the fluid at a hard wall, its area counted where centres touch (negative).
 
-    Spheres: White Bear II, Hansen-Goos and Roth, J. Phys. Condens. Matter 18, 8413 (2006) (table, computed).
-    Discs: the exact second order times (1 + 0.356 eta) / (1 - eta)^2, exact to third order (computed). Range:
-    eta <= 0.49.
+    Exact to fifth order in the density, times (1 - eta)^-d (computed, `clusters`). Spheres: 0.3 % above White
+    Bear II, Hansen-Goos and Roth, J. Phys. Condens. Matter 18, 8413 (2006), at eta = 0.2, 1.2 % at 0.3
+    (tested). Range: eta <= 0.49.
     """
-    return _tension(packing_fraction, dimension, 0)
+    eta = checked_packing_fraction(packing_fraction, _DENSEST)
+    return _element(eta, checked_dimension(dimension), 0)
 
 
 def surface_tension_uncertainty(packing_fraction: Numbers, dimension: int) -> Values:
-    """Standard uncertainty of `surface_tension`. Spheres: its distance from scaled particle theory, or 1 %;
-    discs: a tenth of all that is beyond the exact third order (an estimate)."""
-    return np.abs(_tension(packing_fraction, dimension, 1))
+    """Standard uncertainty of `surface_tension`: of the first coefficient that is left out, which is taken
+    to be as large as the larger of the last two that are known (an estimate)."""
+    eta = checked_packing_fraction(packing_fraction, _DENSEST)
+    further = _unknown(checked_dimension(dimension), 0)
+    return np.abs(_element(eta, dimension, 0, further) - _element(eta, dimension, 0))
 
 
 @checked
@@ -90,9 +88,10 @@ def wall_pressure(
     """Mean pressure of `count` particles on the walls of a container, and its uncertainty.
 
     The force on a wall over the area that centres can touch, of the canonical ensemble: the module's
-    equations, and the canonical correction of first order in 1/N (`finite_size_correction`). The uncertainty
-    is that of the equation of state, of the surface tension, and of the edges, whose second order is
-    uncertain by as much as gamma exceeds its own.
+    equations, and the canonical correction of first order in 1/N, surfaces included (`_canonical`). The
+    uncertainty is that of the equation of state, and of surfaces, edges and corners, estimated as that of
+    `surface_tension`. Neglected: 1/N^2, and what opposite walls have to do with each other (exponentially
+    small in their distance, and exact to fifth order in the density from four diameters on).
 
     length: the side of the container along each of its walled `axes`, in diameters; density: particles per
     volume that centres can touch. Returns two numbers in k_B T / sigma^d. Raises ValueError for a container
@@ -103,55 +102,91 @@ def wall_pressure(
         raise ValueError(f"length: {length} (must be above 1, the diameter)")
     if not 1 <= axes <= checked_dimension(dimension):
         raise ValueError(f"axes: {axes} (from 1 to {dimension} have walls)")
-    arguments = length - 1.0, density, count, dimension, axes
-    eta, value = _in_container(*arguments)
-    tension = float(surface_tension(eta, dimension))
-    relative = float(surface_tension_uncertainty(eta, dimension)) / abs(tension)
-    second_order = -_SURFACE[dimension] * number_density(eta, dimension) ** 2
-    errors = (
-        number_density(eta, dimension) * float(compressibility_uncertainty(eta, dimension)),
-        _in_container(*arguments, tension=1.0 + relative)[1] - value,
-        _in_container(*arguments, edge=tension / second_order)[1] - value,
-    )
+    walled = int(axes)
+    sides = (length - 1.0,) * walled
+    none = (0.0,) * walled
+    eta, value = _in_container(sides, density, count, dimension, none)
+    errors = [number_density(eta, dimension) * float(compressibility_uncertainty(eta, dimension))]
+    for kind in range(walled):
+        further = [0.0] * walled
+        further[kind] = _unknown(dimension, kind)
+        errors.append(_in_container(sides, density, count, dimension, further)[1] - value)
     return value, math.hypot(*errors)
 
 
+class _Container:
+    """The fluid in a container with walls at the distances `sides` for centres, by the packing fraction of
+    the bulk; further: coefficients for `_element`. All per volume."""
+
+    def __init__(self, sides: Sequence[float], dimension: int, further: Sequence[float]) -> None:
+        self.dimension, self.further = dimension, further
+        inverse = [2.0 / side for side in sides]
+        sums = [sum(inverse), 0.5 * (sum(inverse) ** 2 - sum(one**2 for one in inverse)), math.prod(inverse)]
+        self.elements = sums[: len(sides)]
+
+    def surplus(self, eta: float) -> float:
+        """The grand potential without the bulk's."""
+        parts = zip(self.elements, range(self.dimension), self.further, strict=False)
+        return sum(float(_element(eta, self.dimension, kind, more)) * size for size, kind, more in parts)
+
+    def rise(self, eta: float) -> float:
+        """d eta / d mu times the volume of a particle: rho / (dP / d rho), in bulk."""
+        slope = _slope(lambda x: x * compressibility_factor(x, self.dimension), eta)
+        return float(number_density(eta, self.dimension)) / slope
+
+    def particles(self, eta: float) -> float:
+        """N: rho and what is adsorbed."""
+        unit = float(number_density(1.0, self.dimension))
+        return eta * unit - self.rise(eta) * _slope(self.surplus, eta) / unit
+
+    def fluctuation(self, eta: float) -> float:
+        """dN / d mu."""
+        return self.rise(eta) * _slope(self.particles, eta) / float(number_density(1.0, self.dimension))
+
+    def bulk(self, particles: float) -> float:
+        """The packing fraction of the bulk at which there are so many particles, by bisection."""
+        low, high = 3.0 * _STEP, _DENSEST - 3.0 * _STEP
+        if self.particles(high) < particles:
+            raise ValueError(f"density: {particles} (the fluid would be denser than {_DENSEST})")
+        while high - low > 1e-13:
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if self.particles(middle) < particles else (low, middle)
+        return low
+
+
 def _in_container(
-    inner: float,
-    density: float,
-    count: int,
-    dimension: int,
-    axes: int,
-    tension: float = 1.0,
-    edge: float = 1.0,
+    sides: Sequence[float], density: float, count: int, dimension: int, further: Sequence[float]
 ) -> tuple[float, float]:
-    """Packing fraction of the bulk, and pressure on the walls, with gamma and tau multiplied."""
-    surfaces, edges = 2 * axes / inner, 2 * axes * (axes - 1) / inner**2
+    """Packing fraction of the bulk, and pressure on the walls across the first axis."""
+    here = _Container(sides, dimension, further)
+    eta = here.bulk(density)
+    bulk = float(number_density(eta, dimension) * compressibility_factor(eta, dimension))
 
-    def gamma(eta: float) -> Values:
-        return tension * surface_tension(eta, dimension)
+    def stretched(factor: float) -> _Container:
+        return _Container((sides[0] * factor, *sides[1:]), dimension, further)
 
-    def tau(eta: float) -> Values:
-        return edge * _EDGE[dimension] * number_density(eta, dimension) ** 2
+    wide, narrow = 1.0 + _STRETCH, 1.0 - _STRETCH
+    surplus = (wide * stretched(wide).surplus(eta) - narrow * stretched(narrow).surplus(eta)) / (
+        2.0 * _STRETCH
+    )
+    return eta, bulk - surplus + _canonical(stretched, density, count)
 
-    def excess(eta: float) -> float:
-        """By how much the particles at this density of the bulk are too many."""
-        slope = _slope(lambda x: x * compressibility_factor(x, dimension), eta)
-        adsorbed = -eta / slope * (surfaces * _slope(gamma, eta) + edges * _slope(tau, eta))
-        return float(number_density(eta, dimension) + adsorbed - density)
 
-    low, high = _STEP, _DENSEST - _STEP
-    if excess(high) < 0.0:
-        raise ValueError(f"density: {density} (the fluid would be denser than {_DENSEST})")
-    while high - low > 1e-13:
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if excess(middle) < 0.0 else (low, middle)
-    z = compressibility_factor(low, dimension) + finite_size_correction(low, dimension, count, "canonical")
-    at_surface = 2 * (axes - 1) * gamma(low) / inner
-    at_edges = 2 * (axes - 1) * (axes - 2) * tau(low) / inner**2
-    return low, float(number_density(low, dimension) * z - at_surface - at_edges)
+def _canonical(stretched: Callable[[float], _Container], density: float, count: int) -> float:
+    """By how much the pressure of `count` particles differs from that of the grand canonical ensemble.
+
+    The saddle point takes N out of the grand partition function: ln Q_N = -Omega - N mu - ln(2 pi dN/dmu) /
+    2. The derivative of the last term by the length of the first axis at fixed N, surfaces included; to
+    first order in 1/N, as `state.finite_size_correction`, which is that of a periodic container.
+    """
+    logarithms = []
+    for factor in (1.0 + _STRETCH, 1.0 - _STRETCH):
+        container = stretched(factor)
+        eta = container.bulk(density / factor)
+        logarithms.append(math.log(factor * container.fluctuation(eta)))
+    return -0.5 * density / count * (logarithms[0] - logarithms[1]) / (2.0 * _STRETCH)
 
 
 def _slope(function: Callable[[float], Values], eta: float) -> float:
     """d function / d eta, by a central difference."""
-    return (function(eta + _STEP) - function(eta - _STEP)) / (2.0 * _STEP)
+    return float(function(eta + _STEP) - function(eta - _STEP)) / (2.0 * _STEP)

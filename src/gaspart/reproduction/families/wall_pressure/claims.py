@@ -12,12 +12,10 @@ from gaspart.reproduction.families.shared.claims import PARTICLES, deviations, r
 RELATIVE_ERROR = 1e-3
 """The largest standard error of a pressure, relative to it, at which a mean of comparisons means anything."""
 THEORY = (
-    "bulk equation of state, surface tension and edges of the container (Hansen-Goos & Roth 2006; computed)"
+    "bulk equation of state; surfaces, edges and corners of the container to fifth order in the density, by "
+    "cluster integrals (gaspart.theory.clusters); canonical ensemble to first order in 1/N"
 )
-TENSION = (
-    "surface tension: the distance of White Bear II from scaled particle theory (spheres), a tenth of what "
-    "is beyond the exact second order (discs)"
-)
+TENSION = "surfaces, edges and corners: a sixth order as large as the larger of the two before"
 FAILS = "wall collisions are missed or counted twice, or the wrong area, volume or density is taken"
 
 
@@ -71,7 +69,7 @@ def _uncertain(measured: Estimate, allowance: float) -> str:
     measurement; else nothing."""
     if allowance <= measured.error:
         return ""
-    return "surfaces and edges are less certain than the measurement, by an estimate without a citation"
+    return "surfaces and edges are less certain than the measurement, by an estimate of what is left out"
 
 
 def _closed(row: xr.Dataset) -> Claim:
