@@ -4,6 +4,7 @@ import sys
 
 import numpy as np
 import pytest
+from scipy.integrate import cumulative_trapezoid
 
 import gaspart as gp
 from gaspart import theory
@@ -197,3 +198,29 @@ def test_an_adiabat_is_that_of_the_ideal_gas_and_of_each_small_step():
         assert theory.adiabatic_temperature(0.01, 0.4, dimension) == pytest.approx(1.0 / expected, rel=1e-7)
     with pytest.raises(gp.SceneError, match="packing_fraction"):
         theory.adiabatic_temperature(0.9, 0.1, 2)
+
+
+@pytest.mark.parametrize(("dimension", "eta"), [(2, 0.1), (2, 0.4), (3, 0.1), (3, 0.4)])
+def test_the_factor_at_constant_enthalpy_is_that_of_its_integral_over_the_volume(dimension, eta):
+    """Q(V) from the pressure at constant N and V, to first order in 1/N; 1/N^2 is neglected."""
+    count, freedom = 1000, 1000 * dimension
+    z = theory.compressibility_factor(eta, dimension)
+    pressure, enthalpy = z, 0.5 * freedom + count * z  # k_B T and N / V are 1 at the mean
+    volume = count * np.linspace(0.8, 1.2, 4001)
+    dense = eta * count / volume
+    shift = theory.finite_size_correction(dense, dimension, count, ensemble="canonical")
+    slope = count / volume * (theory.compressibility_factor(dense, dimension) + shift)
+    logarithm = cumulative_trapezoid(slope, volume, initial=0.0)
+    logarithm += (0.5 * freedom - 1.0) * np.log(enthalpy - pressure * volume)
+    weight = np.exp(logarithm - logarithm.max())
+    mean = float(weight @ volume / weight.sum())
+    temperature = 2.0 * (enthalpy - pressure * mean) / freedom
+    own = eta * count / mean
+    factor = pressure * mean / (count * temperature * theory.compressibility_factor(own, dimension))
+    expected = float(theory.constant_enthalpy_factor(own, dimension, count))
+    assert expected > 1.0001
+    assert factor == pytest.approx(expected, abs=0.02 * (expected - 1.0))
+
+
+def test_a_dilute_gas_behind_a_piston_is_ideal():
+    assert theory.constant_enthalpy_factor(1e-4, 3, 100) == pytest.approx(1.01, abs=1e-5)

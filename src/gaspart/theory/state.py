@@ -155,3 +155,26 @@ def finite_size_correction(
         return canonical
     excess = compressibility_factor(eta, dimension) - 1.0
     return (excess + canonical) * count / (count - 1.0) - excess
+
+
+@checked
+def constant_enthalpy_factor(packing_fraction: Numbers, dimension: int, count: Numbers) -> Values:
+    """P V_0 / (N k_B <T> Z) of N particles behind a piston, V_0 = <V>, Z that of the infinite fluid at N /
+    V_0.
+
+    The ensemble of constant pressure and enthalpy (Andersen, J. Chem. Phys. 72, 2384 (1980)) has the weight
+    Q(V) (H - P V)^(f/2 - 1), f degrees of freedom. The mean of its derivative by V vanishes: <d ln Q / dV>
+    = P (f/2 - 1) <1 / (H - P V)>. Expanded to second order in V - V_0, whose variance is s V_0^2 / N with
+    1/s = y' + 2 Z^2 / d, y = eta Z(eta), and with the canonical correction of Q (`finite_size_correction`),
+    f = d N:
+
+        1 + (s / N) [y' / Z + (2 / d) y' - eta y'' Z / (d y')].
+
+    1 + 1/N for an ideal gas, in which it is exact. To first order in 1/N. The temperature is 2 <E> / (d N).
+    """
+    eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
+    slope, curvature = _slope_and_curvature(eta, dimension)
+    z = compressibility_factor(eta, dimension)
+    variance = speed_of_sound(eta, dimension) ** -2
+    bracket = slope / z + 2.0 / dimension * slope - eta * curvature * z / (dimension * slope)
+    return 1.0 + variance / np.asarray(count, dtype=float) * bracket

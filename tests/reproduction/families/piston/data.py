@@ -26,7 +26,10 @@ def gases(exponent=1.0, back=1.0, factor=1.0, fluctuation=1.0, energy=1.0, heat=
     density = np.array([0.1, 0.3, 0.1, 0.3])
     kinds = np.repeat(dimensions, 2)
     known = [
-        (theory.compressibility_factor(eta, d), theory.speed_of_sound(eta, d) ** -2)
+        (
+            theory.compressibility_factor(eta, d) * theory.constant_enthalpy_factor(eta, d, 500),
+            theory.speed_of_sound(eta, d) ** -2,
+        )
         for eta, d in zip(density, kinds, strict=True)
     ]
     factors, variances = np.array(known).T

@@ -30,5 +30,7 @@ def test_paths_states_and_an_expansion():
     shows(upper, "volume", "temperature", *paths)
     shows(middle, "", "reference", *factors)
     shows(lower, "packing fraction", "variance", *variances)
+    for line, dimension in zip(lines(middle)[-2:], (2, 3), strict=True):
+        obeys(line, lambda eta, d=dimension: theory.constant_enthalpy_factor(eta, d, 500))
     for line, dimension in zip(lines(upper), (2, 3), strict=True):
         obeys(line, lambda v, d=dimension: theory.adiabatic_temperature(0.005 / v, 0.005, d))

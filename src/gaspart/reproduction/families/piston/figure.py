@@ -32,8 +32,6 @@ def piston(ds: xr.Dataset) -> Figure:
     upper.set_ylabel(r"temperature $T/T_0$")
     upper.legend()
     style.level(lower, 1.0)
-    if "state_count" in ds:
-        style.level(middle, 1.0 + 1.0 / float(ds["state_count"][0]), label="$1+1/N$")
     for dimension in (2, 3):
         states = ds.isel(state=(ds["state_dimension"] == dimension).values)
         if states.sizes["state"]:
@@ -70,6 +68,10 @@ def _draw_states(middle: Axes, lower: Axes, states: xr.Dataset, dimension: int) 
         mean, error = ratio.mean("state_replica"), ratio.std("state_replica", ddof=1) / root
         style.points(axis, eta, mean, error, kind, label=PARTICLES[dimension])
     fine = np.linspace(0.0, eta.max(), 60)
+    finite = theory.constant_enthalpy_factor(fine, dimension, int(states["state_count"][0]))
+    middle.plot(
+        fine, finite, color=style.COLOURS[kind], zorder=1, label=f"{PARTICLES[dimension]}, finite $N$"
+    )
     isothermal = [
         isothermal_variance(one, dimension) * theory.speed_of_sound(one, dimension) ** 2 for one in fine
     ]
