@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import gaspart as gp
 from gaspart import theory
 
 
@@ -99,6 +100,45 @@ def test_the_driven_gas_loses_what_it_is_given():
         rate = theory.collision_rate(0.1, dimension, temperature=float(temperature))
         lost = theory.cooling_rate(e, dimension) * rate * temperature
         assert lost == pytest.approx(2.0 * 0.02 / dimension, rel=1e-3)
+
+
+@pytest.mark.parametrize(("count", "dimension"), [(4, 2), (30, 3)])
+def test_the_cumulant_of_few_maxwellian_particles_is_not_zero(count, dimension):
+    velocities = np.random.default_rng(9).standard_normal((200_000, count, dimension))
+    velocities -= velocities.mean(axis=1, keepdims=True)
+    squares = (velocities**2).sum(axis=2)
+    second = (squares.mean(axis=1) ** 2).mean()
+    found = dimension * (squares**2).mean() / ((dimension + 2) * second) - 1.0
+    expected = theory.finite_size_cumulant(0.0, count, dimension)
+    assert found == pytest.approx(expected, abs=0.02 * abs(expected) + 1e-3)
+
+
+def test_few_driven_particles_are_as_warm_as_many():
+    """Of 12 spheres: 6 % more than if their power alone were that without the centre of mass's share."""
+    count, eta, e, ratios = 12, 0.002, 0.7, []
+    side = float(count / theory.number_density(eta, 3)) ** (1.0 / 3.0)
+    power = 0.5 * (1.0 - e**2) * theory.collision_rate(eta, 3)
+    power *= 1.0 + 0.1875 * theory.driven_cumulant(e, 3)
+    assert theory.driven_temperature(e, 3, power, eta) == pytest.approx(1.0)
+    time = 1.0 / float(theory.collision_rate(eta, 3))
+    scene = gp.Scene(
+        gp.Container((side,) * 3, "periodic"),
+        species=[gp.Species(count, 0.5, temperature=1.0)],
+        restitution=gp.Restitution(e),
+        thermostat=gp.Thermostat(float(power), 0.031 * time),
+    )
+    for seed in range(6):
+        run = gp.Simulation(scene, gp.EventDriven(), seed=seed)
+        run.advance(duration=20.0 * time)
+        sums = []
+        for _ in range(200):
+            run.advance(duration=4.0 * time)
+            moved = run.state.velocities - run.state.velocities.mean(axis=0)
+            sums.append((moved**2).sum() / (3.0 * (count - 1)))
+        ratios.append(np.mean(sums))
+    error = np.std(ratios, ddof=1) / np.sqrt(6)
+    assert error < 0.015
+    assert np.mean(ratios) == pytest.approx(1.0, abs=3.5 * error)
 
 
 @pytest.mark.parametrize(("count", "dimension"), [(3, 2), (4, 3), (20, 2)])

@@ -70,7 +70,8 @@ def haff_time(restitution: Numbers, dimension: int, collision_rate: Numbers) -> 
 
 
 def driven_cumulant(restitution: Numbers, dimension: int) -> Values:
-    """a2 of the smooth inelastic gas that white noise heats, in its steady state.
+    """a2 of the smooth inelastic gas that white noise heats, in its steady state; of few particles see
+    `finite_size_cumulant`.
 
     a2 = 16 (1-e) (1-2e^2) / (73 + 56 d - (24 d + 105) e + 30 e^2 (1-e)); van Noije and Ernst, Granular Matter
     1, 57 (1998). Derived again (tested): the moments mu_2 ~ 1 + 3 a2/16 and mu_4 ~ d + 3/2 + e^2 + a2
@@ -83,6 +84,18 @@ def driven_cumulant(restitution: Numbers, dimension: int) -> Values:
 
 
 @checked
+def finite_size_cumulant(cumulant: Numbers, count: Numbers, dimension: int) -> Values:
+    """(1 + a2) D / (D + 2) - 1, D = d (N - 1): what d <v^4> / ((d + 2) <(v^2)^2>) - 1 is of N particles.
+
+    `cumulant`: a2 of many. <(v^2)^2> is the mean over time of the square of the mean of v^2 over the
+    particles, and the velocities are those about the centre of mass. Exact for a2 = 0: at one energy all
+    velocities are uniform on a sphere in D dimensions; corrections are a2/N.
+    """
+    freedoms = checked_dimension(dimension) * (np.asarray(count, dtype=float) - 1.0)
+    return (1.0 + np.asarray(cumulant)) * freedoms / (freedoms + 2.0) - 1.0
+
+
+@checked
 def driven_temperature(
     restitution: Numbers, dimension: int, power: Numbers, packing_fraction: Numbers
 ) -> Values:
@@ -90,6 +103,14 @@ def driven_temperature(
 
     Contacts take (1 - e^2)/2 nu T (1 + 3 a2/16) per particle and time, nu = nu_1 sqrt(T) Enskog's rate of the
     elastic gas: T^(3/2) = 2 power / ((1 - e^2) nu_1 (1 + 3 a2/16)). Infinite for e = 1.
+
+    Of N particles too, T about the centre of mass of N - 1: kicks that keep the momentum give them power (1 -
+    1/N) each, and each has N - 1 partners instead of N (dilute; the energy fluctuates by 0.8 to 1.2 times as
+    much as at equilibrium, which changes the mean of T^(3/2) by 0.1/N at most). Molecular chaos:
+    velocities are uncorrelated before contacts. Kicks let pairs that have just collided, and lost their
+    relative velocity, meet again, and drive long waves, which renormalise T (van Noije, Ernst, Trizac &
+    Pagonabarraga, Phys. Rev. E 59, 4326 (1999)): T is 1 % higher for discs of e = 0.4 at a packing fraction
+    of 0.01, and less than can be measured, 0.2 %, at 0.001.
     """
     rate = collision_rate(packing_fraction, dimension)
     e = _checked_restitution(restitution)

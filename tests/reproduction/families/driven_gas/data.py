@@ -11,9 +11,10 @@ def driven(temperature=1.0, cumulant=0.0, given=1.0):
     dimension, restitution = np.array([2, 2, 3, 3]), np.array([0.9, 0.4, 0.9, 0.4])
     power, count, eta = np.full(4, 0.01), np.full(4, 500), np.full(4, 0.01)
     own = power * (1.0 - 1.0 / count)
-    kinds = list(zip(restitution, dimension, own, eta, strict=True))
+    kinds = list(zip(restitution, dimension, power, eta, strict=True))
     steady = np.array([float(theory.driven_temperature(*kind)) for kind in kinds])
-    fourth = np.array([float(theory.driven_cumulant(*kind[:2])) for kind in kinds])
+    many = np.array([float(theory.driven_cumulant(*kind[:2])) for kind in kinds])
+    fourth = np.array([theory.finite_size_cumulant(a, 500, d) for a, d in zip(many, dimension, strict=True)])
     columns = {
         "dimension": dimension,
         "restitution": restitution,

@@ -17,7 +17,7 @@ def test_a_driven_gas_is_at_the_temperature_of_the_energy_balance(tmp_path):
     point = made(tmp_path, "driven", scene, duration=1000.0, samples=50, equilibration=200.0)
     ds = measure.driven_gas([point], {}).isel(gas=0)
     power = 0.03 * (1.0 - 1.0 / 128)
-    expected = theory.driven_temperature(0.6, 2, power, 0.02)
+    expected = theory.driven_temperature(0.6, 2, 0.03, 0.02)
     assert abs(ds["temperature"] / expected - 1.0) < 4.0 * ds["temperature_error"] / expected + 0.02
     assert ds["temperature_error"] < 0.05 * expected
     assert ds["given"] == pytest.approx(power, abs=4.0 * float(ds["given_error"]) + 1e-3 * power)

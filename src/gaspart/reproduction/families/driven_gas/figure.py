@@ -19,16 +19,16 @@ def driven_gas(ds: xr.Dataset) -> Figure:
     style.level(lower, 0.0)
     for kind, dimension in enumerate(sorted(set(ds["dimension"].values.tolist()))):
         gases, name = ds.isel(gas=(ds["dimension"] == dimension).values), PARTICLES[dimension]
-        e, power = gases["restitution"], gases["power"] * (1.0 - 1.0 / gases["count"])
+        e, power, count = gases["restitution"], gases["power"], int(gases["count"][0])
         unit = theory.driven_temperature(e.values, dimension, power.values, gases["packing_fraction"].values)
         style.points(
             upper, e, gases["temperature"] / unit, gases["temperature_error"] / unit, kind, label=name
         )
         style.points(lower, e, gases["cumulant"], gases["cumulant_error"], kind, label=name)
         colour = style.COLOURS[kind]
-        lower.plot(curve, theory.driven_cumulant(curve, dimension), color=colour, zorder=1)
-        cooling = theory.fourth_cumulant(curve, dimension)
-        lower.plot(curve, cooling, color=colour, linestyle=":", zorder=1)
+        for of, line in ((theory.driven_cumulant, "-"), (theory.fourth_cumulant, ":")):
+            own = theory.finite_size_cumulant(of(curve, dimension), count, dimension)
+            lower.plot(curve, own, color=colour, linestyle=line, zorder=1)
     upper.set_ylabel(r"$T$ / energy balance")
     lower.set_ylabel(r"fourth cumulant $a_2$")
     for axis in (upper, lower):
