@@ -122,7 +122,8 @@ def _with_drift(side: xr.Dataset, name: str) -> Estimate:
 
 
 def _starts(at: xr.Dataset, phase: str) -> list[xr.Dataset]:
-    """The runs that a phase is measured from: a liquid forgets its start; of a crystal, that from the crystal."""
+    """The runs that a phase is measured from: a liquid forgets its start; of a crystal, that from the
+    crystal."""
     return rows(at, "start") if phase == "liquid" else [at.isel(start=0)]
 
 
