@@ -49,6 +49,7 @@ def changed(dataset, name, value, **where):
         ("plateau", 9.35, {"start": "fluid"}, "from the crystal minus"),
         ("plateau", 8.9, {"start": "fluid"}, "from the fluid"),
         ("pressure", 8.6, {"packing_fraction": 0.68, "start": "crystal"}, "liquid of 1024"),
+        ("pressure", 8.6, {"packing_fraction": 0.68, "start": "fluid"}, "liquid of 1024"),
         ("pressure", 9.6, {"packing_fraction": 0.725, "start": "crystal"}, "crystal of 1024"),
         ("order", 0.6, {"packing_fraction": 0.68, "start": "crystal"}, "most ordered"),
         ("order", 0.3, {"packing_fraction": 0.725, "start": "fluid"}, "least ordered"),
