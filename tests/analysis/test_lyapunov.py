@@ -75,6 +75,19 @@ def test_the_exponent_of_discs_is_that_of_an_independent_program():
     assert np.mean(found) == pytest.approx(2.760, abs=4.0 * np.hypot(error, 0.009))
 
 
+def test_a_long_run_of_a_dilute_gas_does_not_overflow():
+    """The deviation grows by exp(13) in a collision of each sphere: beyond the range of numbers within 60."""
+    side = (60 * np.pi / 6.0 / 0.001) ** (1.0 / 3.0)
+    scene = gp.Scene(gp.Container((side,) * 3), species=[gp.Species(60, 0.5, temperature=1.0)])
+    run = gp.Simulation(scene, gp.EventDriven(), seed=1)
+    run.record_events = True
+    run.advance(duration=25_000.0)
+    assert run.tally.collisions > 100 * 60
+    per_collision = 60 * run.time / (2.0 * run.tally.collisions)
+    exponent = gp.analysis.lyapunov_exponent(run, start=0.6 * run.time)
+    assert float(exponent.estimate) * per_collision == pytest.approx(13.0, abs=2.5)
+
+
 def test_what_has_no_exponent_is_refused():
     scene = gp.Scene(gp.Container((9.0, 9.0)), species=[gp.Species(9, 0.5, temperature=1.0)])
     run = gp.Simulation(scene, gp.EventDriven())

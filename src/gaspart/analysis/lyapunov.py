@@ -120,9 +120,12 @@ def lyapunov_exponent(simulation: Simulation, start: float | None = None, seed: 
         raise SceneError(
             "start", start, f"must be from {first:g} to below {last:g}, where events are recorded"
         )
-    # Rescaled often enough not to overflow: at least once in N events.
+    # Rescaled often enough not to overflow, some once in N events, while it turns too.
     intervals = max(2 * LEAST_INTERVALS, number_of_events // state.count)
-    edges = np.concatenate([[first], np.linspace(begin, last, intervals + 1)])
+    turning = math.ceil(intervals * (begin - first) / (last - begin))
+    edges = np.concatenate(
+        [np.linspace(first, begin, turning, endpoint=False), np.linspace(begin, last, intervals + 1)]
+    )
     splits = np.searchsorted(events["time"], edges, side="right")
     splits[0] = 0
     rng = np.random.default_rng(seed)
@@ -133,9 +136,10 @@ def lyapunov_exponent(simulation: Simulation, start: float | None = None, seed: 
         part = {name: values[low:high] for name, values in events.items()}
         follow(deviation, simulation.scene, state.masses, part)
         growth.append(math.log(deviation.rescale(float(end))))
-    rates = np.array(growth[1:]) / np.diff(edges[1:])
+    measured = edges[turning:]
+    rates = np.array(growth[turning:]) / np.diff(measured)
     about = {"units": "1 / time", "long_name": "largest Lyapunov exponent"}
-    return scalar("lyapunov_exponent", rates, edges[1:], **about)
+    return scalar("lyapunov_exponent", rates, measured, **about)
 
 
 def _require_plain(scene: Scene) -> None:
