@@ -163,6 +163,20 @@ def test_gravity_of_zero_is_none():
     assert np.array_equal(*ends)
 
 
+@pytest.mark.parametrize("zero", [(0.0, 0.0), (0, 0), [0.0, -0.0]])
+def test_zero_gravity_is_none_from_the_start(zero):
+    """So that no rule about gravity holds for it: a loss in the time-stepped engine, sticky faces, a piston."""
+    scene = replace(gas(2, 30, 0.1, "wall"), gravity=zero)
+    assert scene.gravity is None and scene == replace(scene, gravity=None)
+    assert scene.to_dict() == replace(scene, gravity=None).to_dict()
+    lossy = replace(scene, restitution=gp.Restitution(0.9))
+    assert lossy.contact_duration == 0.0
+    gp.Simulation(lossy, gp.TimeStepped(0.001)).advance(until=0.01)
+    replace(scene, faces={"y_low": gp.Sticky(0.1), "y_high": gp.Piston(10.0, 1.0)})
+    with pytest.raises(gp.SceneError, match="gravity.*list of 2"):
+        replace(scene, gravity=(0.0, 0.0, 0.0))
+
+
 def given_bodies(scene, start, length, time, mass, gravity):
     bodies = [
         gp.Body(tuple(r * length), tuple(v * (length / time)), 0.5 * length, m * mass)

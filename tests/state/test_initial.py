@@ -49,6 +49,28 @@ def test_a_lattice_that_would_overlap_is_refused():
         initial_state(gas(3, 100, 0.7, arrangement="lattice"), seed=0)
 
 
+def advice(scene):
+    with pytest.raises(gp.SceneError) as caught:
+        initial_state(scene, seed=1)
+    assert "does not fit by random insertion" in caught.value.rule
+    return caught.value.rule.rpartition("; ")[2]
+
+
+def test_what_an_overfull_scene_is_told_to_do_works():
+    lattice, fewer = "use arrangement: lattice", "use fewer or smaller particles, or a larger container"
+    box, obstacle = gp.Container((12.0, 12.0)), gp.Body((6.0, 6.0), (0.0, 0.0), 0.5, fixed=True)
+    kinds = [gp.Species(120, 0.5)]
+    scene = gp.Scene(box, kinds)
+    assert advice(scene) == lattice
+    initial_state(gp.Scene(box, [gp.Species(120, 0.5, arrangement="lattice")]), seed=1)
+    assert advice(gp.Scene(box, kinds, [obstacle])) == fewer
+    assert advice(gp.Scene(box, kinds, walls=[gp.Wall((3.0, 6.3), (9.0, 6.3))])) == fewer
+    assert advice(gp.Scene(box, [gp.Species(120, 0.5, region=((0.0, 0.0), (12.0, 12.0)))])) == fewer
+    assert (
+        advice(gp.Scene(box, [gp.Species(120, 0.5), gp.Species(400, 0.05)])) == fewer
+    )  # all sites are alike
+
+
 @pytest.mark.parametrize(("dimension", "eta", "boundary"), [(2, 0.4, "wall"), (3, 0.28, "periodic")])
 def test_insertion_is_that_of_one_attempt_after_another(dimension, eta, boundary):
     scene = gas(dimension, 300, eta, boundary)

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 from gaspart.errors import SceneError
 from gaspart.kinds import described
-from gaspart.scene.geometry import CLOSE_PACKING
 from gaspart.scene.keys import NOT_NEGATIVE, POSITIVE, declared, schema_of, validate
 from gaspart.scene.keys import choice as choice_of
+from gaspart.scene.limits import closest_packing
 from gaspart.scene.validation import choice, from_mapping, size, vector
 
 if TYPE_CHECKING:
@@ -274,6 +274,6 @@ def _check_room(scene: Scene) -> None:
             rule = "leaves no room for the largest particle"
             raise SceneError(f"faces.{name}.amplitude", face.amplitude, rule)
         left *= 1.0 - stroke / scene.container.lengths[axis]
-    if moving and scene.packing_fraction > left * CLOSE_PACKING[scene.dimension]:
+    if moving and scene.packing_fraction > left * closest_packing(scene):
         rule = "exceeds close packing where the faces have moved inwards"
         raise SceneError("packing_fraction", scene.packing_fraction, rule)

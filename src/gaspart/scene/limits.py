@@ -1,19 +1,45 @@
-"""Whether a particle fits into a container: size limits, and which particles are near a position."""
+"""Whether particles fit into a container and beside each other: size limits, the tolerance of given
+positions, the closest packing, and which particles are near a position."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from itertools import product
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
+from gaspart.scene.geometry import CLOSE_PACKING
 from gaspart.scene.validation import vector
 
 if TYPE_CHECKING:
     from gaspart.scene.container import Container
+    from gaspart.scene.scene import Scene
     from gaspart.scene.species import Species
 
 _RESOLVED = 1e12  # diameters in the longest side, at most: contacts are then accurate to a thousandth
 _ROOM = 1e-6  # of a radius: the least room of a particle between two walls
+_UNITS = 8.0 * 2.0**-52  # some units in the last place, of a number
+_SUM = 1e-12  # relative: rounding of the sum of all volumes
+
+
+def rounding(position: Iterable[float], *lengths: float) -> float:
+    """The tolerance of given positions: by how much particles, and walls, that touch in decimals may overlap
+    in binary numbers. Some units in the last place of the largest of these numbers: 0.6 - 0.5 < 0.1."""
+    return _UNITS * max(*map(abs, position), *lengths)
+
+
+def closest_packing(scene: Scene) -> float:
+    """The highest packing fraction that the particles may have: proven for equal ones, 1 for others."""
+    alike = (
+        len({kind.radius for kind in scene.species if kind.count} | {it.radius for it in scene.bodies}) < 2
+    )
+    return CLOSE_PACKING[scene.dimension] if alike else 1.0
+
+
+def check_packing(scene: Scene) -> None:
+    """Raise SceneError for more particles than can be in the container."""
+    if not scene.centres_to_walls and scene.packing_fraction > closest_packing(scene) * (1.0 + _SUM):
+        raise SceneError("packing_fraction", scene.packing_fraction, "exceeds close packing")
 
 
 def check_room(container: Container, centres_to_walls: bool, key: str, radius: float, fixed: bool) -> None:

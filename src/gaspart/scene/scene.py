@@ -18,17 +18,16 @@ from gaspart.scene.container import Container
 from gaspart.scene.faces import SCHEMA as FACES_SCHEMA
 from gaspart.scene.faces import Sticky, Surface, check_faces, surface_from_dict, surface_to_dict
 from gaspart.scene.features import check_features
-from gaspart.scene.geometry import CLOSE_PACKING, ball_volume
+from gaspart.scene.geometry import ball_volume
 from gaspart.scene.keys import FLAG, VECTOR, checked_by_class, declared, instance_of, list_of, validate
-from gaspart.scene.limits import Nearby, check_region, check_room
+from gaspart.scene.limits import Nearby, check_packing, check_region, check_room, rounding
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.species import SHARED, Body, Species
 from gaspart.scene.thermostat import Thermostat
-from gaspart.scene.validation import MOST_BODIES, from_mapping, vector
+from gaspart.scene.validation import MOST_BODIES, from_mapping, set_fields, vector
 from gaspart.scene.walls import WALL_RULE, Plate, Wall, check_walls, wall_kind
 from gaspart.yaml_text import read_yaml, write_yaml
 
-_TOUCH = 1e-12  # of a radius: overlap with a wall that rounding may show for a particle that touches it
 _CONTACT = 0.01  # of sqrt(d/g): the default duration of a contact
 _ABSENT = ("fixed", "exact_temperature", "walls", "faces")  # not written into a file unless there
 
@@ -99,14 +98,15 @@ class Scene:
         for n, body in enumerate(self.bodies):
             self._check_body(n, body, earlier)
             earlier.add(n, body.position)
-        if self.packing_fraction > CLOSE_PACKING[self.dimension]:
-            if not self.centres_to_walls:
-                raise SceneError("packing_fraction", self.packing_fraction, "exceeds close packing")
+        check_packing(self)
 
     def _check_gravity(self) -> None:
         if self.gravity is None:
             return
         vector("gravity", self.gravity, self.dimension)
+        if not any(self.gravity):  # absent everywhere, so that no other place has to ask
+            set_fields(self, gravity=None)
+            return
         for component, periodic in zip(self.gravity, self.container.periodic, strict=True):
             if component != 0.0 and periodic:
                 rule = "must not point along a periodic axis, where particles would gain energy without limit"
@@ -119,9 +119,10 @@ class Scene:
             for length, periodic in zip(self.container.lengths, self.container.periodic, strict=True)
         ]
         for n, wall in enumerate(self.walls):
+            corners = [abs(x) for corner in wall.corners.values() for x in corner]
             for shift in product(*shifts):
                 image = tuple(x + distance for x, distance in zip(position, shift, strict=True))
-                if wall.distance(image) < radius * (1.0 - _TOUCH):
+                if wall.distance(image) < radius - rounding(image, *corners, radius):
                     return f"walls[{n}]"
         return None
 
@@ -135,7 +136,8 @@ class Scene:
         self._fits(f"{where}.radius", body)
         lower, upper = self.reach(body.radius)
         for x, low, high in zip(body.position, lower, upper, strict=True):
-            if not low <= x <= high:
+            slack = rounding((x,), high, body.radius)
+            if not low - slack <= x <= high + slack:
                 raise SceneError(
                     f"{where}.position", body.position, "must be completely inside the container"
                 )
@@ -143,7 +145,9 @@ class Scene:
             raise SceneError(f"{where}.position", body.position, f"overlaps {wall}")
         for m in earlier.around(body.position):
             other = self.bodies[m]
-            if self.separation(body.position, other.position) < body.radius + other.radius:
+            contact = body.radius + other.radius
+            slack = rounding((*body.position, *other.position), contact)
+            if self.separation(body.position, other.position) < contact - slack:
                 raise SceneError(f"{where}.position", body.position, f"overlaps bodies[{m}]")
 
     @property
@@ -165,8 +169,9 @@ class Scene:
             return 0.0
         if law.contact_duration is not None:
             return law.contact_duration
-        strength = math.hypot(*(self.gravity or (0.0,)))
-        return _CONTACT * math.sqrt(2.0 * self.smallest_radius / strength) if strength > 0.0 else 0.0
+        if self.gravity is None:
+            return 0.0
+        return _CONTACT * math.sqrt(2.0 * self.smallest_radius / math.hypot(*self.gravity))
 
     @property
     def rough(self) -> bool:

@@ -16,7 +16,7 @@ import numpy as np
 
 from gaspart.errors import SceneError, SimulationError
 from gaspart.kernels.memory import aligned
-from gaspart.scene.geometry import CLOSE_PACKING
+from gaspart.scene.limits import closest_packing
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
 from gaspart.state.boxes import make_boxes, sides_for
@@ -69,7 +69,7 @@ def compress(
         return Packing(np.empty((0, scene.dimension)), 1.0, 0.0, 1.0, 0)
     d = scene.dimension
     unit = scene.packing_fraction
-    wanted = unit if until is None else CLOSE_PACKING[d] if until == "jammed" else until
+    wanted = unit if until is None else closest_packing(scene) if until == "jammed" else until
     end = _root(wanted / unit, d)
     growing = _Growing(scene, seed, min(end, _root(_START[d] / unit, d)), end)
     while growing.scale < end * (1.0 + _SPARE) and growing.pressure < jammed:

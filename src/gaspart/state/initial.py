@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -40,16 +41,15 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
     arrangements = {kind.arrangement for kind in scene.species if kind.count}
     ordered = arrangements & set(LATTICES)
     if ordered:
-        positions = lattice(scene, rng, slab="slab" in ordered)
-        hit = (scene.wall_at(place, radius) for place, radius in zip(positions, radii, strict=True))
-        if scene.walls and any(hit):
-            raise SceneError(
-                "arrangement", min(ordered), "a particle would overlap an interior wall; use random"
-            )
+        positions = _on_lattice(scene, rng, min(ordered))
     elif "compressed" in arrangements:
         positions = compressed(scene, seed)
     else:
-        positions, _ = random_insertion(scene, rng)
+        try:
+            positions, _ = random_insertion(scene, rng)
+        except SceneError as error:
+            rule = f"{error.rule}; {_instead_of_random(scene, seed)}"
+            raise SceneError(error.key, error.value, rule) from None
     return State(
         time=0.0,
         positions=positions,
@@ -66,6 +66,28 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
         vibrations=_vibrations(scene, stream(seed, _VIBRATIONS)) if scene.vibrates else None,
         piston=_piston(scene),
     )
+
+
+def _on_lattice(scene: Scene, rng: np.random.Generator, arrangement: str) -> np.ndarray:
+    """(N, d) positions of a "lattice" or "slab". Raises SceneError where `lattice` does, and if a particle
+    would overlap an interior wall."""
+    positions = lattice(scene, rng, slab=arrangement == "slab")
+    radii = per_body(scene, "radius").astype(float)
+    hit = (scene.wall_at(place, radius) for place, radius in zip(positions, radii, strict=True))
+    if scene.walls and any(hit):
+        raise SceneError("arrangement", arrangement, "a particle would overlap an interior wall; use random")
+    return positions
+
+
+def _instead_of_random(scene: Scene, seed: int | tuple[int, ...]) -> str:
+    """What a user can do whose particles do not fit by random insertion: an arrangement only if it holds
+    them."""
+    try:
+        arranged = replace(scene, species=[replace(kind, arrangement="lattice") for kind in scene.species])
+        _on_lattice(arranged, stream(seed, _POSITIONS), "lattice")
+    except SceneError:
+        return "use fewer or smaller particles, or a larger container"
+    return "use arrangement: lattice"
 
 
 def _piston(scene: Scene) -> np.ndarray | None:

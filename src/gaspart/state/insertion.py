@@ -81,8 +81,9 @@ def random_insertion(
     placed.failures[:explicit] = 0
 
     for n, body in enumerate(scene.bodies):  # their places are given, and the scene has checked them
-        placed.positions[n] = body.position
-        put(placed, boxes.index_of(np.array(body.position)), n)
+        position = np.clip(body.position, *scene.reach(body.radius))  # at a wall that it touches, exactly
+        placed.positions[n] = position
+        put(placed, boxes.index_of(position), n)
     done = explicit
     for n in species:
         kind = scene.species[n]
@@ -104,7 +105,7 @@ def random_insertion(
                     f"species[{n}].count",
                     kind.count,
                     f"does not fit by random insertion: full after {done} particles, packing fraction "
-                    f"about {eta:.4f}, {patience} failed attempts; use arrangement: lattice",
+                    f"about {eta:.4f}, {patience} failed attempts",
                 )
     back = np.argsort(np.concatenate(order), kind="stable") if scene.count else np.empty(0, dtype=int)
     return placed.positions[back], placed.failures[back]

@@ -26,8 +26,7 @@ def boxes_per_particle(scene: Scene) -> float:
     kicks make most searches find nothing new: there is one each at least."""
     dilute, by_density, most = _BOXES[scene.dimension]
     best = min(dilute + by_density * scene.packing_fraction, most)
-    gathered = scene.gravity is not None and any(scene.gravity)
-    return max(1.0, best) if gathered or scene.thermostat else best
+    return max(1.0, best) if scene.gravity is not None or scene.thermostat else best
 
 
 def largest_in_boxes(scene: Scene) -> float:

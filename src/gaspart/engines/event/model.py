@@ -42,7 +42,7 @@ def event_model(
     law = law._replace(duration=contact_duration(scene)) if law else None
     unit_mass, masses = (1.0, None) if law else scaled_masses(state.masses)
     gravity = None
-    if scene.gravity is not None and any(scene.gravity):
+    if scene.gravity is not None:
         support = (
             model.no_support(state.count, _LOWEST * max(scene.container.lengths)) if scene.walls else None
         )

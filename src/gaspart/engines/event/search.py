@@ -43,7 +43,7 @@ def distances(scene: Scene) -> tuple[float, float]:
 
 def obstacle_to_lists(scene: Scene) -> str | None:
     """Why a scene cannot be run with neighbour lists, if so."""
-    if scene.gravity is not None and any(scene.gravity):
+    if scene.gravity is not None:
         return "gravity"
     if scene.walls:
         return "interior walls"
