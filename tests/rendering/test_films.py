@@ -6,6 +6,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.cli import main
+from gaspart.rendering import films
 from gaspart.rendering.films import _pieces, film, poster
 from gaspart.rendering.frames import particles_of
 from gaspart.rendering.labels import Labels, round_length, time_format
@@ -37,6 +38,22 @@ def test_a_film_has_a_picture_for_every_frame(runs, suffix):
     assert images.shape == (5, *shape, 3)
     assert (images[0] != images[-1]).any()
     assert not list(runs.glob("*.partial"))
+
+
+def test_what_a_signal_removes_is_not_made_again(runs, tmp_path, monkeypatch):
+    """The thread of signals removes the scratch file while ffmpeg has not yet opened it."""
+    pictures = films._pictures
+
+    def removing(*arguments):
+        for picture in pictures(*arguments):
+            for scratch in tmp_path.glob(".gaspart-*.partial"):
+                scratch.unlink()
+            yield picture
+
+    monkeypatch.setattr(films, "_pictures", removing)
+    with pytest.raises(gp.SceneError, match="cannot be written"):
+        film(runs / "discs.nc", tmp_path / "film.mp4", size=(120, 90))
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_the_poster_of_a_film_is_its_middle_picture(runs):

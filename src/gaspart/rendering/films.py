@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import os
 from collections.abc import Callable, Iterator
 from itertools import islice
 from pathlib import Path
@@ -177,13 +178,16 @@ def _mp4(scratch: Path, shown: Iterator[np.ndarray], size: tuple[int, int], rate
     options = ["-f", "mp4", "-fflags", "+bitexact", "-flags:v", "+bitexact"]  # no date, no program in it
     quiet = {"ffmpeg_log_level": "quiet"}  # gaspart prints the one line of an error
     write_frames = _ffmpeg().write_frames
-    writer = write_frames(str(scratch), size, fps=rate, macro_block_size=2, output_params=options, **quiet)
-    try:
-        writer.send(None)
-        for image in shown:
-            writer.send(np.ascontiguousarray(image))
-    finally:
-        writer.close()  # returns when ffmpeg has ended, without its exit code
+    with scratch.open("rb") as file:
+        # as this process has it open: by its name ffmpeg would make it anew if a signal has removed it
+        path = f"/proc/{os.getpid()}/fd/{file.fileno()}"
+        writer = write_frames(path, size, fps=rate, macro_block_size=2, output_params=options, **quiet)
+        try:
+            writer.send(None)
+            for image in shown:
+                writer.send(np.ascontiguousarray(image))
+        finally:
+            writer.close()  # returns when ffmpeg has ended, without its exit code
     if not _is_complete_mp4(scratch):
         raise OSError(errno.EIO, "its writer has failed")
 
