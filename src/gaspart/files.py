@@ -109,7 +109,7 @@ def writing(path: str | Path, kind: Kind | None = None, overwrite: bool = False)
     path = output_path(path)
     try:
         may_replace(path, kind, overwrite)
-        with _scratch(path) as scratch:
+        with scratch_beside(path) as scratch:
             yield scratch
             with scratch.open("rb") as file:
                 os.fsync(file.fileno())
@@ -128,7 +128,7 @@ def whole_file(path: str | Path) -> AbstractContextManager[Path]:
 
 
 @contextmanager
-def _scratch(path: Path) -> Iterator[Path]:
+def scratch_beside(path: Path) -> Iterator[Path]:
     """A new file next to `path`, used by this process only, and removed at the end."""
     of = hashlib.sha256(os.fsencode(path.name) + socket.gethostname().encode()).hexdigest()[:12]
     for old in path.parent.glob(f".gaspart-{of}-*.partial"):

@@ -165,6 +165,17 @@ def scratch_file(path: Path) -> Iterator[None]:
 
 
 @contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Let signals wait for the end of this block where their handlers might raise within it: in a program
+    that is none of gaspart, such as a notebook. In a process of gaspart they end it at once, as ever."""
+    if _process.watched:
+        yield
+        return
+    with deferred():
+        yield
+
+
+@contextmanager
 def deferred() -> Iterator[Deferral]:
     """Let signals wait for `Deferral.deliver`, or for the end of the block.
 

@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import textwrap
@@ -76,3 +77,112 @@ def test_copies_of_the_package_share_what_was_compiled(tmp_path):
         hits.append(int(subprocess.run(command, capture_output=True, env=environment, check=True).stdout))
     assert hits == [0, 0, 1, 1]
     assert len(list(tmp_path.glob("*/physics/rng.log_of-*.nbc"))) == 2
+
+
+_COMPILES = """
+    import sys, warnings
+    from gaspart.kernels.physics.rng import log_of
+    print(log_of(2.0), sum(log_of.stats.cache_hits.values()))
+"""
+
+
+def compiled(cache, code=_COMPILES, **more):
+    """The process that runs `code` with this cache."""
+    command = [sys.executable, "-c", textwrap.dedent(code)]
+    return subprocess.Popen(
+        command,
+        env=os.environ | {"GASPART_CACHE": str(cache)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        **more,
+    )
+
+
+def damaged(content, how):
+    """The content of a file as a crash or a bad disk leaves it."""
+    half = len(content) // 2
+    return {
+        "empty": b"",
+        "truncated": content[:half],
+        "zeros": bytes(len(content)),
+        "a flipped bit": content[:half] + bytes([content[half] ^ 4]) + content[half + 1 :],
+        "another checksum": bytes([content[0] ^ 1]) + content[1:],
+        "longer": content + b"x",
+    }[how]
+
+
+def test_a_damaged_file_is_compiled_and_written_again(tmp_path):
+    expected, _ = compiled(tmp_path).communicate()
+    (file,) = tmp_path.glob("*/physics/rng.log_of-*.nbc")
+    whole = file.read_bytes()
+    for how in ("empty", "truncated", "zeros", "a flipped bit", "another checksum", "longer"):
+        file.write_bytes(damaged(whole, how))
+        for hits in (0, 1):
+            out, errors = compiled(tmp_path).communicate()
+            assert (out, errors) == (f"{expected.split()[0]} {hits}\n", ""), how
+        assert len(file.read_bytes()) > 100
+
+
+def test_a_kernel_that_cannot_be_kept_is_reported_once_and_runs(tmp_path):
+    """As on a full disk; no output that has room is blamed."""
+    code = """
+        import resource, sys
+        resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+        from gaspart.kernels.physics.rng import log_of
+        from gaspart.kernels.compile.policy import kernel
+        print(log_of(2.0), kernel(lambda x: 2.0 * x)(1.0))
+    """
+    process = compiled(tmp_path, code)
+    out, errors = process.communicate()
+    assert process.returncode == 0 and out.split()[1] == "2.0"
+    assert errors.count("cannot write the kernel cache") == 1 and "File too large" in errors
+    assert not [path for path in tmp_path.rglob("*") if path.is_file()]
+
+
+def test_an_interrupted_write_leaves_nothing_behind(tmp_path):
+    """A process that is killed leaves a file, which the next one that compiles this kernel removes."""
+    for number, left in ((signal.SIGTERM, 0), (signal.SIGKILL, 1)):
+        code = f"""
+            import os, pathlib, time
+            from gaspart.interruption import exit_on_signals
+            exit_on_signals()
+            from gaspart.kernels.physics.rng import log_of
+            def write(path, content, its=pathlib.Path.write_bytes):
+                its(path, content[:100])
+                os.kill(os.getpid(), {int(number)})
+                time.sleep(60.0)
+            pathlib.Path.write_bytes = write
+            log_of(2.0)
+        """
+        process = compiled(tmp_path, code)
+        process.communicate()
+        assert process.returncode in (-number, 128 + number)
+        assert len([path for path in tmp_path.rglob("*") if path.is_file()]) == left
+    assert compiled(tmp_path).wait() == 0
+    assert [path.suffix for path in tmp_path.rglob("*") if path.is_file()] == [".nbc"]
+
+
+def test_a_handler_that_raises_waits_until_a_kernel_is_compiled(tmp_path):
+    """In a notebook. What it raises within a callback of LLVM would be lost, and the code with it."""
+    code = """
+        import os, signal
+        from numba.core import codegen
+        hook, calls = codegen.JITCodeLibrary._object_compiled_hook.__func__, []
+        def interrupting(cls, module, buffer):
+            if not calls:
+                calls.append(os.kill(os.getpid(), signal.SIGINT))
+                for _ in range(1000):
+                    pass
+            hook(cls, module, buffer)
+        codegen.JITCodeLibrary._object_compiled_hook = classmethod(interrupting)
+        from gaspart.kernels.physics.rng import log_of
+        try:
+            log_of(2.0)
+        except KeyboardInterrupt:
+            print("interrupted")
+        print(log_of(1.0))
+    """
+    process = compiled(tmp_path, code)
+    out, errors = process.communicate()
+    assert (process.returncode, out) == (0, "interrupted\n0.0\n"), errors

@@ -8,6 +8,8 @@ import tempfile
 import warnings
 from pathlib import Path
 
+_REMEDY = "set GASPART_CACHE to a writable folder"
+
 
 def cache_directory() -> Path:
     """$GASPART_CACHE, or the folder gaspart in $XDG_CACHE_HOME or ~/.cache.
@@ -35,8 +37,19 @@ def usable_cache(version: str) -> Path | None:
     why = f"cannot write the kernel cache {wanted}" if wanted else "there is no home for the kernel cache"
     found = None if os.environ.get("GASPART_CACHE") else _temporary(version)
     instead = f"using {found}" if found else "compiling anew in every process"
-    warnings.warn(f"gaspart: {why}; {instead} (set GASPART_CACHE to a writable folder)", stacklevel=3)
+    warnings.warn(f"gaspart: {why}; {instead} ({_REMEDY})", stacklevel=3)
     return found
+
+
+_reported: set[Path] = set()
+
+
+def report_unwritable(directory: Path, error: OSError) -> None:
+    """Warn, once in a process, that compiled kernels cannot be kept: on a full disk, for example."""
+    if directory not in _reported:
+        _reported.add(directory)
+        why = f"cannot write the kernel cache {directory}: {error.strerror}"
+        warnings.warn(f"gaspart: {why}; compiling anew in every process ({_REMEDY})", stacklevel=3)
 
 
 def _is_writable(directory: Path) -> bool:

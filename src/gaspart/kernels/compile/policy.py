@@ -10,11 +10,12 @@ from __future__ import annotations
 import hashlib
 import warnings
 from collections.abc import Callable
-from functools import cache
+from functools import cache, wraps
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
-from gaspart.kernels.compile.cache import usable_cache
+from gaspart.interruption import uninterrupted
+from gaspart.kernels.compile.cache import report_unwritable, usable_cache
 from gaspart.kernels.compile.loading import load_numba
 
 numba = load_numba()
@@ -60,9 +61,25 @@ def _compile(function: F, part: bool = False, **options: Any) -> F:
         numba.config.CACHE_DIR = str(_CACHE)
         try:
             compiled._cache = (PartCache if part else KernelCache)(function, options)
+        except RuntimeError:  # no folder can be made, as on a full disk; or the function is not from a file
+            report_unwritable(_CACHE, OSError(0, f"there is no place for {function.__qualname__}"))
         finally:
             numba.config.CACHE_DIR = before
+    if _known:
+        compiled._compiler.compile = _without_interruption(compiled._compiler.compile)
     return compiled
+
+
+def _without_interruption(compile_: F) -> F:
+    """The same, with signals waiting until it has ended: what a handler raises within a callback of LLVM is
+    lost, and with it the code."""
+
+    @wraps(compile_)
+    def compile_whole(*arguments: Any) -> Any:
+        with uninterrupted():
+            return compile_(*arguments)
+
+    return cast(F, compile_whole)
 
 
 def kernel(function: F) -> F:
