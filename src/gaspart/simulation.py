@@ -11,6 +11,7 @@ import numpy as np
 import gaspart
 from gaspart.engines import Engine
 from gaspart.engines.arrays import EventLog
+from gaspart.engines.belonging import belonging, check_belonging
 from gaspart.errors import SceneError, SimulationError
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Body, Species
@@ -51,6 +52,10 @@ class Simulation:
     """
 
     def __init__(self, scene: Scene, engine: Engine, seed: int | tuple[int, ...] = 0) -> None:
+        if not isinstance(scene, Scene):
+            raise SceneError("scene", scene, "must be a Scene, such as Scene.from_file(path)")
+        if not isinstance(engine, Engine):
+            raise SceneError("engine", engine, "must be an engine: EventDriven() or TimeStepped(time_step)")
         self.scene, self.engine, self.seed = scene, engine, seed
         self._log: EventLog | None = None
         self._advanced = False
@@ -273,10 +278,16 @@ class Simulation:
         return gaspart.view(self, frames)  # its public name, because views are made of simulations
 
     def checkpoint(self) -> dict[str, np.ndarray]:
-        """Arrays from which `restore` continues to the same bits."""
-        return self._dynamics.checkpoint()
+        """Arrays from which `restore` continues to the same bits, and what they belong to: scene, seed,
+        engine and version."""
+        return {**self._dynamics.checkpoint(), **belonging(self.scene, self.engine, self.seed)}
 
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Continue from a checkpoint of a simulation of the same scene, engine and seed."""
+        """Continue from a checkpoint of a simulation of the same scene and seed, with the same engine, to the
+        same bits: settings of an engine that change no result, such as the search or threads, may be others.
+
+        Raises SceneError, with nothing changed, for any other checkpoint, and for one with missing arrays.
+        """
+        check_belonging(checkpoint, belonging(self.scene, self.engine, self.seed))
         self._advanced = True
         self._dynamics.restore(checkpoint)

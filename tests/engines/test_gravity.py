@@ -165,7 +165,7 @@ def test_gravity_of_zero_is_none():
 
 @pytest.mark.parametrize("zero", [(0.0, 0.0), (0, 0), [0.0, -0.0]])
 def test_zero_gravity_is_none_from_the_start(zero):
-    """So that no rule about gravity holds for it: a loss in the time-stepped engine, sticky faces, a piston."""
+    """So that no rule about gravity holds for it: energy losses in steps, sticky faces, a piston."""
     scene = replace(gas(2, 30, 0.1, "wall"), gravity=zero)
     assert scene.gravity is None and scene == replace(scene, gravity=None)
     assert scene.to_dict() == replace(scene, gravity=None).to_dict()

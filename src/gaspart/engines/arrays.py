@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaspart.engines.features.piston import piston_of
 from gaspart.engines.features.vibrating import motion_of
+from gaspart.errors import SceneError
 from gaspart.kernels.model import (
     HARD,
     NONE,
@@ -36,6 +38,15 @@ if TYPE_CHECKING:
 _BISECTIONS = 100  # until neighbouring numbers enclose the damping of viscoelastic particles
 _ROOM = 4096  # capacity of the record, in events
 _WALL_DRAWS = 2  # the purpose of the random numbers of thermal walls, after those of the initial state
+
+
+def check_parts(parts: Mapping[str, np.ndarray], wanted: Mapping[str, np.ndarray]) -> None:
+    """Raise SceneError unless a checkpoint has all `wanted` arrays, each of its shape and kind of number."""
+    for key, array in wanted.items():
+        found = parts.get(key)
+        alike = isinstance(found, np.ndarray) and found.shape == np.shape(array)
+        if not alike or found.dtype.kind != np.asarray(array).dtype.kind:  # type: ignore[union-attr]
+            raise SceneError("checkpoint", key, "is missing or of another form: the checkpoint is damaged")
 
 
 def scaled_masses(masses: np.ndarray) -> tuple[float, np.ndarray | None]:

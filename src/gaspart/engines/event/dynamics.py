@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.arrays import EventLog, write_internal
+from gaspart.engines.arrays import EventLog, check_parts, write_internal
 from gaspart.engines.event.clock_epochs import Epochs
 from gaspart.engines.event.model import changing, event_model, monitors
 from gaspart.engines.event.search import chosen_search, make_lists, neighbour_lists
@@ -61,6 +61,7 @@ class EventDynamics:
         self._reference = state
         n = state.count
         search = chosen_search(scene, search, boxes_per_side is not None)
+        self._search = search
         self._grid, largest = boxes_and_largest(scene, boxes_per_side if search == "boxes" else 1)
         self._particles = model.Particles(
             flights=aligned((n,), model.flight_dtype(scene.dimension)),
@@ -282,23 +283,33 @@ class EventDynamics:
         counts."""
         parts = {key: getattr(self, f"_{key}") for key in _NUMBERS}
         parts |= {"since": self._tally.since, "lost": self._tally.lost, **self._arrays()}
-        parts["boxes_per_side"] = self._grid.per_side
+        parts |= {"search": self._search, "boxes_per_side": self._grid.per_side}
         return {key: np.array(value) for key, value in parts.items()}
 
     def restore(self, parts: dict[str, np.ndarray]) -> None:
-        """Go on from a checkpoint of the same scene and engine, whatever its number of boxes."""
-        for key, array in self._arrays().items():
+        """Go on from a checkpoint of the same scene, to the same bits whatever its search and boxes."""
+        arrays = self._arrays()
+        alike = str(parts.get("search")) == self._search
+        alike = alike and np.array_equal(parts["boxes_per_side"], self._grid.per_side)
+        if not alike:
+            arrays.pop("centres", None)  # of other neighbour lists, or of none
+        numbers = {key: np.array(getattr(self, f"_{key}")) for key in _NUMBERS}
+        check_parts(
+            parts, {**arrays, **numbers, "lost": self._tally.lost, "since": np.array(self._tally.since)}
+        )
+        for key, array in arrays.items():
             array[...] = parts[key]
         for key in _NUMBERS:
             setattr(self, f"_{key}", parts[key].item())
         self._tally.since, self._tally.lost = parts["since"].item(), parts["lost"].copy()
         self._begin_epoch(self._epoch)
-        if self._boxes.lists:
-            self._make_lists()
-        alike = np.array_equal(parts.get("boxes_per_side", ()), self._grid.per_side)
         if not alike:
             self._particles.predictions["box"] = self._grid.coordinates(self._present()["position"])
-        self._begin(anew=not alike)
+            self._predict()
+            return
+        if self._boxes.lists:
+            self._make_lists()
+        self._begin(anew=False)
 
 
 def _wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:

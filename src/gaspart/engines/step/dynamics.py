@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import DTypeLike
 
-from gaspart.engines.arrays import EventLog, write_internal
+from gaspart.engines.arrays import EventLog, check_parts, write_internal
 from gaspart.engines.step.limits import (
     check_late,
     check_precision,
@@ -208,24 +208,60 @@ class StepDynamics:
             "velocities": self._by_particle(particles.velocities, self._real),
             "images": particles.images.T.copy(),
             "slots": particles.index.copy(),
-            **({} if self._search.cells is None else {"origin": self._search.cells.origin.copy()}),
+            **({} if self._search.cells is None else self._list_parts()),
             **{key: array.copy() for key, array in self._arrays.changing(self._model).items()},
             "reach": self._particles.bounds.copy(),
             **{key: np.array(value) for key, value in self._tally._asdict().items()},
         }
 
     def restore(self, parts: dict[str, np.ndarray]) -> None:
-        """Go on from a checkpoint of the same scene and engine."""
+        """Go on from a checkpoint of the same scene and settings, to the same bits whatever its search and
+        threads. Raises SceneError, with nothing changed, for one that lacks an array."""
+        particles, tally, rules = self._particles, self._tally, self._arrays.changing(self._model)
+        by_thread = ("wall_hits", "wall_impulse", "wall_loss")
+        sums = dict(parts)
+        sums |= {key: parts[key].sum(axis=0) for key in by_thread if key in parts}  # whole: in any order
+        wanted: dict[str, np.ndarray] = {
+            "slots": particles.index,
+            "positions": particles.positions.T,
+            "velocities": particles.velocities.T,
+            "images": particles.images.T,
+            "reach": particles.bounds,
+            "lost": self._lost,
+            **{key: np.array(0) for key in ("steps", "since")},
+            **{key: getattr(tally, key) for key in ("counts", "sums", "extremes")},
+            **{key: getattr(tally, key)[0] for key in by_thread},
+            **rules,
+        }
+        check_parts(sums, wanted)
         self._place(*(parts[key] for key in ("slots", "positions", "velocities", "images")))
-        if self._search.cells is not None and parts["reach"][self._layout.DISPLACEMENT] < np.inf:
+        self._particles.bounds[...] = 0.0, np.inf  # as at the start: the next step makes a list
+        if self._search.cells is not None and self._has_list_of(parts):
             self._list_from(parts["origin"])
-        self._particles.bounds[...] = parts["reach"]
-        for key in ("counts", "sums", "extremes", "wall_hits", "wall_impulse", "wall_loss"):
-            getattr(self._tally, key)[...] = parts[key]
-        for key, array in self._arrays.changing(self._model).items():
+            self._particles.bounds[...] = parts["reach"]
+        for key in ("counts", "sums", "extremes"):
+            getattr(tally, key)[...] = parts[key]
+        for key in by_thread:
+            getattr(tally, key)[...] = 0
+            getattr(tally, key)[0] = sums[key]
+        for key, array in rules.items():
             array[...] = parts[key]
         self._steps, self._since = int(parts["steps"]), int(parts["since"])
         self._lost = parts["lost"].copy()
+
+    def _list_parts(self) -> dict[str, np.ndarray]:
+        """What the neighbour list is made of: `origin` (d, N), where particles were, by slot; settings."""
+        settings = {key: np.array(getattr(self._search.cells, key)) for key in ("skin", "per_side")}
+        origin = self._search.cells.origin.copy()
+        return {"origin": origin, "threads": np.array(self._engine.threads), **settings}
+
+    def _has_list_of(self, parts: dict[str, np.ndarray]) -> bool:
+        """Whether a checkpoint has a list that was made with the settings of this engine."""
+        if not parts["reach"][self._layout.DISPLACEMENT] < np.inf:
+            return False
+        own = self._list_parts()
+        del own["origin"]
+        return all(key in parts and np.array_equal(parts[key], value) for key, value in own.items())
 
     def _list_from(self, origin: np.ndarray) -> None:
         """Make the list again that was made when particles were at `origin` (d, N), by slot."""

@@ -69,6 +69,7 @@ class TimeStepped(Engine):
         ("gravity", "restitution", "roughness", "fixed", "vibrations", "centres_to_walls")
     ) | {"thermal", "well", "sticky"}
     excludes: ClassVar[tuple[tuple[str, str], ...]] = (("restitution", "gravity"), ("fixed", "gravity"))
+    same_bits: ClassVar[tuple[str, ...]] = ("boxes_per_side", "near_boxes", "skin", "threads")
     counters: ClassVar[tuple[str, ...]] = (
         "steps",
         "overlaps_left",

@@ -1,0 +1,43 @@
+"""What a checkpoint of a simulation belongs to, and whether it may be restored."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from gaspart import __version__
+from gaspart.engines.engine import Engine, engine_to_dict
+from gaspart.errors import SceneError
+from gaspart.scene.scene import Scene
+
+
+def belonging(scene: Scene, engine: Engine, seed: int | tuple[int, ...]) -> dict[str, np.ndarray]:
+    """What the results of a simulation depend on, as texts, by the keys of a checkpoint."""
+    settings = {key: x for key, x in engine_to_dict(engine).items() if key not in engine.same_bits}
+    texts = {
+        "version": __version__,
+        "scene": hashlib.sha256(_text(scene.to_dict()).encode()).hexdigest(),
+        "engine": _text(settings),
+        "seed": _text(seed),
+    }
+    return {f"of_{key}": np.array(text) for key, text in texts.items()}
+
+
+def _text(value: object) -> str:
+    return json.dumps(value, sort_keys=True, default=int)  # a seed may be an integer of numpy
+
+
+def check_belonging(checkpoint: Any, wanted: Mapping[str, np.ndarray]) -> None:
+    """Raise SceneError, which names the difference, unless a checkpoint belongs to what is `wanted`."""
+    if not isinstance(checkpoint, Mapping) or not all(key in checkpoint for key in wanted):
+        raise SceneError("checkpoint", checkpoint, "must be what Simulation.checkpoint has returned")
+    for key, text in wanted.items():
+        if str(checkpoint[key]) != str(text):
+            what = key.removeprefix("of_")
+            this = "" if what == "scene" else f", which has {text}"
+            rule = f"is of another {what} than this simulation{this}"
+            raise SceneError("checkpoint", str(checkpoint[key]), rule)

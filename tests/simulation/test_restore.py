@@ -1,0 +1,142 @@
+"""A checkpoint belongs to a scene, a seed and an engine, whatever the search and the threads that made it."""
+
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+import pytest
+
+import gaspart as gp
+
+DISCS = gp.Scene(gp.Container((12.0, 12.0), "periodic"), [gp.Species(20, 0.5, temperature=1.0)])
+MIXED = gp.Scene(
+    gp.Container((8.0, 9.0, 7.0), ("wall", "periodic", "wall")),
+    [gp.Species(40, 0.5, temperature=1.0), gp.Species(10, 0.3, mass=3.0, temperature=1.0)],
+)
+PULLED = gp.Scene(
+    gp.Container((8.0, 9.0)),
+    [gp.Species(25, 0.4, temperature=1.0)],
+    gravity=(0.0, -0.5),
+    walls=[gp.Wall((2.0, 4.0), (6.0, 5.0))],
+    faces={"x_low": gp.Thermal(1.5)},
+    restitution=gp.Restitution(0.95, 0.2),
+)
+SEARCHES = [gp.EventDriven(search=name) for name in ("boxes", "lists", "direct", "pairs")]
+SEARCHES += [gp.EventDriven(boxes_per_side=n) for n in (1, 3)]
+STEPS = [
+    gp.TimeStepped(0.01, **more)
+    for more in (
+        {},
+        {"skin": 0.3},
+        {"threads": 2},
+        {"boxes_per_side": 4},
+        {"boxes_per_side": 3, "near_boxes": True},
+    )
+]
+COUNTS = ("collisions", "wall_hits", "wall_impulse", "wall_energy", "virial_sum", "dissipated_energy", "time")
+
+
+def bits(sim):
+    state, tally = sim.state, sim.tally
+    arrays = [state.positions, state.velocities, state.images, state.spins]
+    arrays += [np.asarray(getattr(tally, name)) for name in COUNTS]
+    return [array.tobytes() for array in arrays]
+
+
+def continued(scene, seed, checkpoint, engine, until):
+    sim = gp.Simulation(scene, engine, seed)
+    sim.restore({key: value.copy() for key, value in checkpoint.items()})
+    sim.advance(until=until)
+    return sim
+
+
+@pytest.mark.parametrize(
+    ("scene", "engines"),
+    [(DISCS, SEARCHES), (MIXED, SEARCHES), (PULLED, [SEARCHES[0], *SEARCHES[2:]]), (MIXED, STEPS)],
+    ids=["discs", "mixed", "pulled", "steps"],
+)
+def test_every_pair_of_searches_continues_to_the_same_bits(scene, engines):
+    whole = gp.Simulation(scene, engines[0], 2)
+    whole.advance(until=4.0)
+    for first, second in product(engines, engines):
+        begun = gp.Simulation(scene, first, 2)
+        begun.advance(until=1.5)
+        again = continued(scene, 2, begun.checkpoint(), second, 2.5)
+        assert bits(continued(scene, 2, again.checkpoint(), first, 4.0)) == bits(whole), (first, second)
+
+
+def test_a_restored_state_is_that_of_the_checkpoint():
+    for first, second in product(STEPS, STEPS):
+        begun = gp.Simulation(MIXED, first, 3)
+        begun.advance(until=1.5)
+        assert bits(continued(MIXED, 3, begun.checkpoint(), second, 1.5)) == bits(begun), (first, second)
+
+
+@pytest.mark.parametrize(
+    ("change", "rule"),
+    [
+        (
+            {"scene": replace(DISCS, species=[gp.Species(20, 0.5, temperature=1.1)])},
+            "is of another scene than this",
+        ),
+        ({"scene": MIXED}, "is of another scene than this"),
+        ({"seed": 2}, "checkpoint = '1': is of another seed than this simulation, which has 2"),
+        ({"seed": (1, 0)}, r"another seed than this simulation, which has \[1, 0\]"),
+        ({"engine": gp.TimeStepped(0.01)}, 'another engine than this simulation, which has {"name": "step"'),
+    ],
+)
+def test_another_simulation_is_refused_in_one_line(change, rule):
+    begun = gp.Simulation(DISCS, gp.EventDriven(), 1)
+    begun.advance(until=1.0)
+    sim = gp.Simulation(**{"scene": DISCS, "engine": gp.EventDriven(search="lists"), "seed": 1, **change})
+    before = bits(sim)
+    with pytest.raises(gp.SceneError, match=rule) as caught:
+        sim.restore(begun.checkpoint())
+    assert "\n" not in str(caught.value) and bits(sim) == before
+
+
+@pytest.mark.parametrize(
+    "other", [{"time_step": 0.02}, {"precision": "float32"}, {"rewind": False}, {"passes": 1}]
+)
+def test_settings_that_change_results_are_refused(other):
+    begun = gp.Simulation(MIXED, gp.TimeStepped(0.01), 1)
+    begun.advance(until=0.1)
+    with pytest.raises(gp.SceneError, match="is of another engine than this simulation"):
+        gp.Simulation(MIXED, gp.TimeStepped(**{"time_step": 0.01, **other}), 1).restore(begun.checkpoint())
+
+
+@pytest.mark.parametrize("engine", [gp.EventDriven(), gp.EventDriven(search="lists"), *STEPS[:2]])
+def test_a_checkpoint_that_lacks_anything_is_refused(engine):
+    begun = gp.Simulation(MIXED, engine, 1)
+    begun.advance(until=1.0)
+    sim = gp.Simulation(MIXED, engine, 1)
+    before, whole = bits(sim), begun.checkpoint()
+    search = {
+        "search",
+        "boxes_per_side",
+        "origin",
+        "skin",
+        "per_side",
+        "threads",
+        "momentum",
+        "energy",
+        "wall_loss",
+    }
+    for key in whole:
+        if key not in search - {"wall_loss"}:
+            with pytest.raises(gp.SceneError, match="checkpoint"):
+                sim.restore({name: value for name, value in whole.items() if name != key})
+    for wrong in (None, {}, {**whole, "images": whole["images"][1:]}, {**whole, "lost": np.array("x")}):
+        with pytest.raises(gp.SceneError, match="checkpoint"):
+            sim.restore(wrong)
+    assert bits(sim) == before
+
+
+def test_the_names_of_engines_are_not_engines():
+    for wrong in ("event", gp.EventDriven, None):
+        with pytest.raises(
+            gp.SceneError, match=r"engine = .*must be an engine: EventDriven\(\) or TimeStepped"
+        ):
+            gp.Simulation(DISCS, wrong)
+    with pytest.raises(gp.SceneError, match="scene = 'gas.yaml': must be a Scene"):
+        gp.Simulation("gas.yaml", gp.EventDriven())
