@@ -8,7 +8,8 @@
 # make coverage   which lines of src/gaspart the tests run (at least 95 %); compiles all kernels anew
 # make lint | report | clean | distclean
 #
-# Needs Python 3.11 or later with venv and pip, and make. Everything else is installed into .venv.
+# Needs Python 3.11 or later with venv and pip, and make. Everything else is installed into .venv, which make replaces
+# or removes only if it has made it.
 
 SHELL := /bin/bash
 .DELETE_ON_ERROR:
@@ -22,6 +23,10 @@ SNAKEMAKE = .venv/bin/python -m snakemake --cores $(CORES)
 # Printed after Snakemake has ended, also if there was nothing to do.
 VERDICTS = @.venv/bin/python -c 'from gaspart.reproduction.claims import summary; print(summary("results/tables/claims.csv"))'
 
+# A .venv that somebody else has made may hold what exists nowhere else.
+OWN_VENV = @test ! -e .venv -o -e .venv/made_by_make -o -e .venv/environment.stamp || { echo \
+	"make: .venv exists and was not made by make, which would replace it; move it away" >&2; exit 2; }
+
 all: setup
 	$(SNAKEMAKE) --quiet rules
 	$(VERDICTS)
@@ -34,7 +39,9 @@ setup: .venv/gaspart.stamp
 .venv/environment.stamp: environment.txt
 	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
 		|| { echo "gaspart needs Python 3.11 or later: make PYTHON=/path/to/python3.11" >&2; exit 2; }
+	$(OWN_VENV)
 	"$(PYTHON)" -m venv --clear .venv
+	@touch .venv/made_by_make
 	$(PIP) install --no-deps --require-hashes --requirement environment.txt
 	@touch $@
 
@@ -87,4 +94,5 @@ clean:
 	rm -rf .snakemake $(filter-out results/README.md,$(wildcard results/*))
 
 distclean: clean
+	$(OWN_VENV)
 	rm -rf .venv .pytest_cache .ruff_cache .mypy_cache .hypothesis src/*.egg-info

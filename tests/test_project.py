@@ -1,10 +1,14 @@
 """The project's files agree: one version, and dependencies that are locked within their bounds."""
 
+import os
 import re
+import shutil
+import subprocess
 import tomllib
 from itertools import chain
 from pathlib import Path
 
+import pytest
 import yaml
 from packaging.requirements import Requirement
 
@@ -68,3 +72,28 @@ def test_the_conda_environment_has_every_dependency_at_its_locked_version():
     for name in packages - {"snakemake", "snakemake-executor-plugin-slurm"}:
         locked = re.search(rf"^{re.escape(name)}==([^ ;]+)", lock, re.MULTILINE)[1]
         assert locked.startswith(versions[names.get(name, name)]), name
+
+
+@pytest.mark.parametrize("target", ["setup", "distclean"])
+@pytest.mark.parametrize("made", [None, "made_by_make", "environment.stamp"])
+def test_make_removes_no_environment_but_its_own(tmp_path, target, made):
+    """`venv --clear` and `rm -rf` would delete what a user keeps in a .venv of the same name."""
+    for name in ("Makefile", "environment.txt", "pyproject.toml"):
+        shutil.copy(ROOT / name, tmp_path)
+    kept = tmp_path / ".venv/thesis.csv"
+    kept.parent.mkdir()
+    kept.write_text("data")
+    if made:
+        (kept.parent / made).touch()
+        os.utime(kept.parent / made, (0.0, 0.0))  # older than environment.txt
+    stub = tmp_path / "python"  # makes no environment, but clears the folder as venv does
+    stub.write_text('#!/bin/sh\ntest "$2" != venv || rm -rf .venv\ntest "$2" != venv\n')
+    stub.chmod(0o755)
+    command = ["make", target, f"PYTHON={stub}"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert kept.exists() == (made is None), done.stdout + done.stderr
+    if made is None:
+        assert done.returncode == 2
+        assert (
+            "make: .venv exists and was not made by make, which would replace it; move it away" in done.stderr
+        )
