@@ -256,6 +256,10 @@ def test_streams_that_are_full_or_closed(folder):
     done = shell("info 0.nc >/dev/full")
     assert done.returncode == 1
     assert done.stderr == "gaspart: error: a file or the standard output: No space left on device\n"
+    for command in ("theory Z --eta 0.3", "info 0.nc", "check scene.yaml"):  # what is printed is all there is
+        done = shell(f"{command} >&-")
+        assert done.returncode == 1
+        assert done.stderr == "gaspart: error: a file or the standard output: Bad file descriptor\n"
     assert shell("info nowhere.nc 2>/dev/full").returncode == 2
     assert shell("info nowhere.nc 2>&-").returncode == 2
 

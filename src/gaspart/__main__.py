@@ -16,11 +16,11 @@ def main() -> int:
             signal.signal(number, _exit)
     from gaspart.interruption import exit_on_signals
 
-    _open_closed_streams()
+    closed = _open_closed_streams()
     exit_on_signals()
     from gaspart.cli import main as carry_out
 
-    return carry_out()
+    return carry_out(without_output=1 in closed)
 
 
 def _exit(signum: int, frame: object) -> None:
@@ -28,16 +28,19 @@ def _exit(signum: int, frame: object) -> None:
     os._exit(128 + signum)
 
 
-def _open_closed_streams() -> None:
+def _open_closed_streams() -> set[int]:
     """Give a process that was started with closed streams (`2>&-`) the null device in their place.
+    Returns their numbers.
 
     Otherwise the next file to be opened, such as a trajectory, would get the number of stderr, and the output
     of libraries.
     """
+    closed = set()
     for number in range(3):
         try:
             os.fstat(number)
         except OSError:
+            closed.add(number)
             os.open(os.devnull, os.O_RDWR)  # takes the lowest free number, which is this one
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
@@ -45,6 +48,7 @@ def _open_closed_streams() -> None:
     # file names that are not UTF-8 are printed as their bytes
     if isinstance(sys.stdout, TextIOWrapper) and sys.stdout.encoding.lower() == "utf-8":
         sys.stdout.reconfigure(errors="surrogateescape")
+    return closed
 
 
 if __name__ == "__main__":

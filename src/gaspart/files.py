@@ -21,6 +21,9 @@ from gaspart.interruption import scratch_file
 _HERE, _NO_REPLACE = -100, 1
 """AT_FDCWD and RENAME_NOREPLACE of Linux's renameat2."""
 
+OVERWRITE = "overwrite it (overwrite=True)"
+"""What the rule of a file that exists proposes; the command line has its own option for it."""
+
 
 @dataclass(frozen=True)
 class Kind:
@@ -70,7 +73,7 @@ def may_replace(path: Path, kind: Kind | None, overwrite: bool) -> bool:
         rule = f"exists and is not {kind.name}; move it away, or choose another name"
         raise SceneError("path", str(path), rule)
     if not overwrite:
-        raise SceneError("path", str(path), "exists; move it away, or overwrite it (--force)")
+        raise SceneError("path", str(path), f"exists; move it away, or {OVERWRITE}")
     return True
 
 

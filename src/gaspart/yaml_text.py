@@ -7,6 +7,7 @@ a date is text. Duplicate keys are errors.
 
 from __future__ import annotations
 
+import os
 import re
 from functools import cache
 from pathlib import Path
@@ -31,7 +32,7 @@ _MERGING = object()  # marks the key <<
 def read_yaml(path: str | Path) -> Any:
     """The content of a YAML file. Raises SceneError, naming the file, if it cannot be read."""
     try:
-        with Path(path).open("rb") as file:
+        with open(os.fspath(path), "rb") as file:  # not Path, which accepts `file.yaml/`
             text = file.read(MOST_BYTES + 1).decode("utf-8")
     except OSError as error:
         raise SceneError("file", str(path), f"cannot be read: {error.strerror}") from None
@@ -73,6 +74,11 @@ def write_yaml(path: str | Path, content: object) -> None:
     """Write `content` as a YAML file, completely or not at all."""
     with whole_file(path) as partial:
         partial.write_text(dump_yaml(content), encoding="utf-8")
+
+
+def is_exponential(text: str) -> bool:
+    """Whether this is a number here, but text in YAML 1.1, such as 1e3."""
+    return bool(_NUMBERS.match(text)) and len(text) <= _LONGEST_NUMBER
 
 
 def _with_exponents(base: Any) -> Any:

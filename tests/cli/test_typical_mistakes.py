@@ -108,7 +108,7 @@ MISTAKES = {
     "no container": (scene("container", "box"), "container = None: is required"),
     "no radius": (scene("radius: 0.5, ", ""), "species[0].radius = None: is required"),
     "negative radius": (scene("0.5", "-0.5"), "species[0].radius = -0.5: must be positive"),
-    "text for a number": (scene("0.5", "big"), "species[0].radius = 'big': must be positive"),
+    "text for a number": (scene("0.5", "big"), "species[0].radius = 'big': must be a number"),
     "speed and temperature": (scene("temp", "speed: 1.0, temp"), "give speed or temperature, not both"),
     "unknown boundary": (scene("wall", "open"), "container.boundary = 'open': must be one of"),
     "one length": (scene("[12.0, 12.0]", "12.0"), "container.lengths = 12.0: must be a list of 2 or 3"),

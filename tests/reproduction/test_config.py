@@ -11,10 +11,11 @@ from importlib.metadata import packages_distributions
 from pathlib import Path
 
 import pytest
+import yaml
 from malformed import one_line
 
 from gaspart.errors import SceneError
-from gaspart.reproduction.config import check, laid_over
+from gaspart.reproduction.config import check, laid_over, read_numbers
 from gaspart.reproduction.cost import predict
 from gaspart.reproduction.validation import judge_config
 from gaspart.yaml_text import dump_yaml, read_yaml
@@ -296,3 +297,32 @@ def test_a_film_is_of_trajectories():
     ):
         with pytest.raises(SceneError, match=complaint):
             check(with_value(["animations"], {"gas": wrong}))
+
+
+def test_values_of_the_command_line_are_not_blamed_on_a_file(tmp_path):
+    """Snakemake's --config overrides what the files hold."""
+    file = ROOT / "config/smoke.yaml"
+    merged, files = laid_over(file)
+    for changed, key in (
+        ({"sead": 99}, "sead"),
+        ({"seed": "x"}, "seed"),
+        ({"experiments": 3}, "experiments"),
+    ):
+        with pytest.raises(SceneError) as caught:
+            check({**merged, **changed}, files)
+        assert (caught.value.key, caught.value.file) == (key, "--config")
+    missing = {key: value for key, value in merged.items() if key != "seed"}
+    with pytest.raises(SceneError, match="seed = None: is required") as caught:
+        check(missing, files)
+    assert caught.value.file == str(files[0])  # which holds it
+
+
+def test_numbers_with_an_exponent_are_read_as_the_documentation_says(tmp_path):
+    """Snakemake's reader takes 1e3 for text; what is quoted in a file is text."""
+    file = tmp_path / "a.yaml"
+    file.write_text("a: {b: 1e3, c: '1e3', d: [2, 1e-2, '1e1', x]}\ne: 1.5e3\n")
+    config = yaml.safe_load(file.read_text()) | {"given": "2e2", "title": "1e3 discs"}
+    assert config["a"]["b"] == "1e3"
+    read_numbers(config, [file])
+    assert config["a"] == {"b": 1000.0, "c": "1e3", "d": [2, 0.01, "1e1", "x"]}
+    assert (config["e"], config["given"], config["title"]) == (1500.0, 200.0, "1e3 discs")

@@ -234,7 +234,7 @@ def test_a_damaged_frame_stops_a_resumption_and_loses_nothing(tmp_path, complete
     spoilt[len(partial) * 3 // 4] ^= 1
     partial_path(path).write_bytes(spoilt)
     checkpoint_path(path).write_bytes(checkpoint)
-    with pytest.raises(gp.SceneError, match=r"frame \d+ is damaged: .*--force"):
+    with pytest.raises(gp.SceneError, match=r"frame \d+ is damaged: .*overwrite=True"):
         gp.resume(path)
     assert partial_path(path).read_bytes() == spoilt
     assert gp.run(*RECIPE, path, overwrite=True).read_bytes() == complete

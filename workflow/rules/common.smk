@@ -21,7 +21,7 @@ if " " in sys.executable:
 
 from gaspart.reproduction.claims.captions import filled
 from gaspart.reproduction.claims.table import summary
-from gaspart.reproduction.config import check
+from gaspart.reproduction.config import check, read_numbers
 from gaspart.reproduction.families.registry import families, titles
 from gaspart.reproduction.points import grid
 from gaspart.reproduction.points.modules import digest, kernel_digest
@@ -32,10 +32,15 @@ from gaspart.errors import SceneError
 
 # A job on a cluster reads this file again, but need not validate ten thousand points again.
 RECIPES = {}
+files = ["config/config.yaml", *workflow.overwrite_configfiles]
+files = [str(name) for name in files if os.path.exists(name)]
 if workflow.is_main_process:
     try:
-        files = ["config/config.yaml", *workflow.overwrite_configfiles]
-        RECIPES = check(config, [str(name) for name in files if os.path.exists(name)])
+        if not files:
+            problem = "has no config/config.yaml: run Snakemake in the folder of the project, or with --directory"
+            raise SceneError("folder", os.getcwd(), problem)
+        read_numbers(config, files)
+        RECIPES = check(config, files)
         for kept in ("results", ".snakemake"):
             folder = kept if os.path.exists(kept) else "."
             if not os.access(folder, os.W_OK):
@@ -45,6 +50,8 @@ if workflow.is_main_process:
         # A user's mistake: one line and exit code 2, instead of a WorkflowError with its place in this file.
         print(f"gaspart: {error}", file=sys.stderr)
         sys.exit(2)
+else:
+    read_numbers(config, files)
 
 FIGURES = list(config["figures"])
 ANIMATIONS = [name for name, block in config.get("animations", {}).items() if block]

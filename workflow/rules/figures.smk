@@ -59,7 +59,7 @@ rule report:
         modules=digest(*sources("report")),
         figures=FIGURES,
         films=FILMS,
-        title=config["title"],
+        title=lambda wildcards: config["title"],
         one_file=False,
     script:
         "../scripts/report.py"
@@ -77,5 +77,5 @@ use rule report as report_in_one_file with:
         modules=digest(*sources("report")),
         figures=FIGURES,
         films=FILMS,
-        title=config["title"],
+        title=lambda wildcards: config["title"],
         one_file=True,

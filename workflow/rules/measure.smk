@@ -23,7 +23,7 @@ rule measure:
         family=family,
         points=lambda wildcards: [point.to_dict() for point in figure_points(wildcards)],
         settings=lambda wildcards: config["figures"][wildcards.figure],
-        title=config["title"],
+        title=lambda wildcards: config["title"],
     script:
         "../scripts/measure.py"
 

@@ -60,21 +60,20 @@ class Observable(xr.Dataset):
 
     def plot(self, theory: bool = False, axis: Axes | None = None) -> Axes:  # type: ignore[override]
         """Draw the values with bars of one standard deviation, a scalar as the means of consecutive stretches
-        of the run; with `theory`, the curve of theory too. axis: an Axes of matplotlib; by default a new one.
-        Returns the Axes.
-
-        Raises SceneError for `theory` where there is none for this scene.
+        of the run; with `theory`, the curve of theory too, or a line of the legend that there is none for
+        this scene. axis: an Axes of matplotlib; by default a new one. Returns the Axes.
         """
         import matplotlib.pyplot as plt
 
-        if theory and self.theory is None:
-            raise SceneError("theory", True, f"there is none of {self.attrs['quantity']} for this scene")
         if axis is None:
             axis = plt.figure(layout="constrained").add_subplot()
+        known = theory and self.theory is not None
         if self.estimate.ndim:
-            _plot_curve(self, axis, theory)
+            _plot_curve(self, axis, known)
         else:
-            _plot_scalar(self, axis, theory)
+            _plot_scalar(self, axis, known)
+        if theory and not known:
+            axis.plot([], [], " ", label="no theory for this scene")
         axis.set_ylabel(_label(self.estimate))
         axis.legend(frameon=False)
         return axis

@@ -15,7 +15,6 @@ from gaspart.analysis.source import (
     measured,
     require_collisions,
     require_elastic,
-    require_periodic,
 )
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
@@ -35,7 +34,9 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
     Raises SceneError for walls, fixed particles, contacts that lose energy, too few frames, and no collision.
     """
     with measured(source, start) as run:
-        require_periodic(run)
+        if not run.periodic.all():
+            rule = "Z needs a periodic container; between walls measure pressure (wall_pressure)"
+            raise SceneError("container.boundary", run.scene.container.boundary, rule)
         require_elastic(run)
         if not run.moving.all():
             raise SceneError("species.fixed", True, "the virial of fixed particles is not a pressure")

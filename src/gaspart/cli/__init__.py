@@ -6,6 +6,8 @@ of memory, or an error found by `check`: 1. An interruption: 130 (SIGINT) or 143
 
 from __future__ import annotations
 
+import argparse
+import errno
 import os
 import sys
 from collections.abc import Iterable, Sequence
@@ -16,6 +18,7 @@ from gaspart import __version__
 from gaspart.cli.arguments import CheckFailed, Parser, UsageError
 from gaspart.cli.progress import clear_line
 from gaspart.errors import SceneError, SimulationError, unknown_word
+from gaspart.files import OVERWRITE
 from gaspart.interruption import interrupted, set_note
 
 _COMMANDS = {
@@ -34,6 +37,7 @@ _COMMANDS = {
     "completion": ("completion", "let a shell complete commands, options and names"),
 }
 """Name -> module, which has a function add_<name>, and the line in the list of commands."""
+_WRITE_FILES = ("new", "resume")  # as commands with an option `output` do
 _EXAMPLES = """examples:
   gaspart new gas.yaml
   gaspart run gas.yaml -o gas.nc --duration 40 --sample-interval 0.4
@@ -41,8 +45,10 @@ _EXAMPLES = """examples:
   gaspart run --help"""
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Carry out a command line; returns the exit code."""
+def main(arguments: Sequence[str] | None = None, without_output: bool = False) -> int:
+    """Carry out a command line; returns the exit code. without_output: the standard output is closed; a
+    command whose result would be printed there has failed."""
+    given: argparse.Namespace | None = None
     try:
         set_note("")
         try:
@@ -50,11 +56,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
             given, left = _parser(words).parse_known_args(words)
             if left:
                 raise UsageError(_unrecognised(left, given.parser))
+            if without_output and getattr(given, "output", None) is None and words[0] not in _WRITE_FILES:
+                raise OSError(errno.EBADF, os.strerror(errno.EBADF))
             given.command(given)
         finally:
             sys.stdout.flush()  # here, where a full disk can still be reported
     except (SceneError, UsageError) as error:
-        return _complain(f"error: {error}", 2)
+        return _complain(f"error: {_for_command(error, given)}", 2)
     except CheckFailed:
         return 1
     except SimulationError as error:
@@ -69,6 +77,32 @@ def main(arguments: Sequence[str] | None = None) -> int:
         where = error.filename or "a file or the standard output"
         return _complain(f"error: {where}: {error.strerror or error}", 1)
     return 0
+
+
+def _for_command(error: Exception, given: argparse.Namespace | None) -> str:
+    """The text of an error for the command given: with the file of its scene, and the option for Python's
+    `overwrite`."""
+    if (
+        isinstance(error, SceneError)
+        and error.file is None
+        and isinstance(getattr(given, "scene", None), str)
+    ):
+        assert given is not None
+        if error.key.partition(".")[0].partition("[")[0] in _scene_keys():
+            error = error.inside("", given.scene)
+    has_option = given is None or "--force" in given.parser.options()
+    return str(error).replace(OVERWRITE, f"overwrite it ({'' if has_option else 'gaspart run '}--force)")
+
+
+def _scene_keys() -> set[str]:
+    """The keys of a scene file, and what follows from them."""
+    from dataclasses import fields
+
+    from gaspart.scene.container import Container
+    from gaspart.scene.scene import Scene
+    from gaspart.scene.species import Species
+
+    return {"packing_fraction"} | {field.name for cls in (Scene, Container, Species) for field in fields(cls)}
 
 
 def _complain(text: str, code: int) -> int:

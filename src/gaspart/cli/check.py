@@ -53,7 +53,7 @@ def _check(given: argparse.Namespace) -> None:
         for key in ("radius", "lengths", "boundary", "time_step"):
             if getattr(given, key) is not None:
                 raise SceneError(key, getattr(given, key), "has a meaning for trajectories only")
-        found = _written(Path(given.file), given.tolerance)
+        found = _written(given.file, given.tolerance)
     else:
         from gaspart.inspection.checks import judge
         from gaspart.inspection.readers import read_frames
@@ -68,11 +68,11 @@ def _check(given: argparse.Namespace) -> None:
         raise CheckFailed
 
 
-def _written(path: Path, tolerance: float | None) -> list:
+def _written(file: str, tolerance: float | None) -> list:
     """The checks of a YAML file: a scene, or a config of the workflow."""
     from gaspart.inspection.written import judge_scene
 
-    content = read_yaml(path)
+    content, path = read_yaml(file), Path(file)
     if isinstance(content, dict) and ("experiments" in content or "figures" in content):
         return of_configs("check")(path)
     return judge_scene(path, tolerance)

@@ -67,8 +67,8 @@ def _theory(given: argparse.Namespace) -> None:
         if key not in quantity.takes:
             raise SceneError(key, properties[key], f"{given.quantity} does not depend on it")
     for eta in given.eta:
+        spread = theory.compressibility_uncertainty(eta, dimension)  # first: it refuses any other eta
         value = getattr(theory, quantity.function)(eta, dimension, **properties)
-        spread = theory.compressibility_uncertainty(eta, dimension)
         about = f" +- {float(spread):.1g}" if given.quantity == "Z" else ""
         print(f"{given.quantity}(eta = {eta:g}, dimension = {dimension}) = {float(value):.10g}{about}")
     highest = theory.HIGHEST_PACKING_FRACTION[dimension]

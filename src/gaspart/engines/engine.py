@@ -74,9 +74,9 @@ class Engine:
 
     name: by which files, configs and the command line know it; title: in messages and captions;
     records_events: whether its events can be recorded and counted; counters: fields of `Tally` that only
-    such an engine fills; same_bits: settings that change no bit of its results; models: names of the `scene.features` that it models, and excludes: pairs of them
-    that it does not model together; first_stretch: the work, in events or steps, that a run begins with
-    between two looks at the clock.
+    such an engine fills; same_bits: settings that change no bit of its results; models: names of the
+    `scene.features` that it models, and excludes: pairs of them that it does not model together;
+    first_stretch: the work, in events or steps, that a run begins with between two looks at the clock.
     """
 
     name: ClassVar[str]

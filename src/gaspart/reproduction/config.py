@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import chdir, contextmanager
+from contextlib import chdir, contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from gaspart.reproduction.points.overlay import laid_over
 from gaspart.reproduction.points.points import figure_points, points
 from gaspart.reproduction.schema import schema
 from gaspart.scene.validation import finite, size
-from gaspart.yaml_text import DEEPEST, MOST_VALUES, read_yaml
+from gaspart.yaml_text import DEEPEST, MOST_VALUES, is_exponential, read_yaml
 
 
 @contextmanager
@@ -54,7 +54,29 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> dict[tuple[str, str
             _animation(config, animation, block)
         return recipes
     except SceneError as error:
-        raise error.inside("", error.file or _file_of(error.key, contents)) from None
+        raise error.inside("", error.file or _origin(error.key, config, contents)) from None
+
+
+def read_numbers(config: dict, files: Sequence[str | Path]) -> None:
+    """Change numbers such as 1e3, which Snakemake's reader takes for text, into numbers, in a merged config.
+
+    files: those that were merged, in that order; what is in quotes there stays text. Raises SceneError for a
+    file that cannot be read.
+    """
+    _read_numbers(config, [read_yaml(file) for file in files])
+
+
+def _read_numbers(block: Any, held: list[Any]) -> None:
+    """held: what the files have in this place."""
+    for key, value in block.items() if isinstance(block, dict) else enumerate(block):
+        below = []
+        for part in held:
+            with suppress(LookupError, TypeError):  # where this file has something else, or nothing
+                below.append(part[key])
+        if isinstance(value, dict | list):
+            _read_numbers(value, below)
+        elif isinstance(value, str) and is_exponential(value) and value not in below:
+            block[key] = float(value)
 
 
 def _check_values(config: object) -> None:
@@ -186,18 +208,23 @@ def _grid_values(block: Any) -> Iterator[tuple[str, object]]:
             yield key, value
 
 
-def _file_of(key: str, contents: list[tuple[str, Any]]) -> str | None:
-    """The last of the files, given with their contents, that holds the longest part of ``key``."""
+def _origin(key: str, config: dict, contents: list[tuple[str, Any]]) -> str | None:
+    """The last of the files, given with their contents, that holds the longest part of ``key``; or the option
+    of Snakemake, for a value that is in none of them."""
     parts = key.replace("[", ".").split(".")
     dotted = parts.index("scene") if "scene" in parts else len(parts)  # `scene.` and what follows is one key
     parts[dotted:] = [".".join(parts[dotted:])]
 
-    def depth(content: tuple[str, Any]) -> int:
-        block, reached = content[1], 0
+    def held(block: Any) -> tuple[int, Any]:
+        reached = 0
         for part in parts:
             if not isinstance(block, dict) or part not in block:
                 break
             block, reached = block[part], reached + 1
-        return reached
+        return reached, block
 
-    return max(reversed(contents), key=depth)[0] if contents else None
+    depth, value = held(config)
+    if contents and depth and not isinstance(value, dict):
+        if (depth, value) not in [held(content) for _, content in contents]:
+            return "--config"
+    return max(reversed(contents), key=lambda content: held(content[1])[0])[0] if contents else None

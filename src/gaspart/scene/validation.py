@@ -65,8 +65,15 @@ def size(key: str, value: float | tuple[float, ...]) -> None:
         raise SceneError(key, value, rule)
 
 
+def _refuse_text(key: str, value: Any) -> None:
+    """Raise SceneError for text, such as `1.0 K`."""
+    if isinstance(value, str | bytes):
+        raise SceneError(key, value, "must be a number, without a unit")
+
+
 def positive(key: str, value: Any) -> float:
     """`value` as a float above 0 of an acceptable `size`."""
+    _refuse_text(key, value)
     found = number(key, value, "must be positive", above=0.0)
     if not SMALLEST <= found <= LARGEST:
         raise SceneError(key, value, f"must be from {SMALLEST:g} to {LARGEST:g}: choose other units")
@@ -75,6 +82,7 @@ def positive(key: str, value: Any) -> float:
 
 def not_negative(key: str, value: Any) -> float:
     """`value` as a float of at least 0 of an acceptable `size`."""
+    _refuse_text(key, value)
     found = number(key, value, "must not be negative", least=0.0)
     size(key, found)
     return found

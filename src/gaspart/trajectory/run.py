@@ -18,7 +18,7 @@ import numpy as np
 
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
-from gaspart.files import Kind, may_replace, output_path, place
+from gaspart.files import OVERWRITE, Kind, may_replace, output_path, place
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
 from gaspart.simulation import Simulation
@@ -234,7 +234,7 @@ def _is_finished(wanted: Recipe, path: Path, overwrite: bool) -> bool:
     if exists and _holds(path, wanted, frames=wanted.frames):
         return True
     if (exists or not _can_continue(partial, wanted)) and not overwrite:
-        rule = "exists, of another run or version, or damaged; move it away, or overwrite it (--force)"
+        rule = f"exists, of another run or version, or damaged; move it away, or {OVERWRITE}"
         raise SceneError("path", str(path if exists else partial), rule)
     return False
 
@@ -264,7 +264,7 @@ def _can_keep(partial: Path, frames: int, overwrite: bool) -> bool:
     except SceneError as error:
         if overwrite:
             return False
-        rule = f"{error.rule}; overwrite it (--force) to start again"
+        rule = f"{error.rule}; {OVERWRITE} to start again"
         raise SceneError("path", str(partial), rule) from None
     return True
 

@@ -123,5 +123,7 @@ def test_each_mistake_is_one_line_that_names_the_config(scene_file, tmp_path, se
 def test_a_mistake_in_the_scene_file_names_that_file(tmp_path):
     path = tmp_path / "heavy.yaml"
     path.write_text("container: {lengths: [9.0, 9.0]}\nspecies: [{count: 3, radius: 0.5, mass: heavy}]\n")
-    with pytest.raises(SceneError, match=r"^\S+heavy.yaml: species\[0\].mass = 'heavy': must be positive$"):
+    with pytest.raises(
+        SceneError, match=r"^\S+heavy.yaml: species\[0\].mass = 'heavy': must be a number, without a unit$"
+    ):
         grid.recipe(*points(str(path), **{"scene.species.0.mass": 1.0}))
