@@ -33,7 +33,11 @@ def test_what_cannot_be_placed_names_the_file(file, capsys):
     start = "gaspart: error: gas.yaml: species[0].count = 120: does not fit by random insertion"
     assert refused(capsys, "run", scene, "-o", "a.nc", *SHORT).startswith(start)
     assert refused(capsys, "collisions", scene, "-o", "a.nc", "--count", 9).startswith(start)
-    scene = file(GAS.replace("temp", "arrangement: lattice, temp").replace("[12.0, 12.0]", "[10.6, 10.6]"))
+    scene = file(
+        GAS.replace("temp", "arrangement: lattice, temp")
+        .replace("120", "130")
+        .replace("[12.0, 12.0]", "[10.7, 10.7]")
+    )
     assert refused(capsys, "run", scene, "-o", "a.nc", *SHORT).startswith(
         "gaspart: error: gas.yaml: arrangement"
     )

@@ -78,3 +78,30 @@ def test_a_run_into_a_folder_that_may_not_be_written_to_is_one_line(tmp_path):
     assert done.returncode == 2
     assert "must be a file in an existing folder that can be written to" in done.stderr
     assert done.stderr.count("\n") == 1
+
+
+def test_a_mistake_on_the_command_line_is_not_blamed_on_a_file(fresh):
+    result = fresh.snakemake("--cores", "1", "--dry-run", *SMOKE, "--config", "sead=99")
+    assert result.returncode == 2
+    assert result.stdout.splitlines()[-1] == "gaspart: --config: sead = 99: unknown key; did you mean seed?"
+
+
+def test_a_folder_without_a_config_is_one_line(fresh, tmp_path):
+    elsewhere, small = tmp_path / "elsewhere", fresh.path / "config/smoke.yaml"
+    elsewhere.mkdir()
+    arguments = ("--cores", "1", "--dry-run", "--directory", str(elsewhere), "--configfile", str(small))
+    result = fresh.snakemake(*arguments)
+    assert result.returncode == 2
+    assert result.stdout.splitlines()[-1] == (
+        f"gaspart: folder = {str(elsewhere)!r}: has no config/config.yaml, over which others are laid: "
+        "run Snakemake in the project's folder"
+    )
+
+
+def test_titles_with_braces_and_numbers_with_exponents_are_planned(fresh, tmp_path):
+    """Snakemake fills braces in its parameters, and its reader takes 1e3 for text."""
+    given = tmp_path / "given.yaml"
+    title = 'title: "{x} $(touch PWNED) é <b>\\"\'"\n'
+    given.write_text(f"{title}experiments: {{virial_discs: {{point: {{collisions_per_body: 1e3}}}}}}\n")
+    result = fresh.snakemake("--cores", "1", "--dry-run", *SMOKE, str(given))
+    assert result.returncode == 0, result.stdout[-2000:]

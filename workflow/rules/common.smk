@@ -36,9 +36,6 @@ files = ["config/config.yaml", *workflow.overwrite_configfiles]
 files = [str(name) for name in files if os.path.exists(name)]
 if workflow.is_main_process:
     try:
-        if not files:
-            problem = "has no config/config.yaml: run Snakemake in the folder of the project, or with --directory"
-            raise SceneError("folder", os.getcwd(), problem)
         read_numbers(config, files)
         RECIPES = check(config, files)
         for kept in ("results", ".snakemake"):
@@ -47,6 +44,9 @@ if workflow.is_main_process:
                 problem = f"this user may not write to it, where the workflow keeps {kept}"
                 raise SceneError("folder", os.path.abspath(folder), problem)
     except SceneError as error:
+        if error.rule == "is required" and not os.path.exists("config/config.yaml"):
+            problem = "has no config/config.yaml, over which others are laid: run Snakemake in the project's folder"
+            error = SceneError("folder", os.getcwd(), problem)
         # A user's mistake: one line and exit code 2, instead of a WorkflowError with its place in this file.
         print(f"gaspart: {error}", file=sys.stderr)
         sys.exit(2)
