@@ -45,7 +45,9 @@ if workflow.is_main_process:
                 raise SceneError("folder", os.path.abspath(folder), problem)
     except SceneError as error:
         if error.rule == "is required" and not os.path.exists("config/config.yaml"):
-            problem = "has no config/config.yaml, over which others are laid: run Snakemake in the project's folder"
+            problem = (
+                "has no config/config.yaml, over which others are laid: run Snakemake in the project's folder"
+            )
             error = SceneError("folder", os.getcwd(), problem)
         # A user's mistake: one line and exit code 2, instead of a WorkflowError with its place in this file.
         print(f"gaspart: {error}", file=sys.stderr)
