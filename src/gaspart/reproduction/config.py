@@ -225,6 +225,7 @@ def _origin(key: str, config: dict, contents: list[tuple[str, Any]]) -> str | No
 
     depth, value = held(config)
     if contents and depth and not isinstance(value, dict):
-        if (depth, value) not in [held(content) for _, content in contents]:
+        # in their written form, in which nan is equal to itself
+        if repr((depth, value)) not in [repr(held(content)) for _, content in contents]:
             return "--config"
     return max(reversed(contents), key=lambda content: held(content[1])[0])[0] if contents else None

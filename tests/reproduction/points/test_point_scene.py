@@ -88,7 +88,7 @@ def test_collisions_per_body_are_for_one_species_and_nothing_else(tmp_path):
     settings = {"dimension": 2, "count": 100, "radius": 0.5, "side": 40.0, "boundary": "periodic"}
     (same,) = points(None, **given, **settings, mass=3.0, speed=2.0)
     assert grid.schedule(point) == grid.schedule(same)
-    for key, value in (("gravity", [0, 0]), ("restitution.normal", 0.9)):
+    for key, value in (("walls", [{"start": [1.0, 1.0], "end": [5.0, 5.0]}]), ("restitution.normal", 0.9)):
         (point,) = points(str(tmp_path / "one.yaml"), **given, **{f"scene.{key}": value})
         with pytest.raises(SceneError, match=r"collisions_per_body = 8: .*give duration"):
             grid.schedule(point)
