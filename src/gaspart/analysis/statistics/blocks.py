@@ -9,6 +9,9 @@ from numpy.typing import ArrayLike
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics.inputs import series_of
 
+ORDER = 1.25
+"""Order of the autoregressive process fitted to n samples, over the cube root of n."""
+
 
 @dataclass(frozen=True)
 class CorrelatedMean:
@@ -30,10 +33,10 @@ class CorrelatedMean:
 def correlated_mean(series: ArrayLike, minimum_blocks: int = 16) -> CorrelatedMean:
     """Mean and standard error of a stationary correlated series.
 
-    The error is that of n / (2 t) independent samples, t the autocorrelation time. The sum of correlations
-    about a measured mean is too small by the part (2 W + 1) / n, W its window, for which it is corrected; and
-    the squared error is uncertain by the part sqrt(2 (2 W + 1) / n), as with n / (2 W + 1) degrees of freedom
-    (Wolff, Comput. Phys. Commun. 156, 143 (2004)).
+    The squared error is the spectrum at frequency 0 over the length: that of an autoregressive process fitted
+    to the series, whose order grows as the cube root of the length (Berk, Ann. Stat. 2, 489 (1974)). It is
+    right for independent, correlated and anticorrelated series alike, and its own uncertainty, that of the
+    fitted coefficients, is stated as degrees of freedom: 13 for 200 independent samples.
 
     Whether the series is long enough is decided by blocks (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461
     (1989)): the error from blocks of 1, 2, 4 ... samples grows until they are independent; that from n of
@@ -62,13 +65,10 @@ def correlated_mean(series: ArrayLike, minimum_blocks: int = 16) -> CorrelatedMe
         if np.all(errors[k + 1 :] - own[k + 1 :] <= errors[k]):
             chosen, flat = k, True
             break
-    time, window = _correlation(series)
-    share = (2 * window + 1) / series.size
-    error = float(series.std() * math.sqrt(2.0 * time * (1.0 + share) / series.size))
-    if share > 0.25:  # correlated over so much of the series that the sum means little
-        error = max(error, float(errors[-1]))
+    spectrum, freedom = _spectrum(series)
+    error = math.sqrt(spectrum / series.size)
     return CorrelatedMean(
-        estimate=Estimate(series.mean(), error, 1.0 / share),
+        estimate=Estimate(series.mean(), error, freedom),
         block_length=lengths[chosen],
         blocks=counts[chosen],
         lengths=np.array(lengths),
@@ -78,23 +78,51 @@ def correlated_mean(series: ArrayLike, minimum_blocks: int = 16) -> CorrelatedMe
 
 
 def autocorrelation_time(series: ArrayLike) -> float:
-    """Integrated autocorrelation time 1/2 + sum of rho(k), in samples: 1/2 for independent ones.
+    """Integrated autocorrelation time 1/2 + sum of rho(k), in samples: 1/2 for independent ones, less for
+    anticorrelated ones.
 
-    The sum ends at the first k >= 6 times the result (Sokal's self-consistent window; Madras and Sokal 1988).
-    A series of n samples holds n / (2 time) independent ones. A constant series has none of its own: 1/2.
+    A series of n samples holds n / (2 time) independent ones: the squared error of its mean, as of
+    `correlated_mean`, is 2 time / n times its variance. A constant series has none of its own: 1/2.
     """
-    return _correlation(series_of("series", series, 4))[0]
+    series = series_of("series", series, 4)
+    variance = float(series.var())
+    return 0.5 * _spectrum(series)[0] / variance if variance > 0.0 else 0.5
 
 
-def _correlation(series: np.ndarray) -> tuple[float, int]:
-    """The autocorrelation time of a series, and the window of its sum."""
+def _spectrum(series: np.ndarray) -> tuple[float, float]:
+    """The sum of a series' autocovariances over all lags, and the degrees of freedom of this estimate.
+
+    The autocovariances about a measured mean are too small by the sum itself over n: they are shifted by a
+    first estimate of it, and the fit is repeated.
+    """
+    number = series.size
+    order = round(ORDER * number ** (1.0 / 3.0))
     centred = series - series.mean()
-    size = 1 << (2 * series.size - 1).bit_length()
-    spectrum = np.abs(np.fft.rfft(centred, size)) ** 2
-    correlation = np.fft.irfft(spectrum, size)[: series.size]
-    if correlation[0] <= 0.0:
-        return 0.5, 0
-    times = 0.5 + np.concatenate([[0.0], np.cumsum(correlation[1:] / correlation[0])])
-    reached = np.flatnonzero(np.arange(series.size) >= 6.0 * times)
-    window = int(reached[0]) if reached.size else series.size - 1
-    return float(max(0.5, times[window])), window
+    found = np.array([centred[: number - lag] @ centred[lag:] for lag in range(order + 1)]) / number
+    if found[0] == 0.0:
+        return 0.0, number - 1.0
+    first, _ = _autoregression(found)
+    total, variance = _autoregression(found + first / number)
+    return total, number / (1.0 + 2.0 * variance)
+
+
+def _autoregression(covariances: np.ndarray) -> tuple[float, float]:
+    """The spectrum at frequency 0 of the autoregressive process that has these autocovariances, S = E / A^2,
+    and the uncertainty of A: n times its variance over A^2.
+
+    By the recursion of Levinson and Durbin: E is the variance of what the earlier values do not predict, A is
+    1 less the sum of the coefficients; their covariance matrix is E / n times the inverse of that of the
+    values, whose elements' sum is that of A^2 / E over the lower orders.
+    """
+    coefficients = np.zeros(0)
+    unpredicted, rest, inverse = float(covariances[0]), 1.0, 0.0
+    for order in range(1, covariances.size):
+        inverse += rest**2 / unpredicted
+        known = coefficients @ covariances[order - 1 : 0 : -1]
+        partial = (covariances[order] - known) / unpredicted
+        left = unpredicted * (1.0 - partial**2)
+        if left <= 1e-12 * covariances[0]:  # to rounding, the earlier values predict all
+            break
+        coefficients = np.append(coefficients - partial * coefficients[::-1], partial)
+        unpredicted, rest = left, rest * (1.0 - partial)
+    return unpredicted / rest**2, unpredicted * inverse / rest**2

@@ -84,5 +84,5 @@ def test_replicas_that_agree_have_a_small_chi_square_and_others_do_not():
     assert alike.degrees_of_freedom == 5 and alike.chi_square < 20.0
     assert alike.z.error == pytest.approx(0.1 / np.sqrt(6 * 64), rel=0.2)
     apart = combine_runs([made_up(2.0 + 0.1 * seed, 0.1, seed) for seed in range(6)])
-    assert apart.chi_square > 100.0
+    assert apart.chi_square > 40.0  # 5 degrees of freedom: a chance of 1e-7
     assert alike.counters["collisions"] == 6 * 64
