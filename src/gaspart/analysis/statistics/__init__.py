@@ -1,9 +1,9 @@
 """Statistics of simulations: errors of correlated series, fits with covariance, tests of distributions.
 
 Everywhere: `error` is one standard deviation of the estimate; errors given to a fit are standard deviations
-of independent Gaussian scatter; arrays are one-dimensional and of equal length unless stated. Probabilities
-`p_value` are those of a chi-square at least as large if the model holds. Inputs that are too short, of
-unequal length or not finite raise ValueError.
+of independent Gaussian scatter, exact unless their degrees of freedom are given; arrays are one-dimensional
+and of equal length unless stated. Probabilities `p_value` are those of a chi-square at least as large if the
+model holds. Inputs that are too short, of unequal length or not finite raise ValueError.
 """
 
 from gaspart.analysis.statistics.blocks import CorrelatedMean, autocorrelation_time, correlated_mean
@@ -14,6 +14,7 @@ from gaspart.analysis.statistics.means import (
     average,
     bootstrap,
     combine,
+    combine_estimates,
     jackknife,
     mean_of,
     means_of,
@@ -32,6 +33,7 @@ __all__ = [
     "average",
     "bootstrap",
     "combine",
+    "combine_estimates",
     "correlated_mean",
     "fit_linear",
     "fit_polynomial",

@@ -20,3 +20,12 @@ def positive_errors(errors: ArrayLike, size: int) -> np.ndarray:
     if not np.all((errors > 0.0) & np.isfinite(errors)):
         raise ValueError("errors: must be positive and finite")
     return errors
+
+
+def positive_freedoms(freedoms: ArrayLike, size: int) -> np.ndarray:
+    """Return degrees of freedom broadcast to (size,); raise ValueError unless positive. They may be
+    infinite."""
+    freedoms = np.broadcast_to(np.asarray(freedoms, dtype=float), (size,))
+    if not np.all(freedoms > 0.0):
+        raise ValueError("freedoms: must be positive")
+    return freedoms

@@ -7,22 +7,28 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import chdtrc
 
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics.fits import fit_linear
-from gaspart.analysis.statistics.inputs import positive_errors, series_of
+from gaspart.analysis.statistics.inputs import series_of
 
 
 @dataclass(frozen=True)
 class Combination:
-    """Weighted mean of independent values, and whether their own errors explain their scatter."""
+    """Weighted mean of independent values, and whether their own errors explain their scatter; see `Fit`."""
 
     value: float
     error: float
+    freedom: float
     chi_square: float
     degrees_of_freedom: int
+    error_freedom: float
     p_value: float
+
+    @property
+    def estimate(self) -> Estimate:
+        """The mean, with its uncertainty."""
+        return Estimate(self.value, self.error, self.freedom)
 
 
 def mean_of(values: ArrayLike) -> Estimate:
@@ -63,15 +69,26 @@ def steady_mean(series: ArrayLike, *changes: ArrayLike) -> Estimate:
     return Estimate(fit.values[0], fit.errors[0], fit.degrees_of_freedom)
 
 
-def combine(values: ArrayLike, errors: ArrayLike) -> Combination:
-    """Mean weighted by 1 / error^2, with the chi-square of the values about it."""
+def combine(values: ArrayLike, errors: ArrayLike, freedoms: ArrayLike = math.inf) -> Combination:
+    """Mean weighted by 1 / error^2, with the chi-square of the values about it; see `fit_linear`."""
     values = series_of("values", values, 1)
-    weights = 1.0 / positive_errors(errors, values.size) ** 2
-    mean = float(np.sum(weights * values) / weights.sum())
-    chi_square = float(np.sum(weights * (values - mean) ** 2))
-    freedom = values.size - 1
-    p_value = float(chdtrc(freedom, chi_square)) if freedom else math.nan
-    return Combination(mean, float(weights.sum() ** -0.5), chi_square, freedom, p_value)
+    fit = fit_linear(np.ones((values.size, 1)), values, errors, freedoms)
+    mean = fit.estimate(0)
+    return Combination(
+        value=mean.value,
+        error=mean.error,
+        freedom=mean.freedom,
+        chi_square=fit.chi_square,
+        degrees_of_freedom=fit.degrees_of_freedom,
+        error_freedom=fit.error_freedom,
+        p_value=fit.p_value,
+    )
+
+
+def combine_estimates(estimates: Sequence[Estimate]) -> Estimate:
+    """Mean of independent estimates, weighted by 1 / error^2."""
+    values, errors, freedoms = zip(*((one.value, one.error, one.freedom) for one in estimates), strict=True)
+    return combine(values, errors, freedoms).estimate
 
 
 def bootstrap(function: Callable[..., float], samples: ArrayLike, repeats: int = 1000) -> Estimate:

@@ -5,9 +5,14 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.statistics import combine, fit_polynomial, fit_power_law
+from gaspart.analysis.statistics import fit_polynomial, fit_power_law
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import deviations, rows
+from gaspart.reproduction.families.shared.claims import (
+    combined,
+    deviations,
+    freedoms,
+    rows,
+)
 from gaspart.theory.adsorption import planck_constant, slow_flux_share
 
 LANGMUIR = (
@@ -26,11 +31,6 @@ def adsorption(ds: xr.Dataset) -> list[Claim]:
     return [*_ideal(kinds["ideal"]), *_layer(kinds["layer"]), *_sticky(kinds["sticky"], kinds["ideal"])]
 
 
-def _combined(ds: xr.Dataset, name: str) -> Estimate:
-    mean = combine(ds[name].values, ds[f"{name}_error"].values)
-    return Estimate(mean.value, mean.error)
-
-
 def _ideal(ds: xr.Dataset) -> list[Claim]:
     claims = []
     for width in np.unique(ds["width"]):
@@ -38,7 +38,7 @@ def _ideal(ds: xr.Dataset) -> list[Claim]:
         claims.append(
             Claim(
                 claim=f"length in place of the thermal wavelength over the well's width, width {width:g}",
-                measured=_combined(same, "length") / width,
+                measured=combined(same, "length") / width,
                 expected=1.0,
                 required=0.01,
                 source=OWN_LENGTH,
@@ -55,15 +55,18 @@ def _ideal(ds: xr.Dataset) -> list[Claim]:
 def _slopes(ds: xr.Dataset, depth: float) -> list[Claim]:
     """Dependence on temperature of one well."""
     slope = fit_polynomial(
-        1.0 / ds["temperature"].values, ds["log_ratio"].values, ds["log_ratio_error"].values
+        1.0 / ds["temperature"].values,
+        ds["log_ratio"].values,
+        ds["log_ratio_error"].values,
+        freedoms=freedoms(ds, "log_ratio"),
     )
     per_length = planck_constant(1.0, ds["mass"].values, ds["temperature"].values)
     planck, error = (per_length * ds[name].values for name in ("length", "length_error"))
-    power = fit_power_law(ds["temperature"].values, planck, error)
+    power = fit_power_law(ds["temperature"].values, planck, error, freedoms(ds, "length"))
     return [
         Claim(
             claim=f"slope of ln(N_ads/N_gas) against 1/kT over the depth, depth {depth:g}",
-            measured=Estimate(slope.values[1], slope.errors[1]) / depth,
+            measured=slope.estimate(1) / depth,
             expected=1.0,
             required=0.005,
             source=LANGMUIR,
@@ -71,7 +74,7 @@ def _slopes(ds: xr.Dataset, depth: float) -> list[Claim]:
         ),
         Claim(
             claim=f"power of T in h = lambda sqrt(2 pi m k T), lambda that length, depth {depth:g}",
-            measured=Estimate(power.exponent, power.exponent_error),
+            measured=power.estimate,
             expected=0.5,
             required=0.02,
             source=f"{OWN_LENGTH}; Planck's constant would be constant, the power 0",
@@ -109,7 +112,7 @@ def _layer(ds: xr.Dataset) -> list[Claim]:
         *claims,
         Claim(
             claim=f"{what}, mean of all depths",
-            measured=_combined(ds, "filling"),
+            measured=combined(ds, "filling"),
             expected=1.0,
             required=0.005,
             source=source,
@@ -130,12 +133,17 @@ def _by_activity(row: xr.Dataset) -> float:
 
 
 def _sticky(ds: xr.Dataset, wells: xr.Dataset) -> list[Claim]:
-    power = fit_power_law(ds["gas_density"].values, ds["coverage"].values, ds["coverage_error"].values)
+    power = fit_power_law(
+        ds["gas_density"].values,
+        ds["coverage"].values,
+        ds["coverage_error"].values,
+        freedoms(ds, "coverage"),
+    )
     slow = float(slow_flux_share(ds["slow_speed"].values[0]))
     return [
         Claim.at_most(
             claim="sticky rule: power of the gas' density in the coverage of a wall at low coverage",
-            measured=Estimate(power.exponent, power.exponent_error),
+            measured=power.estimate,
             bound=0.2,
             required=0.1,
             source="the gas both brings and frees particles, both as its density; Henry's law requires 1",
@@ -143,7 +151,7 @@ def _sticky(ds: xr.Dataset, wells: xr.Dataset) -> list[Claim]:
         ),
         Claim.at_most(
             claim="sticky rule: slow particles that leave the wall, over those that would in equilibrium",
-            measured=_combined(ds, "slow_share") / slow,
+            measured=combined(ds, "slow_share") / slow,
             bound=0.5,
             required=0.1,
             source="slow particles stick, and none is sent back so slowly: only those slowed down when freed "
@@ -152,7 +160,7 @@ def _sticky(ds: xr.Dataset, wells: xr.Dataset) -> list[Claim]:
         ),
         Claim(
             claim="wells: share of the particles that leave below sqrt(kT/m)",
-            measured=_combined(wells, "slow_share"),
+            measured=combined(wells, "slow_share"),
             expected=slow_flux_share(1.0),
             required=0.005,
             source="flux of a Maxwellian, 1 - e^(-1/2) (exact)",

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.statistics import combine
+from gaspart.analysis.statistics import combine_estimates, fit_polynomial
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import rows
+from gaspart.reproduction.families.shared.claims import combined, freedoms, rows
 
 THEORY = "scaled-particle theory (Helfand, Frisch and Lebowitz 1961)"
 
@@ -40,19 +40,16 @@ def _fixed(ds: xr.Dataset) -> list[Claim]:
         )
         for row in rows(ds, "fixed")
     ]
-    force, count = ds["fixed_force"].values, ds["fixed_missing"].values
-    errors = np.hypot(
-        ds["fixed_force_error"].values / count, force * ds["fixed_missing_error"].values / count**2
-    )
-    ratio = combine(force / count, errors)
-    radius = combine(ds["fixed_force_radius"].values, ds["fixed_force_radius_error"].values)
+    ratios = [
+        Estimate.of(row, "fixed_force") / Estimate.of(row, "fixed_missing") for row in rows(ds, "fixed")
+    ]
     weights = 1.0 / ds["fixed_force_radius_error"].values ** 2
     expected = np.average(ds["fixed_radius_expected"].values, weights=weights)
     return [
         *claims,
         Claim(
             claim="force on fixed discs over the weight of the small discs missing, all heights",
-            measured=Estimate(ratio.value, ratio.error),
+            measured=combine_estimates(ratios),
             expected=1.0,
             required=0.04,
             source="Archimedes: F = m g dW/dmu, the slope of the work of insertion (exact far from floor and "
@@ -61,7 +58,7 @@ def _fixed(ds: xr.Dataset) -> list[Claim]:
         ),
         Claim(
             claim="radius displaced beyond the disc's own, in small radii, by the force, all heights",
-            measured=Estimate(radius.value, radius.error),
+            measured=combined(ds, "fixed_force_radius"),
             expected=expected,
             required=0.1,
             source=THEORY,
@@ -142,15 +139,15 @@ def _neutral(ds: xr.Dataset, middle: float) -> Claim:
     distance = np.abs(ds["source_height"].values - middle)
     near = ds.isel(source=np.argsort(distance)[:_NEAREST])
     density, height = near["source_density"].values, near["source_height"].values - middle
-    weight = 1.0 / near["source_height_error"].values
-    (slope, offset), covariance = np.polyfit(density, height, 1, w=weight, cov="unscaled")
+    errors, few = near["source_height_error"].values, freedoms(near, "source_height")
+    offset, slope = fit_polynomial(density, height, errors).values
     neutral = -offset / slope
-    gradient = np.array([neutral, 1.0]) / slope
-    error = float(np.sqrt(gradient @ covariance @ gradient))
+    # The line is fitted again about that density, where the error of its height is the one that counts.
+    there = fit_polynomial(density - neutral, height, errors, freedoms=few).estimate(0)
     return Claim(
         claim="density at which a disc floats in the middle over the source's estimate",
         kind="reproduction",
-        measured=Estimate(neutral, error) / ds.attrs["source_density"],
+        measured=(-there / slope + neutral) / ds.attrs["source_density"],
         expected=1.0,
         required=0.02,
         source="notebook of source C's code (tms-ninja/billiards), buoyancy: mean density of the small discs",

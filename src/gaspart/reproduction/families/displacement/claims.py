@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis.statistics import combine
+from gaspart.analysis.statistics import combine_estimates
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared.claims import MODE_COUPLING, rows
 
@@ -56,8 +56,7 @@ def _dilute_limit(dilute: list[xr.Dataset]) -> Claim:
     ratios = [_diffusion(row) / theory.enskog_diffusion(float(row["packing_fraction"]), 3) for row in dilute]
     measured = Estimate(math.nan, math.nan)
     if ratios:
-        mean = combine([ratio.value for ratio in ratios], [ratio.error for ratio in ratios])
-        measured = Estimate(mean.value, mean.error)
+        measured = combine_estimates(ratios)
     return Claim.within(
         claim=f"D over Enskog's in the dilute limit (packing fraction {DILUTE:g} and below)",
         measured=measured,

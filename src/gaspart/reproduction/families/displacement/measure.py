@@ -18,7 +18,7 @@ from gaspart.analysis.correlations import Curves, between, line
 from gaspart.analysis.statistics import fit_polynomial, means_of
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.curves import reduced_curves
-from gaspart.reproduction.families.shared.rows import from_rows
+from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.points import grid
 
 SETTLE_COLLISIONS, SETTLE_SHEAR_TIMES = 12.0, 3.0
@@ -63,15 +63,21 @@ def msd_spheres(points: list[grid.Point], settings: dict) -> xr.Dataset:
     same = long & long[:, None] & (eta == eta[:, None])
     dataset["largest"] = ("point", long & (np.where(same, count, 0).max(axis=1) == count))
     dataset["in_series"] = ("point", long & (same.sum(axis=1) >= 3))
-    if dataset["in_series"].any():
-        series = dataset.isel(point=dataset["in_series"].values)
-        table = 1.0 / series["side"], series["diffusion"], series["diffusion_error"]
-        fit = fit_polynomial(*table)
-        predicted = -float((series["correction"] * series["side"])[0])
-        dataset["size_limit"] = float(fit_polynomial(*table, powers=(0,), fixed={1: predicted}).values[0])
-        for name, value, error in zip(("size_intercept", "size_slope"), fit.values, fit.errors, strict=True):
-            dataset[name], dataset[f"{name}_error"] = value, error
-    return dataset
+    return size_series(dataset)
+
+
+def size_series(dataset: xr.Dataset) -> xr.Dataset:
+    """The data set with the lines of D against 1/L through the points `in_series`, if there are any; see
+    `msd_spheres`."""
+    if not dataset["in_series"].any():
+        return dataset
+    series = dataset.isel(point=dataset["in_series"].values)
+    table = 1.0 / series["side"], series["diffusion"], series["diffusion_error"]
+    fit = fit_polynomial(*table, freedoms=series["diffusion_freedom"])
+    predicted = -float((series["correction"] * series["side"])[0])
+    limit = float(fit_polynomial(*table, powers=(0,), fixed={1: predicted}).values[0])
+    found = {"size_intercept": fit.estimate(0), "size_slope": fit.estimate(1)}
+    return dataset.assign(entries(found) | {"size_limit": limit})
 
 
 def msd_discs(points: list[grid.Point], settings: dict) -> xr.Dataset:

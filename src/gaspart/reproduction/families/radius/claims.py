@@ -7,7 +7,7 @@ import xarray as xr
 
 from gaspart.analysis.statistics import combine, fit_power_law
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import deviations
+from gaspart.reproduction.families.shared.claims import deviations, freedoms
 
 
 def radius_grid(dataset: xr.Dataset) -> list[Claim]:
@@ -26,7 +26,7 @@ def radius_grid(dataset: xr.Dataset) -> list[Claim]:
 
 def _same_state(same: xr.Dataset) -> Claim:
     """No theory but the 1/N correction: the values are compared with their own mean."""
-    mean = combine(same["Z"].values, same["Z_error"].values)
+    mean = combine(same["Z"].values, same["Z_error"].values, freedoms(same, "Z"))
     radii, eta = same["radius"].values, float(same["packing_fraction"][0])
     return Claim.chi_square(
         claim=f"one Z at packing fraction {eta:.3g} for all radii, {radii.min():.3g} "
@@ -34,6 +34,7 @@ def _same_state(same: xr.Dataset) -> Claim:
         "corrected to first order in 1/N (chi-square per degree of freedom about their mean)",
         chi_square=mean.chi_square,
         degrees_of_freedom=mean.degrees_of_freedom,
+        error_freedom=mean.error_freedom,
         source="hard spheres have no length but their diameter: Z is a function of the packing fraction",
         fails_if="something depends on the radius other than through the packing fraction, or the 1/N "
         "correction is wrong",
@@ -64,7 +65,7 @@ def _scale_invariance(same: xr.Dataset) -> Claim:
     return Claim.within(
         claim="exponent of the event-driven engine's pair tests per collision, "
         "against the radius at one packing fraction",
-        measured=Estimate(law.exponent, law.exponent_error),
+        measured=law.estimate,
         expected=0.0,
         half_width=0.05,
         source="scale invariance: the same gas, enlarged, except for periodic images (order 1/n)",

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.statistics import combine
 from gaspart.reproduction.claims import Claim, Estimate
 
 SOURCE_A, SOURCE_C = "Frederickx & Meerts 2010", "Spencer 2022"
@@ -35,6 +36,18 @@ def deviations(dataset: xr.Dataset, measured: str, expected: str | float) -> np.
         stated = Estimate.of(at, expected) if isinstance(expected, str) else Estimate(expected)
         differences.append(Estimate.of(at, measured) - stated)
     return np.array([difference.deviation for difference in differences])
+
+
+def freedoms(dataset: xr.Dataset, name: str) -> np.ndarray:
+    """Degrees of freedom of the errors of a variable of one dimension; infinite where none are stated (see
+    `Estimate.of`)."""
+    return np.array([Estimate.of(at, name).freedom for at in rows(dataset, str(dataset[name].dims[0]))])
+
+
+def combined(dataset: xr.Dataset, name: str) -> Estimate:
+    """Mean of a variable of one dimension, weighted by its errors."""
+    values, errors = dataset[name].values, dataset[f"{name}_error"].values
+    return combine(values, errors, freedoms(dataset, name)).estimate
 
 
 def exponent(what: str, dataset: xr.Dataset, name: str = "exponent", **others: Any) -> Claim:

@@ -8,7 +8,7 @@ import xarray as xr
 from gaspart import theory
 from gaspart.analysis.statistics import Fit, fit_polynomial
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import rows
+from gaspart.reproduction.families.shared.claims import freedoms, rows
 
 WAVEFORMS = {0: "sawtooth", 1: "sine"}
 """Names of the motions of the floor."""
@@ -40,7 +40,8 @@ def extrapolation(ds: xr.Dataset) -> Fit:
     """The temperature over that of theory, as a polynomial of second order in the small parameter."""
     unit = expected_temperature(ds)
     ratio, error = ds["temperature"].values / unit, ds["temperature_error"].values / unit
-    return fit_polynomial(small_parameter(ds), ratio, error, powers=(0, 1, 2))
+    few = freedoms(ds, "temperature")
+    return fit_polynomial(small_parameter(ds), ratio, error, powers=(0, 1, 2), freedoms=few)
 
 
 def vibrated_bed(ds: xr.Dataset) -> list[Claim]:
@@ -53,7 +54,7 @@ def vibrated_bed(ds: xr.Dataset) -> list[Claim]:
             claims.append(
                 Claim(
                     claim=f"temperature over that of theory in the limit of elastic discs, {name}",
-                    measured=Estimate(fit.values[0], fit.errors[0]),
+                    measured=fit.estimate(0),
                     expected=1.0,
                     required=0.03,
                     source=BALANCE,
@@ -70,10 +71,11 @@ def _of_bed(bed: xr.Dataset, name: str) -> list[Claim]:
     claims = [
         Claim(
             claim=f"energy lost in contacts over that which the floor gives, {which}",
+            kind="identity",
             measured=Estimate.of(bed, "lost") / float(bed["given"]),
             expected=1.0,
             required=0.01,
-            source="a steady state",
+            source="conservation of energy in a steady state (the difference is what the bed stores)",
             fails_if="a bed that still cools or warms, or work that is not counted",
         ),
         Claim(
@@ -89,6 +91,7 @@ def _of_bed(bed: xr.Dataset, name: str) -> list[Claim]:
         claims.append(
             Claim(
                 claim=f"energy given over weight and speed of the floor, {which}",
+                kind="identity",
                 measured=Estimate.of(bed, "given") / float(bed["speed"]),
                 expected=1.0,
                 required=0.01,

@@ -8,7 +8,7 @@ import xarray as xr
 from gaspart import theory
 from gaspart.analysis.statistics import combine
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import deviations, rows
+from gaspart.reproduction.families.shared.claims import deviations, freedoms, rows
 
 RELATIVE_ERROR = 1e-3
 """The largest standard error of Z, relative to it, at which its comparison means anything."""
@@ -82,7 +82,7 @@ def _coefficient(fit: xr.Dataset, order: int, dimension: int) -> Claim:
     return Claim(
         claim=f"B{order} in powers of the particle's {'area' if dimension == 2 else 'volume'} "
         f"(B2 to B{free} fitted up to packing fraction {float(fit['up_to']):g}, {held})",
-        measured=Estimate(at["coefficient"], np.hypot(at["coefficient_error"], at["held_error"])),
+        measured=Estimate.of(at, "coefficient") + Estimate(0.0, at["held_error"]),
         expected=exact,
         required=0.5 * WANTED[order] * exact,
         source=EXACT[dimension],
@@ -123,7 +123,7 @@ def _distinguished(chosen: xr.Dataset) -> Claim:
     eta = chosen["packing_fraction"].values
     starling = theory.carnahan_starling(eta)
     errors = (chosen["Z_error"] / starling).values
-    mean = combine((chosen["Z"] / starling - 1.0).values, errors)
+    mean = combine((chosen["Z"] / starling - 1.0).values, errors, freedoms(chosen, "Z"))
     weights = errors**-2 / np.sum(errors**-2)
     expected = Estimate(
         np.sum(weights * (chosen["reference"] / starling - 1.0).values),
@@ -132,7 +132,7 @@ def _distinguished(chosen: xr.Dataset) -> Claim:
     return Claim(
         claim=f"excess of Z over Carnahan-Starling, mean of packing fractions {eta.min():.2g} to "
         f"{eta.max():.2g}",
-        measured=Estimate(mean.value, mean.error),
+        measured=mean.estimate,
         expected=expected,
         required=expected.value / 5.0,
         source=REFERENCE[3],

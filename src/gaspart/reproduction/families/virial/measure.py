@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.statistics import Fit, fit_polynomial
+from gaspart.reproduction.families.shared.claims import freedoms
 from gaspart.reproduction.families.shared.pressure import pressure
 from gaspart.reproduction.points import grid
 from gaspart.theory.virial import linear_tail_uncertainty
@@ -84,27 +87,32 @@ def fit_table(dataset: xr.Dataset, choices: list[dict]) -> xr.Dataset:
     """`fit_coefficients` by every choice, side by side; choices with too few points are left out."""
     dimension = dataset.attrs["dimension"]
     eta, z, error = (dataset[name].values for name in ("packing_fraction", "Z", "Z_error"))
+    few = freedoms(dataset, "Z")
     fits = []
     for choice in choices:
         inside = eta <= choice["up_to"] * (1.0 + 1e-9)
         if inside.sum() < choice["free"]:  # one point more than the free coefficients B2 ... B_free
             continue
         part = eta[inside], z[inside], error[inside]
-        fits.append((choice, fit_coefficients(*part, dimension, choice["free"], choice["held"])))
+        found = fit_coefficients(*part, dimension, choice["free"], choice["held"], few[inside])
+        fits.append((choice, found))
     highest = max((choice["free"] for choice, _ in fits), default=4)
     orders = np.arange(2, highest + 1)
     table = {
-        name: np.full((len(fits), orders.size), np.nan) for name in ("coefficient", "error", "held_error")
+        name: np.full((len(fits), orders.size), np.nan)
+        for name in ("coefficient", "error", "freedom", "held_error")
     }
     for row, (_, (fit, held_error)) in enumerate(fits):
         table["coefficient"][row, : fit.values.size] = fit.values
         table["error"][row, : fit.values.size] = fit.errors
+        table["freedom"][row, : fit.values.size] = fit.freedoms
         table["held_error"][row, : fit.values.size] = held_error
     exact, exact_error = theory.virial_coefficients(dimension, highest)
     return xr.Dataset(
         {
             "coefficient": (("fit", "order"), table["coefficient"], {"units": "1"}),
             "coefficient_error": (("fit", "order"), table["error"], {"units": "1"}),
+            "coefficient_freedom": (("fit", "order"), table["freedom"], {"units": "1"}),
             "held_error": (("fit", "order"), table["held_error"], {"units": "1"}),
             "exact": ("order", exact[1:], {"units": "1"}),
             "exact_error": ("order", exact_error[1:], {"units": "1"}),
@@ -119,12 +127,19 @@ def fit_table(dataset: xr.Dataset, choices: list[dict]) -> xr.Dataset:
 
 
 def fit_coefficients(
-    eta: np.ndarray, z: np.ndarray, error: np.ndarray, dimension: int, free: int, held: bool
+    eta: np.ndarray,
+    z: np.ndarray,
+    error: np.ndarray,
+    dimension: int,
+    free: int,
+    held: bool,
+    few: np.ndarray | float = math.inf,
 ) -> tuple[Fit, np.ndarray]:
     """Weighted fit of (Z-1)/eta = b_2 + b_3 eta + ... with b_2 ... b_free free.
 
     held: the higher coefficients, to B10, are held at their literature values and the terms beyond at
     `theory.linear_tail`; otherwise they are taken as zero (the series is cut), which shows what they matter.
+    few: degrees of freedom of the errors.
 
     Returns the Fit (values b_2 ... b_free) and held_error (free - 1,): the standard errors that the
     uncertainty of what is held brings with it, which the fit's own errors do not contain.
@@ -132,11 +147,11 @@ def fit_coefficients(
     powers = tuple(range(free - 1))
     y, y_error = (z - 1.0) / eta, error / eta
     if not held:
-        return fit_polynomial(eta, y, y_error, powers=powers), np.zeros(len(powers))
+        return fit_polynomial(eta, y, y_error, powers=powers, freedoms=few), np.zeros(len(powers))
     coefficients, uncertainties = theory.virial_coefficients(dimension)
     tail = theory.linear_tail(eta, dimension) / eta
     higher = {order - 2: coefficients[order - 1] for order in range(free + 1, theory.HIGHEST_ORDER + 1)}
-    fit = fit_polynomial(eta, y - tail, y_error, powers=powers, fixed=higher)
+    fit = fit_polynomial(eta, y - tail, y_error, powers=powers, fixed=higher, freedoms=few)
     # The values are linear in what is held, so each held term's uncertainty moves them by its own fit.
     terms = [uncertainties[power + 1] * eta**power for power in higher]
     terms.append(linear_tail_uncertainty(eta, dimension) / eta)

@@ -1,0 +1,84 @@
+"""Fits of the figures, made from data whose uncertainties come from a few replicas: their deviations scatter
+as those of a standard Gaussian number."""
+
+import numpy as np
+import pytest
+from reproduction.families.adsorption.data import walls
+from reproduction.families.buoyancy.data import measurement, with_source
+from reproduction.families.displacement.data import spheres
+from reproduction.families.vibrated.data import beds
+from reproduction.families.virial.data import ETA
+
+from gaspart.analysis.estimate import Estimate
+from gaspart.reproduction.families.adsorption import claims as adsorption
+from gaspart.reproduction.families.buoyancy import claims as buoyancy
+from gaspart.reproduction.families.displacement.measure import size_series
+from gaspart.reproduction.families.shared.claims import combined
+from gaspart.reproduction.families.vibrated.claims import extrapolation
+from gaspart.reproduction.families.virial.measure import fit_coefficients
+from gaspart.theory.state import compressibility_factor
+
+REPEATED = 400
+BEDS = beds(restitutions=(0.995, 0.99, 0.98, 0.95, 0.9)).isel(bed=slice(5, None))
+WELL = walls().isel(point=slice(4))
+DISCS = with_source(measurement())
+SIZES = spheres().isel(point=slice(2, 5))
+
+
+def scattered(rng, ds, freedom, names):
+    """The data set as replicas would give it: each number scatters by its error, which has so many degrees
+    of freedom itself."""
+    ds = ds.copy(deep=True)
+    for name in names:
+        error = ds[f"{name}_error"]
+        ds[name] = ds[name] + error * rng.standard_normal(error.shape)
+        ds[f"{name}_error"] = error * np.sqrt(rng.chisquare(freedom, error.shape) / freedom)
+        ds[f"{name}_freedom"] = ds[name].dims, np.full(error.shape, freedom)
+    return ds
+
+
+def bed(rng):
+    """The sine's limit of elastic discs."""
+    return [extrapolation(scattered(rng, BEDS, 7, ["temperature"])).estimate(0) - 1.0]
+
+
+def well(rng):
+    """The slope in the temperature, the power of it, and the length in place of the thermal wavelength."""
+    ds = scattered(rng, WELL, 11, ["log_ratio", "length"])
+    slope, power = (claim.measured - claim.expected for claim in adsorption._slopes(ds, 1.0))
+    return [slope, power, combined(ds, "length") / 0.2 - 1.0]
+
+
+def large_disc(rng):
+    """The force and the radius, means of all heights, and the density that floats in the middle."""
+    ds = scattered(rng, DISCS, 15, ["fixed_force", "fixed_missing", "fixed_force_radius", "source_height"])
+    *_, force, radius = buoyancy._fixed(ds)
+    neutral = buoyancy._neutral(ds.isel(source=slice(2, 8)), 31.5)
+    return [claim.measured - claim.expected for claim in (force, radius, neutral)]
+
+
+def sizes(rng):
+    """The slope of D in 1 / L."""
+    found = size_series(scattered(rng, SIZES, 5, ["diffusion"]))
+    exact = size_series(SIZES.assign(diffusion_freedom=("point", np.full(3, np.inf))))
+    return [Estimate.of(found, "size_slope") - exact["size_slope"]]
+
+
+def state(rng):
+    """B2 to B4."""
+    z, freedom = compressibility_factor(ETA, 2), 11
+    error = (z - 1.0) / 2e3
+    seen = z + error * rng.standard_normal(z.size)
+    own = error * np.sqrt(rng.chisquare(freedom, z.size) / freedom)
+    found, _ = fit_coefficients(ETA, seen, own, 2, 4, True, freedom)
+    exact, _ = fit_coefficients(ETA, z, error, 2, 4, True)
+    return [found.estimate(n) - exact.values[n] for n in range(3)]
+
+
+@pytest.mark.parametrize("figure", [bed, well, large_disc, sizes, state])
+def test_fits_to_a_few_replicas_are_as_certain_as_they_state(figure):
+    rng = np.random.default_rng(17)
+    found = np.array([[one.deviation for one in figure(rng)] for _ in range(REPEATED)])
+    width = np.sqrt(np.mean(found**2, axis=0))
+    assert width == pytest.approx(np.ones(width.size), abs=3.5 / np.sqrt(2.0 * REPEATED))
+    assert np.all(np.mean(np.abs(found) > 3.0, axis=0) < 0.0125)
