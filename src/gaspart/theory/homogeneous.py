@@ -1,9 +1,10 @@
 """The homogeneous Boltzmann equation of hard spheres and discs, by direct simulation.
 
-This program computes what has no closed form: `data/relaxation_2d.csv` and `_3d.csv`, the relaxation of a gas
-whose particles all start with one speed; the fourth cumulant of a gas that cools; `data/rough_cooling.csv`,
-the temperatures of rough discs that cool. There are no positions: partners are drawn at random, which is
-molecular chaos (Nanbu 1980, Babovsky 1986). `tagged` has a particle of another size and mass in such a gas.
+This program computes what has no closed form: the relaxation of a gas whose particles all start with one
+speed, by which the tables `data/relaxation_2d.csv` and `_3d.csv` are checked; the fourth cumulant of a gas
+that cools; `data/rough_cooling.csv` and `data/rough_start.csv`, the temperatures of rough discs that cool, and
+from a start without spins. There are no positions: partners are drawn at random, which is molecular chaos
+(Nanbu 1980, Babovsky 1986). `tagged` has a particle of another size and mass in such a gas.
 """
 
 from dataclasses import dataclass
@@ -85,20 +86,50 @@ def rough_discs(
     rng = np.random.default_rng(seed)
     velocity, spin = rng.standard_normal((count, 2)), rng.standard_normal(count)  # spin: R omega
     spin *= np.sqrt(rough_ratio(inertia, tangential, normal) / inertia)
-    share = inertia * (1.0 + tangential) / (2.0 * inertia + 2.0)
     made, ratios = 0.0, []
     while made < collisions:
-        i, j, along, approach = _meetings(rng, velocity)
-        across = np.stack([-along[:, 1], along[:, 0]], axis=1)
-        slip = dot(velocity[i] - velocity[j], across) + spin[i] + spin[j]
-        change = 0.5 * (1.0 + normal) * approach[:, None] * along + share * slip[:, None] * across
-        velocity[i] -= change
-        velocity[j] += change
-        spin[i] -= share / inertia * slip
-        spin[j] -= share / inertia * slip
-        made += 2.0 * len(i) / count
+        made += _rough_step(rng, velocity, spin, inertia, tangential, normal)
         ratios.append(2.0 * inertia * (spin**2).mean() / dot(velocity, velocity).mean())
     return np.array(ratios)
+
+
+def rough_start(
+    count: int, collisions: float, inertia: float, seed: int = 0
+) -> tuple[np.ndarray, np.ndarray]:
+    """Collisions of a disc (S,) and T_tr - T_rot over the temperature of the start (S,) after each step of
+    perfectly rough discs, whose velocities are Maxwellian and whose spins are 0 at first, until `collisions`.
+    """
+    rng = np.random.default_rng(seed)
+    velocity, spin = rng.standard_normal((count, 2)), np.zeros(count)
+    start = 0.5 * dot(velocity, velocity).mean()
+    made, rows = 0.0, [(0.0, 1.0)]
+    while made < collisions:
+        made += _rough_step(rng, velocity, spin, inertia, 1.0, 1.0)
+        difference = 0.5 * dot(velocity, velocity).mean() - inertia * (spin**2).mean()
+        rows.append((made, difference / start))
+    where, differences = np.array(rows).T
+    return where, differences
+
+
+def _rough_step(
+    rng: np.random.Generator,
+    velocity: np.ndarray,
+    spin: np.ndarray,
+    inertia: float,
+    tangential: float,
+    normal: float,
+) -> float:
+    """One step of rough discs: changes their velocities and spins, returns the collisions of a disc."""
+    share = inertia * (1.0 + tangential) / (2.0 * inertia + 2.0)
+    i, j, along, approach = _meetings(rng, velocity)
+    across = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    slip = dot(velocity[i] - velocity[j], across) + spin[i] + spin[j]
+    change = 0.5 * (1.0 + normal) * approach[:, None] * along + share * slip[:, None] * across
+    velocity[i] -= change
+    velocity[j] += change
+    spin[i] -= share / inertia * slip
+    spin[j] -= share / inertia * slip
+    return 2.0 * len(i) / len(velocity)
 
 
 def _meetings(

@@ -112,14 +112,13 @@ def _of_estimated_errors(
     degrees of freedom of the errors. To first order in it, a point whose error is underestimated counts too
     much and makes the covariance too small, each by the part 2 few (1 - leverage) of its share (for the
     weighted mean: Meier, Biometrics 9, 59 (1953)). With f - 2 for f, as in the mean of 1 / chi-square, this
-    is good to some per cent of the errors from f = 3 on, and f / 3 below. The degrees of freedom are those of Welch and
-    Satterthwaite; the test is that of Welch, Biometrika 38, 330 (1951), for linear models Johansen,
-    Biometrika 67, 85 (1980).
+    is good to some per cent of the errors from f = 3 on, and f / 3 below. The degrees of freedom are those
+    of Welch and Satterthwaite; the test is that of Welch, Biometrika 38, 330 (1951), for linear models
+    Johansen, Biometrika 67, 85 (1980).
     """
     free = 1.0 - np.clip((left**2).sum(axis=1), 0.0, 1.0)
     with np.errstate(divide="ignore"):
         freedoms = 1.0 / ((shares**2 / np.diag(covariance)[:, None]) ** 2 @ few)
-    with np.errstate(divide="ignore"):
         weight = 1.0 / np.maximum(1.0 / few - 2.0, 1.0 / (3.0 * few))
     corrected = covariance + (4.0 * weight * free * shares) @ shares.T
     number, spread = len(few) - len(covariance), float(free**2 @ few)

@@ -33,7 +33,8 @@ def holm(p_values: Sequence[float], level: float = FAMILY_LEVEL) -> list[bool]:
 
 def family_test(claims: Sequence[Claim]) -> list[Claim]:
     """The joint test of a figure's claims: [one claim], or [] if fewer than two of them state a value that
-    is not counted exactly.
+    is not counted exactly, or none of these scatters: beside an allowance that is not negligible, a deviation
+    is no standard Gaussian number.
 
     Holm's correction notices one deviation that is too large; this chi-square, two-sided, notices many that
     are a little too large, and uncertainties that are too large.
@@ -48,10 +49,7 @@ def family_test(claims: Sequence[Claim]) -> list[Claim]:
         "source": "standard deviations are what they state, and the expected values are true",
         "fails_if": "many small biases, or uncertainties that are too small or too large",
     }
-    if deviations:
-        return [Claim.joint(claim=text, deviations=deviations, **common)]
-    nothing = Claim.chi_square(claim=text, chi_square=math.nan, degrees_of_freedom=1, **common)
-    return [nothing]
+    return [Claim.joint(claim=text, deviations=deviations, **common)] if deviations else []
 
 
 def judge(claims: Sequence[Claim]) -> list[str]:

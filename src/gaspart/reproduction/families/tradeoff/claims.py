@@ -106,12 +106,16 @@ def _frontier(z: xr.Dataset) -> list[Claim]:
         for at in rows(z, "accuracy")
         if at.accuracy <= 0.001
     ]
-    relative = (z.best_ratio_error / z.best_ratio).values
-    coarse, fine = (Estimate(z.best_seconds[k], z.best_seconds[k] * relative[k]) for k in (0, -1))
-    claims.append(  # inconclusive where no step is known to be that accurate
+    reached = z.isel(accuracy=np.isfinite(z.best_seconds.values))  # no step is known to be more accurate
+    if reached.sizes["accuracy"] < 2:
+        return claims
+    relative = (reached.best_ratio_error / reached.best_ratio).values
+    seconds = reached.best_seconds.values
+    coarse, fine = (Estimate(seconds[k], seconds[k] * relative[k]) for k in (0, -1))
+    claims.append(
         Claim.at_least(
-            claim=f"time of steps for {100 * float(z.accuracy[-1]):g} % of Z over that for "
-            f"{100 * float(z.accuracy[0]):g} %, {where}",
+            claim=f"time of steps for {100 * float(reached.accuracy[-1]):g} % of Z over that for "
+            f"{100 * float(reached.accuracy[0]):g} %, {where}",
             measured=fine / coarse,
             bound=1.5,
             required=0.5,
