@@ -80,6 +80,7 @@ from gaspart.theory.granular import (
     rough_cooling,
     rough_matrix,
     rough_ratio,
+    rough_start_excess,
     rough_temperatures,
     rough_wall_difference,
 )
@@ -239,6 +240,7 @@ __all__ = [
     "rough_cooling",
     "rough_matrix",
     "rough_ratio",
+    "rough_start_excess",
     "rough_temperatures",
     "rough_wall_difference",
     "santos_haro_yuste",

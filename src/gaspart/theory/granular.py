@@ -177,6 +177,24 @@ def rough_cooling() -> np.ndarray:
     return np.loadtxt(Path(__file__).parent / "data" / "rough_cooling.csv", delimiter=",", skiprows=1)
 
 
+ROUGH_START_UNCERTAINTY = 0.002
+"""Standard uncertainty of `rough_start_excess`, statistical: of two gases of 100 000 discs."""
+
+
+def rough_start_excess(inertia: float, collisions: Numbers) -> Values:
+    """T_tr - T_rot of perfectly rough discs whose spins are 0 at first, over the temperature of the start,
+    minus exp(-3 q s / (1 + q)^2), which Maxwellian velocities would give (Huthmann and Zippelius 1997).
+
+    s: collisions of a particle; NaN where it was not computed, by direct simulation of the homogeneous
+    Boltzmann equation (`homogeneous.rough_start`). Uncertain by ROUGH_START_UNCERTAINTY.
+    """
+    table = np.loadtxt(Path(__file__).parent / "data" / "rough_start.csv", delimiter=",", skiprows=1)
+    s, excess = table[np.isclose(table[:, 0], inertia), 1:].T
+    if not s.size:
+        return np.full_like(np.asarray(collisions, dtype=float), np.nan)
+    return np.interp(collisions, s, excess, right=np.nan)
+
+
 @checked
 def rough_wall_difference(time: Numbers, inertia: float) -> Values:
     """(T_par - T_rot) / T_par(0) of perfectly rough particles without spin at first, which meet nothing but

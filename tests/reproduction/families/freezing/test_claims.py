@@ -12,6 +12,8 @@ def verdict(found, text):
 def test_discs_as_the_literature_has_them_agree():
     found = judged(freezing.freezing_discs(discs()))
     assert len(found) == 8
+    plateaus = [found.pop(text) for text in list(found) if text.startswith("plateau pressure of discs in")]
+    assert plateaus == ["no verdict"] * 2  # of 1024 discs, beside the literature's 10^6
     assert set(found.values()) == {"agrees"}
 
 
@@ -47,7 +49,6 @@ def changed(dataset, name, value, **where):
     ("name", "value", "where", "text"),
     [
         ("plateau", 9.35, {"start": "fluid"}, "from the crystal minus"),
-        ("plateau", 8.9, {"start": "fluid"}, "from the fluid"),
         ("pressure", 8.6, {"packing_fraction": 0.68, "start": "crystal"}, "liquid of 1024"),
         ("pressure", 8.6, {"packing_fraction": 0.68, "start": "fluid"}, "liquid of 1024"),
         ("pressure", 9.6, {"packing_fraction": 0.725, "start": "crystal"}, "crystal of 1024"),

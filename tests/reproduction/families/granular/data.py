@@ -14,7 +14,8 @@ def rough(noise=1.0, rate=1.0, ratio=1.0, steady=1.0, exchange=1.0, mixed=1.0, s
     expected = 3.0 * inertia / (1.0 + inertia) ** 2
     s = np.tile(np.linspace(0.0, 4.0, 9), (3, 1))
     error = np.where(s > 0.0, 0.002, 0.0)
-    rotation = 2.0 / 3.0 * (1.0 - np.exp(-rate * expected[:, None] * s))
+    beyond = [np.nan_to_num(theory.rough_start_excess(q, one)) for q, one in zip(inertia, s, strict=True)]
+    rotation = 2.0 / 3.0 * (1.0 - np.exp(-rate * expected[:, None] * s) - beyond)
     rotation = rotation + noise * error * rng.standard_normal(s.shape)
     tangential = np.array([-0.5, 0.0, 0.5])
     theoretical = theory.rough_cooling()[:3, 3]

@@ -66,7 +66,7 @@ def _start(point: grid.Point) -> dict:
     return {
         "collisions": samples[:, 0].mean(axis=0),
         "inertia": inertia(point),
-        **entries(temperatures),
+        **entries(temperatures, len(runs) - 1),
         **entries({"rate": rate}),
     }
 
