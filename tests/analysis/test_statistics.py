@@ -7,6 +7,7 @@ from scipy.signal import lfilter
 
 from gaspart import theory
 from gaspart.analysis import statistics
+from gaspart.analysis.estimate import Estimate
 
 
 def autoregressive(size, memory, seed):
@@ -202,6 +203,16 @@ def test_jackknife_of_a_ratio_includes_correlations():
     assert (mean, spread) == (common.mean(), pytest.approx(common.std(ddof=1) / 20.0))
     with pytest.raises(ValueError, match="blocks"):
         statistics.jackknife(lambda a, b: a, common, common[:5])
+
+
+def test_deviations_over_errors_of_the_jackknife_follow_student():
+    """A ratio of means over 20 blocks, as of the figures under gravity."""
+    generator = np.random.default_rng(14)
+    found = []
+    for common, own in generator.standard_normal((1000, 2, 20)):
+        value, error = statistics.jackknife(lambda a, b: a / b, 5.0 + common + own, 5.0 + common)
+        found.append(Estimate(value - 1.0, error, 19).deviation)
+    assert np.sqrt(np.mean(np.square(found))) == pytest.approx(1.0, abs=3.0 / math.sqrt(2000))
 
 
 def test_optimum_of_a_cost_of_two_terms():
