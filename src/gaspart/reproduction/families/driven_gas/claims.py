@@ -44,6 +44,7 @@ def driven_gas(ds: xr.Dataset) -> list[Claim]:
                 fails_if="a distribution that is not that of the heated gas",
             ),
             Claim(
+                kind="identity",
                 claim=f"energy given by kicks over the power of the thermostat, {which}",
                 measured=Estimate.of(row, "given") / (power * (1.0 - 1.0 / count)),
                 expected=1.0,
