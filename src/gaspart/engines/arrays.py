@@ -127,8 +127,9 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
         kinds.append(kind)
         levels.append(level)
     depths, widths = wells_of(scene)
+    kind = np.array(kinds, dtype=np.int64)
     return Faces(
-        kind=np.array(kinds, dtype=np.int64),
+        kind=kind,
         level=np.array(levels) / unit_mass,
         depth=depths / unit_mass,
         width=widths,
@@ -136,6 +137,7 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
         held=np.zeros(state.positions.shape),
         draws=np.zeros(state.count, dtype=np.int64),
         key=key_of(seed, _WALL_DRAWS),
+        sticky=kind == STICKY if STICKY in kinds else None,
         motion=motion_of(scene),
         piston=piston_of(scene, state, unit_mass),
     )

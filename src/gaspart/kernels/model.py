@@ -159,8 +159,8 @@ class Faces(NamedTuple):
     """Faces with a kind. Of the container's faces (2d,): kind; level, the temperature, or the momentum that
     sticks; depth and width of the well, 0 if there is none. Of the particles: place (N, d), -1 or 1 in the
     well of an axis' low or high face, or stuck to it; held (N, d), the energy kept there as vibration; draws
-    (N,), how often random numbers were taken for it, under `key` (2,). motion, piston: None if no face
-    vibrates, and if none is a piston."""
+    (N,), how often random numbers were taken for it, under `key` (2,). sticky (2d,), which faces are, motion,
+    piston: None if no face is sticky, none vibrates, and none is a piston."""
 
     kind: np.ndarray
     level: np.ndarray
@@ -170,6 +170,7 @@ class Faces(NamedTuple):
     held: np.ndarray
     draws: np.ndarray
     key: np.ndarray
+    sticky: np.ndarray | None
     motion: Motion | None
     piston: Piston | None
 

@@ -28,6 +28,7 @@ from gaspart.kernels.event.queue import count_event, is_outdated, soonest, time_
 from gaspart.kernels.model import BOX_FACES, CROSSINGS, NONE, OUTDATED, WALLS, WELL_EDGES, Model
 from gaspart.kernels.obstacles.face import meet_face
 from gaspart.kernels.obstacles.interior_wall import meet_wall
+from gaspart.kernels.obstacles.sticky import part_if_held
 from gaspart.kernels.obstacles.well import meet_edge
 
 # Why a run ended: the time, the number of events, the record, a collapse, a full neighbour list, the number
@@ -128,6 +129,7 @@ def process(particles, i, time, queue, boxes, model, tally):
         i, partner = min(i, partner), max(i, partner)
         first, second = i, partner
         collide(particles.flights, i, partner, time, without_obstacles(model), tally)
+        part_if_held(particles.flights, i, partner, without_obstacles(model), model.faces)
         wake(particles, (i, partner), queue, boxes, model, tally, (time, number), model.law)
     event, free = (time, number, changes), without_contacts(model)
     predict_after(particles, (first, second), queue, boxes, free, tally, event, crossed)
@@ -144,6 +146,7 @@ def process_first(particles, event, boxes, model, tally):
         partner, happens = meet_obstacle(particles, i, face, time, model, tally)
         return i, partner, happens
     collide(particles.flights, i, partner, time, without_obstacles(model), tally)
+    part_if_held(particles.flights, i, partner, without_obstacles(model), model.faces)
     wake(particles, (i, partner), None, boxes, model, tally, (time, NOT_CROSSED[0]), model.law)
     return i, partner, True
 

@@ -20,7 +20,7 @@ from gaspart.reproduction.jobs.data import PointData
 
 FEATURES = {
     "collapse", "duration", "faces", "gravity", "law", "masses", "motion", "oversized", "piston", "record",
-    "rules", "support", "vibrations", "viscous", "walls",
+    "rules", "sticky", "support", "vibrations", "viscous", "walls",
 }  # fmt: skip
 """Arguments of the kernels that are None for a plain gas."""
 ENGINES = ("event", "step")
