@@ -52,6 +52,26 @@ def test_a_run_without_possible_events_is_stopped():
         sim.advance(max_events=1)
 
 
+def together(slower):
+    """Two discs that fly almost evenly round a periodic container, 4 apart, and meet after 4 / `slower`."""
+    bodies = [gp.Body((2.0, 5.0), (1.0, 0.0), 0.5), gp.Body((7.0, 5.0), (1.0 - slower, 0.0), 0.5)]
+    return gp.Scene(gp.Container((100.0, 10.0), "periodic"), bodies=bodies)
+
+
+def test_particles_that_move_together_do_not_miss_one_another():
+    """They meet, after 7800 epochs in which they have no event."""
+    sim = gp.Simulation(together(2.0**-21), gp.EventDriven())
+    sim.advance(max_events=1)
+    assert sim.tally.collisions == 1
+    assert sim.time == pytest.approx(4.0 * 2.0**21, rel=1e-9)
+
+
+def test_what_moves_together_by_rounding_only_is_stopped():
+    sim = gp.Simulation(together(0.0), gp.EventDriven())
+    with pytest.raises(gp.SimulationError, match="particles miss one another"):
+        sim.advance(max_events=1)
+
+
 def test_epochs_follow_large_changes_only():
     epochs = Epochs(alone(5.0), 1.0)
     speed = epochs.speed(np.array([[1.0, 0.3]]))

@@ -268,7 +268,7 @@ def test_a_stack_at_rest_is_reported_not_looped_over():
     bodies = [gp.Body((5.0, 0.5), (0.0, 0.0), 0.5), gp.Body((5.0, 1.5), (0.0, 0.0), 0.5)]
     scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=bodies, gravity=(0.0, -1.0))
     sim = gp.Simulation(scene, gp.EventDriven())
-    with pytest.raises(gp.SimulationError, match="rest"):
+    with pytest.raises(gp.SimulationError, match=": a stack at rest; the state"):
         sim.advance(duration=1.0)
 
 
@@ -368,3 +368,18 @@ def test_files_and_the_other_engine():
     sim = gp.Simulation(gas(2, 3, 0.01), gp.EventDriven())
     sim.add((0.6, 0.6), (0.0, 0.0), 0.1, spin=3.0)
     assert sim.state.spins[0] == 3.0
+
+
+@pytest.mark.parametrize("radius", [1e-3, 1e-6, 1e-8])
+def test_elastic_particles_do_not_collapse(radius):
+    """A small disc flies exactly between two fixed discs that touch. The circles on which its centre may be
+    meet at an angle 2 a, sin(a) = sqrt((R + r)^2 - R^2)/(R + r): unfolded, its path crosses pi/(2 a) walls at
+    one time, and it returns as it came."""
+    bodies = [gp.Body((6.0, y), (0.0, 0.0), 1.0, fixed=True) for y in (5.0, 7.0)]
+    bodies.append(gp.Body((2.0, 6.0), (1.0, 0.0), radius))
+    sim = gp.Simulation(gp.Scene(gp.Container((12.0, 12.0)), bodies=bodies), gp.EventDriven())
+    sim.advance(until=4.5)
+    angle = math.asin(math.sqrt(radius * (2.0 + radius)) / (1.0 + radius))
+    assert sim.tally.collisions == math.floor(0.5 * math.pi / angle + 0.5)
+    sim.check_invariants()
+    assert np.hypot(*sim.state.velocities[2]) == pytest.approx(1.0, rel=1e-11)

@@ -85,3 +85,18 @@ def test_what_has_no_meaning_is_refused():
 def test_a_scene_file_has_it(tmp_path):
     driven().to_file(tmp_path / "scene.yaml")
     assert gp.Scene.from_file(tmp_path / "scene.yaml") == driven()
+
+
+@given(st.integers(1, 4000), st.integers(0, 2**32))
+def test_kick_n_comes_at_n_intervals(thousandths, seed):
+    """Not at the sum of n intervals, whose rounding lets a state at n intervals be before the kick, or after
+    it."""
+    interval = thousandths / 1000.0
+    scene = driven(2, 3, interval=interval)
+    sim = gp.Simulation(scene, gp.EventDriven(), seed=seed)
+    for number in range(1, 120):
+        before = sim.tally.thermostat_energy
+        sim.advance(until=math.nextafter(number * interval, 0.0))
+        assert sim.tally.thermostat_energy == before
+        sim.advance(until=number * interval)
+        assert sim.tally.thermostat_energy != before

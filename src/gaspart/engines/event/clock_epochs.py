@@ -13,6 +13,7 @@ from gaspart.scene.scene import Scene
 
 _LENGTH = 10  # an epoch of the clocks is some 2^10 times of flight over a diameter
 _AT_REST = 2.0**960  # the epoch of a scene in which nothing moves
+_RESOLVED = 2.0**-52  # of speeds
 _OTHER = 2.0**10  # by which speeds must have changed for epochs of another length
 QUIET = 64
 """Epochs without an event after which epochs are doubled."""
@@ -43,6 +44,13 @@ class Epochs:
         """The speed for times of flight, with velocities (N, d)."""
         square = float((velocities**2).sum(axis=1).mean()) if len(velocities) else 0.0
         return math.sqrt(square + self._gained)
+
+    def flights(self, velocities: np.ndarray, length: float) -> float:
+        """How many flights through the container particles with velocities (N, d) make in an epoch of this
+        length, relative to one another; 0 if rounding hides that they do. Particles that move together do not
+        meet, but do not miss one another either."""
+        relative = self.speed(velocities - velocities.mean(axis=0))
+        return relative * length / self._across if relative > _RESOLVED * self.speed(velocities) else 0.0
 
     def length(self, speed: float, present: float = 0.0) -> float:
         """The time after which clocks start again from zero: a power of two, so that it scales with the

@@ -161,7 +161,7 @@ class EventDynamics:
                 work -= 1 + len(self._flights)  # what follows predicts all anew
                 if scheduled:
                     self._clock = end
-                    if scheduled.happen(self._particles, self._model, self._tally.arrays):
+                    if scheduled.happen(self._particles, self._model, self._tally.arrays, self._start):
                         self._predict()
                     continue
                 if not ends_epoch:
@@ -170,7 +170,8 @@ class EventDynamics:
                 begun -= self._epoch
                 self._next_epoch()
                 if until == np.inf:
-                    check_events(self.time, self._quiet)
+                    velocities = self._flights["velocity"]
+                    check_events(self.time, self._quiet, self._epochs.flights(velocities, self._epoch))
             else:
                 self._clock = max(self._clock, last)
             if reason == self._loop.NO_ROOM:
@@ -203,7 +204,7 @@ class EventDynamics:
             self._duration.latest[:] -= self._epoch
             self._duration.met[:] -= self._epoch
         if self._scheduled:
-            self._scheduled.begin_epoch(self._epoch)
+            self._scheduled.begin_epoch(self._epoch, self._start)
         if self._piston:
             piston.next_epoch(self._piston, self._epoch)
         self._quiet += 1

@@ -15,6 +15,7 @@ from gaspart.engines.arrays import (
     scaled_masses,
     special_faces,
 )
+from gaspart.engines.event.stalling import MOST_OF_STACK
 from gaspart.scene.scene import Scene
 from gaspart.state.boxes import Boxes
 from gaspart.state.state import State
@@ -25,11 +26,14 @@ if TYPE_CHECKING:
 
 _OF_DURATION = ("latest", "met", "island", "elastic", "kept")  # the arrays of a contact duration
 _LOWEST = 2.0**-44  # of the container: the highest bounce on an interior wall that is taken for rest
-# More contacts of one particle than these, within so much of an epoch, are taken for a collapse. Intervals
-# between inelastic contacts shrink geometrically until rounding lets the particles part, so few of them can
-# be seen.
+# More contacts of one particle than these, within so much of an epoch, are taken for a collapse. Where the
+# restitution is constant, intervals between contacts shrink geometrically until rounding lets the particles
+# part, so few of them can be seen. Slow contacts of viscoelastic particles are nearly elastic.
 _MOST, _INTERVAL = 1000, 2.0**-44
 _INELASTIC_MOST, _INELASTIC_INTERVAL = 12, 2.0**-34
+# Elastic particles do not collapse: between two surfaces that meet at an angle a, one of them has pi/a
+# contacts at one time. Gravity lets them touch for ever in a stack.
+_UNLIMITED = np.iinfo(np.int64).max
 
 
 def event_model(
@@ -69,8 +73,11 @@ def monitors(model: Model, count: int) -> tuple[Monitors, float]:
     law = model.law
     if not (law or model.gravity):
         return Monitors(None, None), 0.0
-    inelastic = law and law.normal < 1.0 and not law.duration
-    most, interval = (_INELASTIC_MOST, _INELASTIC_INTERVAL) if inelastic else (_MOST, _INTERVAL)
+    most, interval = _MOST, _INTERVAL
+    if law and law.normal < 1.0 and law.viscous is None and not law.duration:
+        most, interval = _INELASTIC_MOST, _INELASTIC_INTERVAL
+    elif law is None or (law.normal == 1.0 and abs(law.tangential) == 1.0 and law.vibrations is None):
+        most = MOST_OF_STACK if model.gravity else _UNLIMITED
     watch = CollapseWatch(np.full(count, -np.inf), np.zeros(count, dtype=np.int64), 0.0, most)
     return Monitors(None, watch), interval
 

@@ -52,11 +52,11 @@ class RestWatch:
         """Whether the scene is at rest."""
         return bool(self.arrays["rests"][0])
 
-    def begin_epoch(self, last: float) -> None:
+    def begin_epoch(self, last: float, _: float) -> None:
         """Count from the end of an epoch of a length `last`."""
         self.arrays["next"] -= last
 
-    def happen(self, particles: Particles, model: Model, tally: Tally) -> bool:
+    def happen(self, particles: Particles, model: Model, tally: Tally, _: float) -> bool:
         """Look which particles rest at the time `next`, and stop them. Returns whether events must be
         predicted anew: not if all rest."""
         from gaspart.kernels.event.islands import hold, join

@@ -41,9 +41,14 @@ class Kicks:
         """The time of the next kick, on the clocks of the epoch."""
         return float(self.arrays["next"][0])
 
-    def begin_epoch(self, last: float) -> None:
-        """Count from the end of an epoch of a length `last`."""
-        self.arrays["next"] -= last
+    def begin_epoch(self, _: float, start: float) -> None:
+        """Count from the `start` of an epoch."""
+        self._set_next(start)
+
+    def _set_next(self, start: float) -> None:
+        """The next kick is at a multiple of the interval, rounded once: a sum of intervals would drift away
+        from it. The subtraction is exact."""
+        self.arrays["next"][0] = (int(self.arrays["number"][0]) + 1) * self._interval - start
 
     def reset(self) -> None:
         """Begin to sum energies up from zero."""
@@ -54,14 +59,15 @@ class Kicks:
         """(1, 2) the energy given since the tally began, in the kernels' unit, see `running_sum.add`."""
         return self.arrays["given"]
 
-    def happen(self, particles: Particles, model: Model, _: Tally) -> bool:
-        """Kick all particles at the time `next`. Returns that their flights have changed."""
+    def happen(self, particles: Particles, model: Model, _: Tally, start: float) -> bool:
+        """Kick all particles at the time `next` of an epoch with this `start`. Returns that their flights
+        have changed."""
         from gaspart.kernels.event.kicks import kick_all
 
         counter = self._key, int(self.arrays["number"][0])
         kick_all(particles.flights, self.next, self._width, counter, model, self.arrays["given"])
         self.arrays["number"] += 1
-        self.arrays["next"] += self._interval
+        self._set_next(start)
         return True
 
 
