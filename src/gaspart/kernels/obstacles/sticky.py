@@ -68,7 +68,7 @@ def lose_rounding(flights, i, axis, least, space, sticky):
     `least`: what is left where it has given all its velocity to another particle is no contact."""
     v = flights[i].velocity[axis]
     upper = v > 0.0
-    if abs(v) <= least and sticky[2 * axis + (1 if upper else 0)]:
+    if v != 0.0 and abs(v) <= least and sticky[2 * axis + (1 if upper else 0)]:
         if flights[i].position[axis] == face_plane(flights, i, axis, upper, space):
             flights[i].velocity[axis] = 0.0
 
