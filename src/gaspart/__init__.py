@@ -17,6 +17,7 @@ _HOMES = {
     "Body": "scene.species",
     "Container": "scene.container",
     "Correlations": "trajectory.correlator",
+    "DSMC": "engines",
     "EventDriven": "engines",
     "Plate": "scene.walls",
     "Restitution": "scene.restitution",

@@ -13,7 +13,11 @@ from gaspart.engines.engine import (
 from gaspart.engines.event.event_driven import EventDriven
 from gaspart.engines.step.time_stepped import TimeStepped
 
+# isort: split
+from gaspart.engines.dsmc.dsmc import DSMC
+
 __all__ = [
+    "DSMC",
     "ENGINES",
     "Dynamics",
     "Engine",

@@ -1,0 +1,119 @@
+"""What the DSMC engine's kernels work on: particles, grid, tools, and what a scene may not have."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaspart.engines.arrays import contact_law
+from gaspart.engines.dsmc.rates import accessible
+from gaspart.engines.step.arrays import largest_terms
+from gaspart.errors import SceneError
+from gaspart.kernels.dsmc.model import PADDED, Faces, Grid, Law, Particles, Tools
+from gaspart.kernels.model import HARD, THERMAL, THERMAL_NORMAL, flight_dtype
+from gaspart.scene.faces import FACES
+from gaspart.scene.scene import Scene
+from gaspart.state.random import key_of
+from gaspart.state.state import State
+
+if TYPE_CHECKING:
+    from gaspart.engines.dsmc.settings import DSMC
+
+_WALL_DRAWS, _COLLISION_DRAWS = 2, 5  # purposes of random numbers
+MOST_KINDS = 2**16
+
+
+def empty_particles(state: State) -> Particles:
+    """Room for the particles."""
+    d, n = state.dimension, state.count
+    rows = np.append(np.arange(2 * d + 1), 0)
+    return Particles(np.empty((2 * d + 1, n)), rows, np.zeros((2, n), np.uint32), np.zeros((d, n), np.int32))
+
+
+def grid_for(scene: Scene, state: State, cells: tuple[int, ...], threads: int) -> Grid:
+    """So many cells along each axis, where centres may be."""
+    lower, upper = accessible(scene)
+    per_side = np.array(cells, dtype=np.int64)
+    strides = np.append(np.cumprod(per_side[:0:-1])[::-1], 1)
+    number = int(per_side.prod())
+    return Grid(
+        per_side=per_side,
+        origin=lower,
+        inverse=per_side / (upper - lower),
+        strides=strides,
+        volume=float(((upper - lower) / per_side).prod()),
+        cell=np.zeros(state.count, np.uint32),
+        order=np.zeros(state.count, np.uint32),
+        counts=np.zeros((threads, number), np.uint32),
+        starts=np.zeros(number + 1, np.uint32),
+    )
+
+
+def kinds_of(state: State) -> tuple[np.ndarray, np.ndarray]:
+    """(K, 3) radius, mass and moment of inertia of the kinds of particles; and the kind (N,) of each, or (0,)
+    if all are alike."""
+    properties = np.stack([state.radii, state.masses, state.moments_of_inertia], axis=1)
+    if not len(properties) or (properties == properties[0]).all():
+        return properties[:1], np.zeros(0, np.uint16)
+    kinds, which = np.unique(properties, axis=0, return_inverse=True)
+    if len(kinds) > MOST_KINDS:
+        raise SceneError("species", len(kinds), f"the DSMC engine takes {MOST_KINDS} kinds of particles")
+    return kinds, which.ravel().astype(np.uint16)
+
+
+def tools_for(engine: DSMC, scene: Scene, state: State, step: float, seed: int | tuple[int, ...]) -> Tools:
+    """What a step works with."""
+    kinds, which = kinds_of(state)
+    threads, faces, d = engine.threads, 2 * scene.dimension, scene.dimension
+    momentum, energy = largest_terms(scene, state, 1.0)
+    sigma = 2.0 ** math.frexp(2.0 * scene.largest_radius)[1]
+    radius, mass, inertia = (np.ascontiguousarray(column) for column in kinds.T)
+    return Tools(
+        margin=float(not scene.centres_to_walls),
+        dt=step,
+        clock=np.zeros(1, np.int64),
+        kind=which,
+        radius=radius,
+        mass=mass,
+        inertia=inertia,
+        largest=scene.largest_radius,
+        key=(key_of(seed, _COLLISION_DRAWS) & np.uint64(0xFFFFFFFF)).astype(np.uint32),
+        wall_key=key_of(seed, _WALL_DRAWS),
+        flights=np.zeros((threads, 2), flight_dtype(d)),
+        inverse_mass=np.zeros((threads, 2)),
+        inverse_inertia=np.zeros((threads, 2)),
+        pair_spins=np.zeros((threads, 2, 3)),
+        sums=np.zeros((threads, 2, 2)),
+        counts=np.zeros((threads, PADDED), np.int64),
+        virial=np.zeros((threads, 2), np.int64),
+        loss=np.zeros((threads, 2), np.int64),
+        wall_hits=np.zeros((threads, faces), np.int64),
+        wall_impulse=np.zeros((threads, faces, 2), np.int64),
+        wall_heat=np.zeros((threads, faces, 2), np.int64),
+        scales=np.array([momentum, energy, momentum * sigma]),
+    )
+
+
+TALLY = ("counts", "virial", "loss", "wall_hits", "wall_impulse", "wall_heat")
+"""The arrays of `Tools` that count; by thread."""
+
+
+def faces_for(scene: Scene) -> Faces | None:
+    """The kinds of the container's faces, if any is thermal."""
+    if not scene.faces:
+        return None
+    kinds, levels = [], []
+    for name in FACES[: 2 * scene.dimension]:
+        face = scene.faces.get(name)
+        kind = HARD if face is None else THERMAL if face.components == "all" else THERMAL_NORMAL
+        kinds.append(kind)
+        levels.append(0.0 if face is None else face.temperature)
+    return Faces(np.array(kinds, dtype=np.int64), np.array(levels))
+
+
+def law_for(scene: Scene, state: State) -> Law | None:
+    """The law of contacts, or None if all are elastic and smooth."""
+    law = contact_law(scene, state)
+    return None if law is None else Law(law.normal, law.tangential, law.spins, law.viscous)

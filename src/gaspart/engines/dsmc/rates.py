@@ -1,0 +1,79 @@
+"""How often particles collide, what the engine's settings follow from, and with what error.
+
+Mean values of a gas that fills its container evenly, with Maxwellian velocities of each kind's mean square.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from gaspart.scene.geometry import ball_volume
+from gaspart.scene.scene import Scene
+from gaspart.state.state import State
+
+_HIGHEST = 0.7  # packing fraction up to which contact values are evaluated
+
+
+@dataclass(frozen=True)
+class Rates:
+    """frequency: collisions of a particle per time; speed: the mean speed; path: the mean free path, infinite
+    if nothing collides."""
+
+    frequency: float
+    speed: float
+
+    @property
+    def path(self) -> float:
+        """The mean path between collisions."""
+        return self.speed / self.frequency if self.frequency > 0.0 else math.inf
+
+
+def accessible(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    """(d,), (d,): the lowest and highest coordinates of centres of the smallest particles."""
+    lower, upper = scene.reach(scene.smallest_radius)
+    return np.array(lower), np.array(upper)
+
+
+def contact_values(number_densities: np.ndarray, radii: np.ndarray, dimension: int) -> np.ndarray:
+    """(K, K) pair distributions at contact of a mixture.
+
+    Boublik, J. Chem. Phys. 53, 471 (1970), and Mansoori et al., J. Chem. Phys. 54, 1523 (1971), for spheres,
+    which for one species is Carnahan & Starling's; Jenkins & Mancini, J. Appl. Mech. 54, 27 (1987), for
+    discs, which is Henderson's.
+    """
+    filled = ball_volume(dimension) * float((number_densities * radii**dimension).sum())
+    free = 1.0 - min(filled, _HIGHEST)
+    surface = ball_volume(dimension) * float((number_densities * radii ** (dimension - 1)).sum())
+    ratio = surface * 2.0 * radii[:, None] * radii / (radii[:, None] + radii)
+    if dimension == 2:
+        return 1.0 / free + 0.5625 * ratio / free**2
+    return 1.0 / free + 1.5 * ratio / free**2 + 0.5 * ratio**2 / free**3
+
+
+def rates(scene: Scene, state: State, dense: bool) -> Rates:
+    """Those of a state; dense: with the contact values of a dense gas."""
+    d = state.dimension
+    squares, radii, numbers = [], [], []
+    heat = max((getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()), default=0.0)
+    for kind in np.unique(state.species):
+        of = state.species == kind
+        thermal = float((state.velocities[of] ** 2).mean())
+        squares.append(max(thermal, heat / float(state.masses[of].min())))
+        radii.append(float(state.radii[of].mean()))
+        numbers.append(int(of.sum()))
+    square, radius, number = np.array(squares), np.array(radii), np.array(numbers, dtype=float)
+    if not len(number):
+        return Rates(0.0, 0.0)
+    lower, upper = accessible(scene)
+    density = number / float((upper - lower).prod())
+    sigma = radius[:, None] + radius
+    section = math.pi * sigma**2 if d == 3 else 2.0 * sigma
+    mean = 8.0 / math.pi if d == 3 else math.pi / 2.0  # of <v>^2 / (kT/m)
+    relative = np.sqrt(mean * (square[:, None] + square))
+    pairs = density[:, None] * (number - np.eye(len(number)))
+    contact = contact_values(density, radius, d) if dense else 1.0
+    frequency = float((np.maximum(pairs, 0.0) * section * relative * contact).sum() / number.sum())
+    return Rates(frequency, float((number * np.sqrt(mean * square)).sum() / number.sum()))

@@ -1,0 +1,1 @@
+"""Collisions sampled among the particles of a cell: direct simulation Monte Carlo (DSMC)."""

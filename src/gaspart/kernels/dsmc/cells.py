@@ -1,0 +1,123 @@
+"""The cells, and bringing the particles in memory into their order.
+
+A counting sort by threads: each counts the particles of its slots in each cell, and puts them into the cell
+behind those of the threads before it. So the order within a cell is that of the slots before, whatever the
+number of threads.
+"""
+
+import numpy as np
+
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
+from gaspart.kernels.dsmc.model import number_row, position_row
+
+_ONE = np.uint32(1)  # whole numbers of this type index arrays without a test for negative ones
+
+
+@inner_helper
+def coordinate(x, origin, inverse, per_side):
+    """Which cell along an axis holds coordinate x; the outermost one for x outside."""
+    return min(max(np.int32((x - origin) * inverse), np.int32(0)), np.int32(per_side - 1))
+
+
+@inner_kernel
+def add_coordinates(x, origin, inverse, per_side, stride, cell):
+    """Add to the cells (n,) of particles the term of their coordinates x (n,) along one axis."""
+    for n in range(len(x)):
+        cell[n] += np.uint32(coordinate(x[n], origin, inverse, per_side) * stride)
+
+
+@inner_kernel
+def locate(particles, first, end, grid):
+    """Find the cells of the slots from `first` to `end`."""
+    cell = grid.cell[first:end]
+    cell[:] = 0
+    for k in range(len(grid.per_side)):
+        x = particles.data[position_row(particles, k), first:end]
+        stride, per_side = np.int32(grid.strides[k]), np.int32(grid.per_side[k])
+        add_coordinates(x, grid.origin[k], grid.inverse[k], per_side, stride, cell)
+
+
+@inner_kernel
+def count(first, end, part, grid):
+    """Count one thread's slots, from `first` to `end`, in each cell."""
+    counts = grid.counts[part]
+    counts[:] = 0
+    for cell in grid.cell[first:end]:
+        counts[cell] += _ONE
+
+
+@inner_kernel
+def find_starts(grid):
+    """Find where each cell's slots begin, and in `counts` where those of each thread do."""
+    counts, starts = grid.counts, grid.starts
+    place = np.uint32(0)
+    for cell in range(counts.shape[1]):
+        starts[cell] = place
+        for part in range(len(counts)):
+            number = counts[part, cell]
+            counts[part, cell] = place
+            place += number
+    starts[counts.shape[1]] = place
+
+
+@inner_kernel
+def put_in_order(first, end, part, grid):
+    """Write into `order` the slots from `first` to `end`, one thread's, each at its new place."""
+    counts, order = grid.counts[part], grid.order
+    for slot in range(first, end):
+        cell = grid.cell[slot]
+        place = counts[cell]
+        counts[cell] = place + _ONE
+        order[place] = slot
+
+
+@inner_kernel
+def gather(values, order, permuted):
+    """permuted[n] becomes values[order[n]]."""
+    for n in range(len(order)):
+        permuted[n] = values[order[n]]
+
+
+@inner_helper
+def gather_row(particles, row, first, end, grid):
+    """Write one of the rows of positions and velocities into the spare row, in the new order, for the new
+    slots from `first` to `end`."""
+    rows = particles.rows
+    spare = particles.data[rows[len(rows) - 2]]
+    gather(particles.data[rows[row]], grid.order[first:end], spare[first:end])
+
+
+@inner_helper
+def gather_numbers(particles, first, end, grid):
+    """The same for the particles' numbers."""
+    row = number_row(particles)
+    other = particles.numbers[1 - row]
+    gather(particles.numbers[row], grid.order[first:end], other[first:end])
+
+
+@inner_helper
+def swap_row(particles, row):
+    """Let the spare row be one of the rows, and that the spare one."""
+    rows = particles.rows
+    spare = rows[len(rows) - 2]
+    rows[len(rows) - 2] = rows[row]
+    rows[row] = spare
+
+
+@inner_kernel
+def share_cells(grid, shares):
+    """Divide the cells among threads, shares[n] to shares[n + 1] (threads + 1,) each, with about as many
+    particles."""
+    parts, cells = len(shares) - 1, len(grid.starts) - 1
+    total = np.int64(grid.starts[cells])
+    shares[0], shares[parts] = 0, cells
+    for part in range(1, parts):
+        wanted = total * part // parts
+        low, high = shares[part - 1], cells
+        while low < high:
+            middle = (low + high) // 2
+            if grid.starts[middle] < wanted:
+                low = middle + 1
+            else:
+                high = middle
+        shares[part] = low

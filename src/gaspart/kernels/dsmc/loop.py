@@ -1,0 +1,128 @@
+"""One step after another: motion, sort into cells, collisions.
+
+The parts of a step that threads share are in functions of their own; with `threads` None there is one thread,
+and machine code in which others do not exist. numba passes no tuples in tuples to threads: a `Setting` is put
+together there. What a particle meets does not depend on which thread works on it.
+"""
+
+import numpy as np
+from numba import prange
+
+from gaspart.kernels.compile.policy import (
+    allocating_kernel,
+    inner_allocating_kernel,
+    inner_helper,
+    inner_parallel_kernel,
+)
+from gaspart.kernels.dsmc.boltzmann import collide_cells
+from gaspart.kernels.dsmc.cells import (
+    find_starts,
+    gather_numbers,
+    gather_row,
+    put_in_order,
+    share_cells,
+    swap_row,
+)
+from gaspart.kernels.dsmc.model import Setting
+from gaspart.kernels.dsmc.motion import move
+from gaspart.kernels.model import Space
+from gaspart.kernels.step.model import part_of
+
+
+@inner_helper
+def move_part(particles, grid, setting, parts, gravity, faces, law):
+    """Make the motion of one step for one of all parts of the slots."""
+    slots = part_of(setting.part, parts, particles.data.shape[1])
+    move(particles, slots, grid, setting, gravity, faces, law)
+
+
+@inner_parallel_kernel
+def move_shared(particles, grid, tools, lengths, periodic, gravity, faces, law):
+    """`move_part` for all parts."""
+    parts = len(grid.counts)
+    for part in prange(parts):
+        setting = Setting(Space(lengths, periodic, tools.margin), tools, part)
+        move_part(particles, grid, setting, parts, gravity, faces, law)
+
+
+@inner_parallel_kernel
+def order_shared(particles, grid):
+    """`put_in_order` for all parts."""
+    parts = len(grid.counts)
+    for part in prange(parts):
+        slots = part_of(part, parts, particles.data.shape[1])
+        put_in_order(slots[0], slots[1], part, grid)
+
+
+@inner_parallel_kernel
+def gather_shared(particles, row, grid):
+    """`gather_row`, or for row -1 `gather_numbers`, for all parts."""
+    parts = len(grid.counts)
+    for part in prange(parts):
+        slots = part_of(part, parts, particles.data.shape[1])
+        if row < 0:
+            gather_numbers(particles, slots[0], slots[1], grid)
+        else:
+            gather_row(particles, row, slots[0], slots[1], grid)
+
+
+@inner_parallel_kernel
+def collide_shared(particles, shares, grid, tools, lengths, periodic, law):
+    """`collide_cells` for all parts."""
+    for part in prange(len(shares) - 1):
+        setting = Setting(Space(lengths, periodic, tools.margin), tools, part)
+        collide_cells(particles, (shares[part], shares[part + 1]), grid, setting, law)
+
+
+@inner_helper
+def move_all(particles, grid, setting, threads, gravity, faces, law):
+    """Make the motion of one step."""
+    space, tools = setting.space, setting.tools
+    if threads is None:
+        move_part(particles, grid, setting, 1, gravity, faces, law)
+    else:
+        move_shared(particles, grid, tools, space.lengths, space.periodic, gravity, faces, law)
+
+
+@inner_helper
+def sort_all(particles, grid, threads):
+    """Bring the particles in memory into the order of their cells."""
+    count = particles.data.shape[1]
+    find_starts(grid)
+    if threads is None:
+        put_in_order(0, count, 0, grid)
+    else:
+        order_shared(particles, grid)
+    for row in range(2 * len(particles.images)):
+        if threads is None:
+            gather_row(particles, row, 0, count, grid)
+        else:
+            gather_shared(particles, row, grid)
+        swap_row(particles, row)
+    if threads is None:
+        gather_numbers(particles, 0, count, grid)
+    else:
+        gather_shared(particles, -1, grid)
+    particles.rows[len(particles.rows) - 1] = 1 - particles.rows[len(particles.rows) - 1]
+
+
+@inner_allocating_kernel
+def collide_all(particles, grid, setting, threads, law):
+    """Make the collisions of one step."""
+    space, tools = setting.space, setting.tools
+    if threads is None:
+        collide_cells(particles, (0, len(grid.starts) - 1), grid, setting, law)
+    else:
+        shares = np.empty(len(grid.counts) + 1, np.int64)
+        share_cells(grid, shares)
+        collide_shared(particles, shares, grid, tools, space.lengths, space.periodic, law)
+
+
+@allocating_kernel
+def run_steps(particles, grid, setting, steps, threads, gravity, faces, law):
+    """Make so many steps. threads: their number, or None for one."""
+    for _ in range(steps):
+        move_all(particles, grid, setting, threads, gravity, faces, law)
+        sort_all(particles, grid, threads)
+        collide_all(particles, grid, setting, threads, law)
+        setting.tools.clock[0] += 1

@@ -1,0 +1,107 @@
+"""How particles move in one step: freely, then back into the container through its faces, and which cell they
+are in then.
+
+The free flight is a loop without branches; the particles of a block are looked at one by one only if any of
+them has left the container.
+"""
+
+import numpy as np
+
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
+from gaspart.kernels.dsmc.cells import count, locate
+from gaspart.kernels.dsmc.model import kind_in, number_at, position_row, velocity_row
+from gaspart.kernels.dsmc.walls import fly_among_faces
+from gaspart.kernels.step.motion import fall, fly
+
+_BLOCK = 128
+
+
+@inner_helper
+def wrap(particles, slot, axis, length):
+    """Bring a particle back into the container on a periodic axis."""
+    x = particles.data[position_row(particles, axis), slot]
+    if 0.0 <= x < length:
+        return
+    images = np.floor(x / length)
+    if images != 0.0:
+        x -= images * length
+        if x >= length:  # a tiny negative x rounds up to the length itself
+            x -= length
+            images += 1
+        particles.data[position_row(particles, axis), slot] = x
+        particles.images[axis, number_at(particles, slot)] += np.int32(images)
+
+
+@inner_helper
+def is_beyond(particles, slot, radius, space):
+    """Whether a particle is beyond a wall."""
+    beyond = False
+    for k in range(len(space.lengths)):
+        if not space.periodic[k]:
+            inset = space.margin * radius
+            x = particles.data[position_row(particles, k), slot]
+            beyond |= (x < inset) | (x > space.lengths[k] - inset)
+    return beyond
+
+
+@inner_kernel
+def fly_again(particles, slot, which, setting, gravity, faces, law):
+    """Make the step of a particle of a kind anew that has come beyond a wall."""
+    dt, flights = setting.tools.dt, setting.tools.flights[setting.part]
+    for k in range(len(setting.space.lengths)):
+        x = particles.data[position_row(particles, k), slot]
+        v = particles.data[velocity_row(particles, k), slot]
+        if gravity is None:
+            x -= v * dt
+        else:
+            v -= gravity[k] * dt
+            x -= (v + 0.5 * gravity[k] * dt) * dt
+        flights[0].position[k], flights[0].velocity[k] = x, v
+    flights[0].radius = setting.tools.radius[which]
+    fly_among_faces(number_at(particles, slot), which, setting, gravity, faces, law)
+    for k in range(len(setting.space.lengths)):
+        particles.data[position_row(particles, k), slot] = flights[0].position[k]
+        particles.data[velocity_row(particles, k), slot] = flights[0].velocity[k]
+
+
+@inner_helper
+def bring_back(particles, slot, setting, gravity, faces, law):
+    """Bring one particle back into the container."""
+    space, which = setting.space, kind_in(particles, slot, setting.tools)
+    if is_beyond(particles, slot, setting.tools.radius[which], space):
+        fly_again(particles, slot, which, setting, gravity, faces, law)
+    for k in range(len(space.lengths)):
+        if space.periodic[k]:
+            wrap(particles, slot, k, space.lengths[k])
+
+
+@inner_helper
+def advance_axis(particles, slots, axis, limits, dt, gravity):
+    """Move the particles in some slots along one axis; the number that are not within the limits (2,)
+    then."""
+    first, end = slots
+    x = particles.data[position_row(particles, axis), first:end]
+    v = particles.data[velocity_row(particles, axis), first:end]
+    if gravity is None:
+        return fly(x, v, limits[0], limits[1], dt)
+    return fall(x, v, gravity[axis], limits[0], limits[1], dt)
+
+
+@inner_kernel
+def move(particles, slots, grid, setting, gravity, faces, law):
+    """Make the motion of one step for one thread's slots, from slots[0] to slots[1], and count them in their
+    cells."""
+    space, dt = setting.space, setting.tools.dt
+    inset = space.margin * setting.tools.largest
+    for start in range(slots[0], slots[1], _BLOCK):
+        stop = min(start + _BLOCK, slots[1])
+        outside = 0
+        for k in range(len(space.lengths)):
+            lower = 0.0 if space.periodic[k] else inset
+            limits = lower, space.lengths[k] - lower
+            outside += advance_axis(particles, (start, stop), k, limits, dt, gravity)
+        if outside > 0:
+            for slot in range(start, stop):
+                bring_back(particles, slot, setting, gravity, faces, law)
+        locate(particles, start, stop, grid)
+    count(slots[0], slots[1], setting.part, grid)
