@@ -71,7 +71,7 @@ def scatter_equal(particles, pair, g, square, counter):
         v[j] += change
 
 
-@inner_kernel
+@inner_helper
 def collide_pair(particles, pair, g, square, counter, setting, law):
     """Let the particles in two slots collide. g (3,): their relative velocity, second minus first; counter:
     of the random numbers."""

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gaspart.kernels.compile.policy import inner_helper, inner_kernel
+from gaspart.kernels.compile.policy import inner_helper
 from gaspart.kernels.dsmc.draws import fraction, words_of
 from gaspart.kernels.dsmc.model import ENERGY, number_at, open_space, velocity_row
 from gaspart.kernels.model import LOSS, ContactLaw
@@ -136,7 +136,7 @@ def count_loss(setting):
     sums[LOSS, 0] = sums[LOSS, 1] = 0.0
 
 
-@inner_kernel
+@inner_helper
 def collide_in_room(normal, setting, law):
     """A contact by the law of the two particles in a thread's room. Returns the momentum that passes along
     the normal."""
