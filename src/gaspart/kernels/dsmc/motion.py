@@ -20,8 +20,6 @@ _BLOCK = 128
 def wrap(particles, slot, axis, length):
     """Bring a particle back into the container on a periodic axis."""
     x = particles.data[position_row(particles, axis), slot]
-    if 0.0 <= x < length:
-        return
     images = np.floor(x / length)
     if images != 0.0:
         x -= images * length
@@ -65,14 +63,25 @@ def fly_again(particles, slot, which, setting, gravity, faces, law):
 
 
 @inner_helper
-def bring_back(particles, slot, setting, gravity, faces, law):
-    """Bring one particle back into the container."""
-    space, which = setting.space, kind_in(particles, slot, setting.tools)
-    if is_beyond(particles, slot, setting.tools.radius[which], space):
-        fly_again(particles, slot, which, setting, gravity, faces, law)
-    for k in range(len(space.lengths)):
-        if space.periodic[k]:
-            wrap(particles, slot, k, space.lengths[k])
+def bring_back_from_walls(particles, slots, setting, gravity, faces, law):
+    """Make the step anew of the particles in some slots that have come beyond a wall. Returns their
+    number."""
+    number = 0
+    for slot in range(slots[0], slots[1]):
+        which = kind_in(particles, slot, setting.tools)
+        if is_beyond(particles, slot, setting.tools.radius[which], setting.space):
+            fly_again(particles, slot, which, setting, gravity, faces, law)
+            number += 1
+    return number
+
+
+@inner_helper
+def wrap_all(particles, slots, axis, length):
+    """Bring the particles in some slots back into the container on a periodic axis."""
+    row = position_row(particles, axis)
+    for slot in range(slots[0], slots[1]):
+        if not 0.0 <= particles.data[row, slot] < length:
+            wrap(particles, slot, axis, length)
 
 
 @inner_helper
@@ -94,14 +103,20 @@ def move(particles, slots, grid, setting, gravity, faces, law):
     space, dt = setting.space, setting.tools.dt
     inset = space.margin * setting.tools.largest
     for start in range(slots[0], slots[1], _BLOCK):
-        stop = min(start + _BLOCK, slots[1])
-        outside = 0
+        block = start, min(start + _BLOCK, slots[1])
+        hits, crossed = 0, (0, 0, 0)
         for k in range(len(space.lengths)):
             lower = 0.0 if space.periodic[k] else inset
             limits = lower, space.lengths[k] - lower
-            outside += advance_axis(particles, (start, stop), k, limits, dt, gravity)
-        if outside > 0:
-            for slot in range(start, stop):
-                bring_back(particles, slot, setting, gravity, faces, law)
-        locate(particles, start, stop, grid)
+            outside = advance_axis(particles, block, k, limits, dt, gravity)
+            if space.periodic[k]:
+                crossed = crossed[1], crossed[2], outside
+            else:
+                crossed, hits = (crossed[1], crossed[2], 0), hits + outside
+        if hits > 0:
+            hits = bring_back_from_walls(particles, block, setting, gravity, faces, law)
+        for k in range(len(space.lengths)):
+            if space.periodic[k] and crossed[3 - len(space.lengths) + k] + hits > 0:
+                wrap_all(particles, block, k, space.lengths[k])
+        locate(particles, block[0], block[1], grid)
     count(slots[0], slots[1], setting.part, grid)
