@@ -52,6 +52,11 @@ class DsmcDynamics:
         self._setting = model.Setting(space, self._tools, 0)
         self._gravity = scene.gravity if scene.gravity is not None and any(scene.gravity) else None
         self._faces, self._law = arrays.faces_for(scene), arrays.law_for(scene, state)
+        self._dense = None
+        if engine.model == "enskog":
+            from gaspart.engines.dsmc.dense import dense_for
+
+            self._dense = dense_for(scene, state, self._grid, len(self._tools.radius))
         self._kicks = kicks(scene, self.time_step, seed)
         self._place(np.arange(state.count), state.positions, state.velocities, state.images)
         self._lost = np.zeros(2)  # net and gross, before the tally began
@@ -121,8 +126,8 @@ class DsmcDynamics:
     def _run(self, steps: int) -> None:
         """Let the kernel make so many steps."""
         threads = self._engine.threads if self._engine.threads > 1 else None
-        options = self._gravity, self._faces, self._law
-        self._loop.run_steps(self._particles, self._grid, self._setting, steps, threads, *options)
+        options = self._gravity, self._faces, self._law, self._dense
+        self._loop.run_steps(self._particles, self._grid, self._setting, steps, threads, options)
 
     def reset_tally(self) -> None:
         """Begin to count anew."""
@@ -209,6 +214,8 @@ class DsmcDynamics:
         }
         if self._law is not None:
             parts["spins"] = self._law.spins.copy()
+        if self._dense is not None:
+            parts["fields"] = self._dense.fields.copy()
         if self._kicks is not None:
             parts["given"] = self._kicks.given.copy()
         return parts
@@ -222,6 +229,8 @@ class DsmcDynamics:
             array[0] = parts[key]
         if self._law is not None:
             self._law.spins[...] = parts["spins"]
+        if self._dense is not None:
+            self._dense.fields[...] = parts["fields"]
         if self._kicks is not None:
             self._kicks.given[...] = parts["given"]
         self._tools.clock[0], self._since = int(parts["steps"]), int(parts["since"])

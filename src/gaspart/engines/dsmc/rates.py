@@ -14,6 +14,8 @@ from gaspart.scene.geometry import ball_volume
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
+SLOPE, BEND = {2: 0.5625, 3: 1.5}, {2: 0.0, 3: 0.5}
+"""Coefficients of the contact value, see `contact_values`, by dimension."""
 _HIGHEST = 0.7  # packing fraction up to which contact values are evaluated
 
 
@@ -48,9 +50,7 @@ def contact_values(number_densities: np.ndarray, radii: np.ndarray, dimension: i
     free = 1.0 - min(filled, _HIGHEST)
     surface = ball_volume(dimension) * float((number_densities * radii ** (dimension - 1)).sum())
     ratio = surface * 2.0 * radii[:, None] * radii / (radii[:, None] + radii)
-    if dimension == 2:
-        return 1.0 / free + 0.5625 * ratio / free**2
-    return 1.0 / free + 1.5 * ratio / free**2 + 0.5 * ratio**2 / free**3
+    return 1.0 / free + SLOPE[dimension] * ratio / free**2 + BEND[dimension] * ratio**2 / free**3
 
 
 def rates(scene: Scene, state: State, dense: bool) -> Rates:

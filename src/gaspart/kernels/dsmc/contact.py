@@ -42,6 +42,20 @@ def unit_vector(key, step, cell, trial):
 
 
 @inner_helper
+def in_plane(key, step, cell, trial):
+    """(3,) the same in the plane of the first two axes."""
+    block = 0
+    while True:
+        block += 1
+        words = words_of(key, step, cell, trial, block)
+        for n in range(0, 4, 2):
+            u, v = 2.0 * fraction(words[n]) - 1.0, 2.0 * fraction(words[n + 1]) - 1.0
+            s = u * u + v * v
+            if s < 1.0:
+                return (u * u - v * v) / s, 2.0 * u * v / s, 0.0
+
+
+@inner_helper
 def impact_parameter(key, step, cell, trial):
     """A number from -1 to 1, from block 1 of the trial's random words."""
     words = words_of(key, step, cell, trial, 1)

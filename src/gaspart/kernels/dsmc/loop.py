@@ -23,6 +23,7 @@ from gaspart.kernels.dsmc.cells import (
     share_cells,
     swap_row,
 )
+from gaspart.kernels.dsmc.enskog import collide_dense
 from gaspart.kernels.dsmc.model import Setting
 from gaspart.kernels.dsmc.motion import move
 from gaspart.kernels.model import Space
@@ -107,10 +108,12 @@ def sort_all(particles, grid, threads):
 
 
 @inner_allocating_kernel
-def collide_all(particles, grid, setting, threads, law):
+def collide_all(particles, grid, setting, threads, law, dense):
     """Make the collisions of one step."""
     space, tools = setting.space, setting.tools
-    if threads is None:
+    if dense is not None:
+        collide_dense(particles, grid, setting, dense, law)
+    elif threads is None:
         collide_cells(particles, (0, len(grid.starts) - 1), grid, setting, law)
     else:
         shares = np.empty(len(grid.counts) + 1, np.int64)
@@ -119,10 +122,12 @@ def collide_all(particles, grid, setting, threads, law):
 
 
 @allocating_kernel
-def run_steps(particles, grid, setting, steps, threads, gravity, faces, law):
-    """Make so many steps. threads: their number, or None for one."""
+def run_steps(particles, grid, setting, steps, threads, options):
+    """Make so many steps. threads: their number, or None for one; options: gravity (d,), the faces with a kind,
+    the law, and what a dense gas needs; each may be None."""
+    gravity, faces, law, dense = options
     for _ in range(steps):
         move_all(particles, grid, setting, threads, gravity, faces, law)
         sort_all(particles, grid, threads)
-        collide_all(particles, grid, setting, threads, law)
+        collide_all(particles, grid, setting, threads, law, dense)
         setting.tools.clock[0] += 1

@@ -1,0 +1,61 @@
+"""What the kernels of the Enskog model work on, beside those of the dilute gas."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from gaspart.engines.dsmc.rates import BEND, SLOPE
+from gaspart.errors import SceneError
+from gaspart.kernels.dsmc.enskog import Dense
+from gaspart.kernels.dsmc.model import Grid
+from gaspart.scene.geometry import ball_volume
+from gaspart.scene.scene import Scene
+from gaspart.state.state import State
+
+_SAMPLES = 4000.0
+"""Particles that are averaged over in the density of a cell: more steps where fewer are in it."""
+MOST_KINDS = 16
+"""Of particles in a dense gas: a trial draws the partner's kind, of which each but one is in vain."""
+
+
+def is_uniform(scene: Scene) -> bool:
+    """Whether the density is the same everywhere and stays so: it is known then."""
+    spread = all(kind.arrangement != "slab" and kind.region is None for kind in scene.species)
+    elastic = scene.restitution is None or not scene.restitution.dissipative
+    return all(scene.container.periodic) and spread and elastic
+
+
+def dense_for(scene: Scene, state: State, grid: Grid, kinds: int) -> Dense:
+    """Those of a state, for so many kinds of particles. Raises SceneError for a scene that the model is not
+    made for."""
+    d, cells, sigma = scene.dimension, len(grid.starts) - 1, 2.0 * scene.largest_radius
+    if kinds > MOST_KINDS:
+        rule = (
+            f'takes {MOST_KINDS} kinds of particles at most; the "event" and "step" engines take any number'
+        )
+        raise SceneError("model", "enskog", rule)
+    if min(scene.container.lengths) < sigma:
+        raise SceneError("lengths", scene.container.lengths, 'model = "enskog" needs sides of a diameter')
+    volume = grid.volume * cells
+    sums = [float((state.radii**power).sum()) for power in (d, d - 1)]
+    fields = np.repeat(np.array(sums)[:, None] * ball_volume(d) / volume, cells, axis=1)
+    steps = max(1.0, _SAMPLES * cells / max(1, state.count))
+    around = all(scene.container.periodic)
+    drift = state.momentum / state.masses.sum() if around and state.count else np.zeros(d)
+    return Dense(
+        fields=fields,
+        speed=np.zeros(cells),
+        near_speed=np.zeros(cells),
+        near_count=np.zeros(cells),
+        room=np.zeros(cells),
+        reach=np.array([math.ceil(sigma * inverse) for inverse in grid.inverse], dtype=np.int64),
+        wraps=np.array(scene.container.periodic),
+        drift=drift,
+        ball=ball_volume(d),
+        weight=0.0 if is_uniform(scene) else 1.0 / steps,
+        slope=SLOPE[d],
+        bend=BEND[d],
+        highest=np.ones(1),
+    )

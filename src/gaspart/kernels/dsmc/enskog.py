@@ -1,0 +1,310 @@
+"""Collisions of a dense gas: pairs a diameter apart, more frequent by the contact value of the local density.
+
+The scheme of Montanero & Santos, Phys. Rev. E 54, 438 (1996), and Phys. Fluids 9, 2057 (1997), for the Enskog
+equation: a particle draws a unit vector e, and its partner in the cell that holds the point a diameter away
+along e; they collide with the impulse along e at a rate proportional to their approach along it. Momentum
+and energy are conserved in each collision, and what passes has passed over a diameter. Trials follow one
+another as in `boltzmann`, cell by cell: the bound of a cell comes from the most particles and the highest
+speeds in any cell within reach, and is raised by a collision that exceeds it. Only one thread does this.
+"""
+
+from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
+from gaspart.kernels.dsmc.contact import (
+    collide_in_room,
+    collide_smooth,
+    give_back,
+    in_plane,
+    take_in,
+    unit_vector,
+)
+from gaspart.kernels.dsmc.draws import below, fraction, waiting_time, words_of
+from gaspart.kernels.dsmc.model import (
+    ACTION,
+    COLLISIONS,
+    EXCEEDED,
+    TRIALS,
+    kind_in,
+    position_row,
+    velocity_row,
+)
+from gaspart.kernels.physics.running_sum import add_whole
+
+FILLED, SURFACE = range(2)
+KIND_BLOCK = 255  # of a trial's random words: the partner's kind
+_FULLEST = 0.7  # packing fraction up to which contact values are evaluated
+_ROUNDED = 1.0 + 1e-12  # a chance above 1 by more than rounding
+
+
+class Dense(NamedTuple):
+    """Of each cell (cells,): fields (2, cells), the sums of r^d and r^(d-1) of its particles per volume,
+    times the volume of a unit ball, smoothed in time; speed, the highest of its particles beside `drift`
+    (d,); near_speed, the highest in any cell within reach, `reach` (d,) cells along each axis; near_count,
+    the most particles in any of these; room, for the search of these. wraps (d,): whether the first and the
+    last cell along an axis are neighbours. ball: the volume of a unit ball; weight: of a step in the smoothed
+    fields, 0 if these are known. slope, bend: of the contact value, see `contact_value`. highest (1,): the
+    highest contact value of any two particles.
+    """
+
+    fields: np.ndarray
+    speed: np.ndarray
+    near_speed: np.ndarray
+    near_count: np.ndarray
+    room: np.ndarray
+    reach: np.ndarray
+    wraps: np.ndarray
+    drift: np.ndarray
+    ball: float
+    weight: float
+    slope: float
+    bend: float
+    highest: np.ndarray
+
+
+@inner_helper
+def contact_value(filled, surface, radius, dense):
+    """The pair distribution at contact 1/f + slope X/f^2 + bend X^2/f^3, f = 1 - filled, X = 2 surface
+    `radius`, with `radius` the product of two radii over their sum. See `engines.dsmc.rates`."""
+    free = 1.0 - min(filled, _FULLEST)
+    ratio = 2.0 * surface * radius / free
+    return (1.0 + ratio * (dense.slope + dense.bend * ratio)) / free
+
+
+@inner_kernel
+def widest(values, room, reach, stride, per_side, wraps):
+    """Along one axis: values become the highest of those within reach, by way of `room`."""
+    number = len(values)
+    for n in range(number):
+        room[n] = values[n]
+    span = min(2 * reach + 1, per_side)
+    for n in range(number):
+        at = n // stride % per_side
+        line = n - at * stride
+        most = values[n]
+        for k in range(span):
+            other = at - reach + k
+            if wraps:
+                other = (other + per_side) % per_side if span < per_side else k
+            elif span == per_side:
+                other = k
+            if 0 <= other < per_side:
+                most = max(most, room[line + other * stride])
+        values[n] = most
+
+
+@inner_kernel
+def survey(particles, grid, tools, dense):
+    """Find for each cell what bounds its trials, and smooth the fields."""
+    d, cells = len(particles.images), len(grid.starts) - 1
+    if dense.weight > 0.0:
+        smooth(particles, grid, tools, dense)
+    filled = surface = 0.0
+    for cell in range(cells):
+        first, end = np.int64(grid.starts[cell]), np.int64(grid.starts[cell + 1])
+        most = 0.0
+        for slot in range(first, end):
+            square = 0.0
+            for k in range(d):
+                v = particles.data[velocity_row(particles, k), slot] - dense.drift[k]
+                square += v * v
+            most = max(most, square)
+        dense.speed[cell] = dense.near_speed[cell] = sqrt(most)
+        dense.near_count[cell] = end - first
+        filled = max(filled, dense.fields[FILLED, cell])
+        surface = max(surface, dense.fields[SURFACE, cell])
+    dense.highest[0] = contact_value(filled, surface, 0.5 * tools.largest, dense)
+    for k in range(d):
+        along = dense.reach[k], grid.strides[k], grid.per_side[k], dense.wraps[k]
+        widest(dense.near_speed, dense.room, *along)
+        widest(dense.near_count, dense.room, *along)
+
+
+@inner_kernel
+def smooth(particles, grid, tools, dense):
+    """Let the fields follow what is in each cell now."""
+    d = len(particles.images)
+    factor = dense.ball / grid.volume
+    for cell in range(len(grid.starts) - 1):
+        filled = surface = 0.0
+        for slot in range(np.int64(grid.starts[cell]), np.int64(grid.starts[cell + 1])):
+            radius = tools.radius[kind_in(particles, slot, tools)]
+            power = radius if d == 2 else radius * radius
+            filled += power * radius
+            surface += power
+        dense.fields[FILLED, cell] += dense.weight * (factor * filled - dense.fields[FILLED, cell])
+        dense.fields[SURFACE, cell] += dense.weight * (factor * surface - dense.fields[SURFACE, cell])
+
+
+@inner_helper
+def cell_at(particles, slot, sigma, direction, grid, setting):
+    """The cell at a distance from the particle in a slot; -1 outside the container."""
+    found, space = 0, setting.space
+    for k in range(len(space.lengths)):
+        x = particles.data[position_row(particles, k), slot] + sigma * direction[k]
+        if space.periodic[k]:
+            if x < 0.0:
+                x += space.lengths[k]
+            elif x >= space.lengths[k]:
+                x -= space.lengths[k]
+        along = (x - grid.origin[k]) * grid.inverse[k]
+        if not 0.0 <= along < grid.per_side[k]:
+            if not space.periodic[k]:
+                return -1
+            along = min(max(along, 0.0), grid.per_side[k] - 1.0)
+        found += np.int64(along) * grid.strides[k]
+    return found
+
+
+@inner_kernel
+def raise_speed(cell, speed, grid, dense):
+    """Note a speed in a cell that is above those before, and let the cells within reach know."""
+    dense.speed[cell] = speed
+    d = len(dense.reach)
+    first, count = (0, 0, 0), (1, 1, 1)
+    for k in range(d):
+        span = min(2 * dense.reach[k] + 1, grid.per_side[k])
+        at = cell // grid.strides[k] % grid.per_side[k]
+        low = at - dense.reach[k] if span < grid.per_side[k] else 0
+        first = first[1], first[2], low
+        count = count[1], count[2], span
+    for n in range(count[0] * count[1] * count[2]):
+        place = (
+            first[0] + n // (count[1] * count[2]),
+            first[1] + n // count[2] % count[1],
+            first[2] + n % count[2],
+        )
+        found, inside = 0, True
+        for k in range(d):
+            at = place[3 - d + k]
+            if dense.wraps[k]:
+                at = (at + grid.per_side[k]) % grid.per_side[k]
+            inside &= (at >= 0) & (at < grid.per_side[k])
+            found += at * grid.strides[k]
+        if inside:
+            dense.near_speed[found] = max(dense.near_speed[found], speed)
+
+
+@inner_helper
+def note_speed(particles, slot, cell, grid, dense):
+    """Let the bounds hold for a particle whose velocity has changed."""
+    square = 0.0
+    for k in range(len(particles.images)):
+        v = particles.data[velocity_row(particles, k), slot] - dense.drift[k]
+        square += v * v
+    if square > dense.speed[cell] * dense.speed[cell]:
+        raise_speed(cell, sqrt(square), grid, dense)
+
+
+@inner_helper
+def collide_at(particles, pair, kinds, direction, sigma, setting, law):
+    """A contact of the particles in two slots, of these kinds, along a direction. Counts |r . dp|."""
+    tools = setting.tools
+    if law is None:
+        passed = collide_smooth(particles, pair, direction, (tools.mass[kinds[0]], tools.mass[kinds[1]]))
+    else:
+        take_in(particles, pair[0], 0, kinds[0], setting, law)
+        take_in(particles, pair[1], 1, kinds[1], setting, law)
+        passed = collide_in_room(direction, setting, law)
+        give_back(particles, pair[0], 0, setting, law)
+        give_back(particles, pair[1], 1, setting, law)
+    add_whole(tools.virial[setting.part], sigma * passed, tools.scales[ACTION])
+
+
+@inner_helper
+def approach_along(particles, pair, direction):
+    """How fast the particles in two slots approach each other along a direction, from the first on."""
+    approach = 0.0
+    for k in range(len(particles.images)):
+        row = velocity_row(particles, k)
+        approach -= (particles.data[row, pair[1]] - particles.data[row, pair[0]]) * direction[k]
+    return approach
+
+
+@inner_helper
+def partner_of(particles, slot, sigma, direction, pick, grid, setting):
+    """The partner of the particle in a slot: (its slot, its cell); -1 if the draw finds none."""
+    cell = cell_at(particles, slot, sigma, direction, grid, setting)
+    if cell < 0:
+        return np.int64(-1), np.int64(-1)
+    found = np.int64(grid.starts[cell]) + pick
+    if found >= np.int64(grid.starts[cell + 1]) or found == slot:
+        return np.int64(-1), np.int64(-1)
+    return found, np.int64(cell)
+
+
+@inner_helper
+def relative_chance(pair, cells, kinds, largest, dense, tools, dimension):
+    """What sizes and density let two particles of these kinds in two cells collide, over what is possible at
+    most."""
+    one, other = tools.radius[kinds[0]], tools.radius[kinds[1]]
+    size = (one + other) / (2.0 * tools.largest)
+    filled = 0.5 * (dense.fields[FILLED, cells[0]] + dense.fields[FILLED, cells[1]])
+    surface = 0.5 * (dense.fields[SURFACE, cells[0]] + dense.fields[SURFACE, cells[1]])
+    contact = contact_value(filled, surface, one * other / (one + other), dense) / largest
+    return contact * (size if dimension == 2 else size * size)
+
+
+@inner_helper
+def try_once(particles, cell, counter, words, bound, grid, setting, dense, law):
+    """One trial in a cell. Returns whether it is a collision, and whether its chance exceeded 1."""
+    tools, d = setting.tools, len(setting.space.lengths)
+    first = np.int64(grid.starts[cell])
+    i = first + below(words[1], np.int64(grid.starts[cell + 1]) - first)
+    one, other = kind_in(particles, i, tools), np.int64(0)
+    key, step, trial = counter
+    if len(tools.radius) > 1:
+        extra = words_of(key, step, cell, trial, KIND_BLOCK)
+        other = below(extra[0], len(tools.radius))
+    direction = in_plane(key, step, cell, trial) if d == 2 else unit_vector(key, step, cell, trial)
+    sigma = tools.radius[one] + tools.radius[other]
+    pick = below(words[2], np.int64(dense.near_count[cell]))
+    j, there = partner_of(particles, i, sigma, direction, pick, grid, setting)
+    if j < 0:
+        return False, False
+    if kind_in(particles, j, tools) != other:
+        return False, False
+    pair, kinds = (i, j), (one, other)
+    approach = approach_along(particles, pair, direction)
+    chance = relative_chance(pair, (cell, there), kinds, dense.highest[0], dense, tools, d)
+    exceeded = approach * chance > bound * _ROUNDED
+    if fraction(words[3]) * bound < approach * chance:
+        collide_at(particles, pair, kinds, direction, sigma, setting, law)
+        note_speed(particles, i, cell, grid, dense)
+        note_speed(particles, j, there, grid, dense)
+        return True, exceeded
+    return False, exceeded
+
+
+@inner_kernel
+def collide_dense(particles, grid, setting, dense, law):
+    """Make the collisions of one step, cell after cell."""
+    tools, d = setting.tools, len(setting.space.lengths)
+    survey(particles, grid, tools, dense)
+    sigma, key, step = 2.0 * tools.largest, tools.key, tools.clock[0]
+    around = 6.283185307179586 * (sigma if d == 2 else 2.0 * sigma * sigma)
+    rate = 0.5 * around * dense.highest[0] / grid.volume * tools.dt * len(tools.radius)
+    met = trials = exceeded = 0
+    for cell in range(len(grid.starts) - 1):
+        number = np.int64(grid.starts[cell + 1]) - np.int64(grid.starts[cell])
+        pairs = rate * number * dense.near_count[cell]
+        left, trial = 1.0 if number > 0 else 0.0, 0
+        while left > 0.0:
+            words = words_of(key, step, cell, trial, 0)
+            bound = dense.speed[cell] + dense.near_speed[cell]
+            left -= waiting_time(words[0]) / (pairs * bound)
+            if not left > 0.0:
+                break
+            done, beyond = try_once(
+                particles, cell, (key, step, trial), words, bound, grid, setting, dense, law
+            )
+            met += done
+            exceeded += beyond
+            trial += 1
+        trials += trial
+    tools.counts[0, COLLISIONS] += met
+    tools.counts[0, TRIALS] += trials
+    tools.counts[0, EXCEEDED] += exceeded
