@@ -20,8 +20,12 @@ WIDEST = 1.0 / 3.0
 """The widest cell that is recommended, in mean free paths."""
 LONGEST = 0.2
 """The longest step that is recommended, in mean free times."""
-FEWEST, USUAL = 8.0, 16.0
-"""Particles in a cell: so many must be in it even if it is wider then, and so many do if it is narrower."""
+FEWEST = {"boltzmann": 8.0, "enskog": 64.0}
+"""Particles that must be in a cell, even if it is wider then. Pairs that have met in a dense gas part, and with
+few others in a cell those that approach become rare: with 8 in each a gas at a packing fraction of 0.4 has 6 %
+too few collisions."""
+USUAL = 16.0
+"""Particles in a cell that are enough: it is narrower than recommended rather than with more."""
 _DIGITS = 2.0**10  # a step is rounded to so many parts, so that it does not depend on how sums are rounded
 _VISCOSITY = {2: math.pi / 24.0, 3: 16.0 / (45.0 * math.pi)}
 _VISCOSITY_IN_TIME = 16.0 / (75.0 * math.pi)
@@ -38,7 +42,7 @@ def cells_for(engine: DSMC, scene: Scene, found: Rates) -> tuple[int, ...]:
     lower, upper = accessible(scene)
     lengths = tuple(float(length) for length in upper - lower)
     width = min(WIDEST * found.path, cube_side(lengths, scene.count / USUAL))
-    width = max(width, cube_side(lengths, scene.count / FEWEST))
+    width = max(width, cube_side(lengths, scene.count / FEWEST[engine.model]))
     return tuple(max(1, math.floor(length / width + 1e-9)) for length in lengths)
 
 

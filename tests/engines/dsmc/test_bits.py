@@ -1,0 +1,136 @@
+"""The same bits for any number of threads, sampling and restart; conservation laws of random scenes."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from engines.dsmc.steps import advanced, make
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from referee import WHOLE_TALLY, check_restored
+from scenes import gas
+
+import gaspart as gp
+
+PARTS = ("state.unwrapped", "state.velocities", "state.spins", *WHOLE_TALLY)
+
+
+@st.composite
+def scenes(draw, most=60):
+    """Scenes of two kinds, so that few kernels are compiled: rough discs that fall between thermal faces, and
+    elastic spheres of one or two species between walls or none."""
+    dimension = draw(st.sampled_from([2, 3]))
+    lengths = draw(st.lists(st.floats(4.0, 9.0), min_size=dimension, max_size=dimension))
+    boundary = draw(st.lists(st.sampled_from(["wall", "periodic"]), min_size=dimension, max_size=dimension))
+    radii = st.floats(0.01, 0.1)
+    species = [
+        gp.Species(
+            draw(st.integers(1, most)), draw(radii), draw(st.sampled_from([1.0, 0.1])), temperature=1.0
+        )
+        for _ in range(draw(st.integers(1, 2)))
+    ]
+    if dimension == 3:
+        return gp.Scene(gp.Container(lengths, boundary), species)
+    boundary[1] = "wall"
+    law = gp.Restitution(draw(st.sampled_from([1.0, 0.8])), draw(st.sampled_from([-1.0, 0.5, 1.0])))
+    faces = {"y_low": gp.Thermal(draw(st.floats(0.2, 5.0)), draw(st.sampled_from(["all", "normal"])))}
+    container = gp.Container(lengths, boundary)
+    return gp.Scene(container, species, faces=faces, gravity=(0.0, -0.3), restitution=law)
+
+
+def drawn(scene, model, seed):
+    """A simulation, or None if the sizes of the particles are too different."""
+    try:
+        return gp.Simulation(scene, gp.DSMC(time_step=0.1, model=model), seed)
+    except gp.SceneError as error:
+        assert error.key == "radius"
+        return None
+
+
+@settings(max_examples=25)
+@given(scenes(), st.sampled_from(["boltzmann", "enskog"]), st.integers(0, 2**32))
+@pytest.mark.filterwarnings("ignore:gaspart")
+def test_random_scenes_keep_what_is_conserved(scene, model, seed):
+    sim = drawn(scene, model, seed)
+    if sim is None:
+        return
+    before = sim.state
+    sim.advance(duration=5.0)
+    sim.check_invariants()
+    after, tally = sim.state, sim.tally
+    assert sim._dynamics._tools.counts[0, 2] == 0  # chances above 1
+    periodic = np.array(scene.container.periodic)
+    low, high = scene.reach(scene.smallest_radius)
+    assert (after.positions >= np.array(low) - 1e-12).all()
+    assert (after.positions <= np.array(high) + 1e-12).all()
+    scale = float(np.abs(after.masses[:, None] * after.velocities).sum()) + 1.0
+    given_to = tally.wall_impulse.reshape(-1, 2)
+    change = after.momentum - before.momentum
+    for k in range(scene.dimension):
+        pull = 0.0 if scene.gravity is None else scene.gravity[k] * after.masses.sum() * sim.time
+        if not (scene.gravity and k == 0) and not (scene.rough and not periodic.all()):
+            assert change[k] == pytest.approx(given_to[k, 0] - given_to[k, 1] + pull, abs=1e-9 * scale)
+    if scene.dimension == 3:
+        assert after.kinetic_energy == pytest.approx(before.kinetic_energy, rel=1e-12)
+    if periodic.all():
+        assert np.allclose(change, 0.0, atol=1e-12 * scale)
+
+
+@settings(max_examples=15)
+@given(
+    scenes(), st.sampled_from(["boltzmann", "enskog"]), st.lists(st.floats(0.0, 2.0), min_size=1, max_size=3)
+)
+@pytest.mark.filterwarnings("ignore:gaspart")
+def test_a_restored_run_goes_on_to_the_same_bits(scene, model, ends):
+    if drawn(scene, model, 3) is not None:
+        check_restored(scene, [*sorted(ends), 2.5], *PARTS, engine=gp.DSMC(time_step=0.1, model=model))
+
+
+@pytest.mark.parametrize("boundary", ["periodic", "wall"])
+def test_any_number_of_threads_gives_the_same_bits(boundary):
+    ends = []
+    for threads in (1, 2, 3):
+        sim = advanced(gas(3, 3000, 0.001, boundary), 40, threads=threads)
+        ends.append((sim.state.unwrapped, str(sim.tally)))
+    assert sim.tally.collisions > 1000
+    for positions, tally in ends[1:]:
+        assert np.array_equal(positions, ends[0][0])
+        assert tally == ends[0][1]
+
+
+def test_a_checkpoint_of_one_thread_goes_on_by_two():
+    scene = gas(3, 3000, 0.001, "wall")
+    one, two = (gp.Simulation(scene, gp.DSMC(threads=n), 5) for n in (1, 2))
+    make(one, 20)
+    two.restore(one.checkpoint())
+    make(one, 20)
+    make(two, 20)
+    assert np.array_equal(one.state.unwrapped, two.state.unwrapped)
+    assert str(one.tally) == str(two.tally)
+
+
+def test_units_that_are_powers_of_two_change_no_bit():
+    """All lengths by 2, times by 4, masses by 8: the same run in other units."""
+    scene = gas(3, 500, 0.001, "wall")
+    scene = replace(scene, container=gp.Container((64.0, 64.0, 64.0), "wall"))
+    kind = scene.species[0]
+    other = gp.Scene(
+        gp.Container((128.0, 128.0, 128.0), "wall"),
+        [replace(kind, radius=1.0, mass=8.0, temperature=2.0)],
+    )
+    one = advanced(scene, 100, time_step=1.0, cells_per_side=4)
+    two = advanced(other, 100, time_step=4.0, cells_per_side=4)
+    assert one.tally.collisions > 100
+    assert one.tally.collisions == two.tally.collisions
+    assert np.array_equal(2.0 * one.state.positions, two.state.positions)
+    assert np.array_equal(one.tally.wall_impulse * 4.0, two.tally.wall_impulse)
+
+
+def test_momentum_and_energy_are_kept_to_rounding():
+    sim = advanced(gas(3, 2000, 0.001), 1500)
+    before, after = sim.initial_state, sim.state
+    assert sim.tally.collisions > 1e5
+    assert after.kinetic_energy == pytest.approx(before.kinetic_energy, rel=1e-14)
+    total = math.sqrt(2000.0)
+    assert np.allclose(after.momentum, before.momentum, rtol=0.0, atol=1e-12 * total)

@@ -1,0 +1,100 @@
+"""A dilute gas by DSMC against kinetic theory."""
+
+import math
+
+import numpy as np
+import pytest
+from engines.dsmc.steps import advanced, make
+from scenes import gas
+
+import gaspart as gp
+from gaspart import theory
+
+
+def exact_rate(state, volume):
+    """Collisions per time of a mixture of Maxwellian gases at one temperature, of all pairs (exact): half the
+    sum over ordered pairs of S <g> / V."""
+    d = state.dimension
+    energy = state.translational_energy - 0.5 * float((state.momentum**2).sum()) / state.masses.sum()
+    temperature = 2.0 * energy / (d * (state.count - 1))
+    total = 0.0
+    for one in np.unique(state.species):
+        for other in np.unique(state.species):
+            a, b = state.species == one, state.species == other
+            pairs = a.sum() * (b.sum() - (one == other))
+            sigma = state.radii[a][0] + state.radii[b][0]
+            heat = temperature * (1.0 / state.masses[a][0] + 1.0 / state.masses[b][0])
+            section = math.pi * sigma**2 if d == 3 else 2.0 * sigma
+            speed = math.sqrt(8.0 * heat / math.pi) if d == 3 else math.sqrt(math.pi * heat / 2.0)
+            total += 0.5 * pairs * section * speed / volume
+    return total
+
+
+def pair_of_species(dimension):
+    """Two species of different sizes and masses in a periodic container."""
+    side = 60.0 if dimension == 3 else 400.0
+    species = [gp.Species(3000, 0.5, temperature=1.0), gp.Species(2000, 1.0, 4.0, temperature=1.0)]
+    return gp.Scene(gp.Container((side,) * dimension, "periodic"), species)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("species", [1, 2])
+def test_the_collision_rate_is_boltzmanns(dimension, species):
+    scene = gas(dimension, 5000, 0.01) if species == 1 else pair_of_species(dimension)
+    sim = advanced(scene, 600, settle=5)
+    expected = exact_rate(sim.state, scene.container.volume) * sim.tally.time
+    assert sim.tally.collisions > 2e5
+    assert sim.tally.collisions == pytest.approx(expected, abs=3.0 * math.sqrt(expected))
+    assert sim.tally.virial_sum == 0.0
+
+
+@pytest.mark.parametrize(("dimension", "rate"), [(2, 8.0 / 35.0), (3, 64.0 / 225.0)])
+def test_speeds_that_are_alike_spread_at_the_rate_of_the_boltzmann_equation(dimension, rate):
+    """d kurtosis / d (collisions of a particle) at the start, from the collision integral of particles of
+    one speed in all directions (exact)."""
+    n = 40000
+    scene = gas(dimension, n, 0.001, temperature=None, speed=1.0)
+    spread, seeds = [], range(4)
+    for seed in seeds:
+        sim = gp.Simulation(scene, gp.DSMC(time_step=2.0, cells_per_side=8), seed)
+        sim.advance(duration=10.0)
+        met = 2.0 * sim.tally.collisions / n
+        square = sim.state.speeds**2
+        kurtosis = (square**2).mean() / square.mean() ** 2
+        spread.append((kurtosis - 1.0) / met)
+        assert met < 0.2
+    error = np.std(spread) / math.sqrt(len(spread) - 1)
+    curved = 0.5 * met * rate  # what lies between the first derivative and a mean to here, at most
+    assert np.mean(spread) == pytest.approx(rate - 0.5 * curved, abs=3.0 * error + 0.5 * curved)
+
+
+def test_self_diffusion_is_that_of_kinetic_theory():
+    scene = gas(3, 8000, 0.001)
+    sim = advanced(scene, 1, settle=20, time_step=2.0, cells_per_side=12)
+    start, begun = sim.state, sim.time
+    make(sim, 400)
+    middle = sim.state.unwrapped - start.unwrapped
+    one = (middle**2).sum(axis=1).mean()
+    reached = sim.time - begun
+    make(sim, 400)
+    other = ((sim.state.unwrapped - start.unwrapped) ** 2).sum(axis=1).mean()
+    found = (other - one) / (6.0 * (sim.time - begun - reached))
+    temperature = 2.0 * sim.state.kinetic_energy / (3 * 8000)
+    expected = float(theory.enskog_diffusion(0.001, 3, temperature=temperature))
+    expected *= float(theory.contact_value(0.001, 3))
+    assert found == pytest.approx(expected, rel=0.05)
+
+
+def test_velocities_become_those_of_maxwell():
+    sim = advanced(gas(3, 4000, 0.001, temperature=None, speed=1.0), 400)
+    square = sim.state.speeds**2
+    assert (square**2).mean() / square.mean() ** 2 == pytest.approx(5.0 / 3.0, abs=4.0 * 0.027)
+
+
+def test_masses_come_to_one_temperature():
+    species = [gp.Species(2000, 0.5, temperature=2.0), gp.Species(2000, 0.5, 8.0, temperature=1.0)]
+    scene = gp.Scene(gp.Container((100.0, 100.0, 100.0), "periodic"), species)
+    sim = advanced(scene, 400)
+    state, energies = sim.state, sim.state.kinetic_energies
+    first, second = (energies[state.species == n].mean() / 1.5 for n in (0, 1))
+    assert first == pytest.approx(second, rel=4.0 * math.sqrt(2.0 / 3.0 * 2.0 / 2000))

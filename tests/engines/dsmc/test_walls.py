@@ -1,0 +1,82 @@
+"""Faces under DSMC: hard ones, thermal ones and gravity."""
+
+import math
+
+import numpy as np
+import pytest
+from engines.dsmc.steps import advanced
+
+import gaspart as gp
+
+
+def slab(faces, count=4000, radius=1e-6, length=10.0, **rest):
+    """Spheres between two walls across x."""
+    container = gp.Container((length, 10.0, 10.0), ("wall", "periodic", "periodic"))
+    return gp.Scene(container, [gp.Species(count, radius, temperature=1.0)], faces=faces, **rest)
+
+
+@pytest.mark.parametrize("components", ["all", "normal"])
+def test_free_molecules_carry_heat_between_thermal_faces(components):
+    """n v^2-weighted fluxes of two half-Maxwellian streams, of mass 1: each takes 2 T per particle (all
+    components) or T (normal one) at the rate J = n / (sqrt(pi/(2 T1)) + sqrt(pi/(2 T2))), exactly."""
+    hot, cold, n, volume = 4.0, 1.0, 4000, 1000.0
+    scene = slab({"x_low": gp.Thermal(hot, components), "x_high": gp.Thermal(cold, components)}, n)
+    sim = advanced(scene, 3000, settle=200, time_step=0.5, cells_per_side=1)
+    stream = n / volume / (math.sqrt(math.pi / (2.0 * hot)) + math.sqrt(math.pi / (2.0 * cold)))
+    per_particle = 2.0 if components == "all" else 1.0
+    expected = per_particle * stream * (hot - cold) * 100.0 * sim.tally.time
+    hits = sim.tally.wall_hits[:2]
+    assert hits == pytest.approx(stream * 100.0 * sim.tally.time, rel=4.0 / math.sqrt(hits[0]) + 0.002)
+    assert sim.tally.wall_energy[1] == pytest.approx(expected, rel=0.02)
+    assert -sim.tally.wall_energy[0] == pytest.approx(expected, rel=0.02)
+    sim.check_invariants()
+
+
+def test_a_gas_takes_the_temperature_of_its_walls():
+    scene = slab({"x_low": gp.Thermal(2.0), "x_high": gp.Thermal(2.0)}, 4000, radius=0.1)
+    sim = advanced(scene, 600, settle=600)
+    temperature = 2.0 * sim.state.kinetic_energy / (3 * 4000)
+    assert temperature == pytest.approx(2.0, rel=4.0 * math.sqrt(2.0 / 12000))
+
+
+def test_the_pressure_on_hard_walls_is_that_of_an_ideal_gas():
+    scene = slab({}, 4000, radius=0.001)
+    sim = advanced(scene, 2000, settle=10, time_step=0.3, cells_per_side=4)
+    width = 10.0 - 0.002
+    square = (sim.initial_state.velocities[:, 0] ** 2).sum()  # hardly any collisions: each keeps its own
+    expected = square / width * sim.tally.time
+    assert sim.tally.wall_impulse[:2] == pytest.approx(expected, rel=0.01)
+
+
+def test_a_gas_that_falls_has_the_barometric_profile():
+    container = gp.Container((20.0, 20.0, 20.0), ("periodic", "periodic", "wall"))
+    species = [gp.Species(6000, 0.02, temperature=1.0)]
+    scene = gp.Scene(container, species, gravity=(0.0, 0.0, -0.3), faces={"z_low": gp.Thermal(1.0)})
+    sim = advanced(scene, 1, settle=800, time_step=0.5, cells_per_side=(4, 4, 20))
+    heights = []
+    for _ in range(40):
+        sim.advance(duration=20.0)
+        heights.append((sim.state.positions[:, 2] - 0.02).mean())
+    scale, top = 1.0 / 0.3, 20.0 - 0.04
+    expected = scale - top / math.expm1(top / scale)
+    error = np.std(heights) / math.sqrt(len(heights) / 4)
+    assert np.mean(heights) == pytest.approx(expected, abs=4.0 * error)
+    sim.check_invariants()
+
+
+def test_a_particle_bounces_on_a_floor_for_ever():
+    body = gp.Body((5.0, 3.0), (0.3, 0.0), 0.5)
+    scene = gp.Scene(gp.Container((10.0, 10.0), ("periodic", "wall")), bodies=[body], gravity=(0.0, -1.0))
+    sim = advanced(scene, 10_000, time_step=0.1, cells_per_side=1)
+    assert sim.state.energy == pytest.approx(sim.initial_state.energy, rel=1e-10)
+    period = 2.0 * math.sqrt(2.0 * 2.5)
+    assert sim.tally.wall_hits[2] == pytest.approx(1000.0 / period, abs=1.5)
+
+
+def test_a_corner_reflects_both_components():
+    body = gp.Body((9.0, 8.5), (1.0, 1.0), 0.5)
+    scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=[body])
+    sim = advanced(scene, 1, time_step=2.0, cells_per_side=1)
+    assert sim.state.positions[0] == pytest.approx((8.0, 8.5))
+    assert sim.state.velocities[0] == pytest.approx((-1.0, -1.0))
+    assert sim.tally.wall_hits.tolist() == [0, 1, 0, 1]
