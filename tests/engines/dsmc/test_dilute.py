@@ -48,16 +48,16 @@ def test_the_collision_rate_is_boltzmanns(dimension, species):
     assert sim.tally.virial_sum == 0.0
 
 
-@pytest.mark.parametrize(("dimension", "rate"), [(2, 8.0 / 35.0), (3, 64.0 / 225.0)])
+@pytest.mark.parametrize(("dimension", "rate"), [(2, 64.0 / 225.0), (3, 8.0 / 35.0)])
 def test_speeds_that_are_alike_spread_at_the_rate_of_the_boltzmann_equation(dimension, rate):
     """d kurtosis / d (collisions of a particle) at the start, from the collision integral of particles of
     one speed in all directions (exact)."""
     n = 40000
-    scene = gas(dimension, n, 0.001, temperature=None, speed=1.0)
+    scene = gas(dimension, n, 0.002, temperature=None, speed=1.0)
     spread, seeds = [], range(4)
     for seed in seeds:
-        sim = gp.Simulation(scene, gp.DSMC(time_step=2.0, cells_per_side=8), seed)
-        sim.advance(duration=10.0)
+        sim = gp.Simulation(scene, gp.DSMC(time_step=2.0), seed)
+        sim.advance(duration=8.0)
         met = 2.0 * sim.tally.collisions / n
         square = sim.state.speeds**2
         kurtosis = (square**2).mean() / square.mean() ** 2

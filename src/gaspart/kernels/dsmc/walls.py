@@ -23,16 +23,16 @@ hundredths of the step, and it stays there until the step ends."""
 @inner_helper
 def time_to_face(y, u, a):
     """Time until a particle at a height y over a face, with a speed u and an acceleration a, all inward,
-    comes to it: the first root of y + u t + a t^2/2 in the form that does not cancel; and the speed with
-    which it does. inf if it never does."""
+    comes to it, and the speed with which it does: the root of y + u t + a t^2/2 in the forms that do not
+    cancel. inf if it never does."""
+    y = max(y, 0.0)
     square = u * u - 2.0 * y * a
-    if square < 0.0:
-        return inf, 0.0
-    w = sqrt(square)
-    if w > u:
-        return 2.0 * max(y, 0.0) / (w - u), w
-    if y <= 0.0 and u < 0.0:
-        return 0.0, -u
+    if square >= 0.0:
+        w = sqrt(square)
+        if u < 0.0:
+            return 2.0 * y / (w - u), w
+        if a < 0.0:
+            return (w + u) / -a, w
     return inf, 0.0
 
 
