@@ -13,7 +13,7 @@ from gaspart.engines.step.arrays import largest_terms
 from gaspart.errors import SceneError
 from gaspart.kernels.dsmc.model import PADDED, Faces, Grid, Law, Particles, Tools
 from gaspart.kernels.model import HARD, THERMAL, THERMAL_NORMAL, flight_dtype
-from gaspart.scene.faces import FACES
+from gaspart.scene.faces import FACES, Thermal
 from gaspart.scene.scene import Scene
 from gaspart.state.random import key_of
 from gaspart.state.state import State
@@ -106,10 +106,12 @@ def faces_for(scene: Scene) -> Faces | None:
         return None
     kinds, levels = [], []
     for name in FACES[: 2 * scene.dimension]:
-        face = scene.faces.get(name)
-        kind = HARD if face is None else THERMAL if face.components == "all" else THERMAL_NORMAL
+        kind, level = HARD, 0.0
+        match scene.faces.get(name):
+            case Thermal(temperature, components):
+                kind, level = THERMAL if components == "all" else THERMAL_NORMAL, temperature
         kinds.append(kind)
-        levels.append(0.0 if face is None else face.temperature)
+        levels.append(level)
     return Faces(np.array(kinds, dtype=np.int64), np.array(levels))
 
 

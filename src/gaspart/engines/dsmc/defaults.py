@@ -11,7 +11,7 @@ import numpy as np
 from gaspart.engines.dsmc.rates import Rates, accessible
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
-from gaspart.state.boxes import cube_side
+from gaspart.state.boxes import MOST_BOXES, cube_side
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC
@@ -21,9 +21,9 @@ WIDEST = 1.0 / 3.0
 LONGEST = 0.2
 """The longest step that is recommended, in mean free times."""
 FEWEST = {"boltzmann": 8.0, "enskog": 64.0}
-"""Particles that must be in a cell, even if it is wider then. Pairs that have met in a dense gas part, and with
-few others in a cell those that approach become rare: with 8 in each a gas at a packing fraction of 0.4 has 6 %
-too few collisions."""
+"""Particles that must be in a cell, even if it is wider then. Pairs that have met in a dense gas part, and
+with few others in a cell those that approach become rare: with 8 in each a gas at a packing fraction of 0.4
+has 6 % too few collisions."""
 USUAL = 16.0
 """Particles in a cell that are enough: it is narrower than recommended rather than with more."""
 _DIGITS = 2.0**10  # a step is rounded to so many parts, so that it does not depend on how sums are rounded
@@ -38,6 +38,8 @@ def cells_for(engine: DSMC, scene: Scene, found: Rates) -> tuple[int, ...]:
         sides = tuple(given) if isinstance(given, (tuple, list)) else (given,) * d
         if len(sides) != d:
             raise SceneError("cells_per_side", given, f"must be one number, or one for each of {d} axes")
+        if math.prod(sides) > MOST_BOXES:
+            raise SceneError("cells_per_side", given, f"must be of at most {MOST_BOXES} cells")
         return sides
     lower, upper = accessible(scene)
     lengths = tuple(float(length) for length in upper - lower)

@@ -10,7 +10,6 @@ from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
 MOST_PARTICLES = 2**32 - 1
-MOST_KINDS = 2**16
 _EVENT = 'needs the "event" engine; this one has none'
 _EITHER = 'needs the "event" or the "step" engine; this one has none'
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal
 
+from gaspart.errors import SceneError
 from gaspart.scene.validation import choice, count_of, number
-from gaspart.state.boxes import check_boxes_per_side
+from gaspart.state.boxes import MOST_BOXES
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.dynamics import DsmcDynamics
@@ -40,7 +42,7 @@ class DSMC:
             step = number("time_step", self.time_step, "must be positive", above=0.0)
             object.__setattr__(self, "time_step", step)
         if self.cells_per_side is not None:
-            check_boxes_per_side(self.cells_per_side)
+            check_cells(self.cells_per_side)
         choice("model", self.model, MODELS)
         count_of("threads", self.threads, least=1)
 
@@ -49,3 +51,12 @@ class DSMC:
         from gaspart.engines.dsmc.dynamics import DsmcDynamics
 
         return DsmcDynamics(self, scene, state, seed)
+
+
+def check_cells(given: object) -> None:
+    """Raise SceneError unless this is a number of cells, or one per axis."""
+    sides = given if isinstance(given, (tuple, list)) else (given,)
+    total = math.prod(count_of("cells_per_side", n, least=1) for n in sides)
+    if total > MOST_BOXES or len(sides) > 3:
+        rule = f"must be one number, or one per axis, of at most {MOST_BOXES} cells"
+        raise SceneError("cells_per_side", given, rule)

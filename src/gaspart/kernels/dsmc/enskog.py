@@ -249,13 +249,14 @@ def relative_chance(pair, cells, kinds, largest, dense, tools, dimension):
 
 
 @inner_helper
-def try_once(particles, cell, counter, words, bound, grid, setting, dense, law):
-    """One trial in a cell. Returns whether it is a collision, and whether its chance exceeded 1."""
+def try_once(particles, counter, words, bound, grid, setting, dense, law):
+    """One trial. counter: key, step, cell and trial. Returns whether it is a collision, and whether its
+    chance exceeded 1."""
+    key, step, cell, trial = counter
     tools, d = setting.tools, len(setting.space.lengths)
     first = np.int64(grid.starts[cell])
     i = first + below(words[1], np.int64(grid.starts[cell + 1]) - first)
     one, other = kind_in(particles, i, tools), np.int64(0)
-    key, step, trial = counter
     if len(tools.radius) > 1:
         extra = words_of(key, step, cell, trial, KIND_BLOCK)
         other = below(extra[0], len(tools.radius))
@@ -299,7 +300,7 @@ def collide_dense(particles, grid, setting, dense, law):
             if not left > 0.0:
                 break
             done, beyond = try_once(
-                particles, cell, (key, step, trial), words, bound, grid, setting, dense, law
+                particles, (key, step, cell, trial), words, bound, grid, setting, dense, law
             )
             met += done
             exceeded += beyond

@@ -123,8 +123,8 @@ def collide_all(particles, grid, setting, threads, law, dense):
 
 @allocating_kernel
 def run_steps(particles, grid, setting, steps, threads, options):
-    """Make so many steps. threads: their number, or None for one; options: gravity (d,), the faces with a kind,
-    the law, and what a dense gas needs; each may be None."""
+    """Make so many steps. threads: their number, or None for one; options: gravity (d,), the faces with a
+    kind, the law, and what a dense gas needs; each may be None."""
     gravity, faces, law, dense = options
     for _ in range(steps):
         move_all(particles, grid, setting, threads, gravity, faces, law)

@@ -50,9 +50,9 @@ class Tools(NamedTuple):
     """What a step works with. margin: 1 if walls stop surfaces, 0 if they stop centres; dt: the length of a
     step; clock (1,): its number, counted from 0.
 
-    By particle: kind (N,), or (0,) if all are alike; by kind (K,): radius, mass, inertia (moment of); largest:
-    the largest radius. key (2,): words of 32 bits for the random numbers of collisions; wall_key (2,): of 64
-    bits, for those of thermal faces.
+    By particle: kind (N,), or (0,) if all are alike; by kind (K,): radius, mass, inertia (moment of);
+    largest: the largest radius. key (2,): words of 32 bits for the random numbers of collisions; wall_key
+    (2,): of 64 bits, for those of thermal faces.
 
     Of each thread, room for two particles as the event-driven engine's physics takes them: flights
     (threads, 2), see `kernels.model.flight_dtype`; inverse_mass, inverse_inertia (threads, 2); pair_spins
