@@ -92,7 +92,7 @@ def collide_pair(particles, pair, g, square, counter, setting, law):
         give_back(particles, pair[1], 1, setting, law)
 
 
-@inner_kernel
+@inner_helper
 def collide_cell(particles, cell, slots, volume, setting, law):
     """Make the collisions of one step in a cell, whose particles are in the slots from slots[0] to
     slots[1]."""
