@@ -57,6 +57,7 @@ class Simulation:
         if not isinstance(engine, Engine):
             raise SceneError("engine", engine, "must be an engine: EventDriven() or TimeStepped(time_step)")
         self.scene, self.engine, self.seed = scene, engine, seed
+        self._asked = engine
         self._log: EventLog | None = None
         self._advanced = False
         self._set_up()
@@ -67,6 +68,7 @@ class Simulation:
         return f"<Simulation of {self.scene.count} {kind}, {self.engine.name} engine: {reached}>"
 
     def _set_up(self) -> None:
+        self.engine = self._asked.resolved(self.scene)
         self._initial = initial_state(self.scene, self.seed)
         self._energy = self._initial.energy
         self._moving = self._initial.kinetic_energy + self._initial.vibrational_energy

@@ -60,3 +60,21 @@ def as_option(error: SceneError, engine: str) -> str:
     option = {"name": "--engine", "rewind": "--no-rewind"}.get(name, f"--{name.replace('_', '-')}")
     rule = f"has no meaning with --engine {engine}" if "unknown key" in error.rule else error.rule
     return f"{option}: {'is required' if error.value is None else f'{shown(error.value)}: {rule}'}"
+
+
+def stated(settings: dict) -> list[str]:
+    """The options for the settings of an engine that differ from their defaults, or have none."""
+    options: list[str] = []
+    for name, kind in engine_settings().items():
+        value, option = settings.get(name), name.replace("_", "-")
+        if isinstance(value, bool):
+            if value != kind["default"]:
+                options.append(f"--no-{option}" if kind["default"] else f"--{option}")
+        elif value is not None:
+            options += [f"--{option}", value if isinstance(value, str) else joined(value)]
+    return options
+
+
+def joined(numbers: float | tuple[int, ...] | list[int]) -> str:
+    """Numbers as an option takes them."""
+    return ",".join(map(repr, numbers)) if isinstance(numbers, tuple | list) else repr(numbers)

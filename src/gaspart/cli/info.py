@@ -49,6 +49,8 @@ def _info(given: argparse.Namespace) -> None:
     print_line(f"{found}: {stored['title']}, {frames} of {recipe.frames} frames, {state}")
     print_line(f"packing fraction {scene.packing_fraction:.6g}, number density {scene.number_density:.6g}")
     print_line("\n".join(certificate(found)))
+    for key, value in recipe.engine.predictions(scene).items():
+        print_line(f"predicted {key.replace('_', ' ')}: {100.0 * value:+.2g} % (by its cells and steps)")
     print_line(f"checksums: the header and {'all frames' if frames else 'no frames yet'} are undamaged")
     print_line(f"written by {', '.join(versions)}; revision {stored.get('git_revision', 'none')}")
     print_line("reproduced, to the same bits, by")
@@ -59,25 +61,13 @@ def _info(given: argparse.Namespace) -> None:
 
 def _run_options(path: Path, recipe: Recipe, stored: dict) -> list[str]:
     """The options of `gaspart run` for a recipe."""
+    from gaspart.cli.engine_options import joined, stated
     from gaspart.engines import engine_to_dict
 
     settings = engine_to_dict(recipe.engine)
-    options = ["-o", str(path), "--engine", settings["name"], "--seed", _joined(recipe.seed)]
+    options = ["-o", str(path), "--engine", settings["name"], "--seed", joined(recipe.seed)]
     options += ["--duration", repr(recipe.duration), "--sample-interval", repr(recipe.sample_interval)]
-    if "time_step" in settings:
-        options += ["--time-step", repr(settings["time_step"])]
-    if "boxes_per_side" in settings:
-        options += ["--boxes-per-side", _joined(settings["boxes_per_side"])]
-    for key in ("precision", "search"):
-        if key in settings:
-            options += [f"--{key}", settings[key]]
-    for key in ("passes", "skin", "threads"):
-        if key in settings:
-            options += [f"--{key}", repr(settings[key])]
-    if settings.get("near_boxes"):
-        options.append("--near-boxes")
-    if settings.get("rewind") is False:
-        options.append("--no-rewind")
+    options += stated(settings)
     if recipe.displacements:
         options.append("--displacements")
     if recipe.follow is not None:
@@ -86,7 +76,3 @@ def _run_options(path: Path, recipe: Recipe, stored: dict) -> list[str]:
         asked = recipe.correlations
         options += ["--correlations", f"{asked.interval!r},{asked.lags},{asked.start!r}"]
     return options
-
-
-def _joined(numbers: int | tuple[int, ...]) -> str:
-    return ",".join(map(str, numbers)) if isinstance(numbers, tuple) else str(numbers)

@@ -10,11 +10,10 @@ from gaspart.engines.engine import (
     engine_to_dict,
     register,
 )
-from gaspart.engines.event.event_driven import EventDriven
-from gaspart.engines.step.time_stepped import TimeStepped
+from gaspart.engines.event.settings import EventDriven
+from gaspart.engines.step.settings import TimeStepped
 
-# isort: split
-from gaspart.engines.dsmc.dsmc import DSMC
+from gaspart.engines.dsmc.settings import DSMC  # isort: skip
 
 __all__ = [
     "DSMC",

@@ -96,9 +96,14 @@ class Engine:
         """The time of which all times that it reaches are multiples; None if it stops at any time."""
         return None
 
-    def resolved(self, scene: Scene) -> Engine:
-        """The same with the quantum that the scene decides, if it was left to it. Raises SceneError."""
+    def resolved(self, scene: Scene, interval: float | None = None) -> Engine:
+        """The same with what was left to the scene. interval: a time of which its quantum is to be a whole part,
+        if that was left. Raises SceneError."""
         return self
+
+    def predictions(self, scene: Scene) -> dict[str, float]:
+        """Errors that are known beforehand, by name."""
+        return {}
 
     def check_features(self, scene: Scene) -> None:
         """Raise SceneError for features of a scene that this engine does not model, with those that do."""

@@ -70,7 +70,8 @@ class Recipe:
         if self.follow is not None:
             if count_of("follow", self.follow, least=1) > self.scene.count:
                 raise SceneError("follow", self.follow, f"there are {self.scene.count} particles")
-        object.__setattr__(self, "engine", self.engine.resolved(self.scene))
+        finest = self.correlations.interval if self.correlations else self.sample_interval
+        object.__setattr__(self, "engine", self.engine.resolved(self.scene, finest))
         if self.engine.quantum:
             multiple("sample_interval", self.sample_interval, "time_step", self.engine.quantum)
         if self.frames > amber.MOST_FRAMES:
@@ -134,6 +135,7 @@ class Recipe:
             "scene": dump_yaml(self.scene.to_dict()),
             "engine": json.dumps(engine_to_dict(self.engine)),
             "seed": json.dumps(seed),
+            **{f"predicted_{key}": value for key, value in self.engine.predictions(self.scene).items()},
             "duration": self.duration,
             "sample_interval": self.sample_interval,
             "displacements": np.int32(self.displacements),

@@ -1,5 +1,1 @@
-"""The DSMC engine: collision partners are sampled among the particles of a cell, not searched."""
-
-from gaspart.engines.dsmc.settings import DSMC
-
-__all__ = ["DSMC"]
+"""The DSMC engine: collision partners are sampled among the particles of a cell (Bird 1994)."""

@@ -11,7 +11,7 @@ import numpy as np
 from gaspart.engines.dsmc.rates import Rates, accessible
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
-from gaspart.state.boxes import MOST_BOXES, cube_side
+from gaspart.state.boxes import cube_side
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC
@@ -38,8 +38,6 @@ def cells_for(engine: DSMC, scene: Scene, found: Rates) -> tuple[int, ...]:
         sides = tuple(given) if isinstance(given, (tuple, list)) else (given,) * d
         if len(sides) != d:
             raise SceneError("cells_per_side", given, f"must be one number, or one for each of {d} axes")
-        if math.prod(sides) > MOST_BOXES:
-            raise SceneError("cells_per_side", given, f"must be of at most {MOST_BOXES} cells")
         return sides
     lower, upper = accessible(scene)
     lengths = tuple(float(length) for length in upper - lower)

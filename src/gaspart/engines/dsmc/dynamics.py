@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.dsmc.defaults import cells_for, predicted_error, step_for, warn_if_coarse
+from gaspart.engines.dsmc.defaults import cells_for, step_for, warn_if_coarse
 from gaspart.engines.dsmc.limits import check_scene
 from gaspart.engines.dsmc.rates import rates
 from gaspart.engines.dsmc.thermostat import kicks
@@ -27,8 +27,7 @@ _MOST_STEPS = 2.0**53  # above, float64 does not distinguish their numbers
 class DsmcDynamics:
     """A scene under way; its time is a whole number of steps.
 
-    cells_per_side (d,), time_step, predicted_error: what was chosen, and by how much it makes the viscosity
-    too high.
+    cells_per_side (d,), time_step: what was chosen.
     """
 
     def __init__(self, engine: DSMC, scene: Scene, state: State, seed: int | tuple[int, ...]) -> None:
@@ -37,11 +36,11 @@ class DsmcDynamics:
         from gaspart.kernels.model import Space
         from gaspart.kernels.physics import running_sum
 
+        engine.check_features(scene)
         check_scene(scene, state)
-        found = rates(scene, state, engine.model == "enskog")
+        found = rates(scene, engine.model == "enskog")
         self.cells_per_side = cells_for(engine, scene, found)
         self.time_step = step_for(engine, scene, found)
-        self.predicted_error = predicted_error(self.cells_per_side, self.time_step, scene, found)
         warn_if_coarse(engine, self.cells_per_side, self.time_step, scene, found)
         self._engine, self._scene, self._reference = engine, scene, state
         self._arrays, self._loop, self._layout, self._sums = arrays, loop, model, running_sum
@@ -50,7 +49,7 @@ class DsmcDynamics:
         self._tools = arrays.tools_for(engine, scene, state, self.time_step, seed)
         space = Space(scene.container.lengths, scene.container.periodic, self._tools.margin)
         self._setting = model.Setting(space, self._tools, 0)
-        self._gravity = scene.gravity if scene.gravity is not None and any(scene.gravity) else None
+        self._gravity = scene.gravity
         self._faces, self._law = arrays.faces_for(scene), arrays.law_for(scene, state)
         self._dense = None
         if engine.model == "enskog":

@@ -12,7 +12,7 @@ import numpy as np
 
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.scene import Scene
-from gaspart.state.state import State
+from gaspart.scene.species import Body, Species
 
 SLOPE, BEND = {2: 0.5625, 3: 1.5}, {2: 0.0, 3: 0.5}
 """Coefficients of the contact value, see `contact_values`, by dimension."""
@@ -53,20 +53,16 @@ def contact_values(number_densities: np.ndarray, radii: np.ndarray, dimension: i
     return 1.0 / free + SLOPE[dimension] * ratio / free**2 + BEND[dimension] * ratio**2 / free**3
 
 
-def rates(scene: Scene, state: State, dense: bool) -> Rates:
-    """Those of a state; dense: with the contact values of a dense gas."""
-    d = state.dimension
-    squares, radii, numbers = [], [], []
-    heat = max((getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()), default=0.0)
-    for kind in np.unique(state.species):
-        of = state.species == kind
-        thermal = float((state.velocities[of] ** 2).mean())
-        squares.append(max(thermal, heat / float(state.masses[of].min())))
-        radii.append(float(state.radii[of].mean()))
-        numbers.append(int(of.sum()))
-    square, radius, number = np.array(squares), np.array(radii), np.array(numbers, dtype=float)
-    if not len(number):
+def rates(scene: Scene, dense: bool) -> Rates:
+    """Those of a scene at its start, or at its hottest face; dense: with the contact values of a dense gas."""
+    d = scene.dimension
+    kinds = [kind for kind in scene.kinds if getattr(kind, "count", 1) and not kind.fixed]
+    if not kinds:
         return Rates(0.0, 0.0)
+    heat = max((getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()), default=0.0)
+    square = np.array([max(_square(kind, d), heat / kind.mass) for kind in kinds])
+    radius = np.array([kind.radius for kind in kinds])
+    number = np.array([float(getattr(kind, "count", 1)) for kind in kinds])
     lower, upper = accessible(scene)
     density = number / float((upper - lower).prod())
     sigma = radius[:, None] + radius
@@ -77,3 +73,12 @@ def rates(scene: Scene, state: State, dense: bool) -> Rates:
     contact = contact_values(density, radius, d) if dense else 1.0
     frequency = float((np.maximum(pairs, 0.0) * section * relative * contact).sum() / number.sum())
     return Rates(frequency, float((number * np.sqrt(mean * square)).sum() / number.sum()))
+
+
+def _square(kind: Species | Body, dimension: int) -> float:
+    """The mean square of a velocity component at the start."""
+    if isinstance(kind, Body):
+        return sum(v * v for v in kind.velocity) / dimension
+    return (
+        kind.temperature / kind.mass if kind.temperature is not None else (kind.speed or 0.0) ** 2 / dimension
+    )

@@ -1,14 +1,13 @@
-"""The settings of the DSMC engine (Bird 1994)."""
+"""The DSMC engine (Bird 1994)."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, ClassVar
 
-from gaspart.errors import SceneError
-from gaspart.scene.validation import choice, count_of, number
-from gaspart.state.boxes import MOST_BOXES
+from gaspart.engines.engine import Engine, register
+from gaspart.scene.keys import PER_SIDE, POSITIVE, choice, count, declared
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.dynamics import DsmcDynamics
@@ -18,45 +17,89 @@ if TYPE_CHECKING:
 MODELS = ("boltzmann", "enskog")
 
 
+@register
 @dataclass(frozen=True)
-class DSMC:
+class DSMC(Engine):
     """Small steps, in which particles first fly and then collide with partners drawn in their cell.
 
-    time_step: in the scene's time unit; cells_per_side: a number of cells or one per axis. By default the
-    engine chooses both from the mean free time and path of the initial state. model: "boltzmann", a dilute
-    gas; or "enskog", a dense one, in which partners are a diameter apart and meet the more often the denser
-    the gas. threads: how many share the work.
+    time_step: in the scene's time unit; cells_per_side: a number of cells or one per axis. By default both
+    follow from the mean free time and path of the scene. model: "boltzmann", a dilute gas; or "enskog", a
+    dense one, in which partners are a diameter apart and meet the more often the denser the gas. threads: how
+    many share the work.
 
     The result is the same, bit for bit, for any number of threads. Errors: docs/dsmc.md.
     """
 
-    time_step: float | None = None
-    cells_per_side: int | tuple[int, ...] | None = None
-    model: str = "boltzmann"
-    threads: int = 1
+    time_step: float | None = field(
+        default=None,
+        metadata=declared(POSITIVE, "duration of a step; by default a fifth of a mean free time, at most"),
+    )
+    cells_per_side: int | tuple[int, ...] | None = field(
+        default=None,
+        metadata=declared(
+            PER_SIDE,
+            "number of collision cells, or one for each axis; by default a third of a mean free path wide",
+        ),
+    )
+    model: str = field(
+        default="boltzmann",
+        metadata=declared(choice(*MODELS), "`boltzmann`, a dilute gas, or `enskog`, a dense one"),
+    )
+    threads: int = field(
+        default=1, metadata=declared(count(least=1), "number of threads that share a run's work")
+    )
 
-    name: ClassVar[Literal["dsmc"]] = "dsmc"
+    name: ClassVar[str] = "dsmc"
+    title: ClassVar[str] = "DSMC"
+    same_bits: ClassVar[tuple[str, ...]] = ("threads",)
+    models: ClassVar[frozenset[str]] = frozenset(
+        (
+            "gravity",
+            "restitution",
+            "roughness",
+            "viscoelasticity",
+            "thermostat",
+            "centres_to_walls",
+            "thermal",
+        )
+    )
+    counters: ClassVar[tuple[str, ...]] = ("steps",)
 
-    def __post_init__(self) -> None:
-        if self.time_step is not None:
-            step = number("time_step", self.time_step, "must be positive", above=0.0)
-            object.__setattr__(self, "time_step", step)
-        if self.cells_per_side is not None:
-            check_cells(self.cells_per_side)
-        choice("model", self.model, MODELS)
-        count_of("threads", self.threads, least=1)
+    @property
+    def quantum(self) -> float | None:
+        """A step, once it is known."""
+        return self.time_step
+
+    def resolved(self, scene: Scene, interval: float | None = None) -> DSMC:
+        """With the cells and the step for a scene, of which an interval has a whole number."""
+        from gaspart.engines.dsmc.defaults import cells_for, step_for
+        from gaspart.engines.dsmc.rates import rates
+
+        found = rates(scene, self.model == "enskog")
+        step = step_for(self, scene, found)
+        if self.time_step is None and interval is not None:
+            step = interval / math.ceil(interval / step * (1.0 - 1e-9))
+        return replace(self, time_step=step, cells_per_side=cells_for(self, scene, found))
+
+    def predictions(self, scene: Scene) -> dict[str, float]:
+        """By how much its cells and steps make the shear viscosity too high, relatively."""
+        from gaspart.engines.dsmc.defaults import cells_for, predicted_error, step_for
+        from gaspart.engines.dsmc.rates import rates
+
+        found = rates(scene, self.model == "enskog")
+        cells, step = cells_for(self, scene, found), step_for(self, scene, found)
+        return {"viscosity_error": predicted_error(cells, step, scene, found)}
+
+    def variant(self, scene: Scene) -> str:
+        """The model, and whether threads share the work."""
+        return self.model + ("-threads" if self.threads > 1 else "")
+
+    def for_few(self, scene: Scene) -> DSMC:
+        """With one cell, and the step for the full scene."""
+        return replace(self.resolved(scene), cells_per_side=1)
 
     def start(self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0) -> DsmcDynamics:
         """Set the engine up for a scene in a given state; `seed` is that of collisions and thermal walls."""
         from gaspart.engines.dsmc.dynamics import DsmcDynamics
 
         return DsmcDynamics(self, scene, state, seed)
-
-
-def check_cells(given: object) -> None:
-    """Raise SceneError unless this is a number of cells, or one per axis."""
-    sides = given if isinstance(given, (tuple, list)) else (given,)
-    total = math.prod(count_of("cells_per_side", n, least=1) for n in sides)
-    if total > MOST_BOXES or len(sides) > 3:
-        rule = f"must be one number, or one per axis, of at most {MOST_BOXES} cells"
-        raise SceneError("cells_per_side", given, rule)

@@ -22,7 +22,7 @@ from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
 if TYPE_CHECKING:
-    from gaspart.engines.step.time_stepped import TimeStepped
+    from gaspart.engines.step.settings import TimeStepped
 
 
 def empty_particles(engine: TimeStepped, scene: Scene, state: State, ordinary: int) -> StepParticles:

@@ -22,7 +22,7 @@ from gaspart.state.state import State
 from gaspart.state.tally import Tally
 
 if TYPE_CHECKING:
-    from gaspart.engines.step.time_stepped import TimeStepped
+    from gaspart.engines.step.settings import TimeStepped
 
 _MOST_STEPS = 2.0**53  # above, float64 does not distinguish their numbers
 

@@ -14,7 +14,7 @@ from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
 if TYPE_CHECKING:
-    from gaspart.engines.step.time_stepped import TimeStepped
+    from gaspart.engines.step.settings import TimeStepped
 
 _OVERSIZED = 16  # at most so many particles are tested against all others
 _LARGER = 2.0  # radii of the next smaller particle: larger ones are among them

@@ -16,7 +16,7 @@ from gaspart.state.boxes import cube_side, make_boxes
 from gaspart.state.state import State
 
 if TYPE_CHECKING:
-    from gaspart.engines.step.time_stepped import TimeStepped
+    from gaspart.engines.step.settings import TimeStepped
 
 _CELLS_PER_PARTICLE = 6.0
 _REBUILD, _TEST, _PAIR = 25.0, 2.0, 6.0  # ns per particle, candidate and pair listed: their ratios matter
