@@ -97,8 +97,8 @@ class Engine:
         return None
 
     def resolved(self, scene: Scene, interval: float | None = None) -> Engine:
-        """The same with what was left to the scene. interval: a time of which its quantum is to be a whole part,
-        if that was left. Raises SceneError."""
+        """The same with what was left to the scene, so that `interval`, if given, is a multiple of its quantum.
+        Raises SceneError."""
         return self
 
     def predictions(self, scene: Scene) -> dict[str, float]:

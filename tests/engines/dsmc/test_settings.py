@@ -10,7 +10,6 @@ import gaspart as gp
 from gaspart import theory
 from gaspart.engines.dsmc.defaults import cells_for, predicted_error
 from gaspart.engines.dsmc.rates import Rates, rates
-from gaspart.state.initial import initial_state
 
 BOX = gp.Container((10.0, 10.0, 10.0))
 FEW = gp.Species(20, 0.1, temperature=1.0)
@@ -19,7 +18,7 @@ FEW = gp.Species(20, 0.1, temperature=1.0)
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_rates_are_those_of_theory(dimension):
     scene = gas(dimension, 20000, 0.01)
-    found = rates(scene, initial_state(scene, 1), dense=True)
+    found = rates(scene, dense=True)
     assert found.path == pytest.approx(float(theory.mean_free_path(0.01, dimension)), rel=0.02)
     assert found.speed == pytest.approx(float(theory.mean_speed(dimension)), rel=0.02)
 

@@ -38,7 +38,7 @@ class DSMC(Engine):
         default=None,
         metadata=declared(
             PER_SIDE,
-            "number of collision cells, or one for each axis; by default a third of a mean free path wide",
+            "number of cells, or one for each axis; by default a third of a mean free path wide",
         ),
     )
     model: str = field(
@@ -53,16 +53,8 @@ class DSMC(Engine):
     title: ClassVar[str] = "DSMC"
     same_bits: ClassVar[tuple[str, ...]] = ("threads",)
     models: ClassVar[frozenset[str]] = frozenset(
-        (
-            "gravity",
-            "restitution",
-            "roughness",
-            "viscoelasticity",
-            "thermostat",
-            "centres_to_walls",
-            "thermal",
-        )
-    )
+        ("gravity", "restitution", "roughness", "viscoelasticity", "thermostat")
+    ) | {"centres_to_walls", "thermal"}
     counters: ClassVar[tuple[str, ...]] = ("steps",)
 
     @property
