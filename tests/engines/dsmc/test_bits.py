@@ -33,7 +33,7 @@ def scenes(draw, most=60):
     if dimension == 3:
         return gp.Scene(gp.Container(lengths, boundary), species)
     boundary[1] = "wall"
-    law = gp.Restitution(draw(st.sampled_from([1.0, 0.8])), draw(st.sampled_from([-1.0, 0.5, 1.0])))
+    law = gp.Restitution(draw(st.sampled_from([1.0, 0.8])), draw(st.sampled_from([-0.5, 0.5, 1.0])))
     faces = {"y_low": gp.Thermal(draw(st.floats(0.2, 5.0)), draw(st.sampled_from(["all", "normal"])))}
     container = gp.Container(lengths, boundary)
     return gp.Scene(container, species, faces=faces, gravity=(0.0, -0.3), restitution=law)
