@@ -31,6 +31,7 @@ VALID = {
     gp.Scene: {"container": gp.Container((8.0, 9.0)), "species": [gp.Species(3, 0.5)]},
     gp.EventDriven: {"search": "boxes"},
     gp.TimeStepped: {"time_step": 0.01},
+    gp.DSMC: {"cells_per_side": 4},
     box_of_walls: {"lower": (1.0, 1.0), "upper": (2.0, 2.0)},
 }
 PARTS = [kind(**values) for kind, values in VALID.items()]
