@@ -20,6 +20,8 @@ WIDEST = 1.0 / 3.0
 """The widest cell that is recommended, in mean free paths."""
 LONGEST = 0.2
 """The longest step that is recommended, in mean free times."""
+CROSSED = 0.5
+"""Of the time that a particle takes to cross the container: the longest step in a gas without collisions."""
 FEWEST = {"boltzmann": 8.0, "enskog": 64.0}
 """Particles that must be in a cell, even if it is wider then. Pairs that have met in a dense gas part, and
 with few others in a cell those that approach become rare: with 8 in each a gas at a packing fraction of 0.4
@@ -53,7 +55,8 @@ def step_for(engine: DSMC, scene: Scene, found: Rates) -> float:
     if not found.speed > 0.0:
         raise SceneError("time_step", None, "must be given for particles that start at rest")
     crossing = min(scene.container.lengths) / found.speed
-    longest = LONGEST * min(crossing, 1.0 / found.frequency if found.frequency > 0.0 else math.inf)
+    free = 1.0 / found.frequency if found.frequency > 0.0 else math.inf
+    longest = min(LONGEST * free, CROSSED * crossing)
     fraction, exponent = math.frexp(longest)
     return math.ldexp(round(fraction * _DIGITS) / _DIGITS, exponent)
 
