@@ -97,7 +97,7 @@ class Engine:
         return None
 
     def resolved(self, scene: Scene, interval: float | None = None) -> Engine:
-        """The same with what was left to the scene, so that `interval`, if given, is a multiple of its quantum.
+        """The same with what was left to the scene, so that `interval`, if any, is a multiple of its quantum.
         Raises SceneError."""
         return self
 
@@ -109,14 +109,17 @@ class Engine:
         """Raise SceneError for features of a scene that this engine does not model, with those that do."""
         present = features(scene)
         missing = [(name, "none") for name in FEATURES if name in present - self.models]
-        together = [(name, other) for name, other in self.excludes if {name, other} <= present]
+        together = [pair for pair in self.excludes if set(pair) <= present]
         missing += [(name, f"none together with {FEATURES[other].meaning}") for name, other in together]
         if missing:
             name, what = missing[0]
-            others = (engine for engine in ENGINES.values() if name in engine.models and not engine.excludes)
-            able = " or ".join(f'"{engine.name}"' for engine in others if engine.name != self.name)
-            key, value = FEATURES[name].key, FEATURES[name].value(scene)
-            raise SceneError(key, value, f"needs the {able} engine; this one has {what}")
+            others = (engine for engine in ENGINES.values() if name in engine.models)
+            able = [
+                f'"{engine.name}"'
+                for engine in others
+                if not any(set(pair) <= present for pair in engine.excludes) and engine.name != self.name
+            ]
+            raise FEATURES[name].refuse(scene, f"needs the {' or '.join(able)} engine; this one has {what}")
 
     def variant(self, scene: Scene) -> str:
         """The name of its compiled kernels for a scene, beside the scene's features."""

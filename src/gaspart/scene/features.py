@@ -16,11 +16,19 @@ if TYPE_CHECKING:
 
 
 class Feature(NamedTuple):
-    """A feature: the key of a scene that brings it, and value(scene), None where it is absent."""
+    """A feature: the key of a scene that brings it, and value(scene), None where it is absent. A kind of face
+    has a `kind`."""
 
     meaning: str
     key: str
     value: Callable[[Scene], Any]
+    kind: str | None = None
+
+    def refuse(self, scene: Scene, rule: str) -> SceneError:
+        """An error that names the key, and the face, of a scene that has this feature."""
+        faces = (name for name, face in scene.faces.items() if face.kind == self.kind)
+        key = f"faces.{next(faces)}" if self.kind else self.key
+        return SceneError(key, self.value(scene), rule)
 
 
 def _face(kind: str) -> Feature:
@@ -29,7 +37,7 @@ def _face(kind: str) -> Feature:
     def value(scene: Scene) -> str | None:
         return kind if any(face.kind == kind for face in scene.faces.values()) else None
 
-    return Feature(f"{kind} faces of the container", "faces", value)
+    return Feature(f"{kind} faces of the container", "faces", value, kind)
 
 
 def _law(key: str, meaning: str, value: Callable[[Any], Any]) -> Feature:
@@ -62,17 +70,17 @@ FEATURES: dict[str, Feature] = {
         "fixed",
         lambda scene: True if any(kind.fixed and getattr(kind, "count", 1) for kind in scene.kinds) else None,
     ),
-    "vibrations": Feature(
-        "particles that store energy in a vibration",
-        "vibrates",
-        lambda scene: scene.vibrates or None,
-    ),
     "centres_to_walls": Feature(
         "walls that stop the centres of particles",
         "centres_to_walls",
         lambda scene: scene.centres_to_walls or None,
     ),
     **{kind: _face(kind) for kind in ("thermal", "well", "sticky", "vibrating", "piston")},
+    "vibrations": Feature(
+        "particles that store energy in a vibration",
+        "vibrates",
+        lambda scene: scene.vibrates or None,
+    ),
 }
 """Name -> feature, in the order in which they are refused."""
 
@@ -104,6 +112,4 @@ def check_features(scene: Scene) -> None:
     present = features(scene)
     for (name, other), why in EXCLUDED.items():
         if name in present and other in present:
-            feature = FEATURES[name]
-            rule = f"excludes {FEATURES[other].meaning}: {why}"
-            raise SceneError(feature.key, feature.value(scene), rule)
+            raise FEATURES[name].refuse(scene, f"excludes {FEATURES[other].meaning}: {why}")

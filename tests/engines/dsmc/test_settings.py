@@ -51,7 +51,9 @@ def test_coarse_settings_are_warned_of_with_those_that_would_do():
     scene = gas(3, 20000, 0.001)
     with pytest.warns(UserWarning, match=r"time_step = 100 is .* mean free times .* a step of .* would do"):
         gp.Simulation(scene, gp.DSMC(time_step=100.0))
-    with pytest.warns(UserWarning, match=r"cells_per_side = 1 gives cells of .* mean free paths .* would do"):
+    with pytest.warns(
+        UserWarning, match=r"cells_per_side = \(1, 1, 1\) gives .* mean free paths .* would do"
+    ):
         gp.Simulation(scene, gp.DSMC(cells_per_side=1))
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -54,7 +54,7 @@ def contact_values(number_densities: np.ndarray, radii: np.ndarray, dimension: i
 
 
 def rates(scene: Scene, dense: bool) -> Rates:
-    """Those of a scene at its start, or as hot as its faces; dense: with the contact values of a dense gas."""
+    """Those of a scene at its start, or as hot as its faces; dense: with contact values of a dense gas."""
     d = scene.dimension
     kinds = [kind for kind in scene.kinds if getattr(kind, "count", 1) and not kind.fixed]
     if not kinds:
