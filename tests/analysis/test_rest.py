@@ -80,15 +80,12 @@ def test_profiles_of_a_pile_have_no_warnings_and_no_rounding(at_rest, of):
         assert float(found.estimate.sum()) * 20.0 == pytest.approx(100.0)
 
 
-def test_states_without_a_temperature_are_refused():
+def test_runs_without_a_collision_are_refused():
     container = gp.Container((9.0, 9.0), "periodic")
-    for species, rule in (
-        (gp.Species(1, 0.5, speed=1.0), "too few moving particles"),
-        (gp.Species(20, 0.5), "Z of particles at rest"),
-    ):
+    for species in (gp.Species(1, 0.5, speed=1.0), gp.Species(20, 0.5)):
         simulation = gp.Simulation(gp.Scene(container, [species]), gp.EventDriven(), seed=1)
         simulation.advance(duration=3.0)
-        with pytest.raises(gp.SceneError, match=rule):
+        with pytest.raises(gp.SceneError, match="none happened in the measured part"):
             A.compressibility_factor(simulation)
     fixed = gp.Simulation(gp.Scene(container, [gp.Species(9, 0.5, fixed=True)]), gp.EventDriven(), seed=1)
     fixed.advance(duration=3.0)

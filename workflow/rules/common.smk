@@ -21,7 +21,7 @@ if " " in sys.executable:
 
 from gaspart.reproduction.claims.captions import filled
 from gaspart.reproduction.claims.table import summary
-from gaspart.reproduction.config import check, read_numbers
+from gaspart.reproduction.config import check, explained, read_numbers
 from gaspart.reproduction.families.registry import families, titles
 from gaspart.reproduction.points import grid
 from gaspart.reproduction.points.modules import digest, kernel_digest
@@ -44,13 +44,8 @@ if workflow.is_main_process:
                 problem = f"this user may not write to it, where the workflow keeps {kept}"
                 raise SceneError("folder", os.path.abspath(folder), problem)
     except SceneError as error:
-        if error.rule == "is required" and not os.path.exists("config/config.yaml"):
-            problem = (
-                "has no config/config.yaml, over which others are laid: run Snakemake in the project's folder"
-            )
-            error = SceneError("folder", os.getcwd(), problem)
         # A user's mistake: one line and exit code 2, instead of a WorkflowError with its place in this file.
-        print(f"gaspart: {error}", file=sys.stderr)
+        print(f"gaspart: {explained(error)}", file=sys.stderr)
         sys.exit(2)
 else:
     read_numbers(config, files)
@@ -154,7 +149,9 @@ def sources(stage, family=None):
     job = f"gaspart.reproduction.jobs.{stage}"
     script = stage if (SCRIPTS / f"{stage}.py").exists() else "compute"
     named = (
-        [f"gaspart.reproduction.families.{family}.{PARTS[stage]}"] if family else [job] if script == "compute" else []
+        [f"gaspart.reproduction.families.{family}.{PARTS[stage]}"]
+        if family
+        else [job] if script == "compute" else []
     )
     return [SCRIPTS / "_job.py", SCRIPTS / f"{script}.py", *named]
 

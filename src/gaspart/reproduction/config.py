@@ -229,3 +229,11 @@ def _origin(key: str, config: dict, contents: list[tuple[str, Any]]) -> str | No
         if repr((depth, value)) not in [repr(held(content)) for _, content in contents]:
             return "--config"
     return max(reversed(contents), key=lambda content: held(content[1])[0])[0] if contents else None
+
+
+def explained(error: SceneError) -> SceneError:
+    """An error of a config; what lacks all keys is explained where the working directory is another one."""
+    if error.rule != "is required" or Path("config/config.yaml").exists():
+        return error
+    rule = "has no config/config.yaml, over which others are laid: run Snakemake in the project's folder"
+    return SceneError("folder", str(Path.cwd()), rule)

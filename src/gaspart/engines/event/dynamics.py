@@ -291,7 +291,7 @@ class EventDynamics:
         """Go on from a checkpoint of the same scene, to the same bits whatever its search and boxes."""
         arrays = self._arrays()
         alike = str(parts.get("search")) == self._search
-        alike = alike and np.array_equal(parts["boxes_per_side"], self._grid.per_side)
+        alike = alike and np.array_equal(parts.get("boxes_per_side", ()), self._grid.per_side)
         if not alike:
             arrays.pop("centres", None)  # of other neighbour lists, or of none
         numbers = {key: np.array(getattr(self, f"_{key}")) for key in _NUMBERS}
