@@ -23,6 +23,8 @@ ENGINES = {
     "direct": gp.EventDriven(search="direct"),
     "step": gp.TimeStepped(time_step=0.03125),
     "float32": gp.TimeStepped(time_step=0.03125, precision="float32"),
+    "dsmc": gp.DSMC(time_step=0.03125, cells_per_side=2),
+    "enskog": gp.DSMC(time_step=0.03125, cells_per_side=1, model="enskog"),
 }
 every_engine = pytest.mark.parametrize("engine", ENGINES.values(), ids=ENGINES.keys())
 
@@ -39,7 +41,8 @@ def small(boundary):
 @pytest.mark.parametrize("boundary", ["periodic", "wall"])
 def test_twice_the_same_bytes(tmp_path, engine, boundary):
     paths = [
-        gp.run(small(boundary), engine, 7, 4.0, 0.5, tmp_path / name, displacements=True) for name in "ab"
+        gp.run(small(boundary), engine, 7, 4.0, 0.5, tmp_path / f"{name}.nc", displacements=True)
+        for name in "ab"
     ]
     assert paths[0].read_bytes() == paths[1].read_bytes()
 
@@ -99,7 +102,7 @@ def test_spins_and_counters_of_some_particles_cut_short_and_resumed(tmp_path, mo
 
 def cut_and_resume(tmp_path, monkeypatch, cut_after, scene, engine, **settings):
     """Checkpoints lie between frames here, and at frames; the work after the last one is lost on purpose."""
-    monkeypatch.setitem(recording._FIRST_STRETCH, "event", 20)
+    monkeypatch.setattr(gp.EventDriven, "first_stretch", 20)
     monkeypatch.setattr(recording, "_STRETCH", 1e-9)  # stretches stay short
     complete = gp.run(scene, engine, 7, 4.0, 0.5, tmp_path / "complete.nc", **settings).read_bytes()
     path, write, saved = tmp_path / "cut.nc", recording.write_checkpoint, []
