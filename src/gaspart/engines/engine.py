@@ -74,9 +74,10 @@ class Engine:
 
     name: by which files, configs and the command line know it; title: in messages and captions;
     records_events: whether its events can be recorded and counted; counters: fields of `Tally` that only
-    such an engine fills; same_bits: settings that change no bit of its results; models: names of the
-    `scene.features` that it models, and excludes: pairs of them that it does not model together;
-    first_stretch: the work, in events or steps, that a run begins with between two looks at the clock.
+    such an engine fills; same_bits: settings that change no bit of its results; keeps_apart: whether
+    particles never overlap; models: names of the `scene.features` that it models, and excludes: pairs of
+    them that it does not model together; first_stretch: the work, in events or steps, that a run begins with
+    between two looks at the clock.
     """
 
     name: ClassVar[str]
@@ -86,6 +87,7 @@ class Engine:
     models: ClassVar[frozenset[str]] = frozenset()
     excludes: ClassVar[tuple[tuple[str, str], ...]] = ()
     same_bits: ClassVar[tuple[str, ...]] = ()
+    keeps_apart: ClassVar[bool] = True
     first_stretch: ClassVar[int] = 1
 
     def __post_init__(self) -> None:

@@ -50,6 +50,8 @@ def _tolerated(frames: Frames, tolerance: float | None) -> float:
 
 def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Check:
     """The deepest overlap of two particles, as a part of their contact distance."""
+    if frames.sampled:
+        return Check("overlaps", None, "contacts are sampled, so that particles may overlap")
     deepest, where = 0.0, 0
     for n in seen:
         one = frames.at(n)
@@ -115,6 +117,8 @@ def _no_pressure(frames: Frames) -> str | None:
         return "needs equal particles in a periodic container, moved by elastic contacts alone"
     if frames.part:
         return "the file has some of the particles only"
+    if frames.sampled:
+        return "contacts are sampled: positions say nothing of it"
     eta = frames.packing_fraction
     if eta > theory.HIGHEST_PACKING_FRACTION[frames.dimension]:
         return f"packing fraction {eta:.3g} is beyond the fluid's equation of state"

@@ -22,9 +22,9 @@ class Contents:
     multiplies; radii and masses (N,) or (T, N); ids (T, N), one for each particle, and species (T, N), which
     identify them; lengths and origin (T, 3), a length of 0 for walls at an unknown distance; boundary (3,),
     a word for each axis; centred: the origin is the middle of the container; flat: two dimensions; plain:
-    nothing but elastic contacts moves the particles, as far as the file states; isolated: the
-    file states that so it is; part: there are more particles; resolution and time_resolution: by how much a
-    coordinate and a time may be off because of their type.
+    nothing but elastic contacts moves the particles, as far as the file states; isolated: the file states
+    that so it is; part: there are more particles; sampled: particles may overlap; resolution and
+    time_resolution: by how much a coordinate and a time may be off because of their type.
     """
 
     positions: np.ndarray
@@ -43,6 +43,7 @@ class Contents:
     plain: bool = True
     isolated: bool = False
     part: bool = False
+    sampled: bool = False
     resolution: float = 0.0
     time_resolution: float = 0.0
 
@@ -95,6 +96,7 @@ def complete_frames(found: Contents, given: Given, path: str) -> Frames:
         plain=found.plain and steady and alike,
         isolated=found.isolated and steady and alike,
         part=found.part,
+        sampled=found.sampled,
         resolution=found.resolution,
         masses=None if masses is None else masses[0],
         lengths_by_frame=sides if len(sides) > 1 else None,

@@ -18,7 +18,8 @@ class Frames:
     change; lengths_by_frame (T, d) and radii_by_frame (T, N) where they do; periodic (d,) whether each axis
     is; plain: whether nothing but elastic contacts moves particles of one mass in a constant container, as
     far as the file knows; resolution: by how much a position may be off, as a length; isolated: whether the
-    file states that it is plain; part: whether there are more particles than the file has.
+    file states that it is plain; part: whether there are more particles than the file has; sampled: whether
+    contacts were sampled, so that particles may overlap.
     """
 
     positions: np.ndarray
@@ -31,6 +32,7 @@ class Frames:
     resolution: float = 0.0
     isolated: bool = False
     part: bool = False
+    sampled: bool = False
     masses: np.ndarray | None = None
     lengths_by_frame: np.ndarray | None = None
     radii_by_frame: np.ndarray | None = None

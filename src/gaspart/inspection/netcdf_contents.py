@@ -237,3 +237,4 @@ def _add_scene(found: Contents, path: Path) -> None:
     found.masses = per_body(scene, "mass")[:count].astype(float)
     found.plain = found.isolated = bool(elastic and quiet and free and alike)
     found.part = recipe.stored_count < scene.count
+    found.sampled = not recipe.engine.keeps_apart

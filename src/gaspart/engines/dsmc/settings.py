@@ -52,6 +52,7 @@ class DSMC(Engine):
     name: ClassVar[str] = "dsmc"
     title: ClassVar[str] = "DSMC"
     same_bits: ClassVar[tuple[str, ...]] = ("threads",)
+    keeps_apart: ClassVar[bool] = False
     models: ClassVar[frozenset[str]] = frozenset(
         ("gravity", "restitution", "roughness", "viscoelasticity", "thermostat")
     ) | {"centres_to_walls", "thermal"}
