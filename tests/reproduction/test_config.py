@@ -117,9 +117,11 @@ def test_the_last_file_that_holds_the_key_is_named(tmp_path):
     with pytest.raises(SceneError) as refused:
         check(config, [str(default), str(own)])
     assert refused.value.file == str(own)
-    with pytest.raises(SceneError) as refused:
-        check(with_value(("seed",), -1), [str(default), str(own)])
-    assert refused.value.file == str(default)
+    for stated, named in ((-1, str(default)), (3, "--config")):  # the option holds what no file does
+        default.write_text(dump_yaml(with_value(("seed",), stated)))
+        with pytest.raises(SceneError) as refused:
+            check(with_value(("seed",), -1), [str(default), str(own)])
+        assert refused.value.file == named
 
 
 @pytest.mark.parametrize(

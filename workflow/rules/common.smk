@@ -23,7 +23,7 @@ from gaspart.reproduction.claims.captions import filled
 from gaspart.reproduction.claims.table import summary
 from gaspart.reproduction.config import check, explained, read_numbers
 from gaspart.reproduction.families.registry import families, titles
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points import grid, jobs
 from gaspart.reproduction.points.modules import digest, kernel_digest
 from gaspart.reproduction.points.points import figure_points as grid_points
 from gaspart.reproduction.points.points import points
@@ -81,7 +81,7 @@ def point_of(wildcards):
 
 
 def recipe_of(wildcards):
-    return RECIPES.get((wildcards.experiment, wildcards.point)) or grid.recipe(point_of(wildcards))
+    return RECIPES.get((wildcards.experiment, wildcards.point)) or jobs.recipe(point_of(wildcards))
 
 
 def figure_points(wildcards):

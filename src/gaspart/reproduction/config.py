@@ -11,7 +11,7 @@ from typing import Any
 
 from gaspart.errors import SceneError, unknown_word
 from gaspart.kinds import Kind
-from gaspart.reproduction.points import grid, keys
+from gaspart.reproduction.points import jobs, keys
 from gaspart.reproduction.points.overlay import laid_over
 from gaspart.reproduction.points.points import figure_points, points
 from gaspart.reproduction.schema import schema
@@ -130,9 +130,9 @@ def _experiment(config: dict, experiment: str) -> Iterator[tuple[str, dict]]:
             raise SceneError(f"{where}.grid.{key}", value, unknown_word(key, keys.POINT))
         _against(keys.POINT[key], value, f"{where}.grid.{key}")
     for point in points(config, experiment):
-        grid.check(point)
+        jobs.check(point)
         try:
-            yield point.name, grid.recipe(point)
+            yield point.name, jobs.recipe(point)
         except SceneError as error:
             located = error.file or error.key.startswith(where)
             raise error if located else error.inside(f"{where}[{point.name}]") from None

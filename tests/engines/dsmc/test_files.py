@@ -6,7 +6,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.cli import main
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points import jobs
 from gaspart.reproduction.points.points import points
 from gaspart.reproduction.points.variants import task, variant, warm
 
@@ -45,9 +45,9 @@ def test_a_config_has_it(tmp_path):
     config = {"seed": 1, "points": "results/points", "experiments": {"gas": block}, "figures": {}}
     made = points(config, "gas")
     for one, model in zip(made, ("boltzmann", "enskog"), strict=True):
-        assert grid.recipe(one)["engine"] == {"name": "dsmc", "model": model, "threads": 1}
+        assert jobs.recipe(one)["engine"] == {"name": "dsmc", "model": model, "threads": 1}
         assert variant(one) == f"dsmc-{model}-3d"
         warm(task(one))
     block["point"]["search"] = "boxes"
     with pytest.raises(gp.SceneError, match="no meaning with engine: dsmc"):
-        grid.recipe(points(config, "gas")[0])
+        jobs.recipe(points(config, "gas")[0])

@@ -9,7 +9,7 @@ import pytest
 
 from gaspart import theory
 from gaspart.errors import SceneError
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points import grid, jobs
 from gaspart.reproduction.points.points import points
 from gaspart.scene.scene import Scene
 
@@ -62,7 +62,7 @@ def test_adding_a_value_changes_neither_names_nor_seeds_nor_recipes_of_the_other
     }
     for point in before:
         assert after[point.name] == point
-        assert grid.recipe(after[point.name]) == grid.recipe(point)
+        assert jobs.recipe(after[point.name]) == jobs.recipe(point)
 
 
 def test_seeds_differ_between_replicas_points_and_config_seeds():
@@ -136,7 +136,7 @@ def test_boxes_per_body_are_never_smaller_than_a_diameter():
 
 def test_a_scan_is_timed_beside_the_same_partitions_without_a_key_of_the_engine():
     steps = {"engine": "step", "time_step": 0.01, "scan_boxes_per_side": [3, 6], "near_boxes": True}
-    recipe = grid.recipe(only(point=steps | {"without": ["near_boxes"]}, job="measure_cost"))
+    recipe = jobs.recipe(only(point=steps | {"without": ["near_boxes"]}, job="measure_cost"))
     beside = recipe["rival"]
     assert beside["scene"] == recipe["scene"]
     assert [engine["near_boxes"] for engine in recipe["engines"] + beside["engines"]] == [True] * 2 + [
@@ -147,7 +147,7 @@ def test_a_scan_is_timed_beside_the_same_partitions_without_a_key_of_the_engine(
 
 def test_a_recipe_is_plain_and_makes_the_same_scene():
     point = only(point={"replicas": 2})
-    recipe = grid.recipe(point)
+    recipe = jobs.recipe(point)
     assert Scene.from_dict(recipe["scene"]) == grid.scene(point)
     assert recipe["seeds"] == [list(point.seed(0)), list(point.seed(1))]
     assert eval(repr(recipe), {"__builtins__": {}}) == recipe  # Snakemake compares the text of parameters
@@ -176,7 +176,7 @@ def test_a_recipe_is_plain_and_makes_the_same_scene():
 def test_what_contradicts_itself_is_refused_by_its_key(arguments, key):
     with pytest.raises(SceneError) as refused:
         for point in points(config(**arguments), "gas"):
-            grid.recipe(point)
+            jobs.recipe(point)
     assert refused.value.key == key
     assert "\n" not in str(refused.value)
 

@@ -5,7 +5,7 @@ import pytest
 import gaspart as gp
 from gaspart.errors import SceneError
 from gaspart.reproduction.config import check
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points import grid, jobs
 from gaspart.reproduction.points import points as planned
 from gaspart.yaml_text import dump_yaml
 
@@ -41,7 +41,7 @@ def points(*arguments, **settings):
 
 def test_a_point_is_the_scene_of_its_file(scene_file):
     (point,) = points(scene_file, replicas=2, follow=50)
-    recipe = grid.recipe(point)
+    recipe = jobs.recipe(point)
     assert grid.scene(point) == SCENE == gp.Scene.from_dict(recipe["scene"])
     assert (recipe["duration"], recipe["sample_interval"], recipe["follow"]) == (8.0, 2.0, 50)
     assert grid.extents(point) == (70, 0.5, (20.0, 40.0))
@@ -49,12 +49,12 @@ def test_a_point_is_the_scene_of_its_file(scene_file):
 
 def test_a_point_with_lags_keeps_two_frames_of_its_run(scene_file):
     (plain,) = points(scene_file, equilibration=3)
-    assert grid.recipe(plain)["correlations"] is None
+    assert jobs.recipe(plain)["correlations"] is None
     for lags, kept in ((1, 1), (100, 2)):  # at most half the length, of 4 intervals
         (point,) = points(scene_file, equilibration=3, lags=lags)
-        recipe = grid.recipe(point)
+        recipe = jobs.recipe(point)
         assert recipe["correlations"] == {"interval": 2.0, "lags": kept, "start": 4.0}
-        assert recipe["duration"] == recipe["sample_interval"] == grid.recipe(plain)["duration"] == 12.0
+        assert recipe["duration"] == recipe["sample_interval"] == jobs.recipe(plain)["duration"] == 12.0
 
 
 def test_dotted_keys_replace_values_and_add_what_a_mapping_lacks(scene_file):
@@ -70,13 +70,13 @@ def test_dotted_keys_replace_values_and_add_what_a_mapping_lacks(scene_file):
 def test_a_changed_value_in_the_file_changes_the_recipe_and_a_comment_does_not(scene_file):
     recipes = []
     for old, new in (("container", "# a remark\ncontainer"), ("count: 50", "count: 51")):
-        recipes.append(grid.recipe(*points(scene_file)))
+        recipes.append(jobs.recipe(*points(scene_file)))
         with open(scene_file, "r+") as file:
             text = file.read()
             assert old in text
             file.seek(0)
             file.write(text.replace(old, new))
-    recipes.append(grid.recipe(*points(scene_file)))
+    recipes.append(jobs.recipe(*points(scene_file)))
     assert recipes[0] == recipes[1] != recipes[2]
 
 
@@ -126,4 +126,4 @@ def test_a_mistake_in_the_scene_file_names_that_file(tmp_path):
     with pytest.raises(
         SceneError, match=r"^\S+heavy.yaml: species\[0\].mass = 'heavy': must be a number, without a unit$"
     ):
-        grid.recipe(*points(str(path), **{"scene.species.0.mass": 1.0}))
+        jobs.recipe(*points(str(path), **{"scene.species.0.mass": 1.0}))

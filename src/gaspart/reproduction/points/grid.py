@@ -1,4 +1,4 @@
-"""Engine, schedule and recipe of a point of a grid.
+"""Engine and schedule of a point of a grid.
 
 Planning a workflow reads every point of every grid, so slow imports are made inside functions.
 """
@@ -41,21 +41,11 @@ class Schedule:
         return self.equilibration_frames * self.sample_interval
 
 
-def check(point: Point) -> None:
-    """Refuse settings that contradict each other, with SceneError; the cheap part, without a scene."""
+def check_run(point: Point) -> None:
+    """Refuse settings of an engine and a length that contradict each other, with SceneError; the cheap part,
+    without a scene."""
     settings, where = point.settings, f"experiments.{point.experiment}"
     check_scene(point)
-    if point.job == "fill":
-        if "attempts" not in settings:
-            raise SceneError(f"{where}.attempts", None, "is required with job: fill")
-        return
-    if point.job == "pack":
-        if ("attempts" in settings) == (settings.get("arrangement") == "compressed"):
-            rule = "is required with job: pack, unless the arrangement is compressed"
-            raise SceneError(f"{where}.attempts", settings.get("attempts"), rule)
-        return
-    if point.job == "count_instructions":
-        return
     engine = settings.get("engine", "event")
     kind = known_engines.ENGINES[engine]
     for key in required(kind):
@@ -64,13 +54,6 @@ def check(point: Point) -> None:
     for key in {key: None for keys in ENGINES.values() for key in keys}:
         if key in settings and key not in ENGINES[engine]:
             raise SceneError(f"{where}.{key}", settings[key], f"has no meaning with engine: {engine}")
-    if settings.get("record_events") and not (point.job == "measure_cost" and kind.records_events):
-        rule = "has a meaning with job: measure_cost and engine: event only"
-        raise SceneError(f"{where}.record_events", True, rule)
-    if "without" in settings and point.job != "measure_cost":
-        raise SceneError(f"{where}.without", settings["without"], "has a meaning with job: measure_cost only")
-    if point.job == "compare" and engine != "step":
-        raise SceneError(f"{where}.engine", engine, "must be step with job: compare")
     if "boxes_per_side" in settings and "boxes_per_body" in settings:
         raise SceneError(f"{where}.boxes_per_body", settings["boxes_per_body"], "excludes boxes_per_side")
     lengths = [key for key in LENGTHS if key in settings]
@@ -82,7 +65,7 @@ def check(point: Point) -> None:
 
 def engine(point: Point) -> Engine:
     """The point's engine. Raises SceneError."""
-    check(point)
+    check_run(point)
     name = point.settings.get("engine", "event")
     chosen = {key: point.settings[key] for key in ENGINES[name] if key in point.settings}
     count, radius, lengths = extents(point)
@@ -140,7 +123,7 @@ def schedule(point: Point) -> Schedule:
     The length is divided into ``samples`` intervals (whole time steps with the step engine); the
     equilibration, rounded up to complete intervals, precedes it.
     """
-    check(point)
+    check_run(point)
     settings, where = point.settings, f"experiments.{point.experiment}"
     unit = next(key for key in LENGTHS if key in settings)
     scale = _unit_of_time(point, unit)
@@ -158,77 +141,6 @@ def schedule(point: Point) -> Schedule:
         raise SceneError(f"{where}.equilibration", settings["equilibration"], rule)
     dropped = math.ceil(before * (1.0 - 1e-12))
     return Schedule(interval * (dropped + samples), interval, dropped, samples)
-
-
-def recipe(point: Point) -> dict:
-    """The parameters of the point's job, in plain values: all that its result depends on, and nothing
-    else."""
-    check(point)
-    made = {
-        "scene": scene(point).to_dict(),
-        "seeds": [list(point.seed(k)) for k in range(point.replicas)],
-    }
-    if point.job == "fill":
-        return {**made, "attempts": point.settings["attempts"]}
-    if point.job == "pack":
-        return {**made, "attempts": point.settings.get("attempts")}
-    if point.job == "count_instructions":
-        return made
-    from gaspart.engines import engine_to_dict
-
-    times = schedule(point)
-    follow, count = point.settings.get("follow"), extents(point)[0]
-    if follow is not None and follow > count:
-        raise SceneError(f"experiments.{point.experiment}.follow", follow, f"there are {count} particles")
-    if point.job in ("measure_cost", "compare"):
-        recording: dict = {}
-        if point.job == "measure_cost":
-            recording = {"record": point.settings.get("record_events", False), "rival": rival(point)}
-        return {
-            **made,
-            **recording,
-            "engines": _engines_to_dicts(point),
-            "equilibration": times.equilibration,
-            "stretch": times.sample_interval,
-            "repeats": times.samples,
-        }
-    if point.job == "echo":
-        return {
-            **made,
-            "engine": engine_to_dict(engine(point)),
-            "equilibration": times.equilibration,
-            "interval": times.sample_interval,
-            "samples": times.samples,
-        }
-    correlations = None
-    if "lags" in point.settings:
-        lags = min(point.settings["lags"], (times.samples + 1) // 2)
-        correlations = {"interval": times.sample_interval, "lags": lags, "start": times.equilibration}
-    return {
-        **made,
-        "engine": engine_to_dict(engine(point)),
-        "duration": times.duration,
-        "sample_interval": times.duration if correlations else times.sample_interval,
-        "displacements": point.settings.get("displacements", False),
-        "follow": follow,
-        "correlations": correlations,
-    }
-
-
-def rival(point: Point) -> dict | None:
-    """The scene and the engines that are timed in turn with a point's own, which lack its keys `without`;
-    None if it has none."""
-    if "without" not in point.settings:
-        return None
-    left = {key: value for key, value in point.settings.items() if key not in point.settings["without"]}
-    beside = replace(point, settings=left)
-    return {"scene": scene(beside).to_dict(), "engines": _engines_to_dicts(beside)}
-
-
-def _engines_to_dicts(point: Point) -> list[dict]:
-    from gaspart.engines import engine_to_dict
-
-    return [engine_to_dict(chosen) for chosen in engines(point)]
 
 
 def _unit_of_time(point: Point, unit: str) -> float:

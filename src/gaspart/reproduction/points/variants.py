@@ -9,9 +9,9 @@ from contextlib import suppress
 from dataclasses import fields, is_dataclass
 from typing import TYPE_CHECKING, Any
 
-from gaspart.engines import Engine, EventDriven, engine_from_dict, engine_to_dict
+from gaspart.engines import engine_from_dict, engine_to_dict
 from gaspart.errors import SimulationError
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points import grid, jobs
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.species import LATTICES
 
@@ -36,20 +36,13 @@ def variant(point: Point) -> str:
     """
     scene = grid.scene(point)
     parts = ["fill", "random", f"{scene.dimension}d"]
-    if point.job not in ("fill", "pack"):
-        engine = _engine(point)
+    if engines := jobs.engines_of(point):
+        engine = engines[0]  # which differ in numbers only
         parts = [engine.name, engine.variant(scene), f"{scene.dimension}d"]
     present = sorted(features(scene))
     if present:
         parts.append(hashlib.sha256(" ".join(present).encode()).hexdigest()[:8])
     return "-".join(parts)
-
-
-def _engine(point: Point) -> Engine:
-    """The engine of a point, or the first of several, which differ in numbers only."""
-    if point.job == "count_instructions":
-        return EventDriven()
-    return grid.engines(point)[0] if point.job in ("measure_cost", "compare") else grid.engine(point)
 
 
 def features(scene: Scene) -> set[str]:
@@ -97,7 +90,7 @@ def task(point: Point) -> str:
     have all of its features."""
     from gaspart.scene.scene import Scene
 
-    recipe, full = grid.recipe(point), grid.scene(point)
+    recipe, full = jobs.recipe(point), grid.scene(point)
     scene = {
         key: value[:_FEW] if isinstance(value, list) else value for key, value in recipe["scene"].items()
     }

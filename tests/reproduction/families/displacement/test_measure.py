@@ -11,7 +11,7 @@ from gaspart.analysis.correlations import Curves, between, correlate, line
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.displacement import measure as displacement
 from gaspart.reproduction.families.shared import curves
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points import grid, jobs
 
 
 @pytest.fixture
@@ -151,7 +151,7 @@ def test_runs_that_cannot_tell_are_refused(stored, change, key):
 
 def test_a_real_gas_diffuses_as_enskog_says(tmp_path):
     one = replace(point(count=108, packing_fraction=0.03, equilibration=10, replicas=3), root=str(tmp_path))
-    recipe = grid.recipe(one)
+    recipe = jobs.recipe(one)
     given = {key: recipe[key] for key in ("duration", "sample_interval", "displacements")}
     given["correlations"] = gp.Correlations(**recipe["correlations"])
     for k, path in enumerate(one.replica_paths):

@@ -7,7 +7,7 @@ import gaspart as gp
 from gaspart import theory
 from gaspart.reproduction.families.granular import measure as granular
 from gaspart.reproduction.families.granular.runs import read_run
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points import grid, jobs
 
 
 def made(tmp_path, name, scene, **settings):
@@ -15,7 +15,7 @@ def made(tmp_path, name, scene, **settings):
     scene.to_file(tmp_path / f"{name}.yaml")
     settings = {"scene": str(tmp_path / f"{name}.yaml"), "replicas": 4} | settings
     point = grid.Point(name, "single", "simulate", settings, str(tmp_path), 1)
-    recipe = grid.recipe(point)
+    recipe = jobs.recipe(point)
     (tmp_path / name / "single").mkdir(parents=True)
     for seed, path in zip(recipe["seeds"], point.replica_paths, strict=True):
         gp.run(

@@ -7,7 +7,7 @@ import xarray as xr
 import gaspart as gp
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.wall_pressure import measure as module
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points import grid, jobs
 
 
 def point(tmp_path, **settings):
@@ -16,7 +16,7 @@ def point(tmp_path, **settings):
         "temperature": 1.0, "collisions_per_body": 300, "equilibration": 20, "samples": 32,
     } | settings  # fmt: skip
     made = grid.Point("some", "single", "simulate", settings, str(tmp_path), 1)
-    recipe = grid.recipe(made)
+    recipe = jobs.recipe(made)
     gp.run(
         grid.scene(made),
         grid.engine(made),

@@ -55,14 +55,15 @@ def driven_gas(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 
 def _gas(point: grid.Point) -> dict[str, float]:
-    scene, recipe = grid.scene(point), grid.recipe(point)["scene"]
+    scene = grid.scene(point)
+    assert scene.restitution is not None and scene.thermostat is not None, "a driven granular gas"
     runs = [read_run(point, path) for path in point.replica_paths]
     row = {
         "dimension": scene.dimension,
-        "restitution": recipe["restitution"]["normal"],
+        "restitution": scene.restitution.normal,
         "packing_fraction": scene.packing_fraction,
         "count": scene.count,
-        "power": recipe["thermostat"]["power"],
+        "power": scene.thermostat.power,
     }
     names = ("temperature", "cumulant", "given", "lost")
     return row | entries({name: mean_of([getattr(run, name) for run in runs]) for name in names})
