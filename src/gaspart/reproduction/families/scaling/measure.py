@@ -134,7 +134,7 @@ def linear_scaling(points: list[grid.Point], settings: dict) -> xr.Dataset:
     (points without partition): see `listed`.
     Scalars: ``work_exponent`` of the work per step over all gases, with error; ``extrapolated_count``,
     ``extrapolated_seconds`` of one naive step there (with error), ``extrapolated_ratio``, its time over the
-    partitioned step's (relative error in ``extrapolated_ratio_error``); ``source_years``.
+    partitioned step's (with error); ``source_years``.
     """
     runs = sorted(
         (xr.load_dataset(point.path) for point in points), key=lambda run: (run.attrs["count"], run.radius)
@@ -169,7 +169,7 @@ def linear_scaling(points: list[grid.Point], settings: dict) -> xr.Dataset:
         extrapolated_seconds=carried[0],
         extrapolated_seconds_error=carried[1],
         extrapolated_ratio=ratio,
-        extrapolated_ratio_error=ratio * math.hypot(carried[1] / carried[0], step_error / step),
+        extrapolated_ratio_error=math.hypot(carried[1] / (scale * step), ratio * step_error / step),
         source_years=settings["source_years"],
     )
 
