@@ -146,7 +146,7 @@ def test_an_ignored_signal_stays_ignored(folder):
 @pytest.fixture
 def interrupted_at(monkeypatch):
     """Let a signal arrive in the middle of a run, between two bytecodes of a stretch."""
-    monkeypatch.setitem(recording._FIRST_STRETCH, "event", 20)
+    monkeypatch.setattr(gp.EventDriven, "first_stretch", 20)
     monkeypatch.setattr(recording, "_STRETCH", 1e-9)
     advance = gp.Simulation.advance
 

@@ -63,7 +63,10 @@ MISTAKES = {
     "interval does not fit": (line(*RUN, "--sample-interval", "0.3"), "must be a whole multiple of sample"),
     "seed is a fraction": (line(*RUN, "--seed", "1.5"), "--seed: '1.5' must be a whole number"),
     "seed is negative": (line(*RUN, "--seed", "-1"), "seed = -1"),
-    "unknown engine": (line(*RUN, "--engine", "md"), "--engine: 'md': must be one of ('event', 'step')"),
+    "unknown engine": (
+        line(*RUN, "--engine", "md"),
+        "--engine: 'md': must be one of ('event', 'step', 'dsmc')",
+    ),
     "step without a step": (line(*RUN, "--engine", "step"), "--time-step: is required"),
     "step of the event engine": (line(*RUN, "--time-step", "1"), "has no meaning with --engine event"),
     "unknown search": (line(*RUN, "--search", "tree"), "--search: 'tree': must be one of"),

@@ -97,7 +97,7 @@ EXCLUDED: dict[tuple[str, str], str] = {
     ("sticky", "thermostat"): "kicks need faces that are hard or thermal",
     ("vibrating", "thermostat"): "kicks need faces that are hard or thermal",
     ("restitution", "vibrations"): "energy would be lost twice",
-    ("roughness", "centres_to_walls"): "rough particles touch walls with their surfaces",
+    ("centres_to_walls", "roughness"): "rough particles touch walls with their surfaces",
 }
 """Pairs of features that no scene may have, and why."""
 

@@ -181,6 +181,7 @@ ROUGH_START_UNCERTAINTY = 0.002
 """Standard uncertainty of `rough_start_excess`, statistical: of two gases of 100 000 discs."""
 
 
+@checked
 def rough_start_excess(inertia: float, collisions: Numbers) -> Values:
     """T_tr - T_rot of perfectly rough discs whose spins are 0 at first, over the temperature of the start,
     minus exp(-3 q s / (1 + q)^2), which Maxwellian velocities would give (Huthmann and Zippelius 1997).

@@ -65,7 +65,7 @@ def _compile(function: F, part: bool = False, **options: Any) -> F:
             report_unwritable(_CACHE, OSError(0, f"there is no place for {function.__qualname__}"))
         finally:
             numba.config.CACHE_DIR = before
-    if _known:
+    if _known and not numba.config.DISABLE_JIT:
         compiled._compiler.compile = _without_interruption(compiled._compiler.compile)
     return compiled
 

@@ -13,7 +13,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from gaspart.analysis.lyapunov import lyapunov_exponent
 from gaspart.engines import Engine, EventDriven, engine_from_dict
 from gaspart.reproduction.jobs.data import PointData
 from gaspart.scene.scene import Scene
@@ -87,6 +86,8 @@ def echo(
 
 def _exponent(equilibrium: Simulation, stretch: float) -> float:
     """Of the run continued by stretches of time until `TANGENT_COLLISIONS`."""
+    from gaspart.analysis.lyapunov import lyapunov_exponent  # loads xarray, which other jobs do not need
+
     equilibrium.reset_tally()
     equilibrium.record_events = True
     count = equilibrium.scene.count

@@ -93,9 +93,10 @@ def boxes(tmp_path, monkeypatch):
     stored = {}
     for p in points:
         made = grid.scene(p)
+        pull = made.gravity[1] if made.gravity else 0.0
         start = gp.Simulation(made, gp.EventDriven(), seed=p.seed(0)).initial_state
-        energy = start.kinetic_energy - made.gravity[1] * (start.positions[:, 1] - 0.01).sum()
-        share = rng.beta(20, 20, 4001) if made.gravity[1] else np.ones(4001)
+        energy = start.kinetic_energy - pull * (start.positions[:, 1] - 0.01).sum()
+        share = rng.beta(20, 20, 4001) if pull else np.ones(4001)
         stored[p.replica_path(0)] = xr.Dataset({"kinetic_energy": ("frame", energy * share)})
     monkeypatch.setattr(gravity, "open_trajectory", stored.__getitem__)
     return points
