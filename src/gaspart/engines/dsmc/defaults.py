@@ -100,7 +100,7 @@ def warn_if_coarse(engine: DSMC, cells: tuple[int, ...], step: float, scene: Sce
             stacklevel=4,
         )
     met = step * found.frequency
-    if engine.time_step is not None and met > LONGEST * (1.0 + 1e-9):
+    if engine.time_step is not None and met > LONGEST * (1.0 + 2.0 / _DIGITS):
         warnings.warn(
             f"gaspart: time_step = {step:g} is {met:.2g} mean free times and {effect};"
             f" a step of {step * LONGEST / met:.2g} would do",
