@@ -38,7 +38,7 @@ def printed(capsys, *words):
 
 
 def sensible(line):
-    """Whether a line of results has finite numbers, and no deviation that nobody can mean."""
+    """Whether a line of results has finite numbers, and no meaningless deviation."""
     deviation = re.search(r"(\S+) standard deviations", line)
     return not re.search(r"\b(nan|inf)\b", line) and (not deviation or abs(float(deviation[1])) < 100.0)
 
@@ -94,5 +94,5 @@ def test_a_quantity_that_does_not_change_has_no_deviation(tmp_path):
         ran(tmp_path, degenerate(2, 20, "rest", "periodic", False), "few collisions")
     )
     assert float(found.error) == 0.0 and math.isfinite(float(found.estimate))
-    told = found.assign(order_parameter_theory=found.estimate + 1.0, order_parameter_theory_error=0.0)
-    assert np.isnan(told.deviation)
+    with_theory = found.assign(order_parameter_theory=found.estimate + 1.0, order_parameter_theory_error=0.0)
+    assert np.isnan(with_theory.deviation)

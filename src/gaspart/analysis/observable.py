@@ -51,7 +51,7 @@ class Observable(xr.Dataset):
     @property
     def deviation(self) -> xr.DataArray | None:
         """Measured minus theory, in standard deviations of the difference; None without theory. NaN where
-        that is 0, as of a quantity that does not change: nothing tells how likely a difference is."""
+        that is 0, as of a quantity that does not change: nothing states how likely a difference is."""
         if self.theory is None:
             return None
         unsure = self[f"{self.attrs['quantity']}_theory_error"]

@@ -12,7 +12,7 @@ DRIFT = 1e-6
 """Relative change from frame to frame that is attributed to rounding in the program that made the file."""
 _FLIGHT = 1e-3  # the same of a flight
 _SINGLE = float(np.finfo(np.float32).eps)
-_DIGITS = 12  # after the point, at which decimals are told from binary numbers
+_DIGITS = 12  # after the point, at which decimals differ from binary numbers
 
 
 def judge_conserved(frames: Frames) -> list[Check]:
