@@ -46,18 +46,21 @@ PROPERTIES = (
 
 class Simulation:
     """One run. `seed`: a whole number, or a tuple of them, that fixes the initial state and the random
-    numbers of thermal walls.
+    numbers of thermal walls. stress: whether `tally` has the stress tensor and the heat flux, of a periodic
+    scene without gravity.
 
     Raises SceneError if the scene cannot be set up, or the engine cannot model it.
     """
 
-    def __init__(self, scene: Scene, engine: Engine, seed: int | tuple[int, ...] = 0) -> None:
+    def __init__(
+        self, scene: Scene, engine: Engine, seed: int | tuple[int, ...] = 0, stress: bool = False
+    ) -> None:
         if not isinstance(scene, Scene):
             raise SceneError("scene", scene, "must be a Scene, such as Scene.from_file(path)")
         if not isinstance(engine, Engine):
             raise SceneError("engine", engine, "must be an engine: EventDriven() or TimeStepped(time_step)")
         self.scene, self.engine, self.seed = scene, engine, seed
-        self._asked = engine
+        self._asked, self._stress = engine, stress
         self._log: EventLog | None = None
         self._advanced = False
         self._set_up()
@@ -72,7 +75,9 @@ class Simulation:
         self._initial = initial_state(self.scene, self.seed)
         self._energy = self._initial.energy
         self._moving = self._initial.kinetic_energy + self._initial.vibrational_energy
-        self._dynamics = self.engine.start(self.scene, self._initial, self.seed)
+        if self._stress:
+            self.engine.check_stress(self.scene)
+        self._dynamics = self.engine.start(self.scene, self._initial, self.seed, self._stress)
 
     def add(
         self,
@@ -212,7 +217,7 @@ class Simulation:
             count = math.floor(self.time / step * (1 + 1e-12)) + 1
             yield from self._states_at(min(n * step, self.time) for n in range(count))
         elif by == "event":
-            again = Simulation(self.scene, self.engine, self.seed)
+            again = Simulation(self.scene, self.engine, self.seed, self._stress)
             yield again.state
             while True:
                 again.advance(until=self.time, max_events=1)
@@ -225,7 +230,7 @@ class Simulation:
 
     def _states_at(self, times: Iterable[float]) -> Iterator[State]:
         """The states at rising times, by running it again."""
-        again = Simulation(self.scene, self.engine, self.seed)
+        again = Simulation(self.scene, self.engine, self.seed, self._stress)
         for time in times:
             again.advance(until=time)
             yield again.state

@@ -31,7 +31,7 @@ def test_sums_are_those_of_all_pairs_of_samples(fixed, displacements):
     v, r = rng.normal(size=(2, samples, 5, 2))
     correlator = Correlator(Correlations(1.0, lags), scene, masses, displacements)
     for velocities, unwrapped in zip(v, r, strict=True):
-        correlator.add(SimpleNamespace(velocities=velocities, unwrapped=unwrapped))
+        correlator.add(SimpleNamespace(state=SimpleNamespace(velocities=velocities, unwrapped=unwrapped)))
     found = correlator.sums()
     assert found.pop("correlated_samples") == samples == correlator.next
     if fixed:  # momentum is not conserved, and the fixed particle does not count

@@ -15,15 +15,19 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "Observable": "observable",
+    "bulk_viscosity": "transport",
     "collision_rate": "pressure",
     "compressibility_factor": "pressure",
     "diffusion_coefficient": "motion",
     "lyapunov_exponent": "lyapunov",
     "mean_squared_displacement": "motion",
     "order_parameter": "structure",
+    "pressure_tensor": "transport",
     "profile": "structure",
     "rdf": "structure",
+    "shear_viscosity": "transport",
     "speed_distribution": "structure",
+    "thermal_conductivity": "transport",
     "velocity_autocorrelation": "motion",
     "wall_pressure": "pressure",
 }

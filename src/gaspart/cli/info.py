@@ -75,4 +75,5 @@ def _run_options(path: Path, recipe: Recipe, stored: dict) -> list[str]:
     if recipe.correlations is not None:
         asked = recipe.correlations
         options += ["--correlations", f"{asked.interval!r},{asked.lags},{asked.start!r}"]
+        options += ["--stress"] if asked.stress else []
     return options

@@ -29,6 +29,10 @@ OBSERVABLES = {
     "rdf": ("rdf", {}, "radial distribution function, periodic"),
     "density": ("profile", {"of": "density"}, "density along the last axis"),
     "temperature": ("profile", {"of": "temperature"}, "temperature along the last axis"),
+    "shear_viscosity": ("shear_viscosity", {}, "shear viscosity, of a run with --stress"),
+    "bulk_viscosity": ("bulk_viscosity", {}, "bulk viscosity, likewise"),
+    "thermal_conductivity": ("thermal_conductivity", {}, "conductivity of heat, likewise"),
+    "pressure_tensor": ("pressure_tensor", {}, "components of the pressure tensor, likewise"),
     "order": ("order_parameter", {}, "global bond order, periodic"),
 }
 """Names on the command line -> function of `gaspart.analysis`, its arguments, meaning."""

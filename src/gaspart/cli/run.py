@@ -55,6 +55,8 @@ def add_run(parser: Parser) -> None:
         metavar="T,L[,START]",
         help="accumulate time correlations of samples every T, up to L of them apart, from START on",
     )
+    text = "correlate the stress tensor and the heat flux instead of velocities"
+    add("--stress", action="store_true", help=text)
     for name, kind in engine_settings().items():
         add_setting(parser, name, kind)
     add("--force", action="store_true", help="replace a trajectory of another run")
@@ -81,7 +83,7 @@ def _run(given: argparse.Namespace) -> None:
     from gaspart.trajectory.run import run
 
     settings = {key: getattr(given, key) for key in engine_settings() if getattr(given, key) is not None}
-    scene, correlations = Scene.from_file(given.scene), _correlations(given.correlations)
+    scene, correlations = Scene.from_file(given.scene), _correlations(given.correlations, given.stress)
     try:
         engine = engine_from_dict({"name": given.engine, **settings})
     except SceneError as error:
@@ -105,14 +107,17 @@ def _run(given: argparse.Namespace) -> None:
     _report(path)
 
 
-def _correlations(given: tuple[float, ...] | None) -> Correlations | None:
+def _correlations(given: tuple[float, ...] | None, stress: bool) -> Correlations | None:
     if given is None:
+        if stress:
+            raise UsageError("--stress: needs --correlations")
         return None
     if len(given) not in (2, 3) or not given[1].is_integer():
         raise UsageError("--correlations: must be an interval, a whole number of lags and perhaps a start")
     from gaspart.trajectory.correlator import Correlations
 
-    return Correlations(given[0], int(given[1]), *given[2:])
+    start = given[2] if len(given) > 2 else 0.0
+    return Correlations(given[0], int(given[1]), start, stress)
 
 
 def _resume(given: argparse.Namespace) -> None:

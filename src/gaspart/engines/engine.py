@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from gaspart.state.tally import Tally
 
 E = TypeVar("E", bound="type[Engine]")
+_WITH_STRESS = frozenset(("restitution", "roughness", "viscoelasticity", "contact_duration"))
+"""The features of scenes whose stress tensor can be tallied: velocities change at contacts only."""
 
 
 class Dynamics(Protocol):
@@ -75,9 +77,9 @@ class Engine:
     name: by which files, configs and the command line know it; title: in messages and captions;
     records_events: whether its events can be recorded and counted; counters: fields of `Tally` that only
     such an engine fills; same_bits: settings that change no bit of its results; keeps_apart: whether
-    particles never overlap; models: names of the `scene.features` that it models, and excludes: pairs of
-    them that it does not model together; first_stretch: the work, in events or steps, that a run begins with
-    between two looks at the clock.
+    particles never overlap; tallies_stress: whether it can tally the stress tensor; models: names of the
+    `scene.features` that it models, and excludes: pairs of them that it does not model together;
+    first_stretch: the work, in events or steps, that a run begins with between two looks at the clock.
     """
 
     name: ClassVar[str]
@@ -88,6 +90,7 @@ class Engine:
     excludes: ClassVar[tuple[tuple[str, str], ...]] = ()
     same_bits: ClassVar[tuple[str, ...]] = ()
     keeps_apart: ClassVar[bool] = True
+    tallies_stress: ClassVar[bool] = False
     first_stretch: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
@@ -131,10 +134,23 @@ class Engine:
         """Settings with which the scene with only a few particles needs the same kernels."""
         return self
 
-    def start(self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0) -> Dynamics:
+    def check_stress(self, scene: Scene) -> None:
+        """Raise SceneError if the stress tensor of a scene cannot be tallied by this engine."""
+        if not self.tallies_stress:
+            able = " or ".join(f'"{engine.name}"' for engine in ENGINES.values() if engine.tallies_stress)
+            raise SceneError("stress", True, f"needs the {able} engine")
+        if not all(scene.container.periodic):
+            raise SceneError("stress", True, "needs a periodic container")
+        for name in sorted(features(scene) - _WITH_STRESS):
+            raise SceneError("stress", True, f"cannot be tallied in a scene with {FEATURES[name].meaning}")
+
+    def start(
+        self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0, stress: bool = False
+    ) -> Dynamics:
         """Set the engine up for a scene in a given state; `seed` is that of thermal walls and kicks.
 
-        Raises SceneError for what it does not model.
+        stress: whether to tally the stress tensor and the heat flux. Raises SceneError for what it does not
+        model.
         """
         raise NotImplementedError
 

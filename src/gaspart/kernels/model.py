@@ -210,7 +210,7 @@ class Model(NamedTuple):
 class Tally(NamedTuple):
     """counts (5,); sums (2, 2) and by face and interior wall wall_impulse, wall_energy (faces + walls, 2),
     see `running_sum.add`; wall_hits (faces + walls,); worst (1,): the largest |r^2/sigma^2 - 1| at a
-    contact."""
+    contact; stress: an `event.stress.Stress`, None if it is not wanted."""
 
     counts: np.ndarray
     sums: np.ndarray
@@ -218,6 +218,7 @@ class Tally(NamedTuple):
     wall_hits: np.ndarray
     wall_impulse: np.ndarray
     wall_energy: np.ndarray
+    stress: Any = None
 
 
 def empty_tally(walls: int) -> Tally:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 ENERGY, IMPULSE = "mass length^2/time^2", "mass length/time"
+ACTION, HEAT = "mass length^2/time", "mass length^3/time^2"
 """Units of sums."""
 
 
@@ -23,6 +24,11 @@ class Tally:
     the same particle had not ended (`Restitution.contact_duration`), and retained_energy, what they would
     have dissipated; thermostat_energy: energy given by kicks.
 
+    If they were asked for, otherwise None: stress_sum (d, d), the time integral of the stress tensor times
+    the volume, of m v v and, at a collision, of r dp, with r the vector from the second particle to the
+    first and dp the momentum that this gains; heat_sum (d,), that of the heat flux times the volume,
+    likewise of E v and r dE (Helfand, Phys. Rev. 119, 1 (1960)).
+
     The time-stepped engine also reports its errors: steps; overlaps_left, pairs that still overlap and
     approach when a step ends; deepest_overlap met, as a fraction of the contact distance;
     multiple_contacts, particles that met more than one other in a step; rebuilds of its neighbour list.
@@ -30,9 +36,9 @@ class Tally:
 
     time: float
     collisions: int
-    wall_hits: np.ndarray = field(metadata={"per_face": True})
-    wall_impulse: np.ndarray = field(metadata={"per_face": True, "units": IMPULSE})
-    wall_energy: np.ndarray = field(metadata={"per_face": True, "units": ENERGY})
+    wall_hits: np.ndarray = field(metadata={"along": ("face",)})
+    wall_impulse: np.ndarray = field(metadata={"along": ("face",), "units": IMPULSE})
+    wall_energy: np.ndarray = field(metadata={"along": ("face",), "units": ENERGY})
     virial_sum: float = field(metadata={"units": ENERGY})
     pair_tests: int
     box_visits: int
@@ -47,3 +53,9 @@ class Tally:
     deepest_overlap: float = 0.0
     multiple_contacts: int = 0
     rebuilds: int = 0
+    stress_sum: np.ndarray | None = field(
+        default=None, metadata={"along": ("axis", "direction"), "units": ACTION, "optional": True}
+    )
+    heat_sum: np.ndarray | None = field(
+        default=None, metadata={"along": ("axis",), "units": HEAT, "optional": True}
+    )

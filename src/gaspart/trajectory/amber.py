@@ -17,13 +17,13 @@ import numpy as np
 
 from gaspart.engines import ENGINES, Engine
 from gaspart.state.tally import Tally
-from gaspart.trajectory.correlator import SUMS
+from gaspart.trajectory.correlator import meaning_of
 
 NOTE = (
     "Reduced units: lengths and times are in the scene's own units, masses relative to the reference "
     "species, k_B = 1. Picosecond and angstrom stand for these, because readers of AMBER files insist on it."
 )
-_PER_FACE = tuple(field.name for field in fields(Tally) if field.metadata.get("per_face"))
+_ALONG = {field.name: field.metadata.get("along", ()) for field in fields(Tally)}
 MAGIC = b"CDF\x02"
 """The first bytes of a netCDF-3 file of 64-bit offsets."""
 FRAME_COUNT_AT = 4
@@ -48,11 +48,13 @@ BOOKKEEPING = ("header_bytes", "header_crc32", "frame_bytes")
 MOST_FRAMES = 2**31 - 1
 
 
-def counters(engine: Engine) -> tuple[str, ...]:
+def counters(engine: Engine, stress: bool) -> tuple[str, ...]:
     """Sums since time 0 that a file of this engine has, one variable each; those of other engines alone would
-    be zero."""
-    others = {name for kind in ENGINES.values() for name in kind.counters} - set(engine.counters)
-    return tuple(field.name for field in fields(Tally) if field.name not in {"time", *others})
+    be zero. stress: whether those that must be asked for are among them."""
+    absent = {name for kind in ENGINES.values() for name in kind.counters} - set(engine.counters)
+    if not stress:
+        absent |= {field.name for field in fields(Tally) if field.metadata.get("optional")}
+    return tuple(field.name for field in fields(Tally) if field.name not in {"time", *absent})
 
 
 def face_names(dimension: int, walls: int = 0) -> list[str]:
@@ -86,6 +88,7 @@ class Layout:
             "cell_angular": 3,
             "label": 5,
             "face": 2 * dimension + walls,
+            **({"axis": dimension, "direction": dimension} if "stress_sum" in counters else {}),
             **({"lag": lags + 1} if sums else {}),
             **({"motion": 2} if "piston" in extra else {}),
         }
@@ -95,10 +98,7 @@ class Layout:
             "cell_lengths": (">f8", ("cell_spatial",), {"units": "angstrom"}),
             "cell_angles": (">f8", ("cell_angular",), {"units": "degree"}),
             "kinetic_energy": (">f8", (), {"long_name": "kinetic energy of all bodies"}),
-            **{
-                name: (">f8", ("face",) if name in _PER_FACE else (), faces if name in _PER_FACE else {})
-                for name in counters
-            },
+            **{name: (">f8", _ALONG[name], faces if "face" in _ALONG[name] else {}) for name in counters},
             "coordinates": (">f4", _VECTORS, {"units": "angstrom"}),
             "velocities": (">f4", _VECTORS, {"units": "angstrom/picosecond"}),
         }
@@ -107,7 +107,7 @@ class Layout:
             meaning = "samples that are correlated, so far"
             self.variables["correlated_samples"] = (">f8", (), {"long_name": meaning})
         for name in sums:
-            meaning = f"mean over moving particles of {SUMS[name]}, summed over pairs of samples so far"
+            meaning = f"{meaning_of(name)}, summed over pairs of samples so far"
             self.variables[name] = (">f8", ("lag",), {"long_name": meaning})
         meaning = (
             "CRC-32 of the bytes of this frame before it, which begins with those of the header and frame"

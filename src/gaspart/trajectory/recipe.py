@@ -21,7 +21,7 @@ from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of, number
 from gaspart.state.random import stream
 from gaspart.trajectory import amber, provenance
-from gaspart.trajectory.correlator import Correlations, sums_of
+from gaspart.trajectory.correlator import Correlations, stress_sums, sums_of
 from gaspart.trajectory.frames import CheckedFrames, damaged_frame, frame_count
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
@@ -82,6 +82,8 @@ class Recipe:
 
     def _check_correlations(self, asked: Correlations) -> None:
         """Refuse correlations that this run cannot have, with SceneError."""
+        if asked.stress:
+            self.engine.check_stress(self.scene)
         interval = "correlations.interval", asked.interval
         if self.engine.quantum:
             multiple(*interval, "time_step", self.engine.quantum)
@@ -122,10 +124,11 @@ class Recipe:
             "piston": bool(pistons(scene)),
         }
         extra = [name for name, present in names.items() if present]
-        sums, lags = [], 0
+        sums, lags, stress = [], 0, False
         if self.correlations:
-            sums, lags = sums_of(self.displacements), self.correlations.lags
-        counters = amber.counters(self.engine)
+            lags, stress = self.correlations.lags, self.correlations.stress
+            sums = stress_sums() if stress else sums_of(self.displacements)
+        counters = amber.counters(self.engine, stress)
         return amber.Layout(self.stored_count, scene.dimension, extra, walls, counters, sums, lags)
 
     def attributes(self) -> dict:

@@ -16,7 +16,7 @@ from gaspart.simulation import Simulation
 from gaspart.state.state import State
 from gaspart.trajectory import amber
 from gaspart.trajectory.checkpoint import checkpoint_path, write_checkpoint
-from gaspart.trajectory.correlator import Correlator
+from gaspart.trajectory.correlator import Correlator, StressCorrelator
 from gaspart.trajectory.frames import Frames
 from gaspart.trajectory.recipe import Recipe, multiple
 
@@ -47,8 +47,11 @@ class Recording:
         self._recipe, self._simulation, self._frames = recipe, simulation, frames
         self._header, self._path, self._every, self._progress = header, path, every, progress
         self._origin = simulation.initial_state.unwrapped
-        self._correlator: Correlator | None = None
-        if recipe.correlations:
+        self._correlator: Correlator | StressCorrelator | None = None
+        self._stress = recipe.correlations is not None and recipe.correlations.stress
+        if recipe.correlations and self._stress:
+            self._correlator = StressCorrelator(recipe.correlations, recipe.scene.dimension)
+        elif recipe.correlations:
             masses = simulation.initial_state.masses
             self._correlator = Correlator(recipe.correlations, recipe.scene, masses, recipe.displacements)
         self._stretch = recipe.engine.first_stretch
@@ -84,21 +87,21 @@ class Recording:
         frame, correlator = self._frames.count, self._correlator
         last = frame * self._recipe.samples_per_frame
         while correlator and correlator.next < last:
-            correlator.add(self._reach(correlator.next, correlator.interval, signals))
-        state = self._reach(frame, self._recipe.sample_interval, signals)
+            self._reach(correlator.next, correlator.interval, signals)
+            correlator.add(self._simulation)
+        self._reach(frame, self._recipe.sample_interval, signals)
         if correlator and correlator.next == last:
-            correlator.add(state)
+            correlator.add(self._simulation)
+        state = self._simulation.state
+        self._simulation.check_invariants(state)
         self._frames.append(self._frame(state))
         self._between_stretches(signals)
 
-    def _reach(self, number: int, interval: float, signals: Deferral) -> State:
-        """The state at the time number x interval."""
+    def _reach(self, number: int, interval: float, signals: Deferral) -> None:
+        """Advance to the time number x interval."""
         for _ in self._approach(number, interval):
             signals.unsaved = True
             self._between_stretches(signals)
-        state = self._simulation.state
-        self._simulation.check_invariants(state)
-        return state
 
     def _between_stretches(self, signals: Deferral) -> None:
         """Report progress, write a checkpoint and let a signal take effect, if one of these is due."""
@@ -175,7 +178,7 @@ class Recording:
             "cell_lengths": lengths,
             "cell_angles": np.full(3, 90.0),
             "kinetic_energy": state.kinetic_energy,
-            **{name: getattr(tally, name) for name in amber.counters(self._recipe.engine)},
+            **{name: getattr(tally, name) for name in amber.counters(self._recipe.engine, self._stress)},
             "coordinates": state.positions[followed],
             "velocities": state.velocities[followed],
             **(self._correlator.sums() if self._correlator else {}),

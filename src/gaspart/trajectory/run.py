@@ -25,7 +25,7 @@ from gaspart.simulation import Simulation
 from gaspart.state.tally import ENERGY, Tally
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.checkpoint import checkpoint_path, read_checkpoint, remove_checkpoint
-from gaspart.trajectory.correlator import Correlations
+from gaspart.trajectory.correlator import Correlations, stress_units
 from gaspart.trajectory.frames import Frames, frame_count
 from gaspart.trajectory.recipe import (
     PARTIAL,
@@ -56,6 +56,7 @@ _UNITS = {field.name: field.metadata["units"] for field in fields(Tally) if "uni
     "velocity_product_sum": "length^2/time^2",
     "squared_displacement_sum": "length^2",
     "displacement_velocity_sum": "length^2/time",
+    **stress_units(),
 }
 
 
@@ -157,7 +158,8 @@ def run(
     the spins; with `follow` only so many particles, from the first on (counters are still those of all).
     With `correlations` each frame has the sums so far of the velocities' correlations, and with
     `displacements` of the mean-squared displacement, over all pairs of samples, which may lie much closer
-    than frames. A run of the same recipe and program that was cut short is continued, and a complete one is
+    than frames; with `Correlations(stress=True)` those of the stress tensor and the heat flux instead. A run
+    of the same recipe and program that was cut short is continued, and a complete one is
     not changed. Another trajectory at `path`, or unfinished next to it, is replaced only with `overwrite`; a
     file of another kind never.
 
@@ -217,7 +219,8 @@ def _carry_out(wanted: Recipe, path: Path, every: float, progress: Progress | No
             if not partial.exists():
                 remove_checkpoint(checkpoint)
             return path
-        simulation = Simulation(wanted.scene, wanted.engine, wanted.seed)
+        stress = wanted.correlations is not None and wanted.correlations.stress
+        simulation = Simulation(wanted.scene, wanted.engine, wanted.seed, stress)
         with _locked(partial) as file:
             # again: another process may have finished or begun a run before the lock
             if not _is_finished(wanted, path, overwrite):

@@ -35,6 +35,8 @@ def scenes():
         "thermal": (gp.Scene(room, two, faces=normal), {}),
         "kicked": (kicked, {}),
         "dense": (gp.Scene(room, two), dense),
+        "stress": (gp.Scene(cube, two, restitution=rough), {}),
+        "dense stress": (gp.Scene(cube, two), dense),
         "dense and rough": (replace(falling, gravity=None), {"model": "enskog", "cells_per_side": (7, 5)}),
     }
 
@@ -48,10 +50,12 @@ def ends():
     for name, (scene, settings) in scenes().items():
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", message="gaspart")
-            sim = gp.Simulation(scene, gp.DSMC(time_step=0.05, **settings), seed=3)
+            sim = gp.Simulation(scene, gp.DSMC(time_step=0.05, **settings), seed=3, stress="stress" in name)
         sim.advance(duration=0.8)
         state, tally = sim.state, sim.tally
         sums = [tally.collisions, tally.virial_sum, tally.dissipated_energy, *tally.wall_impulse]
+        if sim.tally.stress_sum is not None:
+            sums += [*tally.stress_sum.ravel(), *tally.heat_sum]
         parts = state.unwrapped, state.velocities, state.spins, tally.wall_energy, sums
         found[name] = np.concatenate([np.ravel(part) for part in parts])
     return found

@@ -12,6 +12,7 @@ from gaspart.engines.dsmc.rates import accessible
 from gaspart.engines.step.arrays import largest_terms
 from gaspart.errors import SceneError
 from gaspart.kernels.dsmc.model import PADDED, Faces, Grid, Law, Particles, Tools
+from gaspart.kernels.dsmc.stress import Stress
 from gaspart.kernels.model import HARD, THERMAL, THERMAL_NORMAL, flight_dtype
 from gaspart.scene.faces import FACES, Thermal
 from gaspart.scene.scene import Scene
@@ -94,6 +95,16 @@ def tools_for(engine: DSMC, scene: Scene, state: State, step: float, seed: int |
         wall_heat=np.zeros((threads, faces, 2), np.int64),
         scales=np.array([momentum, energy, momentum * sigma]),
     )
+
+
+def stress_for(scene: Scene, state: State, threads: int) -> Stress:
+    """The sums of the stress tensor and the heat flux, at zero."""
+    d = scene.dimension
+    momentum, energy = largest_terms(scene, state, 1.0)
+    length = 2.0 ** math.frexp(max(scene.container.lengths))[1]
+    sums, cell = np.zeros((threads, d * d + d, 2), np.int64), np.zeros((threads, d * d + d))
+    scales = np.array([momentum * length, energy * length])
+    return Stress(sums, cell, np.zeros((threads, 2, d + 1)), scales)
 
 
 TALLY = ("counts", "virial", "loss", "wall_hits", "wall_impulse", "wall_heat")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -30,7 +30,9 @@ class DsmcDynamics:
     cells_per_side (d,), time_step: what was chosen.
     """
 
-    def __init__(self, engine: DSMC, scene: Scene, state: State, seed: int | tuple[int, ...]) -> None:
+    def __init__(
+        self, engine: DSMC, scene: Scene, state: State, seed: int | tuple[int, ...], stress: bool
+    ) -> None:
         from gaspart.engines.dsmc import arrays
         from gaspart.kernels.dsmc import loop, model
         from gaspart.kernels.model import Space
@@ -56,6 +58,7 @@ class DsmcDynamics:
             from gaspart.engines.dsmc.dense import dense_for
 
             self._dense = dense_for(scene, state, self._grid, len(self._tools.radius))
+        self._stress = arrays.stress_for(scene, state, engine.threads) if stress else None
         self._kicks = kicks(scene, self.time_step, seed)
         self._place(np.arange(state.count), state.positions, state.velocities, state.images)
         self._lost = np.zeros(2)  # net and gross, before the tally began
@@ -125,7 +128,7 @@ class DsmcDynamics:
     def _run(self, steps: int) -> None:
         """Let the kernel make so many steps."""
         threads = self._engine.threads if self._engine.threads > 1 else None
-        options = self._gravity, self._faces, self._law, self._dense
+        options = self._gravity, self._faces, self._law, self._dense, self._stress
         self._loop.run_steps(self._particles, self._grid, self._setting, steps, threads, options)
 
     def reset_tally(self) -> None:
@@ -135,6 +138,8 @@ class DsmcDynamics:
             getattr(self._tools, key)[...] = 0
         if self._kicks is not None:
             self._kicks.given[:] = 0.0
+        if self._stress is not None:
+            self._stress.sums[...] = 0
         self._since = self._steps
 
     @property
@@ -162,6 +167,19 @@ class DsmcDynamics:
         """The sum of what contacts and each face have taken or given since time 0, each counted positive."""
         gross = self._sums.net(self._loss) + float(np.abs(self._heat.sum(axis=1)).sum())
         return float(self._lost[1]) + gross + abs(self._sums.net(self._given))
+
+    @property
+    def _stress_sums(self) -> dict[str, Any]:
+        """The fields of `Tally` that only some runs fill."""
+        if self._stress is None:
+            return {}
+        d, (action, heat) = self._scene.dimension, self._stress.scales
+        sums = self._stress.sums.sum(axis=0)
+        stress = self._sums.whole_parts(sums[: d * d], action).sum(axis=-1)
+        return {
+            "stress_sum": stress.reshape(d, d),
+            "heat_sum": self._sums.whole_parts(sums[d * d :], heat).sum(axis=-1),
+        }
 
     @property
     def state(self) -> State:
@@ -197,6 +215,7 @@ class DsmcDynamics:
             dissipated_energy=self._sums.net(self._loss),
             thermostat_energy=self._sums.net(self._given),
             steps=self._steps - self._since,
+            **self._stress_sums,
         )
 
     def checkpoint(self) -> dict[str, np.ndarray]:
@@ -217,6 +236,8 @@ class DsmcDynamics:
             parts["fields"] = self._dense.fields.copy()
         if self._kicks is not None:
             parts["given"] = self._kicks.given.copy()
+        if self._stress is not None:
+            parts["stress"] = self._stress.sums.sum(axis=0)
         return parts
 
     def restore(self, parts: dict[str, np.ndarray]) -> None:
@@ -232,5 +253,8 @@ class DsmcDynamics:
             self._dense.fields[...] = parts["fields"]
         if self._kicks is not None:
             self._kicks.given[...] = parts["given"]
+        if self._stress is not None:
+            self._stress.sums[...] = 0
+            self._stress.sums[0] = parts["stress"]
         self._tools.clock[0], self._since = int(parts["steps"]), int(parts["since"])
         self._lost = parts["lost"].copy()

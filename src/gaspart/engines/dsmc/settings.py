@@ -53,6 +53,7 @@ class DSMC(Engine):
     title: ClassVar[str] = "DSMC"
     same_bits: ClassVar[tuple[str, ...]] = ("threads",)
     keeps_apart: ClassVar[bool] = False
+    tallies_stress: ClassVar[bool] = True
     models: ClassVar[frozenset[str]] = frozenset(
         ("gravity", "restitution", "roughness", "viscoelasticity", "thermostat")
     ) | {"centres_to_walls", "thermal"}
@@ -91,8 +92,10 @@ class DSMC(Engine):
         """With one cell, and the step for the full scene."""
         return replace(self.resolved(scene), cells_per_side=1)
 
-    def start(self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0) -> DsmcDynamics:
+    def start(
+        self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0, stress: bool = False
+    ) -> DsmcDynamics:
         """Set the engine up for a scene in a given state; `seed` is that of collisions and thermal walls."""
         from gaspart.engines.dsmc.dynamics import DsmcDynamics
 
-        return DsmcDynamics(self, scene, state, seed)
+        return DsmcDynamics(self, scene, state, seed, stress)

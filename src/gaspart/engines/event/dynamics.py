@@ -20,6 +20,7 @@ from gaspart.engines.event.stalling import (
 from gaspart.engines.event.tally import EventTally
 from gaspart.engines.features import piston
 from gaspart.engines.features.rest import rest_watch
+from gaspart.engines.features.stress import StressSums
 from gaspart.engines.features.thermostat import kicks
 from gaspart.engines.features.vibrating import begin_epoch
 from gaspart.errors import SimulationError
@@ -48,6 +49,7 @@ class EventDynamics:
         seed: int | tuple[int, ...],
         search: str,
         boxes_per_side: int | tuple[int, ...] | None,
+        stress: bool = False,
     ) -> None:
         from gaspart.kernels import model
         from gaspart.kernels.event import loop, prediction
@@ -94,11 +96,20 @@ class EventDynamics:
         self._scheduled = self._rest or self._kicks  # no scene has both
         self._flights["clock"] = self._clock
         self._tally = EventTally(scene, self._unit_mass, self._duration, self._kicks, self.time)
+        self._stress = StressSums(self._flights, self._model, self._unit_mass) if stress else None
+        self._begin_stress()
         self._predict()
 
     def reset_tally(self) -> None:
         """Begin to count from zero."""
         self._tally.reset(self.time)
+        self._begin_stress()
+
+    def _begin_stress(self) -> None:
+        """Let the tally have the stress, from zero on, if it was asked for."""
+        if self._stress:
+            self._stress.begin(self._clock)
+            self._tally.arrays = self._tally.arrays._replace(stress=self._stress.arrays)
 
     def _make_lists(self) -> None:
         """Make the neighbour lists from their centres."""
@@ -195,6 +206,8 @@ class EventDynamics:
 
     def _next_epoch(self) -> None:
         """Start the clocks again from zero, and predict all events anew."""
+        if self._stress:
+            self._stress.next_epoch(self._epoch)
         self._flight.restart_clocks(self._flights, self._epoch, self._model.space, self._model.gravity)
         self._start += self._epoch
         self._clock = 0.0
@@ -230,7 +243,8 @@ class EventDynamics:
     @property
     def tally(self) -> Tally:
         """What was counted since the last `reset_tally`."""
-        return self._tally.read(self.time)
+        counted = self._tally.read(self.time)
+        return replace(counted, **self._stress.read(self._clock)) if self._stress else counted
 
     @property
     def dissipated(self) -> float:
@@ -269,7 +283,11 @@ class EventDynamics:
 
     def _arrays(self) -> dict[str, np.ndarray]:
         """Everything that the kernels change and that cannot be made again, by name."""
-        arrays = {**self._particles._asdict(), **self._tally.arrays._asdict(), **changing(self._model)}
+        tallied = self._tally.arrays._asdict()
+        tallied.pop("stress")
+        arrays = {**self._particles._asdict(), **tallied, **changing(self._model)}
+        if self._stress:
+            arrays["stress"] = self._stress.arrays.sums
         arrays["event_count"] = self._event_count
         if self._boxes.lists:
             arrays["centres"] = self._boxes.lists.listed["centre"]

@@ -46,6 +46,7 @@ class EventDriven(Engine):
     name: ClassVar[str] = "event"
     title: ClassVar[str] = "event-driven"
     records_events: ClassVar[bool] = True
+    tallies_stress: ClassVar[bool] = True
     models: ClassVar[frozenset[str]] = frozenset(FEATURES)
     same_bits: ClassVar[tuple[str, ...]] = ("search", "boxes_per_side")
     first_stretch: ClassVar[int] = 256  # events with crossings and predictions
@@ -70,8 +71,10 @@ class EventDriven(Engine):
         boxes = None if self.boxes_per_side is None else 1
         return EventDriven(search=self._search(scene), boxes_per_side=boxes)
 
-    def start(self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0) -> EventDynamics:
+    def start(
+        self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0, stress: bool = False
+    ) -> EventDynamics:
         """Set the engine up for a scene in a given state; `seed` is that of thermal walls and kicks."""
         from gaspart.engines.event.dynamics import EventDynamics
 
-        return EventDynamics(scene, state, seed, self.search, self.boxes_per_side)
+        return EventDynamics(scene, state, seed, self.search, self.boxes_per_side, stress)

@@ -22,7 +22,8 @@ from gaspart.kernels.dsmc.contact import (
     unit_vector,
 )
 from gaspart.kernels.dsmc.draws import below, fraction, waiting_time, words_of
-from gaspart.kernels.dsmc.model import COLLISIONS, EXCEEDED, TRIALS, kind_in, velocity_row
+from gaspart.kernels.dsmc.model import COLLISIONS, EXCEEDED, TRIALS, kind_in, position_row, velocity_row
+from gaspart.kernels.dsmc.stress import add_contact, finish_cell, note_pair
 
 _ROUNDED = 1.0 + 1e-12  # a chance above 1 by more than rounding
 
@@ -97,9 +98,18 @@ def collide_pair(particles, pair, g, square, counter, setting, law):
 
 
 @inner_helper
-def collide_cell(particles, cell, slots, volume, setting, law):
+def between(particles, pair):
+    """(3,) the vector from the second to the first of the particles in two slots of a cell."""
+    x, y = particles.data[position_row(particles, 0)], particles.data[position_row(particles, 1)]
+    z = particles.data[position_row(particles, len(particles.images) - 1)]
+    i, j = pair
+    return x[i] - x[j], y[i] - y[j], z[i] - z[j]
+
+
+@inner_helper
+def collide_cell(particles, cell, slots, volume, setting, law, stress):
     """Make the collisions of one step in a cell, whose particles are in the slots from slots[0] to
-    slots[1]."""
+    slots[1]. The stress is that of the algorithm: what passes has passed between two places of the cell."""
     first, end = slots
     d, number, key, step = len(setting.space.lengths), end - first, setting.tools.key, setting.tools.clock[0]
     u = particles.data[velocity_row(particles, 0)]
@@ -126,7 +136,11 @@ def collide_cell(particles, cell, slots, volume, setting, law):
         wanted, offered = fraction(words[3]) * bound, square * share * share
         exceeded += offered > bound * bound * _ROUNDED
         if wanted * wanted < offered:
+            if stress is not None:
+                note_pair(particles, (i, j), setting, stress, law)
             collide_pair(particles, (i, j), g, square, (key, step, cell, trial), setting, law)
+            if stress is not None:
+                add_contact(particles, (i, j), between(particles, (i, j)), setting, stress, law)
             met += 1
             low_u, high_u = widened(u[i], u[j], low_u, high_u)
             low_v, high_v = widened(v[i], v[j], low_v, high_v)
@@ -137,12 +151,14 @@ def collide_cell(particles, cell, slots, volume, setting, law):
     counts[COLLISIONS] += met
     counts[TRIALS] += trial
     counts[EXCEEDED] += exceeded
+    if stress is not None:
+        finish_cell(setting, stress)
 
 
 @inner_kernel
-def collide_cells(particles, cells, grid, setting, law):
+def collide_cells(particles, cells, grid, setting, law, stress):
     """Make the collisions of one step in one thread's cells, from cells[0] to cells[1]."""
     for cell in range(cells[0], cells[1]):
         slots = np.int64(grid.starts[cell]), np.int64(grid.starts[cell + 1])
         if slots[1] - slots[0] > 1:
-            collide_cell(particles, cell, slots, grid.volume, setting, law)
+            collide_cell(particles, cell, slots, grid.volume, setting, law, stress)

@@ -32,6 +32,7 @@ from gaspart.kernels.dsmc.model import (
     position_row,
     velocity_row,
 )
+from gaspart.kernels.dsmc.stress import add_contact, add_flights, finish_cell, note_pair
 from gaspart.kernels.physics.running_sum import add_whole
 
 FILLED, SURFACE = range(2)
@@ -200,9 +201,11 @@ def note_speed(particles, slot, cell, grid, dense):
 
 
 @inner_helper
-def collide_at(particles, pair, kinds, direction, sigma, setting, law):
+def collide_at(particles, pair, kinds, direction, sigma, setting, law, stress):
     """A contact of the particles in two slots, of these kinds, along a direction. Counts |r . dp|."""
     tools = setting.tools
+    if stress is not None:
+        note_pair(particles, pair, setting, stress, law)
     if law is None:
         passed = collide_smooth(particles, pair, direction, (tools.mass[kinds[0]], tools.mass[kinds[1]]))
     else:
@@ -211,6 +214,9 @@ def collide_at(particles, pair, kinds, direction, sigma, setting, law):
         passed = collide_in_room(direction, setting, law)
         give_back(particles, pair[0], 0, setting, law)
         give_back(particles, pair[1], 1, setting, law)
+    if stress is not None:
+        apart = -sigma * direction[0], -sigma * direction[1], -sigma * direction[2]
+        add_contact(particles, pair, apart, setting, stress, law)
     add_whole(tools.virial[setting.part], sigma * passed, tools.scales[ACTION])
 
 
@@ -249,10 +255,11 @@ def relative_chance(pair, cells, kinds, largest, dense, tools, dimension):
 
 
 @inner_helper
-def try_once(particles, counter, words, bound, grid, setting, dense, law):
+def try_once(particles, counter, words, bound, grid, setting, dense, options):
     """One trial. counter: key, step, cell and trial. Returns whether it is a collision, and whether its
     chance exceeded 1."""
     key, step, cell, trial = counter
+    law, stress = options
     tools, d = setting.tools, len(setting.space.lengths)
     first = np.int64(grid.starts[cell])
     i = first + below(words[1], np.int64(grid.starts[cell + 1]) - first)
@@ -273,7 +280,7 @@ def try_once(particles, counter, words, bound, grid, setting, dense, law):
     chance = relative_chance(pair, (cell, there), kinds, dense.highest[0], dense, tools, d)
     exceeded = approach * chance > bound * _ROUNDED
     if fraction(words[3]) * bound < approach * chance:
-        collide_at(particles, pair, kinds, direction, sigma, setting, law)
+        collide_at(particles, pair, kinds, direction, sigma, setting, law, stress)
         note_speed(particles, i, cell, grid, dense)
         note_speed(particles, j, there, grid, dense)
         return True, exceeded
@@ -281,10 +288,12 @@ def try_once(particles, counter, words, bound, grid, setting, dense, law):
 
 
 @inner_kernel
-def collide_dense(particles, grid, setting, dense, law):
+def collide_dense(particles, grid, setting, dense, law, stress):
     """Make the collisions of one step, cell after cell."""
     tools, d = setting.tools, len(setting.space.lengths)
     survey(particles, grid, tools, dense)
+    if stress is not None:
+        add_flights(particles, (0, len(grid.starts) - 1), grid, setting, stress, law)
     sigma, key, step = 2.0 * tools.largest, tools.key, tools.clock[0]
     around = 6.283185307179586 * (sigma if d == 2 else 2.0 * sigma * sigma)
     rate = 0.5 * around * dense.highest[0] / grid.volume * tools.dt * len(tools.radius)
@@ -300,12 +309,14 @@ def collide_dense(particles, grid, setting, dense, law):
             if not left > 0.0:
                 break
             done, beyond = try_once(
-                particles, (key, step, cell, trial), words, bound, grid, setting, dense, law
+                particles, (key, step, cell, trial), words, bound, grid, setting, dense, (law, stress)
             )
             met += done
             exceeded += beyond
             trial += 1
         trials += trial
+        if stress is not None:
+            finish_cell(setting, stress)
     tools.counts[0, COLLISIONS] += met
     tools.counts[0, TRIALS] += trials
     tools.counts[0, EXCEEDED] += exceeded

@@ -26,6 +26,7 @@ from gaspart.kernels.dsmc.cells import (
 from gaspart.kernels.dsmc.enskog import collide_dense
 from gaspart.kernels.dsmc.model import Setting
 from gaspart.kernels.dsmc.motion import move
+from gaspart.kernels.dsmc.stress import add_flights
 from gaspart.kernels.model import Space
 from gaspart.kernels.step.model import part_of
 
@@ -67,12 +68,20 @@ def gather_shared(particles, row, grid):
             gather_row(particles, row, slots[0], slots[1], grid)
 
 
+@inner_helper
+def collide_part(particles, cells, grid, setting, law, stress):
+    """Make the collisions of one step in one thread's cells, from cells[0] to cells[1]."""
+    if stress is not None:
+        add_flights(particles, cells, grid, setting, stress, law)
+    collide_cells(particles, cells, grid, setting, law, stress)
+
+
 @inner_parallel_kernel
-def collide_shared(particles, shares, grid, tools, lengths, periodic, law):
-    """`collide_cells` for all parts."""
+def collide_shared(particles, shares, grid, tools, lengths, periodic, law, stress):
+    """`collide_part` for all parts."""
     for part in prange(len(shares) - 1):
         setting = Setting(Space(lengths, periodic, tools.margin), tools, part)
-        collide_cells(particles, (shares[part], shares[part + 1]), grid, setting, law)
+        collide_part(particles, (shares[part], shares[part + 1]), grid, setting, law, stress)
 
 
 @inner_helper
@@ -108,26 +117,26 @@ def sort_all(particles, grid, threads):
 
 
 @inner_allocating_kernel
-def collide_all(particles, grid, setting, threads, law, dense):
+def collide_all(particles, grid, setting, threads, law, dense, stress):
     """Make the collisions of one step."""
     space, tools = setting.space, setting.tools
     if dense is not None:
-        collide_dense(particles, grid, setting, dense, law)
+        collide_dense(particles, grid, setting, dense, law, stress)
     elif threads is None:
-        collide_cells(particles, (0, len(grid.starts) - 1), grid, setting, law)
+        collide_part(particles, (0, len(grid.starts) - 1), grid, setting, law, stress)
     else:
         shares = np.empty(len(grid.counts) + 1, np.int64)
         share_cells(grid, shares)
-        collide_shared(particles, shares, grid, tools, space.lengths, space.periodic, law)
+        collide_shared(particles, shares, grid, tools, space.lengths, space.periodic, law, stress)
 
 
 @allocating_kernel
 def run_steps(particles, grid, setting, steps, threads, options):
     """Make so many steps. threads: their number, or None for one; options: gravity (d,), the faces with a
-    kind, the law, and what a dense gas needs; each may be None."""
-    gravity, faces, law, dense = options
+    kind, the law, what a dense gas needs, and the sums of the stress; each may be None."""
+    gravity, faces, law, dense, stress = options
     for _ in range(steps):
         move_all(particles, grid, setting, threads, gravity, faces, law)
         sort_all(particles, grid, threads)
-        collide_all(particles, grid, setting, threads, law, dense)
+        collide_all(particles, grid, setting, threads, law, dense, stress)
         setting.tools.clock[0] += 1

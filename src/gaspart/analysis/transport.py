@@ -1,0 +1,186 @@
+"""Viscosities, conductivity of heat and pressure tensor, from the tally of the stress and the heat flux.
+
+A run with `Correlations(stress=True)` has summed products of these fluxes, J, each the mean over an interval
+h between two samples, and squared differences of their time integrals, G = V int J dt (Helfand, Phys. Rev.
+119, 1 (1960)). A transport coefficient is the limit at long times of
+
+    <(G(t) - G(0))^2> / (2 V t x)  and of its derivative  h [C(0)/2 + C(h) + C(2h) + ... ] / (V x),
+
+with C the correlation of V J, and x = k_B T for the viscosities, k_B T^2 for the conductivity of a gas of one
+species: the forms of Helfand and of Green and Kubo. With the means over intervals in place of instantaneous
+values the second holds exactly, with the impulses at collisions, at the times between two lags.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gaspart import theory
+from gaspart.analysis.observable import Observable, observable, scalar
+from gaspart.analysis.source import Run, Source, measured
+from gaspart.analysis.statistics import correlated_mean, means_of
+from gaspart.errors import SceneError
+from gaspart.trajectory.correlator import Correlations
+
+
+def shear_viscosity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
+    """The shear viscosity, mass length^(2-d) / time.
+
+    source: a trajectory with correlations of the stress; lag: the time until which correlations count, by
+    default the longest; start: the time from which frames count. The result has `green_kubo` and `helfand`
+    (lag,) beside the value. Theory: Enskog's. Raises SceneError for a run without correlations of the stress,
+    a lag that is longer than theirs, and fewer than 17 frames.
+    """
+    return _coefficient(source, "shear", lag, start, theory.enskog_viscosity)
+
+
+def bulk_viscosity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
+    """The bulk viscosity, mass length^(2-d) / time, from the fluctuations of the pressure about its mean.
+
+    Arguments, theory and errors as of `shear_viscosity`. The mean is that of the run, of duration T, which
+    makes the value too low by about 2 lag / T of it.
+    """
+    return _coefficient(source, "bulk", lag, start, theory.enskog_bulk_viscosity)
+
+
+def thermal_conductivity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
+    """The conductivity of heat of particles that are all alike, 1 / (length^(d-2) time), with k_B = 1.
+
+    Arguments, theory and errors as of `shear_viscosity`; SceneError also for a mixture, whose heat flux
+    contains that of diffusion.
+    """
+    return _coefficient(source, "heat", lag, start, theory.enskog_conductivity)
+
+
+def pressure_tensor(source: Source, start: float | None = None) -> Observable:
+    """The components of the pressure tensor (component,), mass / (length^(d-2) time^2), xx, xy ...
+
+    source: a trajectory with correlations of the stress. Theory: the equation of state. Raises SceneError for
+    other trajectories, and fewer than 17 frames.
+    """
+    with measured(source, start) as run:
+        _stored(run)
+        d, volume = run.dimension, math.prod(run.scene.container.lengths)
+        rates = run.increments("stress_sum") / (volume * np.diff(run.time))[:, None, None]
+        series = rates.reshape(len(rates), d * d).T
+        means = [correlated_mean(one).estimate for one in series]
+        names = np.array([a + b for a in "xyz"[:d] for b in "xyz"[:d]])
+        expected: dict[str, Any] = {}
+        if run.of_fluid:
+            factor = theory.compressibility_factor(run.scene.packing_fraction, d)
+            pressure = run.count / volume * _temperature(run) * factor * np.eye(d).ravel()
+            expected = {"theory": (pressure, math.nan), "source": "equation of state"}
+        return observable(
+            "pressure_tensor",
+            {"component": (names, {"long_name": "component"})},
+            np.array([mean.value for mean in means]),
+            np.array([mean.error for mean in means]),
+            units=f"mass / (length^{d - 2} time^2)",
+            long_name="pressure tensor",
+            **expected,
+        )
+
+
+def _stored(run: Run) -> Correlations:
+    """The settings of a run's correlations of the stress. Raises SceneError for a run without them."""
+    text = run.data.attrs.get("correlations")
+    settings = Correlations.from_json(text) if text else None
+    if settings is None or not settings.stress:
+        rule = "needs a run with correlations of the stress: gaspart run --correlations T,L --stress"
+        raise SceneError("correlations", text, rule)
+    return settings
+
+
+def _temperature(run: Run) -> float:
+    """k_B T, from the energy of all particles, whichever are in the file."""
+    d = run.dimension
+    freedom = d * (run.count - 1) + run.scene.rough * run.count * (d * (d - 1) // 2)
+    if freedom < 1:
+        raise SceneError("count", run.count, "too few moving particles for a temperature")
+    return float(2.0 * run.data["kinetic_energy"].mean() / freedom)
+
+
+def _coefficient(
+    source: Source, name: str, lag: float | None, start: float | None, enskog: Callable[..., Any]
+) -> Observable:
+    """A transport coefficient from the correlations of `trajectory.correlator.STRESS`."""
+    public, symbol = _PUBLIC[name]
+    with measured(source, start) as run:
+        settings = _stored(run)
+        if name == "heat" and len({(it.mass, it.radius) for it in run.scene.kinds}) > 1:
+            raise SceneError("species", len(run.scene.kinds), "the heat flux of a mixture contains diffusion")
+        lags = _lags_until(settings, lag)
+        volume = math.prod(run.scene.container.lengths)
+        temperature = _temperature(run)
+        scale = 1.0 / (volume * temperature ** (2 if name == "heat" else 1))
+        products, squares = _blocks(run, name)
+        running = scale * settings.interval * (np.cumsum(products, axis=1) - 0.5 * products[:, :1])
+        expected: dict[str, Any] = {}
+        if run.of_fluid:
+            kind, eta = run.scene.kinds[0], run.scene.packing_fraction
+            value = enskog(eta, run.dimension, 2.0 * kind.radius, temperature, kind.mass)
+            expected = {"theory": (float(value), math.nan), "source": "Enskog"}
+        d = run.dimension
+        units = f"1 / (length^{d - 2} time)" if name == "heat" else f"mass length^{2 - d} / time"
+        about: dict[str, Any] = {
+            "units": units,
+            "long_name": f"{public.replace('_', ' ')} {symbol}",
+            **expected,
+        }
+        edges = run.time[-len(products) - 1 :]
+        result = scalar(public, running[:, lags], edges, **about)
+        time = settings.interval * np.arange(products.shape[1])
+        result["lag"] = ("lag", time, {"units": "time", "long_name": "lag"})
+        curves = {
+            "green_kubo": running,
+            "helfand": 0.5 * scale * squares / np.where(time > 0.0, time, np.nan),
+        }
+        for key, blocks in curves.items():
+            values, errors = means_of(blocks)
+            result[key] = ("lag", values, {"units": units, "long_name": f"{key} until this lag"})
+            result[f"{key}_error"] = ("lag", errors, {"units": units, "long_name": "standard uncertainty"})
+        return result
+
+
+_PUBLIC = {
+    "shear": ("shear_viscosity", "η"),
+    "bulk": ("bulk_viscosity", "ζ"),
+    "heat": ("thermal_conductivity", "κ"),
+}
+
+
+def _lags_until(settings: Correlations, lag: float | None) -> int:
+    """The number of the lag until which correlations count."""
+    if lag is None:
+        return settings.lags
+    number = round(lag / settings.interval)
+    if not 1 <= number <= settings.lags:
+        longest = settings.lags * settings.interval
+        raise SceneError("lag", lag, f"must be between {settings.interval:g} and {longest:g}")
+    return number
+
+
+def _blocks(run: Run, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """(B, lags) the correlation of V J, and the squared change of G, by blocks: the intervals between frames
+    in which samples end pairs of all lags. The mean of the flux is taken off where it is not zero."""
+    data: xr.Dataset = run.data
+    samples = data["correlated_samples"].values
+    lags = np.arange(data.sizes["lag"])
+    pairs = np.diff(np.maximum(samples[:, None] - lags, 0.0), axis=0)
+    complete = (pairs > 0.0).all(axis=1)
+    pairs = pairs[complete]
+    products, squares = (
+        run.increments(f"{name}_{kind}_sum")[complete] / pairs for kind in ("product", "square")
+    )
+    if name == "bulk":
+        d = run.dimension
+        stress = data["stress_sum"].values
+        mean = np.trace(stress[-1] - stress[0]) / (d * (run.time[-1] - run.time[0]))
+        interval = float(data["lag"][1])
+        products, squares = products - mean**2, squares - (mean * interval * lags) ** 2
+    return products, squares

@@ -1,0 +1,103 @@
+"""Time integrals of the stress tensor and of the heat flux (Helfand, Phys. Rev. 119, 1 (1960)).
+
+The stress sum S (d, d) grows by m v v dt while particles fly, and by r dp at a collision, with r the vector
+from the second particle to the first and dp what that gains. The heat sum Q (d,) grows by E v dt and by r
+times half of the difference of what the two particles gain in energy E, which with spins includes that of
+rotation. A particle's velocity is constant in a step without walls and pull, so nothing is approximated.
+
+The sums of a cell are made by one thread and added as whole numbers, so that they do not depend on threads.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
+from gaspart.kernels.dsmc.model import kind_in, number_at, velocity_row
+from gaspart.kernels.physics.running_sum import add_whole
+
+
+class Stress(NamedTuple):
+    """By thread: sums (threads, d^2 + d, 2), those of S, by rows, and of Q; cell (threads, d^2 + d), what the
+    present cell adds; before (threads, 2, d + 1), velocity and energy of two particles before they collide.
+    scales (2,): the powers of two that few terms of S and Q exceed."""
+
+    sums: np.ndarray
+    cell: np.ndarray
+    before: np.ndarray
+    scales: np.ndarray
+
+
+@inner_helper
+def energy_of(particles, slot, setting, law):
+    """The kinetic energy of the particle in a slot."""
+    tools = setting.tools
+    kind = kind_in(particles, slot, tools)
+    square = 0.0
+    for k in range(len(setting.space.lengths)):
+        v = particles.data[velocity_row(particles, k), slot]
+        square += v * v
+    energy = 0.5 * tools.mass[kind] * square
+    if law is not None:
+        spin, number = 0.0, number_at(particles, slot)
+        for k in range(3):
+            spin += law.spins[number, k] * law.spins[number, k]
+        if spin > 0.0:  # the moment of inertia of smooth particles may be infinite
+            energy += 0.5 * tools.inertia[kind] * spin
+    return energy
+
+
+@inner_helper
+def add_flight(particles, slot, setting, stress, law):
+    """Add what the particle in a slot carries in a step."""
+    d, tools, cell = len(setting.space.lengths), setting.tools, stress.cell[setting.part]
+    mass, energy = tools.mass[kind_in(particles, slot, tools)], energy_of(particles, slot, setting, law)
+    for k in range(d):
+        way = particles.data[velocity_row(particles, k), slot] * tools.dt
+        cell[d * d + k] += energy * way
+        for n in range(d):
+            cell[d * k + n] += way * mass * particles.data[velocity_row(particles, n), slot]
+
+
+@inner_helper
+def finish_cell(setting, stress):
+    """Move the sums of the present cell to those of its thread."""
+    cell, sums, d = stress.cell[setting.part], stress.sums[setting.part], len(setting.space.lengths)
+    for n in range(len(cell)):
+        add_whole(sums[n], cell[n], stress.scales[0] if n < d * d else stress.scales[1])
+        cell[n] = 0.0
+
+
+@inner_kernel
+def add_flights(particles, cells, grid, setting, stress, law):
+    """Add what the particles of some cells, from cells[0] to cells[1], carry in a step."""
+    for cell in range(cells[0], cells[1]):
+        for slot in range(np.int64(grid.starts[cell]), np.int64(grid.starts[cell + 1])):
+            add_flight(particles, slot, setting, stress, law)
+        finish_cell(setting, stress)
+
+
+@inner_helper
+def note_pair(particles, pair, setting, stress, law):
+    """Keep velocities and energies of the particles in two slots, which are to collide."""
+    before, d = stress.before[setting.part], len(setting.space.lengths)
+    for n in range(2):
+        for k in range(d):
+            before[n, k] = particles.data[velocity_row(particles, k), pair[n]]
+        before[n, d] = energy_of(particles, pair[n], setting, law)
+
+
+@inner_helper
+def add_contact(particles, pair, apart, setting, stress, law):
+    """Add what has passed between the particles in two slots since `note_pair`. apart (3,): the vector from
+    the second to the first."""
+    before, cell = stress.before[setting.part], stress.cell[setting.part]
+    d, tools = len(setting.space.lengths), setting.tools
+    mass = tools.mass[kind_in(particles, pair[0], tools)]
+    first = energy_of(particles, pair[0], setting, law) - before[0, d]
+    second = energy_of(particles, pair[1], setting, law) - before[1, d]
+    for n in range(d):
+        gained = mass * (particles.data[velocity_row(particles, n), pair[0]] - before[0, n])
+        cell[d * d + n] += apart[n] * 0.5 * (first - second)
+        for k in range(d):
+            cell[d * k + n] += apart[k] * gained

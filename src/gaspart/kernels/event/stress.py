@@ -1,0 +1,103 @@
+"""Time integrals of the stress tensor and of the heat flux (Helfand, Phys. Rev. 119, 1 (1960)).
+
+The stress sum S (d, d) grows by m v v dt while particles fly, and by r dp at a contact, with r the vector
+from the second particle to the first and dp what that gains. The heat sum Q (d,) grows by E v dt and by r
+times half of the difference of what the two particles gain in energy E, with spins also that of rotation.
+
+Between contacts m v v summed over all particles, K, is constant, so that its integral until the time t is
+K(t) t minus the sum over contacts of their time and of the change of K: a contact adds what concerns its two
+particles, and K is summed when S is read.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from gaspart.kernels.compile.policy import inner_helper, kernel
+from gaspart.kernels.physics.collision import gap_along
+from gaspart.kernels.physics.running_sum import add
+
+
+class Stress(NamedTuple):
+    """sums (d^2 + d, 2), those of S, by rows, and of Q without K(t) t, see `running_sum.add`; before
+    (2, d + 1), velocity and energy of two particles before their contact."""
+
+    sums: np.ndarray
+    before: np.ndarray
+
+
+@inner_helper
+def mass_of(i, masses, law):
+    """The mass of a particle."""
+    if law is not None:
+        return 1.0 / law.inverse_mass[i]
+    if masses is not None:
+        return masses[i]
+    return 1.0
+
+
+@inner_helper
+def rotational_energy(i, law):
+    """Half of the moment of inertia times the square of the spin."""
+    if law is not None:
+        spin = 0.0
+        for k in range(3):
+            spin += law.spins[i, k] * law.spins[i, k]
+        if spin > 0.0:
+            return 0.5 * spin / law.inverse_inertia[i]
+    return 0.0
+
+
+@inner_helper
+def energy_of(flights, i, space, masses, law):
+    """The kinetic energy of a particle."""
+    square = 0.0
+    for k in range(len(space.lengths)):
+        square += flights[i].velocity[k] * flights[i].velocity[k]
+    return 0.5 * mass_of(i, masses, law) * square + rotational_energy(i, law)
+
+
+@inner_helper
+def note_pair(flights, i, j, space, masses, law, stress):
+    """Keep velocities and energies of two particles, which are about to collide."""
+    if stress is not None:
+        d = len(space.lengths)
+        for k in range(d):
+            stress.before[0, k] = flights[i].velocity[k]
+            stress.before[1, k] = flights[j].velocity[k]
+        stress.before[0, d] = energy_of(flights, i, space, masses, law)
+        stress.before[1, d] = energy_of(flights, j, space, masses, law)
+
+
+@inner_helper
+def add_contact(flights, i, j, time, space, masses, law, stress):
+    """Add what two particles have exchanged at their contact since `note_pair`."""
+    if stress is not None:
+        d, sums, before = len(space.lengths), stress.sums, stress.before
+        mass, other = mass_of(i, masses, law), mass_of(j, masses, law)
+        energy = energy_of(flights, i, space, masses, law)
+        other_energy = energy_of(flights, j, space, masses, law)
+        passed = 0.5 * ((energy - before[0, d]) - (other_energy - before[1, d]))
+        for k in range(d):
+            apart = -gap_along(flights, i, j, k, space)
+            u, v = flights[i].velocity[k], flights[j].velocity[k]
+            heat = energy * u - before[0, d] * before[0, k] + other_energy * v - before[1, d] * before[1, k]
+            add(sums, d * d + k, apart * passed - time * heat)
+            for n in range(d):
+                x, y = flights[i].velocity[n], flights[j].velocity[n]
+                flux = mass * (u * x - before[0, k] * before[0, n])
+                flux += other * (v * y - before[1, k] * before[1, n])
+                add(sums, d * k + n, apart * mass * (x - before[0, n]) - time * flux)
+
+
+@kernel
+def add_flights(flights, time, space, masses, law, stress):
+    """Add `time` times m v v and E v, summed over all particles."""
+    d, sums = len(space.lengths), stress.sums
+    for i in range(len(flights)):
+        mass, energy = mass_of(i, masses, law), energy_of(flights, i, space, masses, law)
+        for k in range(d):
+            way = time * flights[i].velocity[k]
+            add(sums, d * d + k, energy * way)
+            for n in range(d):
+                add(sums, d * k + n, mass * way * flights[i].velocity[n])

@@ -1,0 +1,196 @@
+"""The tally of the stress tensor and the heat flux: its definition, the virial and energy; its bits."""
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scenes import gas
+
+import gaspart as gp
+from gaspart import theory
+
+CUBE, FLAT = gp.Container((4.0,) * 3, "periodic"), gp.Container((9.0, 7.0), "periodic")
+PAIR = [gp.Species(20, 0.3, temperature=1.0), gp.Species(10, 0.2, mass=3.0, temperature=1.0)]
+SCENES = {
+    "spheres": gp.Scene(CUBE, [PAIR[0]]),
+    "mixture": gp.Scene(CUBE, PAIR),
+    "discs": gp.Scene(FLAT, PAIR),
+    "rough": gp.Scene(FLAT, PAIR, restitution=gp.Restitution(0.9, 0.5, contact_duration=0.0)),
+}
+ENGINES = {
+    "event": gp.EventDriven(),
+    "boltzmann": gp.DSMC(time_step=0.02, cells_per_side=2),
+    "enskog": gp.DSMC(time_step=0.02, cells_per_side=1, model="enskog"),
+}
+
+
+def energies(state):
+    """(N,) kinetic energy of each particle, that of rotation included."""
+    spins = state.spins.reshape(state.count, -1)
+    turning = np.where(spins != 0.0, state.moments_of_inertia[:, None] * spins**2, 0.0)
+    return 0.5 * state.masses * (state.velocities**2).sum(axis=1) + 0.5 * turning.sum(axis=1)
+
+
+def integrals(simulation):
+    """The two sums of a simulation from its start on, by their definition, from all states after events."""
+    states = list(simulation.replay(by="event"))
+    lengths = np.array(simulation.scene.container.lengths)
+    d = len(lengths)
+    stress, heat = np.zeros((d, d)), np.zeros(d)
+    for before, after in itertools.pairwise(states):
+        dt = after.time - before.time
+        v, energy = before.velocities, energies(before)
+        stress += dt * np.einsum("n,na,nb->ab", before.masses, v, v)
+        heat += dt * (energy @ v)
+        changed = np.flatnonzero((after.velocities != v).any(axis=1))
+        if len(changed) == 2:
+            i, j = changed
+            apart = after.positions[i] - after.positions[j]
+            apart -= lengths * np.round(apart / lengths)
+            gained = after.masses[i] * (after.velocities[i] - v[i])
+            passed = energies(after)[changed] - energy[changed]
+            stress += np.outer(apart, gained)
+            heat += apart * 0.5 * (passed[0] - passed[1])
+    return stress, heat
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_event_driven_sums_are_those_of_their_definition(name):
+    sim = gp.Simulation(SCENES[name], gp.EventDriven(), seed=2, stress=True)
+    sim.advance(duration=3.0)
+    assert sim.tally.collisions > 15
+    stress, heat = integrals(sim)
+    scale = abs(stress).max()
+    assert np.allclose(sim.tally.stress_sum, stress, rtol=0.0, atol=1e-11 * scale)
+    assert np.allclose(sim.tally.heat_sum, heat, rtol=0.0, atol=1e-11 * scale)
+
+
+@pytest.mark.parametrize("engine", ["event", "enskog"])
+def test_the_trace_is_that_of_energy_and_virial(engine):
+    """Of smooth elastic particles: twice the energy times the time, and the virial."""
+    sim = gp.Simulation(SCENES["mixture"], ENGINES[engine], seed=2, stress=True)
+    sim.advance(duration=1.0)
+    sim.reset_tally()
+    sim.advance(duration=2.0)
+    tally = sim.tally
+    expected = 2.0 * sim.state.kinetic_energy * tally.time + tally.virial_sum
+    assert np.trace(tally.stress_sum) == pytest.approx(expected, rel=1e-12)
+    assert tally.collisions > 10
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("name", ["mixture", "rough"])
+def test_observing_and_restoring_change_no_bit(name, engine):
+    scene = SCENES[name]
+    plain, whole, cut = (
+        gp.Simulation(scene, ENGINES[engine], seed=4, stress=stress) for stress in (False, True, True)
+    )
+    plain.advance(until=3.0)
+    whole.advance(until=3.0)
+    assert np.array_equal(plain.state.velocities, whole.state.velocities)
+    assert plain.tally.stress_sum is None
+    cut.advance(until=1.2)
+    again = gp.Simulation(scene, ENGINES[engine], seed=4, stress=True)
+    again.restore(cut.checkpoint())
+    again.advance(until=3.0)
+    assert np.array_equal(again.tally.stress_sum, whole.tally.stress_sum)
+    assert np.array_equal(again.tally.heat_sum, whole.tally.heat_sum)
+
+
+@pytest.mark.parametrize("search", ["boxes", "lists", "direct", "pairs"])
+def test_every_search_gives_the_same_sums(search):
+    first, other = (
+        gp.Simulation(SCENES["mixture"], gp.EventDriven(search=kind), seed=4, stress=True)
+        for kind in ("automatic", search)
+    )
+    for sim in (first, other):
+        sim.advance(duration=2.0)
+    assert np.array_equal(first.tally.stress_sum, other.tally.stress_sum)
+
+
+def test_threads_change_no_bit():
+    one, two = (
+        gp.Simulation(gas(3, 2000, 0.01), replace(ENGINES["boltzmann"], cells_per_side=6, threads=n), 1, True)
+        for n in (1, 2)
+    )
+    for sim in (one, two):
+        sim.advance(duration=0.5)
+    assert np.array_equal(one.tally.stress_sum, two.tally.stress_sum)
+    assert np.array_equal(one.tally.heat_sum, two.tally.heat_sum)
+
+
+def test_many_epochs_of_the_clocks_lose_nothing():
+    """Until the clocks have started again a hundred times: the trace is exact to rounding."""
+    sim = gp.Simulation(gas(2, 30, 0.1), gp.EventDriven(), seed=1, stress=True)
+    sim.advance(duration=3000.0)
+    tally = sim.tally
+    expected = 2.0 * sim.state.kinetic_energy * tally.time + tally.virial_sum
+    assert np.trace(tally.stress_sum) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("scene", "engine", "rule"),
+    [
+        (gas(2, 20, 0.1), gp.TimeStepped(time_step=0.01), "engine"),
+        (replace(gas(2, 20, 0.1), container=gp.Container((9.0, 9.0), "wall")), gp.EventDriven(), "periodic"),
+        (replace(gas(2, 20, 0.1), thermostat=gp.Thermostat(1.0, 0.03)), gp.EventDriven(), "kicks"),
+    ],
+)
+def test_what_cannot_be_tallied_is_refused(scene, engine, rule):
+    with pytest.raises(gp.SceneError, match=f"stress = True: .*{rule}"):
+        gp.Simulation(scene, engine, stress=True)
+
+
+def run(path, scene, engine, interval, lags, frames, per_frame, follow=1):
+    """A trajectory with correlations of the stress."""
+    return gp.run(
+        scene,
+        engine,
+        seed=3,
+        duration=interval * per_frame * frames,
+        sample_interval=interval * per_frame,
+        follow=follow,
+        correlations=gp.Correlations(interval, lags, stress=True),
+        path=path,
+    )
+
+
+def test_viscosity_and_conductivity_of_a_dilute_gas_are_those_of_chapman_and_enskog(tmp_path):
+    """By DSMC, with the error of its cells: 3 sigma, of 2.5 %."""
+    count, width, step = 216, 0.5, 0.125
+    length = 2.0 * width
+    sigma = math.sqrt(length**3 / (count * math.sqrt(2.0) * math.pi))  # the mean free path is 1
+    kind = gp.Species(count, 0.5 * sigma, temperature=1.0, exact_temperature=True)
+    scene = gp.Scene(gp.Container((length,) * 3, "periodic"), [kind])
+    path = run(tmp_path / "run.nc", scene, gp.DSMC(step, 2), 2.0 * step, 40, 30, 1200)
+    coarse = 1.0 + 16.0 / (45.0 * math.pi) * width**2 + 16.0 / (75.0 * math.pi) * 2.0 * step**2
+    viscosity = gp.analysis.shear_viscosity(path, start=0.0)
+    expected = coarse * float(theory.enskog_viscosity(1e-12, 3, sigma))
+    assert float(viscosity.error) < 0.03 * expected
+    assert abs(float(viscosity.estimate) - expected) < 3.0 * float(viscosity.error)
+    conductivity = gp.analysis.thermal_conductivity(path, start=0.0)
+    expected = float(theory.enskog_conductivity(1e-12, 3, sigma)) * (
+        1.0 + 32.0 / (225.0 * math.pi) * width**2
+    )
+    assert float(conductivity.error) < 0.04 * expected
+    assert abs(float(conductivity.estimate) - expected) < 3.0 * float(conductivity.error)
+
+
+def test_green_and_kubo_agree_with_helfand(tmp_path):
+    """The derivative of the squared change of G is the integral of the correlation, to the pairs at the ends;
+    the pressure tensor is isotropic, with the trace of the virial."""
+    path = run(tmp_path / "run.nc", gas(3, 64, 0.3), gp.EventDriven(), 0.05, 20, 20, 200, None)
+    viscosity = gp.analysis.shear_viscosity(path, start=0.0)
+    time = viscosity["lag"].values
+    slope = np.diff(viscosity["helfand"].values[1:] * time[1:]) / np.diff(time[1:])
+    assert slope == pytest.approx(viscosity["green_kubo"].values[1:-1], rel=0.02)
+    tensor = gp.analysis.pressure_tensor(path, start=0.0)
+    across = ~np.eye(3, dtype=bool).ravel()
+    assert abs(tensor.estimate.values / tensor.error.values)[across].max() < 4.5
+    z = float(gp.analysis.compressibility_factor(path, start=0.0).estimate)
+    mean = float(tensor.estimate.values.reshape(3, 3).trace() / 3.0)
+    with gp.open_trajectory(path) as data:
+        ideal = 2.0 * float(data["kinetic_energy"][0]) / 3.0 / math.prod(gas(3, 64, 0.3).container.lengths)
+    assert mean == pytest.approx(z * ideal, rel=0.02)
