@@ -10,8 +10,8 @@ import numpy as np
 
 import gaspart
 from gaspart.engines import Engine
-from gaspart.engines.arrays import EventLog
 from gaspart.engines.belonging import belonging, check_belonging
+from gaspart.engines.event_log import EventLog
 from gaspart.errors import SceneError, SimulationError
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Body, Species

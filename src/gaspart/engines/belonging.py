@@ -41,3 +41,12 @@ def check_belonging(checkpoint: Any, wanted: Mapping[str, np.ndarray]) -> None:
             this = "" if what == "scene" else f", which has {text}"
             rule = f"is of another {what} than this simulation{this}"
             raise SceneError("checkpoint", str(checkpoint[key]), rule)
+
+
+def check_parts(parts: Mapping[str, np.ndarray], wanted: Mapping[str, np.ndarray]) -> None:
+    """Raise SceneError unless a checkpoint has all `wanted` arrays, each of its shape and kind of number."""
+    for key, array in wanted.items():
+        found = parts.get(key)
+        alike = isinstance(found, np.ndarray) and found.shape == np.shape(array)
+        if not alike or found.dtype.kind != np.asarray(array).dtype.kind:  # type: ignore[union-attr]
+            raise SceneError("checkpoint", key, "is missing or of another form: the checkpoint is damaged")

@@ -18,7 +18,7 @@ from gaspart.scene.validation import choice, from_mapping
 if TYPE_CHECKING:
     import numpy as np
 
-    from gaspart.engines.arrays import EventLog
+    from gaspart.engines.event_log import EventLog
     from gaspart.scene.scene import Scene
     from gaspart.state.state import State
     from gaspart.state.tally import Tally

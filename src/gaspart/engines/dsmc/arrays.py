@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.arrays import contact_law
 from gaspart.engines.dsmc.rates import accessible
-from gaspart.engines.step.arrays import largest_terms
+from gaspart.engines.features.faces import WALL_DRAWS, kinds_and_levels
+from gaspart.engines.features.masses import largest_terms
 from gaspart.errors import SceneError
 from gaspart.kernels.dsmc.model import PADDED, Faces, Grid, Law, Particles, Tools
 from gaspart.kernels.dsmc.stress import Stress
-from gaspart.kernels.model import HARD, THERMAL, THERMAL_NORMAL, flight_dtype
-from gaspart.scene.faces import FACES, Thermal
+from gaspart.kernels.model import ContactLaw, flight_dtype
 from gaspart.scene.scene import Scene
 from gaspart.state.random import key_of
 from gaspart.state.state import State
@@ -22,7 +21,7 @@ from gaspart.state.state import State
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC
 
-_WALL_DRAWS, _COLLISION_DRAWS = 2, 5  # purposes of random numbers
+_COLLISION_DRAWS = 5  # the purpose of their random numbers, after those of thermal walls and kicks
 MOST_KINDS = 2**16
 
 
@@ -81,7 +80,7 @@ def tools_for(engine: DSMC, scene: Scene, state: State, step: float, seed: int |
         inertia=inertia,
         largest=scene.largest_radius,
         key=(key_of(seed, _COLLISION_DRAWS) & np.uint64(0xFFFFFFFF)).astype(np.uint32),
-        wall_key=key_of(seed, _WALL_DRAWS),
+        wall_key=key_of(seed, WALL_DRAWS),
         flights=np.zeros((threads, 2), flight_dtype(d)),
         inverse_mass=np.zeros((threads, 2)),
         inverse_inertia=np.zeros((threads, 2)),
@@ -113,20 +112,9 @@ TALLY = ("counts", "virial", "loss", "wall_hits", "wall_impulse", "wall_heat")
 
 def faces_for(scene: Scene) -> Faces | None:
     """The kinds of the container's faces, if any is thermal."""
-    if not scene.faces:
-        return None
-    kinds, levels = [], []
-    for name in FACES[: 2 * scene.dimension]:
-        kind, level = HARD, 0.0
-        match scene.faces.get(name):
-            case Thermal(temperature, components):
-                kind, level = THERMAL if components == "all" else THERMAL_NORMAL, temperature
-        kinds.append(kind)
-        levels.append(level)
-    return Faces(np.array(kinds, dtype=np.int64), np.array(levels))
+    return Faces(*kinds_and_levels(scene)) if scene.faces else None
 
 
-def law_for(scene: Scene, state: State) -> Law | None:
-    """The law of contacts, or None if all are elastic and smooth."""
-    law = contact_law(scene, state)
+def law_for(law: ContactLaw | None) -> Law | None:
+    """The law of contacts as this engine's kernels take it, or None if all are elastic and smooth."""
     return None if law is None else Law(law.normal, law.tangential, law.spins, law.viscous)

@@ -11,15 +11,17 @@ import numpy as np
 from gaspart.engines.dsmc.defaults import cells_for, step_for, warn_if_coarse
 from gaspart.engines.dsmc.limits import check_scene
 from gaspart.engines.dsmc.rates import rates
-from gaspart.engines.dsmc.thermostat import kicks
+from gaspart.engines.features.law import LawPart, contact_law
+from gaspart.engines.features.part import Part, arrays_of, write_parts
+from gaspart.engines.features.thermostat import step_kicks
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 from gaspart.state.tally import Tally
 
 if TYPE_CHECKING:
-    from gaspart.engines.arrays import EventLog
     from gaspart.engines.dsmc.settings import DSMC
+    from gaspart.engines.event_log import EventLog
 
 _MOST_STEPS = 2.0**53  # above, float64 does not distinguish their numbers
 
@@ -52,14 +54,21 @@ class DsmcDynamics:
         space = Space(scene.container.lengths, scene.container.periodic, self._tools.margin)
         self._setting = model.Setting(space, self._tools, 0)
         self._gravity = scene.gravity
-        self._faces, self._law = arrays.faces_for(scene), arrays.law_for(scene, state)
+        law = contact_law(scene, state)
+        self._faces, self._law = arrays.faces_for(scene), arrays.law_for(law)
         self._dense = None
         if engine.model == "enskog":
             from gaspart.engines.dsmc.dense import dense_for
 
             self._dense = dense_for(scene, state, self._grid, len(self._tools.radius))
         self._stress = arrays.stress_for(scene, state, engine.threads) if stress else None
-        self._kicks = kicks(scene, self.time_step, seed)
+        self._kicks = step_kicks(scene, self.time_step, seed)
+        parts = (
+            LawPart(law) if law else None,
+            Part({"fields": self._dense.fields}) if self._dense else None,
+            Part({"given": self._kicks.given}) if self._kicks else None,
+        )
+        self._parts = [part for part in parts if part]
         self._place(np.arange(state.count), state.positions, state.velocities, state.images)
         self._lost = np.zeros(2)  # net and gross, before the tally began
         self._start, self._since = state.time, 0
@@ -192,8 +201,7 @@ class DsmcDynamics:
             velocities=self._by_particle(d),
             images=self._particles.images.T.astype(self._reference.images.dtype),
         )
-        if self._law is not None:
-            state.spins = (self._law.spins[:, 2] if d == 2 else self._law.spins).copy()
+        write_parts(self._parts, state)
         return state
 
     @property
@@ -220,7 +228,7 @@ class DsmcDynamics:
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         """Everything that a continuation to the same bits needs."""
-        parts = {
+        return {
             "steps": np.array(self._steps),
             "since": np.array(self._since),
             "lost": self._lost.copy(),
@@ -229,16 +237,9 @@ class DsmcDynamics:
             "images": self._particles.images.T.copy(),
             "slots": self._slots.copy(),
             **{key: getattr(self._tools, key).sum(axis=0) for key in self._arrays.TALLY},
+            **{key: array.copy() for key, array in arrays_of(self._parts).items()},
+            **({} if self._stress is None else {"stress": self._stress.sums.sum(axis=0)}),
         }
-        if self._law is not None:
-            parts["spins"] = self._law.spins.copy()
-        if self._dense is not None:
-            parts["fields"] = self._dense.fields.copy()
-        if self._kicks is not None:
-            parts["given"] = self._kicks.given.copy()
-        if self._stress is not None:
-            parts["stress"] = self._stress.sums.sum(axis=0)
-        return parts
 
     def restore(self, parts: dict[str, np.ndarray]) -> None:
         """Go on from a checkpoint of the same scene and engine, by whatever number of threads."""
@@ -247,12 +248,8 @@ class DsmcDynamics:
             array = getattr(self._tools, key)
             array[...] = 0
             array[0] = parts[key]
-        if self._law is not None:
-            self._law.spins[...] = parts["spins"]
-        if self._dense is not None:
-            self._dense.fields[...] = parts["fields"]
-        if self._kicks is not None:
-            self._kicks.given[...] = parts["given"]
+        for key, array in arrays_of(self._parts).items():
+            array[...] = parts[key]
         if self._stress is not None:
             self._stress.sums[...] = 0
             self._stress.sums[0] = parts["stress"]

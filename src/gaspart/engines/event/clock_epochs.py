@@ -6,9 +6,6 @@ import math
 
 import numpy as np
 
-from gaspart.engines.arrays import face_energy
-from gaspart.engines.features.vibrating import greatest_speed
-from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 
 _LENGTH = 10  # an epoch of the clocks is some 2^10 times of flight over a diameter
@@ -20,22 +17,13 @@ QUIET = 64
 
 
 class Epochs:
-    """How long the epochs of a scene are, with masses of at least `lightest`.
+    """How long the epochs of a scene are.
 
-    The speed for times of flight is the rms speed, with the largest gain by gravity and walls, among them
-    twice the speed that its load gives a piston.
+    The speed for times of flight is the rms speed, with the largest gain by gravity and faces. gained: the
+    square of the largest speed that the scene itself gives a particle.
     """
 
-    def __init__(self, scene: Scene, lightest: float) -> None:
-        gained = 0.0  # the square of the largest speed that the scene itself gives
-        if scene.gravity is not None:
-            lengths = scene.container.lengths
-            gained += 2.0 * sum(abs(g) * length for g, length in zip(scene.gravity, lengths, strict=True))
-        if scene.faces and scene.count:
-            gained += face_energy(scene) / lightest + (2.0 * greatest_speed(scene)) ** 2
-            gained += sum(
-                8.0 * face.pressure * scene.container.volume / face.mass for _, face in pistons(scene)
-            )
+    def __init__(self, scene: Scene, gained: float) -> None:
         self._gained = gained
         self._diameter = 2 * scene.smallest_radius
         self._across = max(scene.container.lengths)

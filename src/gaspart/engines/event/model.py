@@ -1,98 +1,75 @@
-"""What the kernels of the event-driven engine are compiled for and work with: the model of a scene, and what
-watches for a collapse."""
+"""What the kernels of the event-driven engine work with, and the parts of a run."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from gaspart.engines.arrays import (
-    contact_duration,
-    contact_law,
-    interior_walls,
-    internal_arrays,
-    scaled_masses,
-    special_faces,
-)
-from gaspart.engines.event.stalling import MOST_OF_STACK
+from gaspart.engines.features.contact_duration import DurationPart, contact_duration
+from gaspart.engines.features.faces import FacesPart, special_faces
+from gaspart.engines.features.gravity import GravityPart, gravity_of
+from gaspart.engines.features.law import LawPart, contact_law
+from gaspart.engines.features.masses import scaled_masses
+from gaspart.engines.features.part import Part
+from gaspart.engines.features.piston import PistonPart
+from gaspart.engines.features.rest import rest_watch
+from gaspart.engines.features.thermostat import kicks
+from gaspart.engines.features.vibrating import VibratingPart
+from gaspart.engines.features.walls import interior_walls
+from gaspart.kernels.memory import aligned
+from gaspart.kernels.model import NONE, PREDICTION, Model, Oversized, Particles, Space, flight_dtype
 from gaspart.scene.scene import Scene
 from gaspart.state.boxes import Boxes
 from gaspart.state.state import State
 
-if TYPE_CHECKING:
-    from gaspart.kernels.event.monitors import Monitors
-    from gaspart.kernels.model import Model
 
-_OF_DURATION = ("latest", "met", "island", "elastic", "kept")  # the arrays of a contact duration
-_LOWEST = 2.0**-44  # of the container: the highest bounce on an interior wall that is taken for rest
-# More contacts of one particle than these, within so much of an epoch, are taken for a collapse. Where the
-# restitution is constant, intervals between contacts shrink geometrically until rounding lets the particles
-# part, so few of them can be seen. Slow contacts of viscoelastic particles are nearly elastic.
-_MOST, _INTERVAL = 1000, 2.0**-44
-_INELASTIC_MOST, _INELASTIC_INTERVAL = 12, 2.0**-34
-# Elastic particles do not collapse: between two surfaces that meet at an angle a, one of them has pi/a
-# contacts at one time. Gravity lets them touch for ever in a stack.
-_UNLIMITED = np.iinfo(np.int64).max
+def particles_of(state: State, boxes: Boxes) -> Particles:
+    """The particles of a state, with nothing predicted yet."""
+    n = state.count
+    particles = Particles(
+        flights=aligned((n,), flight_dtype(state.dimension)),
+        images=state.images.copy(),
+        predictions=aligned((n,), PREDICTION),
+    )
+    flights, predictions = particles.flights, particles.predictions
+    flights["position"], flights["velocity"] = state.positions, state.velocities
+    flights["radius"] = state.radii
+    predictions["partner"], predictions["box"] = NONE, boxes.coordinates(state.positions)
+    return particles
 
 
 def event_model(
     scene: Scene, state: State, seed: int | tuple[int, ...], boxes: Boxes, largest: float
 ) -> tuple[Model, float]:
     """The model of a scene, and its unit of mass. largest: the largest radius of the particles in boxes."""
-    from gaspart.kernels import model
-
     law = contact_law(scene, state)
     law = law._replace(duration=contact_duration(scene)) if law else None
     unit_mass, masses = (1.0, None) if law else scaled_masses(state.masses)
-    gravity = None
-    if scene.gravity is not None:
-        support = (
-            model.no_support(state.count, _LOWEST * max(scene.container.lengths)) if scene.walls else None
-        )
-        gravity = model.Gravity(scene.gravity, np.isinf(state.masses), 0.0, support)
     oversized = np.flatnonzero(state.radii > largest)
-    found = model.Model(
-        space=model.Space(
-            scene.container.lengths, scene.container.periodic, float(not scene.centres_to_walls)
-        ),
+    model = Model(
+        space=Space(scene.container.lengths, scene.container.periodic, float(not scene.centres_to_walls)),
         masses=masses,
-        gravity=gravity,
+        gravity=gravity_of(scene, state),
         law=law,
         faces=special_faces(scene, state, seed, unit_mass) if scene.faces else None,
         walls=interior_walls(scene, boxes, largest) if scene.walls else None,
-        oversized=model.Oversized(oversized, largest) if len(oversized) else None,
+        oversized=Oversized(oversized, largest) if len(oversized) else None,
     )
-    return found, unit_mass
+    return model, unit_mass
 
 
-def monitors(model: Model, count: int) -> tuple[Monitors, float]:
-    """What detects a collapse, if one is possible, and its interval as a part of an epoch."""
-    from gaspart.kernels.event.monitors import CollapseWatch, Monitors
-
-    law = model.law
-    if not (law or model.gravity):
-        return Monitors(None, None), 0.0
-    most, interval = _MOST, _INTERVAL
-    if law and law.normal < 1.0 and law.viscous is None and not law.duration:
-        most, interval = _INELASTIC_MOST, _INELASTIC_INTERVAL
-    elif law is None or (law.normal == 1.0 and abs(law.tangential) == 1.0 and law.vibrations is None):
-        most = MOST_OF_STACK if model.gravity else _UNLIMITED
-    watch = CollapseWatch(np.full(count, -np.inf), np.zeros(count, dtype=np.int64), 0.0, most)
-    return Monitors(None, watch), interval
-
-
-def changing(model: Model) -> dict[str, np.ndarray]:
-    """The arrays of a model that a run changes, by name."""
-    law, faces, gravity = model.law, model.faces, model.gravity
-    arrays = internal_arrays(law, faces)
-    if law and law.duration:
-        arrays |= {f"contact_{key}": getattr(law.duration, key) for key in _OF_DURATION}
-        if gravity:
-            arrays["gravity_fixed"] = gravity.fixed
-    if gravity and gravity.support:
-        support = gravity.support._asdict()
-        arrays |= {f"support_{key}": support[key] for key in support if key != "height"}
-    if faces and faces.piston:
-        arrays["piston"] = faces.piston.motion
-    return arrays
+def event_parts(
+    scene: Scene, state: State, seed: int | tuple[int, ...], model: Model, unit_mass: float
+) -> list[Part]:
+    """The parts of a run, one for each feature of the scene."""
+    gravity, law, faces = model.gravity, model.law, model.faces
+    parts = (
+        GravityPart(gravity, scene.container.lengths) if gravity else None,
+        FacesPart(scene, faces, unit_mass, float(state.masses.min(initial=np.inf))) if faces else None,
+        VibratingPart(scene, faces.motion) if faces and faces.motion else None,
+        PistonPart(faces.piston, scene) if faces and faces.piston else None,
+        LawPart(law) if law else None,
+        DurationPart(law.duration, gravity) if law and law.duration else None,
+        kicks(scene, seed, unit_mass),
+        rest_watch(scene, state),
+    )
+    return [part for part in parts if part]

@@ -1,1 +1,1 @@
-"""Optional features of a scene as an engine needs them: arrays, clock epochs, scheduled events, energy."""
+"""Optional features of a scene as the engines need them, one module for each: see `part`."""

@@ -1,10 +1,12 @@
-"""The piston of a scene, as the kernels know it."""
+"""A face that is a piston."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from gaspart.kernels import model
+from gaspart.engines.features.part import Part
+from gaspart.kernels import model as kernels
+from gaspart.kernels.obstacles.piston import advance_piston
 from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
@@ -12,42 +14,47 @@ from gaspart.state.state import State
 _OF_EPOCH = 2.0**-24  # a particle at rest on which the piston lies meets it again after this part of an epoch
 
 
-def piston_of(scene: Scene, state: State, unit_mass: float) -> model.Piston | None:
+def piston_of(scene: Scene, state: State, unit_mass: float) -> kernels.Piston | None:
     """The piston of a state, in units of `unit_mass`; None if there is none."""
-    found = pistons(scene)
-    if not found or state.piston is None:
+    if not pistons(scene) or state.piston is None:
         return None
-    n, face = found[0]
+    ((n, face),) = pistons(scene)
     x, velocity = state.piston
     inwards = (scene.container.lengths[n // 2] - x, -velocity) if n % 2 else (x, velocity)
     push = face.acceleration(scene, n // 2)
-    return model.Piston(n, face.mass / unit_mass, push, np.array([*inwards, 0.0]), np.zeros(1))
+    return kernels.Piston(n, face.mass / unit_mass, push, np.array([*inwards, 0.0]), np.zeros(1))
 
 
-def begin_epoch(piston: model.Piston, length: float) -> None:
-    """Let the present epoch of the clocks have this length."""
-    piston.slowest[0] = 0.5 * piston.push * _OF_EPOCH * length
+class PistonPart(Part):
+    """The piston of a container with these `lengths`: twice the speed that its load gives it is what it can
+    give a particle."""
 
+    def __init__(self, piston: kernels.Piston, scene: Scene) -> None:
+        super().__init__({"piston": piston.motion})
+        self._piston, self._lengths = piston, scene.container.lengths
+        ((_, face),) = pistons(scene)
+        self.gained = 8.0 * face.pressure * scene.container.volume / face.mass
 
-def set_clock(piston: model.Piston, clock: float) -> None:
-    """Let the piston's present motion be that of this time on the clocks of the epoch."""
-    piston.motion[model.PISTON_CLOCK] = clock
+    def set_clock(self, clock: float) -> None:
+        """Let the present motion be that at this time."""
+        self._piston.motion[kernels.PISTON_CLOCK] = clock
 
+    def begin_epoch(self, length: float, start: float, model: kernels.Model) -> kernels.Model:
+        """Set the speed at which particles part from it."""
+        self._piston.slowest[0] = 0.5 * self._piston.push * _OF_EPOCH * length
+        return model
 
-def next_epoch(piston: model.Piston, last: float) -> None:
-    """Move the piston to the end of an epoch of a length `last`, and let that be time 0 of its clock."""
-    from gaspart.kernels.obstacles.piston import advance_piston
+    def end_epoch(self, length: float, start: float) -> None:
+        """Move it to the end of the epoch, and let that be time 0 of its clock."""
+        advance_piston(self._piston.motion, self._piston.push, length)
+        self.set_clock(0.0)
 
-    advance_piston(piston.motion, piston.push, last)
-    set_clock(piston, 0.0)
-
-
-def motion_at(piston: model.Piston, time: float, lengths: tuple[float, ...]) -> np.ndarray:
-    """(2,) where the piston is along its axis, and its velocity, at a time on the clocks of the epoch."""
-    from gaspart.kernels.obstacles.piston import advance_piston
-
-    motion = piston.motion.copy()
-    advance_piston(motion, piston.push, time)
-    place, velocity = motion[model.PISTON_PLACE], motion[model.PISTON_VELOCITY]
-    upper = piston.face % 2 == 1
-    return np.array([lengths[piston.face // 2] - place, -velocity] if upper else [place, velocity])
+    def write(self, state: State, clock: float) -> None:
+        """Write where it is along its axis, and its velocity."""
+        piston, motion = self._piston, self._piston.motion.copy()
+        advance_piston(motion, piston.push, clock)
+        place, velocity = motion[kernels.PISTON_PLACE], motion[kernels.PISTON_VELOCITY]
+        upper = piston.face % 2 == 1
+        state.piston = np.array(
+            [self._lengths[piston.face // 2] - place, -velocity] if upper else [place, velocity]
+        )

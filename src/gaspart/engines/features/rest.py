@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaspart.engines.features.part import Part
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
@@ -24,52 +25,46 @@ if TYPE_CHECKING:
 _FURTHEST = 2.0**-8  # of the smallest diameter
 
 
-class RestWatch:
-    """Looks at regular times, which do not depend on where a run is split, whether all particles rest.
-
-    arrays: what belongs to a checkpoint: before (N, d), the places at the last look; next (1,), the time of
-    the next one on the clocks of the epoch; rests (1,), whether the scene is at rest.
+class RestWatch(Part):
+    """Looks at regular times, which do not depend on where a run is split, whether all particles rest: their
+    places (N, d) at the last look, the time of the next one on the clocks of the epoch, and whether they do.
     """
 
-    def __init__(self, scene: Scene, state: State, clock: float) -> None:
-        diameter = 2.0 * scene.smallest_radius
-        self._window = math.sqrt(diameter / math.hypot(*(scene.gravity or ())))
+    def __init__(self, scene: Scene, state: State) -> None:
+        diameter, gravity = 2.0 * scene.smallest_radius, scene.gravity or ()
+        self._window = math.sqrt(diameter / math.hypot(*gravity))
         self._most = _FURTHEST * diameter
-        self.arrays = {
-            "before": state.positions.copy(),
-            "next": np.array([clock + self._window]),
-            "rests": np.zeros(1, dtype=bool),
-        }
-        self._axis = int(np.argmax(np.abs(scene.gravity or ())))
+        self._axis = int(np.argmax(np.abs(gravity)))
+        self._before = state.positions.copy()
+        self._next = np.array([self._window])
+        self._rests = np.zeros(1, dtype=bool)
+        arrays = {"before": self._before, "next": self._next, "rests": self._rests}
+        arrays = {f"scheduled_{key}": array for key, array in arrays.items()}
+        super().__init__(arrays, times=(self._next,), scheduled=self._next)
 
     @property
-    def next(self) -> float:
-        """The time of the next look, on the clocks of the epoch."""
-        return float(self.arrays["next"][0])
+    def at_rest(self) -> bool:
+        """Whether all particles rest."""
+        return bool(self._rests[0])
 
-    @property
-    def rests(self) -> bool:
-        """Whether the scene is at rest."""
-        return bool(self.arrays["rests"][0])
+    def set_clock(self, clock: float) -> None:
+        """Look for the first time after the time of a fall from now on."""
+        self._next[0] = clock + self._window
 
-    def begin_epoch(self, last: float, _: float) -> None:
-        """Count from the end of an epoch of a length `last`."""
-        self.arrays["next"] -= last
-
-    def happen(self, particles: Particles, model: Model, tally: Tally, _: float) -> bool:
-        """Look which particles rest at the time `next`, and stop them. Returns whether events must be
-        predicted anew: not if all rest."""
+    def happen(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
+        """Look which particles rest, and stop them. Returns whether events must be predicted anew: not if all
+        rest."""
         from gaspart.kernels.event.islands import hold, join
         from gaspart.kernels.event.scene_at_rest import RESTS, TOUCHES, find_resting, stop_all
         from gaspart.kernels.model import NONE
 
-        flights, places, time = particles.flights, self.arrays["before"], self.next
-        self.arrays["next"] += self._window
+        flights, places, time = particles.flights, self._before, self.next
+        self._next += self._window
         marks = np.empty((3, len(flights)), dtype=bool)
         find_resting(flights, places, time, self._most, model, marks)
         if marks[RESTS].all():
             stop_all(flights, time, model, tally)
-            self.arrays["rests"][0] = True
+            self._rests[0] = True
             return False
         law = model.law
         assert law is not None and law.duration is not None  # as `rest_watch` requires
@@ -83,10 +78,8 @@ class RestWatch:
         return hold(flights, order, time, marks, parent, model, tally)
 
 
-def rest_watch(scene: Scene, state: State, clock: float) -> RestWatch | None:
+def rest_watch(scene: Scene, state: State) -> RestWatch | None:
     """That of a scene in which all particles may come to rest: contacts that last, gravity, and no face that
     gives energy."""
     falls = scene.gravity is not None and any(scene.gravity)
-    return (
-        RestWatch(scene, state, clock) if scene.contact_duration > 0.0 and falls and not scene.faces else None
-    )
+    return RestWatch(scene, state) if scene.contact_duration > 0.0 and falls and not scene.faces else None

@@ -7,67 +7,62 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaspart.engines.features.part import Part
+from gaspart.kernels.physics import running_sum
 from gaspart.scene.scene import Scene
 from gaspart.scene.thermostat import Thermostat
 from gaspart.state.random import key_of
 
 if TYPE_CHECKING:
+    from gaspart.kernels.dsmc import model as dsmc
     from gaspart.kernels.model import Model, Particles, Tally
 
 _KICK_DRAWS = 3  # the purpose of their random numbers, after those of thermal walls
 
 
-class Kicks:
-    """The thermostat of a scene.
+def _width(thermostat: Thermostat, dimension: int, unit_mass: float) -> float:
+    """The standard deviation of a kick's velocity components, for the unit of mass."""
+    return math.sqrt(2.0 * thermostat.power * thermostat.interval / (dimension * unit_mass))
 
-    arrays: what belongs to a checkpoint: next (1,), the time of the next kick on the clocks of the epoch;
-    number (1,), how many there have been; given (1, 2), the energy given since the tally began.
-    """
+
+class Kicks(Part):
+    """The thermostat of a scene under the event-driven engine: the time of the next kick on the clocks of the
+    epoch, the number of kicks, and the energy given since the tally began."""
 
     def __init__(
         self, thermostat: Thermostat, dimension: int, seed: int | tuple[int, ...], unit_mass: float
     ) -> None:
-        self._interval = thermostat.interval
-        self._width = math.sqrt(2.0 * thermostat.power * thermostat.interval / (dimension * unit_mass))
+        self._interval, self._unit_mass = thermostat.interval, unit_mass
+        self._width = _width(thermostat, dimension, unit_mass)
         self._key = key_of(seed, _KICK_DRAWS)
-        self.arrays = {
-            "next": np.array([thermostat.interval]),
-            "number": np.zeros(1, dtype=np.int64),
-            "given": np.zeros((1, 2)),
-        }
+        self._next = np.array([thermostat.interval])
+        self._number = np.zeros(1, dtype=np.int64)
+        self._given = np.zeros((1, 2))
+        arrays = {"next": self._next, "number": self._number, "given": self._given}
+        super().__init__({f"scheduled_{key}": array for key, array in arrays.items()}, scheduled=self._next)
 
     @property
-    def next(self) -> float:
-        """The time of the next kick, on the clocks of the epoch."""
-        return float(self.arrays["next"][0])
+    def given(self) -> float:
+        """The energy that kicks have given since the tally began."""
+        return running_sum.net(self._given) * self._unit_mass
 
-    def begin_epoch(self, _: float, start: float) -> None:
-        """Count from the `start` of an epoch."""
-        self._set_next(start)
-
-    def _set_next(self, start: float) -> None:
+    def end_epoch(self, length: float, start: float) -> None:
         """The next kick is at a multiple of the interval, rounded once: a sum of intervals would drift away
         from it. The subtraction is exact."""
-        self.arrays["next"][0] = (int(self.arrays["number"][0]) + 1) * self._interval - start
+        self._next[0] = (int(self._number[0]) + 1) * self._interval - start
 
-    def reset(self) -> None:
+    def reset(self, clock: float) -> None:
         """Begin to sum energies up from zero."""
-        self.arrays["given"][:] = 0.0
+        self._given[:] = 0.0
 
-    @property
-    def given(self) -> np.ndarray:
-        """(1, 2) the energy given since the tally began, in the kernels' unit, see `running_sum.add`."""
-        return self.arrays["given"]
-
-    def happen(self, particles: Particles, model: Model, _: Tally, start: float) -> bool:
-        """Kick all particles at the time `next` of an epoch with this `start`. Returns that their flights
-        have changed."""
+    def happen(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
+        """Kick all particles. Returns that their flights have changed."""
         from gaspart.kernels.event.kicks import kick_all
 
-        counter = self._key, int(self.arrays["number"][0])
-        kick_all(particles.flights, self.next, self._width, counter, model, self.arrays["given"])
-        self.arrays["number"] += 1
-        self._set_next(start)
+        counter = self._key, int(self._number[0])
+        kick_all(particles.flights, self.next, self._width, counter, model, self._given)
+        self._number += 1
+        self.end_epoch(0.0, start)
         return True
 
 
@@ -76,3 +71,47 @@ def kicks(scene: Scene, seed: int | tuple[int, ...], unit_mass: float) -> Kicks 
     if scene.thermostat is None or not any(not kind.fixed for kind in scene.kinds):
         return None
     return Kicks(scene.thermostat, scene.dimension, seed, unit_mass)
+
+
+class StepKicks:
+    """The thermostat of a scene in steps. A step in which several kicks are due ends with one as strong as
+    all.
+
+    given (1, 2): the energy given since the tally began, see `running_sum.add`.
+    """
+
+    def __init__(
+        self, thermostat: Thermostat, dimension: int, time_step: float, seed: int | tuple[int, ...]
+    ) -> None:
+        self._per_step = time_step / thermostat.interval
+        self._width = _width(thermostat, dimension, 1.0)
+        self._key = key_of(seed, _KICK_DRAWS)
+        self.given = np.zeros((1, 2))
+
+    def _due(self, steps: int) -> int:
+        """How many kicks are due by the end of so many steps."""
+        return math.floor(steps * self._per_step * (1.0 + 4e-16) + 1e-9)
+
+    def next_step(self, steps: int) -> int:
+        """The first of the steps after so many that ends with a kick."""
+        due = self._due(steps)
+        step = max(steps + 1, math.floor((due + 1) / self._per_step) - 1)
+        while self._due(step) <= due:
+            step += 1
+        return step
+
+    def happen(self, particles: dsmc.Particles, tools: dsmc.Tools, steps: int) -> None:
+        """Kick all particles if that is due after so many steps."""
+        from gaspart.kernels.dsmc.kicks import kick_all
+
+        due = self._due(steps)
+        number = due - self._due(steps - 1)
+        if number > 0:
+            kick_all(particles, tools, self._width * math.sqrt(number), (self._key, due), self.given)
+
+
+def step_kicks(scene: Scene, time_step: float, seed: int | tuple[int, ...]) -> StepKicks | None:
+    """Those of a scene's thermostat in steps, if it has one."""
+    if scene.thermostat is None or not scene.count:
+        return None
+    return StepKicks(scene.thermostat, scene.dimension, time_step, seed)

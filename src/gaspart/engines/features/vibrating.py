@@ -1,10 +1,11 @@
-"""Vibrating faces of a scene, as the kernels know them."""
+"""Faces that vibrate."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from gaspart.kernels.model import Motion
+from gaspart.engines.features.part import Part
+from gaspart.kernels.model import Model, Motion
 from gaspart.scene.faces import FACES, Vibrating
 from gaspart.scene.scene import Scene
 
@@ -16,13 +17,8 @@ _OF_SPEED = 2.0**-48  # it parts with this part of the face's speed at least
 
 def vibrating_faces(scene: Scene) -> list[tuple[int, Vibrating]]:
     """The vibrating faces, with their number."""
-    found = ((n, scene.faces.get(name)) for n, name in enumerate(FACES[: 2 * scene.dimension]))
-    return [(n, face) for n, face in found if isinstance(face, Vibrating)]
-
-
-def greatest_speed(scene: Scene) -> float:
-    """The greatest speed of any face, 0 if none vibrates."""
-    return max((face.greatest_speed for _, face in vibrating_faces(scene)), default=0.0)
+    faces = ((n, scene.faces.get(name)) for n, name in enumerate(FACES[: 2 * scene.dimension]))
+    return [(n, face) for n, face in faces if isinstance(face, Vibrating)]
 
 
 def motion_of(scene: Scene) -> Motion | None:
@@ -45,16 +41,26 @@ def motion_of(scene: Scene) -> Motion | None:
     return motion
 
 
-def begin_epoch(motion: Motion, scene: Scene, start: float, epoch: float) -> None:
-    """Let the clocks count from the time `start`, for an epoch of this length. The remainder of a division
-    is exact, so that phases do not drift."""
-    motion.epoch[0] = epoch
-    for n, face in vibrating_faces(scene):
-        pull = abs(scene.gravity[n // 2]) if scene.gravity is not None else 0.0
-        hop = max(_OF_EPOCH * epoch, _OF_DURATION * scene.contact_duration)
-        motion.begun[n] = np.fmod(start, face.period)
-        motion.slowest[n] = (
-            0.5 * pull * hop
-            + 0.5 * face.greatest_acceleration * min(hop, _OF_PERIOD * face.period)
-            + face.greatest_speed * _OF_SPEED
-        )
+class VibratingPart(Part):
+    """Faces that move as prescribed: up to twice as fast as they do themselves particles leave them."""
+
+    def __init__(self, scene: Scene, motion: Motion) -> None:
+        super().__init__({})
+        self._scene, self._motion, self._faces = scene, motion, vibrating_faces(scene)
+        self.gained = (2.0 * max(face.greatest_speed for _, face in self._faces)) ** 2
+
+    def begin_epoch(self, length: float, start: float, model: Model) -> Model:
+        """Let the periods go on where the clocks are at zero. The remainder of a division is exact, so that
+        phases do not drift."""
+        scene, motion = self._scene, self._motion
+        motion.epoch[0] = length
+        for n, face in self._faces:
+            pull = abs(scene.gravity[n // 2]) if scene.gravity is not None else 0.0
+            hop = max(_OF_EPOCH * length, _OF_DURATION * scene.contact_duration)
+            motion.begun[n] = np.fmod(start, face.period)
+            motion.slowest[n] = (
+                0.5 * pull * hop
+                + 0.5 * face.greatest_acceleration * min(hop, _OF_PERIOD * face.period)
+                + face.greatest_speed * _OF_SPEED
+            )
+        return model

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.arrays import (
-    contact_law,
-    face_energy,
-    internal_arrays,
-    scaled_masses,
-    special_faces,
-)
-from gaspart.kernels.model import Gravity, Model, Space, empty_tally, flight_dtype
+from gaspart.engines.features.faces import FacesPart, special_faces
+from gaspart.engines.features.gravity import gravity_of
+from gaspart.engines.features.law import LawPart, contact_law
+from gaspart.engines.features.masses import scaled_masses
+from gaspart.engines.features.part import Part
+from gaspart.kernels.model import Model, Space, empty_tally, flight_dtype
 from gaspart.kernels.step.boundaries import Rules
 from gaspart.kernels.step.model import StepModel, StepParticles, StepTally
 from gaspart.kernels.step.simd import roomy
@@ -92,19 +89,18 @@ def rules_for(
     other. space: that of the step engine's kernels."""
     if not needs_rules(scene):
         return None
-    fixed = np.isinf(state.masses)
-    faces = special_faces(scene, state, seed, unit_mass=1.0)
+    special = special_faces(scene, state, seed, unit_mass=1.0)
     model = Model(
         space=space,
         masses=state.masses.astype(engine.precision),
-        gravity=None if scene.gravity is None else Gravity(scene.gravity, fixed, 0.0, None),
+        gravity=gravity_of(scene, state),
         law=contact_law(scene, state),
-        faces=faces,
+        faces=special,
         walls=None,
         oversized=None,
     )
     radius = 0.0 if scene.centres_to_walls else state.radii.max(initial=0.0)
-    inset = np.where(np.repeat(scene.container.periodic, 2), 0.0, radius + faces.width).reshape(-1, 2)
+    inset = np.where(np.repeat(scene.container.periodic, 2), 0.0, radius + special.width).reshape(-1, 2)
     free = np.stack([inset[:, 0], np.array(scene.container.lengths) - inset[:, 1]], axis=1)
     walls = 2 * scene.dimension
     return Rules(
@@ -112,36 +108,20 @@ def rules_for(
         model,
         empty_tally(walls),
         free.astype(engine.precision),
-        holds=any(face.kind != "thermal" for face in scene.faces.values()),
+        holds=bool(special.depth.any()) or special.sticky is not None,
         heat=np.zeros((walls, 2), dtype=np.int64),
     )
 
 
-def changing(model: StepModel) -> dict[str, np.ndarray]:
-    """The arrays of a model's rules and law that a run changes, by name."""
-    if model.rules is None:
-        return internal_arrays(model.law, None)
-    return {**internal_arrays(model.law, model.rules.model.faces), "heat": model.rules.heat}
+def parts_for(scene: Scene, rules: Rules | None) -> list[Part]:
+    """The parts of a run of a scene with such rules; none without."""
+    if rules is None:
+        return []
+    law, faces, heat = rules.model.law, rules.model.faces, Part({"heat": rules.heat})
+    parts = LawPart(law) if law else None, FacesPart(scene, faces, 1.0) if faces else None, heat
+    return [part for part in parts if part]
 
 
 def needs_rules(scene: Scene) -> bool:
     """Whether faces or contacts of a scene change more than momenta."""
     return bool(scene.faces) or scene.rough or scene.vibrates
-
-
-def largest_terms(scene: Scene, state: State, unit_mass: float) -> tuple[float, float]:
-    """The momentum and the energy that few particles will exceed, each a power of two in units of
-    `unit_mass`: what walls take is summed in parts of these."""
-    moving = np.isfinite(state.masses)
-    if not moving.any():
-        return 1.0, 1.0
-    masses = state.masses[moving] / unit_mass
-    given = face_energy(scene) + state.vibrational_energy
-    energies = (state.kinetic_energies[moving] + given) / unit_mass
-    if scene.gravity is not None:
-        energies += masses * sum(
-            abs(g) * length for g, length in zip(scene.gravity, state.lengths, strict=True)
-        )
-    momentum = float(np.sqrt(2.0 * masses * energies).max())
-    energy = float(energies.max())
-    return 2.0 ** math.frexp(momentum or 1.0)[1], 2.0 ** math.frexp(energy or 1.0)[1]

@@ -8,7 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import DTypeLike
 
-from gaspart.engines.arrays import EventLog, check_parts, write_internal
+from gaspart.engines.belonging import check_parts
+from gaspart.engines.event_log import EventLog
+from gaspart.engines.features.masses import largest_terms
+from gaspart.engines.features.part import arrays_of, write_parts
+from gaspart.engines.step.arrays import empty_particles, masses_of, model_for, parts_for, step_tally
 from gaspart.engines.step.limits import (
     check_late,
     check_precision,
@@ -16,7 +20,11 @@ from gaspart.engines.step.limits import (
     check_step,
     oversized_particles,
 )
+from gaspart.engines.step.search import search_for
 from gaspart.errors import SceneError
+from gaspart.kernels.physics import running_sum
+from gaspart.kernels.step import loop
+from gaspart.kernels.step import model as layout
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 from gaspart.state.tally import Tally
@@ -31,29 +39,23 @@ class StepDynamics:
     """A scene under way; its time is a whole number of steps."""
 
     def __init__(self, engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...]) -> None:
-        from gaspart.engines.step import arrays as step_arrays
-        from gaspart.engines.step import search as step_search
-        from gaspart.kernels.physics import running_sum
-        from gaspart.kernels.step import loop
-        from gaspart.kernels.step import model as layout
-
         engine.check_features(scene)
         oversized = oversized_particles(state)
         check_scene(scene, state, oversized)
         check_precision(engine, scene, state)
         check_step(engine, state)
-        self._arrays, self._loop, self._layout, self._sums = step_arrays, loop, layout, running_sum
         self._engine, self._scene, self._reference = engine, scene, state
         self._real = np.dtype(engine.precision).type
-        self._unit_mass, _ = step_arrays.masses_of(scene, state)
+        self._unit_mass, _ = masses_of(scene, state)
         ordinary = state.radii[~oversized]
-        self._particles = step_arrays.empty_particles(engine, scene, state, len(ordinary))
+        self._particles = empty_particles(engine, scene, state, len(ordinary))
         slots = np.argsort(oversized, kind="stable")  # oversized particles last
         self._place(slots, state.positions, state.velocities, state.images)
-        self._search = step_search.search_for(engine, scene, state, ordinary)
-        self._model = step_arrays.model_for(engine, scene, state, seed, ordinary)
+        self._search = search_for(engine, scene, state, ordinary)
+        self._model = model_for(engine, scene, state, seed, ordinary)
         self._threads = engine.threads if engine.threads > 1 else None
-        self._largest = step_arrays.largest_terms(scene, state, self._unit_mass)
+        self._parts = parts_for(scene, self._model.rules)
+        self._largest = largest_terms(scene, state, self._unit_mass)
         self._lost = np.zeros(2)  # net and gross, before the tally began
         self._start, self._steps = state.time, 0
         self._count()
@@ -85,18 +87,18 @@ class StepDynamics:
         if self._model.rules:
             self._model.rules.heat[:] = 0
         faces = 2 * self._scene.dimension
-        self._tally = self._arrays.step_tally(faces, self._engine.threads, self._largest)
+        self._tally = step_tally(faces, self._engine.threads, self._largest)
         self._since = self._steps
 
     @property
     def dissipated(self) -> float:
         """The energy that contacts and thermal walls have taken since time 0."""
-        return float(self._lost[0]) + self._sums.net(*self._loss, self._heat) * self._unit_mass
+        return float(self._lost[0]) + running_sum.net(*self._loss, self._heat) * self._unit_mass
 
     @property
     def exchanged(self) -> float:
         """The sum of what contacts and each face have taken or given since time 0, each counted positive."""
-        gross = self._sums.net(*self._loss) + float(np.abs(self._heat.sum(axis=1)).sum())
+        gross = running_sum.net(*self._loss) + float(np.abs(self._heat.sum(axis=1)).sum())
         return float(self._lost[1]) + gross * self._unit_mass
 
     @property
@@ -105,13 +107,13 @@ class StepDynamics:
         began, in two parts, in units of the unit mass."""
         if self._model.rules is None:
             return np.zeros((2 * self._scene.dimension, 2))
-        return self._sums.whole_parts(self._model.rules.heat, self._largest[1])
+        return running_sum.whole_parts(self._model.rules.heat, self._largest[1])
 
     @property
     def _loss(self) -> tuple[np.ndarray, np.ndarray]:
         """The energy that contacts of particles (2,) and with walls (threads, 2) have taken, likewise."""
         tally = self._tally
-        return tally.sums[self._layout.LOSS], self._sums.whole_parts(tally.wall_loss, self._largest[1])
+        return tally.sums[layout.LOSS], running_sum.whole_parts(tally.wall_loss, self._largest[1])
 
     @property
     def time(self) -> float:
@@ -145,14 +147,14 @@ class StepDynamics:
                 set_num_threads(min(self._threads, config.NUMBA_NUM_THREADS))
             self._run(target - self._steps)
             self._steps = target
-            layout, counts = self._layout, self._tally.counts
+            counts = self._tally.counts
             found = (int(counts[n]) for n in (layout.COLLISIONS, layout.LATE, layout.PASSED))
             check_late(self._engine, self.time, *found)
 
     def _run(self, steps: int) -> None:
         """Let the kernel make so many steps; or, if none, only a list."""
         settings = self._real(self._engine.time_step), self._engine.rewind, self._engine.passes
-        pairs = self._loop.run_steps(
+        pairs = loop.run_steps(
             self._particles, self._search, self._model, settings, steps, self._tally, self._threads
         )
         self._search = self._search._replace(pairs=pairs)
@@ -167,25 +169,22 @@ class StepDynamics:
             velocities=self._by_particle(self._particles.velocities, float),
             images=self._particles.images.T.astype(self._reference.images.dtype),
         )
-        if self._model.rules:
-            write_internal(
-                state, self._scene, self._model.law, self._model.rules.model.faces, self._unit_mass
-            )
+        write_parts(self._parts, state)
         return state
 
     @property
     def tally(self) -> Tally:
         """What was counted since the last `reset_tally`."""
-        layout, counts, sums = self._layout, self._tally.counts, self._tally.sums
+        counts, sums = self._tally.counts, self._tally.sums
         extremes = self._tally.extremes
-        impulse = self._sums.whole_parts(self._tally.wall_impulse.sum(axis=0), self._largest[0])
+        impulse = running_sum.whole_parts(self._tally.wall_impulse.sum(axis=0), self._largest[0])
         return Tally(
             time=(self._steps - self._since) * self._engine.time_step,
             collisions=int(counts[layout.COLLISIONS]),
             wall_hits=self._tally.wall_hits.sum(axis=0),
             wall_impulse=impulse.sum(axis=-1) * self._unit_mass,
             wall_energy=self._heat.sum(axis=1) * self._unit_mass,
-            virial_sum=self._sums.net(sums[layout.VIRIAL]) * self._unit_mass,
+            virial_sum=running_sum.net(sums[layout.VIRIAL]) * self._unit_mass,
             pair_tests=int(counts[layout.PAIR_TESTS]),
             box_visits=int(counts[layout.BOX_VISITS]),
             worst_contact=float(extremes[layout.WORST]),
@@ -194,7 +193,7 @@ class StepDynamics:
             deepest_overlap=float(extremes[layout.DEEPEST]),
             multiple_contacts=int(counts[layout.MULTIPLE]),
             rebuilds=int(counts[layout.REBUILDS]),
-            dissipated_energy=self._sums.net(*self._loss) * self._unit_mass,
+            dissipated_energy=running_sum.net(*self._loss) * self._unit_mass,
         )
 
     def checkpoint(self) -> dict[str, np.ndarray]:
@@ -209,7 +208,7 @@ class StepDynamics:
             "images": particles.images.T.copy(),
             "slots": particles.index.copy(),
             **({} if self._search.cells is None else self._list_parts()),
-            **{key: array.copy() for key, array in self._arrays.changing(self._model).items()},
+            **{key: array.copy() for key, array in arrays_of(self._parts).items()},
             "reach": self._particles.bounds.copy(),
             **{key: np.array(value) for key, value in self._tally._asdict().items()},
         }
@@ -217,7 +216,7 @@ class StepDynamics:
     def restore(self, parts: dict[str, np.ndarray]) -> None:
         """Go on from a checkpoint of the same scene and settings, to the same bits whatever its search and
         threads. Raises SceneError, with nothing changed, for one that lacks an array."""
-        particles, tally, rules = self._particles, self._tally, self._arrays.changing(self._model)
+        particles, tally, rules = self._particles, self._tally, arrays_of(self._parts)
         by_thread = ("wall_hits", "wall_impulse", "wall_loss")
         sums = dict(parts)
         sums |= {key: parts[key].sum(axis=0) for key in by_thread if key in parts}  # whole: in any order
@@ -257,7 +256,7 @@ class StepDynamics:
 
     def _has_list_of(self, parts: dict[str, np.ndarray]) -> bool:
         """Whether a checkpoint has a list that was made with the settings of this engine."""
-        if not parts["reach"][self._layout.DISPLACEMENT] < np.inf:
+        if not parts["reach"][layout.DISPLACEMENT] < np.inf:
             return False
         own = self._list_parts()
         del own["origin"]
@@ -268,6 +267,6 @@ class StepDynamics:
         particles = self._particles
         now = particles.positions.copy()
         particles.positions[...] = origin
-        particles.bounds[self._layout.DISPLACEMENT] = np.inf  # no list is as old as that
+        particles.bounds[layout.DISPLACEMENT] = np.inf  # no list is as old as that
         self._run(0)
         particles.positions[...] = now

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.arrays import face_energy
+from gaspart.engines.features.faces import face_energy
 from gaspart.kernels.step.box_search import StepBoxes
 from gaspart.kernels.step.cells import Cells
 from gaspart.kernels.step.model import Search

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from gaspart.engines import Engine, EventDriven, TimeStepped, engine_from_dict
-from gaspart.engines.arrays import EventLog
+from gaspart.engines.event_log import EventLog
 from gaspart.errors import SceneError
 from gaspart.reproduction.jobs.data import PointData
 from gaspart.scene.scene import Scene

@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from gaspart.engines import Engine, EventDriven, TimeStepped, engine_from_dict
-from gaspart.engines.arrays import EventLog
+from gaspart.engines.event_log import EventLog
 from gaspart.errors import SimulationError
 from gaspart.reproduction.jobs.data import PointData
 from gaspart.scene.scene import Scene

@@ -1,0 +1,82 @@
+"""Faces of the container with a kind, for all engines, and what particles keep at them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gaspart.engines.features.part import Part
+from gaspart.engines.features.piston import piston_of
+from gaspart.engines.features.vibrating import motion_of
+from gaspart.kernels.model import HARD, PISTON, STICKY, THERMAL, THERMAL_NORMAL, VIBRATING, Faces
+from gaspart.scene.faces import FACES, Piston, Sticky, Thermal, Vibrating, Well
+from gaspart.scene.scene import Scene
+from gaspart.state.random import key_of
+from gaspart.state.state import State
+from gaspart.state.wells import places_in_wells, well_energies, wells_of
+
+WALL_DRAWS = 2
+"""The purpose of the random numbers of thermal walls, after those of the initial state."""
+
+
+def kinds_and_levels(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    """(2d,), (2d,) the kernels' kinds of the container's faces, and their temperatures or momenta."""
+    kinds, levels = [], []
+    for name in FACES[: 2 * scene.dimension]:
+        match scene.faces.get(name):
+            case Thermal(temperature, "normal"):
+                kind, level = THERMAL_NORMAL, temperature
+            case Thermal(temperature) | Well(temperature=float(temperature)):
+                kind, level = THERMAL, temperature
+            case Sticky(momentum):
+                kind, level = STICKY, momentum
+            case Vibrating():
+                kind, level = VIBRATING, 0.0
+            case Piston():
+                kind, level = PISTON, 0.0
+            case _:
+                kind, level = HARD, 0.0
+        kinds.append(kind)
+        levels.append(level)
+    return np.array(kinds, dtype=np.int64), np.array(levels)
+
+
+def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float) -> Faces:
+    """The kinds of the container's faces as the kernels' `Faces`, in units of `unit_mass`."""
+    kind, level = kinds_and_levels(scene)
+    depths, widths = wells_of(scene)
+    return Faces(
+        kind=kind,
+        level=level / unit_mass,
+        depth=depths / unit_mass,
+        width=widths,
+        place=places_in_wells(scene, state.positions, state.radii),
+        held=np.zeros(state.positions.shape),
+        draws=np.zeros(state.count, dtype=np.int64),
+        key=key_of(seed, WALL_DRAWS),
+        sticky=kind == STICKY if (kind == STICKY).any() else None,
+        motion=motion_of(scene),
+        piston=piston_of(scene, state, unit_mass),
+    )
+
+
+def face_energy(scene: Scene) -> float:
+    """Upper estimate of the energy that a thermal face or a well gives a particle."""
+    hottest = max((getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()), default=0.0)
+    deepest = max((getattr(face, "depth", 0.0) for face in scene.faces.values()), default=0.0)
+    return scene.dimension * hottest + 2.0 * deepest
+
+
+class FacesPart(Part):
+    """Faces with a kind, in units of `unit_mass`: which particles are in a well or stuck, with what energy,
+    and how often random numbers were drawn. lightest: the least mass of a particle."""
+
+    def __init__(self, scene: Scene, faces: Faces, unit_mass: float, lightest: float = np.inf) -> None:
+        super().__init__({key: getattr(faces, key) for key in ("place", "held", "draws")})
+        self._scene, self._unit_mass = scene, unit_mass
+        self.gained = face_energy(scene) / lightest
+
+    def write(self, state: State, clock: float) -> None:
+        """Write the energies in wells, and add those of particles that stick to a face."""
+        state.well_energies = well_energies(self._scene, self.arrays["place"])
+        if state.vibrations is not None:
+            state.vibrations += self.arrays["held"].sum(axis=1) * self._unit_mass

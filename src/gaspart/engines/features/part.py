@@ -1,0 +1,95 @@
+"""The part of a run that belongs to one feature of its scene.
+
+A module of this package has all that the engines need of a feature: what the kernels' model has of it, None
+where it is absent, and a `Part`. An engine goes through the parts of a scene and does not name them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gaspart.state.state import State
+
+if TYPE_CHECKING:
+    from gaspart.kernels.model import Model, Particles, Tally
+
+
+class Part:
+    """A feature in a run. Each method is for what a feature may have, and does nothing by default.
+
+    arrays: those that a run changes, by their names in a checkpoint; times: those of them that are times on
+    the clocks of the epoch; scheduled (1,): the time of the next event that it has scheduled; gained: the
+    square of the largest speed that it can give a particle.
+    """
+
+    gained = 0.0
+
+    def __init__(
+        self,
+        arrays: dict[str, np.ndarray],
+        times: Iterable[np.ndarray] = (),
+        scheduled: np.ndarray | None = None,
+    ) -> None:
+        self.arrays, self._times, self._scheduled = arrays, times, scheduled
+
+    @property
+    def next(self) -> float:
+        """The time of the next scheduled event on the clocks of the epoch; infinite if there is none."""
+        return math.inf if self._scheduled is None else float(self._scheduled[0])
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether it has stopped all particles, for good."""
+        return False
+
+    @property
+    def given(self) -> float:
+        """The energy that it has given by scheduled events since the last `reset`."""
+        return 0.0
+
+    def set_clock(self, clock: float) -> None:
+        """Begin at this time on the clocks of the epoch."""
+
+    def begin_epoch(self, length: float, start: float, model: Model) -> Model:
+        """Set all that depends on the `length` of an epoch of the clocks that starts at the time `start`.
+        Returns the model for it."""
+        return model
+
+    def end_epoch(self, length: float, start: float) -> None:
+        """Let the clocks count from zero again after an epoch of this `length`, which is the time `start`."""
+        for times in self._times:
+            times -= length
+
+    def happen(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
+        """Let the event happen that is scheduled for the time `next` of an epoch with this `start`. Returns
+        whether all events must be predicted anew."""
+        raise NotImplementedError
+
+    def reset(self, clock: float) -> None:
+        """Begin to count from zero at this time on the clocks of the epoch."""
+
+    def counts(self, clock: float) -> dict[str, Any]:
+        """What it has counted from the last `reset` until this time on the clocks of the epoch, by the fields
+        of `state.tally.Tally`."""
+        return {}
+
+    def write(self, state: State, clock: float) -> None:
+        """Write what the particles and the scene have of it, at this time on the clocks of the epoch, into a
+        state."""
+
+
+def arrays_of(parts: Iterable[Part]) -> dict[str, np.ndarray]:
+    """The arrays of several parts, by name."""
+    return {key: array for part in parts for key, array in part.arrays.items()}
+
+
+def write_parts(parts: Iterable[Part], state: State, clock: float = 0.0) -> None:
+    """Write what several parts have into a state. Energies of vibrations add up."""
+    if state.vibrations is not None:
+        state.vibrations = np.zeros(state.count)
+    for part in parts:
+        part.write(state, clock)
