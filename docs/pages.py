@@ -54,7 +54,7 @@ def api():
     """Pages of the public names: path -> text."""
     pages = {}
     for page, (title, packages) in GROUPS.items():
-        names = [name for name, home in gaspart._HOMES.items() if home.split(".")[0] in packages]
+        names = [name for name, home in gaspart._homes().items() if home.split(".")[0] in packages]
         pages[f"api/{page}.rst"] = heading(title) + "".join(
             entry(f"gaspart.{name}") for name in sorted(names)
         )

@@ -27,15 +27,10 @@ _HOMES = {
     "SimulationError": "errors",
     "Species": "scene.species",
     "State": "state.state",
-    "Sticky": "scene.faces",
     "Tally": "state.tally",
     "Thermostat": "scene.thermostat",
-    "Thermal": "scene.faces",
     "TimeStepped": "engines",
-    "Piston": "scene.faces",
-    "Vibrating": "scene.faces",
     "Wall": "scene.walls",
-    "Well": "scene.faces",
     "collision_data": "analysis.collisions",
     "compress": "state.compression",
     "contact_value": "analysis.collisions",
@@ -52,16 +47,25 @@ _HOMES = {
 
 _PACKAGES = ("analysis", "theory")
 
-__all__ = ["__version__", *_PACKAGES, *_HOMES]
+
+def _homes() -> dict[str, str]:
+    """The modules of all public names. A kind of face is public once it is declared."""
+    faces = import_module("gaspart.scene.faces")
+    return {**_HOMES, **{kind.__name__: "scene.faces" for kind in faces.KINDS.values()}}
 
 
 def __getattr__(name: str) -> Any:
     if name in _PACKAGES:
         return import_module(f"gaspart.{name}")
-    if name in _HOMES:
-        return getattr(import_module(f"gaspart.{_HOMES[name]}"), name)
-    raise AttributeError(f"module 'gaspart' has no attribute {name!r}")
+    if name == "__all__":
+        return ["__version__", *_PACKAGES, *_homes()]
+    home = _HOMES.get(name)
+    if home is None and name[0].isupper():  # no module: `scene.faces` imports some by this function
+        home = _homes().get(name)
+    if home is None:
+        raise AttributeError(f"module 'gaspart' has no attribute {name!r}")
+    return getattr(import_module(f"gaspart.{home}"), name)
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return sorted(__getattr__("__all__"))

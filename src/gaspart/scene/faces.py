@@ -7,26 +7,56 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 from gaspart.errors import SceneError
 from gaspart.kinds import described
 from gaspart.scene.keys import NOT_NEGATIVE, POSITIVE, declared, schema_of, validate
 from gaspart.scene.keys import choice as choice_of
-from gaspart.scene.limits import closest_packing
-from gaspart.scene.validation import choice, from_mapping, size, vector
+from gaspart.scene.validation import choice, from_mapping, size
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
-    from gaspart.scene.walls import Plate, Wall
 
 FACES = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
 COMPONENTS = ("all", "normal")
 WAVEFORMS = ("sine", "sawtooth")
 
 
+KINDS: dict[str, type[Surface]] = {}
+"""All kinds of faces, by name; `Surface` adds each."""
+
+
 @dataclass(frozen=True)
-class Thermal:
+class Surface:
+    """A kind of face. A class derived from it is known by its `kind` once it is declared.
+
+    moves: whether it does by itself; only the event-driven engine has such faces.
+    """
+
+    kind: ClassVar[str]
+    moves: ClassVar[bool] = False
+
+    def __init_subclass__(cls) -> None:
+        KINDS[cls.kind] = cls
+
+    def __post_init__(self) -> None:
+        validate(self)
+
+    @property
+    def rule(self) -> tuple[str, float]:
+        """The name by which the kernels know what happens to a particle there (`kernels.obstacles`), and the
+        one number on which that may depend: an energy or a momentum."""
+        return self.kind, 0.0
+
+    @property
+    def smooth(self) -> bool:
+        """Whether it acts on particles along its normal only."""
+        return True
+
+
+@dataclass(frozen=True)
+class Thermal(Surface):
     """A wall at a temperature, from whose distribution the velocity of a particle that leaves is drawn.
 
     The normal velocity is drawn weighted by the flux, v = sqrt(-2 kT/m ln U); with components "all" the
@@ -40,14 +70,21 @@ class Thermal:
         metadata=declared(choice_of(*COMPONENTS), "velocity components that are drawn"),
     )
 
-    kind: ClassVar[Literal["thermal"]] = "thermal"
+    kind: ClassVar[str] = "thermal"
 
-    def __post_init__(self) -> None:
-        validate(self)
+    @property
+    def rule(self) -> tuple[str, float]:
+        """With its temperature."""
+        return "thermal" if self.components == "all" else "thermal_normal", self.temperature
+
+    @property
+    def smooth(self) -> bool:
+        """Unless it draws all components."""
+        return self.components == "normal"
 
 
 @dataclass(frozen=True)
-class Well:
+class Well(Surface):
     """A wall behind a step of the potential: a particle whose surface is within `width` of the face has the
     energy -`depth`. It leaves if m v_n^2 / 2 > depth, and is reflected if not. The wall itself is hard, or
     with a `temperature` as in `Thermal`."""
@@ -60,14 +97,21 @@ class Well:
         default=None, metadata=declared(POSITIVE, "temperature of the wall; without it the wall is hard")
     )
 
-    kind: ClassVar[Literal["well"]] = "well"
+    kind: ClassVar[str] = "well"
 
-    def __post_init__(self) -> None:
-        validate(self)
+    @property
+    def rule(self) -> tuple[str, float]:
+        """That of the wall behind the well."""
+        return ("hard", 0.0) if self.temperature is None else ("thermal", self.temperature)
+
+    @property
+    def smooth(self) -> bool:
+        """Unless the wall behind the well is thermal."""
+        return self.temperature is None
 
 
 @dataclass(frozen=True)
-class Sticky:
+class Sticky(Surface):
     """A wall to which slow particles stick (Frederickx & Meerts 2010, section 4.5, made definite).
 
     A particle that arrives with a normal momentum below `momentum` p stays: its normal energy becomes that of
@@ -78,14 +122,16 @@ class Sticky:
 
     momentum: float = field(metadata=declared(POSITIVE, "normal momentum below which a particle stays"))
 
-    kind: ClassVar[Literal["sticky"]] = "sticky"
+    kind: ClassVar[str] = "sticky"
 
-    def __post_init__(self) -> None:
-        validate(self)
+    @property
+    def rule(self) -> tuple[str, float]:
+        """With the momentum."""
+        return "sticky", self.momentum
 
 
 @dataclass(frozen=True)
-class Vibrating:
+class Vibrating(Surface):
     """A hard wall that moves in a prescribed way, whatever hits it, and gives or takes energy.
 
     It is at the side of the container at time 0, and moves inwards from there by twice the amplitude A at
@@ -97,10 +143,11 @@ class Vibrating:
     period: float = field(metadata=declared(POSITIVE, "duration of one vibration"))
     waveform: str = field(default="sine", metadata=declared(choice_of(*WAVEFORMS), "how the wall moves"))
 
-    kind: ClassVar[Literal["vibrating"]] = "vibrating"
+    kind: ClassVar[str] = "vibrating"
+    moves: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
-        validate(self)
+        super().__post_init__()
         size("period", self.greatest_speed)
         size("period", self.greatest_acceleration)
 
@@ -123,7 +170,7 @@ class Vibrating:
 
 
 @dataclass(frozen=True)
-class Piston:
+class Piston(Surface):
     """A smooth wall of finite mass, pushed inwards by a constant external pressure and outwards by particles.
 
     It starts at rest at the side of the container, which is as far outwards as it comes: it bounces off there
@@ -138,10 +185,8 @@ class Piston:
         metadata=declared(NOT_NEGATIVE, "external pressure: the force on the piston over its area")
     )
 
-    kind: ClassVar[Literal["piston"]] = "piston"
-
-    def __post_init__(self) -> None:
-        validate(self)
+    kind: ClassVar[str] = "piston"
+    moves: ClassVar[bool] = True
 
     def acceleration(self, scene: Scene, axis: int) -> float:
         """That by which its load pushes it inwards."""
@@ -149,10 +194,7 @@ class Piston:
         return self.pressure / self.mass * (container.volume / container.lengths[axis])
 
 
-Surface = Thermal | Well | Sticky | Vibrating | Piston
-KINDS: dict[str, type[Surface]] = {
-    surface.kind: surface for surface in (Thermal, Well, Sticky, Vibrating, Piston)
-}
+S = TypeVar("S", bound=Surface)
 SCHEMA = {
     "type": "object",
     "propertyNames": {"enum": list(FACES)},
@@ -180,10 +222,15 @@ def surface_to_dict(surface: Surface) -> dict:
     return {"kind": surface.kind, **asdict(surface)}
 
 
+def faces_of(scene: Scene, kind: type[S]) -> list[tuple[int, S]]:
+    """The faces of a kind, with their number."""
+    faces = ((n, scene.faces.get(name)) for n, name in enumerate(FACES[: 2 * scene.dimension]))
+    return [(n, face) for n, face in faces if isinstance(face, kind)]
+
+
 def pistons(scene: Scene) -> list[tuple[int, Piston]]:
     """The faces that are pistons, one at most, with their number."""
-    found = ((n, scene.faces.get(name)) for n, name in enumerate(FACES[: 2 * scene.dimension]))
-    return [(n, face) for n, face in found if isinstance(face, Piston)]
+    return faces_of(scene, Piston)
 
 
 def thermal_face(scene: Scene, name: str) -> Thermal:
@@ -192,88 +239,3 @@ def thermal_face(scene: Scene, name: str) -> Thermal:
     if not isinstance(face, Thermal):
         raise SceneError(f"faces.{name}", face, "must be thermal")
     return face
-
-
-def check_faces(scene: Scene) -> None:
-    """Raise SceneError for faces that are impossible in this scene."""
-    if not isinstance(scene.faces, dict):
-        raise SceneError("faces", scene.faces, "must be a mapping of faces to their kinds")
-    known = FACES[: 2 * scene.dimension]
-    for name, surface in scene.faces.items():
-        if name not in known:
-            raise SceneError(f"faces.{name}", surface, f"unknown face; known are {', '.join(known)}")
-        if type(surface) not in KINDS.values():
-            *others, last = (kind.__name__ for kind in KINDS.values())
-            raise SceneError(f"faces.{name}", surface, f"must be {', '.join(others)} or {last}")
-        axis = known.index(name) // 2
-        if scene.container.periodic[axis]:
-            raise SceneError(f"faces.{name}", surface.kind, "a periodic axis has no faces")
-        if surface.kind in ("well", "sticky") and scene.gravity is not None and scene.gravity[axis] != 0.0:
-            raise SceneError(f"faces.{name}", surface.kind, "needs an axis without gravity")
-        if surface.kind == "well":
-            low, high = scene.reach(scene.largest_radius)
-            both = (scene.faces.get(known[2 * axis + side]) for side in (0, 1))
-            if sum(face.width for face in both if isinstance(face, Well)) >= high[axis] - low[axis]:
-                rule = "leaves no room outside the wells of this axis for the largest particle"
-                raise SceneError(f"faces.{name}.width", surface.width, rule)
-        if isinstance(surface, Vibrating):
-            _check_vibrating(scene, name, surface)
-        if isinstance(surface, Piston):
-            _check_piston(scene, name, surface)
-    _check_room(scene)
-
-
-def _check_piston(scene: Scene, name: str, surface: Piston) -> None:
-    """Raise SceneError for a second piston, and one so light that its load moves it too fast."""
-    if len(pistons(scene)) > 1:
-        raise SceneError("faces", [FACES[n] for n, _ in pistons(scene)], "only one may be a piston")
-    size(f"faces.{name}.mass", surface.acceleration(scene, FACES.index(name) // 2))
-
-
-def _check_vibrating(scene: Scene, name: str, surface: Vibrating) -> None:
-    """Raise SceneError for obstacles against which a vibrating face would press a particle."""
-    axis, upper = FACES.index(name) // 2, FACES.index(name) % 2 == 1
-    length = scene.container.lengths[axis]
-    clear = 2.0 * (surface.amplitude + scene.largest_radius)
-    for n, thing in enumerate(scene.species):
-        if thing.fixed and thing.count:
-            rule = f"must not be true where {name} vibrates: give fixed particles positions, as bodies"
-            raise SceneError(f"species[{n}].fixed", True, rule)
-    for n, body in enumerate(scene.bodies):
-        x = vector(f"bodies[{n}].position", body.position, scene.dimension)[axis]
-        if body.fixed and (length - x if upper else x) < clear + body.radius:
-            rule = f"leaves less than a largest diameter between the particle and {name}, which vibrates"
-            raise SceneError(f"bodies[{n}].position", body.position, rule)
-    for n, wall in enumerate(scene.walls):
-        heights = [length - corner[axis] if upper else corner[axis] for corner in wall.corners.values()]
-        if min(heights) < clear and not (min(heights) <= 0.0 and _is_upright(wall, axis)):
-            rule = f"leaves less than a largest diameter between the wall and {name}, which vibrates"
-            raise SceneError(f"walls[{n}]", wall, rule)
-
-
-def _is_upright(wall: Wall | Plate, axis: int) -> bool:
-    """Whether a wall stands upright on a face across this axis."""
-    corners = list(wall.corners.values())
-    edges = [[b - a for a, b in zip(corners[0], corner, strict=True)] for corner in corners[1:3]]
-    upright = [not any(edge[:axis] + edge[axis + 1 :]) for edge in edges]
-    return any(upright) and all(
-        stands or edge[axis] == 0.0 for stands, edge in zip(upright, edges, strict=True)
-    )
-
-
-def _check_room(scene: Scene) -> None:
-    """Raise SceneError where vibrating faces leave too little room."""
-    moving = {name: face for name, face in scene.faces.items() if isinstance(face, Vibrating)}
-    low, high = scene.reach(scene.largest_radius)
-    left = 1.0
-    for axis in range(scene.dimension):
-        own = {name: face for name, face in moving.items() if FACES.index(name) // 2 == axis}
-        stroke = sum(2.0 * face.amplitude for face in own.values())
-        if own and stroke >= high[axis] - low[axis]:
-            name, face = next(iter(own.items()))
-            rule = "leaves no room for the largest particle"
-            raise SceneError(f"faces.{name}.amplitude", face.amplitude, rule)
-        left *= 1.0 - stroke / scene.container.lengths[axis]
-    if moving and scene.packing_fraction > left * closest_packing(scene):
-        rule = "exceeds close packing where the faces have moved inwards"
-        raise SceneError("packing_fraction", scene.packing_fraction, rule)

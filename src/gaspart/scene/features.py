@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gaspart.errors import SceneError
+from gaspart.scene.faces import KINDS
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -75,7 +76,7 @@ FEATURES: dict[str, Feature] = {
         "centres_to_walls",
         lambda scene: scene.centres_to_walls or None,
     ),
-    **{kind: _face(kind) for kind in ("thermal", "well", "sticky", "vibrating", "piston")},
+    **{kind: _face(kind) for kind in KINDS},
     "vibrations": Feature(
         "particles that store energy in a vibration",
         "vibrates",

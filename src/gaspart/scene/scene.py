@@ -15,8 +15,9 @@ from typing import Any
 
 from gaspart.errors import SceneError
 from gaspart.scene.container import Container
+from gaspart.scene.face_checks import check_faces
 from gaspart.scene.faces import SCHEMA as FACES_SCHEMA
-from gaspart.scene.faces import Sticky, Surface, check_faces, surface_from_dict, surface_to_dict
+from gaspart.scene.faces import Sticky, Surface, surface_from_dict, surface_to_dict
 from gaspart.scene.features import check_features
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.keys import FLAG, VECTOR, checked_by_class, declared, instance_of, list_of, validate
@@ -195,9 +196,8 @@ class Scene:
         and nothing but smooth faces, which act along their normals, is in the container."""
         periodic = self.container.periodic
         fixed = any(it.fixed for it in self.bodies) or any(it.fixed and it.count for it in self.species)
-        heated = [face for face in self.faces.values() if getattr(face, "temperature", None) is not None]
-        drawn = any(getattr(face, "components", "all") == "all" for face in heated)
-        rubbed = not all(periodic) and (self.rough or drawn)
+        smooth = all(face.smooth for face in self.faces.values())
+        rubbed = not all(periodic) and (self.rough or not smooth)
         free = not (fixed or self.walls or rubbed)
         return tuple(free and along for along in periodic)
 

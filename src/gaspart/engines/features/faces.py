@@ -8,36 +8,29 @@ from gaspart.engines.features.part import Part
 from gaspart.engines.features.piston import piston_of
 from gaspart.engines.features.vibrating import motion_of
 from gaspart.kernels.model import HARD, PISTON, STICKY, THERMAL, THERMAL_NORMAL, VIBRATING, Faces
-from gaspart.scene.faces import FACES, Piston, Sticky, Thermal, Vibrating, Well
+from gaspart.scene.faces import FACES
 from gaspart.scene.scene import Scene
 from gaspart.state.random import key_of
 from gaspart.state.state import State
 from gaspart.state.wells import places_in_wells, well_energies, wells_of
 
+_NUMBERS = {
+    "hard": HARD,
+    "thermal": THERMAL,
+    "thermal_normal": THERMAL_NORMAL,
+    "sticky": STICKY,
+    "vibrating": VIBRATING,
+    "piston": PISTON,
+}
 WALL_DRAWS = 2
 """The purpose of the random numbers of thermal walls, after those of the initial state."""
 
 
 def kinds_and_levels(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """(2d,), (2d,) the kernels' kinds of the container's faces, and their temperatures or momenta."""
-    kinds, levels = [], []
-    for name in FACES[: 2 * scene.dimension]:
-        match scene.faces.get(name):
-            case Thermal(temperature, "normal"):
-                kind, level = THERMAL_NORMAL, temperature
-            case Thermal(temperature) | Well(temperature=float(temperature)):
-                kind, level = THERMAL, temperature
-            case Sticky(momentum):
-                kind, level = STICKY, momentum
-            case Vibrating():
-                kind, level = VIBRATING, 0.0
-            case Piston():
-                kind, level = PISTON, 0.0
-            case _:
-                kind, level = HARD, 0.0
-        kinds.append(kind)
-        levels.append(level)
-    return np.array(kinds, dtype=np.int64), np.array(levels)
+    """(2d,), (2d,) the kernels' kinds of the container's faces, and their levels: temperatures or momenta."""
+    surfaces = (scene.faces.get(name) for name in FACES[: 2 * scene.dimension])
+    names, levels = zip(*(surface.rule if surface else ("hard", 0.0) for surface in surfaces), strict=True)
+    return np.array([_NUMBERS[name] for name in names], dtype=np.int64), np.array(levels, dtype=float)
 
 
 def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float) -> Faces:

@@ -6,7 +6,7 @@ import numpy as np
 
 from gaspart.engines.features.part import Part
 from gaspart.kernels.model import Model, Motion
-from gaspart.scene.faces import FACES, Vibrating
+from gaspart.scene.faces import Vibrating, faces_of
 from gaspart.scene.scene import Scene
 
 # A particle that is pressed to the face meets it again after a part of an epoch, or of the duration of a
@@ -15,15 +15,9 @@ _OF_EPOCH, _OF_DURATION, _OF_PERIOD = 2.0**-24, 2.0**-3, 2.0**-15
 _OF_SPEED = 2.0**-48  # it parts with this part of the face's speed at least
 
 
-def vibrating_faces(scene: Scene) -> list[tuple[int, Vibrating]]:
-    """The vibrating faces, with their number."""
-    faces = ((n, scene.faces.get(name)) for n, name in enumerate(FACES[: 2 * scene.dimension]))
-    return [(n, face) for n, face in faces if isinstance(face, Vibrating)]
-
-
 def motion_of(scene: Scene) -> Motion | None:
     """How the faces move, before the first epoch; None if none vibrates."""
-    moving = vibrating_faces(scene)
+    moving = faces_of(scene, Vibrating)
     if not moving:
         return None
     shape = (2 * scene.dimension,)
@@ -46,7 +40,7 @@ class VibratingPart(Part):
 
     def __init__(self, scene: Scene, motion: Motion) -> None:
         super().__init__({})
-        self._scene, self._motion, self._faces = scene, motion, vibrating_faces(scene)
+        self._scene, self._motion, self._faces = scene, motion, faces_of(scene, Vibrating)
         self.gained = (2.0 * max(face.greatest_speed for _, face in self._faces)) ** 2
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from gaspart.engines.engine import Engine, register
 from gaspart.errors import SceneError
+from gaspart.scene.faces import KINDS
 from gaspart.scene.keys import FLAG, PER_SIDE, POSITIVE, choice, count, declared
 
 if TYPE_CHECKING:
@@ -67,7 +68,7 @@ class TimeStepped(Engine):
     title: ClassVar[str] = "time-stepped"
     models: ClassVar[frozenset[str]] = frozenset(
         ("gravity", "restitution", "roughness", "fixed", "vibrations", "centres_to_walls")
-    ) | {"thermal", "well", "sticky"}
+    ) | {kind for kind, face in KINDS.items() if not face.moves}
     excludes: ClassVar[tuple[tuple[str, str], ...]] = (("restitution", "gravity"), ("fixed", "gravity"))
     same_bits: ClassVar[tuple[str, ...]] = ("boxes_per_side", "near_boxes", "skin", "threads")
     counters: ClassVar[tuple[str, ...]] = (

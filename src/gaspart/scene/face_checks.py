@@ -1,0 +1,99 @@
+"""Which faces a scene cannot have: rules that concern more than the face itself."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from gaspart.errors import SceneError
+from gaspart.scene.faces import FACES, KINDS, Piston, Sticky, Vibrating, Well, pistons
+from gaspart.scene.limits import closest_packing
+from gaspart.scene.validation import size, vector
+
+if TYPE_CHECKING:
+    from gaspart.scene.scene import Scene
+    from gaspart.scene.walls import Plate, Wall
+
+
+def check_faces(scene: Scene) -> None:
+    """Raise SceneError for faces that are impossible in this scene."""
+    if not isinstance(scene.faces, dict):
+        raise SceneError("faces", scene.faces, "must be a mapping of faces to their kinds")
+    known = FACES[: 2 * scene.dimension]
+    for name, surface in scene.faces.items():
+        if name not in known:
+            raise SceneError(f"faces.{name}", surface, f"unknown face; known are {', '.join(known)}")
+        if type(surface) not in KINDS.values():
+            *others, last = (kind.__name__ for kind in KINDS.values())
+            raise SceneError(f"faces.{name}", surface, f"must be {', '.join(others)} or {last}")
+        axis = known.index(name) // 2
+        if scene.container.periodic[axis]:
+            raise SceneError(f"faces.{name}", surface.kind, "a periodic axis has no faces")
+        if isinstance(surface, (Well, Sticky)) and scene.gravity is not None and scene.gravity[axis] != 0.0:
+            raise SceneError(f"faces.{name}", surface.kind, "needs an axis without gravity")
+        if isinstance(surface, Well):
+            low, high = scene.reach(scene.largest_radius)
+            both = (scene.faces.get(known[2 * axis + side]) for side in (0, 1))
+            if sum(face.width for face in both if isinstance(face, Well)) >= high[axis] - low[axis]:
+                rule = "leaves no room outside the wells of this axis for the largest particle"
+                raise SceneError(f"faces.{name}.width", surface.width, rule)
+        if isinstance(surface, Vibrating):
+            _check_vibrating(scene, name, surface)
+        if isinstance(surface, Piston):
+            _check_piston(scene, name, surface)
+    _check_room(scene)
+
+
+def _check_piston(scene: Scene, name: str, surface: Piston) -> None:
+    """Raise SceneError for a second piston, and one so light that its load moves it too fast."""
+    if len(pistons(scene)) > 1:
+        raise SceneError("faces", [FACES[n] for n, _ in pistons(scene)], "only one may be a piston")
+    size(f"faces.{name}.mass", surface.acceleration(scene, FACES.index(name) // 2))
+
+
+def _check_vibrating(scene: Scene, name: str, surface: Vibrating) -> None:
+    """Raise SceneError for obstacles against which a vibrating face would press a particle."""
+    axis, upper = FACES.index(name) // 2, FACES.index(name) % 2 == 1
+    length = scene.container.lengths[axis]
+    clear = 2.0 * (surface.amplitude + scene.largest_radius)
+    for n, thing in enumerate(scene.species):
+        if thing.fixed and thing.count:
+            rule = f"must not be true where {name} vibrates: give fixed particles positions, as bodies"
+            raise SceneError(f"species[{n}].fixed", True, rule)
+    for n, body in enumerate(scene.bodies):
+        x = vector(f"bodies[{n}].position", body.position, scene.dimension)[axis]
+        if body.fixed and (length - x if upper else x) < clear + body.radius:
+            rule = f"leaves less than a largest diameter between the particle and {name}, which vibrates"
+            raise SceneError(f"bodies[{n}].position", body.position, rule)
+    for n, wall in enumerate(scene.walls):
+        heights = [length - corner[axis] if upper else corner[axis] for corner in wall.corners.values()]
+        if min(heights) < clear and not (min(heights) <= 0.0 and _is_upright(wall, axis)):
+            rule = f"leaves less than a largest diameter between the wall and {name}, which vibrates"
+            raise SceneError(f"walls[{n}]", wall, rule)
+
+
+def _is_upright(wall: Wall | Plate, axis: int) -> bool:
+    """Whether a wall stands upright on a face across this axis."""
+    corners = list(wall.corners.values())
+    edges = [[b - a for a, b in zip(corners[0], corner, strict=True)] for corner in corners[1:3]]
+    upright = [not any(edge[:axis] + edge[axis + 1 :]) for edge in edges]
+    return any(upright) and all(
+        stands or edge[axis] == 0.0 for stands, edge in zip(upright, edges, strict=True)
+    )
+
+
+def _check_room(scene: Scene) -> None:
+    """Raise SceneError where vibrating faces leave too little room."""
+    moving = {name: face for name, face in scene.faces.items() if isinstance(face, Vibrating)}
+    low, high = scene.reach(scene.largest_radius)
+    left = 1.0
+    for axis in range(scene.dimension):
+        own = {name: face for name, face in moving.items() if FACES.index(name) // 2 == axis}
+        stroke = sum(2.0 * face.amplitude for face in own.values())
+        if own and stroke >= high[axis] - low[axis]:
+            name, face = next(iter(own.items()))
+            rule = "leaves no room for the largest particle"
+            raise SceneError(f"faces.{name}.amplitude", face.amplitude, rule)
+        left *= 1.0 - stroke / scene.container.lengths[axis]
+    if moving and scene.packing_fraction > left * closest_packing(scene):
+        rule = "exceeds close packing where the faces have moved inwards"
+        raise SceneError("packing_fraction", scene.packing_fraction, rule)
