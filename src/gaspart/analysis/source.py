@@ -29,7 +29,6 @@ REPEATED = 129
 """Frames of a simulation, which is run again to measure it; fewer of many particles."""
 _AT_REST = 1e-24  # of a kinetic energy: a rounding error, squared
 _MOST = 20_000_000  # numbers that such frames hold
-_COUNTERS = ("collisions", "virial_sum", "wall_impulse")
 
 
 @dataclass(frozen=True)
@@ -236,19 +235,17 @@ def repeated(simulation: Simulation) -> xr.Dataset:
         steps = max(1, round(simulation.time / step) // (frames - 1))
         times = np.append(0.0, (steps * np.arange(1, frames) + 0.5) * step)
         times = times[times < simulation.time + step]
-    again, rows, pistons = Simulation(scene, engine, simulation.seed), [], []
+    again, rows = Simulation(scene, engine, simulation.seed), []
     for time in times:
         again.advance(until=time)
         state, tally = again.state, again.tally
-        counters = [getattr(tally, name) for name in _COUNTERS]
-        pistons += [] if state.piston is None else [state.piston[0]]
-        rows.append((again.time, state.positions, state.velocities, state.unwrapped, *counters))
-    names = ("time", "coordinates", "velocities", "displacements", *_COUNTERS)
-    columns = dict(zip(names, map(np.array, zip(*rows, strict=True)), strict=True))
+        places = {"coordinates": state.positions, "displacements": state.unwrapped}
+        piston = {} if state.piston is None else {"piston_position": state.piston[0]}
+        row = {**vars(tally), **places, "velocities": state.velocities, **piston, "time": again.time}
+        rows.append({name: value for name, value in row.items() if value is not None})
+    columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     columns["displacements"] = columns["displacements"] - columns["displacements"][0]
     dims = {3: ("frame", "atom", "spatial"), 2: ("frame", "face"), 1: ("frame",)}
-    if pistons:
-        columns["piston_position"] = np.array(pistons)
     return xr.Dataset(
         {name: (dims[values.ndim], values) for name, values in columns.items()},
         attrs={"scene": dump_yaml(scene.to_dict())},
