@@ -3,7 +3,7 @@
 import pytest
 
 import gaspart as gp
-from gaspart.analysis.source import measured
+from gaspart.analysis.run import measured
 
 A = gp.analysis
 SPHERES = [gp.Species(200, 0.5, temperature=1.0)]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.analysis.source import REPEATED
+from gaspart.analysis.run import REPEATED
 from gaspart.cli import main
 
 A = gp.analysis

@@ -86,7 +86,7 @@ def test_drawn_velocities_add_a_scatter_that_is_stated(exact, scatter):
     scene = gas(0.2)
     particles = replace(scene.species[0], exact_temperature=exact)
     found = advise(replace(scene, species=(particles,)), "D", 1e-2, None, speed.as_measured)
-    assert found.gas.scatter == pytest.approx(scatter)
+    assert found.scatter == pytest.approx(scatter)
     assert any("exact_temperature: true" in line for line in _lines(found)) != exact
 
 

@@ -95,7 +95,7 @@ def test_the_advised_accuracy_is_reached():
     for number in range(SCENES):
         gas, observable, accuracy = scene(number)
         found = advise(gas, observable, accuracy)
-        rate = found.gas.collision_rate
+        rate = float(theory.collision_rate(**found.gas.parameters))
         values = [
             run(
                 gas, found.setting.engine, observable, found.duration, 2.0 * EQUILIBRATION / rate, (number, k)

@@ -14,7 +14,7 @@ import numpy as np
 from gaspart import theory
 from gaspart.analysis.correlations import autocorrelation, correlate
 from gaspart.analysis.observable import Observable, observable
-from gaspart.analysis.source import Run, Source, measured
+from gaspart.analysis.run import Run, Source, measured
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.scene.validation import count_of
@@ -25,7 +25,6 @@ MOST_FRAMES = 1000
 """That are correlated; of a longer run, every second or third ..."""
 LINEAR_FROM = 12.0
 """Collisions per particle, from which on the mean-squared displacement grows evenly, if there is a D."""
-_DENSEST = 0.4915  # where spheres freeze, and the range of Erpenbeck and Wood ends
 _CONSTANT = 0.06  # of a slope: what it may change, as by the slow decay of correlations in a fluid
 _SIGNIFICANT = 4.0  # standard errors of 15 degrees of freedom: exceeded by chance once in a thousand
 _FARTHEST = 0.45  # of a side: the longest way between frames by which a particle is followed
@@ -63,9 +62,8 @@ def mean_squared_displacement(
         time = groups.interval * np.arange(number)
         values, errors = means_of(found)
         expected: dict[str, Any] = {}
-        if run.fluid:
-            eta, d = run.scene.packing_fraction, run.dimension
-            curve = theory.enskog_mean_squared_displacement(time, eta, d, **run.particle)
+        if gas := run.moving_fluid:
+            curve = theory.enskog_mean_squared_displacement(time, **gas.parameters)
             expected = {"theory": (curve, math.nan), "source": "Enskog, exponential velocity correlation"}
         about: dict[str, Any] = {"units": "length^2", "long_name": "mean-squared displacement", **expected}
         return observable("mean_squared_displacement", _lag(time), values, errors, **about)
@@ -87,10 +85,9 @@ def velocity_autocorrelation(
         time = groups.interval * np.arange(number)
         values, errors = means_of(found)
         expected: dict[str, Any] = {}
-        if run.fluid:
-            eta, d, own = run.scene.packing_fraction, run.dimension, run.particle
-            rate = float(theory.velocity_decay_rate(eta, d, **own))
-            curve = own["temperature"] / own["mass"] * np.exp(-rate * time)
+        if gas := run.moving_fluid:
+            rate = float(theory.velocity_decay_rate(**gas.parameters))
+            curve = gas.temperature / gas.mass * np.exp(-rate * time)
             expected = {"theory": (curve, math.nan), "source": "Enskog, exact initial decay"}
         about: dict[str, Any] = {
             "units": "length^2 / time^2",
@@ -118,7 +115,7 @@ def diffusion_coefficient(source: Source, start: float | None = None) -> Observa
             raise SceneError("container.boundary", run.scene.container.boundary, rule)
         _require_spheres(run, run.conserved)
         _require_groups(run)
-        lags = _linear_lags(run)
+        lags = _lags_of_slopes(run)
         lasting = _lasting_momentum(run, lags[1] * _stride(run))
         _require_spheres(run, lasting)
         slopes = _slopes(_groups(run, about=lasting), lags)[..., run.periodic]
@@ -150,8 +147,15 @@ def _require_spheres(run: Run, lasting: np.ndarray) -> None:
         raise SceneError("container.lengths", run.scene.container.lengths, rule)
 
 
-def _linear_lags(run: Run) -> tuple[int, int, int]:
-    """How many frames 6, 12 and 24 collisions of a particle last. Raises SceneError for too few frames."""
+def linear_lags(rate: float, interval: float) -> tuple[int, int, int]:
+    """After how many frames, `interval` apart, a particle has had 6, 12 and 24 collisions: before the window
+    of D, at its start and at its end. rate: its collisions per time."""
+    first, middle, last = (math.ceil(k * LINEAR_FROM / rate / interval) for k in (0.5, 1.0, 2.0))
+    return first, middle, last
+
+
+def _lags_of_slopes(run: Run) -> tuple[int, int, int]:
+    """The `linear_lags` of a run, no two of them equal. Raises SceneError for too few frames."""
     stride = _stride(run)
     interval = float(np.diff(run.time).mean()) * stride
     collisions = float(run.increments("collisions").sum())
@@ -160,7 +164,7 @@ def _linear_lags(run: Run) -> tuple[int, int, int]:
     if rate * (duration + interval) < 4.0 * LINEAR_FROM:
         rule = f"must cover {4.0 * LINEAR_FROM:g} collisions of a particle or more"
         raise SceneError("duration", duration, rule)
-    first, middle, last = (math.ceil(k * LINEAR_FROM / rate / interval) for k in (0.5, 1.0, 2.0))
+    first, middle, last = linear_lags(rate, interval)
     middle = max(middle, first + 1)
     last = max(last, middle + 1)
     if len(run.time) < 2 * last * stride:
@@ -202,10 +206,12 @@ def _require_constant(slopes: np.ndarray) -> None:
 
 
 def _theory_of_d(run: Run) -> dict[str, Any]:
-    eta, sides = run.scene.packing_fraction, np.array(run.scene.container.lengths)
-    if not run.bulk or run.dimension == 2 or eta > _DENSEST or np.ptp(sides) > 1e-6 * sides[0]:
+    gas, sides = run.moving_fluid, run.scene.container.lengths
+    if gas is None or gas.dimension == 2 or np.ptp(sides) > 1e-6 * sides[0]:
         return {}
-    expected = theory.diffusion_in_cube(eta, float(sides[0]), **run.particle)
+    if gas.packing_fraction > theory.ERPENBECK_WOOD_HIGHEST:
+        return {}
+    expected = theory.diffusion_in_cube(gas.packing_fraction, sides[0], **gas.particle)
     return {"theory": expected, "source": "Erpenbeck and Wood, Yeh and Hummer"}
 
 

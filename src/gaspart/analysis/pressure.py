@@ -9,7 +9,7 @@ import numpy as np
 
 from gaspart import theory
 from gaspart.analysis.observable import Observable, observable, scalar
-from gaspart.analysis.source import (
+from gaspart.analysis.run import (
     Run,
     Source,
     measured,
@@ -48,9 +48,10 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
 
 
 def _theory_of_z(run: Run) -> dict[str, Any]:
-    if not run.fluid:
+    gas = run.moving_fluid
+    if gas is None:
         return {}
-    eta, d = run.scene.packing_fraction, run.dimension
+    eta, d = gas.packing_fraction, gas.dimension
     value = float(theory.compressibility_factor(eta, d))
     value += float(theory.finite_size_correction(eta, d, run.count, "canonical"))
     source = "reference equation of state of the fluid, corrected for the number of particles"
@@ -135,17 +136,17 @@ def refuse_rest(run: Run, rule: str) -> None:
 def _theory_at_walls(run: Run, touched: np.ndarray) -> dict[str, Any]:
     walled, lengths = ~run.periodic, np.array(run.scene.container.lengths)
     sides = lengths[walled]
-    if not run.simple or run.scene.centres_to_walls or np.ptp(sides) > 1e-9 * sides.max():
+    gas = run.scene.gas
+    if gas is None or run.scene.centres_to_walls or np.ptp(sides) > 1e-9 * sides.max():
         return {}
-    diameter = run.particle["diameter"]
-    density = run.count / float((touched / diameter).prod())
+    density = gas.count / float((touched / gas.diameter).prod())
     try:
         value, error = theory.wall_pressure(
-            sides[0] / diameter, density, run.count, run.dimension, int(walled.sum())
+            sides[0] / gas.diameter, density, gas.count, gas.dimension, int(walled.sum())
         )
     except ValueError:  # denser than theory goes
         return {}
-    unit = run.temperature / diameter**run.dimension
+    unit = run.temperature / gas.diameter**gas.dimension
     return {"theory": (value * unit, error * unit), "source": "fluid between hard walls"}
 
 
@@ -168,10 +169,11 @@ def collision_rate(source: Source, start: float | None = None) -> Observable:
 
 
 def _theory_of_rate(run: Run) -> dict[str, Any]:
-    if not run.fluid:
+    gas = run.moving_fluid
+    if gas is None:
         return {}
-    eta, d = run.scene.packing_fraction, run.dimension
-    rate = float(theory.collision_rate(eta, d, **run.particle))
+    eta, d = gas.packing_fraction, gas.dimension
+    rate = float(theory.collision_rate(**gas.parameters))
     # the run's temperature is that of d (N - 1) degrees of freedom, theory's factor is relative to d N
     rate *= math.sqrt((run.count - 1) / run.count)
     rate *= float(theory.collision_rate_finite_size_factor(eta, d, run.count))

@@ -13,9 +13,10 @@ import numpy as np
 
 from gaspart import theory
 from gaspart.analysis.observable import Observable, observable, scalar
-from gaspart.analysis.source import Run, Source, measured, require_periodic
+from gaspart.analysis.run import Run, Source, measured, require_periodic
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
+from gaspart.scene.gas import Gas
 from gaspart.scene.validation import choice, count_of, number
 
 STRETCHES = 16
@@ -98,19 +99,19 @@ def rdf(
         values, errors = means_of(stored / (stored - 1.0) * np.array([g for _, g in found], dtype=float))
         distance = np.asarray(found[0][0], dtype=float)
         expected: dict[str, Any] = {}
-        if run.of_fluid:
+        if gas := run.fluid:
             near = (distance > diameter) & (distance < diameter + 1.5 * end / bins)
-            at_contact = np.where(near, _contact_value(run), np.nan)
+            at_contact = np.where(near, _contact_value(gas), np.nan)
             expected = {"theory": (at_contact, np.nan), "source": "g at contact, from Z of this number"}
         along = {"distance": (distance, {"units": "length", "long_name": "distance"})}
         about: dict[str, Any] = {"units": "1", "long_name": "radial distribution g(r)", **expected}
         return observable("rdf", along, values, errors, **about)
 
 
-def _contact_value(run: Run) -> float:
+def _contact_value(gas: Gas) -> float:
     """g at contact of N particles of a fluid, of N (N - 1) / 2 pairs: from Z = 1 + 2^(d-1) eta g (N - 1) / N,
     corrected to first order in 1/N."""
-    eta, d, count = run.scene.packing_fraction, run.dimension, run.count
+    eta, d, count = gas.packing_fraction, gas.dimension, gas.count
     excess = theory.compressibility_factor(eta, d) - 1.0
     excess += theory.finite_size_correction(eta, d, count, "canonical")
     return float(excess / (2.0 ** (d - 1) * eta) * count / (count - 1.0))

@@ -73,11 +73,9 @@ def _lines(advice: Advice) -> list[str]:
         f"predicted cost    {best.seconds:.3g} s of processor time",
         f"95 % half-width   {best.half_width:.2g} of {advice.observable} (steps: at most {best.bias:.1g})",
     ]
-    if advice.observable in ("D", "collision_rate") and gas.scatter:
-        text = (
-            f"{gas.scatter:.2g} of {advice.observable} from run to run, beyond this: exact_temperature: true"
-        )
-        lines.append(f"drawn velocities  {text} removes it")
+    if advice.observable in ("D", "collision_rate") and advice.scatter:
+        text = f"{advice.scatter:.2g} of {advice.observable} from run to run, beyond this"
+        lines.append(f"drawn velocities  {text}: exact_temperature: true removes it")
     if not advice.within_budget:
         lines.append(f"the budget does not suffice for {advice.accuracy:g}")
     for other in advice.others:

@@ -87,13 +87,14 @@ def _pressure(frames: Frames) -> Check:
     name = "pressure Z"
     if reason := _no_pressure(frames):
         return Check(name, None, reason)
-    eta, d = frames.packing_fraction, frames.dimension
+    gas = frames.gas
+    assert gas is not None, "see `_no_pressure`"
+    eta, d = gas.packing_fraction, gas.dimension
     way, spacing = path(frames), _spacing(frames)
     first = moved(way, spacing)
     if first is None:
         return Check(name, None, _unmoved(way, spacing))
-    assert frames.diameter is not None, "see `_no_pressure`"
-    chosen = np.array(apart(way, WIDTH * frames.diameter, first))
+    chosen = np.array(apart(way, WIDTH * gas.diameter, first))
     if len(chosen) < _LEAST_FRAMES:
         text = f"{len(chosen)} independent samples are too few for an error: it needs {_LEAST_FRAMES}"
         return Check(name, None, text)
@@ -103,7 +104,7 @@ def _pressure(frames: Frames) -> Check:
     found = correlated_mean(contact_values(replace(frames, positions=frames.positions[chosen]))).estimate
     first_order = 2.0 ** (d - 1) * eta
     expected = float(theory.compressibility_factor(eta, d))
-    expected += float(theory.finite_size_correction(eta, d, frames.count, "canonical"))
+    expected += float(theory.finite_size_correction(eta, d, gas.count, "canonical"))
     unsure = math.hypot(
         float(theory.compressibility_uncertainty(eta, d)), first_order * FIT_ERROR * found.value
     )
@@ -113,16 +114,16 @@ def _pressure(frames: Frames) -> Check:
 
 def _no_pressure(frames: Frames) -> str | None:
     """The reason why the pressure cannot be checked; None if it can."""
-    if not all(frames.periodic) or frames.diameter is None or not frames.plain:
+    gas = frames.gas
+    if not all(frames.periodic) or gas is None:
         return "needs equal particles in a periodic container, moved by elastic contacts alone"
     if frames.part:
         return "the file has some of the particles only"
     if frames.sampled:
         return "contacts are sampled: positions say nothing of it"
-    eta = frames.packing_fraction
-    if eta > theory.HIGHEST_PACKING_FRACTION[frames.dimension]:
-        return f"packing fraction {eta:.3g} is beyond the fluid's equation of state"
-    if frames.lengths.min() <= 4.0 * frames.diameter:
+    if gas.packing_fraction > theory.HIGHEST_PACKING_FRACTION[gas.dimension]:
+        return f"packing fraction {gas.packing_fraction:.3g} is beyond the fluid's equation of state"
+    if frames.lengths.min() <= 4.0 * gas.diameter:
         return "the container is narrower than four diameters"
     if frames.count < _LEAST_FRAMES:
         return f"{frames.count} particles are too few"

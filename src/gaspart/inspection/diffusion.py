@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.motion import linear_lags
 from gaspart.analysis.statistics import mean_of
 from gaspart.inspection.frames import Frames
+from gaspart.scene.gas import Gas
 
-_LINEAR_FROM = 12.0  # collisions per particle, from which on the displacement's square grows evenly
 _GROUPS = 32
-_DENSEST = 0.4915  # where spheres freeze, and the range of Erpenbeck and Wood ends
 
 
 def why_not(frames: Frames) -> str | None:
@@ -22,7 +20,8 @@ def why_not(frames: Frames) -> str | None:
         return "discs have none: the displacement's square grows like t ln t"
     if frames.time is None or not all(frames.periodic):
         return "needs times (--time-step) and a periodic container"
-    if frames.packing_fraction > _DENSEST or np.ptp(frames.lengths) > 1e-6 * frames.lengths[0]:
+    cubic = np.ptp(frames.lengths) <= 1e-6 * frames.lengths[0]
+    if not cubic or frames.packing_fraction > theory.ERPENBECK_WOOD_HIGHEST:
         return "needs a fluid in a cube"
     interval = np.diff(frames.time)
     if len(interval) == 0 or np.ptp(interval) > 1e-3 * interval.mean():
@@ -62,8 +61,8 @@ def diffusion(frames: Frames) -> Estimate:
 
 def expected_diffusion(frames: Frames) -> tuple[float, float]:
     """D in this cube and its uncertainty: Enskog's, Erpenbeck and Wood's ratio, Yeh and Hummer's shift."""
-    sigma, temperature = _diameter(frames), _thermal_speed(frames) ** 2
-    return theory.diffusion_in_cube(frames.packing_fraction, float(frames.lengths[0]), sigma, temperature)
+    gas = _gas(frames)
+    return theory.diffusion_in_cube(gas.packing_fraction, float(frames.lengths[0]), **gas.particle)
 
 
 def _steps(frames: Frames) -> np.ndarray:
@@ -78,22 +77,12 @@ def _interval(frames: Frames) -> float:
     return float(np.diff(frames.time).mean())
 
 
-def _diameter(frames: Frames) -> float:
-    """That of all particles."""
-    assert frames.diameter is not None, "requires equal particles"
-    return frames.diameter
-
-
-def _thermal_speed(frames: Frames) -> float:
-    """sqrt(k_B T / m), of the motion about the centre of mass."""
-    assert frames.velocities is not None, "see `why_not`"
-    moving = frames.velocities - frames.velocities.mean(axis=1, keepdims=True)
-    return math.sqrt((moving**2).sum() / (len(moving) * frames.dimension * (frames.count - 1)))
+def _gas(frames: Frames) -> Gas:
+    assert frames.gas is not None, "see `why_not_speeds`"
+    return frames.gas
 
 
 def _lags(frames: Frames) -> tuple[int, int]:
     """Frames between which the rise is taken."""
-    temperature = _thermal_speed(frames) ** 2
-    rate = float(theory.collision_rate(frames.packing_fraction, 3, _diameter(frames), temperature))
-    interval = _interval(frames)
-    return math.ceil(_LINEAR_FROM / rate / interval), math.ceil(2.0 * _LINEAR_FROM / rate / interval)
+    rate = float(theory.collision_rate(**_gas(frames).parameters))
+    return linear_lags(rate, _interval(frames))[1:]

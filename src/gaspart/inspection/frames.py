@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
+from gaspart.scene.gas import Gas
 from gaspart.scene.geometry import ball_volume
 
 
@@ -56,6 +59,20 @@ class Frames:
     def packing_fraction(self) -> float:
         """Volume (area) of all particles over that of the container."""
         return float(ball_volume(self.dimension) * (self.radii**self.dimension).sum() / np.prod(self.lengths))
+
+    @cached_property
+    def gas(self) -> Gas | None:
+        """The plain gas that the particles are, as far as the file knows, of mass 1 at the temperature of the
+        motion about the centre of mass (NaN without velocities); None if they differ or more than elastic
+        contacts moves them."""
+        if not self.plain or self.diameter is None:
+            return None
+        temperature = math.nan
+        if self.velocities is not None:
+            moving = self.velocities - self.velocities.mean(axis=1, keepdims=True)
+            freedom = self.dimension * max(self.count - 1, 1)
+            temperature = float((moving**2).sum() / (len(moving) * freedom))
+        return Gas(self.dimension, self.packing_fraction, self.count, self.diameter, temperature)
 
     def at(self, frame: int) -> Frames:
         """One frame, with the container and the radii that it has."""

@@ -26,7 +26,7 @@ def why_not_speeds(frames: Frames) -> str | None:
         return "the file has no velocities"
     if not np.isfinite(frames.velocities).all():
         return "not all velocities are finite"
-    if not frames.plain or frames.diameter is None:
+    if frames.gas is None:
         return "particles differ, or are moved by more than elastic contacts"
     if frames.part:
         return "the file has some of the particles only"

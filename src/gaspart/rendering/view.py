@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.analysis.order import NEIGHBOURS, hexatic, local_steinhardt
-from gaspart.analysis.source import repeated
+from gaspart.analysis.run import repeated
 from gaspart.errors import SceneError
 from gaspart.files import Kind, output_path, writing
 from gaspart.rendering.camera import edges_of

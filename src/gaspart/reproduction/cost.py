@@ -7,13 +7,12 @@ from dataclasses import replace
 
 from gaspart import theory
 from gaspart.engines import TimeStepped
-from gaspart.errors import SceneError
 from gaspart.reproduction.config import checked
 from gaspart.reproduction.points import grid
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.points.points import points
+from gaspart.scene.gas import Gas
 from gaspart.tradeoff import speed, table
-from gaspart.tradeoff.advice import Gas, plain_gas
 
 
 def predict(path: str) -> list[str]:
@@ -43,16 +42,15 @@ def _seconds(point: Point) -> float | None:
     unknown."""
     if point.job != "simulate":
         return None
-    scene = grid.scene(point)
-    try:
-        gas = plain_gas(scene)
-    except SceneError:
+    gas = grid.scene(point).gas
+    if gas is None or not gas.temperature > 0.0:
         return None
     engine = grid.engine(point)
     # Where discs or spheres freeze, the pressure is constant, and the number of contacts nearly so.
     densest = theory.HIGHEST_PACKING_FRACTION[gas.dimension]
     fluid = replace(gas, packing_fraction=min(gas.packing_fraction, densest))
-    contacts = 0.5 * gas.count * fluid.collision_rate * grid.schedule(point).duration * point.replicas
+    rate = float(theory.collision_rate(**fluid.parameters))
+    contacts = 0.5 * gas.count * rate * grid.schedule(point).duration * point.replicas
     if not isinstance(engine, TimeStepped):
         each = table.seconds(gas.dimension, gas.packing_fraction, "event")
         return contacts * each * _speed(gas, "event", "float64")

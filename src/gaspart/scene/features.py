@@ -69,7 +69,7 @@ FEATURES: dict[str, Feature] = {
     "fixed": Feature(
         "fixed particles",
         "fixed",
-        lambda scene: True if any(kind.fixed and getattr(kind, "count", 1) for kind in scene.kinds) else None,
+        lambda scene: True if any(kind.fixed and kind.count for kind in scene.kinds) else None,
     ),
     "centres_to_walls": Feature(
         "walls that stop the centres of particles",

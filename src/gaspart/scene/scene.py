@@ -18,7 +18,8 @@ from gaspart.scene.container import Container
 from gaspart.scene.face_checks import check_faces
 from gaspart.scene.faces import SCHEMA as FACES_SCHEMA
 from gaspart.scene.faces import Sticky, Surface, surface_from_dict, surface_to_dict
-from gaspart.scene.features import check_features
+from gaspart.scene.features import check_features, features
+from gaspart.scene.gas import Gas
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.keys import FLAG, VECTOR, checked_by_class, declared, instance_of, list_of, validate
 from gaspart.scene.limits import Nearby, check_packing, check_region, check_room, rounding
@@ -182,7 +183,7 @@ class Scene:
     @property
     def count(self) -> int:
         """The number of particles."""
-        return len(self.bodies) + sum(kind.count for kind in self.species)
+        return sum(kind.count for kind in self.kinds)
 
     @property
     def vibrates(self) -> bool:
@@ -195,7 +196,7 @@ class Scene:
         """(d,) whether the total momentum along an axis is conserved: a periodic one, if no particle is fixed
         and nothing but smooth faces, which act along their normals, is in the container."""
         periodic = self.container.periodic
-        fixed = any(it.fixed for it in self.bodies) or any(it.fixed and it.count for it in self.species)
+        fixed = any(it.fixed and it.count for it in self.kinds)
         smooth = all(face.smooth for face in self.faces.values())
         rubbed = not all(periodic) and (self.rough or not smooth)
         free = not (fixed or self.walls or rubbed)
@@ -216,14 +217,26 @@ class Scene:
     @property
     def largest_radius(self) -> float:
         """The largest radius of any particle (0 in an empty scene)."""
-        sizes = [body.radius for body in self.bodies] + [kind.radius for kind in self.species if kind.count]
-        return max(sizes, default=0.0)
+        return max((kind.radius for kind in self.kinds if kind.count), default=0.0)
 
     @property
     def smallest_radius(self) -> float:
         """The smallest radius of any particle (0 in an empty scene)."""
-        sizes = [body.radius for body in self.bodies] + [kind.radius for kind in self.species if kind.count]
-        return min(sizes, default=0.0)
+        return min((kind.radius for kind in self.kinds if kind.count), default=0.0)
+
+    @property
+    def gas(self) -> Gas | None:
+        """The plain gas that the scene is, at the temperature of its initial velocities; None if it is empty,
+        has particles of several sizes or masses, or has any feature but `centres_to_walls`."""
+        kinds = [kind for kind in self.kinds if kind.count]
+        if len({(kind.radius, kind.mass) for kind in kinds}) != 1 or features(self) - {"centres_to_walls"}:
+            return None
+        kind, dimension, count = kinds[0], self.dimension, self.count
+        temperature = kind.initial_temperature(dimension)
+        if len(kinds) > 1:
+            temperature = sum(each.count * each.initial_temperature(dimension) for each in kinds) / count
+        fraction = count * ball_volume(dimension, kind.radius) / self.container.volume
+        return Gas(dimension, fraction, count, 2.0 * kind.radius, temperature, kind.mass)
 
     def reach(self, radius: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """(d,), (d,): the lowest and highest coordinates of the centre of a particle of this radius."""

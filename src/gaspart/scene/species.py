@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 from gaspart.errors import SceneError
 from gaspart.scene.keys import (
@@ -115,11 +116,18 @@ class Species:
         """Whether its particles have a mode of vibration."""
         return self.fixed and (self.vibration is not None or self.temperature is not None)
 
+    def initial_temperature(self, dimension: int) -> float:
+        """m <v^2> / d of the distribution of initial velocities."""
+        if self.temperature is not None:
+            return self.temperature
+        return self.mass * (self.speed or 0.0) ** 2 / dimension
+
 
 @dataclass(frozen=True)
 class Body:
     """One particle at a given position. In 2D its spin, the angular velocity, is a number, in 3D (3,)."""
 
+    count: ClassVar[int] = 1
     position: tuple[float, ...] = field(metadata=declared(POSITION, "initial position of its centre"))
     velocity: tuple[float, ...] = field(metadata=declared(VECTOR, "initial velocity"))
     radius: float = field(metadata=_RADIUS)
@@ -150,6 +158,10 @@ class Body:
     def vibrates(self) -> bool:
         """Whether it has a mode of vibration."""
         return self.vibration is not None
+
+    def initial_temperature(self, dimension: int) -> float:
+        """m v^2 / d of its initial velocity."""
+        return self.mass * sum(component**2 for component in self.velocity) / dimension
 
     @property
     def spin_vector(self) -> tuple[float, ...]:

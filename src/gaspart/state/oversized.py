@@ -63,10 +63,9 @@ def boxes_and_largest(scene: Scene, boxes_per_side: int | tuple[int, ...] | None
 
 def sizes(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """The different radii (K,) in rising order, and (K,) how many particles have each."""
-    radii = [body.radius for body in scene.bodies] + [kind.radius for kind in scene.species if kind.count]
-    counts = [1] * len(scene.bodies) + [kind.count for kind in scene.species if kind.count]
-    different, which = np.unique(np.array(radii, dtype=float), return_inverse=True)
-    return different, np.bincount(which, counts, len(different)).astype(np.int64)
+    kinds = [kind for kind in scene.kinds if kind.count]
+    different, which = np.unique(np.array([kind.radius for kind in kinds], float), return_inverse=True)
+    return different, np.bincount(which, [kind.count for kind in kinds], len(different)).astype(np.int64)
 
 
 def work(scene: Scene, largest: float) -> float:

@@ -18,6 +18,7 @@ from gaspart.theory.buoyancy import (
     insertion_work,
 )
 from gaspart.theory.diffusion import (
+    ERPENBECK_WOOD_HIGHEST,
     ERPENBECK_WOOD_UNCERTAINTY,
     YEH_HUMMER_CONSTANT,
     diffusion_in_cube,
@@ -151,6 +152,7 @@ __all__ = [
     "COEXISTENCE_DENSITY",
     "COEXISTENCE_PRESSURE",
     "CRYSTAL_OF_1024_DISCS",
+    "ERPENBECK_WOOD_HIGHEST",
     "ERPENBECK_WOOD_UNCERTAINTY",
     "HIGHEST_ORDER",
     "HIGHEST_PACKING_FRACTION",

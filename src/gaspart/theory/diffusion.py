@@ -15,6 +15,8 @@ from gaspart.theory.geometry import number_density
 ERPENBECK_WOOD_UNCERTAINTY = 0.007
 """Relative uncertainty of `erpenbeck_wood_ratio` up to eta = 0.45: the largest difference from the table of
 Pieprzyk and others (2019)."""
+ERPENBECK_WOOD_HIGHEST = 0.4915
+"""Packing fraction up to which `erpenbeck_wood_ratio` holds: where spheres freeze."""
 _DENSE = 0.45, 0.03
 # Packing fraction from which on the uncertainty is larger, and which; the difference is 2 % at 0.487.
 YEH_HUMMER_CONSTANT = 2.837297
@@ -29,7 +31,7 @@ def erpenbeck_wood_ratio(packing_fraction: Numbers) -> Values:
     Branka, Chudak and Heyes, Phys. Chem. Chem. Phys. 21, 6886 (2019), as a public script quotes it (tested).
     Range: the fluid, eta <= 0.4915. Infinite system. Dimensionless.
     """
-    eta = checked_packing_fraction(packing_fraction, 0.4915)
+    eta = checked_packing_fraction(packing_fraction, ERPENBECK_WOOD_HIGHEST)
     y = number_density(eta, 3) / math.sqrt(2.0)
     return 1.0 + 0.05403 * y + 6.3656 * y**2 - 10.9425 * y**3
 

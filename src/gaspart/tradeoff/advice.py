@@ -16,6 +16,7 @@ from typing import TypeAlias
 from gaspart import theory
 from gaspart.engines import Engine, EventDriven, TimeStepped
 from gaspart.errors import SceneError
+from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
 from gaspart.tradeoff import speed, table
@@ -27,31 +28,6 @@ SpeedOf: TypeAlias = Callable[[int, str, str, int], float]
 """A function as `gaspart.tradeoff.speed.factor`."""
 _PER_EQUILIBRATION = 10.0  # smallest ratio of a replica's length to its equilibration
 _BULK = 4.0  # the finite size of a gas should cost no more than this part of the accuracy
-
-
-@dataclass(frozen=True)
-class Gas:
-    """The gas that is advised on: one species of equal smooth particles."""
-
-    dimension: int
-    packing_fraction: float
-    count: int
-    diameter: float
-    thermal_speed: float
-    drawn: bool = False
-    """Whether its velocities are drawn from a temperature, which a run has only on average."""
-
-    @property
-    def scatter(self) -> float:
-        """Relative standard deviation of D and of the collision rate, which are proportional to the square
-        root of the temperature, from the draw of N particles."""
-        return 0.5 * math.sqrt(2.0 / (self.dimension * self.count)) if self.drawn else 0.0
-
-    @property
-    def collision_rate(self) -> float:
-        """Collisions of one particle per time."""
-        temperature = self.thermal_speed**2
-        return float(theory.collision_rate(self.packing_fraction, self.dimension, self.diameter, temperature))
 
 
 @dataclass(frozen=True)
@@ -73,7 +49,8 @@ class Advice:
 
     collisions_per_body: measured, in each replica; duration: the same in the scene's time; finite_size:
     relative difference from the infinite gas; bulk_count: particles for which that is a quarter of the
-    accuracy. Both NaN where there is no theory.
+    accuracy. Both NaN where there is no theory. scatter: relative standard deviation of D and of the
+    collision rate from run to run, if velocities are drawn from a temperature and have it only on average.
     """
 
     gas: Gas
@@ -85,11 +62,12 @@ class Advice:
     collisions_per_body: float
     finite_size: float
     bulk_count: float
+    scatter: float
 
     @property
     def duration(self) -> float:
         """Measured length of each replica, in the scene's time."""
-        return self.collisions_per_body / self.gas.collision_rate
+        return self.collisions_per_body / float(theory.collision_rate(**self.gas.parameters))
 
     @property
     def within_budget(self) -> bool:
@@ -108,31 +86,17 @@ class _Wish:
     speed_of: SpeedOf
 
 
-def plain_gas(scene: Scene) -> Gas:
-    """The gas of a scene that holds nothing else. Raises SceneError where costs were not measured."""
-    kinds = scene.species
-    plain = Scene(scene.container, kinds, centres_to_walls=scene.centres_to_walls)
-    if len(kinds) != 1 or kinds[0].fixed or scene != plain:
-        rule = "advice is known for one species of smooth particles alone, without gravity or obstacles"
-        raise SceneError("species", len(kinds), rule)
-    if not kinds[0].count:
+def fluid_of(scene: Scene) -> Gas:
+    """The gas of a scene, a fluid in a periodic container. Raises SceneError for a scene whose errors were
+    not measured."""
+    gas, container = scene.gas, scene.container
+    if not scene.count:
         raise SceneError("count", 0, "advice is for a gas: the scene is empty")
-    kind, dimension = kinds[0], scene.dimension
-    temperature = kind.temperature
-    if temperature is None:
-        temperature = kind.mass * (kind.speed or 0.0) ** 2 / dimension
-    if not temperature > 0.0:
-        raise SceneError("temperature", temperature, "advice is for moving particles")
-    speed = math.sqrt(temperature / kind.mass)
-    drawn = kind.temperature is not None and not kind.exact_temperature
-    return Gas(dimension, scene.packing_fraction, kind.count, 2.0 * kind.radius, speed, drawn)
-
-
-def gas_of(scene: Scene) -> Gas:
-    """The same for a fluid in a periodic container. Raises SceneError for a scene whose errors were not
-    measured."""
-    gas = plain_gas(scene)
-    container = scene.container
+    if gas is None:
+        rule = "advice is known for one species of smooth particles alone, without gravity or obstacles"
+        raise SceneError("species", len(scene.species), rule)
+    if not gas.temperature > 0.0:
+        raise SceneError("temperature", gas.temperature, "advice is for moving particles")
     if not all(container.periodic):
         rule = (
             "advice is for periodic containers: walls change Z, D and the rate; measure the pressure on them"
@@ -171,7 +135,7 @@ def advise(
     accuracy = number("accuracy", accuracy, rule, least=low, most=high)
     if budget is not None:
         budget = number("budget", budget, "must be positive", above=0.0)
-    gas = gas_of(scene)
+    gas = fluid_of(scene)
     noise = table.noise(gas.dimension, gas.packing_fraction, observable)
     if not math.isfinite(noise):
         raise SceneError(
@@ -195,6 +159,7 @@ def advise(
     per_body = 2.0 * best.contacts / gas.count
     replicas = max(1, min(os.cpu_count() or 1, int(per_body / (_PER_EQUILIBRATION * EQUILIBRATION))))
     finite_size = _finite_size(gas, observable)
+    drawn = any(kind.temperature is not None and not kind.exact_temperature for kind in scene.species)
     return Advice(
         gas,
         observable,
@@ -205,6 +170,7 @@ def advise(
         per_body / replicas,
         finite_size,
         gas.count * (abs(finite_size) * _BULK / accuracy) ** (gas.dimension if observable == "D" else 1),
+        0.5 * math.sqrt(2.0 / (gas.dimension * gas.count)) if drawn else 0.0,
     )
 
 

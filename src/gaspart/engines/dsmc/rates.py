@@ -56,13 +56,13 @@ def contact_values(number_densities: np.ndarray, radii: np.ndarray, dimension: i
 def rates(scene: Scene, dense: bool) -> Rates:
     """Those of a scene at its start, or as hot as its faces; dense: with contact values of a dense gas."""
     d = scene.dimension
-    kinds = [kind for kind in scene.kinds if getattr(kind, "count", 1) and not kind.fixed]
+    kinds = [kind for kind in scene.kinds if kind.count and not kind.fixed]
     if not kinds:
         return Rates(0.0, 0.0)
     heat = max((getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()), default=0.0)
     square = np.array([max(_square(kind, d), heat / kind.mass) for kind in kinds])
     radius = np.array([kind.radius for kind in kinds])
-    number = np.array([float(getattr(kind, "count", 1)) for kind in kinds])
+    number = np.array([float(kind.count) for kind in kinds])
     lower, upper = accessible(scene)
     density = number / float((upper - lower).prod())
     sigma = radius[:, None] + radius

@@ -15,13 +15,10 @@ from gaspart.errors import SceneError
 from gaspart.reproduction.points.keys import ENGINES, LENGTHS, SCANS
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.points.point_scene import check_scene, extents, scene
-from gaspart.scene.geometry import ball_volume
 from gaspart.scene.validation import LARGEST, SMALLEST
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine
-    from gaspart.scene.scene import Scene
-    from gaspart.scene.species import Species
 
 _MOST_INTERVALS = 2.0**53  # above, float64 does not distinguish their numbers
 
@@ -152,31 +149,16 @@ def _unit_of_time(point: Point, unit: str) -> float:
     from gaspart import theory
 
     key, given = f"experiments.{point.experiment}.collisions_per_body", point.settings[unit]
-    kind = _only_species(scene(point))
-    if kind is None:
+    gas = scene(point).gas
+    if gas is None:
         rule = "is known only for one species of smooth particles without gravity or obstacles; give duration"
         raise SceneError(key, given, rule)
-    count, radius, lengths = extents(point)
-    dimension = len(lengths)
-    temperature = kind.temperature
-    if temperature is None:
-        temperature = kind.mass * (kind.speed or 0.0) ** 2 / dimension
-    if not temperature > 0.0:
+    if not gas.temperature > 0.0:
         raise SceneError(key, given, "needs a temperature or a speed above zero")
-    fraction = count * ball_volume(dimension, radius) / math.prod(lengths)
     try:
-        rate = theory.collision_rate(fraction, dimension, 2.0 * radius, temperature, kind.mass)
+        rate = theory.collision_rate(**gas.parameters)
     except ValueError as error:
         raise SceneError(key, given, f"cannot be turned into a time: {error}") from None
     if not 0.0 < rate < math.inf:
         raise SceneError(key, given, f"cannot be turned into a time: the collision rate is {rate:g}")
     return 1.0 / float(rate)
-
-
-def _only_species(made: Scene) -> Species | None:
-    """The species of a scene of one species and nothing else; None for any other scene."""
-    from gaspart.scene.scene import Scene
-
-    kinds = made.species
-    plain = Scene(made.container, kinds, centres_to_walls=made.centres_to_walls)
-    return kinds[0] if len(kinds) == 1 and not kinds[0].fixed and made == plain else None

@@ -54,9 +54,7 @@ def setting_of(point: grid.Point) -> Setting:
     if len(scene.bodies) != 1 or len(scene.species) != 1:
         raise SceneError(where, point.settings.get("scene"), "must have one entry of bodies and one species")
     body, gas = scene.bodies[0], scene.species[0]
-    temperature = gas.temperature
-    if temperature is None:
-        temperature = gas.mass * (gas.speed or 0.0) ** 2 / 3.0
+    temperature = gas.initial_temperature(3)
     contact = body.radius + gas.radius
     lower, upper = scene.reach(gas.radius)
     room = math.prod(b - a for a, b in zip(lower, upper, strict=True))

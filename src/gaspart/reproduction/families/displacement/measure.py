@@ -15,15 +15,17 @@ from scipy.integrate import cumulative_simpson
 
 from gaspart import theory
 from gaspart.analysis.correlations import Curves, between, line
+from gaspart.analysis.motion import LINEAR_FROM
 from gaspart.analysis.statistics import fit_polynomial, means_of
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.curves import reduced_curves
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point_scene import plain_gas
 
-SETTLE_COLLISIONS, SETTLE_SHEAR_TIMES = 12.0, 3.0
-"""D is the slope of the msd from this many collisions per particle, or decay times of the container's slowest
-shear mode, whichever is later, to twice that time."""
+SETTLE_SHEAR_TIMES = 3.0
+"""D is the slope of the msd from `LINEAR_FROM` collisions per particle, or this many decay times of the
+container's slowest shear mode, whichever is later, to twice that time."""
 SHORT_INTERVAL = 0.5
 """A run sampled at least this often (collisions per particle) is there for short times: its velocity
 autocorrelation is integrated (Simpson's rule, good to 1e-4 at this spacing), and no D is taken from it."""
@@ -87,15 +89,14 @@ def msd_discs(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 def _state(point: grid.Point) -> dict:
     """Theory's predictions for a point's scene: collision rate, decay time of the slowest shear mode ..."""
-    dimension = point.settings["dimension"]
-    count, radius, lengths = grid.extents(point)
-    eta = count * theory.body_volume(dimension, 2.0 * radius) / math.prod(lengths)
+    gas, lengths = plain_gas(point), grid.scene(point).container.lengths
+    eta, dimension = gas.packing_fraction, gas.dimension
     density = theory.number_density(eta, dimension)
     viscosity = float(theory.enskog_viscosity(eta, dimension))
-    side = lengths[0] / (2.0 * radius)
+    side = lengths[0] / gas.diameter
     spreading = float(theory.enskog_diffusion(eta, dimension)) + viscosity / density
     return {
-        "count": count,
+        "count": gas.count,
         "packing_fraction": eta,
         "side": side,
         "collision_rate": float(theory.collision_rate(eta, dimension)),
@@ -146,7 +147,7 @@ def _spheres(point: grid.Point) -> dict:
     mode, but not more than all of it.
     """
     state = _state(point)
-    start = max(SETTLE_COLLISIONS / state["collision_rate"], SETTLE_SHEAR_TIMES * state["shear_time"])
+    start = max(LINEAR_FROM / state["collision_rate"], SETTLE_SHEAR_TIMES * state["shear_time"])
     factor = state["count"] / (state["count"] - 1.0)
     curves = [
         Curves(one.time, factor * one.msd, factor * one.correlation, factor * one.running)

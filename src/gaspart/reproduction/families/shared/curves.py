@@ -9,6 +9,7 @@ import numpy as np
 from gaspart.analysis.correlations import Curves, accumulated
 from gaspart.errors import SceneError
 from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point_scene import plain_gas
 from gaspart.trajectory.run import open_trajectory
 
 
@@ -20,15 +21,15 @@ def reduced_curves(point: grid.Point, path: str, longest: float) -> Curves:
     """
     if "lags" not in point.settings:
         raise SceneError(f"experiments.{point.experiment}.lags", None, "is required")
-    count, radius, _ = grid.extents(point)
+    gas = plain_gas(point)
     with open_trajectory(path) as trajectory:
         curves = accumulated(trajectory)
-    thermal_speed, diameter = math.sqrt(curves.correlation[0] * count / (count - 1)), 2.0 * radius
-    interval = curves.time[1] * thermal_speed / diameter
+    thermal_speed = math.sqrt(curves.correlation[0] * gas.count / (gas.count - 1))
+    interval = curves.time[1] * thermal_speed / gas.diameter
     lags = min(len(curves.time), math.ceil(longest / interval) + 1)
     return Curves(
         interval * np.arange(lags),
-        curves.msd[:lags] / diameter**2,
+        curves.msd[:lags] / gas.diameter**2,
         curves.correlation[:lags] / thermal_speed**2,
-        curves.running[:lags] / (diameter * thermal_speed),
+        curves.running[:lags] / (gas.diameter * thermal_speed),
     )

@@ -28,6 +28,7 @@ import numpy as np
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import autocorrelation_time, average, correlated_mean
 from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point_scene import plain_gas
 from gaspart.trajectory.run import open_trajectory
 
 
@@ -75,8 +76,8 @@ def read_run(point: grid.Point, path: str) -> Run:
     Raises OSError for a file that cannot be read and ValueError for one of another point.
     """
     schedule = grid.schedule(point)
-    count, radius, _ = grid.extents(point)
-    mass, dimension = point.settings.get("mass", 1.0), point.settings["dimension"]
+    gas = plain_gas(point)
+    count, mass, dimension = gas.count, gas.mass, gas.dimension
     first = schedule.equilibration_frames
     with open_trajectory(path) as trajectory:
         if trajectory.sizes["frame"] != first + schedule.samples + 1 or trajectory.sizes["atom"] != count:
@@ -91,7 +92,7 @@ def read_run(point: grid.Point, path: str) -> Run:
     about_centre = energy - 0.5 * mass * count * (drift @ drift)
     time = schedule.sample_interval
     temperature = 2.0 * about_centre / (dimension * (count - 1))
-    scale = 2.0 * radius * math.sqrt(mass / (2.0 * about_centre / (dimension * count)))
+    scale = gas.diameter * math.sqrt(mass / (2.0 * about_centre / (dimension * count)))
     return Run(
         z=1.0 + virial / (dimension * count * temperature * time),
         rate=2.0 * counters["collisions"] / (count * time) * scale,

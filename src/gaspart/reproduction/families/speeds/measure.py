@@ -16,6 +16,7 @@ from gaspart.analysis.statistics import histogram_chi_square, mean_of
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.rows import from_rows
 from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point_scene import plain_gas
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.run import open_trajectory
 
@@ -282,13 +283,11 @@ def _distribution(
 
 
 def _given_temperature(point: grid.Point) -> float:
-    """m v^2 / d of the speed that all particles were given."""
-    settings = point.settings
-    if "speed" not in settings:
-        raise SceneError(
-            f"experiments.{point.experiment}.speed", None, "is required: all particles start with it"
-        )
-    return settings.get("mass", 1.0) * settings["speed"] ** 2 / settings["dimension"]
+    """That of the speed that all particles were given, which no draw makes uncertain."""
+    if "speed" not in point.settings:
+        rule = "is required: all particles start with it"
+        raise SceneError(f"experiments.{point.experiment}.speed", None, rule)
+    return plain_gas(point).temperature
 
 
 def _kolmogorov_distance(cumulative: np.ndarray) -> float:

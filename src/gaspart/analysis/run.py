@@ -1,10 +1,10 @@
-"""What observables are measured from: a trajectory, by its path or open, or a simulation."""
+"""The measured part of a run: of a trajectory, by its path or open, or of a simulation."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TypeAlias
@@ -14,10 +14,11 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.errors import SceneError
+from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
-from gaspart.scene.species import Body, Species
 from gaspart.scene.validation import number
 from gaspart.simulation import Simulation
+from gaspart.state.insertion import per_body
 from gaspart.trajectory.run import open_trajectory
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
@@ -74,17 +75,13 @@ class Run:
     @cached_property
     def masses(self) -> np.ndarray:
         """(N,), infinite for fixed particles; single particles come before species."""
-        return np.concatenate([np.full(k, np.inf if it.fixed else it.mass) for it, k in self._parts])
-
-    @property
-    def _parts(self) -> list[tuple[Body | Species, int]]:
-        """The kinds of particles in the order of the file, each with its number."""
-        return [(it, 1) for it in self.scene.bodies] + [(it, it.count) for it in self.scene.species]
+        fixed = per_body(self.scene, "fixed").astype(bool)
+        return np.where(fixed, np.inf, per_body(self.scene, "mass").astype(float))
 
     @cached_property
     def radii(self) -> np.ndarray:
         """(N,)."""
-        return np.concatenate([np.full(number, it.radius) for it, number in self._parts])
+        return per_body(self.scene, "radius").astype(float)
 
     @cached_property
     def moving(self) -> np.ndarray:
@@ -142,37 +139,19 @@ class Run:
         return self.scene.restitution is not None and self.scene.restitution.dissipative
 
     @property
-    def simple(self) -> bool:
-        """Whether theory of the plain gas holds: one species of moving, smooth and elastic particles, nothing
-        else."""
-        scene = self.scene
-        contacts = scene.restitution is None or scene.restitution.smooth_and_elastic
-        kinds = {(it.radius, it.mass, it.fixed) for it in scene.kinds}
-        bare = not scene.walls and not scene.faces and scene.thermostat is None and not self.falls
-        return bare and contacts and len(kinds) == 1 and not next(iter(kinds))[2]
+    def fluid(self) -> Gas | None:
+        """The scene's gas if it is one of two particles or more in a periodic container, within the range of
+        the fluid's equation of state."""
+        gas = self.scene.gas
+        if gas is None or gas.count < 2 or not self.periodic.all():
+            return None
+        return gas if gas.packing_fraction <= theory.HIGHEST_PACKING_FRACTION[gas.dimension] else None
 
     @property
-    def bulk(self) -> bool:
-        """Whether it is such a gas in a periodic container."""
-        return self.simple and bool(self.periodic.all())
-
-    @property
-    def of_fluid(self) -> bool:
-        """Whether it is such a gas, of two particles or more, within the range of the fluid's equation of
-        state."""
-        eta = self.scene.packing_fraction
-        return self.bulk and self.count > 1 and eta <= theory.HIGHEST_PACKING_FRACTION[self.dimension]
-
-    @property
-    def fluid(self) -> bool:
-        """Whether it is such a gas that moves, so that there is theory of its motion."""
-        return self.of_fluid and self.temperature > 0.0
-
-    @property
-    def particle(self) -> dict[str, float]:
-        """diameter, temperature and mass, as the functions of theory take them."""
-        kind = self.scene.kinds[0]
-        return {"diameter": 2.0 * kind.radius, "temperature": self.temperature, "mass": kind.mass}
+    def moving_fluid(self) -> Gas | None:
+        """The `fluid` at the temperature of the run, None if it is at rest. Raises SceneError as `moving`."""
+        gas = self.fluid
+        return replace(gas, temperature=self.temperature) if gas and self.temperature > 0.0 else None
 
 
 def require_elastic(run: Run) -> None:
