@@ -58,9 +58,27 @@ class Run:
         """(d,) whether each axis is periodic."""
         return np.array(self.scene.container.periodic)
 
+    @property
+    def interval(self) -> float:
+        """Mean time between frames."""
+        return float(np.diff(self.time).mean())
+
     def increments(self, name: str) -> np.ndarray:
         """(T - 1, ...) how much a counter grew in each interval."""
         return np.diff(self.data[name].values, axis=0)
+
+    def growth(self, name: str) -> np.ndarray:
+        """(...) how much a counter grew per time."""
+        first, last = self.data[name].values[[0, -1]]
+        return (last - first) / (self.time[-1] - self.time[0])
+
+    def block_length(self, blocks: int) -> int:
+        """How many frames, after the first one, each of `blocks` of equal length has; a remainder is in none.
+        Raises ValueError for too few frames."""
+        length = (len(self.time) - 1) // blocks
+        if length < 1:
+            raise ValueError(f"blocks: {blocks} (more than the {len(self.time) - 1} intervals of a run)")
+        return length
 
     @cached_property
     def positions(self) -> np.ndarray:

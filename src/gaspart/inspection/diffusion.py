@@ -9,6 +9,7 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.motion import linear_lags
 from gaspart.analysis.statistics import mean_of
 from gaspart.inspection.frames import Frames
+from gaspart.inspection.samples import path, steps
 from gaspart.scene.gas import Gas
 
 _GROUPS = 32
@@ -26,7 +27,7 @@ def why_not(frames: Frames) -> str | None:
     interval = np.diff(frames.time)
     if len(interval) == 0 or np.ptp(interval) > 1e-3 * interval.mean():
         return "needs frames at even times"
-    if np.abs(_steps(frames)).max() > 0.45 * frames.lengths[0]:
+    if np.abs(steps(frames)).max() > 0.45 * frames.lengths[0]:
         return "frames are too far apart to follow a particle across the boundary"
     first, last = _lags(frames)
     if last - first < 1 or len(interval) < 2 * last:
@@ -47,13 +48,9 @@ def diffusion(frames: Frames) -> Estimate:
     Of N particles whose total momentum is zero D is (N - 1) / N of its value without this condition; this is
     corrected. The error is the scatter of groups of particles.
     """
-    steps, n = _steps(frames), frames.count
-    path = np.concatenate([np.zeros_like(steps[:1]), np.cumsum(steps, axis=0)])
-    path -= path.mean(axis=1, keepdims=True)
+    way, n = path(frames), frames.count
     first, last = _lags(frames)
-    squares = [
-        ((path[lag:] - path[:-lag]) ** 2).sum(axis=2).mean(axis=0) for lag in (first, last)
-    ]  # (N,) each
+    squares = [((way[lag:] - way[:-lag]) ** 2).sum(axis=2).mean(axis=0) for lag in (first, last)]  # (N,) each
     time = (last - first) * _interval(frames)
     rise = (squares[1] - squares[0]) / (6.0 * time) * n / (n - 1.0)
     return mean_of(np.array([part.mean() for part in np.array_split(rise, groups_of(frames))]))
@@ -63,12 +60,6 @@ def expected_diffusion(frames: Frames) -> tuple[float, float]:
     """D in this cube and its uncertainty: Enskog's, Erpenbeck and Wood's ratio, Yeh and Hummer's shift."""
     gas = _gas(frames)
     return theory.diffusion_in_cube(gas.packing_fraction, float(frames.lengths[0]), **gas.particle)
-
-
-def _steps(frames: Frames) -> np.ndarray:
-    """(T - 1, N, d) displacements from frame to frame, by the nearest image."""
-    steps = np.diff(frames.positions, axis=0)
-    return steps - frames.lengths * np.round(steps / frames.lengths)
 
 
 def _interval(frames: Frames) -> float:

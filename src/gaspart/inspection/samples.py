@@ -49,12 +49,16 @@ def independent(times: np.ndarray, rate: float) -> float:
     return len(times) ** 2 / total
 
 
+def steps(frames: Frames) -> np.ndarray:
+    """(T - 1, N, d) displacements from frame to frame, by nearest images."""
+    apart = np.diff(frames.positions, axis=0)
+    return apart - np.where(frames.periodic, frames.lengths * np.round(apart / frames.lengths), 0.0)
+
+
 def path(frames: Frames) -> np.ndarray:
-    """(T, N, d) way of each particle since the first frame, by nearest images, about the centre of mass where
+    """(T, N, d) way of each particle since the first frame, about the centre of mass where
     nothing but particles gives it momentum."""
-    steps = np.diff(frames.positions, axis=0)
-    steps -= np.where(frames.periodic, frames.lengths * np.round(steps / frames.lengths), 0.0)
-    way = np.concatenate([np.zeros_like(frames.positions[:1]), np.cumsum(steps, axis=0)])
+    way = np.concatenate([np.zeros_like(frames.positions[:1]), np.cumsum(steps(frames), axis=0)])
     return way - np.where(frames.periodic, way.mean(axis=1, keepdims=True), 0.0)
 
 

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from gaspart.errors import SceneError
+
+if TYPE_CHECKING:
+    from gaspart.scene.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -36,3 +41,11 @@ class Gas:
     def parameters(self) -> dict[str, Any]:
         """Those of `particle`, with packing_fraction and dimension."""
         return {"packing_fraction": self.packing_fraction, "dimension": self.dimension, **self.particle}
+
+
+def plain_gas(scene: Scene) -> Gas:
+    """`Scene.gas`. Raises SceneError for a scene that is none."""
+    if scene.gas is None:
+        rule = "must be one, of smooth and elastic particles alone, without gravity or obstacles"
+        raise SceneError("species", len(scene.kinds), rule)
+    return scene.gas

@@ -16,7 +16,7 @@ from typing import TypeAlias
 from gaspart import theory
 from gaspart.engines import Engine, EventDriven, TimeStepped
 from gaspart.errors import SceneError
-from gaspart.scene.gas import Gas
+from gaspart.scene.gas import Gas, plain_gas
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
 from gaspart.tradeoff import speed, table
@@ -89,12 +89,9 @@ class _Wish:
 def fluid_of(scene: Scene) -> Gas:
     """The gas of a scene, a fluid in a periodic container. Raises SceneError for a scene whose errors were
     not measured."""
-    gas, container = scene.gas, scene.container
     if not scene.count:
         raise SceneError("count", 0, "advice is for a gas: the scene is empty")
-    if gas is None:
-        rule = "advice is known for one species of smooth particles alone, without gravity or obstacles"
-        raise SceneError("species", len(scene.species), rule)
+    gas, container = plain_gas(scene), scene.container
     if not gas.temperature > 0.0:
         raise SceneError("temperature", gas.temperature, "advice is for moving particles")
     if not all(container.periodic):

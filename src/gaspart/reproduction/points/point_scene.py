@@ -20,7 +20,6 @@ from gaspart.scene.validation import MOST_BODIES
 from gaspart.yaml_text import read_yaml
 
 if TYPE_CHECKING:
-    from gaspart.scene.gas import Gas
     from gaspart.scene.scene import Scene
 
 
@@ -49,15 +48,6 @@ def scene(point: Point) -> Scene:
     """The point's ``Scene``. Raises SceneError."""
     check_scene(point)
     return _read(point) if "scene" in point.settings else _made(point)
-
-
-def plain_gas(point: Point) -> Gas:
-    """The plain gas that the point's scene is. Raises SceneError for any other scene."""
-    gas = scene(point).gas
-    if gas is None:
-        rule = "must be a gas of one species of smooth particles, without gravity or obstacles"
-        raise SceneError(f"experiments.{point.experiment}", point.name, rule)
-    return gas
 
 
 def extents(point: Point) -> tuple[int, float, tuple[float, ...]]:

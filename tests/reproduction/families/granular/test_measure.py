@@ -5,8 +5,9 @@ import pytest
 
 import gaspart as gp
 from gaspart import theory
+from gaspart.analysis.run import Run
 from gaspart.reproduction.families.granular import measure as granular
-from gaspart.reproduction.families.granular.runs import read_run
+from gaspart.reproduction.families.granular.runs import read
 from gaspart.reproduction.points import grid, jobs
 
 
@@ -54,7 +55,7 @@ def test_rough_discs_share_as_theory_says(tmp_path):
     assert abs(ds["equilibrium_ratio"].item() - 1.0) < 4.0 * ds["equilibrium_ratio_error"].item() < 0.3
     assert abs(ds["steady_ratio"].item() - theory.rough_ratio(0.5, 0.5)) < 0.1
     # the energy of a gas without losses is conserved: 2 (N - 1) T_tr + N T_rot, less the drift's own
-    run = read_run(points[0], points[0].replica_path(0))
+    run = read(points[0])[0]
     total = 2.0 * 255 * run.translation + 256 * run.rotation
     assert total == pytest.approx(np.full(11, total[0]), rel=2e-3)
 
@@ -109,12 +110,11 @@ def test_an_inelastic_gas_cools_as_haff_says_and_the_number_variance_is_counted(
     assert np.all((ds["variance"].values > 0.1) & (ds["variance"].values < 1.0))
 
 
-def test_number_variance_of_equal_cells_is_zero_and_of_one_cell_is_largest(monkeypatch):
+def test_number_variance_of_equal_cells_is_zero_and_of_one_cell_is_largest():
     import xarray as xr
 
     scene = gp.Scene(gp.Container((4.0, 4.0), "periodic"), [gp.Species(8, 0.1)])
     even = np.array([[x + 0.5, y + 0.5] for x in (0, 1) for y in (0, 1)] * 2)
     frames = np.stack([2.0 * even, np.full((8, 2), 4.0)])  # the last on the upper boundary
     positions = xr.Dataset({"coordinates": (("frame", "atom", "spatial"), frames)})
-    monkeypatch.setattr(granular, "open_trajectory", lambda path: positions)
-    assert granular._number_variance("made up", scene, 2) == pytest.approx([0.0, 6.0])
+    assert granular._number_variance(Run(scene, np.arange(2.0), positions), 2) == pytest.approx([0.0, 6.0])

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from reproduction.families.gravity.data import ideal_column, point
+from reproduction.families.stored import runs_of
 
 import gaspart as gp
 from gaspart.reproduction.families.gravity import measure as gravity
@@ -97,8 +98,9 @@ def boxes(tmp_path, monkeypatch):
         start = gp.Simulation(made, gp.EventDriven(), seed=p.seed(0)).initial_state
         energy = start.kinetic_energy - pull * (start.positions[:, 1] - 0.01).sum()
         share = rng.beta(20, 20, 4001) if pull else np.ones(4001)
-        stored[p.replica_path(0)] = xr.Dataset({"kinetic_energy": ("frame", energy * share)})
-    monkeypatch.setattr(gravity, "open_trajectory", stored.__getitem__)
+        columns = {"kinetic_energy": ("frame", energy * share), "time": ("frame", np.arange(4001.0))}
+        stored[p.replica_path(0)] = xr.Dataset(columns)
+    monkeypatch.setattr(gravity, "runs", runs_of(stored))
     return points
 
 

@@ -6,11 +6,12 @@ import pytest
 from gaspart import theory
 from gaspart.reproduction.families.shared.pressure import (
     COUNTED,
-    Run,
-    combine_runs,
+    Series,
+    combine,
     pressure,
-    read_run,
+    series_of,
 )
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points import grid
 from gaspart.trajectory.run import run
 
@@ -61,7 +62,7 @@ def test_collision_rate_is_enskogs(measured):
 
 def test_equilibration_is_dropped(measured):
     point, _ = measured
-    one = read_run(point, point.replica_path(0))
+    one = next(map(series_of, runs(point)))
     assert len(one.z) == point.settings["samples"]
 
 
@@ -69,20 +70,20 @@ def test_a_file_of_another_point_is_refused(measured):
     point, _ = measured
     other = grid.Point.from_dict(point.to_dict() | {"settings": point.settings | {"samples": 30}})
     with pytest.raises(ValueError, match="not the frames"):
-        read_run(other, point.replica_path(0))
+        pressure(other)
 
 
 def made_up(mean, spread, seed, samples=64):
     rng = np.random.default_rng(seed)
     z = mean + spread * rng.standard_normal(samples)
     counters = dict.fromkeys(COUNTED, np.ones(samples))
-    return Run(z=z, rate=z, interval=1.0, counters=counters, speed=1.0)
+    return Series(z=z, rate=z, interval=1.0, counters=counters, speed=1.0)
 
 
 def test_replicas_that_agree_have_a_small_chi_square_and_others_do_not():
-    alike = combine_runs([made_up(2.0, 0.1, seed) for seed in range(6)])
+    alike = combine([made_up(2.0, 0.1, seed) for seed in range(6)])
     assert alike.degrees_of_freedom == 5 and alike.chi_square < 20.0
     assert alike.z.error == pytest.approx(0.1 / np.sqrt(6 * 64), rel=0.2)
-    apart = combine_runs([made_up(2.0 + 0.1 * seed, 0.1, seed) for seed in range(6)])
+    apart = combine([made_up(2.0 + 0.1 * seed, 0.1, seed) for seed in range(6)])
     assert apart.chi_square > 40.0  # 5 degrees of freedom: a chance of 1e-7
     assert alike.counters["collisions"] == 6 * 64

@@ -4,6 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from reproduction.families.speeds.data import directions, equilibrium, point, trajectory
+from reproduction.families.stored import runs_of
 
 import gaspart as gp
 from gaspart import theory
@@ -19,7 +20,7 @@ DISTRIBUTION = {"bins": 20, "highest": 2.5, "classes": 20}
 def stored(monkeypatch):
     """Stands in for the files: `stored[path] = dataset`."""
     files = {}
-    monkeypatch.setattr(speeds, "open_trajectory", files.__getitem__)
+    monkeypatch.setattr(speeds, "runs", runs_of(files))
     return files
 
 
@@ -49,12 +50,13 @@ def test_walls_do_not_hit_but_the_last_bit_does():
     signs = np.array([[1, -1], [-1, -1], [1, 1]], dtype=np.float32)
     later = first * signs[:, None, :]
     later[2, 1, 0] = np.nextafter(later[2, 1, 0], np.float32(2))
-    assert speeds.never_hit(later, first).tolist() == [1.0, 1.0, 0.5]
+    assert speeds.never_hit(later).tolist() == [1.0, 1.0, 0.5]
 
 
 def test_a_mixture_of_hit_and_never_hit_bodies_is_told_apart(stored):
     rng = np.random.default_rng(2)
-    chosen = [point(engine="event", replicas=6), point(experiment="other", engine="step", time_step=0.1)]
+    event, step = {"engine": "event", "replicas": 6}, {"engine": "step", "time_step": 0.1}
+    chosen = [point(count=4000, **event), point(count=4000, experiment="other", **step)]
     for one in chosen:
         for path in one.replica_paths:
             stored[path] = trajectory(mixture(rng, 0.25)[[0, 1, 1]], [0.0, 1.0, 2.0])
@@ -116,7 +118,7 @@ def test_the_conserved_energy_takes_a_degree_of_freedom(stored):
     found = []
     for _ in range(300):
         stored[one.replica_path(0)] = trajectory(equilibrium(rng, 1, 400, 3), [5.0])
-        run = speeds.runs(one, drop=0)[0]
+        run = speeds.read(one, first=0)[0]
         cdf = lambda u: theory.maxwell_cdf(u, 3, 1 / 3)  # noqa: E731
         found.append(speeds.histogram_chi_square(run.speeds.ravel(), cdf, 10).chi_square)
     assert np.mean(found) == pytest.approx(8.0, abs=4 * np.sqrt(16 / 300))

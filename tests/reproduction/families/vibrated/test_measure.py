@@ -8,6 +8,7 @@ from reproduction.families.granular.test_measure import made
 
 import gaspart as gp
 from gaspart import theory
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.families.vibrated import measure
 
 SETTINGS = {"bins": 8, "highest": 4.0}
@@ -52,7 +53,7 @@ def test_a_frame_of_known_places_and_velocities(tmp_path):
         faces={"y_low": gp.Vibrating(0.05, 0.1)},
     )
     point = made(tmp_path, "fall", scene, duration=1e-3, samples=1, replicas=2)
-    run = measure.read_run(point, point.replica_path(0), SETTINGS)
+    run = next(measure.means(one, SETTINGS) for one in runs(point))
     falls = 0.5 * 2e-3**2  # mean square of the speed of the fall, 0 and then 2e-3
     assert run["temperature"] == pytest.approx(0.5 * (5.0 + falls), rel=1e-6)
     assert run["height"] == pytest.approx(50.0 * 2.0 / falls, rel=1e-3)

@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 import gaspart as gp
+from gaspart.analysis.run import Run
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.wall_pressure import measure as module
 from gaspart.reproduction.points import grid, jobs
@@ -39,9 +40,8 @@ def test_a_gas_between_two_walls_has_the_pressure_of_theory(tmp_path):
     assert float(row["density"]) == pytest.approx(40 / 200)
 
 
-def test_the_force_and_the_drift_are_taken_exactly(tmp_path, monkeypatch):
+def test_the_force_and_the_drift_are_taken_exactly(tmp_path):
     """Two bodies drifting along the periodic axis, one hit of 2 m v on each wall and interval."""
-    (tmp_path / "some/single").mkdir(parents=True)
     made = grid.Point("some", "single", "simulate", {
         "dimension": 2, "radius": 1.0, "side": [10, 8], "boundary": ["wall", "periodic"], "count": 2,
         "temperature": 1.0, "duration": 64.0, "samples": 32,
@@ -54,9 +54,10 @@ def test_the_force_and_the_drift_are_taken_exactly(tmp_path, monkeypatch):
         "wall_hits": (("frame", "face"), hits),
         "velocities": (("frame", "atom", "spatial"), velocities),
         "kinetic_energy": ("frame", np.full(33, 34.0)),
+        "time": ("frame", 2.0 * frames),
     })  # fmt: skip
-    monkeypatch.setattr(module, "open_trajectory", lambda path: made_up)
-    force, temperature, count = module._replica(made, "made up", np.array([True, False]), 2.0)
+    run = Run(grid.scene(made), made_up["time"].values, made_up)
+    force, temperature, count = module._replica(run, np.array([True, False]), 2.0)
     # energy about the drift: 34 - 25 = 9 = (4 - 1) / 2 k T
     assert temperature == pytest.approx(6.0)
     assert count == 64

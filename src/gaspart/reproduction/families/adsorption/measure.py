@@ -12,8 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import jackknife
 from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points import grid
 from gaspart.scene.faces import Sticky, Well, thermal_face
 from gaspart.theory.adsorption import (
@@ -26,7 +28,6 @@ from gaspart.theory.adsorption import (
 from gaspart.theory.geometry import body_volume
 from gaspart.theory.potential import excess_chemical_potential, packing_fraction_at
 from gaspart.theory.state import compressibility_factor
-from gaspart.trajectory.run import open_trajectory
 
 _REACH = 4.0  # of the histogram of speeds, in units of sqrt(kT/m)
 
@@ -156,8 +157,8 @@ def _measured(point: grid.Point, settings: dict) -> dict:
     number = settings["layer_blocks"] if layer else settings["blocks"]
     blocks = [
         counts_of(holder, *part, settings, slow)
-        for path in point.replica_paths
-        for part in _parts(holder, point, path, number)
+        for run in runs(point)
+        for part in _parts(holder, run, number)
     ]
     held, free, far, slowly, flux = (np.array(series) for series in zip(*blocks, strict=True))
     bins, absent = settings["bins"], (np.nan, np.nan)
@@ -247,15 +248,10 @@ def counts_of(holder: Holder, height: np.ndarray, velocity: np.ndarray, settings
     return tuple(part / frames for part in parts)
 
 
-def _parts(
-    holder: Holder, point: grid.Point, path: str, blocks: int
-) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """(height, velocity) of each block of a run, without its equilibration."""
-    first = grid.schedule(point).equilibration_frames + 1
-    with open_trajectory(path) as trajectory:
-        height = trajectory["coordinates"][first:, :, 0].values.astype(float) - holder.radius
-        velocity = trajectory["velocities"][first:, :, 0].values.astype(float)
-    if len(height) < blocks:
-        raise ValueError(f"blocks: {blocks} (more than the {len(height)} frames of {path})")
+def _parts(holder: Holder, run: Run, blocks: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """(height, velocity) of each block of a run."""
+    run.block_length(blocks)
+    height = run.data["coordinates"][1:, :, 0].values.astype(float) - holder.radius
+    velocity = run.data["velocities"][1:, :, 0].values.astype(float)
     parts = (np.array_split(series, blocks) for series in (height, velocity))
     return zip(*parts, strict=True)

@@ -21,8 +21,8 @@ from gaspart.analysis.statistics import bootstrap, means_of
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.brownian.expected import Setting, light_paths, setting_of
 from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points import grid
-from gaspart.trajectory.run import open_trajectory
 
 LONGEST = 8.0
 """Friction times up to which curves are taken."""
@@ -41,13 +41,9 @@ def _followed(point: grid.Point) -> Iterator[tuple[np.ndarray, np.ndarray, np.nd
     """Of each replica: times (T,), displacements and velocities of the first particle (T, 1, 3)."""
     if not point.settings.get("displacements", False):
         raise SceneError(f"experiments.{point.experiment}.displacements", False, "must be true")
-    for path in point.replica_paths:
-        with open_trajectory(path) as dataset:
-            yield (
-                dataset["time"].values.astype(float),
-                dataset["displacements"].values[:, :1, :3],
-                dataset["velocities"].values[:, :1, :3].astype(float),
-            )
+    for run in runs(point, first=0):
+        velocities = run.data["velocities"].values[:, :1].astype(float)
+        yield run.time, run.data["displacements"].values[:, :1], velocities
 
 
 def brownian_paths(points: list[grid.Point], settings: dict) -> xr.Dataset:

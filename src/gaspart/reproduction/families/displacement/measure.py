@@ -21,7 +21,7 @@ from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.curves import reduced_curves
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.points import grid
-from gaspart.reproduction.points.point_scene import plain_gas
+from gaspart.scene.gas import plain_gas
 
 SETTLE_SHEAR_TIMES = 3.0
 """D is the slope of the msd from `LINEAR_FROM` collisions per particle, or this many decay times of the
@@ -89,7 +89,7 @@ def msd_discs(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 def _state(point: grid.Point) -> dict:
     """Theory's predictions for a point's scene: collision rate, decay time of the slowest shear mode ..."""
-    gas, lengths = plain_gas(point), grid.scene(point).container.lengths
+    gas, lengths = plain_gas(grid.scene(point)), grid.scene(point).container.lengths
     eta, dimension = gas.packing_fraction, gas.dimension
     density = theory.number_density(eta, dimension)
     viscosity = float(theory.enskog_viscosity(eta, dimension))

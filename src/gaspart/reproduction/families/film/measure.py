@@ -10,11 +10,13 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import average, correlated_mean, fit_polynomial, mean_of, means_of
 from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points import grid
+from gaspart.scene.gas import plain_gas
 from gaspart.state.random import stream
-from gaspart.trajectory.run import open_trajectory
 
 NEAR = 0.2
 """Depth, in diameters, of the layer from which the density at contact is extrapolated, by a cubic."""
@@ -59,7 +61,7 @@ def thin_film(points: list[grid.Point], settings: dict) -> xr.Dataset:
     potential = math.log(bulk) + float(theory.excess_chemical_potential(settings["bulk_packing_fraction"], 3))
     rows, truncation, functional, widths = [], [], [], []
     for point in points:
-        slits = [read_slit(point, path) for path in point.replica_paths]
+        slits = [slit_of(run) for run in runs(point)]
         widths.append(slits[0].width)
         place, density = theory.white_bear_slit(bulk, slits[0].width)
         functional.append(density[0])
@@ -117,21 +119,17 @@ def _truncation(place: np.ndarray, density: np.ndarray) -> float:
     return abs(cubic / density[0] - 1.0)
 
 
-def read_slit(point: grid.Point, path: str) -> Slit:
-    """A trajectory of spheres between walls across the third axis. Raises OSError for a file that cannot be
-    read."""
-    schedule, (count, radius, lengths) = grid.schedule(point), grid.extents(point)
-    first, mass, diameter = schedule.equilibration_frames, point.settings.get("mass", 1.0), 2.0 * radius
-    with open_trajectory(path) as trajectory:
-        # Momentum along the walls is conserved: the temperature is that of the motion about it.
-        drift = trajectory["velocities"][0].values.astype(float).mean(axis=0)[:2]
-        energy = float(trajectory["kinetic_energy"][first:].mean()) - 0.5 * mass * count * (drift @ drift)
-        impulse = np.diff(trajectory["wall_impulse"][first:].values, axis=0)[:, 4:6].sum(axis=1)
-        positions = trajectory["coordinates"][first + 1 :].values.astype(float) / diameter
-    temperature = 2.0 * energy / (3 * count - 2)
-    sides = np.array(lengths) / diameter
+def slit_of(run: Run) -> Slit:
+    """That of a run of spheres between walls across the third axis. Raises SceneError for any other scene."""
+    gas = plain_gas(run.scene)
+    # Momentum along the walls is conserved: the temperature is that of the motion about it.
+    drift = run.data["velocities"][0].values.astype(float).mean(axis=0)[:2]
+    energy = float(run.data["kinetic_energy"].mean()) - 0.5 * gas.mass * gas.count * (drift @ drift)
+    temperature = 2.0 * energy / (3 * gas.count - 2)
+    diameter, positions = gas.diameter, run.positions[1:] / gas.diameter
+    sides = np.array(run.scene.container.lengths) / diameter
     area = sides[0] * sides[1]
-    force = impulse / (2.0 * schedule.sample_interval)
+    force = run.increments("wall_impulse")[:, 4:6].sum(axis=1) / (2.0 * run.interval)
     height = np.minimum(positions[..., 2], sides[2] - positions[..., 2]) - 0.5
     return Slit(
         force * diameter / (temperature * area), height, float(sides[2]), float(area), positions, sides

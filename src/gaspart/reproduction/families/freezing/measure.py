@@ -11,8 +11,10 @@ import xarray as xr
 from gaspart import theory
 from gaspart.analysis import order as structure
 from gaspart.analysis.coexistence import plateau
+from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import correlated_mean, mean_of
-from gaspart.reproduction.families.shared.pressure import read_run
+from gaspart.reproduction.families.shared.pressure import series_of
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points import grid
 from gaspart.trajectory.run import open_trajectory
 
@@ -82,14 +84,12 @@ def _of_start(points: list[grid.Point], start: str) -> dict[float, grid.Point]:
     return dict(sorted(found.items()))
 
 
-def _read(point: grid.Point, path: str, order: Callable[[np.ndarray, Sequence[float]], float]) -> Series:
-    """A replica of a periodic point; `order(positions, lengths)` is one number of a frame."""
-    run, scene = read_run(point, path), grid.scene(point)
+def _read(run: Run, order: Callable[[np.ndarray, Sequence[float]], float]) -> Series:
+    """That of a periodic container; `order(positions, lengths)` is one number of a frame."""
+    scene, frames = run.scene, run.data["coordinates"].values[1:]
     density = scene.number_density * (2.0 * scene.largest_radius) ** scene.dimension
-    with open_trajectory(path) as trajectory:
-        frames = trajectory["coordinates"][grid.schedule(point).equilibration_frames + 1 :].values
     measured = np.array([order(frame, scene.container.lengths) for frame in frames])
-    return Series(density * run.z, measured, density)
+    return Series(density * series_of(run).z, measured, density)
 
 
 def _halves(series: np.ndarray) -> tuple[float, float, float, float]:
@@ -116,14 +116,14 @@ def _states(points: list[grid.Point], order: Callable[[np.ndarray, Sequence[floa
     for i, chosen in enumerate(by_start.values()):
         for x, point in chosen.items():
             j = eta.index(x)
-            runs = [_read(point, path, order) for path in point.replica_paths]
-            count[j], density[j] = grid.scene(point).count, runs[0].density
+            replicas = [_read(run, order) for run in runs(point)]
+            count[j], density[j] = grid.scene(point).count, replicas[0].density
             for what in ("pressure", "order"):
-                parts = np.array([_halves(getattr(run, what)) for run in runs])
+                parts = np.array([_halves(getattr(one, what)) for one in replicas])
                 for k, name in enumerate(names):
                     column = parts[:, k]
                     error = "error" in name
-                    value = np.sqrt(np.sum(column**2)) / len(runs) if error else column.mean()
+                    value = np.sqrt(np.sum(column**2)) / len(replicas) if error else column.mean()
                     table[f"{what}{name}"][i, j] = value
     both = ("start", "packing_fraction")
     dataset = xr.Dataset(
@@ -231,11 +231,10 @@ def _slab(points: list[grid.Point]) -> xr.Dataset:
     # A bin for each cell of the crystal, so that its layers fall into bins evenly.
     cell = (4.0 / theory.COEXISTENCE_DENSITY[3][1]) ** (1.0 / 3.0) * diameter
     bins = round(lengths[axis] / cell)
-    runs, orders, densities, fractions = [], [], [], []
-    for path in point.replica_paths:
-        runs.append(read_run(point, path).z * scene.number_density * diameter**3)
-        with open_trajectory(path) as trajectory:
-            frames = trajectory["coordinates"][grid.schedule(point).equilibration_frames + 1 :].values
+    pressures, orders, densities, fractions = [], [], [], []
+    for run in runs(point):
+        pressures.append(series_of(run).z * scene.number_density * diameter**3)
+        frames = run.data["coordinates"].values[1:]
         local = np.array([structure.local_steinhardt(frame, lengths) for frame in frames])
         place = np.minimum((frames[..., axis] / lengths[axis] * bins).astype(int), bins - 1)
         for half in np.array_split(np.arange(len(frames)), 2):
@@ -243,14 +242,15 @@ def _slab(points: list[grid.Point]) -> xr.Dataset:
             orders.append(np.bincount(place[half].ravel(), local[half].ravel(), minlength=bins) / found)
             densities.append(found / len(half) * bins / scene.container.volume * diameter**3)
             fractions.append((local[half] > LOCAL_CRYSTAL).mean())
-    parts = np.array([_halves(run) for run in runs])
+    parts = np.array([_halves(pressure) for pressure in pressures])
+    replicas = len(parts)
 
     def halves(values: list) -> np.ndarray:
-        return np.array(values).reshape(len(runs), 2, -1).mean(axis=0)
+        return np.array(values).reshape(replicas, 2, -1).mean(axis=0)
 
     position = (np.arange(bins) + 0.5) * lengths[axis] / bins / diameter
-    error, drift_error = (np.sqrt(np.sum(parts[:, k] ** 2)) / len(runs) for k in (1, 3))
-    if len(runs) > 2:  # slow interfaces: the scatter of replicas shows what blocks of one run cannot
+    error, drift_error = (np.sqrt(np.sum(parts[:, k] ** 2)) / replicas for k in (1, 3))
+    if replicas > 2:  # slow interfaces: the scatter of replicas shows what blocks of one run cannot
         error = max(error, mean_of(parts[:, 0]).error)
     return xr.Dataset(
         {

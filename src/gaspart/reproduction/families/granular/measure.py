@@ -12,12 +12,13 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import average, bootstrap, correlated_mean, fit_polynomial, mean_of, means_of
 from gaspart.errors import SceneError
-from gaspart.reproduction.families.granular.runs import inertia, law, read_runs
+from gaspart.reproduction.families.granular.runs import inertia, law, read
 from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points import grid
-from gaspart.scene.scene import Scene
 from gaspart.trajectory.run import open_trajectory
 
 RELAXED = 3.0
@@ -56,17 +57,17 @@ def equipartition(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 
 def _start(point: grid.Point) -> dict:
-    runs = read_runs(point)
-    samples = np.stack([[run.collisions, run.translation, run.rotation] for run in runs])
+    replicas = read(point)
+    samples = np.stack([[run.collisions, run.translation, run.rotation] for run in replicas])
     rate = bootstrap(lambda chosen: _initial_decay(*chosen.mean(axis=0)), samples, repeats=200)
     temperatures = {
-        "translation": means_of([run.translation for run in runs]),
-        "rotation": means_of([run.rotation for run in runs]),
+        "translation": means_of([run.translation for run in replicas]),
+        "rotation": means_of([run.rotation for run in replicas]),
     }
     return {
         "collisions": samples[:, 0].mean(axis=0),
         "inertia": inertia(point),
-        **entries(temperatures, len(runs) - 1),
+        **entries(temperatures, len(replicas) - 1),
         **entries({"rate": rate}),
     }
 
@@ -82,9 +83,9 @@ def _initial_decay(collisions: np.ndarray, translation: np.ndarray, rotation: np
 
 def _equilibrium(point: grid.Point) -> dict:
     """T_rot / T_tr of the mean energies, of a run of conserved energy. Blocks: frames may be correlated."""
-    runs = read_runs(point)
-    mean = average([correlated_mean(run.rotation).estimate for run in runs])
-    translation = float(np.mean([run.translation.mean() for run in runs]))
+    replicas = read(point)
+    mean = average([correlated_mean(run.rotation).estimate for run in replicas])
+    translation = float(np.mean([run.translation.mean() for run in replicas]))
     ratio = mean.value / translation
     # The energy is conserved, 2 (N-1) T_tr + N T_rot: what one has more the other has less.
     error = mean.error / mean.value * ratio * (1.0 + 0.5 * ratio)
@@ -97,19 +98,19 @@ def _equilibrium(point: grid.Point) -> dict:
 def _cooling(point: grid.Point, steady_from: float) -> dict:
     """The ratio of the mean temperatures of all replicas, frame by frame, and its mean over the frames later
     than `steady_from` collisions per particle."""
-    runs = read_runs(point)
-    collisions = np.mean([run.collisions for run in runs], axis=0)
+    replicas = read(point)
+    collisions = np.mean([run.collisions for run in replicas], axis=0)
     late = collisions > steady_from
     # Later frames are colder: each counts by its own temperature.
-    weights = 1.0 / np.mean([run.translation for run in runs], axis=0)[late]
-    samples = np.stack([[run.rotation[late] * weights, run.translation[late] * weights] for run in runs])
+    weights = 1.0 / np.mean([run.translation for run in replicas], axis=0)[late]
+    samples = np.stack([[run.rotation[late] * weights, run.translation[late] * weights] for run in replicas])
     steady = bootstrap(lambda chosen: np.divide(*chosen.mean(axis=(0, 2))), samples, repeats=200)
-    rotation = np.mean([run.rotation for run in runs], axis=0)
+    rotation = np.mean([run.rotation for run in replicas], axis=0)
     return {
         "tangential": law(point).tangential,
         "cooling_inertia": inertia(point),
         "cooling_collisions": collisions,
-        "cooling_ratio": rotation / np.mean([run.translation for run in runs], axis=0),
+        "cooling_ratio": rotation / np.mean([run.translation for run in replicas], axis=0),
         **entries({"steady_ratio": steady}),
     }
 
@@ -129,11 +130,10 @@ def _walls(point: grid.Point) -> dict:
         )
     (gap,) = np.array(scene.container.lengths)[~along] - 2.0 * kind.radius
     samples = []
-    for path in point.replica_paths:
-        with open_trajectory(path) as trajectory:
-            squares = (trajectory["velocities"].values.astype(float) ** 2).sum(axis=1)
-            rotation = 2.0 * trajectory["kinetic_energy"].values - kind.mass * squares.sum(axis=1)
-            time = trajectory["time"].values * np.sqrt(kind.temperature / kind.mass) / gap
+    for run in runs(point):
+        squares = (run.velocities**2).sum(axis=1)
+        rotation = 2.0 * run.data["kinetic_energy"].values - kind.mass * squares.sum(axis=1)
+        time = run.time * np.sqrt(kind.temperature / kind.mass) / gap
         translation = kind.mass * squares[:, along].sum(axis=1)
         samples.append(np.stack([translation, rotation]) / translation[0])
     expected = 0.5 * (1.0 - theory.rough_wall_difference(time, inertia(point)))
@@ -178,10 +178,10 @@ def cooling(points: list[grid.Point], settings: dict) -> xr.Dataset:
 
 
 def _gas(point: grid.Point) -> dict:
-    scene, runs = grid.scene(point), read_runs(point)
+    scene, replicas = grid.scene(point), read(point)
     restitution, dimension, kind = law(point).normal, scene.dimension, scene.species[0]
     rates, exponents, times = [], [], []
-    for run in runs:
+    for run in replicas:
         frequency = theory.collision_rate(
             scene.packing_fraction, dimension, 2.0 * kind.radius, run.start, kind.mass
         )
@@ -194,21 +194,21 @@ def _gas(point: grid.Point) -> dict:
         "dimension": dimension,
         "count": scene.count,
         "restitution": restitution,
-        "collisions": np.mean([run.collisions for run in runs], axis=0),
+        "collisions": np.mean([run.collisions for run in replicas], axis=0),
         "time": np.mean(times, axis=0),
-        **entries({"temperature": means_of([run.translation for run in runs])}),
+        **entries({"temperature": means_of([run.translation for run in replicas])}),
         **entries({"rate": mean_of(rates), "exponent": mean_of(exponents)}),
     }
 
 
 def _clusters(point: grid.Point, cells: int) -> dict:
-    scene, runs = grid.scene(point), read_runs(point)
-    collisions = np.mean([run.collisions for run in runs], axis=0)
+    scene, replicas = grid.scene(point), read(point)
+    collisions = np.mean([run.collisions for run in replicas], axis=0)
     restitution = law(point).normal
     rate = theory.cooling_rate(restitution, scene.dimension)
     # Of logarithms: after so many collisions replicas differ by factors.
-    excess, relative = means_of([np.log(run.translation) + rate * run.collisions for run in runs])
-    variances = [_number_variance(path, scene, cells) for path in point.replica_paths]
+    excess, relative = means_of([np.log(run.translation) + rate * run.collisions for run in replicas])
+    variances = [_number_variance(run, cells) for run in runs(point)]
     return {
         "cluster_restitution": restitution,
         "cluster_collisions": collisions,
@@ -217,12 +217,10 @@ def _clusters(point: grid.Point, cells: int) -> dict:
     }
 
 
-def _number_variance(path: str, scene: Scene, cells: int) -> np.ndarray:
+def _number_variance(run: Run, cells: int) -> np.ndarray:
     """(T,) variance of the number of particles in a cell, over its mean: 1 for independent particles."""
-    with open_trajectory(path) as trajectory:
-        positions = trajectory["coordinates"].values.astype(float)
     # Single precision may put a particle that is about to leave on the boundary itself.
-    place = np.minimum((positions / scene.container.lengths * cells).astype(int), cells - 1)
+    place = np.minimum((run.positions / run.scene.container.lengths * cells).astype(int), cells - 1)
     cell = place @ cells ** np.arange(place.shape[2])
     counts = np.stack([np.bincount(frame, minlength=cells ** place.shape[2]) for frame in cell])
     return counts.var(axis=1) / counts.mean(axis=1)

@@ -6,14 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gaspart.analysis.run import Run
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points import grid
 from gaspart.scene.restitution import Restitution
-from gaspart.trajectory.run import open_trajectory
 
 
 @dataclass(frozen=True)
-class Run:
-    """One replica over T frames: time, collisions per particle, T_tr and T_rot, (T,) each; first T_tr."""
+class Temperatures:
+    """Of T frames of a run: time, collisions per particle, T_tr and T_rot, (T,) each; first T_tr."""
 
     time: np.ndarray
     collisions: np.ndarray
@@ -22,33 +23,27 @@ class Run:
     start: float
 
 
-def read_run(point: grid.Point, path: str) -> Run:
-    """One trajectory, in which all particles are alike, without its equilibration."""
-    first = grid.schedule(point).equilibration_frames
-    with open_trajectory(path) as trajectory:
-        velocities = trajectory["velocities"].values.astype(float)
-        energy = trajectory["kinetic_energy"].values
-        counted = trajectory["collisions"].values
-        time = trajectory["time"].values.astype(float)
-    count, dimension = velocities.shape[1:]
-    mass = grid.scene(point).species[0].mass
-    total = mass * (velocities**2).sum(axis=(1, 2))
-    drift = velocities.mean(axis=1)
+def temperatures(run: Run, first: int) -> Temperatures:
+    """Of all frames of a run of like particles from number `first` on."""
+    count, dimension, mass = run.count, run.dimension, run.scene.species[0].mass
+    total = mass * (run.velocities**2).sum(axis=(1, 2))
+    drift = run.velocities.mean(axis=1)
     translation = (total - mass * count * (drift**2).sum(axis=1)) / (dimension * (count - 1))
     spins = {2: 1, 3: 3}[dimension]
-    rotation = (2.0 * energy - total) / (spins * count)
-    return Run(
-        time=time[first:],
-        collisions=2.0 * counted[first:] / count,
+    rotation = (2.0 * run.data["kinetic_energy"].values - total) / (spins * count)
+    return Temperatures(
+        time=run.time[first:],
+        collisions=2.0 * run.data["collisions"].values[first:] / count,
         translation=translation[first:] / translation[0],
         rotation=rotation[first:] / translation[0],
         start=float(translation[0]),
     )
 
 
-def read_runs(point: grid.Point) -> list[Run]:
-    """All replicas of a point."""
-    return [read_run(point, path) for path in point.replica_paths]
+def read(point: grid.Point) -> list[Temperatures]:
+    """Of all replicas of a point, without their equilibration."""
+    first = grid.schedule(point).equilibration_frames
+    return [temperatures(run, first) for run in runs(point, first=0)]
 
 
 def law(point: grid.Point) -> Restitution:

@@ -24,6 +24,7 @@ from gaspart.reproduction.families.shared.columns import (
     temperature,
 )
 from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points import grid
 from gaspart.state.initial import initial_state
 from gaspart.theory.geometry import body_volume
@@ -35,7 +36,6 @@ from gaspart.theory.gravity import (
 )
 from gaspart.theory.potential import excess_chemical_potential
 from gaspart.theory.state import compressibility_factor
-from gaspart.trajectory.run import open_trajectory
 
 
 def barometric(points: list[grid.Point], settings: dict) -> xr.Dataset:
@@ -285,8 +285,7 @@ def _energies(point: grid.Point, blocks: int) -> dict:
     potential = place.masses @ (start.positions[:, 1] - 0.5 * place.diameter) * place.strength
     energy, count = start.kinetic_energy + potential, len(place.masses)
     force = place.weight / count
-    with open_trajectory(point.replica_path(0)) as trajectory:
-        kinetic = trajectory["kinetic_energy"].values[grid.schedule(point).equilibration_frames + 1 :]
+    [kinetic] = [run.data["kinetic_energy"].values[1:] for run in runs(point)]
     parts = kinetic[: len(kinetic) // blocks * blocks].reshape(blocks, -1) / count
 
     shift = parts.mean()  # the squares of the deviations lose no digits where the energy hardly changes

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points import grid
 from gaspart.theory.enskog import enskog_conductivity, mean_free_path
 from gaspart.theory.geometry import packing_fraction
 from gaspart.theory.heat import TEMPERATURE_JUMP, Slab, steady_part
-from gaspart.trajectory.run import open_trajectory
 
 FRAMES = 40
 """First frames of a run that show the approach."""
@@ -33,12 +33,11 @@ def approach(point: grid.Point, slab: Slab) -> dict[str, np.ndarray]:
     scene = grid.scene(point)
     middle = scene.smallest_radius + 0.5 * slab.position[-1]
     differences, variances = [], []
-    for path in point.replica_paths:
-        with open_trajectory(path) as trajectory:
-            part = trajectory.isel(frame=slice(FRAMES))
-            time = part["time"].values
-            hot = part["coordinates"].values[:, :, 0] < middle
-            squares = (part["velocities"].values.astype(float) ** 2).mean(axis=2)
+    for run in runs(point, first=0):
+        part = run.data.isel(frame=slice(FRAMES))
+        time = part["time"].values
+        hot = part["coordinates"].values[:, :, 0] < middle
+        squares = (part["velocities"].values.astype(float) ** 2).mean(axis=2)
         halves = [np.mean(squares, axis=1, where=side) for side in (hot, ~hot)]
         numbers = [side.sum(axis=1) for side in (hot, ~hot)]
         differences.append(halves[0] - halves[1])

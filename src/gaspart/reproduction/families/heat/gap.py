@@ -13,10 +13,10 @@ import numpy as np
 
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import steady_mean
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points import grid
 from gaspart.scene.faces import thermal_face
 from gaspart.scene.scene import Scene
-from gaspart.trajectory.run import open_trajectory
 
 
 @dataclass(frozen=True)
@@ -41,17 +41,6 @@ class Gap:
     def bin_of(self, positions: np.ndarray, bins: int) -> np.ndarray:
         """Which of equal bins across the gap each position lies in."""
         return np.clip((positions * (bins / self.length)).astype(int), 0, bins - 1)
-
-
-def block_length(time: np.ndarray, blocks: int, path: str) -> int:
-    """The number of frames in each of `blocks` of equal length, after the first frame.
-
-    Raises ValueError if there are too few.
-    """
-    length = (len(time) - 1) // blocks
-    if length < 1:
-        raise ValueError(f"blocks: {blocks} (more than the {len(time) - 1} intervals of {path})")
-    return length
 
 
 def sums(bin_of: np.ndarray, weights: np.ndarray | None, blocks: int, bins: int) -> np.ndarray:
@@ -101,16 +90,13 @@ def averages(point: grid.Point, gap: Gap, blocks: int, bins: int) -> Averages:
 
     Raises ValueError for too few frames.
     """
-    first = grid.schedule(point).equilibration_frames
     radius = grid.scene(point).smallest_radius
     heats, densities, energies, missing, stored, conducted = [], [], [], [], [], 0.0
-    for path in point.replica_paths:
-        with open_trajectory(path) as trajectory:
-            part = trajectory.isel(frame=slice(first, None))
-            time, heat, kinetic = (part[name].values for name in ("time", "wall_energy", "kinetic_energy"))
-            places = part["coordinates"].values[:, :, 0]
-            squares = (part["velocities"].values.astype(float) ** 2).sum(axis=2)
-        length = block_length(time, blocks, path)
+    for run in runs(point):
+        time, heat, kinetic = run.time, run.data["wall_energy"].values, run.data["kinetic_energy"].values
+        places = run.data["coordinates"].values[:, :, 0]
+        squares = (run.data["velocities"].values.astype(float) ** 2).sum(axis=2)
+        length = run.block_length(blocks)
         used = length * blocks
         ends = heat[: used + 1 : length, :2]
         heats.append(np.diff(ends, axis=0) / np.diff(time[: used + 1 : length])[:, None] / gap.area)

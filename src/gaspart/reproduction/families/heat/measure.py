@@ -14,10 +14,10 @@ from gaspart.reproduction.families.heat.approach import NO_APPROACH, approach
 from gaspart.reproduction.families.heat.gap import (
     Gap,
     averages,
-    block_length,
     sums,
 )
 from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points import grid
 from gaspart.scene.faces import thermal_face
 from gaspart.scene.scene import Scene
@@ -25,7 +25,6 @@ from gaspart.state.insertion import per_body
 from gaspart.theory.enskog import mean_free_path
 from gaspart.theory.geometry import packing_fraction
 from gaspart.theory.heat import conducting_slab, dilute_fourier_flux, free_molecular_flux
-from gaspart.trajectory.run import open_trajectory
 
 FLUID = 0.1
 """Knudsen number up to which a gas is compared with Fourier's law."""
@@ -149,16 +148,13 @@ def _metal(point: grid.Point, settings: dict) -> dict:
     gap, fixed = Gap.of(scene), per_body(scene, "fixed").astype(bool)
     bins, blocks = settings["bins"], settings["blocks"] if point.replicas == 1 else 1
     capacity = 0.5 * gap.dimension * np.sum(~fixed) + np.sum(fixed)
-    first = grid.schedule(point).equilibration_frames
     tables, totals, squares, heats, modes = [], [], [], [], []
-    for path in point.replica_paths:
-        with open_trajectory(path) as trajectory:
-            part = trajectory.isel(frame=slice(first, None))
-            time, heat = part["time"].values, part["wall_energy"].values[:, :2]
-            places = part["coordinates"].values[1:, :, 0]
-            speeds = (part["velocities"].values[1:, ~fixed].astype(float) ** 2).sum(axis=2)
-            vibrations = part["vibrations"].values[1:, fixed].astype(float)
-        length = block_length(time, blocks, path)
+    for run in runs(point):
+        time, heat = run.time, run.data["wall_energy"].values[:, :2]
+        places = run.data["coordinates"].values[1:, :, 0]
+        speeds = (run.data["velocities"].values[1:, ~fixed].astype(float) ** 2).sum(axis=2)
+        vibrations = run.data["vibrations"].values[1:, fixed].astype(float)
+        length = run.block_length(blocks)
         used = length * blocks
         bin_of = gap.bin_of(places[:used] - scene.smallest_radius, bins)
         here, there = bin_of[:, ~fixed], bin_of[:, fixed]

@@ -8,13 +8,14 @@ import numpy as np
 import xarray as xr
 from scipy.integrate import cumulative_trapezoid
 
+from gaspart.analysis.run import Run
 from gaspart.reproduction.families.shared.rows import from_rows
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points import grid
 from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 from gaspart.theory.enskog import enskog_longitudinal_viscosity
 from gaspart.theory.speeds import mean_speed
-from gaspart.trajectory.run import open_trajectory
 
 
 def piston(points: list[grid.Point], settings: dict) -> xr.Dataset:
@@ -38,8 +39,8 @@ def piston(points: list[grid.Point], settings: dict) -> xr.Dataset:
         scene, equilibration = grid.scene(point), grid.schedule(point).equilibration_frames
         kind = "expansion" if not pistons(scene) else "state" if equilibration else "path"
         read = {"path": _path, "state": _state, "expansion": _expansion}[kind]
-        runs = [read(scene, path, equilibration) for path in point.replica_paths]
-        row: dict[str, Any] = {name: np.stack([run[name] for run in runs]) for name in runs[0]}
+        replicas = [read(run) for run in runs(point, equilibration if kind == "state" else 0)]
+        row: dict[str, Any] = {name: np.stack([one[name] for one in replicas]) for name in replicas[0]}
         row["dimension"] = scene.dimension
         if kind == "state":
             row["count"] = scene.count
@@ -53,11 +54,10 @@ def piston(points: list[grid.Point], settings: dict) -> xr.Dataset:
     )
 
 
-def _path(scene: Scene, path: str, _: int) -> dict[str, np.ndarray]:
-    with open_trajectory(path) as run:
-        length, energy, time = _length(scene, run), run["kinetic_energy"].values, run["time"].values
-        rate = run["piston_velocity"].values / length  # its square counts: on either side
-    heating = _heating(scene, time, length, energy, rate)
+def _path(run: Run) -> dict[str, np.ndarray]:
+    length, energy = _length(run), run.data["kinetic_energy"].values
+    rate = run.data["piston_velocity"].values / length  # its square counts: on either side
+    heating = _heating(run.scene, run.time, length, energy, rate)
     return {"volume": length / length[0], "temperature": energy / energy[0], "heating": heating}
 
 
@@ -78,37 +78,34 @@ def _heating(
     return cumulative_trapezoid(power / energy, time, initial=0)
 
 
-def _length(scene: Scene, run: xr.Dataset) -> np.ndarray:
+def _length(run: Run) -> np.ndarray:
     """(frame,) the distance of the piston from the wall opposite."""
-    ((number, _),) = pistons(scene)
-    place = run["piston_position"].values
-    return place if number % 2 else scene.container.lengths[number // 2] - place
+    ((number, _),) = pistons(run.scene)
+    place = run.data["piston_position"].values
+    return place if number % 2 else run.scene.container.lengths[number // 2] - place
 
 
-def _state(scene: Scene, path: str, first: int) -> dict[str, np.ndarray]:
+def _state(run: Run) -> dict[str, np.ndarray]:
+    scene, length = run.scene, _length(run)
     ((_, face),) = pistons(scene)
     area = scene.container.volume / scene.container.lengths[0]
-    with open_trajectory(path) as run:
-        length, velocity = _length(scene, run)[first:], run["piston_velocity"].values[first:]
-        energy = run["kinetic_energy"].values[first:]
-        places = run["coordinates"].values[first:, :, 0] / length[:, None]
-    temperature = 2.0 * energy.mean() / (scene.dimension * scene.count)
+    places = run.data["coordinates"].values[:, :, 0] / length[:, None]
+    temperature = 2.0 * run.data["kinetic_energy"].values.mean() / (scene.dimension * scene.count)
     middle = ((places > 0.25) & (places < 0.75)).sum() / (0.5 * area * length.sum())
     bulk = scene.count / (middle * area)  # the length without what the walls deplete, which does not vary
     return {
         "density": middle * scene.packing_fraction * scene.container.volume / scene.count,
         "factor": face.pressure / (middle * temperature),
         "fluctuation": scene.count * length.var(ddof=1) / bulk**2,
-        "energy": face.mass * np.mean(velocity**2) / temperature,
+        "energy": face.mass * np.mean(run.data["piston_velocity"].values ** 2) / temperature,
     }
 
 
-def _expansion(scene: Scene, path: str, _: int) -> dict[str, np.ndarray]:
-    with open_trajectory(path) as run:
-        energy = run["kinetic_energy"].values
-        half = len(energy) // 2
-        speeds = np.linalg.norm(run["velocities"].values[half:].astype(float), axis=2)
-        beyond = run["coordinates"].values[half:, :, 0] > 0.5 * scene.container.lengths[0]
+def _expansion(run: Run) -> dict[str, np.ndarray]:
+    scene, energy = run.scene, run.data["kinetic_energy"].values
+    half = len(energy) // 2
+    speeds = np.linalg.norm(run.velocities[half:], axis=2)
+    beyond = run.data["coordinates"].values[half:, :, 0] > 0.5 * scene.container.lengths[0]
     first = 2.0 * energy[0] / (scene.dimension * scene.count)
     return {
         "heat": energy[half:].mean() / energy[0],

@@ -25,13 +25,9 @@ import xarray as xr
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import average, correlated_mean
-from gaspart.reproduction.families.shared.pressure import (
-    Run,
-    combine_runs,
-    read_run,
-    totals,
-)
+from gaspart.reproduction.families.shared.pressure import Series, combine, series_of, totals
 from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points import grid
 from gaspart.scene.scene import Scene
 
@@ -72,8 +68,8 @@ def _row(point: grid.Point) -> dict[str, float]:
         "packing_fraction": eta,
         "boxes_per_side": per_side[0],
     }
-    runs = [read_run(point, path) for path in point.replica_paths]
-    counted = totals(runs)
+    replicas = [series_of(run) for run in runs(point)]
+    counted = totals(replicas)
     if point.settings.get("engine") == "step":
         searches = counted["steps"] * scene.count
         return row | {
@@ -81,11 +77,11 @@ def _row(point: grid.Point) -> dict[str, float]:
             "box_visits": counted["box_visits"] / searches,
             "pair_tests_expected": expected_pair_tests(scene.count, per_side[0], eta, dimension),
         }
-    z = combine_runs(runs).z
+    z = combine(replicas).z
     shift = float(theory.finite_size_correction(eta, dimension, scene.count, ensemble="canonical"))
     width = scene.container.lengths[0] / per_side[0] / (2.0 * scene.largest_radius)
     return row | {
-        **entries({"Z": z - shift, "crossings": _crossings(runs, scene, per_side[0])}),
+        **entries({"Z": z - shift, "crossings": _crossings(replicas, scene, per_side[0])}),
         "finite_size": shift,
         "reference": float(theory.compressibility_factor(eta, dimension)),
         "reference_error": float(theory.compressibility_uncertainty(eta, dimension)),
@@ -97,10 +93,11 @@ def _row(point: grid.Point) -> dict[str, float]:
     }
 
 
-def _crossings(runs: list[Run], scene: Scene, per_side: int) -> Estimate:
+def _crossings(replicas: list[Series], scene: Scene, per_side: int) -> Estimate:
     """Crossings per particle and time over the kinetic theory's."""
     between = scene.dimension * (per_side - 1) / scene.container.lengths[0] * math.sqrt(2.0 / math.pi)
-    ratios = [run.counters["crossings"] / (scene.count * run.interval * between * run.speed) for run in runs]
+    between *= scene.count
+    ratios = [one.counters["crossings"] / (one.interval * between * one.speed) for one in replicas]
     return average([correlated_mean(ratio).estimate for ratio in ratios])
 
 

@@ -11,11 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.run import Run
 from gaspart.reproduction.families.shared.rows import from_rows
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points import grid
 from gaspart.scene.scene import Scene
 from gaspart.theory.granular import DISCHARGE_EXPONENT
-from gaspart.trajectory.run import open_trajectory
 
 _FILLED = 0.84  # packing fraction of a filling of discs of two sizes (random close packing)
 
@@ -35,10 +36,10 @@ def settling(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """
     walls = [bool(grid.scene(point).walls) for point in points]
     piles = [
-        _pile(grid.scene(point), path, settings["gap"])
+        _pile(run, settings["gap"])
         for point, flows in zip(points, walls, strict=True)
         if not flows
-        for path in point.replica_paths
+        for run in runs(point, first=0)
     ]
     flows = [_flow(point, settings) for point, flows in zip(points, walls, strict=True) if flows]
     return from_rows("pile", piles, ("frame",)).merge(_flows(flows))
@@ -48,15 +49,13 @@ def _diameter(radii: np.ndarray) -> float:
     return float(2.0 * radii.mean())
 
 
-def _pile(scene: Scene, path: str, gap: float) -> dict:
+def _pile(run: Run, gap: float) -> dict:
     """One pile, gravity along -y: see `settling`."""
-    with open_trajectory(path) as trajectory:
-        time, radii = trajectory["time"].values, trajectory["radius"].values.astype(float)
-        positions = trajectory["coordinates"].values.astype(float)
-        velocities = trajectory["velocities"].values.astype(float)
+    scene, time, positions = run.scene, run.time, run.positions
+    radii = run.data["radius"].values.astype(float)  # in single precision, as the positions
     diameter, strength = _diameter(radii), math.hypot(*(scene.gravity or ()))
     mass = scene.species[0].mass
-    kinetic = 0.5 * mass * (velocities**2).sum(axis=(1, 2))
+    kinetic = 0.5 * mass * (run.velocities**2).sum(axis=(1, 2))
     energy = kinetic - mass * positions.sum(axis=1) @ np.array(scene.gravity)
     still = np.flatnonzero(kinetic > 0.0)[-1] + 1  # the first frame of those that are all at rest
     rests = still < len(time)
@@ -124,17 +123,16 @@ def _flow(point: grid.Point, settings: dict) -> Flow:
     height, width = left_end[1], right_end[0] - left_end[0]
     filled = _FILLED * scene.container.lengths[0]  # area of discs in a unit of height
     intervals, seen = [], []
-    for path in point.replica_paths:
-        with open_trajectory(path) as trajectory:
-            time, radii = trajectory["time"].values, trajectory["radius"].values.astype(float)
-            left = (trajectory["coordinates"].values[..., 1] > height).sum(axis=1)
+    for run in runs(point, first=0):
+        time, radii = run.time, run.data["radius"].values.astype(float)
+        left = (run.data["coordinates"].values[..., 1] > height).sum(axis=1)
         first = settings["start"] * len(radii)
         last = settings["head"] * width * filled / (math.pi * (radii**2).mean())
         levels = np.array([first, 0.5 * (first + last), last])
         if not left[-1] < last < first:
             raise ValueError(
-                f"duration: {left[-1]} discs are left in the hopper of {path} (must be below {last:.0f}, and "
-                f"that below {first:.0f})"
+                f"duration: {left[-1]} discs are left in the hopper of {point.path} (must be below "
+                f"{last:.0f}, and that below {first:.0f})"
             )
         intervals.append(np.diff(np.interp(-levels, -left, time)))
         seen.append((time, left))

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points import grid
 from gaspart.scene.species import Body, Species
-from gaspart.trajectory.run import open_trajectory
 
 
 @dataclass(frozen=True)
@@ -84,27 +84,18 @@ def stretches(point: grid.Point, number: int) -> list[Stretch]:
 
     Neighbours share a frame at which momenta are read, and no other. Raises ValueError for too few frames.
     """
-    place = field(point)
-    first = grid.schedule(point).equilibration_frames
-    found = []
-    for path in point.replica_paths:
-        with open_trajectory(path) as trajectory:
-            part = trajectory.isel(frame=slice(first, None))
-            time = part["time"].values
-            positions = part["coordinates"].values.astype(float)
-            velocities = part["velocities"].values.astype(float)
-            impulse = part["wall_impulse"].values[:, 2:4]
-        length = (len(time) - 1) // number
-        if length < 1:
-            raise ValueError(f"blocks: {number} (more than the {len(time) - 1} intervals of {path})")
+    place, found = field(point), []
+    for run in runs(point):
+        impulse = run.data["wall_impulse"].values[:, 2:4]
+        length = run.block_length(number)
         for start in range(0, number * length, length):
             stop = start + length
-            forces = (impulse[stop] - impulse[start]) / (time[stop] - time[start])
+            duration = run.time[stop] - run.time[start]
+            forces = (impulse[stop] - impulse[start]) / duration
             frames = slice(start + 1, stop + 1)
-            ends = velocities[[start, stop], :, 1]
-            found.append(
-                _stretch(place, positions[frames], velocities[frames], ends, forces, time[stop] - time[start])
-            )
+            ends = run.velocities[[start, stop], :, 1]
+            parts = run.positions[frames], run.velocities[frames], ends, forces, duration
+            found.append(_stretch(place, *parts))
     return found
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from gaspart.analysis.correlations import Curves, accumulated
 from gaspart.errors import SceneError
 from gaspart.reproduction.points import grid
-from gaspart.reproduction.points.point_scene import plain_gas
+from gaspart.scene.gas import plain_gas
 from gaspart.trajectory.run import open_trajectory
 
 
@@ -21,7 +21,7 @@ def reduced_curves(point: grid.Point, path: str, longest: float) -> Curves:
     """
     if "lags" not in point.settings:
         raise SceneError(f"experiments.{point.experiment}.lags", None, "is required")
-    gas = plain_gas(point)
+    gas = plain_gas(grid.scene(point))
     with open_trajectory(path) as trajectory:
         curves = accumulated(trajectory)
     thermal_speed = math.sqrt(curves.correlation[0] * gas.count / (gas.count - 1))

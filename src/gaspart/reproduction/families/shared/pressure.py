@@ -26,15 +26,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import autocorrelation_time, average, correlated_mean
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points import grid
-from gaspart.reproduction.points.point_scene import plain_gas
-from gaspart.trajectory.run import open_trajectory
+from gaspart.scene.gas import plain_gas
 
 
 @dataclass(frozen=True)
-class Run:
-    """The measured part of one replica, without its equilibration.
+class Series:
+    """What the measured part of a run gives in each interval between its frames.
 
     z: (samples,) compressibility factor of each interval between frames; rate: (samples,) collisions of one
     particle per time, times sigma sqrt(m / kT) (dimensionless), with kT = 2 E_cm / (d N); interval: time
@@ -55,7 +56,7 @@ class Pressure:
 
     chi_square: of the replicas about their mean, by their own errors, with replicas - 1 degrees of freedom;
     flat: all block errors had reached a plateau; correlation: longest integrated autocorrelation time, in
-    intervals (1/2: independent). collision_rate: see `Run.rate`. counters: sums over the replicas.
+    intervals (1/2: independent). collision_rate: see `Series.rate`. counters: sums over the replicas.
     """
 
     z: Estimate
@@ -70,31 +71,18 @@ class Pressure:
 COUNTED = ("collisions", "pair_tests", "box_visits", "crossings", "steps")
 
 
-def read_run(point: grid.Point, path: str) -> Run:
-    """The measured part of one trajectory of a periodic point of one species.
-
-    Raises OSError for a file that cannot be read and ValueError for one of another point.
-    """
-    schedule = grid.schedule(point)
-    gas = plain_gas(point)
-    count, mass, dimension = gas.count, gas.mass, gas.dimension
-    first = schedule.equilibration_frames
-    with open_trajectory(path) as trajectory:
-        if trajectory.sizes["frame"] != first + schedule.samples + 1 or trajectory.sizes["atom"] != count:
-            raise ValueError(
-                f"{path}: {dict(trajectory.sizes)} are not the frames and particles of {point.path}"
-            )
-        drift = trajectory["velocities"][first].values.astype(float).mean(axis=0)
-        energy = float(trajectory["kinetic_energy"][first:].mean())
-        virial = np.diff(trajectory["virial_sum"][first:].values)
-        counted = [name for name in COUNTED if name in trajectory]
-        counters = {name: np.diff(trajectory[name][first:].values) for name in counted}
+def series_of(run: Run) -> Series:
+    """That of a run of a plain gas in a periodic container. Raises SceneError for any other scene."""
+    gas = plain_gas(run.scene)
+    count, mass, dimension, time = gas.count, gas.mass, gas.dimension, run.interval
+    drift = run.data["velocities"][0].values.astype(float).mean(axis=0)
+    energy = float(run.data["kinetic_energy"].mean())
+    counters = {name: run.increments(name) for name in COUNTED if name in run.data}
     about_centre = energy - 0.5 * mass * count * (drift @ drift)
-    time = schedule.sample_interval
     temperature = 2.0 * about_centre / (dimension * (count - 1))
     scale = gas.diameter * math.sqrt(mass / (2.0 * about_centre / (dimension * count)))
-    return Run(
-        z=1.0 + virial / (dimension * count * temperature * time),
+    return Series(
+        z=1.0 + run.increments("virial_sum") / (dimension * count * temperature * time),
         rate=2.0 * counters["collisions"] / (count * time) * scale,
         interval=time,
         counters=counters,
@@ -104,26 +92,25 @@ def read_run(point: grid.Point, path: str) -> Run:
 
 def pressure(point: grid.Point) -> Pressure:
     """Z and the collision rate of a periodic point, from all its replicas. See the module for the formula."""
-    return combine_runs([read_run(point, path) for path in point.replica_paths])
+    return combine([series_of(run) for run in runs(point)])
 
 
-def combine_runs(runs: list[Run]) -> Pressure:
+def combine(replicas: list[Series]) -> Pressure:
     """Mean over replicas of equal length; the errors are those of correlated series, in quadrature."""
-    series = [correlated_mean(run.z) for run in runs]
-    replicas = [one.estimate for one in series]
-    z = average(replicas)
-    deviations = [(one - z.value).deviation for one in replicas]
+    means = [correlated_mean(one.z) for one in replicas]
+    z = average([mean.estimate for mean in means])
+    deviations = [(mean.estimate - z.value).deviation for mean in means]
     return Pressure(
         z=z,
         chi_square=float(np.sum(np.square(deviations))),
-        degrees_of_freedom=len(runs) - 1,
-        flat=all(one.flat for one in series),
-        correlation=max(autocorrelation_time(run.z) for run in runs),
-        collision_rate=average([correlated_mean(run.rate).estimate for run in runs]),
-        counters=totals(runs),
+        degrees_of_freedom=len(replicas) - 1,
+        flat=all(mean.flat for mean in means),
+        correlation=max(autocorrelation_time(one.z) for one in replicas),
+        collision_rate=average([correlated_mean(one.rate).estimate for one in replicas]),
+        counters=totals(replicas),
     )
 
 
-def totals(runs: list[Run]) -> dict[str, float]:
+def totals(replicas: list[Series]) -> dict[str, float]:
     """Sums of the counters over all replicas, by name."""
-    return {name: float(sum(run.counters[name].sum() for run in runs)) for name in runs[0].counters}
+    return {name: float(sum(one.counters[name].sum() for one in replicas)) for name in replicas[0].counters}

@@ -15,25 +15,23 @@ from gaspart import theory
 from gaspart.analysis.statistics import histogram_chi_square, mean_of
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.rows import from_rows
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points import grid
-from gaspart.reproduction.points.point_scene import plain_gas
+from gaspart.scene.gas import plain_gas
 from gaspart.scene.scene import Scene
-from gaspart.trajectory.run import open_trajectory
 
 
 @dataclass(frozen=True)
-class Run:
-    """One replica. Frames are those kept; T frames, N particles, d axes.
+class Velocities:
+    """Of a run of T frames, N particles, d axes.
 
     time (T,); collisions (T,), per particle since the start; velocities (T, N, d), single precision as
-    stored; first (N, d), the velocities at time 0; temperature (T,), 2 E / (d N) from the energy in double
-    precision.
+    stored; temperature (T,), 2 E / (d N) from the energy in double precision.
     """
 
     time: np.ndarray
     collisions: np.ndarray
     velocities: np.ndarray
-    first: np.ndarray
     temperature: np.ndarray
 
     @property
@@ -43,24 +41,17 @@ class Run:
         return np.sqrt(square / square.mean(axis=1, keepdims=True))
 
 
-def runs(point: grid.Point, drop: int) -> list[Run]:
-    """The replicas of a point without their first `drop` frames."""
-    dimension = point.settings["dimension"]
-    found = []
-    for path in point.replica_paths:
-        with open_trajectory(path) as dataset:
-            velocities = dataset["velocities"].values[:, :, :dimension]
-            count = velocities.shape[1]
-            found.append(
-                Run(
-                    time=dataset["time"].values[drop:].astype(float),
-                    collisions=2.0 * dataset["collisions"].values[drop:] / count,
-                    velocities=velocities[drop:],
-                    first=velocities[0],
-                    temperature=2.0 * dataset["kinetic_energy"].values[drop:] / (dimension * count),
-                )
-            )
-    return found
+def read(point: grid.Point, first: int | None = None) -> list[Velocities]:
+    """Of all replicas of a point, without their equilibration or from frame `first` on."""
+    return [
+        Velocities(
+            time=run.time,
+            collisions=2.0 * run.data["collisions"].values / run.count,
+            velocities=run.data["velocities"].values,
+            temperature=2.0 * run.data["kinetic_energy"].values / (run.dimension * run.count),
+        )
+        for run in runs(point, first)
+    ]
 
 
 def kurtosis(speeds: np.ndarray) -> np.ndarray:
@@ -69,13 +60,13 @@ def kurtosis(speeds: np.ndarray) -> np.ndarray:
     return (square**2).mean(axis=-1) / square.mean(axis=-1) ** 2
 
 
-def never_hit(velocities: np.ndarray, first: np.ndarray) -> np.ndarray:
-    """(T,) fraction of particles that no other particle has hit.
+def never_hit(velocities: np.ndarray) -> np.ndarray:
+    """(T,) fraction of particles that no other particle has hit since the first frame.
 
     A wall only reverses the sign of a component, so |v_k| of such a particle keeps its bits in every
     component; a collision changes them all (but for exceptions of probability 0).
     """
-    return (np.abs(velocities) == np.abs(first)).all(axis=-1).mean(axis=-1)
+    return (np.abs(velocities) == np.abs(velocities[0])).all(axis=-1).mean(axis=-1)
 
 
 def shared_error(samples: list[np.ndarray]) -> list[np.ndarray]:
@@ -102,7 +93,7 @@ def speed_relaxation(points: list[grid.Point], settings: dict) -> xr.Dataset:
     all runs, with their degrees of freedom. Raises SceneError if the points differ or a time is not sampled.
     """
     dimension = points[0].settings["dimension"]
-    groups = [runs(point, drop=0) for point in points]
+    groups = [read(point, first=0) for point in points]
     scene = grid.scene(points[0])
     time = groups[0][0].time
     _require_alike(points, groups)
@@ -128,7 +119,7 @@ def speed_relaxation(points: list[grid.Point], settings: dict) -> xr.Dataset:
     measures = {
         "collisions": lambda run: run.collisions,
         "kurtosis": lambda run: kurtosis(run.speeds),
-        "never_hit": lambda run: never_hit(run.velocities, run.first),
+        "never_hit": lambda run: never_hit(run.velocities),
         "density": lambda run: np.stack([_density(speeds, edges) for speeds in run.speeds[shown]]),
         "temperature_drift": lambda run: np.abs(run.temperature / run.temperature[0] - 1.0),
     }
@@ -242,7 +233,7 @@ def _distribution(
 ) -> dict:
     """The numbers of one point. Speeds are over the root-mean-square speed: Maxwell's temperature is 1/d."""
     temperature = 1.0 / dimension
-    found = runs(point, drop=grid.schedule(point).equilibration_frames)
+    found = read(point)
     speeds = np.concatenate([run.speeds.ravel() for run in found])
     cumulative = lambda u: theory.maxwell_cdf(u, dimension, temperature)  # noqa: E731
     chance = np.diff(cumulative(edges))
@@ -287,7 +278,7 @@ def _given_temperature(point: grid.Point) -> float:
     if "speed" not in point.settings:
         rule = "is required: all particles start with it"
         raise SceneError(f"experiments.{point.experiment}.speed", None, rule)
-    return plain_gas(point).temperature
+    return plain_gas(grid.scene(point)).temperature
 
 
 def _kolmogorov_distance(cumulative: np.ndarray) -> float:

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import means_of
 from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points import grid
 from gaspart.scene.faces import Vibrating
-from gaspart.trajectory.run import open_trajectory
 
 _FLOOR = 2  # the number of the face y_low
 
@@ -49,33 +50,29 @@ def _bed(point: grid.Point, settings: dict) -> dict[str, Any]:
         "layers": (species.count - 1) * 2.0 * species.radius / width,
         "speed": floor.greatest_speed / math.sqrt(2.0) if sine else floor.greatest_speed,
     }
-    runs = [read_run(point, path, settings) for path in point.replica_paths]
-    row |= entries({name: means_of([run[name] for run in runs]) for name in runs[0]}, len(runs) - 1)
+    replicas = [means(run, settings) for run in runs(point)]
+    samples = {name: [one[name] for one in replicas] for name in replicas[0]}
+    row |= entries({name: means_of(values) for name, values in samples.items()}, len(replicas) - 1)
     weight = species.count * -scene.gravity[1] / width
     row["packing_fraction"] = math.pi * species.radius**2 * weight / row["temperature"]
     return row
 
 
-def read_run(point: grid.Point, path: str, settings: dict) -> dict[str, Any]:
-    """The means of one trajectory without its equilibration, by the names of `vibrated_bed`."""
-    scene, first = grid.scene(point), grid.schedule(point).equilibration_frames
+def means(run: Run, settings: dict) -> dict[str, Any]:
+    """Those of a run, by the names of `vibrated_bed`."""
+    scene = run.scene
     assert scene.gravity is not None
-    gravity, radius = -scene.gravity[1], scene.species[0].radius
-    with open_trajectory(path) as trajectory:
-        velocities = trajectory["velocities"].values[first:].astype(float)
-        heights = trajectory["coordinates"].values[first:, :, 1].astype(float) - radius
-        time = trajectory["time"].values[first:]
-        given = -trajectory["wall_energy"].values[first:, _FLOOR]
-        lost = trajectory["dissipated_energy"].values[first:]
-    across, along = (velocities**2).mean(axis=(0, 1))
+    gravity = -scene.gravity[1]
+    heights = run.positions[..., 1] - scene.species[0].radius
+    across, along = (run.velocities**2).mean(axis=(0, 1))
     temperature = 0.5 * (across + along)
-    weight = scene.count * gravity * (time[-1] - time[0])
+    weight = scene.count * gravity
     edges = _edges(settings)
     counts, _ = np.histogram(heights * gravity / temperature, edges)
     return {
         "temperature": temperature,
-        "given": (given[-1] - given[0]) / weight,
-        "lost": (lost[-1] - lost[0]) / weight,
+        "given": -run.growth("wall_energy")[_FLOOR] / weight,
+        "lost": run.growth("dissipated_energy") / weight,
         "height": heights.mean() * gravity / along,
         "density": counts / (heights.size * np.diff(edges)),
     }

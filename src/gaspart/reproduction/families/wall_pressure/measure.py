@@ -11,11 +11,12 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
+from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import average, correlated_mean
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points import grid
-from gaspart.trajectory.run import open_trajectory
 
 
 def wall_pressure(points: list[grid.Point], settings: dict) -> xr.Dataset:
@@ -44,7 +45,7 @@ def _row(point: grid.Point) -> dict:
     touched = np.where(walled, lengths - 1.0, lengths)
     length, axes = float(lengths[walled][0]), int(walled.sum())
     expected, expected_error = theory.wall_pressure(length, count / touched.prod(), count, dimension, axes)
-    replicas = [_replica(point, path, walled, diameter) for path in point.replica_paths]
+    replicas = [_replica(run, walled, diameter) for run in runs(point)]
     # Mean over walls of force over area, per replica: an area is the volume over the length across it.
     accessible = [(force * touched[walled]).mean(axis=1) / touched.prod() for force, _, _ in replicas]
     pressure = average([correlated_mean(one).estimate for one in accessible])
@@ -68,24 +69,16 @@ def _row(point: grid.Point) -> dict:
     }
 
 
-def _replica(
-    point: grid.Point, path: str, walled: np.ndarray, diameter: float
-) -> tuple[np.ndarray, float, int]:
+def _replica(run: Run, walled: np.ndarray, diameter: float) -> tuple[np.ndarray, float, int]:
     """One replica: (samples, w) force on a wall of each walled axis, in reduced units; the temperature in
     the scene's; the number of hits."""
-    schedule = grid.schedule(point)
-    first, dimension = schedule.equilibration_frames, len(walled)
-    with open_trajectory(path) as trajectory:
-        if trajectory.sizes["frame"] != first + schedule.samples + 1:
-            raise ValueError(f"{path}: {trajectory.sizes['frame']} frames are not those of {point.path}")
-        impulse = np.diff(trajectory["wall_impulse"][first:, : 2 * dimension].values, axis=0)
-        hits = np.diff(trajectory["wall_hits"][first:, : 2 * dimension].values, axis=0).sum()
-        drift = trajectory["velocities"][first].values[:, :dimension].astype(float).mean(axis=0)
-        energy = float(trajectory["kinetic_energy"][first:].mean())
-        count = trajectory.sizes["atom"]
+    dimension, count = run.dimension, run.count
+    impulse = run.increments("wall_impulse")[:, : 2 * dimension]
+    hits = run.increments("wall_hits")[:, : 2 * dimension].sum()
+    drift = run.data["velocities"][0].values[:, :dimension].astype(float).mean(axis=0)
     drift = np.where(walled, 0.0, drift)
-    mass = grid.scene(point).species[0].mass
+    energy, mass = float(run.data["kinetic_energy"].mean()), run.scene.species[0].mass
     freedom = dimension * count - int((~walled).sum())
     temperature = (2.0 * energy - mass * count * float(drift @ drift)) / freedom
     mean = 0.5 * impulse.reshape(len(impulse), dimension, 2).sum(axis=2)[:, walled]
-    return mean / schedule.sample_interval * diameter / temperature, temperature, hits
+    return mean / run.interval * diameter / temperature, temperature, hits

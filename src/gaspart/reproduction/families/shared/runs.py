@@ -1,0 +1,25 @@
+"""The measured part of the replicas of a point."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from gaspart.analysis.run import Run
+from gaspart.reproduction.points import grid
+from gaspart.trajectory.run import open_trajectory
+
+
+def runs(point: grid.Point, first: int | None = None) -> Iterator[Run]:
+    """The frames of each replica, from the end of its equilibration or from frame `first` on; each run is
+    open until the next one is asked for.
+
+    Raises OSError for a file that cannot be read and ValueError for one of another point.
+    """
+    scene, schedule = grid.scene(point), grid.schedule(point)
+    before = schedule.equilibration_frames
+    kept = slice(before if first is None else first, None)
+    for path in point.replica_paths:
+        with open_trajectory(path) as trajectory:
+            if trajectory.sizes["frame"] != before + schedule.samples + 1:
+                raise ValueError(f"{path}: {trajectory.sizes['frame']} frames are not those of {point.path}")
+            yield Run(scene, trajectory["time"].values[kept], trajectory.isel(frame=kept))
