@@ -156,6 +156,11 @@ def points(
     return axis.errorbar(x, y, yerr=error, color=colour, markerfacecolor=face, markeredgewidth=0.8, **options)
 
 
+def measured(axis: Axes, x: ArrayLike, y: np.ndarray, kind: int = 0, **options: Any) -> ErrorbarContainer:
+    """`points` of values and their errors, y (2, ...)."""
+    return points(axis, x, y[0], y[1], kind, **options)
+
+
 def band(axis: Axes, low: float, high: float, **options: Any) -> Rectangle:
     """A horizontal grey band, behind everything."""
     return axis.axhspan(low, high, color=GREY, alpha=0.18, linewidth=0, zorder=0, **options)

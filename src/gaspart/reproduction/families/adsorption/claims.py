@@ -13,6 +13,7 @@ from gaspart.reproduction.families.shared.claims import (
     freedoms,
     rows,
 )
+from gaspart.reproduction.families.shared.rows import estimates
 from gaspart.theory.adsorption import planck_constant, slow_flux_share
 
 LANGMUIR = (
@@ -54,14 +55,10 @@ def _ideal(ds: xr.Dataset) -> list[Claim]:
 
 def _slopes(ds: xr.Dataset, depth: float) -> list[Claim]:
     """Dependence on temperature of one well."""
-    slope = fit_polynomial(
-        1.0 / ds["temperature"].values,
-        ds["log_ratio"].values,
-        ds["log_ratio_error"].values,
-        freedoms=freedoms(ds, "log_ratio"),
-    )
+    ratio, error = estimates(ds, "log_ratio")
+    slope = fit_polynomial(1.0 / ds["temperature"].values, ratio, error, freedoms=freedoms(ds, "log_ratio"))
     per_length = planck_constant(1.0, ds["mass"].values, ds["temperature"].values)
-    planck, error = (per_length * ds[name].values for name in ("length", "length_error"))
+    planck, error = per_length * estimates(ds, "length")
     power = fit_power_law(ds["temperature"].values, planck, error, freedoms(ds, "length"))
     return [
         Claim(
@@ -133,12 +130,8 @@ def _by_activity(row: xr.Dataset) -> float:
 
 
 def _sticky(ds: xr.Dataset, wells: xr.Dataset) -> list[Claim]:
-    power = fit_power_law(
-        ds["gas_density"].values,
-        ds["coverage"].values,
-        ds["coverage_error"].values,
-        freedoms(ds, "coverage"),
-    )
+    coverage, error = estimates(ds, "coverage")
+    power = fit_power_law(ds["gas_density"].values, coverage, error, freedoms(ds, "coverage"))
     slow = float(slow_flux_share(ds["slow_speed"].values[0]))
     return [
         Claim.at_most(

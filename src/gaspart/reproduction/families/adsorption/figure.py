@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart.rendering import style
+from gaspart.reproduction.families.shared.rows import estimates
 from gaspart.theory.adsorption import (
     flux_density,
     langmuir_coverage,
@@ -44,9 +45,7 @@ def _ratios(top: Axes, bottom: Axes, ds: xr.Dataset) -> None:
         depth, width, outside = (float(row[name][0]) for name in ("depth", "width", "outside"))
         label = f"$\\epsilon$ = {depth:g}, $w$ = {width:g}"
         where = 1.0 / row["temperature"].values
-        style.points(
-            top, where, row["ratio"].values, row["ratio_error"].values, kind=kind, hollow=True, label=label
-        )
+        style.measured(top, where, estimates(row, "ratio"), kind=kind, hollow=True, label=label)
         top.plot(inverse, well_ratio(depth * inverse, width, outside), color=style.COLOURS[kind], lw=0.8)
         deviation = row["log_ratio"].values - np.log(well_ratio(depth * where, width, outside))
         spread = 0.02 * (kind - 1)
@@ -73,7 +72,7 @@ def _lengths(axis: Axes, ds: xr.Dataset) -> None:
     axis.axhline(1.0, color=style.REFERENCE, label="the width of the well")
     for kind, row in enumerate(_groups(ds, "depth", "width")):
         scale = float(row["width"][0])
-        value, error = row["length"].values / scale, row["length_error"].values / scale
+        value, error = estimates(row, "length") / scale
         style.points(axis, row["temperature"].values, value, error, kind=kind, hollow=True)
     axis.set_xscale("log")
     axis.set_xticks([0.5, 1.0, 2.0], ["0.5", "1", "2"])
@@ -137,7 +136,7 @@ def _leaving(axis: Axes, wells: xr.Dataset, ds: xr.Dataset) -> None:
     dense = ds.isel(point=int(ds["gas_density"].values.argmax()))
     well = wells.isel(point=0)
     for row, kind, label in ((well, 0, "well"), (dense, 1, "sticky wall")):
-        value, error = row["flux"].values, row["flux_error"].values
+        value, error = estimates(row, "flux")
         style.points(axis, speed, value, error, kind=kind, hollow=not kind, label=label)
     axis.axvline(float(dense["slow_speed"]), color=style.GREY, ls=":")
     axis.set_ylim(bottom=0.0)

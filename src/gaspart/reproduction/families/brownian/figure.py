@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.rendering import style
+from gaspart.reproduction.families.shared.rows import estimates
 
 LONGEST = 3.2
 """Friction times up to which the velocity autocorrelation is drawn: noise dominates beyond."""
@@ -55,13 +56,13 @@ def brownian_msd(ds: xr.Dataset) -> Figure:
         row = ds.isel(point=kind).dropna("lag", subset=["time"])
         label = f"$M={float(row['mass'] / row['gas_mass']):g}\\,m$"
         label += ", equal speeds" * bool(row["equal_speeds"]) + ", steps" * bool(row["stepped"])
-        time, msd, vacf = (row[name].values for name in ("time", "msd", "vacf"))
+        time = row["time"].values
         shown = np.unique(np.round(np.geomspace(1, time.size - 1, 16)).astype(int))
         curve = theory.langevin_msd(time[shown], 1.0 / 6.0, 1.0)
-        error = row["msd_error"].values[shown]
+        msd, error = estimates(row, "msd")[:, shown]
         hollow = kind > 0
-        style.points(axes[0], time[shown], msd[shown], error, kind=kind, hollow=hollow, label=label)
-        style.points(axes[1], time[shown], msd[shown] / curve - 1.0, error / curve, kind=kind, hollow=hollow)
+        style.points(axes[0], time[shown], msd, error, kind=kind, hollow=hollow, label=label)
+        style.points(axes[1], time[shown], msd / curve - 1.0, error / curve, kind=kind, hollow=hollow)
         if row["is_light"]:
             expected = row["expected_msd"].values[1:] / theory.langevin_msd(time[1:], 1.0 / 6.0, 1.0) - 1.0
             axes[1].plot(time[1:], expected, color=style.COLOURS[kind], lw=0.8, zorder=2)
@@ -70,9 +71,9 @@ def brownian_msd(ds: xr.Dataset) -> Figure:
             axes[3].plot(time[early], expected, color=style.COLOURS[kind], lw=0.8, zorder=2)
         shown = np.flatnonzero(time < LONGEST)
         shown = shown[:: max(1, round(shown.size / MOST))]
-        error, curve = row["vacf_error"].values[shown], np.exp(-time[shown])
-        style.points(axes[2], time[shown], vacf[shown], error, kind=kind, hollow=hollow, label=label)
-        style.points(axes[3], time[shown], vacf[shown] - curve, error, kind=kind, hollow=hollow)
+        (vacf, error), curve = estimates(row, "vacf")[:, shown], np.exp(-time[shown])
+        style.points(axes[2], time[shown], vacf, error, kind=kind, hollow=hollow, label=label)
+        style.points(axes[3], time[shown], vacf - curve, error, kind=kind, hollow=hollow)
     axes[0].set_ylabel(r"$\langle\Delta r^2\rangle\,M\gamma^2/6k_\mathrm{B}T$")
     axes[2].set_ylabel(r"$\langle V(0)\!\cdot\!V(t)\rangle\,M/3k_\mathrm{B}T$")
     axes[1].set_ylabel("ratio $-$ 1")

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart.rendering import style
+from gaspart.reproduction.families.shared.rows import estimates
 from gaspart.theory.buoyancy import displaced_area
 
 METHODS = (("force", "force", "from the force"), ("missing", "count", "small discs missing"))
@@ -35,9 +36,8 @@ def buoyancy(ds: xr.Dataset) -> Figure:
     for kind, (mass, radius, label) in enumerate(METHODS):
         look: dict[str, Any] = {"kind": kind, "hollow": bool(kind)}
         for axis, name in ((top, mass), (middle, f"{radius}_radius")):
-            value, error = (ds[f"fixed_{key}"].values for key in (name, f"{name}_error"))
             look["label"] = label if axis is top else None
-            style.points(axis, packing, value, error, **look)
+            style.measured(axis, packing, estimates(ds, f"fixed_{name}"), **look)
     top.set_ylabel(r"mass displaced $F/mg$")
     top.legend(loc="upper left")
     middle.set_ylabel(r"$(R_\mathrm{eff} - R)/r$")
@@ -72,8 +72,7 @@ def _source(axis: Axes, ds: xr.Dataset) -> None:
     for name in ("lowest", "highest"):
         style.level(axis, float(ds[f"source_{name}"][0]), ls=":")
     axis.plot(density, ds["source_expected"], color=style.DATA, label="theory", zorder=2)
-    height, error = (ds[f"source_{name}"].values for name in ("height", "height_error"))
-    style.points(axis, density, height, error, label="source's discs")
+    style.measured(axis, density, estimates(ds, "source_height"), label="source's discs")
     axis.axvline(1.0, color=style.GREY, ls="--", lw=0.8, zorder=1)
     axis.set_xlabel("density of the disc over the fluid's mean")
     axis.set_ylabel("height $z$ (length)")

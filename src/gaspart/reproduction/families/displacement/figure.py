@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.rendering import style
+from gaspart.reproduction.families.shared.rows import estimates
 
 
 def msd_spheres(ds: xr.Dataset) -> Figure:
@@ -74,7 +75,7 @@ def _displacement(axis: Axes, ds: xr.Dataset, dimension: int) -> None:
         for number, (row, lags) in enumerate(_pieces(ds, eta)):
             at = row.isel(lag=lags)
             label = rf"$\eta={eta:g}$" if number == 0 else None
-            style.points(axis, at["time"], at["msd"], at["msd_error"], kind=kind, hollow=True, label=label)
+            style.measured(axis, at["time"], estimates(at, "msd"), kind=kind, hollow=True, label=label)
             longest = max(longest, float(at["time"].max()))
         time = np.geomspace(float(ds["time"].isel(lag=1).min()), longest, 200)
         curve = theory.enskog_mean_squared_displacement(time, eta, dimension)
@@ -100,8 +101,8 @@ def _running(axis: Axes, ds: xr.Dataset, dimension: int) -> None:
         for number, (row, lags) in enumerate(_pieces(ds, eta)):
             at = row.isel(lag=lags)
             label = rf"$\eta={eta:g}$" if number == 0 else None
-            x, y, error = rate * at["time"], at["running"] / enskog, at["running_error"] / enskog
-            style.points(axis, x, y, error, kind=kind, hollow=True, label=label)
+            running = estimates(at, "running") / enskog
+            style.measured(axis, rate * at["time"], running, kind=kind, hollow=True, label=label)
             integral = row["integral"].dropna("lag")
             if integral.size:
                 until = row["time"].values[1 : integral.size]
@@ -143,7 +144,7 @@ def _density(axis: Axes, ds: xr.Dataset) -> None:
     axis.fill_between(curve, ratio * (1 - band), ratio * (1 + band), color=style.REFERENCE, alpha=0.2, lw=0)
     axis.plot(curve, ratio, color=style.REFERENCE, label=rf"Erpenbeck & Wood, $\pm{100.0 * band:g}\,\%$")
     axis.axhline(1.0, color=style.DATA, lw=0.8, label="Enskog")
-    raw, error = row["diffusion"] / enskog, row["diffusion_error"] / enskog
+    raw, error = estimates(row, "diffusion") / enskog
     both = np.hypot(row["diffusion_error"], row["correction_uncertainty"]) / enskog
     style.points(axis, eta, raw, error, kind=1, hollow=True, label="as measured")
     style.points(
@@ -186,9 +187,7 @@ def _size(axis: Axes, ds: xr.Dataset) -> None:
         clip_on=False,
         label="Erpenbeck & Wood",
     )
-    style.points(
-        axis, inverse, row["diffusion"], row["diffusion_error"], color=style.DATA, label=rf"$\eta={eta:g}$"
-    )
+    style.measured(axis, inverse, estimates(row, "diffusion"), color=style.DATA, label=rf"$\eta={eta:g}$")
     for one, count, value in zip(inverse, row["count"].values, row["diffusion"].values, strict=True):
         axis.annotate(f"{int(count)}", (one, value), (3, 5), textcoords="offset points")
     axis.set_xlim(0.0, x[-1])
@@ -213,14 +212,7 @@ def _slopes(axis: Axes, ds: xr.Dataset) -> None:
         label="this container",
         zorder=4,
     )
-    style.points(
-        axis,
-        eta,
-        row["logarithmic_slope"],
-        row["logarithmic_slope_error"],
-        color=style.DATA,
-        label="measured",
-    )
+    style.measured(axis, eta, estimates(row, "logarithmic_slope"), color=style.DATA, label="measured")
     axis.set_ylim(0.0)
     axis.set_xlabel(r"packing fraction $\eta$")
     axis.set_ylabel(r"$\mathrm{d}D/\mathrm{d}\ln t\ (\sigma\sqrt{k_\mathrm{B}T/m})$")

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from gaspart import theory
 from gaspart.rendering import style
 from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared.rows import estimates
 
 
 def driven_gas(ds: xr.Dataset) -> Figure:
@@ -21,10 +22,8 @@ def driven_gas(ds: xr.Dataset) -> Figure:
         gases, name = ds.isel(gas=(ds["dimension"] == dimension).values), PARTICLES[dimension]
         e, power, count = gases["restitution"], gases["power"], int(gases["count"][0])
         unit = theory.driven_temperature(e.values, dimension, power.values, gases["packing_fraction"].values)
-        style.points(
-            upper, e, gases["temperature"] / unit, gases["temperature_error"] / unit, kind, label=name
-        )
-        style.points(lower, e, gases["cumulant"], gases["cumulant_error"], kind, label=name)
+        style.measured(upper, e, estimates(gases, "temperature") / unit, kind, label=name)
+        style.measured(lower, e, estimates(gases, "cumulant"), kind, label=name)
         colour = style.COLOURS[kind]
         for of, line in ((theory.driven_cumulant, "-"), (theory.fourth_cumulant, ":")):
             own = theory.finite_size_cumulant(of(curve, dimension), count, dimension)

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart.rendering import style
+from gaspart.reproduction.families.shared.rows import estimates
 
 
 def thin_film(dataset: xr.Dataset) -> Figure:
@@ -23,18 +24,12 @@ def thin_film(dataset: xr.Dataset) -> Figure:
 def _profile(axis: Axes, dataset: xr.Dataset) -> None:
     widest = dataset.isel(width=-1)
     axis.plot(dataset["place"], dataset["functional"], color=style.REFERENCE, label="White Bear", zorder=4)
-    style.points(
-        axis, dataset["place"], dataset["density"], dataset["density_error"], color=style.DATA,
+    style.measured(
+        axis, dataset["place"], estimates(dataset, "density"), color=style.DATA,
         markersize=1.8, label=f"measured, $H={float(widest['width']):g}\\,\\sigma$",
     )  # fmt: skip
-    style.points(
-        axis,
-        [0.0],
-        [widest["pressure"]],
-        [widest["pressure_error"]],
-        kind=1,
-        label="$P/k_\\mathrm{B}T$ on the wall",
-    )
+    label = "$P/k_\\mathrm{B}T$ on the wall"
+    style.measured(axis, 0.0, estimates(widest, "pressure"), kind=1, label=label)
     style.level(axis, dataset.attrs["bulk_density"])
     axis.set(xlim=(-0.3, min(4.0, float(dataset["place"].max()))), ylim=(0.0, None))
     axis.set(xlabel="distance of centres from contact $z/\\sigma$", ylabel="density $\\rho\\sigma^3$")

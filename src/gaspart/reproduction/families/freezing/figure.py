@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.rendering import style
+from gaspart.reproduction.families.shared.rows import estimates
 
 LOOKS = {"crystal": 1, "fluid": 0}
 """Index of the colour and marker of each start."""
@@ -72,11 +73,8 @@ def _points(
     shift: float = 0.0,
 ) -> None:
     """Filled symbols in equilibrium, hollow ones not."""
-    eta, value, error = (
-        side["packing_fraction"].values,
-        scale * side[what].values + shift,
-        scale * side[f"{what}_error"].values,
-    )
+    eta, (value, error) = side["packing_fraction"].values, scale * estimates(side, what)
+    value = value + shift
     for chosen, hollow in ((equilibrated, False), (~equilibrated, True)):
         if chosen.any():
             style.points(

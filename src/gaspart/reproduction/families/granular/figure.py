@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from gaspart import theory
 from gaspart.rendering import style
 from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared.rows import estimates
 
 
 def equipartition(ds: xr.Dataset) -> Figure:
@@ -34,9 +35,7 @@ def _temperatures(axis: Axes, ds: xr.Dataset) -> None:
         both = dict(zip(("translation", "rotation"), (False, True), strict=True))
         for name, hollow in both.items():
             label = None if hollow else f"$q={q:g}$"
-            style.points(
-                axis, row["collisions"], row[name], row[f"{name}_error"], kind, hollow=hollow, label=label
-            )
+            style.measured(axis, row["collisions"], estimates(row, name), kind, hollow=hollow, label=label)
     axis.set_xlim(0.0, s[-1])
     axis.set_ylim(0.0, 1.05)
     axis.set_ylabel(r"$T_\mathrm{tr}$ (filled), $T_\mathrm{rot}$ (hollow)")
@@ -70,13 +69,12 @@ def _ratios(axis: Axes, ds: xr.Dataset) -> None:
         theoretical = [theory.rough_ratio(q, tangential) for tangential in curve]
         axis.plot(curve, theoretical, color=style.COLOURS[kind], label=f"$q={q:g}$", zorder=1)
         cooled = ds.isel(cooling=np.isclose(ds["cooling_inertia"].values, q))
-        style.points(axis, cooled["tangential"], cooled["steady_ratio"], cooled["steady_ratio_error"], kind)
+        style.measured(axis, cooled["tangential"], estimates(cooled, "steady_ratio"), kind)
         still = ds.isel(equilibrium=np.isclose(ds["equilibrium_inertia"].values, q))
-        style.points(
+        style.measured(
             axis,
             np.ones(still.sizes["equilibrium"]),
-            still["equilibrium_ratio"],
-            still["equilibrium_ratio_error"],
+            estimates(still, "equilibrium_ratio"),
             kind,
             hollow=True,
             clip_on=False,
@@ -102,11 +100,10 @@ def _at_walls(axis: Axes, ds: xr.Dataset) -> None:
         difference = theory.rough_wall_difference(fine, q)
         for name, hollow, sign in (("translation", False, 1.0), ("rotation", True, -1.0)):
             axis.plot(fine, 0.5 * (1.0 + sign * difference), color=style.COLOURS[kind], zorder=1)
-            style.points(
+            style.measured(
                 axis,
                 row["wall_time"],
-                row[f"wall_{name}"],
-                row[f"wall_{name}_error"],
+                estimates(row, f"wall_{name}"),
                 kind,
                 hollow=hollow,
                 label=None if hollow else label,
@@ -139,10 +136,10 @@ def _haff(axis: Axes, ds: xr.Dataset) -> None:
         gases = ds.isel(gas=(ds["dimension"] == dimension).values).sortby("restitution", ascending=False)
         for kind in range(gases.sizes["gas"]):
             row = gases.isel(gas=kind)
-            since = 1.0 + row["time"]
-            value, error = row["temperature"] * since**2, row["temperature_error"] * since**2
+            since = 1.0 + row["time"].values
             label = rf"{PARTICLES[dimension]}, $\epsilon={float(row['restitution']):g}$"
-            style.points(axis, since, value, error, kind, hollow=dimension == 3, label=label)
+            values = estimates(row, "temperature") * since**2
+            style.measured(axis, since, values, kind, hollow=dimension == 3, label=label)
     axis.set_xscale("log")
     axis.set_xlabel(r"$1+t/t_\mathrm{H}$")
     axis.set_ylabel(r"$T/T_\mathrm{Haff}$")
@@ -155,13 +152,11 @@ def _rates(axis: Axes, ds: xr.Dataset) -> None:
     curve = np.linspace(0.55, 1.0, 100)
     for kind, dimension in enumerate(sorted(set(ds["dimension"].values))):
         gases = ds.isel(gas=(ds["dimension"] == dimension).values)
-        e = gases["restitution"]
+        e = gases["restitution"].values
         unit = (1.0 - e**2) / dimension
         correction = 1.0 + 0.25 * theory.fourth_cumulant(curve, int(dimension))
         axis.plot(curve, correction, color=style.COLOURS[kind], zorder=1)
-        style.points(
-            axis, e, gases["rate"] / unit, gases["rate_error"] / unit, kind, label=PARTICLES[int(dimension)]
-        )
+        style.measured(axis, e, estimates(gases, "rate") / unit, kind, label=PARTICLES[int(dimension)])
     axis.set_xlabel(r"restitution $\epsilon$")
     axis.set_ylabel(r"$-(\mathrm{d}\ln T/\mathrm{d}s)\; d/(1-\epsilon^2)$")
     axis.legend(loc="upper right")

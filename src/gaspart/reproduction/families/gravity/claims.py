@@ -7,6 +7,7 @@ import xarray as xr
 
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared.claims import is_source, rows
+from gaspart.reproduction.families.shared.rows import estimates
 from gaspart.theory.gravity import ideal_heat_capacity
 
 HYDROSTATICS = "hydrostatics dP/dz = -m g rho"
@@ -104,7 +105,7 @@ def _source_column(row: xr.Dataset) -> list[Claim]:
 def _source_mixture(row: xr.Dataset) -> list[Claim]:
     """Source C's mixture at the end of its run: as far separated as the source's, and not in equilibrium."""
     reported = np.array(row.attrs["source_shares"])
-    measured, error = row["share"].values, row["share_error"].values
+    measured, error = estimates(row, "share")
     return [
         _collisions(row),
         Claim.joint(

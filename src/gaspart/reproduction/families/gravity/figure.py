@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart.rendering import style
+from gaspart.reproduction.families.shared.rows import estimates
 from gaspart.theory.gravity import ideal_heat_capacity, ideal_profile
 from gaspart.theory.state import compressibility_factor
 
@@ -25,21 +26,19 @@ def barometric(ds: xr.Dataset) -> Figure:
         expected = _expected(row, 0)
         name = _name(row)
         _density(top, row, kind, f"{name}, {'hydrostatics' if kind else 'ideal gas'}", name)
-        density, error = (row[key].isel(species=0).values for key in ("density", "density_error"))
-        seen = (error < KNOWN * density) & row["used"].values
-        _percent(
-            ratio, row["height"].values[seen], (density / expected)[seen], (error / expected)[seen], kind
-        )
+        density = estimates(row.isel(species=0), "density")
+        seen = (density[1] < KNOWN * density[0]) & row["used"].values
+        _percent(ratio, row["height"].values[seen], (density / expected)[:, seen], kind)
         _temperature(warm, row, kind)
     [dense] = _named(ds, "dense")
     used = dense["used"].values
     eta = dense["packing_fraction"].values[used]
     line = np.linspace(0.0, 1.05 * eta.max(), 200)
     state.plot(line, compressibility_factor(line, 2), color=style.DATA, label="virial series to $B_{10}$")
-    factor, bar = (dense[key].values[used] for key in ("compressibility", "compressibility_error"))
+    factor = estimates(dense, "compressibility")[:, used]
     label = "weight above / $\\rho kT$"
-    style.points(state, eta, factor, bar, kind=1, hollow=True, label=label)
-    _percent(off, eta, dense["pressure_ratio"].values[used], dense["pressure_ratio_error"].values[used], 1)
+    style.measured(state, eta, factor, kind=1, hollow=True, label=label)
+    _percent(off, eta, estimates(dense, "pressure_ratio")[:, used], 1)
     top.set_yscale("log")
     top.set_ylim(0.04, 12.0)
     top.set_ylabel(r"density $\rho/\bar\rho$")
@@ -119,9 +118,7 @@ def _shares(axis: Axes, row: xr.Dataset) -> None:
     edges = np.linspace(0.0, float(row["top"]), len(reported) + 1)
     axis.stairs(reported, edges, baseline=None, color=style.GREY, label="source's run")
     middles = 0.5 * (edges[1:] + edges[:-1])
-    style.points(
-        axis, middles, row["share"].values, row["share_error"].values, kind=1, label="the same, here"
-    )
+    style.measured(axis, middles, estimates(row, "share"), kind=1, label="the same, here")
     light, heavy = row["hydrostatic"].values
     axis.plot(row["height"], light / (light + heavy), color=style.REFERENCE, label="equilibrium at its $T$")
     axis.set_ylabel("share of light discs")
@@ -144,7 +141,7 @@ def _density(axis: Axes, row: xr.Dataset, kind: int, theory: str | None, label: 
     """Density over its mean against height, with theory; of species number `kind` if there are several."""
     species = kind if row.sizes["species"] > 1 else 0
     height, mean = row["height"].values, float(row["mean_density"])
-    density, error = (row[key].isel(species=species).values for key in ("density", "density_error"))
+    density, error = estimates(row.isel(species=species), "density")
     seen = error < KNOWN * density
     where = (axis, height[seen], density[seen] / mean, error[seen] / mean)
     style.points(*where, kind=kind, hollow=True, label=label)
@@ -153,10 +150,9 @@ def _density(axis: Axes, row: xr.Dataset, kind: int, theory: str | None, label: 
 
 def _temperature(axis: Axes, row: xr.Dataset, kind: int) -> None:
     """Of each height over that of all, where there are particles enough."""
-    density, error = (row[key].isel(species=0).values for key in ("density", "density_error"))
+    density, error = estimates(row.isel(species=0), "density")
     seen = error < KNOWN * density
-    value, bar = (row[key].values[seen] for key in ("temperature_ratio", "temperature_ratio_error"))
-    _percent(axis, row["height"].values[seen], value, bar, kind)
+    _percent(axis, row["height"].values[seen], estimates(row, "temperature_ratio")[:, seen], kind)
 
 
 def heat_capacity(ds: xr.Dataset) -> Figure:
@@ -210,8 +206,8 @@ def _ideal(row: xr.Dataset, kind: int) -> np.ndarray:
     return number * ideal_profile(own["height"].values, float(own["top"]), weight)
 
 
-def _percent(axis: Axes, x: np.ndarray, ratio: np.ndarray, error: np.ndarray, kind: int) -> None:
-    """A ratio's distance from 1 in per cent, with its zero line."""
+def _percent(axis: Axes, x: np.ndarray, ratio: np.ndarray, kind: int) -> None:
+    """The distance of a ratio, (2, ...) with its error, from 1 in per cent, with its zero line."""
     style.level(axis, 0.0)
-    style.points(axis, x, 100.0 * (ratio - 1.0), 100.0 * error, kind=kind, hollow=True, markersize=2.5)
+    style.points(axis, x, 100.0 * (ratio[0] - 1.0), 100.0 * ratio[1], kind=kind, hollow=True, markersize=2.5)
     axis.set_ylim(-4.5, 4.5)

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart.rendering import style
+from gaspart.reproduction.families.shared.rows import estimates
 from gaspart.theory.heat import conducting_slab
 
 FREE_MOLECULAR = 100.0
@@ -60,8 +61,8 @@ def _fluxes(axis: Axes, ds: xr.Dataset) -> None:
         axis.plot(line, theory, color=style.DATA, label="with jumps", zorder=4)
     for kind, name in enumerate(("all components", "normal only")):
         own = ds.isel(point=np.flatnonzero(ds["normal"] == kind))
-        values = (own["number"], 1e3 * own["flux"], 1e3 * own["flux_error"])
-        style.points(axis, *values, kind=kind, hollow=bool(kind), label=name)
+        flux = 1e3 * estimates(own, "flux")
+        style.measured(axis, own["number"], flux, kind=kind, hollow=bool(kind), label=name)
     axis.set_xscale("log")
     axis.set_yscale("log")
     axis.set_ylim(0.2, 12.0)
@@ -89,8 +90,8 @@ def _shares(axis: Axes, ds: xr.Dataset) -> None:
         if not own.sizes["point"]:
             continue
         knudsen = np.where(own["knudsen"] < FREE_MOLECULAR, own["knudsen"], end * 1.15 ** (dimension - 2.5))
-        values = (own["flux"] / own["full"], own["flux_error"] / own["full"])
-        style.points(axis, knudsen, *values, kind=kind, hollow=bool(normal), label=name)
+        flux = estimates(own, "flux") / own["full"].values
+        style.measured(axis, knudsen, flux, kind=kind, hollow=bool(normal), label=name)
     axis.set_xscale("log")
     axis.set_xlim(0.02, 40.0)
     axis.set_xticks([0.1, 1.0, end], ["0.1", "1", r"$\infty$"])
@@ -103,10 +104,9 @@ def _shares(axis: Axes, ds: xr.Dataset) -> None:
 
 def _approach(axis: Axes, row: xr.Dataset) -> None:
     """The difference of temperature between the halves of one gas, from the start on."""
-    values = (row["approach_time"], row["approach"], row["approach_error"])
-    style.points(
-        axis, *values, kind=0, hollow=True, markersize=2.5, label=rf"$l/L = {float(row['knudsen']):.2g}$"
-    )
+    label = rf"$l/L = {float(row['knudsen']):.2g}$"
+    difference = estimates(row, "approach")
+    style.measured(axis, row["approach_time"], difference, kind=0, hollow=True, markersize=2.5, label=label)
     axis.plot(
         row["approach_time"], row["expected_approach"], color=style.DATA, zorder=4, label="heat equation"
     )
@@ -119,13 +119,13 @@ def _profiles(warm: Axes, off: Axes, dense: Axes, row: xr.Dataset, kind: int) ->
     """One gas's temperature, its deviation from theory, and its density."""
     position = row["position"].values / float(row["length"])
     number = float(row["number"])
-    temperature, error = row["temperature"].values, row["temperature_error"].values
+    temperature, error = estimates(row, "temperature")
     label = rf"$l/L = {float(row['knudsen']):.2g}$"
     small: dict[str, Any] = {"kind": kind, "hollow": True, "markersize": 2.5}
     style.points(warm, position, temperature, error, label=label, **small)
-    values = (row["density"].values / number, row["density_error"].values / number)
-    if np.median(values[1]) < NOISY:
-        style.points(dense, position, *values, **small)
+    density = estimates(row, "density") / number
+    if np.median(density[1]) < NOISY:
+        style.measured(dense, position, density, **small)
     if not np.isfinite(row["slab_flux"]):
         return
     theory = row["slab_temperature"].values
@@ -143,8 +143,7 @@ def heat_conduction_metal(ds: xr.Dataset) -> Figure:
     for n in np.flatnonzero((ds["hot"] != ds["cold"]) & ~ds["regular"].astype(bool)):
         row = ds.isel(point=n)
         for kind, (name, label) in enumerate((("electrons", "electrons"), ("modes", "modes"))):
-            values = (row["position"], row[name], row[f"{name}_error"])
-            style.points(top, *values, kind=kind, hollow=bool(kind), label=label)
+            style.measured(top, row["position"], estimates(row, name), kind, hollow=bool(kind), label=label)
         for wall in ("hot", "cold"):
             top.axhline(float(row[wall]), color=style.GREY, lw=0.6, ls=":")
     top.set_xlabel("position between the walls $x/L$")
@@ -154,7 +153,7 @@ def heat_conduction_metal(ds: xr.Dataset) -> Figure:
     warm, capacity = still["hot"].values, float(ds["expected"][0])
     line = np.array([0.0, 1.1 * warm.max()])
     bottom.plot(line, line, color=style.REFERENCE, label=r"$(N_e d/2 + N_s)\,kT$")
-    level, error = still["energy_ratio"].values, still["energy_ratio_error"].values
+    level, error = estimates(still, "energy_ratio")
     style.points(bottom, warm, level * warm, error * warm, kind=1, label="electrons and modes")
     electrons = float(ds["electrons_part"][0])
     bottom.plot(line, electrons * line, color=style.GREY, ls="--", label="frozen modes")

@@ -8,6 +8,7 @@ import xarray as xr
 from gaspart.analysis.statistics import combine, fit_power_law
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared.claims import deviations, freedoms
+from gaspart.reproduction.families.shared.rows import estimates
 
 
 def radius_grid(dataset: xr.Dataset) -> list[Claim]:
@@ -26,7 +27,8 @@ def radius_grid(dataset: xr.Dataset) -> list[Claim]:
 
 def _same_state(same: xr.Dataset) -> Claim:
     """No theory but the 1/N correction: the values are compared with their own mean."""
-    mean = combine(same["Z"].values, same["Z_error"].values, freedoms(same, "Z"))
+    values, errors = estimates(same, "Z")
+    mean = combine(values, errors, freedoms(same, "Z"))
     radii, eta = same["radius"].values, float(same["packing_fraction"][0])
     return Claim.chi_square(
         claim=f"one Z at packing fraction {eta:.3g} for all radii, {radii.min():.3g} "

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.rendering import style
+from gaspart.reproduction.families.shared.rows import estimates
 
 SERIES = ("packing fraction", "count")
 
@@ -50,7 +51,7 @@ def _state(axis: Axes, one: xr.Dataset, kind: int, name: str) -> None:
         label = f"$N={int(one['count'][0])}$, $\\eta$ = {_range(one['packing_fraction'], '{:.2g}')}"
     else:
         label = f"$\\eta={float(one['packing_fraction'][0]):g}$, $N$ = {_range(one['count'], '{:.0f}')}"
-    style.points(axis, one["radius"], one["Z"], one["Z_error"], kind=kind, label=label)
+    style.measured(axis, one["radius"], estimates(one, "Z"), kind=kind, label=label)
     radius, eta = one["radius"].values, one["packing_fraction"].values
     fine = np.linspace(radius[0], radius[-1], 200)
     # In one container the packing fraction of a given number of particles grows as the radius cubed.

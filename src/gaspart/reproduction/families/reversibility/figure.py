@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from gaspart.rendering import style
 from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared.rows import estimates
 
 ENGINES = {
     ("event", "float64"): ("event-driven", "-"),
@@ -51,15 +52,9 @@ def _growth(axis: Axes, ds: xr.Dataset) -> None:
         if not of.sizes["row"]:
             continue
         eta = of.packing_fraction.values
-        style.points(axis, eta, of.growth, of.growth_error, kind=kind, label=f"{name}, echo")
-        style.points(
-            axis,
-            1.12 * eta,
-            of.divergence,
-            of.divergence_error,
-            kind=kind,
-            hollow=True,
-            label=f"{name}, two runs",
+        style.measured(axis, eta, estimates(of, "growth"), kind=kind, label=f"{name}, echo")
+        style.measured(
+            axis, 1.12 * eta, estimates(of, "divergence"), kind=kind, hollow=True, label=f"{name}, two runs"
         )
         label = "tangent space" if kind else None
         axis.errorbar(eta, of.exponent, of.exponent_error, color=style.GREY, zorder=1, label=label)
@@ -75,11 +70,10 @@ def _memory(axis: Axes, ds: xr.Dataset) -> None:
         of = ds.isel(row=((ds.engine == engine) & (ds.precision == precision)).values)
         for dimension in (2, 3):
             rows = of.isel(row=(of.dimension == dimension).values)
-            style.points(
+            style.measured(
                 axis,
                 rows.packing_fraction,
-                rows.memory,
-                rows.memory_error,
+                estimates(rows, "memory"),
                 kind=kind,
                 hollow=dimension == 2,
                 label=label if dimension == 3 else None,

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart.rendering import style
+from gaspart.reproduction.families.shared.rows import estimates
 
 _NS, _US, _MS = 1e9, 1e6, 1e3
 _SOURCE = style.COLOURS[4]
@@ -25,12 +26,12 @@ def naive_scaling(ds: xr.Dataset) -> Figure:
         line, _SCAN * law * _MS, color=_SOURCE, linestyle="--", label="scanned 27 times (Frederickx & Meerts)"
     )
     top.plot(line, law * _MS, color=style.REFERENCE, label=r"$\frac{1}{2}N(N-1)$ tests, each once")
-    style.points(top, count, ds.seconds * _MS, ds.seconds_error * _MS, color=style.DATA, label="measured")
+    style.measured(top, count, estimates(ds, "seconds") * _MS, color=style.DATA, label="measured")
     top.set(xscale="log", yscale="log", ylabel="time per step (ms)")
     top.legend(loc="upper left")
     each = _NS / ds.pair_tests
     style.level(bottom, float(ds.test_seconds) * _NS)
-    style.points(bottom, count, ds.seconds * each, ds.seconds_error * each, color=style.DATA)
+    style.measured(bottom, count, estimates(ds, "seconds") * each.values, color=style.DATA)
     bottom.set(xlabel="number of particles $N$", ylabel="per test (ns)")
     bottom.set_ylim(0.0, 1.6 * float((ds.seconds * each).max()))
     style.letters(top, bottom)
@@ -52,10 +53,10 @@ def box_count(ds: xr.Dataset) -> Figure:
 
 def _scan_time(axis: Axes, ds: xr.Dataset, boxes: np.ndarray) -> None:
     model = ds.body_seconds + ds.test_seconds * ds.pair_tests + ds.box_seconds * ds.boxes_emptied
-    style.points(axis, boxes, ds.seconds * _NS, ds.seconds_error * _NS, color=style.DATA, label="measured")
-    style.points(
-        axis, ds.near_boxes_per_side.values.astype(float) ** 3, ds.near_seconds * _NS,
-        ds.near_seconds_error * _NS, kind=1, hollow=True, label="boxes within reach",
+    style.measured(axis, boxes, estimates(ds, "seconds") * _NS, color=style.DATA, label="measured")
+    style.measured(
+        axis, ds.near_boxes_per_side.values.astype(float) ** 3, estimates(ds, "near_seconds") * _NS,
+        kind=1, hollow=True, label="boxes within reach",
     )  # fmt: skip
     near = (ds.seconds <= 3.0 * ds.seconds.min()).values
     axis.plot(
@@ -118,8 +119,8 @@ def _sectors(axis: Axes, ds: xr.Dataset) -> None:
     style.points(axis, sectors, ds.sector_pair_tests, kind=0, linestyle="-", label="pair tests")
     style.points(axis, sectors, ds.sector_box_visits, kind=1, linestyle="-", label="sectors searched")
     style.points(axis, sectors, ds.sector_crossings, kind=2, linestyle="-", label="crossings")
-    style.points(
-        axis, sectors, ds.sector_seconds * _US, ds.sector_seconds_error * _US,
+    style.measured(
+        axis, sectors, estimates(ds, "sector_seconds") * _US,
         color=style.DATA, marker="X", linestyle="-", label="time (µs)",
     )  # fmt: skip
     axis.set(xscale="log", yscale="log", xlabel="number of sectors", ylabel="event-driven, per event")
@@ -152,8 +153,8 @@ def ideal_boxes(ds: xr.Dataset) -> Figure:
         one = ds.isel(gas=gas)
         least = float(one.seconds.min())
         label = f"$N = {_thousands(one['count'])}$, $r = {float(one.radius):g}$"
-        style.points(
-            bottom, one.boxes_per_body, one.seconds / least, one.seconds_error / least,
+        style.measured(
+            bottom, one.boxes_per_body, estimates(one, "seconds") / least,
             kind=kind, linestyle="-", label=label,
         )  # fmt: skip
     bottom.axvspan(7.0, 10.0, color=_SOURCE, alpha=0.4, lw=0)
@@ -200,22 +201,22 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
         label="one box, 27 scans (F & M)",
     )
     top.plot(line, scale * line**2, color=style.COLOURS[1], linestyle="--")
-    style.points(top, naive, ds.naive_seconds, ds.naive_seconds_error, kind=1, label="one box")
+    style.measured(top, naive, estimates(ds, "naive_seconds"), kind=1, label="one box")
     for kind, (radius, of) in enumerate(_by_radius(ds)):
-        style.points(
-            top, of["count"], of.seconds * of["count"], of.seconds_error * of["count"],
+        style.measured(
+            top, of["count"], estimates(of, "seconds") * of["count"].values,
             kind=2 * kind, label=f"cheapest partition, $r = {radius:g}$",
         )  # fmt: skip
         n = of["count"].values
-        style.points(middle, n, of.seconds * _NS, of.seconds_error * _NS, kind=2 * kind, linestyle="-")
+        style.measured(middle, n, estimates(of, "seconds") * _NS, kind=2 * kind, linestyle="-")
         style.points(bottom, n, of.box_visits, kind=2 * kind, linestyle="-")
         style.points(bottom, n, of.pair_tests, kind=2 * kind, linestyle="--", hollow=True)
     for radius in sorted(set(ds.list_radius.values.tolist()), reverse=True):
         of = ds.isel(listed=np.flatnonzero(ds.list_radius.values == radius))
-        n, seconds, error = of.list_count, of.list_seconds, of.list_seconds_error
+        n, seconds = of.list_count.values, estimates(of, "list_seconds")
         label = None if radius < ds.list_radius.max() else "neighbour list (ours)"
-        style.points(top, n, seconds * n, error * n, kind=3, label=label)
-        style.points(middle, n, seconds * _NS, error * _NS, kind=3, linestyle="-")
+        style.measured(top, n, seconds * n, kind=3, label=label)
+        style.measured(middle, n, seconds * _NS, kind=3, linestyle="-")
         style.points(bottom, n, of.list_pair_tests, kind=3, linestyle="--", hollow=True)
     guide = np.array([count.min(), count.max()])
     top.plot(guide, guide * float(ds.seconds.min()), color=style.GREY, lw=0.8, zorder=1, label="linear")
@@ -263,7 +264,7 @@ def event_scaling(ds: xr.Dataset) -> Figure:
         count, hollow = of["count"].values, bool(dimension == 3)
         label = f"{names[str(search)]}, {dimension}D"
         style.points(top, count, of.pair_tests, kind=kind, hollow=hollow, label=label)
-        style.points(bottom, count, of.seconds * _US, of.seconds_error * _US, kind=kind, hollow=hollow)
+        style.measured(bottom, count, estimates(of, "seconds") * _US, kind=kind, hollow=hollow)
         power = {"pairs": 2.0, "direct": 1.0, "boxes": 0.0}[str(search)]
         _guide(top, count, of.pair_tests.values, power, kind)
         if str(search) != "boxes":

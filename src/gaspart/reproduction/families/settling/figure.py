@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart.rendering import style
+from gaspart.reproduction.families.shared.rows import estimates
 from gaspart.theory.granular import DISCHARGE_EXPONENT
 
 
@@ -72,7 +73,7 @@ def _rates(axis: Axes, ds: xr.Dataset) -> None:
         zorder=1,
         label="slope 3/2 (Beverloo)",
     )
-    style.points(axis, apart, ds["rate"], ds["rate_error"], color=style.DATA, label="measured")
+    style.measured(axis, apart, estimates(ds, "rate"), color=style.DATA, label="measured")
     axis.set_xscale("log")
     axis.set_yscale("log")
     axis.set_xlabel(rf"$D/d-k$, $k={offset:.2f}$")

@@ -9,6 +9,7 @@ import xarray as xr
 
 from gaspart.analysis.statistics import combine
 from gaspart.reproduction.claims import Claim, Estimate
+from gaspart.reproduction.families.shared.rows import estimates
 
 SOURCE_A, SOURCE_C = "Frederickx & Meerts 2010", "Spencer 2022"
 OTHER_MACHINE = "on this machine, and by this program, tests and boxes have other relative costs"
@@ -46,7 +47,7 @@ def freedoms(dataset: xr.Dataset, name: str) -> np.ndarray:
 
 def combined(dataset: xr.Dataset, name: str) -> Estimate:
     """Mean of a variable of one dimension, weighted by its errors."""
-    values, errors = dataset[name].values, dataset[f"{name}_error"].values
+    values, errors = estimates(dataset, name)
     return combine(values, errors, freedoms(dataset, name)).estimate
 
 

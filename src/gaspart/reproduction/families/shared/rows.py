@@ -50,6 +50,11 @@ def entries(numbers: Mapping[str, Estimate | tuple[Any, Any]], freedom: int | No
     return row
 
 
+def estimates(dataset: xr.Dataset, name: str) -> np.ndarray:
+    """(2, ...) the values of a variable and their errors; of one number `Estimate.of` makes an Estimate."""
+    return np.stack([dataset[name].values, dataset[f"{name}_error"].values])
+
+
 def _stacked(arrays: list[np.ndarray]) -> np.ndarray:
     """Arrays of one number of dimensions along a new first one; NaN alone stands for an empty array."""
     shape = max((array.shape for array in arrays), key=len)

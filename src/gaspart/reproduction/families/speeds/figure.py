@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from gaspart import theory
 from gaspart.rendering import style
+from gaspart.reproduction.families.shared.rows import estimates
 
 ENGINES = {"step": "time-stepped", "event": "event-driven"}
 KOLMOGOROV_BAND = 1.36
@@ -62,12 +63,11 @@ def _histograms(axis: Axes, ds: xr.Dataset) -> None:
         s = float(row["collisions"].mean())
         label = f"$t={float(row['time']):g}$, $s={s:.1f}$"
         for engine in ds["engine"].values:
-            density = row["density"].sel(engine=engine).values
+            density, error = estimates(row.sel(engine=engine), "density")
             seen = density > 0.0
             if str(engine) == "step":
                 axis.stairs(np.where(seen, density, np.nan), edges, color=colour, lw=0.8, label=label)
             else:
-                error = row["density_error"].sel(engine=engine).values
                 style.points(axis, middle[seen], density[seen], error[seen], kind=kind, markersize=2)
     u = np.linspace(1e-3, edges[-1], 300)
     dimension = ds.attrs["dimension"]
@@ -92,7 +92,7 @@ def _compare(
     style.level(bottom, 0.0)
     for kind, engine in enumerate(ds["engine"].values):
         row = ds.sel(engine=engine).isel(frame=slice(1, None))
-        s, values, errors = (row[key].values for key in ("collisions", name, f"{name}_error"))
+        s, (values, errors) = row["collisions"].values, estimates(row, name)
         label = ENGINES[str(engine)] if name == "never_hit" else None
         style.points(top, s, values, errors, kind=kind, hollow=kind > 0, label=label)
         style.points(bottom, s, (values - curve(s)) / errors, kind=kind, hollow=kind > 0)
@@ -126,7 +126,7 @@ def _distribution(ds: xr.Dataset) -> Figure:
     for kind in range(ds.sizes["point"]):
         row = ds.isel(point=kind)
         label = rf"$\eta={float(row['packing_fraction']):.2g}$, {ENGINES[str(row['engine'].values)]}"
-        values, errors = row["density"].values, row["density_error"].values
+        values, errors = estimates(row, "density")
         style.points(density, middle, values, errors, kind=kind, hollow=True, label=label)
         # Different packing fractions are drawn side by side within their bin.
         beside = middle + width * 0.25 * (kind - 0.5 * (ds.sizes["point"] - 1))

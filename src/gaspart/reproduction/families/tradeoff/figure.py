@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart.rendering import style
+from gaspart.reproduction.families.shared.rows import estimates
 
 SHOWN = {"4 passes": "-", "1 pass, no rewinding": "--"}
 """Line of each setting that is drawn: the default one, and the source's. The claims have the others."""
@@ -62,8 +63,8 @@ def _costs(axis: Axes, row: xr.Dataset, kind: int, label: str) -> None:
     z = row.sel(observable="Z")
     error = 100.0 * np.maximum(np.abs(z.bias), 2.0 * z.bias_error).values
     timed = np.isfinite(row.seconds.values) & np.isfinite(error)
-    seconds, bars = 1e6 * row.seconds.values[timed], 1e6 * row.seconds_error.values[timed]
-    style.points(axis, error[timed], seconds, bars, kind=kind, linestyle="-", linewidth=0.5, label=label)
+    seconds = 1e6 * estimates(row, "seconds")[:, timed]
+    style.measured(axis, error[timed], seconds, kind=kind, linestyle="-", linewidth=0.5, label=label)
     axis.axhline(1e6 * float(row.event_seconds), color=style.COLOURS[kind], ls=":")
 
 

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from gaspart import theory
 from gaspart.rendering import style
 from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared.rows import estimates
 
 
 def velocity_autocorrelation(ds: xr.Dataset) -> Figure:
@@ -43,11 +44,10 @@ def _tails(axis: Axes, ds: xr.Dataset) -> None:
         late = at["collisions"].values > 3.0
         axis.plot(at["collisions"].values[late], tail[late], color=style.COLOURS[kind], zorder=1)
         seen = at["correlation"].values > 0.0
-        style.points(
+        style.measured(
             axis,
             at["collisions"].values[seen],
-            at["correlation"].values[seen],
-            at["correlation_error"].values[seen],
+            estimates(at, "correlation")[:, seen],
             kind,
             markersize=2.5,
             label=rf"{PARTICLES[dimension]}, $\eta={eta:.2g}$",
@@ -72,7 +72,7 @@ def _starts(axis: Axes, ds: xr.Dataset) -> None:
         s = np.linspace(0.0, 2.0, 50)
         axis.plot(s, np.exp(-2.0 / dimension * s), color=style.COLOURS[kind], zorder=1)
         label = rf"{PARTICLES[dimension]}, $\eta={eta:.2g}$"
-        style.points(axis, at["collisions"], at["correlation"], at["correlation_error"], kind, label=label)
+        style.measured(axis, at["collisions"], estimates(at, "correlation"), kind, label=label)
     axis.set_yscale("log")
     axis.set_yticks((0.2, 0.5, 1.0), ("0.2", "0.5", "1"))
     axis.minorticks_off()

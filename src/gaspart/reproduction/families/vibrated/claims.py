@@ -9,6 +9,7 @@ from gaspart import theory
 from gaspart.analysis.statistics import Fit, fit_polynomial
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared.claims import freedoms, rows
+from gaspart.reproduction.families.shared.rows import estimates
 
 WAVEFORMS = {0: "sawtooth", 1: "sine"}
 """Names of the motions of the floor."""
@@ -39,7 +40,7 @@ def expected_temperature(ds: xr.Dataset) -> np.ndarray:
 def extrapolation(ds: xr.Dataset) -> Fit:
     """The temperature over that of theory, as a polynomial of second order in the small parameter."""
     unit = expected_temperature(ds)
-    ratio, error = ds["temperature"].values / unit, ds["temperature_error"].values / unit
+    ratio, error = estimates(ds, "temperature") / unit
     few = freedoms(ds, "temperature")
     return fit_polynomial(small_parameter(ds), ratio, error, powers=(0, 1, 2), freedoms=few)
 

@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from gaspart.rendering import style
+from gaspart.reproduction.families.shared.rows import estimates
 from gaspart.reproduction.families.vibrated.claims import (
     WAVEFORMS,
     expected_temperature,
@@ -26,7 +27,7 @@ def vibrated_bed(ds: xr.Dataset) -> Figure:
         if not beds.sizes["bed"]:
             continue
         x, unit = small_parameter(beds), expected_temperature(beds)
-        style.points(upper, x, beds["temperature"] / unit, beds["temperature_error"] / unit, kind, label=name)
+        style.measured(upper, x, estimates(beds, "temperature") / unit, kind, label=name)
         if x.size > 2:
             fine = np.linspace(0.0, x.max(), 100)
             curve = np.polynomial.polynomial.polyval(fine, extrapolation(beds).values)
@@ -34,7 +35,7 @@ def vibrated_bed(ds: xr.Dataset) -> Figure:
         bed = beds.isel(bed=int(np.argmin(x)))
         e = float(bed["restitution"])
         label = rf"{name}, $\epsilon={e:g}$"
-        style.points(lower, bed["place"], bed["density"], bed["density_error"], kind, label=label)
+        style.measured(lower, bed["place"], estimates(bed, "density"), kind, label=label)
     upper.set_xlim(0.0, 1.08 * small_parameter(ds).max())
     upper.set_xlabel(r"$(1-\epsilon^2)(\sqrt{\pi}\,(N-1)d/2W+1/\sqrt{2\pi})$")
     upper.set_ylabel(r"$T$ / energy balance")

@@ -8,6 +8,7 @@ import xarray as xr
 from gaspart.analysis.statistics import combine, fit_power_law
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared.claims import PARTICLES, deviations, rows
+from gaspart.reproduction.families.shared.rows import estimates
 
 RELATIVE_ERROR = 1e-3
 """The largest standard error of a pressure, relative to it, at which a mean of comparisons means anything."""
@@ -109,9 +110,8 @@ def _temperature(ds: xr.Dataset) -> list[Claim]:
         temperature = part["temperature"].values
         if temperature.max() < 2.0 * temperature.min():
             continue
-        law = fit_power_law(
-            temperature, part["pressure"].values * temperature, part["pressure_error"].values * temperature
-        )
+        pressure, error = estimates(part, "pressure") * temperature
+        law = fit_power_law(temperature, pressure, error)
         claims.append(
             Claim(
                 claim=f"exponent of P against T at packing fraction {float(part['packing_fraction'][0]):.3g}",

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from gaspart import theory
 from gaspart.rendering import style
 from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared.rows import estimates
 
 
 def wall_pressure(ds: xr.Dataset) -> Figure:
@@ -31,11 +32,10 @@ def _temperatures(axis: Axes, ds: xr.Dataset) -> None:
         line = np.array([0.0, 1.1 * float(part["temperature"].max())])
         z = np.full(2, float(part["expected"][0]) / n)
         axis.plot(line, z, color=style.COLOURS[kind], zorder=1)
-        style.points(
+        style.measured(
             axis,
             part["temperature"],
-            part["pressure"] / n,
-            part["pressure_error"] / n,
+            estimates(part, "pressure") / n,
             kind=kind,
             label=rf"$\eta={float(part['packing_fraction'][0]):.2g}$",
         )
