@@ -240,8 +240,7 @@ def _green_kubo(curves: list[Curves], rate: float, dimension: int) -> dict:
 
 def _mean(name: str, samples: list) -> dict:
     """Mean over replicas, its standard error and the degrees of freedom of that, as three entries."""
-    mean, error = means_of(samples)
-    return {name: mean, f"{name}_error": error, f"{name}_freedom": len(samples) - 1}
+    return entries({name: means_of(samples)}, len(samples) - 1)
 
 
 UNITS = {

@@ -250,15 +250,15 @@ def heat_capacity(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """
     if len(points) % 2:
         raise ValueError(f"points: {len(points)} (must be pairs)")
-    runs = [_energies(point, settings["blocks"]) for point in points]
-    pairs = list(zip(runs[::2], runs[1::2], strict=True))
+    ends = [_energies(point, settings["blocks"]) for point in points]
+    pairs = list(zip(ends[::2], ends[1::2], strict=True))
     if (
         any(one["gravity"] != other["gravity"] for one, other in pairs)
-        or len({run["count"] for run in runs}) > 1
+        or len({end["count"] for end in ends}) > 1
     ):
         raise ValueError("points: the two of a pair must differ in their energy only")
     rows = [_pair(*pair) for pair in pairs]
-    return from_rows("pair", rows, ("run",)).assign_attrs(count=runs[0]["count"])
+    return from_rows("pair", rows, ("run",)).assign_attrs(count=ends[0]["count"])
 
 
 def _pair(colder: dict, warmer: dict) -> dict:
@@ -289,26 +289,21 @@ def _energies(point: grid.Point, blocks: int) -> dict:
     parts = kinetic[: len(kinetic) // blocks * blocks].reshape(blocks, -1) / count
 
     shift = parts.mean()  # the squares of the deviations lose no digits where the energy hardly changes
-    fluctuation, spread = jackknife(
+    fluctuation = jackknife(
         lambda mean, square: lebowitz_percus_verlet(
             count * (mean + shift), count**2 * (square - mean**2), count, 2
         ),
         (parts - shift).mean(axis=1),
         ((parts - shift) ** 2).mean(axis=1),
     )
-    temperature, error = jackknife(lambda mean: mean, parts.mean(axis=1))
+    temperature = jackknife(lambda mean: mean, parts.mean(axis=1))
     mean, variance = ideal_energy_moments(float(energy), count, place.height, force, 2)
     return {
         "count": count,
         "gravity": place.strength,
         "energy": energy,
-        "temperature": float(temperature),
-        "temperature_error": float(error),
-        "temperature_freedom": blocks - 1,
+        **entries({"temperature": temperature, "fluctuation": fluctuation}, blocks - 1),
         "temperature_expected": mean / count,
-        "run_x": force * place.height / float(temperature),
-        "fluctuation": float(fluctuation),
-        "fluctuation_error": float(spread),
-        "fluctuation_freedom": blocks - 1,
+        "run_x": force * place.height / float(temperature[0]),
         "fluctuation_expected": lebowitz_percus_verlet(mean, variance, count, 2),
     }

@@ -44,7 +44,7 @@ def _row(point: grid.Point) -> dict:
         raise SceneError(point.path, scene.container.boundary, "needs walls, all of one distance")
     touched = np.where(walled, lengths - 1.0, lengths)
     length, axes = float(lengths[walled][0]), int(walled.sum())
-    expected, expected_error = theory.wall_pressure(length, count / touched.prod(), count, dimension, axes)
+    expected = theory.wall_pressure(length, count / touched.prod(), count, dimension, axes)
     replicas = [_replica(run, walled, diameter) for run in runs(point)]
     # Mean over walls of force over area, per replica: an area is the volume over the length across it.
     accessible = [(force * touched[walled]).mean(axis=1) / touched.prod() for force, _, _ in replicas]
@@ -53,11 +53,9 @@ def _row(point: grid.Point) -> dict:
     density = count / float(lengths.prod())
     eta = float(theory.packing_fraction(density, dimension))
     return {
-        **entries({"pressure": pressure}),
+        **entries({"pressure": pressure, "expected": expected}),
         "whole_pressure": pressure.value * share,
         "bulk_pressure": density * float(theory.compressibility_factor(eta, dimension)),
-        "expected": expected,
-        "expected_error": expected_error,
         "density": density,
         "packing_fraction": eta,
         "temperature": float(np.mean([temperature for _, temperature, _ in replicas])),
