@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.observable import Observable, observable, scalar
-from gaspart.analysis.source import Run, Source, measured
+from gaspart.analysis.run import Run, Source, measured
 from gaspart.analysis.statistics import correlated_mean, means_of
 from gaspart.errors import SceneError
 from gaspart.trajectory.correlator import Correlations
@@ -71,9 +72,9 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
         means = [correlated_mean(one).estimate for one in series]
         names = np.array([a + b for a in "xyz"[:d] for b in "xyz"[:d]])
         expected: dict[str, Any] = {}
-        if run.of_fluid:
-            factor = theory.compressibility_factor(run.scene.packing_fraction, d)
-            pressure = run.count / volume * _temperature(run) * factor * np.eye(d).ravel()
+        if gas := run.fluid:
+            factor = theory.compressibility_factor(gas.packing_fraction, d)
+            pressure = gas.count / volume * _temperature(run) * factor * np.eye(d).ravel()
             expected = {"theory": (pressure, math.nan), "source": "equation of state"}
         return observable(
             "pressure_tensor",
@@ -121,9 +122,8 @@ def _coefficient(
         products, squares = _blocks(run, name)
         running = scale * settings.interval * (np.cumsum(products, axis=1) - 0.5 * products[:, :1])
         expected: dict[str, Any] = {}
-        if run.of_fluid:
-            kind, eta = run.scene.kinds[0], run.scene.packing_fraction
-            value = enskog(eta, run.dimension, 2.0 * kind.radius, temperature, kind.mass)
+        if gas := run.fluid:
+            value = enskog(**replace(gas, temperature=temperature).parameters)
             expected = {"theory": (float(value), math.nan), "source": "Enskog"}
         d = run.dimension
         units = f"1 / (length^{d - 2} time)" if name == "heat" else f"mass length^{2 - d} / time"
