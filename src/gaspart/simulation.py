@@ -77,7 +77,8 @@ class Simulation:
         self._moving = self._initial.kinetic_energy + self._initial.vibrational_energy
         if self._stress:
             self.engine.check_stress(self.scene)
-        self._dynamics = self.engine.start(self.scene, self._initial, self.seed, self._stress)
+        asked = {"stress": True} if self._stress else {}  # an engine that has no such tally need not know it
+        self._dynamics = self.engine.start(self.scene, self._initial, self.seed, **asked)
 
     def add(
         self,

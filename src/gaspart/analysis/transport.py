@@ -116,14 +116,10 @@ def _coefficient(
         if name == "heat" and len({(it.mass, it.radius) for it in run.scene.kinds}) > 1:
             raise SceneError("species", len(run.scene.kinds), "the heat flux of a mixture contains diffusion")
         lags = _lags_until(settings, lag)
-        volume = math.prod(run.scene.container.lengths)
-        temperature = _temperature(run)
-        scale = 1.0 / (volume * temperature ** (2 if name == "heat" else 1))
-        products, squares = _blocks(run, name)
-        running = scale * settings.interval * (np.cumsum(products, axis=1) - 0.5 * products[:, :1])
+        running, slopes = green_kubo(run, name), helfand(run, name)
         expected: dict[str, Any] = {}
         if gas := run.fluid:
-            value = enskog(**replace(gas, temperature=temperature).parameters)
+            value = enskog(**replace(gas, temperature=_temperature(run)).parameters)
             expected = {"theory": (float(value), math.nan), "source": "Enskog"}
         d = run.dimension
         units = f"1 / (length^{d - 2} time)" if name == "heat" else f"mass length^{2 - d} / time"
@@ -132,14 +128,10 @@ def _coefficient(
             "long_name": f"{public.replace('_', ' ')} {symbol}",
             **expected,
         }
-        edges = run.time[-len(products) - 1 :]
-        result = scalar(public, running[:, lags], edges, **about)
-        time = settings.interval * np.arange(products.shape[1])
+        result = scalar(public, running[:, lags], run.time[-len(running) - 1 :], **about)
+        time = settings.interval * np.arange(running.shape[1])
         result["lag"] = ("lag", time, {"units": "time", "long_name": "lag"})
-        curves = {
-            "green_kubo": running,
-            "helfand": 0.5 * scale * squares / np.where(time > 0.0, time, np.nan),
-        }
+        curves = {"green_kubo": running, "helfand": slopes}
         for key, blocks in curves.items():
             values, errors = means_of(blocks)
             result[key] = ("lag", values, {"units": units, "long_name": f"{key} until this lag"})
@@ -165,9 +157,31 @@ def _lags_until(settings: Correlations, lag: float | None) -> int:
     return number
 
 
+def green_kubo(run: Run, name: str) -> np.ndarray:
+    """(B, lags) a coefficient from the correlation until each lag, by blocks: the intervals between frames in
+    which samples end pairs of all lags. name: of `trajectory.correlator.STRESS`. Raises SceneError for a run
+    without correlations of the stress."""
+    interval = _stored(run).interval
+    products, _ = _blocks(run, name)
+    return _scale(run, name) * interval * (np.cumsum(products, axis=1) - 0.5 * products[:, :1])
+
+
+def helfand(run: Run, name: str) -> np.ndarray:
+    """(B, lags) the same from the squared change of G over each lag; NaN for none."""
+    interval = _stored(run).interval
+    _, squares = _blocks(run, name)
+    time = interval * np.arange(squares.shape[1])
+    return 0.5 * _scale(run, name) * squares / np.where(time > 0.0, time, np.nan)
+
+
+def _scale(run: Run, name: str) -> float:
+    """1 / (V x)."""
+    return 1.0 / (math.prod(run.scene.container.lengths) * _temperature(run) ** (2 if name == "heat" else 1))
+
+
 def _blocks(run: Run, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """(B, lags) the correlation of V J, and the squared change of G, by blocks: the intervals between frames
-    in which samples end pairs of all lags. The mean of the flux is taken off where it is not zero."""
+    """(B, lags) the correlation of V J, and the squared change of G, by blocks. The mean of the flux is taken
+    off where it is not zero."""
     data: xr.Dataset = run.data
     samples = data["correlated_samples"].values
     lags = np.arange(data.sizes["lag"])

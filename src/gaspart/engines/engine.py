@@ -144,13 +144,11 @@ class Engine:
         for name in sorted(features(scene) - _WITH_STRESS):
             raise SceneError("stress", True, f"cannot be tallied in a scene with {FEATURES[name].meaning}")
 
-    def start(
-        self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0, stress: bool = False
-    ) -> Dynamics:
+    def start(self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0) -> Dynamics:
         """Set the engine up for a scene in a given state; `seed` is that of thermal walls and kicks.
 
-        stress: whether to tally the stress tensor and the heat flux. Raises SceneError for what it does not
-        model.
+        One that `tallies_stress` has the argument `stress`, whether to do so, by default False. Raises
+        SceneError for what it does not model.
         """
         raise NotImplementedError
 

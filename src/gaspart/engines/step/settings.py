@@ -100,9 +100,7 @@ class TimeStepped(Engine):
         """With one box, if there are any."""
         return self if self.boxes_per_side is None else replace(self, boxes_per_side=1)
 
-    def start(
-        self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0, stress: bool = False
-    ) -> StepDynamics:
+    def start(self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0) -> StepDynamics:
         """Set the engine up for a scene in a given state; `seed` is that of thermal walls."""
         from gaspart.engines.step.dynamics import StepDynamics
 
