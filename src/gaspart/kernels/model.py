@@ -9,15 +9,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-COLLISIONS, CROSSINGS, OUTDATED, PAIR_TESTS, BOX_VISITS = range(5)  # of Tally.counts
-VIRIAL, LOSS = range(2)  # of Tally.sums
+COUNTS = ("collisions", "crossings", "outdated", "pair_tests", "box_visits")
+SUMS = ("virial_sum", "dissipated_energy")
+"""What Tally.counts and Tally.sums hold, by the fields of `state.tally.Tally`, which has no outdated
+predictions. Sums are in the kernels' unit of mass, and proportional to it."""
+COLLISIONS, CROSSINGS, OUTDATED, PAIR_TESTS, BOX_VISITS = range(len(COUNTS))
+VIRIAL, LOSS = range(len(SUMS))
 NONE = -1  # no particle, no face
 BOX_FACES = 6  # face codes: 2 axis + side for the container's faces, BOX_FACES more for those between boxes,
 WELL_EDGES = 12  # WELL_EDGES more for the edges of the wells at the container's faces,
 WALLS = 18  # and from here on the rows of interior walls
 NUMBER_BITS = 26  # of a particle's number where a search lists it beside its image
 IMAGE_BITS = 2  # above them, for each axis: the image, signed
-HARD, THERMAL, THERMAL_NORMAL, STICKY, VIBRATING, PISTON = range(6)  # kinds of faces
+HARD, THERMAL, THERMAL_NORMAL, STICKY, VIBRATING, PISTON = range(6)  # of `obstacles.face.RULES`
 PISTON_PLACE, PISTON_VELOCITY, PISTON_CLOCK = range(3)  # of Piston.motion
 
 
@@ -208,9 +212,9 @@ class Model(NamedTuple):
 
 
 class Tally(NamedTuple):
-    """counts (5,); sums (2, 2) and by face and interior wall wall_impulse, wall_energy (faces + walls, 2),
-    see `running_sum.add`; wall_hits (faces + walls,); worst (1,): the largest |r^2/sigma^2 - 1| at a
-    contact; stress: an `event.stress.Stress`, None if it is not wanted."""
+    """counts (of `COUNTS`,); sums (of `SUMS`, 2) and by face and interior wall wall_impulse, wall_energy
+    (faces + walls, 2), see `running_sum.add`; wall_hits (faces + walls,); worst (1,): the largest
+    |r^2/sigma^2 - 1| at a contact; stress: an `event.stress.Stress`, None if it is not wanted."""
 
     counts: np.ndarray
     sums: np.ndarray
@@ -224,8 +228,8 @@ class Tally(NamedTuple):
 def empty_tally(walls: int) -> Tally:
     """A tally at zero, for so many faces and interior walls."""
     return Tally(
-        counts=np.zeros(5, dtype=np.int64),
-        sums=np.zeros((2, 2)),
+        counts=np.zeros(len(COUNTS), dtype=np.int64),
+        sums=np.zeros((len(SUMS), 2)),
         worst=np.zeros(1),
         wall_hits=np.zeros(walls, dtype=np.int64),
         wall_impulse=np.zeros((walls, 2)),

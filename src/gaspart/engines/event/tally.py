@@ -50,21 +50,20 @@ class EventTally:
     def read(self, time: float, clock: float) -> Tally:
         """What was counted up to the present `time`."""
         arrays = self.arrays
-        counts: dict[str, Any] = {key: x for part in self._parts for key, x in part.counts(clock).items()}
+        sums = (net(terms) * self._unit_mass for terms in arrays.sums)
+        counted: dict[str, Any] = dict(zip(kernels.COUNTS, arrays.counts.tolist(), strict=True))
+        counted |= zip(kernels.SUMS, sums, strict=True)
+        for part in self._parts:
+            counted |= part.counts(clock)
+        del counted["outdated"]
         return Tally(
             time=time - self.since,
-            collisions=int(arrays.counts[kernels.COLLISIONS]),
             wall_hits=arrays.wall_hits.copy(),
             wall_impulse=values(arrays.wall_impulse) * self._unit_mass,
             wall_energy=values(arrays.wall_energy) * self._unit_mass,
-            virial_sum=net(arrays.sums[kernels.VIRIAL]) * self._unit_mass,
-            pair_tests=int(arrays.counts[kernels.PAIR_TESTS]),
-            box_visits=int(arrays.counts[kernels.BOX_VISITS]),
-            crossings=int(arrays.counts[kernels.CROSSINGS]),
             worst_contact=float(arrays.worst[0]),
-            dissipated_energy=net(arrays.sums[kernels.LOSS]),
             thermostat_energy=self._given,
-            **counts,
+            **counted,
         )
 
     @property

@@ -7,21 +7,14 @@ import numpy as np
 from gaspart.engines.features.part import Part
 from gaspart.engines.features.piston import piston_of
 from gaspart.engines.features.vibrating import motion_of
-from gaspart.kernels.model import HARD, PISTON, STICKY, THERMAL, THERMAL_NORMAL, VIBRATING, Faces
+from gaspart.kernels.model import STICKY, Faces
+from gaspart.kernels.obstacles.face import RULES
 from gaspart.scene.faces import FACES
 from gaspart.scene.scene import Scene
 from gaspart.state.random import key_of
 from gaspart.state.state import State
 from gaspart.state.wells import places_in_wells, well_energies, wells_of
 
-_NUMBERS = {
-    "hard": HARD,
-    "thermal": THERMAL,
-    "thermal_normal": THERMAL_NORMAL,
-    "sticky": STICKY,
-    "vibrating": VIBRATING,
-    "piston": PISTON,
-}
 WALL_DRAWS = 2
 """The purpose of the random numbers of thermal walls, after those of the initial state."""
 
@@ -30,7 +23,7 @@ def kinds_and_levels(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """(2d,), (2d,) the kernels' kinds of the container's faces, and their levels: temperatures or momenta."""
     surfaces = (scene.faces.get(name) for name in FACES[: 2 * scene.dimension])
     names, levels = zip(*(surface.rule if surface else ("hard", 0.0) for surface in surfaces), strict=True)
-    return np.array([_NUMBERS[name] for name in names], dtype=np.int64), np.array(levels, dtype=float)
+    return np.array([RULES[name] for name in names], dtype=np.int64), np.array(levels, dtype=float)
 
 
 def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float) -> Faces:

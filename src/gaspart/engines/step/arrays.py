@@ -12,6 +12,7 @@ from gaspart.engines.features.law import LawPart, contact_law
 from gaspart.engines.features.masses import scaled_masses
 from gaspart.engines.features.part import Part
 from gaspart.kernels.model import Model, Space, empty_tally, flight_dtype
+from gaspart.kernels.step import model as layout
 from gaspart.kernels.step.boundaries import Rules
 from gaspart.kernels.step.model import StepModel, StepParticles, StepTally
 from gaspart.kernels.step.simd import roomy
@@ -71,9 +72,9 @@ def model_for(
 def step_tally(faces: int, threads: int, largest: tuple[float, float]) -> StepTally:
     """A tally at zero, for so many faces; largest: see `largest_terms`."""
     return StepTally(
-        counts=np.zeros(8, dtype=np.int64),
-        sums=np.zeros((2, 2)),
-        extremes=np.zeros(2),
+        counts=np.zeros(layout.PASSED + 1, dtype=np.int64),
+        sums=np.zeros((len(layout.SUMS), 2)),
+        extremes=np.zeros(len(layout.EXTREMES)),
         wall_hits=np.zeros((threads, faces), dtype=np.int64),
         wall_impulse=np.zeros((threads, faces, 2), dtype=np.int64),
         wall_loss=np.zeros((threads, 2), dtype=np.int64),

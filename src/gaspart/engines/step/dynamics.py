@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import DTypeLike
@@ -175,25 +175,20 @@ class StepDynamics:
     @property
     def tally(self) -> Tally:
         """What was counted since the last `reset_tally`."""
-        counts, sums = self._tally.counts, self._tally.sums
-        extremes = self._tally.extremes
-        impulse = running_sum.whole_parts(self._tally.wall_impulse.sum(axis=0), self._largest[0])
+        tally = self._tally
+        impulse = running_sum.whole_parts(tally.wall_impulse.sum(axis=0), self._largest[0])
+        sums = (running_sum.net(terms) * self._unit_mass for terms in tally.sums)
+        values: dict[str, Any] = dict(zip(layout.COUNTS, tally.counts.tolist(), strict=False))
+        values |= zip(layout.EXTREMES, tally.extremes.tolist(), strict=True)
+        values |= zip(layout.SUMS, sums, strict=True)
+        values["dissipated_energy"] = running_sum.net(*self._loss) * self._unit_mass
         return Tally(
             time=(self._steps - self._since) * self._engine.time_step,
-            collisions=int(counts[layout.COLLISIONS]),
-            wall_hits=self._tally.wall_hits.sum(axis=0),
+            wall_hits=tally.wall_hits.sum(axis=0),
             wall_impulse=impulse.sum(axis=-1) * self._unit_mass,
             wall_energy=self._heat.sum(axis=1) * self._unit_mass,
-            virial_sum=running_sum.net(sums[layout.VIRIAL]) * self._unit_mass,
-            pair_tests=int(counts[layout.PAIR_TESTS]),
-            box_visits=int(counts[layout.BOX_VISITS]),
-            worst_contact=float(extremes[layout.WORST]),
             steps=self._steps - self._since,
-            overlaps_left=int(counts[layout.OVERLAPS_LEFT]),
-            deepest_overlap=float(extremes[layout.DEEPEST]),
-            multiple_contacts=int(counts[layout.MULTIPLE]),
-            rebuilds=int(counts[layout.REBUILDS]),
-            dissipated_energy=running_sum.net(*self._loss) * self._unit_mass,
+            **values,
         )
 
     def checkpoint(self) -> dict[str, np.ndarray]:

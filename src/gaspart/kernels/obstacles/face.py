@@ -6,7 +6,7 @@ from math import inf
 from numpy import int64
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
-from gaspart.kernels.model import BOX_FACES, NONE, PISTON, STICKY, THERMAL, THERMAL_NORMAL, VIBRATING
+from gaspart.kernels.model import BOX_FACES, HARD, NONE, PISTON, STICKY, THERMAL, THERMAL_NORMAL, VIBRATING
 from gaspart.kernels.obstacles.hard import bounce
 from gaspart.kernels.obstacles.piston import collide_piston, find_piston, is_piston
 from gaspart.kernels.obstacles.resting import come_to_rest
@@ -20,6 +20,16 @@ from gaspart.kernels.physics.ballistic import time_against, time_along
 from gaspart.kernels.physics.contact import time_to_plane
 from gaspart.kernels.physics.flight import acceleration_of, advance, face_plane
 from gaspart.kernels.physics.running_sum import add
+
+RULES = {
+    "hard": HARD,
+    "thermal": THERMAL,
+    "thermal_normal": THERMAL_NORMAL,
+    "sticky": STICKY,
+    "vibrating": VIBRATING,
+    "piston": PISTON,
+}
+"""What happens to a particle at a face: the name, and the number in `Faces.kind`."""
 
 
 @inner_helper

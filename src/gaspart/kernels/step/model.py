@@ -14,9 +14,12 @@ import numpy as np
 from gaspart.kernels.compile.policy import inner_helper
 from gaspart.kernels.model import ContactLaw, Space
 
-COLLISIONS, PAIR_TESTS, BOX_VISITS, OVERLAPS_LEFT, MULTIPLE, REBUILDS, LATE, PASSED = range(8)
-VIRIAL, LOSS = range(2)
-DEEPEST, WORST = range(2)
+COUNTS = ("collisions", "pair_tests", "box_visits", "overlaps_left", "multiple_contacts", "rebuilds")
+SUMS, EXTREMES = ("virial_sum", "dissipated_energy"), ("deepest_overlap", "worst_contact")
+"""What StepTally has, by the fields of `state.tally.Tally`. Two more counts are for the engine alone."""
+COLLISIONS, PAIR_TESTS, BOX_VISITS, OVERLAPS_LEFT, MULTIPLE, REBUILDS, LATE, PASSED = range(len(COUNTS) + 2)
+VIRIAL, LOSS = range(len(SUMS))
+DEEPEST, WORST = range(len(EXTREMES))
 FASTEST, DISPLACEMENT = range(2)
 
 
@@ -77,7 +80,7 @@ class Step(NamedTuple):
 
 
 class StepTally(NamedTuple):
-    """counts (8,), sums (2, 2) by `running_sum.add` and extremes (2,), see the names at the module's top; by
+    """counts, sums (..., 2) by `running_sum.add` and extremes, see the names at the module's top; by
     thread: wall_hits (threads, 2d); wall_impulse (threads, 2d, 2) and wall_loss (threads, 2), an energy, both
     by `running_sum.add_whole`; momentum and energy: the powers of two that few terms of these exceed."""
 

@@ -19,14 +19,14 @@ from gaspart.kernels.compile.policy import (
 )
 from gaspart.kernels.model import Space
 from gaspart.kernels.physics.running_sum import add
-from gaspart.kernels.step.model import LOSS, VIRIAL, StepModel, StepParticles, StepTally, part_of
+from gaspart.kernels.step.model import StepModel, StepParticles, StepTally, part_of
 from gaspart.kernels.step.resolve import fetch_ahead, resolve, resolve_all
 
 
 class Contacts(NamedTuple):
-    """The contacts of a pass. pairs (n, 2) of slots; order (n,) in which they are resolved; terms (n, 2, 2),
-    those of the tally's sums; postponed (n,), whether a contact is; by thread: its counts (threads, 8),
-    extremes and bounds (threads, 2)."""
+    """The contacts of a pass. pairs (n, 2) of slots; order (n,) in which they are resolved; terms
+    (n, ..., 2), those of the tally's sums; postponed (n,), whether a contact is; by thread: its counts
+    (threads, 8), extremes and bounds (threads, 2)."""
 
     pairs: np.ndarray
     order: np.ndarray
@@ -62,8 +62,8 @@ def select_own(contacts, slots, held, own):
 
 @inner_helper
 def tally_of_contact(tally, terms):
-    """The tally whose sums are the terms (2, 2) of one contact. For kernels that make no arrays: others count
-    references, which this function does not."""
+    """The tally whose sums are the terms (..., 2) of one contact. For kernels that make no arrays: others
+    count references, which this function does not."""
     return StepTally(
         tally.counts, terms, tally.extremes, tally.wall_hits, tally.wall_impulse, tally.wall_loss,
         tally.momentum, tally.energy,
@@ -95,8 +95,8 @@ def resolve_postponed(particles, contacts, model, step, tally, cells):
             i, j = contacts.pairs[contact, 0], contacts.pairs[contact, 1]
             cells.held[i] = cells.held[j] = False
             resolve(particles, i, j, model, step, tally_of_contact(tally, terms), None, cells)
-        add(tally.sums, VIRIAL, terms[VIRIAL, 0])
-        add(tally.sums, LOSS, terms[LOSS, 0])
+        for n in range(len(terms)):
+            add(tally.sums, n, terms[n, 0])
 
 
 @inner_allocating_kernel
@@ -135,7 +135,7 @@ def resolve_shared(particles, found, model, step, tally, cells):
     contacts = Contacts(
         pairs,
         order,
-        np.zeros((len(order), 2, 2)),
+        np.zeros((len(order), len(tally.sums), 2)),
         np.ones(len(order), np.bool_),
         np.empty((threads, len(tally.counts)), np.int64),
         np.empty((threads, len(tally.extremes))),
