@@ -69,7 +69,7 @@ def test_equilibration_is_dropped(measured):
 def test_a_file_of_another_point_is_refused(measured):
     point, _ = measured
     other = grid.Point.from_dict(point.to_dict() | {"settings": point.settings | {"samples": 30}})
-    with pytest.raises(ValueError, match="not the frames"):
+    with pytest.raises(ValueError, match="frames are not those"):
         pressure(other)
 
 
