@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from numba.core.event import install_timer
 
 from gaspart.errors import SceneError
-from gaspart.reproduction.points.keys import POINT
+from gaspart.reproduction.points.config_keys import POINT
 from gaspart.yaml_text import dump_yaml
 
 ROOT = Path(__file__).parents[1]

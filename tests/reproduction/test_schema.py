@@ -10,7 +10,7 @@ from malformed import SCENES
 
 from gaspart.reproduction.config import check
 from gaspart.reproduction.families.registry import families, settings
-from gaspart.reproduction.points import keys
+from gaspart.reproduction.points import config_keys, keys
 from gaspart.reproduction.points.overlay import laid_over
 from gaspart.reproduction.schema import (
     documents,
@@ -62,7 +62,7 @@ def test_every_setting_of_a_figure_is_declared_and_used(family):
         key for figure in families() if families()[figure] == family for key in settings()[figure]
     } - {"experiments"}
     assert declared <= used
-    assert used - declared <= set(keys.POINT)  # of a point
+    assert used - declared <= set(config_keys.POINT)  # of a point
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -110,16 +110,16 @@ def test_the_tables_of_the_engines_follow_from_the_keys():
     assert set(keys.ENGINES["event"]) == {"search", "boxes_per_side", "boxes_per_body"}
     assert {"time_step", "skin", "boxes_per_side"} <= set(keys.ENGINES["step"])
     whole = {"dimension", "count", "samples", "steps", "attempts", "follow", "lags"}
-    assert whole | {"replicas", "passes", "threads"} == keys.WHOLE
+    assert whole | {"replicas", "passes", "threads"} == config_keys.WHOLE
 
 
 @pytest.mark.parametrize(
     ("kind", "words"),
     [
-        (keys.POINT["packing_fraction"], "number > 0 and < 1"),
-        (keys.POINT["search"], "`automatic`, `boxes`, `lists`, `direct`, `pairs`"),
-        (keys.POINT["side"], "number > 0 or list of 2 to 3 values (number > 0)"),
-        (keys.POINT["replicas"], "whole number ≥ 1 and ≤ 10000"),
+        (config_keys.POINT["packing_fraction"], "number > 0 and < 1"),
+        (config_keys.POINT["search"], "`automatic`, `boxes`, `lists`, `direct`, `pairs`"),
+        (config_keys.POINT["side"], "number > 0 or list of 2 to 3 values (number > 0)"),
+        (config_keys.POINT["replicas"], "whole number ≥ 1 and ≤ 10000"),
         (settings()["virial_discs"]["fits"]["items"]["properties"]["held"], "`true` or `false`"),
         (settings()["stability_extremes"]["experiments"], "empty list"),
     ],

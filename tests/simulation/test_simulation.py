@@ -256,7 +256,7 @@ def test_engines_can_be_serialised():
 
 
 def test_importing_the_package_starts_no_compiler():
-    names = "sys, gaspart, gaspart.reproduction.points.grid"
+    names = "sys, gaspart, gaspart.reproduction.points.point"
     code = f"import {names}; print('numba' in sys.modules, 'xarray' in sys.modules)"
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     done = subprocess.run(

@@ -23,21 +23,19 @@ from gaspart.reproduction.claims.captions import filled
 from gaspart.reproduction.claims.table import summary
 from gaspart.reproduction.config import check, explained, read_numbers
 from gaspart.reproduction.families.registry import families, titles
-from gaspart.reproduction.points import grid, jobs
 from gaspart.reproduction.points.modules import digest, kernel_digest
-from gaspart.reproduction.points.points import figure_points as grid_points
-from gaspart.reproduction.points.points import points
+from gaspart.reproduction.points.points import all_points
+from gaspart.reproduction.points.points import figure_points as points_of_figure
 from gaspart.reproduction.points.variants import task, variant
 from gaspart.errors import SceneError
 
 # A job on a cluster reads this file again, but need not validate ten thousand points again.
-RECIPES = {}
 files = ["config/config.yaml", *workflow.overwrite_configfiles]
 files = [str(name) for name in files if os.path.exists(name)]
 if workflow.is_main_process:
     try:
         read_numbers(config, files)
-        RECIPES = check(config, files)
+        POINTS = check(config, files)
         for kept in ("results", ".snakemake"):
             folder = kept if os.path.exists(kept) else "."
             if not os.access(folder, os.W_OK):
@@ -49,14 +47,11 @@ if workflow.is_main_process:
         sys.exit(2)
 else:
     read_numbers(config, files)
+    POINTS = all_points(config)
 
 FIGURES = list(config["figures"])
 ANIMATIONS = [name for name, block in config.get("animations", {}).items() if block]
 FILMS = {name: config["animations"][name].get("figure", "") for name in ANIMATIONS}  # beside which figure
-POINTS = {
-    experiment: {point.name: point for point in points(config, experiment)}
-    for experiment in config["experiments"]
-}
 
 
 def share(paths):
@@ -80,12 +75,12 @@ def point_of(wildcards):
     return POINTS[wildcards.experiment][wildcards.point]
 
 
-def recipe_of(wildcards):
-    return RECIPES.get((wildcards.experiment, wildcards.point)) or jobs.recipe(point_of(wildcards))
+def parameters_of(wildcards):
+    return point_of(wildcards).parameters
 
 
 def figure_points(wildcards):
-    return grid_points(config, wildcards.figure)
+    return points_of_figure(config, wildcards.figure, POINTS)
 
 
 def animated(wildcards):
@@ -118,7 +113,7 @@ def cores_of(wildcards):
 def memory_of(wildcards):
     """MB for one simulation: the interpreter, the memory of each particle, and that of correlated samples."""
     point = point_of(wildcards)
-    count, _, lengths = grid.extents(point)
+    count, _, lengths = point.extents
     vectors = point.settings.get("lags", 0) * (2 if point.settings.get("displacements") else 1)
     return 800 + count // 1000 + count * len(lengths) * vectors * 8 // 10**6
 

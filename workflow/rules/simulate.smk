@@ -23,7 +23,7 @@ rule simulate:
         runtime=120,
     params:
         modules=digest(*sources("simulate")),
-        recipe=recipe_of,
+        parameters=parameters_of,
     script:
         "../scripts/simulate.py"
 
@@ -50,6 +50,6 @@ rule compute:
     params:
         modules=lambda wildcards: digest(*sources(point_of(wildcards).job)),
         job=lambda wildcards: point_of(wildcards).job,
-        recipe=recipe_of,
+        parameters=parameters_of,
     script:
         "../scripts/compute.py"

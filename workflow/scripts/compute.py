@@ -9,6 +9,6 @@ with job(snakemake):
     from gaspart.files import whole_file
 
     run = function(f"gaspart.reproduction.jobs.{snakemake.params.job}", "run")
-    data = run(snakemake.params.recipe)
+    data = run(snakemake.params.parameters)
     with whole_file(snakemake.output[0]) as partial:
         data.write(partial)

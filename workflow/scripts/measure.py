@@ -6,7 +6,7 @@ from _job import function, job
 
 with job(snakemake):
     from gaspart.files import whole_file
-    from gaspart.reproduction.points.grid import Point
+    from gaspart.reproduction.points.point import Point
     from gaspart.trajectory import provenance
 
     figure = snakemake.wildcards.figure

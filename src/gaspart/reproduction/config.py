@@ -12,7 +12,9 @@ from typing import Any
 from gaspart.errors import SceneError, unknown_word
 from gaspart.kinds import Kind
 from gaspart.reproduction.points import jobs, keys
+from gaspart.reproduction.points.config_keys import POINT
 from gaspart.reproduction.points.overlay import laid_over
+from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.points.points import figure_points, points
 from gaspart.reproduction.schema import schema
 from gaspart.scene.validation import finite, size
@@ -20,8 +22,8 @@ from gaspart.yaml_text import DEEPEST, MOST_VALUES, is_exponential, read_yaml
 
 
 @contextmanager
-def checked(path: str | Path) -> Iterator[dict[str, Any]]:
-    """The valid config of a file, with its scene folder as the working directory.
+def checked(path: str | Path) -> Iterator[tuple[dict[str, Any], dict[str, dict[str, Point]]]]:
+    """The valid config of a file and its points, with its scene folder as the working directory.
 
     The scene folder is the folder above a file in a folder named `config`; else the folder of the file.
     Raises SceneError.
@@ -29,30 +31,25 @@ def checked(path: str | Path) -> Iterator[dict[str, Any]]:
     merged, files = laid_over(Path(path))
     folder = files[-1].parent
     with chdir(folder.parent if folder.name == "config" else folder):
-        check(merged, files)
-        yield merged
+        yield merged, check(merged, files)
 
 
-def check(config: dict, files: Sequence[str | Path] = ()) -> dict[tuple[str, str], dict]:
-    """Validate a merged config against the schema, then every point's scene and engine.
+def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str, Point]]:
+    """Validate a merged config against the schema, then the parameters of every point's job.
 
     files: the YAML files that were merged, in that order; an error names the last one that holds the key.
-    Returns the recipes of all points, which must be made for it, by experiment and name. Raises SceneError.
+    Returns all points, by experiment and name. Raises SceneError.
     """
     contents = [(str(file), read_yaml(file)) for file in files]
     try:
         _check_values(config)
         _against(schema(), config, "")
-        recipes = {
-            (experiment, name): recipe
-            for experiment in config["experiments"]
-            for name, recipe in _experiment(config, experiment)
-        }
+        planned = {experiment: _experiment(config, experiment) for experiment in config["experiments"]}
         for figure in config["figures"]:
-            figure_points(config, figure)
+            figure_points(config, figure, planned)
         for animation, block in config.get("animations", {}).items():
             _animation(config, animation, block)
-        return recipes
+        return planned
     except SceneError as error:
         raise error.inside("", error.file or _origin(error.key, config, contents)) from None
 
@@ -119,23 +116,23 @@ def _animation(config: dict, animation: str, block: dict | None) -> None:
         raise SceneError(f"animations.{animation}.figure", figure, unknown_word(figure, config["figures"]))
 
 
-def _experiment(config: dict, experiment: str) -> Iterator[tuple[str, dict]]:
-    """Validate the values of the grid, one by one, then the scene and the engine of every point. Yields the
-    name and the recipe of each."""
+def _experiment(config: dict, experiment: str) -> dict[str, Point]:
+    """The points of an experiment, by name, after a check of each value of the grid and of every point."""
     where = f"experiments.{experiment}"
     for key, value in _grid_values(config["experiments"][experiment].get("grid")):
         if key.startswith(keys.PREFIX):  # a value of a scene file, which the scene validates
             continue
-        if key not in keys.POINT:
-            raise SceneError(f"{where}.grid.{key}", value, unknown_word(key, keys.POINT))
-        _against(keys.POINT[key], value, f"{where}.grid.{key}")
-    for point in points(config, experiment):
-        jobs.check(point)
+        if key not in POINT:
+            raise SceneError(f"{where}.grid.{key}", value, unknown_word(key, POINT))
+        _against(POINT[key], value, f"{where}.grid.{key}")
+    made = {point.name: point for point in points(config, experiment)}
+    for name, point in made.items():
         try:
-            yield point.name, jobs.recipe(point)
+            jobs.validate(point)
         except SceneError as error:
             located = error.file or error.key.startswith(where)
-            raise error if located else error.inside(f"{where}[{point.name}]") from None
+            raise error if located else error.inside(f"{where}[{name}]") from None
+    return made
 
 
 @cache

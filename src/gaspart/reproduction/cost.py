@@ -8,9 +8,7 @@ from dataclasses import replace
 from gaspart import theory
 from gaspart.engines import TimeStepped
 from gaspart.reproduction.config import checked
-from gaspart.reproduction.points import grid
 from gaspart.reproduction.points.point import Point
-from gaspart.reproduction.points.points import points
 from gaspart.scene.gas import Gas
 from gaspart.tradeoff import speed, table
 
@@ -21,9 +19,9 @@ def predict(path: str) -> list[str]:
     A config beside `config.yaml` is merged over that, as in the workflow. Raises SceneError.
     """
     lines, total, unknown = [], 0.0, []
-    with checked(path) as config:
-        for experiment in config["experiments"]:
-            costs = [_seconds(point) for point in points(config, experiment)]
+    with checked(path) as (_, planned):
+        for experiment, points in planned.items():
+            costs = [_seconds(point) for point in points.values()]
             known = [seconds for seconds in costs if seconds is not None]
             if len(known) < len(costs):
                 unknown.append(experiment)
@@ -42,15 +40,15 @@ def _seconds(point: Point) -> float | None:
     unknown."""
     if point.job != "simulate":
         return None
-    gas = grid.scene(point).gas
+    gas = point.scene.gas
     if gas is None or not gas.temperature > 0.0:
         return None
-    engine = grid.engine(point)
+    engine = point.engine
     # Where discs or spheres freeze, the pressure is constant, and the number of contacts nearly so.
     densest = theory.HIGHEST_PACKING_FRACTION[gas.dimension]
     fluid = replace(gas, packing_fraction=min(gas.packing_fraction, densest))
     rate = float(theory.collision_rate(**fluid.parameters))
-    contacts = 0.5 * gas.count * rate * grid.schedule(point).duration * point.replicas
+    contacts = 0.5 * gas.count * rate * point.schedule.duration * point.replicas
     if not isinstance(engine, TimeStepped):
         each = table.seconds(gas.dimension, gas.packing_fraction, "event")
         return contacts * each * _speed(gas, "event", "float64")

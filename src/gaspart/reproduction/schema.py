@@ -14,7 +14,7 @@ from typing import Any
 from gaspart.engines import ENGINES
 from gaspart.kinds import Kind, names, record
 from gaspart.reproduction.families import registry
-from gaspart.reproduction.points import keys
+from gaspart.reproduction.points import config_keys, keys
 from gaspart.scene.features import EXCLUDED, FEATURES
 
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
@@ -39,7 +39,7 @@ def schema() -> Kind:
         figure: record({"experiments": _EXPERIMENTS, **settings})
         for figure, settings in registry.settings().items()
     }
-    return {"$schema": _DRAFT, **record(keys.config(figures))}
+    return {"$schema": _DRAFT, **record(config_keys.config(figures))}
 
 
 def scene_schema() -> Kind:
@@ -64,15 +64,15 @@ def reference() -> str:
     """The reference page, in Markdown: every key with its kind, default and meaning."""
     top, scene = schema()["properties"], scene_schema()
     parts = [_INTRODUCTION, "## Config\n", _table(_outline(top))]
-    parts += ["### Experiment\n", _table(_outline(keys.EXPERIMENT))]
+    parts += ["### Experiment\n", _table(_outline(config_keys.EXPERIMENT))]
     for title, tables in (
         ("Point: one species in a container (exactly three of the first four)", keys.EXTENTS | keys.GAS),
         ("Point: a scene file", keys.SCENE_FILE),
-        ("Point: engine", keys.ENGINE | keys.SCANS),
+        ("Point: engine", keys.ENGINE),
         *((f"Point: engine `{name}`", table) for name, table in keys.ENGINES.items()),
         ("Point: length (exactly one of them)", keys.LENGTHS),
-        ("Point: run", keys.RUN),
-        ("Animation", keys.ANIMATION),
+        ("Point: run", config_keys.RUN),
+        ("Animation", config_keys.ANIMATION),
     ):
         parts += [f"### {title}\n", _table(tables)]
     parts.append("## Settings of figures\n\nEach figure also has `experiments`, whose points it measures.\n")

@@ -6,7 +6,6 @@ import pytest
 
 import gaspart as gp
 from gaspart.cli import main
-from gaspart.reproduction.points import jobs
 from gaspart.reproduction.points.points import points
 from gaspart.reproduction.points.variants import task, variant, warm
 
@@ -45,9 +44,9 @@ def test_a_config_has_it(tmp_path):
     config = {"seed": 1, "points": "results/points", "experiments": {"gas": block}, "figures": {}}
     made = points(config, "gas")
     for one, model in zip(made, ("boltzmann", "enskog"), strict=True):
-        assert jobs.recipe(one)["engine"] == {"name": "dsmc", "model": model, "threads": 1}
+        assert one.parameters["engine"] == {"name": "dsmc", "model": model, "threads": 1}
         assert variant(one) == f"dsmc-{model}-3d"
         warm(task(one))
     block["point"]["search"] = "boxes"
     with pytest.raises(gp.SceneError, match="no meaning with engine: dsmc"):
-        jobs.recipe(points(config, "gas")[0])
+        _ = points(config, "gas")[0].parameters

@@ -5,7 +5,6 @@ import pytest
 import gaspart as gp
 from gaspart.errors import SceneError
 from gaspart.reproduction.config import check
-from gaspart.reproduction.points import grid, jobs
 from gaspart.reproduction.points import points as planned
 from gaspart.yaml_text import dump_yaml
 
@@ -41,43 +40,43 @@ def points(*arguments, **settings):
 
 def test_a_point_is_the_scene_of_its_file(scene_file):
     (point,) = points(scene_file, replicas=2, follow=50)
-    recipe = jobs.recipe(point)
-    assert grid.scene(point) == SCENE == gp.Scene.from_dict(recipe["scene"])
-    assert (recipe["duration"], recipe["sample_interval"], recipe["follow"]) == (8.0, 2.0, 50)
-    assert grid.extents(point) == (70, 0.5, (20.0, 40.0))
+    parameters = point.parameters
+    assert point.scene == SCENE == gp.Scene.from_dict(parameters["scene"])
+    assert (parameters["duration"], parameters["sample_interval"], parameters["follow"]) == (8.0, 2.0, 50)
+    assert point.extents == (70, 0.5, (20.0, 40.0))
 
 
 def test_a_point_with_lags_keeps_two_frames_of_its_run(scene_file):
     (plain,) = points(scene_file, equilibration=3)
-    assert jobs.recipe(plain)["correlations"] is None
+    assert plain.parameters["correlations"] is None
     for lags, kept in ((1, 1), (100, 2)):  # at most half the length, of 4 intervals
         (point,) = points(scene_file, equilibration=3, lags=lags)
-        recipe = jobs.recipe(point)
-        assert recipe["correlations"] == {"interval": 2.0, "lags": kept, "start": 4.0}
-        assert recipe["duration"] == recipe["sample_interval"] == jobs.recipe(plain)["duration"] == 12.0
+        parameters = point.parameters
+        assert parameters["correlations"] == {"interval": 2.0, "lags": kept, "start": 4.0}
+        assert parameters["duration"] == parameters["sample_interval"] == plain.parameters["duration"] == 12.0
 
 
 def test_dotted_keys_replace_values_and_add_what_a_mapping_lacks(scene_file):
     varied = {"scene.gravity.1": [-0.5, -2], "scene.species.1.mass": 8, "scene.restitution.normal": [0.5]}
     first, second = points(scene_file, varied)
     assert first.name == "scene.gravity.1=-0.5,scene.species.1.mass=8,scene.restitution.normal=0.5"
-    assert [grid.scene(point).gravity for point in (first, second)] == [(0.0, -0.5), (0.0, -2.0)]
-    assert [kind.mass for kind in grid.scene(first).species] == [1.0, 8.0]
-    assert grid.scene(first).restitution == gp.Restitution(0.5)
-    assert grid.scene(*points(scene_file)) == SCENE  # the file's own content is left as it is
+    assert [point.scene.gravity for point in (first, second)] == [(0.0, -0.5), (0.0, -2.0)]
+    assert [kind.mass for kind in first.scene.species] == [1.0, 8.0]
+    assert first.scene.restitution == gp.Restitution(0.5)
+    assert points(scene_file)[0].scene == SCENE  # the file's own content is left as it is
 
 
-def test_a_changed_value_in_the_file_changes_the_recipe_and_a_comment_does_not(scene_file):
-    recipes = []
+def test_a_changed_value_in_the_file_changes_the_parameters_and_a_comment_does_not(scene_file):
+    parameters = []
     for old, new in (("container", "# a remark\ncontainer"), ("count: 50", "count: 51")):
-        recipes.append(jobs.recipe(*points(scene_file)))
+        parameters.append(points(scene_file)[0].parameters)
         with open(scene_file, "r+") as file:
             text = file.read()
             assert old in text
             file.seek(0)
             file.write(text.replace(old, new))
-    recipes.append(jobs.recipe(*points(scene_file)))
-    assert recipes[0] == recipes[1] != recipes[2]
+    parameters.append(points(scene_file)[0].parameters)
+    assert parameters[0] == parameters[1] != parameters[2]
 
 
 def test_collisions_per_body_are_for_one_species_and_nothing_else(tmp_path):
@@ -87,11 +86,11 @@ def test_collisions_per_body_are_for_one_species_and_nothing_else(tmp_path):
     (point,) = points(str(tmp_path / "one.yaml"), **given)
     settings = {"dimension": 2, "count": 100, "radius": 0.5, "side": 40.0, "boundary": "periodic"}
     (same,) = points(None, **given, **settings, mass=3.0, speed=2.0)
-    assert grid.schedule(point) == grid.schedule(same)
+    assert point.schedule == same.schedule
     for key, value in (("walls", [{"start": [1.0, 1.0], "end": [5.0, 5.0]}]), ("restitution.normal", 0.9)):
         (point,) = points(str(tmp_path / "one.yaml"), **given, **{f"scene.{key}": value})
         with pytest.raises(SceneError, match=r"collisions_per_body = 8: .*give duration"):
-            grid.schedule(point)
+            _ = point.schedule
 
 
 @pytest.mark.parametrize(
@@ -126,4 +125,4 @@ def test_a_mistake_in_the_scene_file_names_that_file(tmp_path):
     with pytest.raises(
         SceneError, match=r"^\S+heavy.yaml: species\[0\].mass = 'heavy': must be a number, without a unit$"
     ):
-        jobs.recipe(*points(str(path), **{"scene.species.0.mass": 1.0}))
+        _ = points(str(path), **{"scene.species.0.mass": 1.0})[0].parameters

@@ -4,27 +4,57 @@ Both engines start from the same equilibrium snapshot and run for the same short
 particle. Where a step finds every contact, the two runs are the same except for rounding; so their difference
 is due to missed, spurious or wrong contacts only, and its noise is that of those few contacts instead of that
 of all. (In long runs, errors of 0.01 % are hidden by the noise of 1e8 collisions.)
+
+Planning reads this module, so slow imports are made inside functions.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from gaspart.engines import Engine, EventDriven, TimeStepped, engine_from_dict
-from gaspart.engines.event_log import EventLog
+from gaspart.engines import EventDriven, TimeStepped, engine_from_dict
 from gaspart.errors import SceneError
+from gaspart.kinds import Kind, count
 from gaspart.reproduction.jobs.data import PointData
-from gaspart.scene.scene import Scene
-from gaspart.simulation import Simulation
-from gaspart.state.state import State
+from gaspart.reproduction.jobs.stretches import (
+    EQUILIBRATION,
+    SCAN_TIME_STEPS,
+    SLACK,
+    stretches,
+)
 
+if TYPE_CHECKING:
+    from gaspart.engines import Engine
+    from gaspart.reproduction.points.point import Point
+    from gaspart.scene.scene import Scene
+    from gaspart.state.state import State
+
+RESULT = "time-stepped runs beside exact ones from the same states"
+KEYS: dict[str, Kind] = {
+    "equilibration": EQUILIBRATION,
+    "samples": count(
+        "number of initial states, at the ends of the intervals into which the length is divided", default=1
+    ),
+    "scan_time_steps": SCAN_TIME_STEPS,
+}
 LEAST_STEPS = 4
 """Fewest steps of a run, so that the initial state without overlaps has no effect."""
 _LISTED = 0.25  # collisions per particle in the part of a run that is compared particle by particle
 _LISTED_STEPS = 64  # a longer part adds time but little information
-_SLACK = 1e-6  # of a time step: so that rounding of the duration loses no step
+
+
+def engines(point: Point) -> list[Engine]:
+    """The time-stepped engines that are compared with the exact one."""
+    return point.engines
+
+
+def parameters(point: Point) -> dict:
+    """Those of `compare`, in plain values. Raises SceneError."""
+    if point.engine.name != "step":
+        raise point.refused("engine", "must be step with job: compare")
+    return stretches(point)
 
 
 def compare(
@@ -47,6 +77,10 @@ def compare(
     many steps. Over ``setting``: ``time_step``, ``steps``, and ``refused``, 1 if the engine refuses that step
     (all is NaN).
     """
+    import numpy as np
+
+    from gaspart.simulation import Simulation
+
     exact = Simulation(scene, EventDriven(), seed=seed)
     exact.advance(duration=equilibration)
     rows: list[list[dict]] = [[] for _ in engines]
@@ -61,7 +95,7 @@ def compare(
         exact.advance(duration=stretch)
     names = rows[0][0]
     table = {
-        name: (("setting", "snapshot"), np.array([[one[name] for one in row] for row in rows], dtype=float))
+        name: (("setting", "snapshot"), np.array([[pair[name] for pair in row] for row in rows], dtype=float))
         for name in names
     }
     steps = [max(LEAST_STEPS, round(stretch / engine.time_step)) for engine in engines]
@@ -104,23 +138,31 @@ def _run(scene: Scene, engine: Engine, state: State, duration: float) -> dict:
 
 def _pair(scene: Scene, engine: TimeStepped, state: State, steps: int, exact: dict) -> dict:
     """One engine compared with the exact run; NaN throughout if it refuses its step."""
-    found = {f"exact_{name}": exact[name] for name in ("collisions", "virial", "memory", "z")}
+    references = {f"exact_{name}": exact[name] for name in ("collisions", "virial", "memory", "z")}
     try:
-        own = _run(scene, engine, state, (steps + _SLACK) * engine.time_step)
-        own.pop("z")
-        return found | own | _missed_contacts(scene, engine, state, steps, exact["collisions"] / state.count)
+        stepped = _run(scene, engine, state, (steps + SLACK) * engine.time_step)
+        stepped.pop("z")
+        return (
+            references
+            | stepped
+            | _missed_contacts(scene, engine, state, steps, exact["collisions"] / state.count)
+        )
     except SceneError:
         names = ("collisions", "virial", "memory", "energy_drift", "deepest_overlap", "pair_tests")
-        return found | dict.fromkeys((*names, "missed", "made_up", "listed"), np.nan)
+        return references | dict.fromkeys((*names, "missed", "made_up", "listed"), math.nan)
 
 
 def _missed_contacts(scene: Scene, engine: TimeStepped, state: State, steps: int, collisions: float) -> dict:
     """Particles whose velocity a step leaves unchanged although the exact list has a contact in it (missed),
     or changes although it has none (made up): the first time for each particle, as later ones may follow from
     it."""
+    import numpy as np
+
+    from gaspart.engines.event_log import EventLog
+
     steps = max(1, min(steps, round(steps * _LISTED / max(2.0 * collisions, _LISTED))))
     if steps > _LISTED_STEPS:
-        return dict.fromkeys(("missed", "made_up", "listed"), np.nan)
+        return dict.fromkeys(("missed", "made_up", "listed"), math.nan)
     log, exact = EventLog(scene.dimension), EventDriven().start(scene, state)
     exact.advance(state.time + steps * engine.time_step, None, log)
     listed = np.zeros((steps, state.count), dtype=bool)
@@ -130,28 +172,30 @@ def _missed_contacts(scene: Scene, engine: TimeStepped, state: State, steps: int
     dynamics, before = engine.start(scene, state), state.velocities.astype(engine.precision)
     differs = np.zeros((steps, state.count), dtype=bool)
     for n in range(steps):
-        dynamics.advance(state.time + (n + 1 + _SLACK) * engine.time_step)
+        dynamics.advance(state.time + (n + 1 + SLACK) * engine.time_step)
         after = dynamics.state.velocities
         differs[n] = (after != before).any(axis=1) != listed[n]
         before = after
     first = differs.argmax(axis=0)
     missed = listed[first, np.arange(state.count)]
-    any_ = differs.any(axis=0)
+    wrong = differs.any(axis=0)
     return {
-        "missed": int((any_ & missed).sum()),
-        "made_up": int((any_ & ~missed).sum()),
+        "missed": int((wrong & missed).sum()),
+        "made_up": int((wrong & ~missed).sum()),
         "listed": int(listed.sum()),
     }
 
 
-def run(recipe: dict) -> PointData:
-    """`compare` of a point's recipe."""
-    engines = map(engine_from_dict, recipe["engines"])
+def run(parameters: dict) -> PointData:
+    """`compare` with a point's parameters."""
+    from gaspart.scene.scene import Scene
+
+    engines = map(engine_from_dict, parameters["engines"])
     return compare(
-        Scene.from_dict(recipe["scene"]),
+        Scene.from_dict(parameters["scene"]),
         [engine for engine in engines if isinstance(engine, TimeStepped)],
-        seed=tuple(recipe["seeds"][0]),
-        equilibration=recipe["equilibration"],
-        stretch=recipe["stretch"],
-        snapshots=recipe["repeats"],
+        seed=tuple(parameters["seeds"][0]),
+        equilibration=parameters["equilibration"],
+        stretch=parameters["stretch"],
+        snapshots=parameters["repeats"],
     )

@@ -14,10 +14,17 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from gaspart.kinds import Kind
 from gaspart.reproduction.jobs.data import PointData
 
+if TYPE_CHECKING:
+    from gaspart.engines import Engine
+    from gaspart.reproduction.points.point import Point
+
+RESULT = "the machine code of both engines for the scene, with and without the source of absent features"
+KEYS: dict[str, Kind] = {}
 FEATURES = {
     "collapse", "duration", "faces", "gravity", "law", "masses", "motion", "oversized", "piston", "record",
     "rules", "sticky", "support", "vibrations", "viscous", "walls",
@@ -64,13 +71,23 @@ def stripped(source: str) -> str:
     return ast.unparse(ast.fix_missing_locations(Strip().visit(ast.parse(source))))
 
 
-def run(recipe: dict) -> PointData:
-    """Instructions of each engine's main kernel for the recipe's scene, which should be a plain gas.
+def engines(point: Point) -> list[Engine]:
+    """The event-driven engine; the other one's kernel is compiled within the job."""
+    return [point.engine]
+
+
+def parameters(point: Point) -> dict:
+    """None: only the scene matters."""
+    return {}
+
+
+def run(parameters: dict) -> PointData:
+    """Instructions of each engine's main kernel for the scene of a point, which should be a plain gas.
 
     Returns over engine: `instructions`, and `stripped`, those without the branches of absent features. Both
     are compiled in separate processes with separate caches.
     """
-    found = []
+    counts = []
     with tempfile.TemporaryDirectory() as folder:
         for strip in (False, True):
             package = Path(folder) / str(strip) / "gaspart"
@@ -80,16 +97,17 @@ def run(recipe: dict) -> PointData:
                     module.write_text(stripped(module.read_text(encoding="utf-8")), encoding="utf-8")
             environment = {"PYTHONPATH": str(package.parent), "GASPART_CACHE": str(package.parent / "cache")}
             done = subprocess.run(
-                [sys.executable, "-m", __name__, json.dumps(recipe["scene"])],
+                [sys.executable, "-m", __name__, json.dumps(parameters["scene"])],
                 env={**os.environ, **environment},
                 capture_output=True,
                 text=True,
                 check=True,
             )
-            found.append([int(line) for line in done.stdout.split()])
-    own, bare = found
+            counts.append([int(line) for line in done.stdout.split()])
+    complete, bare = counts
     return PointData(
-        {"instructions": ("engine", own), "stripped": ("engine", bare)}, {"engine": ("engine", list(ENGINES))}
+        {"instructions": ("engine", complete), "stripped": ("engine", bare)},
+        {"engine": ("engine", list(ENGINES))},
     )
 
 

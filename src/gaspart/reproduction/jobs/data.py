@@ -7,8 +7,6 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-import numpy as np
-
 _NONE: Mapping = MappingProxyType({})
 
 
@@ -27,6 +25,7 @@ class PointData(NamedTuple):
     def write(self, path: str | Path) -> None:
         """Write a netCDF file that xarray.load_dataset reads. May raise OSError."""
         import netCDF4
+        import numpy as np
 
         with netCDF4.Dataset(path, "w") as file:
             for name, (over, values, *attributes) in {**self.variables, **self.coordinates}.items():

@@ -4,26 +4,55 @@ state.
 Exact mechanics returns. Rounding errors grow by exp(lambda) with every collision of a particle, in both
 directions, so the echo's distance shows how long the memory of the initial state lasts, and its growth
 is the largest Lyapunov exponent, which the linearised dynamics of the same gas give without rounding.
+
+Planning reads this module, so slow imports are made inside functions.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from gaspart.engines import Engine, EventDriven, engine_from_dict
+from gaspart.engines import EventDriven, engine_from_dict, engine_to_dict
+from gaspart.kinds import Kind, count
 from gaspart.reproduction.jobs.data import PointData
-from gaspart.scene.scene import Scene
-from gaspart.simulation import Simulation
-from gaspart.state.state import State
+from gaspart.reproduction.jobs.stretches import EQUILIBRATION, SLACK
 
+if TYPE_CHECKING:
+    from gaspart.engines import Engine
+    from gaspart.reproduction.points.point import Point
+    from gaspart.scene.scene import Scene
+    from gaspart.simulation import Simulation
+    from gaspart.state.state import State
+
+RESULT = "runs forward and back"
+KEYS: dict[str, Kind] = {
+    "equilibration": EQUILIBRATION,
+    "samples": count(
+        "number of echoes, after 1, 2 ... of the intervals into which the length is divided", default=1
+    ),
+}
 DISPLACEMENT = 1e-10
 """Root-mean-square displacement, in diameters, from which the exact flow's divergence is measured."""
 TANGENT_COLLISIONS = 100.0
 """Collisions per particle over which the exponent of the linearised dynamics is measured, for each seed."""
-_SLACK = 1e-6  # of a time step: so that rounding of the duration loses no step
+
+
+def engines(point: Point) -> list[Engine]:
+    """The engine that runs forward and back."""
+    return [point.engine]
+
+
+def parameters(point: Point) -> dict:
+    """Those of `echo`, in plain values. Raises SceneError."""
+    times = point.schedule
+    return {
+        "engine": engine_to_dict(point.engine),
+        "equilibration": times.equilibration,
+        "interval": times.sample_interval,
+        "samples": times.samples,
+    }
 
 
 def echo(
@@ -43,10 +72,14 @@ def echo(
     exponent per collision of a particle, of the event-driven engine; NaN of others. Attributes: the gas
     (`side` in diameters) and engine.
     """
+    import numpy as np
+
+    from gaspart.simulation import Simulation
+
     shape = (len(seeds), samples)
-    found = {name: np.empty(shape) for name in ("collisions", "echo", "divergence")}
+    columns = {name: np.empty(shape) for name in ("collisions", "echo", "divergence")}
     exponents = np.full(len(seeds), np.nan)
-    slack = _SLACK * getattr(engine, "time_step", 0.0)
+    slack = SLACK * getattr(engine, "time_step", 0.0)
     for n, seed in enumerate(seeds):
         equilibrium = Simulation(scene, EventDriven(), seed=seed)
         equilibrium.advance(duration=equilibration)
@@ -62,14 +95,14 @@ def echo(
             back.advance(time + slack)
             for one in pair:
                 one.advance(state.time + time)
-            found["collisions"][n, k] = 2.0 * there.tally.collisions / state.count
-            found["echo"][n, k] = _distance(start, back.state)
-            found["divergence"][n, k] = _distance(pair[0].state, pair[1].state)
+            columns["collisions"][n, k] = 2.0 * there.tally.collisions / state.count
+            columns["echo"][n, k] = _distance(start, back.state)
+            columns["divergence"][n, k] = _distance(pair[0].state, pair[1].state)
         if isinstance(engine, EventDriven):
             exponents[n] = _exponent(equilibrium, samples * interval)
     return PointData(
         {
-            **{name: (("seed", "sample"), values) for name, values in found.items()},
+            **{name: (("seed", "sample"), values) for name, values in columns.items()},
             "exponent": ("seed", exponents),
         },
         attributes={
@@ -85,7 +118,7 @@ def echo(
 
 
 def _exponent(equilibrium: Simulation, stretch: float) -> float:
-    """Of the run continued by stretches of time until `TANGENT_COLLISIONS`."""
+    """The Lyapunov exponent of the run, continued by stretches of time until `TANGENT_COLLISIONS`."""
     from gaspart.analysis.lyapunov import lyapunov_exponent  # loads xarray, which other jobs do not need
 
     equilibrium.reset_tally()
@@ -99,6 +132,8 @@ def _exponent(equilibrium: Simulation, stretch: float) -> float:
 
 def _displaced(state: State, seed: tuple[int, ...]) -> State:
     """All particles displaced at random, by so little that only touching ones can overlap."""
+    import numpy as np
+
     away = np.random.default_rng(seed).standard_normal(state.positions.shape)
     away *= DISPLACEMENT * 2.0 * state.radii.max() / np.sqrt((away**2).sum(axis=1).mean())
     inside = np.clip(state.positions + away, state.radii[:, None], state.lengths - state.radii[:, None])
@@ -107,17 +142,21 @@ def _displaced(state: State, seed: tuple[int, ...]) -> State:
 
 def _distance(one: State, other: State) -> float:
     """Root-mean-square distance of all particles between walls, in diameters."""
+    import numpy as np
+
     apart = ((one.positions - other.positions) ** 2).sum(axis=1)
     return float(np.sqrt(apart.mean()) / (2.0 * one.radii.max()))
 
 
-def run(recipe: dict) -> PointData:
-    """`echo` of a point's recipe."""
+def run(parameters: dict) -> PointData:
+    """`echo` with a point's parameters."""
+    from gaspart.scene.scene import Scene
+
     return echo(
-        Scene.from_dict(recipe["scene"]),
-        engine_from_dict(recipe["engine"]),
-        seeds=[tuple(seed) for seed in recipe["seeds"]],
-        equilibration=recipe["equilibration"],
-        interval=recipe["interval"],
-        samples=recipe["samples"],
+        Scene.from_dict(parameters["scene"]),
+        engine_from_dict(parameters["engine"]),
+        seeds=[tuple(seed) for seed in parameters["seeds"]],
+        equilibration=parameters["equilibration"],
+        interval=parameters["interval"],
+        samples=parameters["samples"],
     )

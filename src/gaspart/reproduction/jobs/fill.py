@@ -1,17 +1,38 @@
-"""Random sequential insertion into a container up to saturation, with all failures counted."""
+"""Random sequential insertion into a container up to saturation, with all failures counted.
+
+Planning reads this module, so slow imports are made inside functions.
+"""
 
 from __future__ import annotations
 
-import numpy as np
+from typing import TYPE_CHECKING
 
-from gaspart.kernels.insertion import Task, place
+from gaspart.kinds import Kind, count
 from gaspart.reproduction.jobs.data import PointData
-from gaspart.scene.scene import Scene
-from gaspart.state.boxes import make_boxes, sides_for
-from gaspart.state.insertion import empty_arrays
-from gaspart.state.random import stream
 
+if TYPE_CHECKING:
+    import numpy as np
+
+    from gaspart.engines import Engine
+    from gaspart.reproduction.points.point import Point
+    from gaspart.scene.scene import Scene
+
+RESULT = "random insertion, every failure counted"
+ATTEMPTS = count("positions tried for each particle of `count`, of which not all need fit", default=None)
+KEYS: dict[str, Kind] = {"attempts": ATTEMPTS}
 CHUNK = 1 << 16
+
+
+def engines(point: Point) -> list[Engine]:
+    """None: the particles do not move."""
+    return []
+
+
+def parameters(point: Point) -> dict:
+    """Those of `fill`, in plain values. Raises SceneError."""
+    if "attempts" not in point.settings:
+        raise point.refused("attempts", "is required with job: fill")
+    return {"attempts": point.settings["attempts"]}
 
 
 def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> PointData:
@@ -25,6 +46,8 @@ def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> PointData
     for one never placed; ``placed`` and ``attempts`` (replica,).
     Attributes: packing_fraction_per_body, side, radius.
     """
+    import numpy as np
+
     runs = [_fill_once(scene, attempts * scene.count, seed) for seed in seeds]
     return PointData(
         {
@@ -49,6 +72,13 @@ def _fill_once(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.n
 def insert(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarray, int, np.ndarray]:
     """Failures before each particle (N,), -1 for one never placed; the number of attempts; and the positions
     (M, d) of those placed."""
+    import numpy as np
+
+    from gaspart.kernels.insertion import Task, place
+    from gaspart.state.boxes import make_boxes, sides_for
+    from gaspart.state.insertion import empty_arrays
+    from gaspart.state.random import stream
+
     boxes = make_boxes(scene, sides_for(scene), images=False)
     lower, upper = scene.reach(scene.largest_radius)
     placed, grid, block = empty_arrays(scene, boxes, np.full(scene.count, scene.largest_radius))
@@ -62,8 +92,9 @@ def insert(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarr
     return placed.failures, used, placed.positions[:number]
 
 
-def run(recipe: dict) -> PointData:
-    """`fill` of a point's recipe."""
-    return fill(
-        Scene.from_dict(recipe["scene"]), recipe["attempts"], [tuple(seed) for seed in recipe["seeds"]]
-    )
+def run(parameters: dict) -> PointData:
+    """`fill` with a point's parameters."""
+    from gaspart.scene.scene import Scene
+
+    seeds = [tuple(seed) for seed in parameters["seeds"]]
+    return fill(Scene.from_dict(parameters["scene"]), parameters["attempts"], seeds)

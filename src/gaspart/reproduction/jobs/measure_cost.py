@@ -3,6 +3,8 @@
 Every timing starts from one and the same state, so the repeated timings of an engine are of exactly the
 same work, and differ by what disturbs the clock alone; and engines that differ in their partition are timed
 in turn, in alternating order, so that a machine that slows down favours none of them.
+
+Planning reads this module, so slow imports are made inside functions.
 """
 
 from __future__ import annotations
@@ -10,20 +12,69 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from gaspart.engines import Engine, EventDriven, TimeStepped, engine_from_dict
-from gaspart.engines.event_log import EventLog
+from gaspart.engines import EventDriven, TimeStepped, engine_from_dict, engine_to_dict
 from gaspart.errors import SimulationError
+from gaspart.kinds import COUNT, POSITIVE, TEXT, Kind, count, described, flag, listed
 from gaspart.reproduction.jobs.data import PointData
-from gaspart.scene.scene import Scene
-from gaspart.simulation import Simulation
-from gaspart.state.initial import initial_state
-from gaspart.state.state import State
+from gaspart.reproduction.jobs.stretches import (
+    EQUILIBRATION,
+    SCAN_TIME_STEPS,
+    SLACK,
+    stretches,
+)
 
+if TYPE_CHECKING:
+    from gaspart.engines import Engine
+    from gaspart.reproduction.points.point import Point
+    from gaspart.scene.scene import Scene
+    from gaspart.state.state import State
+
+RESULT = "counted work and timings, with nothing running beside them"
+KEYS: dict[str, Kind] = {
+    "equilibration": EQUILIBRATION,
+    "samples": count(
+        "number of timings, each of one of the intervals into which the length is divided", default=1
+    ),
+    "scan_boxes_per_side": listed(
+        COUNT, "numbers of boxes per side that one job times in turn", default=None
+    ),
+    "scan_boxes_per_body": listed(
+        POSITIVE, "numbers of boxes per particle that one job times in turn", default=None
+    ),
+    "scan_time_steps": SCAN_TIME_STEPS,
+    "record_events": flag("record all events; needs an engine that has them", default=False),
+    "without": described(
+        {"type": "array", "items": TEXT, "minItems": 1},
+        "keys that a second scene and engine lack, which are timed in turn with the point's",
+        default=None,
+    ),
+}
 COUNTED = ("steps", "collisions", "wall_hits", "pair_tests", "box_visits", "crossings")
-_SLACK = 1e-6  # of a time step: so that rounding of the duration loses no step
+
+
+def engines(point: Point) -> list[Engine]:
+    """The engines that are timed, without those of the rival, which need no other kernels."""
+    return point.engines
+
+
+def parameters(point: Point) -> dict:
+    """Those of `measure_cost`, in plain values. Raises SceneError."""
+    record = point.settings.get("record_events", False)
+    if record and not point.engine.records_events:
+        raise point.refused("record_events", "has a meaning with job: measure_cost and engine: event only")
+    return {"record": record, "rival": _rival(point), **stretches(point)}
+
+
+def _rival(point: Point) -> dict | None:
+    """The scene and engines that are timed in turn with those of a point: the point's without the settings
+    that `without` lists; None if there are none."""
+    if "without" not in point.settings:
+        return None
+    settings = {key: value for key, value in point.settings.items() if key not in point.settings["without"]}
+    rival = replace(point, settings=settings)
+    return {"scene": rival.scene.to_dict(), "engines": [engine_to_dict(one) for one in rival.engines]}
 
 
 def measure_cost(
@@ -49,6 +100,8 @@ def measure_cost(
 
     Raises SceneError, and SimulationError if the counted work of a repeat differs from the first one's.
     """
+    import numpy as np
+
     # By the shortest step: a longer one leaves overlaps, which would count against a shorter one.
     careful = min(engines, key=lambda engine: getattr(engine, "time_step", 0.0))
     runs = []
@@ -90,6 +143,9 @@ def measure_cost(
 
 def _start(scene: Scene, engine: Engine, seed: tuple[int, ...], equilibration: float) -> State:
     """The state from which everything is timed. No partition or search changes a bit of it."""
+    from gaspart.simulation import Simulation
+    from gaspart.state.initial import initial_state
+
     if equilibration <= 0.0:
         return initial_state(scene, seed)
     quick: Engine = EventDriven()
@@ -102,13 +158,17 @@ def _start(scene: Scene, engine: Engine, seed: tuple[int, ...], equilibration: f
 
 def _timed(scene: Scene, state: State, engine: Engine, record: bool, stretch: float) -> tuple[float, dict]:
     """Processor time of one stretch, in s, and what was counted in it."""
+    import numpy as np
+
+    from gaspart.engines.event_log import EventLog
+
     dynamics = engine.start(scene, state)
     log = EventLog(scene.dimension, scene.rough) if record else None
     step = getattr(engine, "time_step", 0.0)
     # This loads the kernels, and the first step touches all memory.
-    dynamics.advance(state.time + step * (1 + _SLACK), log=log)
+    dynamics.advance(state.time + step * (1 + SLACK), log=log)
     dynamics.reset_tally()
-    target = dynamics.time + stretch + step * _SLACK
+    target = dynamics.time + stretch + step * SLACK
     start = time.process_time()
     dynamics.advance(target, log=log)
     seconds = time.process_time() - start
@@ -125,18 +185,22 @@ def _sides(engine: Engine, dimension: int) -> tuple[int, ...]:
     return given if isinstance(given, tuple) else (given,) * dimension
 
 
-def run(recipe: dict) -> PointData:
-    """`measure_cost` of a point's recipe."""
+def run(parameters: dict) -> PointData:
+    """`measure_cost` with a point's parameters."""
     return measure_cost(
-        *_scene_and_engines(recipe),
-        seed=tuple(recipe["seeds"][0]),
-        equilibration=recipe["equilibration"],
-        stretch=recipe["stretch"],
-        repeats=recipe["repeats"],
-        record=recipe["record"],
-        rival=recipe["rival"] and _scene_and_engines(recipe["rival"]),
+        *_scene_and_engines(parameters),
+        seed=tuple(parameters["seeds"][0]),
+        equilibration=parameters["equilibration"],
+        stretch=parameters["stretch"],
+        repeats=parameters["repeats"],
+        record=parameters["record"],
+        rival=parameters["rival"] and _scene_and_engines(parameters["rival"]),
     )
 
 
-def _scene_and_engines(recipe: dict) -> tuple[Scene, list[Engine]]:
-    return Scene.from_dict(recipe["scene"]), [engine_from_dict(engine) for engine in recipe["engines"]]
+def _scene_and_engines(parameters: dict) -> tuple[Scene, list[Engine]]:
+    from gaspart.scene.scene import Scene
+
+    return Scene.from_dict(parameters["scene"]), [
+        engine_from_dict(engine) for engine in parameters["engines"]
+    ]

@@ -1,16 +1,37 @@
-"""The densest random states of a scene: inserted to saturation, or grown until jammed."""
+"""The densest random states of a scene: inserted to saturation, or grown until jammed.
+
+Planning reads this module, so slow imports are made inside functions.
+"""
 
 from __future__ import annotations
 
-import numpy as np
+from typing import TYPE_CHECKING
 
+from gaspart.kinds import Kind
 from gaspart.reproduction.jobs.data import PointData
-from gaspart.reproduction.jobs.fill import insert
-from gaspart.scene.scene import Scene
-from gaspart.state.compression import compress
+from gaspart.reproduction.jobs.fill import ATTEMPTS, insert
 
+if TYPE_CHECKING:
+    from gaspart.engines import Engine
+    from gaspart.reproduction.points.point import Point
+    from gaspart.scene.scene import Scene
+
+RESULT = "random insertion until nothing more fits; with `arrangement: compressed` growth until all jam"
+KEYS: dict[str, Kind] = {"attempts": ATTEMPTS}
 GROWTH = 2.0**-6
 """Rate of growth towards jamming: slow enough to find all contacts, too fast to crystallise."""
+
+
+def engines(point: Point) -> list[Engine]:
+    """None: growth has kernels that all scenes share."""
+    return []
+
+
+def parameters(point: Point) -> dict:
+    """Those of `pack`, in plain values. Raises SceneError."""
+    if ("attempts" in point.settings) == (point.settings.get("arrangement") == "compressed"):
+        raise point.refused("attempts", "is required with job: pack, unless the arrangement is compressed")
+    return {"attempts": point.settings.get("attempts")}
 
 
 def pack(scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]]) -> PointData:
@@ -20,18 +41,22 @@ def pack(scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]]) -> Po
     Returns a dataset: position (replica, body, axis), NaN for a particle never placed; radius and
     packing_fraction (replica,); pressure (replica,), reduced, NaN for an insertion; length (axis,).
     """
+    import numpy as np
+
+    from gaspart.state.compression import compress
+
     shape = (len(seeds), scene.count, scene.dimension)
     positions, scales, fractions, pressures = np.full(shape, np.nan), [], [], []
-    for one, seed in zip(positions, seeds, strict=True):
+    for row, seed in zip(positions, seeds, strict=True):
         if attempts is None:
             packing = compress(scene, seed, GROWTH, until="jammed")
-            one[:] = packing.positions
+            row[:] = packing.positions
             scales.append(packing.scale)
             fractions.append(packing.packing_fraction)
             pressures.append(packing.pressure)
         else:
             _, _, places = insert(scene, attempts * scene.count, seed)
-            one[: len(places)] = places
+            row[: len(places)] = places
             scales.append(1.0)
             fractions.append(scene.packing_fraction * len(places) / scene.count)
             pressures.append(np.nan)
@@ -46,8 +71,9 @@ def pack(scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]]) -> Po
     )
 
 
-def run(recipe: dict) -> PointData:
-    """`pack` of a point's recipe."""
-    return pack(
-        Scene.from_dict(recipe["scene"]), recipe["attempts"], [tuple(seed) for seed in recipe["seeds"]]
-    )
+def run(parameters: dict) -> PointData:
+    """`pack` with a point's parameters."""
+    from gaspart.scene.scene import Scene
+
+    seeds = [tuple(seed) for seed in parameters["seeds"]]
+    return pack(Scene.from_dict(parameters["scene"]), parameters["attempts"], seeds)

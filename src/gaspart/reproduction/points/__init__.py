@@ -1,1 +1,1 @@
-"""From a config to jobs: grid points and their recipes, seeds, kernel variants, module dependencies."""
+"""From a config to jobs: points of grids, with their seeds, kernel variants and module dependencies."""

@@ -25,19 +25,19 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
     if "accuracy" not in settings:
         raise SceneError(f"{where}.accuracy", None, "is required with engine: auto")
     try:
-        found = advise(
+        advice = advise(
             scene, settings.get("observable", "Z"), settings["accuracy"], speed_of=speed.as_measured
         )
     except SceneError as error:
         raise error.inside(where) from None
-    engine = found.setting.engine
+    engine = advice.setting.engine
     made = {key: value for key, value in settings.items() if key not in keys.ENGINES["auto"]} | {
         "engine": engine.name
     }
     if isinstance(engine, TimeStepped):
         made |= {"time_step": engine.time_step, "precision": engine.precision}
     if not keys.LENGTHS.keys() & settings.keys():
-        made["collisions_per_body"] = math.ceil(found.collisions_per_body)
-        made.setdefault("replicas", found.replicas)
+        made["collisions_per_body"] = math.ceil(advice.collisions_per_body)
+        made.setdefault("replicas", advice.replicas)
         made.setdefault("equilibration", EQUILIBRATION)
     return made

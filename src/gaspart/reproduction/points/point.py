@@ -1,19 +1,33 @@
-"""A point of a grid: its name, its paths, and its seeds, which follow from the name."""
+"""A point of a grid: its name, paths and seeds, and what its settings describe, each made once."""
 
 from __future__ import annotations
 
 import hashlib
 import re
 from dataclasses import asdict, dataclass
+from functools import cached_property
+from importlib import import_module
+from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
+from gaspart.reproduction.points import engine, point_scene, schedule
+
+if TYPE_CHECKING:
+    from gaspart.engines import Engine
+    from gaspart.reproduction.points.jobs import Job
+    from gaspart.reproduction.points.point_scene import Extents
+    from gaspart.reproduction.points.schedule import Schedule
+    from gaspart.scene.scene import Scene
 
 _LONGEST_NAME = 200  # of the 255 bytes of a file name, with which suffixes and names of logs are made
 
 
 @dataclass(frozen=True)
 class Point:
-    """One point of a grid: one job of the workflow, with one output at ``path``."""
+    """One point of a grid: one job of the workflow, with one output at ``path``.
+
+    The properties that are made of the settings raise SceneError where these contradict each other.
+    """
 
     experiment: str
     name: str
@@ -47,6 +61,48 @@ class Point:
         text = f"{self.config_seed}/{self.experiment}/{self.name}/{replica}"
         digest = hashlib.sha256(text.encode()).digest()
         return tuple(int.from_bytes(digest[i : i + 4], "little") for i in range(0, 16, 4))
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The simulated scene."""
+        return point_scene.scene(self)
+
+    @cached_property
+    def extents(self) -> Extents:
+        """Number of particles, largest radius and side lengths."""
+        return point_scene.extents(self)
+
+    @cached_property
+    def engine(self) -> Engine:
+        """The engine of its runs."""
+        return engine.engine(self)
+
+    @cached_property
+    def engines(self) -> list[Engine]:
+        """The engines that the job runs in turn: ``engine``, or one for each value of the scan."""
+        return engine.scanned(self)
+
+    @cached_property
+    def schedule(self) -> Schedule:
+        """Duration and sampling of its runs."""
+        return schedule.schedule(self)
+
+    @cached_property
+    def kind_of_job(self) -> Job:
+        """The module of the job. It is imported by its name, so that a measurement, which reads points too,
+        depends on no job."""
+        return import_module(f"gaspart.reproduction.jobs.{self.job}")
+
+    @cached_property
+    def parameters(self) -> dict:
+        """The parameters of the job, in plain values: all that its result depends on, and nothing else."""
+        specific = self.kind_of_job.parameters(self)
+        seeds = [list(self.seed(k)) for k in range(self.replicas)]
+        return {"scene": self.scene.to_dict(), "seeds": seeds, **specific}
+
+    def refused(self, key: str, rule: str) -> SceneError:
+        """The error that a setting breaks a rule."""
+        return SceneError(f"experiments.{self.experiment}.{key}", self.settings.get(key), rule)
 
     def to_dict(self) -> dict:
         """Plain values only: the parameters of a job."""

@@ -11,13 +11,13 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 from gaspart.errors import SceneError
-from gaspart.reproduction.points import keys
+from gaspart.reproduction.points import config_keys, keys
 from gaspart.reproduction.points.point import Point, name_of
-from gaspart.reproduction.points.point_scene import scene
 
 MOST_POINTS = 100_000
 
@@ -26,7 +26,7 @@ def points(config: dict, experiment: str) -> list[Point]:
     """All points of an experiment. Raises SceneError for an empty grid, or two points of one name."""
     block = config["experiments"][experiment]
     where = f"experiments.{experiment}"
-    found: dict[str, Point] = {}
+    made: dict[str, Point] = {}
     varied = block.get("grid")
     for varying in _combinations({} if varied is None else varied, f"{where}.grid"):
         settings = {**block.get("point", {}), **varying}
@@ -40,14 +40,14 @@ def points(config: dict, experiment: str) -> list[Point]:
                 config_seed=config["seed"],
             )
         )
-        if point.name in found:
+        if point.name in made:
             raise SceneError(f"{where}.grid", point.name, "every point of a grid must be different")
-        found[point.name] = point
-    return list(found.values())
+        made[point.name] = point
+    return list(made.values())
 
 
 def _plain(key: str, value: Any) -> Any:
-    whole = key in keys.WHOLE and isinstance(value, float) and value.is_integer()
+    whole = key in config_keys.WHOLE and isinstance(value, float) and value.is_integer()
     return int(value) if whole else value
 
 
@@ -57,20 +57,31 @@ def _chosen(point: Point) -> Point:
     if point.settings.get("engine") == "auto":
         from gaspart.reproduction.points.advised import chosen
 
-        return replace(point, settings=chosen(point.settings, scene(point), where))
+        return replace(point, settings=chosen(point.settings, point.scene, where))
     for key in keys.ENGINES["auto"]:
         if key in point.settings:
             raise SceneError(f"{where}.{key}", point.settings[key], "needs engine: auto")
     return point
 
 
-def figure_points(config: dict, figure: str) -> list[Point]:
-    """The points of all experiments that a figure names, in its order."""
-    chosen = []
+def all_points(config: dict) -> dict[str, dict[str, Point]]:
+    """The points of all experiments, by experiment and name. Raises SceneError as `points` does."""
+    return {
+        experiment: {point.name: point for point in points(config, experiment)}
+        for experiment in config["experiments"]
+    }
+
+
+def figure_points(config: dict, figure: str, planned: Mapping[str, Mapping[str, Point]]) -> list[Point]:
+    """The points of all experiments that a figure names, in its order. planned: as from `all_points`.
+
+    Raises SceneError for an unknown experiment.
+    """
+    chosen: list[Point] = []
     for experiment in config["figures"][figure]["experiments"]:
-        if experiment not in config["experiments"]:
+        if experiment not in planned:
             raise SceneError(f"figures.{figure}.experiments", experiment, "must be the name of an experiment")
-        chosen += points(config, experiment)
+        chosen += planned[experiment].values()
     return chosen
 
 

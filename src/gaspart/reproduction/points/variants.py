@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from gaspart.engines import engine_from_dict, engine_to_dict
 from gaspart.errors import SimulationError
-from gaspart.reproduction.points import grid, jobs
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.species import LATTICES
 
@@ -34,9 +33,9 @@ def variant(point: Point) -> str:
 
     Kernels are compiled for features, not for numbers. Raises SceneError.
     """
-    scene = grid.scene(point)
+    scene = point.scene
     parts = ["fill", "random", f"{scene.dimension}d"]
-    if engines := jobs.engines_of(point):
+    if engines := point.kind_of_job.engines(point):
         engine = engines[0]  # which differ in numbers only
         parts = [engine.name, engine.variant(scene), f"{scene.dimension}d"]
     present = sorted(features(scene))
@@ -48,22 +47,22 @@ def variant(point: Point) -> str:
 def features(scene: Scene) -> set[str]:
     """Dotted names of all that differs from its default in a scene and changes its kernels, with its value
     where that is a word."""
-    found = set(_differing(scene)) - _MATTER
+    names = set(_differing(scene)) - _MATTER
     if len({kind.mass for kind in scene.kinds}) <= 1:
-        found -= {"species.mass", "bodies.mass"}  # equal masses are left out of the kernels
-    if found & _LAW:
-        found = (found - _LAW) | {"restitution"}
-    found.discard("restitution.contact_duration")
+        names -= {"species.mass", "bodies.mass"}  # equal masses are left out of the kernels
+    if names & _LAW:
+        names = (names - _LAW) | {"restitution"}
+    names.discard("restitution.contact_duration")
     if scene.contact_duration > 0.0:  # by default under gravity
-        found.add("contact_duration")
+        names.add("contact_duration")
     if scene.vibrates:  # by a temperature too
-        found.add("vibrates")
+        names.add("vibrates")
     if len({kind.radius for kind in scene.kinds}) > 1:
         from gaspart.state.oversized import largest_in_boxes
 
         if largest_in_boxes(scene) < scene.largest_radius:
-            found.add("oversized")
-    return found
+            names.add("oversized")
+    return names
 
 
 def _differing(thing: Any, prefix: str = "") -> Iterator[str]:
@@ -90,17 +89,15 @@ def task(point: Point) -> str:
     have all of its features."""
     from gaspart.scene.scene import Scene
 
-    recipe, full = jobs.recipe(point), grid.scene(point)
-    scene = {
-        key: value[:_FEW] if isinstance(value, list) else value for key, value in recipe["scene"].items()
-    }
+    parameters, full = point.parameters, point.scene
+    scene = {key: value[:_FEW] if isinstance(value, list) else value for key, value in full.to_dict().items()}
     for kind in scene.get("species", ()):
         kind["count"] = min(kind["count"], _FEW)
         if kind["arrangement"] in LATTICES:  # which need fewer kernels
             kind["arrangement"] = "random"
     if features(Scene.from_dict(scene)) != features(full):
         scene = full.to_dict()
-    engine = recipe.get("engine") or recipe.get("engines", [None])[0]
+    engine = parameters.get("engine") or parameters.get("engines", [None])[0]
     if engine:
         engine = engine_to_dict(engine_from_dict(engine).for_few(full))
     return json.dumps({"scene": scene, "engine": engine})

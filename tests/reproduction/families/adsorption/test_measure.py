@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gaspart.reproduction.families.adsorption import measure as adsorption
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.theory.adsorption import flux_density, slow_flux_share, well_ratio
 from gaspart.theory.potential import packing_fraction_at
 from gaspart.trajectory.run import run
@@ -15,7 +15,7 @@ SETTINGS = {"blocks": 10, "layer_blocks": 10, "near": 0.5, "bins": 20}
 
 def point(name, folder="results/points", **settings):
     settings = {"scene": str(SCENES / f"adsorption_{name}.yaml"), "duration": 60.0, "samples": 30} | settings
-    return grid.Point("held", "single", "simulate", {"equilibration": 20.0} | settings, str(folder), 1)
+    return Point("held", "single", "simulate", {"equilibration": 20.0} | settings, str(folder), 1)
 
 
 def test_what_holds_is_read_from_the_scene():
@@ -56,8 +56,8 @@ def test_a_real_well_holds_as_many_as_it_must(tmp_path):
     one = point("ideal", tmp_path, **{"scene.faces.x_low.depth": 1.0})
     path = one.replica_path(0)
     Path(path).parent.mkdir(parents=True)
-    times = grid.schedule(one)
-    run(grid.scene(one), grid.engine(one), one.seed(0), times.duration, times.sample_interval, path)
+    times = one.schedule
+    run(one.scene, one.engine, one.seed(0), times.duration, times.sample_interval, path)
     dataset = adsorption.adsorption([one], SETTINGS).isel(point=0)
     expected = well_ratio(1.0, 0.2, 1.975 - 0.2)
     error = float(dataset["log_ratio_error"])

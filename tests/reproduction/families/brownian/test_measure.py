@@ -5,7 +5,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.reproduction.families.brownian import measure as brownian
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 
 RATE, MASS, COUNT = 0.5, 100.0, 900
 
@@ -21,7 +21,7 @@ def point(replicas=300, boundary="periodic", **more):
         "samples": 300,
         "replicas": replicas,
     }
-    return grid.Point("brownian_heavy", "single", "simulate", settings | more, "results/points", 1)
+    return Point("brownian_heavy", "single", "simulate", settings | more, "results/points", 1)
 
 
 def paths(setting, replicas, drift=0.0):

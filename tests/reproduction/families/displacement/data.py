@@ -8,7 +8,7 @@ from scenes import centred
 
 from gaspart import theory
 from gaspart.analysis.correlations import correlate
-from gaspart.reproduction.points import grid, jobs
+from gaspart.reproduction.points.point import Point
 from gaspart.trajectory.correlator import SUMS
 
 
@@ -29,7 +29,7 @@ def point(dimension=3, count=100, packing_fraction=0.02, experiment="msd", name=
         "lags": 120,
         "replicas": 4,
     }
-    return grid.Point(experiment, name, "simulate", settings | more, "results/points", 1)
+    return Point(experiment, name, "simulate", settings | more, "results/points", 1)
 
 
 def langevin(rng, one, drift=0.0, length=1.0, speed=1.0):
@@ -38,7 +38,7 @@ def langevin(rng, one, drift=0.0, length=1.0, speed=1.0):
 
     Their D is speed^2 / rate. drift: a velocity that all share; length: unit of the displacements.
     """
-    times, asked = grid.schedule(one), jobs.recipe(one)["correlations"]
+    times, asked = one.schedule, one.parameters["correlations"]
     frames, interval = times.samples + 1, times.sample_interval
     count, dimension = one.settings["count"], one.settings["dimension"]
     rate = enskog_rate(one.settings["packing_fraction"], dimension)

@@ -11,7 +11,6 @@ from gaspart.analysis.correlations import Curves, between, correlate, line
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.displacement import measure as displacement
 from gaspart.reproduction.families.shared import curves
-from gaspart.reproduction.points import grid, jobs
 
 
 @pytest.fixture
@@ -151,12 +150,12 @@ def test_runs_that_cannot_tell_are_refused(stored, change, key):
 
 def test_a_real_gas_diffuses_as_enskog_says(tmp_path):
     one = replace(point(count=108, packing_fraction=0.03, equilibration=10, replicas=3), root=str(tmp_path))
-    recipe = jobs.recipe(one)
+    recipe = one.parameters
     given = {key: recipe[key] for key in ("duration", "sample_interval", "displacements")}
     given["correlations"] = gp.Correlations(**recipe["correlations"])
     for k, path in enumerate(one.replica_paths):
         Path(path).parent.mkdir(parents=True, exist_ok=True)
-        gp.run(grid.scene(one), grid.engine(one), one.seed(k), **given, path=path)
+        gp.run(one.scene, one.engine, one.seed(k), **given, path=path)
     ds = displacement.msd_spheres([one], {}).isel(point=0)
     assert float(ds["diffusion"]) == pytest.approx(float(theory.enskog_diffusion(0.03, 3)), rel=0.15)
     theoretical = theory.enskog_mean_squared_displacement(ds["time"].values, 0.03, 3)

@@ -5,7 +5,7 @@ import pytest
 
 from gaspart import theory
 from gaspart.reproduction.families.film import measure as film
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.trajectory.run import run
 
 
@@ -42,13 +42,13 @@ def test_a_real_slit_obeys_the_contact_theorem(tmp_path):
         "boundary": ["periodic", "periodic", "wall"], "arrangement": "lattice",
         "duration": 120, "equilibration": 5, "samples": 256,
     }  # fmt: skip
-    point = grid.Point("test", "single", "simulate", settings, str(tmp_path), 7)
+    point = Point("test", "single", "simulate", settings, str(tmp_path), 7)
     path = point.replica_path(0)
     Path(path).parent.mkdir(parents=True)
-    schedule = grid.schedule(point)
+    schedule = point.schedule
     run(
-        grid.scene(point),
-        grid.engine(point),
+        point.scene,
+        point.engine,
         point.seed(0),
         schedule.duration,
         schedule.sample_interval,

@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 
 from gaspart.reproduction.families.freezing.measure import freezing_discs, freezing_spheres
-from gaspart.reproduction.points import grid, jobs
 from gaspart.reproduction.points.points import points
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.run import run
@@ -25,11 +24,11 @@ def simulated(folder, experiments):
     for name, (point, varied) in experiments.items():
         config = {"seed": 1, "points": str(folder), "experiments": {name: {"point": point, "grid": varied}}}
         for one in points(config, name):
-            recipe = jobs.recipe(one)
+            recipe = one.parameters
             (folder / one.experiment / one.name).mkdir(parents=True)
             for path, seed in zip(one.replica_paths, recipe["seeds"], strict=True):
                 times = recipe["duration"], recipe["sample_interval"]
-                run(Scene.from_dict(recipe["scene"]), grid.engine(one), tuple(seed), *times, path)
+                run(Scene.from_dict(recipe["scene"]), one.engine, tuple(seed), *times, path)
             found.append(one)
     return found
 

@@ -8,20 +8,20 @@ from gaspart import theory
 from gaspart.analysis.run import Run
 from gaspart.reproduction.families.granular import measure as granular
 from gaspart.reproduction.families.granular.runs import read
-from gaspart.reproduction.points import grid, jobs
+from gaspart.reproduction.points.point import Point
 
 
 def made(tmp_path, name, scene, **settings):
     """A point of a scene file, with its runs."""
     scene.to_file(tmp_path / f"{name}.yaml")
     settings = {"scene": str(tmp_path / f"{name}.yaml"), "replicas": 4} | settings
-    point = grid.Point(name, "single", "simulate", settings, str(tmp_path), 1)
-    recipe = jobs.recipe(point)
+    point = Point(name, "single", "simulate", settings, str(tmp_path), 1)
+    recipe = point.parameters
     (tmp_path / name / "single").mkdir(parents=True)
     for seed, path in zip(recipe["seeds"], point.replica_paths, strict=True):
         gp.run(
-            grid.scene(point),
-            grid.engine(point),
+            point.scene,
+            point.engine,
             seed=tuple(seed),
             duration=recipe["duration"],
             sample_interval=recipe["sample_interval"],

@@ -4,14 +4,14 @@ import numpy as np
 import xarray as xr
 
 from gaspart.reproduction.families.shared.columns import Field, Stretch
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.theory import gravity
 
 
 def point(scene_file, **settings):
     """One point of a grid that has a scene file; nothing of it is run."""
     settings = {"scene": str(scene_file), "duration": 40.0, "samples": 20, "equilibration": 10.0} | settings
-    return grid.Point("column", "single", "simulate", settings, "results/points", 1)
+    return Point("column", "single", "simulate", settings, "results/points", 1)
 
 
 def ideal_column(rng, frames, masses, height=4.0, width=3.0, strength=1.0, temperature=1.0):

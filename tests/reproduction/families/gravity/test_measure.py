@@ -10,7 +10,6 @@ from reproduction.families.stored import runs_of
 import gaspart as gp
 from gaspart.reproduction.families.gravity import measure as gravity
 from gaspart.reproduction.families.shared import columns
-from gaspart.reproduction.points import grid
 from gaspart.theory.gravity import ideal_profile
 
 SETTINGS = {"bins": 8, "blocks": 4, "clear": 0.5, "ranges": [[0.001, 0.01]]}
@@ -20,10 +19,10 @@ SETTINGS |= {"source_collisions": 100.0, "source_temperature": 1.0, "source_shar
 def run(point, root):
     """The point with its simulations made."""
     made = replace(point, root=str(root))
-    times = grid.schedule(made)
+    times = made.schedule
     for k, path in enumerate(made.replica_paths):
         Path(path).parent.mkdir(parents=True, exist_ok=True)
-        scene, engine = grid.scene(made), grid.engine(made)
+        scene, engine = made.scene, made.engine
         gp.run(scene, engine, made.seed(k), times.duration, times.sample_interval, path)
     return made
 
@@ -93,7 +92,7 @@ def boxes(tmp_path, monkeypatch):
     rng = np.random.default_rng(3)
     stored = {}
     for p in points:
-        made = grid.scene(p)
+        made = p.scene
         pull = made.gravity[1] if made.gravity else 0.0
         start = gp.Simulation(made, gp.EventDriven(), seed=p.seed(0)).initial_state
         energy = start.kinetic_energy - pull * (start.positions[:, 1] - 0.01).sum()

@@ -8,7 +8,6 @@ from reproduction.families.gravity.test_measure import SETTINGS, run
 
 import gaspart as gp
 from gaspart.reproduction.families.gravity import measure, source
-from gaspart.reproduction.points import grid
 
 
 @pytest.fixture
@@ -57,7 +56,7 @@ def test_only_the_source_s_own_run_is_compared_with_its_numbers(column, tmp_path
     made = [run(p, tmp_path) for p in (column, own)]
     ds = measure.separation(made, settings)
     assert np.isnan(ds["collisions"][0]) and np.isnan(ds["share"][0]).all()
-    sim = gp.Simulation(grid.scene(own), grid.engine(own), seed=own.seed(0))
+    sim = gp.Simulation(own.scene, own.engine, seed=own.seed(0))
     sim.advance(duration=10.0)
     assert ds["collisions"][1] == sim.tally.collisions + sim.tally.wall_hits.sum() > 0
     assert ds["share"][1].sizes == {"layer": 3} and np.isfinite(ds["share"][1]).any()

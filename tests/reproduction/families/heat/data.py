@@ -9,7 +9,7 @@ import gaspart as gp
 from gaspart.reproduction.families.heat.approach import FRAMES
 from gaspart.reproduction.families.heat.measure import INNER
 from gaspart.reproduction.families.shared.rows import from_rows
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.theory.heat import (
     METAL_BEND,
     METAL_GAP,
@@ -25,12 +25,12 @@ def run(tmp_path, scene, **settings):
     """A point of this scene with its runs made."""
     scene.to_file(tmp_path / "scene.yaml")
     settings |= {"scene": str(tmp_path / "scene.yaml")}
-    point = grid.Point("heat", "single", "simulate", settings, str(tmp_path / "points"), 1)
-    times = grid.schedule(point)
+    point = Point("heat", "single", "simulate", settings, str(tmp_path / "points"), 1)
+    times = point.schedule
     for k, path in enumerate(point.replica_paths):
         Path(path).parent.mkdir(parents=True, exist_ok=True)
-        engine = grid.engine(point)
-        gp.run(grid.scene(point), engine, point.seed(k), times.duration, times.sample_interval, path)
+        engine = point.engine
+        gp.run(point.scene, engine, point.seed(k), times.duration, times.sample_interval, path)
     return point
 
 

@@ -8,7 +8,7 @@ import gaspart as gp
 from gaspart.reproduction.families.heat import measure as heat
 from gaspart.reproduction.families.heat.approach import FRAMES
 from gaspart.reproduction.families.heat.gap import Gap
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.theory.heat import free_molecular_flux
 
 
@@ -100,9 +100,7 @@ def test_replicas_with_other_places_of_scatterers_are_one_block_each(tmp_path):
     both = heat._metal(point, {"bins": 3, "blocks": 10})
     alone = []
     for k in range(3):
-        one = grid.Point(
-            "heat", "single", "simulate", point.settings | {"replicas": 1}, str(tmp_path / str(k)), 1
-        )
+        one = Point("heat", "single", "simulate", point.settings | {"replicas": 1}, str(tmp_path / str(k)), 1)
         Path(one.replica_paths[0]).parent.mkdir(parents=True)
         Path(point.replica_paths[k]).rename(one.replica_paths[0])
         alone.append(heat._metal(one, {"bins": 3, "blocks": 10}))

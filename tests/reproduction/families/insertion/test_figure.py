@@ -5,7 +5,7 @@ from gaspart import theory
 from gaspart.reproduction.families.insertion import figure as insertion
 from gaspart.reproduction.families.insertion.measure import fill_failures
 from gaspart.reproduction.jobs.fill import fill
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 
 
 @pytest.fixture
@@ -18,9 +18,9 @@ def dataset(tmp_path):
     }
     points = []
     for name, settings in containers.items():
-        point = grid.Point(name, "single", "fill", common | settings, str(tmp_path), 1)
+        point = Point(name, "single", "fill", common | settings, str(tmp_path), 1)
         (tmp_path / name).mkdir()
-        fill(grid.scene(point), 40, [point.seed(k) for k in range(3)]).write(point.path)
+        fill(point.scene, 40, [point.seed(k) for k in range(3)]).write(point.path)
         points.append(point)
     return fill_failures(
         points, {"saturated": ["source", "discs"], "bins": 8, "windows": [10], "dilute": 0.04}

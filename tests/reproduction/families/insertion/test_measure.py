@@ -12,7 +12,7 @@ from gaspart.reproduction.families.insertion.measure import (
     saturation,
 )
 from gaspart.reproduction.jobs.fill import fill
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -61,8 +61,8 @@ def test_bins_that_few_replicas_reach_are_left_out():
 
 
 def point(tmp_path, name, **settings):
-    found = grid.Point(name, "single", "fill", settings, str(tmp_path), 5)
-    data = fill(grid.scene(found), settings["attempts"], [found.seed(k) for k in range(found.replicas)])
+    found = Point(name, "single", "fill", settings, str(tmp_path), 5)
+    data = fill(found.scene, settings["attempts"], [found.seed(k) for k in range(found.replicas)])
     (tmp_path / name).mkdir()
     data.write(found.path)
     return found

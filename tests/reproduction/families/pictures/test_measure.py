@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from gaspart.reproduction.families.pictures import measure as pictures
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 
 CUBE = np.full(3, 10.0)
 
@@ -38,9 +38,9 @@ def test_a_scene_is_counted_and_kept_for_drawing(tmp_path):
         "duration": 2.0,
         "samples": 1,
     }
-    point = grid.Point("brownian_render", "single", "simulate", settings, str(tmp_path), 1)
+    point = Point("brownian_render", "single", "simulate", settings, str(tmp_path), 1)
     (tmp_path / "brownian_render/single").mkdir(parents=True)
-    run(grid.scene(point), grid.engine(point), 1, 2.0, 2.0, point.replica_path(0))
+    run(point.scene, point.engine, 1, 2.0, 2.0, point.replica_path(0))
     ds = pictures.brownian_render([point], {})
     assert ds.sizes["body"] == ds.attrs["count"] == 201
     assert float(ds["overlaps"]) == 0.0 and float(ds["resolved"]) == 0.0

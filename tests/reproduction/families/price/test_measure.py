@@ -16,7 +16,8 @@ from gaspart.reproduction.families.price.measure import _together, price_of_feat
 from gaspart.reproduction.jobs.count_instructions import FEATURES, stripped
 from gaspart.reproduction.jobs.count_instructions import run as count_instructions
 from gaspart.reproduction.jobs.measure_cost import run
-from gaspart.reproduction.points import grid, jobs
+from gaspart.reproduction.points import jobs
+from gaspart.reproduction.points.point import Point
 
 ROOT = Path(__file__).parents[4]
 
@@ -30,9 +31,9 @@ def points(tmp_path_factory):
     features = {}, {"scene.species.1.mass": 4.0}, {"record_events": True}
     for k, (feature, equilibration) in enumerate(product(features, (0, 0.5))):
         varied = {**feature, "equilibration": equilibration, "without": list(feature) or ["scene.gravity"]}
-        point = grid.Point("price", str(k), "measure_cost", {**common, **small, **varied}, str(root), 3)
+        point = Point("price", str(k), "measure_cost", {**common, **small, **varied}, str(root), 3)
         Path(point.path).parent.mkdir(parents=True, exist_ok=True)
-        run(jobs.recipe(point)).write(point.path)
+        run(point.parameters).write(point.path)
         made.append(point)
     return made
 
@@ -55,7 +56,7 @@ def test_the_scene_beside_lacks_the_feature_and_is_timed_as_often(points):
 
 def test_only_costs_have_a_scene_beside_them(points):
     with pytest.raises(SceneError, match="without"):
-        jobs.recipe(replace(points[0], job="simulate"))
+        jobs.validate(replace(points[0], job="simulate"))
 
 
 def test_scatter_between_jobs_is_the_uncertainty(tmp_path):
@@ -126,9 +127,9 @@ def test_all_optional_arguments_of_the_kernels_are_features_or_choices_of_a_meth
 @pytest.mark.thorough
 def test_absent_features_leave_nothing_in_the_machine_code(points, tmp_path):
     gas = {"dimension": 3, "count": 50, "radius": 0.5, "side": 9, "boundary": "periodic", "temperature": 1.0}
-    point = grid.Point("price", "plain", "count_instructions", gas, str(tmp_path), 3)
+    point = Point("price", "plain", "count_instructions", gas, str(tmp_path), 3)
     Path(point.path).parent.mkdir(parents=True)
-    count_instructions(jobs.recipe(point)).write(point.path)
+    count_instructions(point.parameters).write(point.path)
     ds = price_of_features([*points, point], {})
     assert ds["kernel"].values.tolist() == ["event", "step"]
     assert ds["stripped"].values.min() > 1000

@@ -12,7 +12,7 @@ from gaspart.reproduction.families.radius.measure import (
     radius_grid,
     structure_factor,
 )
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.trajectory.run import run
 
 
@@ -53,11 +53,11 @@ def dataset(tmp_path_factory):
     points = []
     for name, settings in experiments.items():
         for k, varying in enumerate(settings):
-            point = grid.Point(name, str(k), "simulate", common | varying, str(root), 3)
-            schedule = grid.schedule(point)
+            point = Point(name, str(k), "simulate", common | varying, str(root), 3)
+            schedule = point.schedule
             Path(point.path).mkdir(parents=True)
             times = schedule.duration, schedule.sample_interval
-            run(grid.scene(point), grid.engine(point), point.seed(), *times, point.replica_path(0))
+            run(point.scene, point.engine, point.seed(), *times, point.replica_path(0))
             points.append(point)
     return radius_grid(points, {})
 

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.reproduction.families.reversibility import measure as reversibility
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 
 SIDE = 8.7
 
@@ -34,6 +34,6 @@ def measurement(folder, growth=1.47, jump_after=8.0):
     points = []
     (folder / "gas").mkdir()
     for name, run in (("event", echoes(growth)), ("step", echoes(growth, "step", jump_after=jump_after))):
-        points.append(grid.Point("gas", name, "echo", {}, str(folder), 1))
+        points.append(Point("gas", name, "echo", {}, str(folder), 1))
         run.to_netcdf(points[-1].path)
     return reversibility.reversibility(points, {})

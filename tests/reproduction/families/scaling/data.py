@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from gaspart.reproduction.points import grid
-from gaspart.reproduction.points.points import figure_points
+from gaspart.reproduction.points.points import all_points, figure_points
 from gaspart.theory import partition
 from gaspart.yaml_text import read_yaml
 
@@ -25,7 +24,8 @@ def settings(figure):
 
 def points(figure, folder):
     """The figure's points, with their files written below `folder`."""
-    made = figure_points({**CONFIG, "points": str(folder)}, figure)
+    config = {**CONFIG, "points": str(folder)}
+    made = figure_points(config, figure, all_points(config))
     for point in made:
         path = Path(point.path)
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -37,9 +37,9 @@ def job(point):
     """What `measure_cost` would write, with 1 % noise of the clock."""
     if "without" in point.settings:
         return _in_turn(point)
-    count, radius, lengths = grid.extents(point)
+    count, radius, lengths = point.extents
     dimension, side = len(lengths), lengths[0]
-    chosen = grid.engines(point)
+    chosen = point.engines
     sides = np.array([_side(engine) for engine in chosen])
     gas = {"dimension": dimension, "side": side, "radius": radius}
     if point.settings["engine"] == "step":

@@ -12,7 +12,7 @@ from gaspart.reproduction.families.shared.pressure import (
     series_of,
 )
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.trajectory.run import run
 
 
@@ -21,16 +21,16 @@ def small_point(tmp_path, **settings):
         "dimension": 2, "count": 64, "radius": 0.5, "packing_fraction": 0.2, "boundary": "periodic",
         "temperature": 2.0, "collisions_per_body": 400, "equilibration": 20, "samples": 40, "replicas": 2,
     }  # fmt: skip
-    return grid.Point("test", "single", "simulate", values | settings, str(tmp_path), 7)
+    return Point("test", "single", "simulate", values | settings, str(tmp_path), 7)
 
 
 def simulate(point):
-    schedule = grid.schedule(point)
+    schedule = point.schedule
     for k in range(point.replicas):
         path = point.replica_path(k)
         Path(path).parent.mkdir(parents=True, exist_ok=True)
         times = schedule.duration, schedule.sample_interval
-        run(grid.scene(point), grid.engine(point), point.seed(k), *times, path)
+        run(point.scene, point.engine, point.seed(k), *times, path)
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +68,7 @@ def test_equilibration_is_dropped(measured):
 
 def test_a_file_of_another_point_is_refused(measured):
     point, _ = measured
-    other = grid.Point.from_dict(point.to_dict() | {"settings": point.settings | {"samples": 30}})
+    other = Point.from_dict(point.to_dict() | {"settings": point.settings | {"samples": 30}})
     with pytest.raises(ValueError, match="frames are not those"):
         pressure(other)
 

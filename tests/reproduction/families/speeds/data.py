@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 
 
 def point(dimension=3, count=200, experiment="speeds", **more):
@@ -20,7 +20,7 @@ def point(dimension=3, count=200, experiment="speeds", **more):
         "samples": 3,
         "replicas": 4,
     }
-    return grid.Point(experiment, "single", "simulate", settings | more, "results/points", 1)
+    return Point(experiment, "single", "simulate", settings | more, "results/points", 1)
 
 
 def trajectory(velocities, collisions):

@@ -10,7 +10,6 @@ import gaspart as gp
 from gaspart import theory
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.speeds import measure as speeds
-from gaspart.reproduction.points import grid
 
 RELAXATION = {"times": [1.0, 2.0], "bins": 20, "highest": 2.5}
 DISTRIBUTION = {"bins": 20, "highest": 2.5, "classes": 20}
@@ -127,10 +126,10 @@ def test_the_conserved_energy_takes_a_degree_of_freedom(stored):
 def test_a_real_gas_relaxes(tmp_path):
     one = point(count=500, packing_fraction=0.05, duration=8.0, samples=8, replicas=2, boundary="wall")
     one = replace(one, root=str(tmp_path))
-    times = grid.schedule(one)
+    times = one.schedule
     for k, path in enumerate(one.replica_paths):
         Path(path).parent.mkdir(parents=True, exist_ok=True)
-        gp.run(grid.scene(one), grid.engine(one), one.seed(k), times.duration, times.sample_interval, path)
+        gp.run(one.scene, one.engine, one.seed(k), times.duration, times.sample_interval, path)
     ds = speeds.speed_relaxation([one], {"times": [2.0, 8.0], "bins": 10, "highest": 2.5}).isel(engine=0)
     s = ds["collisions"].values
     assert s[-1] > 4.0

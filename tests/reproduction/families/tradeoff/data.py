@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.reproduction.families.tradeoff import measure as tradeoff
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 
 STEPS = np.array([0.32, 0.16, 0.08, 0.04])
 SETTINGS = {"order_up_to": 0.2, "accuracies": [0.01, 0.001, 0.0001]}
@@ -74,7 +74,7 @@ def written(folder, made):
     """Points of (job, settings, dataset), with their results in a folder."""
     points = []
     for n, (job, settings, dataset) in enumerate(made):
-        points.append(grid.Point("gas", f"n={n}", job, settings, str(folder), 1))
+        points.append(Point("gas", f"n={n}", job, settings, str(folder), 1))
         (folder / "gas").mkdir(exist_ok=True)
         dataset.to_netcdf(points[-1].path)
     return points

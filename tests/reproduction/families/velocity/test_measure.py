@@ -6,7 +6,7 @@ import pytest
 import gaspart as gp
 from gaspart.analysis.correlations import autocorrelation
 from gaspart.reproduction.families.velocity import measure as velocity
-from gaspart.reproduction.points import grid, jobs
+from gaspart.reproduction.points.point import Point
 
 
 def test_autocorrelation_is_the_mean_over_all_pairs_of_frames():
@@ -21,13 +21,13 @@ def test_the_start_of_a_gas_is_enskogs_and_momentum_is_restored(tmp_path):
         "temperature": 2.0, "arrangement": "lattice", "collisions_per_body": 12, "equilibration": 20,
         "samples": 240, "lags": 120, "replicas": 3,
     }  # fmt: skip
-    point = grid.Point("memory", "single", "simulate", settings, str(tmp_path), 3)
-    recipe = jobs.recipe(point)
+    point = Point("memory", "single", "simulate", settings, str(tmp_path), 3)
+    recipe = point.parameters
     (tmp_path / "memory/single").mkdir(parents=True)
     for seed, path in zip(recipe["seeds"], point.replica_paths, strict=True):
         gp.run(
-            grid.scene(point),
-            grid.engine(point),
+            point.scene,
+            point.engine,
             tuple(seed),
             recipe["duration"],
             recipe["sample_interval"],

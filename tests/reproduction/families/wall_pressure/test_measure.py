@@ -8,7 +8,7 @@ import gaspart as gp
 from gaspart.analysis.run import Run
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.wall_pressure import measure as module
-from gaspart.reproduction.points import grid, jobs
+from gaspart.reproduction.points.point import Point
 
 
 def point(tmp_path, **settings):
@@ -16,11 +16,11 @@ def point(tmp_path, **settings):
         "dimension": 2, "radius": 0.5, "side": [20, 10], "boundary": ["wall", "periodic"], "count": 40,
         "temperature": 1.0, "collisions_per_body": 300, "equilibration": 20, "samples": 32,
     } | settings  # fmt: skip
-    made = grid.Point("some", "single", "simulate", settings, str(tmp_path), 1)
-    recipe = jobs.recipe(made)
+    made = Point("some", "single", "simulate", settings, str(tmp_path), 1)
+    recipe = made.parameters
     gp.run(
-        grid.scene(made),
-        grid.engine(made),
+        made.scene,
+        made.engine,
         seed=made.seed(),
         duration=recipe["duration"],
         sample_interval=recipe["sample_interval"],
@@ -42,7 +42,7 @@ def test_a_gas_between_two_walls_has_the_pressure_of_theory(tmp_path):
 
 def test_the_force_and_the_drift_are_taken_exactly(tmp_path):
     """Two bodies drifting along the periodic axis, one hit of 2 m v on each wall and interval."""
-    made = grid.Point("some", "single", "simulate", {
+    made = Point("some", "single", "simulate", {
         "dimension": 2, "radius": 1.0, "side": [10, 8], "boundary": ["wall", "periodic"], "count": 2,
         "temperature": 1.0, "duration": 64.0, "samples": 32,
     }, str(tmp_path), 1)  # fmt: skip
@@ -56,7 +56,7 @@ def test_the_force_and_the_drift_are_taken_exactly(tmp_path):
         "kinetic_energy": ("frame", np.full(33, 34.0)),
         "time": ("frame", 2.0 * frames),
     })  # fmt: skip
-    run = Run(grid.scene(made), made_up["time"].values, made_up)
+    run = Run(made.scene, made_up["time"].values, made_up)
     force, temperature, count = module._replica(run, np.array([True, False]), 2.0)
     # energy about the drift: 34 - 25 = 9 = (4 - 1) / 2 k T
     assert temperature == pytest.approx(6.0)
@@ -70,4 +70,4 @@ def test_a_container_without_walls_is_refused(tmp_path):
         "duration": 1.0,
     }  # fmt: skip
     with pytest.raises(SceneError, match="needs walls"):
-        module.wall_pressure([grid.Point("some", "single", "simulate", settings, str(tmp_path), 1)], {})
+        module.wall_pressure([Point("some", "single", "simulate", settings, str(tmp_path), 1)], {})

@@ -16,7 +16,7 @@ from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import jackknife
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.scene.faces import Sticky, Well, thermal_face
 from gaspart.theory.adsorption import (
     excess_in_well,
@@ -52,9 +52,9 @@ class Holder:
     outside: float
 
     @classmethod
-    def of(cls, point: grid.Point) -> Holder:
+    def of(cls, point: Point) -> Holder:
         """From a point of one species in three dimensions, between x_low and a thermal x_high."""
-        scene = grid.scene(point)
+        scene = point.scene
         face, species = scene.faces["x_low"], scene.species[0]
         low, high = (ends[0] for ends in scene.reach(species.radius))
         kind, depth, width, momentum = "sticky", 0.0, 0.0, 0.0
@@ -124,7 +124,7 @@ class Holder:
         return density * np.exp(excess_chemical_potential(eta, 3)) * self._hold
 
 
-def adsorption(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def adsorption(points: list[Point], settings: dict) -> xr.Dataset:
     """Adsorption on a wall, by point.
 
     settings: `blocks` of each replica, `layer_blocks` where the wall holds a layer; `near`, the distance
@@ -149,7 +149,7 @@ def adsorption(points: list[grid.Point], settings: dict) -> xr.Dataset:
     )
 
 
-def _measured(point: grid.Point, settings: dict) -> dict:
+def _measured(point: Point, settings: dict) -> dict:
     """The values of one point."""
     holder = Holder.of(point)
     slow = holder.momentum / np.sqrt(holder.mass * holder.temperature) or 1.0

@@ -11,7 +11,7 @@ import numpy as np
 
 from gaspart import theory
 from gaspart.errors import SceneError
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.theory.homogeneous import relaxing_speeds
 from gaspart.theory.tagged import tagged_paths
 
@@ -48,9 +48,9 @@ class Setting:
         return self.mass <= HEAVY * self.gas_mass
 
 
-def setting_of(point: grid.Point) -> Setting:
+def setting_of(point: Point) -> Setting:
     """The setting of a point's scene; SceneError for one that has not one particle and one species."""
-    scene, where = grid.scene(point), f"experiments.{point.experiment}.scene"
+    scene, where = point.scene, f"experiments.{point.experiment}.scene"
     if len(scene.bodies) != 1 or len(scene.species) != 1:
         raise SceneError(where, point.settings.get("scene"), "must have one entry of bodies and one species")
     body, gas = scene.bodies[0], scene.species[0]
@@ -74,13 +74,13 @@ def setting_of(point: grid.Point) -> Setting:
     )
 
 
-def light_paths(point: grid.Point, setting: Setting) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+def light_paths(point: Point, setting: Setting) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Paths of the linear Boltzmann equation from rest, sampled as the point's runs, in GROUPS: times (T,),
     displacements and velocities (T, N, 3).
 
     A gas of equal speeds relaxes by its own collisions meanwhile.
     """
-    gas, times = grid.scene(point).species[0], grid.schedule(point)
+    gas, times = point.scene.species[0], point.schedule
     frames = times.equilibration_frames + times.samples
     # n pi d^2, from the mean free path of Maxwell's gas, 1 / (sqrt(2) n pi d^2)
     own = 1.0 / (math.sqrt(2.0) * setting.mean_free_path)

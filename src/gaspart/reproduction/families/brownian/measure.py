@@ -22,7 +22,7 @@ from gaspart.errors import SceneError
 from gaspart.reproduction.families.brownian.expected import Setting, light_paths, setting_of
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 
 LONGEST = 8.0
 """Friction times up to which curves are taken."""
@@ -37,7 +37,7 @@ NAMES = {
 """Columns of the numbers that are derived from measured paths; `friction` and `diffusion` are theory's."""
 
 
-def _followed(point: grid.Point) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+def _followed(point: Point) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Of each replica: times (T,), displacements and velocities of the first particle (T, 1, 3)."""
     if not point.settings.get("displacements", False):
         raise SceneError(f"experiments.{point.experiment}.displacements", False, "must be true")
@@ -46,7 +46,7 @@ def _followed(point: grid.Point) -> Iterator[tuple[np.ndarray, np.ndarray, np.nd
         yield run.time, run.data["displacements"].values[:, :1], velocities
 
 
-def brownian_paths(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def brownian_paths(points: list[Point], settings: dict) -> xr.Dataset:
     """The first `paths` ways of each point, and how far all of its replicas have come in the end.
 
     Lengths are the scene's. `end_chi_square`: of the components of all ends, each over the variance that is
@@ -75,7 +75,7 @@ def brownian_paths(points: list[grid.Point], settings: dict) -> xr.Dataset:
     return from_rows("point", rows, ("path", "frame", "axis"))
 
 
-def _end_variance(point: grid.Point, setting: Setting, duration: float) -> float:
+def _end_variance(point: Point, setting: Setting, duration: float) -> float:
     """Expected mean square of a component of the displacement at the end."""
     if setting.is_light:
         return float(np.mean([(moved[-1] ** 2).mean() for _, moved, _ in light_paths(point, setting)]))
@@ -86,7 +86,7 @@ def _end_variance(point: grid.Point, setting: Setting, duration: float) -> float
     return float(variance + rest * setting.share * setting.temperature / setting.mass * duration**2)
 
 
-def brownian_msd(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def brownian_msd(points: list[Point], settings: dict) -> xr.Dataset:
     """Mean-squared displacement and velocity autocorrelation of the large particle, and the quantities
     derived from them.
 
@@ -104,7 +104,7 @@ def brownian_msd(points: list[grid.Point], settings: dict) -> xr.Dataset:
     return from_rows("point", [_statistics(point) for point in points], ("lag",))
 
 
-def _statistics(point: grid.Point) -> dict:
+def _statistics(point: Point) -> dict:
     setting = setting_of(point)
     curves, found = _reduced(point, setting, _followed(point))
     row = {**_facts(point, setting), **curves}
@@ -122,7 +122,7 @@ def _statistics(point: grid.Point) -> dict:
 
 
 def _reduced(
-    point: grid.Point, setting: Setting, paths: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray]]
+    point: Point, setting: Setting, paths: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray]]
 ) -> tuple[dict[str, np.ndarray], dict[str, Estimate]]:
     """The correlations of paths in reduced units, with errors, and the quantities derived from them."""
     rest = 1.0 - setting.share
@@ -161,10 +161,10 @@ def _reduced(
 
 
 def _curves(
-    point: grid.Point, setting: Setting, paths: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray]]
+    point: Point, setting: Setting, paths: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray]]
 ) -> list[Curves]:
     """Time correlations of each of the paths, after equilibration."""
-    drop = grid.schedule(point).equilibration_frames
+    drop = point.schedule.equilibration_frames
     rate, curves = setting.friction / (1.0 - setting.share), []
     for time, moved, velocities in paths:
         interval = (time[-1] - time[0]) / (len(time) - 1)
@@ -173,10 +173,10 @@ def _curves(
     return curves
 
 
-def _facts(point: grid.Point, setting: Setting) -> dict:
+def _facts(point: Point, setting: Setting) -> dict:
     """The columns of every row."""
     return {
-        "equal_speeds": grid.scene(point).species[0].speed is not None,
+        "equal_speeds": point.scene.species[0].speed is not None,
         "stepped": point.settings.get("engine") == "step",
         "replicas": point.replicas,
         "is_light": setting.is_light,

@@ -22,14 +22,14 @@ from gaspart.reproduction.families.shared.columns import (
     temperature,
 )
 from gaspart.reproduction.families.shared.rows import entries
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.theory.buoyancy import displaced_area
 from gaspart.theory.geometry import body_volume
 from gaspart.theory.gravity import hydrostatic_profiles
 from gaspart.theory.potential import excess_chemical_potential, packing_fraction_at
 
 
-def buoyancy(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def buoyancy(points: list[Point], settings: dict) -> xr.Dataset:
     """Fixed discs at several heights, and free ones of several masses, in one and the same fluid; and the
     source's free discs in its own fluid.
 
@@ -45,7 +45,7 @@ def buoyancy(points: list[grid.Point], settings: dict) -> xr.Dataset:
     force; `count_radius`, that of as many discs as are missing.
     """
     own = [point for point in points if not is_source(point.experiment)]
-    held = [point for point in own if grid.scene(point).bodies[0].fixed]
+    held = [point for point in own if point.scene.bodies[0].fixed]
     fixed = [_fixed(point, settings) for point in held]
     free = [_free(point, settings) for point in own if point not in held]
     of_source = [_free(point, settings) for point in points if point not in own]
@@ -95,7 +95,7 @@ def _fluid(
     return lambda height: packing_fraction_at(np.exp(logarithm - weight * height), 2)
 
 
-def _fixed(point: grid.Point, settings: dict) -> dict:
+def _fixed(point: Point, settings: dict) -> dict:
     """Force and effective radius of a fixed disc, and the fluid at its height."""
     place, found = field(point), stretches(point, settings["blocks"])
     radius, height = _large(point, place)
@@ -154,12 +154,12 @@ def _inside(place: Field, stretch: Stretch, height: float, radius: float) -> flo
     return float((square < radius**2).sum(axis=1).mean())
 
 
-def _free(point: grid.Point, settings: dict) -> dict:
+def _free(point: Point, settings: dict) -> dict:
     """Where a free disc is, and where Boltzmann's factor of its weight and the displaced one's wants it."""
     place, found = field(point), stretches(point, settings["blocks"])
     radius, _ = _large(point, place)
     ratio = 2.0 * radius / place.diameter
-    mass = grid.scene(point).bodies[0].mass
+    mass = point.scene.bodies[0].mass
     heights = np.array([[s.heights[:, 0].mean(), (s.heights[:, 0] ** 2).mean()] for s in found])
     warm = float(np.mean([temperature(place, stretch) for stretch in found]))
     fluid = _fluid(place, np.mean([_far(place, s, radius, settings) for s in found], axis=0), warm, settings)
@@ -189,7 +189,7 @@ def _free(point: grid.Point, settings: dict) -> dict:
     }
 
 
-def _large(point: grid.Point, place: Field) -> tuple[float, float]:
+def _large(point: Point, place: Field) -> tuple[float, float]:
     """Radius of the large disc, and the height of its place in the scene file."""
-    body = grid.scene(point).bodies[0]
+    body = point.scene.bodies[0]
     return body.radius, body.position[1] - 0.5 * place.diameter

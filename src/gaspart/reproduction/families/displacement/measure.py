@@ -20,7 +20,7 @@ from gaspart.analysis.statistics import fit_polynomial, means_of
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.curves import reduced_curves
 from gaspart.reproduction.families.shared.rows import entries, from_rows
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import plain_gas
 
 SETTLE_SHEAR_TIMES = 3.0
@@ -35,7 +35,7 @@ LOGARITHM_FROM = 30.0
 """Collisions per particle after which hydrodynamic modes describe discs' velocity autocorrelation."""
 
 
-def replicas(point: grid.Point, longest: float) -> list[Curves]:
+def replicas(point: Point, longest: float) -> list[Curves]:
     """The curves of each replica, to the lag `longest` (reduced time) or to the last one that they have.
 
     Raises SceneError for a point without displacements or lags, or a single replica.
@@ -51,7 +51,7 @@ def replicas(point: grid.Point, longest: float) -> list[Curves]:
     return [Curves(*(array[:shortest] for array in vars(one).values())) for one in found]
 
 
-def msd_spheres(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def msd_spheres(points: list[Point], settings: dict) -> xr.Dataset:
     """Mean-squared displacement and diffusion coefficient of spheres; see `_spheres` for a point's numbers.
 
     Dimensions point and lag (NaN beyond a point's own lags). `largest`: the long run with the most particles
@@ -82,14 +82,14 @@ def size_series(dataset: xr.Dataset) -> xr.Dataset:
     return dataset.assign(entries(found) | {"size_limit": limit})
 
 
-def msd_discs(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def msd_discs(points: list[Point], settings: dict) -> xr.Dataset:
     """Mean-squared displacement of discs and the growth of its slope with ln t; see `_discs`."""
     return _dataset([_discs(point) for point in points], 2)
 
 
-def _state(point: grid.Point) -> dict:
+def _state(point: Point) -> dict:
     """Theory's predictions for a point's scene: collision rate, decay time of the slowest shear mode ..."""
-    gas, lengths = plain_gas(grid.scene(point)), grid.scene(point).container.lengths
+    gas, lengths = plain_gas(point.scene), point.scene.container.lengths
     eta, dimension = gas.packing_fraction, gas.dimension
     density = theory.number_density(eta, dimension)
     viscosity = float(theory.enskog_viscosity(eta, dimension))
@@ -107,7 +107,7 @@ def _state(point: grid.Point) -> dict:
     }
 
 
-def _common(point: grid.Point, state: dict, curves: list[Curves]) -> dict:
+def _common(point: Point, state: dict, curves: list[Curves]) -> dict:
     """The columns of every point: its state, its sampling in collisions per particle, its curves."""
     time = np.mean([one.time for one in curves], axis=0)
     rows = {
@@ -134,7 +134,7 @@ def _absent(*names: str, empty: float | np.ndarray = math.nan) -> dict:
     return values | {f"{name}_freedom": math.nan for name in names}
 
 
-def _spheres(point: grid.Point) -> dict:
+def _spheres(point: Point) -> dict:
     """D, D of the infinite system, and the curves.
 
     Of N particles whose total momentum is zero, D is (N - 1) / N of that of N particles without this
@@ -161,7 +161,7 @@ def _spheres(point: grid.Point) -> dict:
         where = f"experiments.{point.experiment}[{point.name}]: collisions per particle"
         needed = math.ceil(4.0 * start * state["collision_rate"])
         rule = f"must be {needed} or more, and `lags` reach half of it, for a straight stretch of the msd"
-        raise SceneError(where, round(grid.schedule(point).samples * rows["interval"]), rule)
+        raise SceneError(where, round(point.schedule.samples * rows["interval"]), rule)
     slopes = []
     for one in curves:
         inside = between(one.time, start, 2.0 * start)
@@ -181,7 +181,7 @@ def _spheres(point: grid.Point) -> dict:
     }
 
 
-def _discs(point: grid.Point) -> dict:
+def _discs(point: Point) -> dict:
     """The slope of D(t), the msd's derivative over 2d, against ln t, and the curves; `slope_expected`, that
     of the hydrodynamic modes of the container, fitted in the same way.
 

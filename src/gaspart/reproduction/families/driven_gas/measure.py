@@ -8,7 +8,7 @@ from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import mean_of
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 
 
 def means(run: Run) -> dict[str, float]:
@@ -26,7 +26,7 @@ def means(run: Run) -> dict[str, float]:
     }
 
 
-def driven_gas(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def driven_gas(points: list[Point], settings: dict) -> xr.Dataset:
     """The steady temperature and the fourth cumulant of driven gases.
 
     Returns over `gas`: dimension, restitution, packing_fraction, count, power; temperature, cumulant, given
@@ -36,8 +36,8 @@ def driven_gas(points: list[grid.Point], settings: dict) -> xr.Dataset:
     return from_rows("gas", [_gas(point) for point in points], units=units)
 
 
-def _gas(point: grid.Point) -> dict[str, float]:
-    scene = grid.scene(point)
+def _gas(point: Point) -> dict[str, float]:
+    scene = point.scene
     assert scene.restitution is not None and scene.thermostat is not None, "a driven granular gas"
     replicas = [means(run) for run in runs(point)]
     row = {

@@ -10,7 +10,7 @@ import xarray as xr
 from gaspart.reproduction.families.extremes.guard import guarded
 from gaspart.reproduction.families.extremes.rows import ROWS, Row
 from gaspart.reproduction.families.extremes.trial import ENGINES, Outcome, attempt
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 
 LIMIT = 300.0
 """Seconds after which a row counts as one that hangs."""
@@ -18,7 +18,7 @@ HANGS = "hangs"
 _ALL_PAIRS = "event, all pairs"
 
 
-def stability_extremes(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def stability_extremes(points: list[Point], settings: dict) -> xr.Dataset:
     """Run all rows of the table, or those whose group is in the setting `groups`. There are no points.
 
     Returns over row and engine: verdict ("passes", "refused", "fails", "hangs"), message, what was refused or

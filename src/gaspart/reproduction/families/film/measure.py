@@ -14,7 +14,7 @@ from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import average, correlated_mean, fit_polynomial, mean_of, means_of
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import plain_gas
 from gaspart.state.random import stream
 
@@ -40,7 +40,7 @@ class Slit:
     sides: np.ndarray
 
 
-def thin_film(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def thin_film(points: list[Point], settings: dict) -> xr.Dataset:
     """Profiles and pressures of slits of several widths, whose numbers of spheres are those of one chemical
     potential.
 
@@ -56,7 +56,7 @@ def thin_film(points: list[grid.Point], settings: dict) -> xr.Dataset:
     diameters, with _error. Over `theory_width`: curve. Attributes: bulk_density, bulk_pressure,
     bulk_chemical_potential; period, period_error of the damped oscillation.
     """
-    points = sorted(points, key=lambda point: grid.extents(point)[2][2])
+    points = sorted(points, key=lambda point: point.extents[2][2])
     bulk = theory.number_density(settings["bulk_packing_fraction"], 3)
     potential = math.log(bulk) + float(theory.excess_chemical_potential(settings["bulk_packing_fraction"], 3))
     rows, truncation, functional, widths = [], [], [], []
@@ -74,7 +74,7 @@ def thin_film(points: list[grid.Point], settings: dict) -> xr.Dataset:
     uncertain = response * dataset["chemical_potential_error"]
     dataset["at_bulk_error"] = np.hypot(dataset["pressure_error"], uncertain)
     dataset["truncation"], dataset["functional_pressure"] = ("width", truncation), ("width", functional)
-    dataset["count"] = "width", [grid.extents(point)[0] for point in points]
+    dataset["count"] = "width", [point.extents[0] for point in points]
     first, last, number = settings["theory_widths"]
     curve = np.linspace(first, last, int(number))
     dataset["curve"] = "theory_width", np.array([theory.white_bear_slit(bulk, w, 0.02)[1][0] for w in curve])
@@ -102,7 +102,7 @@ def _responses(bulk: float, widths: list[float]) -> np.ndarray:
     return np.diff(pressures, axis=1)[:, 0] / np.diff(potentials)
 
 
-def _estimates(slits: list[Slit], insertions: int, point: grid.Point) -> dict[str, float]:
+def _estimates(slits: list[Slit], insertions: int, point: Point) -> dict[str, float]:
     """Pressure, density at contact and chemical potential: means over the replicas."""
     potentials = [_widom(slit, insertions, point.seed(k)) for k, slit in enumerate(slits)]
     return entries({

@@ -15,7 +15,7 @@ from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import correlated_mean, mean_of
 from gaspart.reproduction.families.shared.pressure import series_of
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.trajectory.run import open_trajectory
 
 STARTS = {"lattice": "crystal", "compressed": "fluid"}
@@ -36,7 +36,7 @@ class Series:
     density: float
 
 
-def freezing_discs(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def freezing_discs(points: list[Point], settings: dict) -> xr.Dataset:
     """P and psi_6 of discs against packing fraction from both starts; plateau pressures; structure.
 
     settings: `shown`, packing fractions whose structure is kept; `furthest` and `bins` of g(r), in diameters;
@@ -57,7 +57,7 @@ def freezing_discs(points: list[grid.Point], settings: dict) -> xr.Dataset:
     return dataset.merge(_pictures(last, settings), combine_attrs="no_conflicts")
 
 
-def freezing_spheres(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def freezing_spheres(points: list[Point], settings: dict) -> xr.Dataset:
     """Z and Q_6 of spheres against packing fraction from both starts, and coexisting crystal and fluid.
 
     settings: none. Returns over `start` and `packing_fraction`: see `_states`, the order being the global
@@ -74,10 +74,10 @@ def freezing_spheres(points: list[grid.Point], settings: dict) -> xr.Dataset:
     return dataset.merge(_slab(slabs), combine_attrs="no_conflicts")
 
 
-def _of_start(points: list[grid.Point], start: str) -> dict[float, grid.Point]:
+def _of_start(points: list[Point], start: str) -> dict[float, Point]:
     """Points of one start by packing fraction, ascending."""
     found = {
-        round(grid.scene(point).packing_fraction, 9): point
+        round(point.scene.packing_fraction, 9): point
         for point in points
         if STARTS[point.settings["arrangement"]] == start
     }
@@ -98,7 +98,7 @@ def _halves(series: np.ndarray) -> tuple[float, float, float, float]:
     return mean.value, mean.error, series[middle:].mean() - series[:middle].mean(), 2.0 * mean.error
 
 
-def _states(points: list[grid.Point], order: Callable[[np.ndarray, Sequence[float]], float]) -> xr.Dataset:
+def _states(points: list[Point], order: Callable[[np.ndarray, Sequence[float]], float]) -> xr.Dataset:
     """Pressure and order of all starts and packing fractions (NaN where there is no run), replicas averaged.
 
     Returns over `start` and `packing_fraction`: pressure (k_B T / sigma^d), order, their _error, _drift and
@@ -117,7 +117,7 @@ def _states(points: list[grid.Point], order: Callable[[np.ndarray, Sequence[floa
         for x, point in chosen.items():
             j = eta.index(x)
             replicas = [_read(run, order) for run in runs(point)]
-            count[j], density[j] = grid.scene(point).count, replicas[0].density
+            count[j], density[j] = point.scene.count, replicas[0].density
             for what in ("pressure", "order"):
                 parts = np.array([_halves(getattr(one, what)) for one in replicas])
                 for k, name in enumerate(names):
@@ -158,15 +158,15 @@ def _plateau(side: xr.Dataset, unlike: xr.DataArray) -> tuple[float, float, floa
     return pressure, uncertainty, area / large, area / small
 
 
-def _pictures(chosen: dict[float, grid.Point], settings: dict) -> xr.Dataset:
+def _pictures(chosen: dict[float, Point], settings: dict) -> xr.Dataset:
     """Structure at some packing fractions; lengths in diameters."""
     shown, rows = [x for x in chosen if any(abs(x - y) < 1e-6 for y in settings["shown"])], []
     for x in shown:
         point = chosen[x]
-        scene = grid.scene(point)
+        scene = point.scene
         lengths = np.array(scene.container.lengths) / (2.0 * scene.largest_radius)
         with open_trajectory(point.replica_path(0)) as trajectory:
-            first = grid.schedule(point).equilibration_frames + 1
+            first = point.schedule.equilibration_frames + 1
             frames = trajectory["coordinates"][first:].values / (2.0 * scene.largest_radius)
         angle = np.angle(structure.hexatic(frames[-1], lengths))
         g = structure.radial_distribution(frames, lengths, settings["bins"], settings["furthest"])
@@ -222,10 +222,10 @@ def _branches(dataset: xr.Dataset) -> dict:
     }
 
 
-def _slab(points: list[grid.Point]) -> xr.Dataset:
+def _slab(points: list[Point]) -> xr.Dataset:
     """Pressure and profiles of the containers with crystal and fluid side by side, replicas averaged."""
     (point,) = points
-    scene = grid.scene(point)
+    scene = point.scene
     lengths, diameter = np.array(scene.container.lengths), 2.0 * scene.largest_radius
     axis = int(np.argmax(lengths))
     # A bin for each cell of the crystal, so that its layers fall into bins evenly.

@@ -18,7 +18,7 @@ from gaspart.errors import SceneError
 from gaspart.reproduction.families.granular.runs import inertia, law, read
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.trajectory.run import open_trajectory
 
 RELAXED = 3.0
@@ -29,7 +29,7 @@ MIXING, MIXED = 0.5, 1.6
 rate that depends on the moment of inertia, and from which on the difference is below 1 %."""
 
 
-def equipartition(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def equipartition(points: list[Point], settings: dict) -> xr.Dataset:
     """How the energies of rough discs become equal, that they do, and what they do when contacts dissipate.
 
     Points whose container has walls are particles that meet only these. Of the others those whose tangential
@@ -43,10 +43,10 @@ def equipartition(points: list[grid.Point], settings: dict) -> xr.Dataset:
     its error. Over `walls` and `moment`: wall_time, wall_translation, wall_rotation, with errors; over
     `walls`: wall_dimension, wall_inertia, exchange and wall_ratio (see `_walls`) and their errors.
     """
-    between = [point for point in points if not all(grid.scene(point).container.periodic)]
+    between = [point for point in points if not all(point.scene.container.periodic)]
     points = [point for point in points if point not in between]
     rough = [point for point in points if law(point).tangential == 1.0]
-    still = [point for point in rough if grid.schedule(point).equilibration_frames]
+    still = [point for point in rough if point.schedule.equilibration_frames]
     cooled = [_cooling(point, settings["steady_from"]) for point in points if point not in rough]
     return xr.merge([
         from_rows("start", [_start(point) for point in rough if point not in still], ("frame",), units={}),
@@ -56,7 +56,7 @@ def equipartition(points: list[grid.Point], settings: dict) -> xr.Dataset:
     ])  # fmt: skip
 
 
-def _start(point: grid.Point) -> dict:
+def _start(point: Point) -> dict:
     replicas = read(point)
     samples = np.stack([[run.collisions, run.translation, run.rotation] for run in replicas])
     rate = bootstrap(lambda chosen: _initial_decay(*chosen.mean(axis=0)), samples, repeats=200)
@@ -81,7 +81,7 @@ def _initial_decay(collisions: np.ndarray, translation: np.ndarray, rotation: np
     return float(fit_polynomial(collisions[used], logarithm, 1.0 / difference[used], powers=(1, 2)).values[0])
 
 
-def _equilibrium(point: grid.Point) -> dict:
+def _equilibrium(point: Point) -> dict:
     """T_rot / T_tr of the mean energies, of a run of conserved energy. Blocks: frames may be correlated."""
     replicas = read(point)
     mean = average([correlated_mean(run.rotation).estimate for run in replicas])
@@ -95,7 +95,7 @@ def _equilibrium(point: grid.Point) -> dict:
     }
 
 
-def _cooling(point: grid.Point, steady_from: float) -> dict:
+def _cooling(point: Point, steady_from: float) -> dict:
     """The ratio of the mean temperatures of all replicas, frame by frame, and its mean over the frames later
     than `steady_from` collisions per particle."""
     replicas = read(point)
@@ -115,14 +115,14 @@ def _cooling(point: grid.Point, steady_from: float) -> dict:
     }
 
 
-def _walls(point: grid.Point) -> dict:
+def _walls(point: Point) -> dict:
     """Of particles between two rough walls, over T_par at the start: T_par = m <v^2> of each direction along
     the walls, and T_rot = I <w^2> of each spin that a hit changes, which are as many.
 
     `exchange`: T_rot over theory's, by least squares until MIXING; `wall_ratio`: T_rot / T_par after MIXED,
     over theory's. wall_time: t sqrt(k_B T / m) / h.
     """
-    scene = grid.scene(point)
+    scene = point.scene
     kind, along = scene.species[0], np.array(scene.container.periodic)
     if kind.temperature is None:
         raise SceneError(
@@ -157,7 +157,7 @@ def _walls(point: grid.Point) -> dict:
     }
 
 
-def cooling(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def cooling(points: list[Point], settings: dict) -> xr.Dataset:
     """Haff's law in dilute inelastic gases, and how a dense and large one leaves it.
 
     settings: `clustering`, the experiments of the latter; `cells_per_side`, into which its container is cut.
@@ -177,8 +177,8 @@ def cooling(points: list[grid.Point], settings: dict) -> xr.Dataset:
     return xr.merge([gases, clusters, _picture(shown)], combine_attrs="drop_conflicts")
 
 
-def _gas(point: grid.Point) -> dict:
-    scene, replicas = grid.scene(point), read(point)
+def _gas(point: Point) -> dict:
+    scene, replicas = point.scene, read(point)
     restitution, dimension, kind = law(point).normal, scene.dimension, scene.species[0]
     rates, exponents, times = [], [], []
     for run in replicas:
@@ -201,8 +201,8 @@ def _gas(point: grid.Point) -> dict:
     }
 
 
-def _clusters(point: grid.Point, cells: int) -> dict:
-    scene, replicas = grid.scene(point), read(point)
+def _clusters(point: Point, cells: int) -> dict:
+    scene, replicas = point.scene, read(point)
     collisions = np.mean([run.collisions for run in replicas], axis=0)
     restitution = law(point).normal
     rate = theory.cooling_rate(restitution, scene.dimension)
@@ -226,11 +226,11 @@ def _number_variance(run: Run, cells: int) -> np.ndarray:
     return counts.var(axis=1) / counts.mean(axis=1)
 
 
-def _picture(point: grid.Point) -> xr.Dataset:
+def _picture(point: Point) -> xr.Dataset:
     with open_trajectory(point.replica_path(0)) as trajectory:
         positions = trajectory["coordinates"][-1].values
     units = {"units": "scene length"}
     return xr.Dataset(
         {"x": ("body", positions[:, 0], units), "y": ("body", positions[:, 1], units)},
-        attrs={"side": grid.scene(point).container.lengths[0], "radius": grid.scene(point).largest_radius},
+        attrs={"side": point.scene.container.lengths[0], "radius": point.scene.largest_radius},
     )

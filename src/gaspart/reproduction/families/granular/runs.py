@@ -8,7 +8,7 @@ import numpy as np
 
 from gaspart.analysis.run import Run
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.scene.restitution import Restitution
 
 
@@ -40,20 +40,20 @@ def temperatures(run: Run, first: int) -> Temperatures:
     )
 
 
-def read(point: grid.Point) -> list[Temperatures]:
+def read(point: Point) -> list[Temperatures]:
     """Of all replicas of a point, without their equilibration."""
-    first = grid.schedule(point).equilibration_frames
+    first = point.schedule.equilibration_frames
     return [temperatures(run, first) for run in runs(point, first=0)]
 
 
-def law(point: grid.Point) -> Restitution:
+def law(point: Point) -> Restitution:
     """That of the contacts of a point's scene."""
-    return grid.scene(point).restitution or Restitution()
+    return point.scene.restitution or Restitution()
 
 
-def inertia(point: grid.Point) -> float:
+def inertia(point: Point) -> float:
     """q = I / (m R^2) of a point's only species; by default that of a uniform disc or sphere."""
-    kind = grid.scene(point).species[0]
+    kind = point.scene.species[0]
     if kind.moment_of_inertia is None:
-        return {2: 0.5, 3: 0.4}[grid.scene(point).dimension]
+        return {2: 0.5, 3: 0.4}[point.scene.dimension]
     return kind.moment_of_inertia / (kind.mass * kind.radius**2)

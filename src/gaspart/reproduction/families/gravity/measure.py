@@ -25,7 +25,7 @@ from gaspart.reproduction.families.shared.columns import (
 )
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.state.initial import initial_state
 from gaspart.theory.geometry import body_volume
 from gaspart.theory.gravity import (
@@ -38,7 +38,7 @@ from gaspart.theory.potential import excess_chemical_potential
 from gaspart.theory.state import compressibility_factor
 
 
-def barometric(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def barometric(points: list[Point], settings: dict) -> xr.Dataset:
     """Density, temperature and pressure against height of one kind of discs; see `profiles`.
 
     settings: also `source_collisions` and `source_temperature`, of the source's sample.
@@ -49,7 +49,7 @@ def barometric(points: list[grid.Point], settings: dict) -> xr.Dataset:
     )
 
 
-def separation(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def separation(points: list[Point], settings: dict) -> xr.Dataset:
     """The same of heavy and light discs of one size, and the slope of their ratio; see `profiles`.
 
     settings: also `source_collisions` before the source's sample, and `source_shares` in it, of the light
@@ -60,7 +60,7 @@ def separation(points: list[grid.Point], settings: dict) -> xr.Dataset:
     return made.assign_attrs(source_collisions=settings["source_collisions"], source_shares=shares)
 
 
-def profiles(points: list[grid.Point], settings: dict, of_source: Callable[[grid.Point], dict]) -> xr.Dataset:
+def profiles(points: list[Point], settings: dict, of_source: Callable[[Point], dict]) -> xr.Dataset:
     """Columns of discs of one size under gravity, point by point.
 
     settings: `bins` of height; `blocks`, the time blocks of each replica; `clear`, the diameters next to
@@ -188,7 +188,7 @@ class Bins:
         return float(np.polyfit(self.height[seen], y[seen], 1, w=np.sqrt(weight[seen]))[0])
 
 
-def _column(point: grid.Point, settings: dict) -> dict:
+def _column(point: Point, settings: dict) -> dict:
     """The numbers of one point."""
     place, found = field(point), stretches(point, settings["blocks"])
     bins = Bins.of(place, settings["bins"], settings["clear"])
@@ -239,7 +239,7 @@ def _column(point: grid.Point, settings: dict) -> dict:
     }
 
 
-def heat_capacity(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def heat_capacity(points: list[Point], settings: dict) -> xr.Dataset:
     """Heat capacity of a dilute gas in a box of finite height, in two ways, against x = m g H / (k_B T).
 
     Points come in pairs of one scene at two energies. From them, C = dE/dT; and from the fluctuations of the
@@ -276,9 +276,9 @@ def _pair(colder: dict, warmer: dict) -> dict:
     }
 
 
-def _energies(point: grid.Point, blocks: int) -> dict:
+def _energies(point: Point, blocks: int) -> dict:
     """Temperature and fluctuations, measured and expected, of one point of a single replica."""
-    place, scene = field(point), grid.scene(point)
+    place, scene = field(point), point.scene
     if point.replicas != 1 or place.across:
         raise ValueError(f"{point.path}: must be one run between walls, whose energy is known")
     start = initial_state(scene, point.seed(0))

@@ -9,27 +9,27 @@ import numpy as np
 from scipy.optimize import curve_fit
 
 from gaspart.reproduction.families.shared.columns import field, stretches
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.trajectory.run import open_trajectory
 
 _FALL = 0.3
 """Part of the time before the sample in which the oscillation is large, and not yet harmonic."""
 
 
-def collisions(point: grid.Point) -> float:
+def collisions(point: Point) -> float:
     """Collisions and hits of walls before the sample, which the source counts alike."""
     with open_trajectory(point.replica_path(0)) as trajectory:
-        frame = trajectory.isel(frame=grid.schedule(point).equilibration_frames)
+        frame = trajectory.isel(frame=point.schedule.equilibration_frames)
         return float(frame["collisions"] + frame["wall_hits"].sum())
 
 
-def ringing(point: grid.Point) -> dict[str, float]:
+def ringing(point: Point) -> dict[str, float]:
     """Amplitude of the oscillation of the kinetic energy where the sample begins, over its mean.
 
     Of a fit of mean + e^{-t / decay} (a cos w t + b sin w t) to all frames after the fall, with t from where
     the sample begins. The error is that of the fit, from the scatter of the frames.
     """
-    begin = grid.schedule(point).equilibration
+    begin = point.schedule.equilibration
     with open_trajectory(point.replica_path(0)) as trajectory:
         time, kinetic = trajectory["time"].values, trajectory["kinetic_energy"].values
     late = time > _FALL * begin
@@ -51,7 +51,7 @@ def ringing(point: grid.Point) -> dict[str, float]:
     }
 
 
-def shares(point: grid.Point, layers: int) -> dict[str, np.ndarray]:
+def shares(point: Point, layers: int) -> dict[str, np.ndarray]:
     """Share of the first species in equal layers of the container, (layers,).
 
     Its error is the binomial one of a single frame: the frames of one sample are close to each other, and so

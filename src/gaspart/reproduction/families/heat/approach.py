@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.theory.enskog import enskog_conductivity, mean_free_path
 from gaspart.theory.geometry import packing_fraction
 from gaspart.theory.heat import TEMPERATURE_JUMP, Slab, steady_part
@@ -22,7 +22,7 @@ NO_APPROACH = dict.fromkeys(
 """What `approach` returns, for gases that it does not describe."""
 
 
-def approach(point: grid.Point, slab: Slab) -> dict[str, np.ndarray]:
+def approach(point: Point, slab: Slab) -> dict[str, np.ndarray]:
     """The temperature of the particles nearer to the hot wall minus that of the others, in the first frames
     of a gas of spheres of mass 1 whose steady state is `slab`.
 
@@ -30,7 +30,7 @@ def approach(point: grid.Point, slab: Slab) -> dict[str, np.ndarray]:
     end of a short run: the mean over replicas; its standard error for Maxwellian velocities, the squares of
     whose components have the relative variance 2; and that of the heat equation.
     """
-    scene = grid.scene(point)
+    scene = point.scene
     middle = scene.smallest_radius + 0.5 * slab.position[-1]
     differences, variances = [], []
     for run in runs(point, first=0):

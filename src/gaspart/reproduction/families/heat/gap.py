@@ -14,7 +14,7 @@ import numpy as np
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import steady_mean
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.scene.faces import thermal_face
 from gaspart.scene.scene import Scene
 
@@ -85,12 +85,12 @@ class Averages:
         return Estimate(self.taken.sum() / self.given.sum(), error, replicas * (ends - 1))
 
 
-def averages(point: grid.Point, gap: Gap, blocks: int, bins: int) -> Averages:
+def averages(point: Point, gap: Gap, blocks: int, bins: int) -> Averages:
     """Of the measured part of all replicas of particles of mass 1, each cut into `blocks`.
 
     Raises ValueError for too few frames.
     """
-    radius = grid.scene(point).smallest_radius
+    radius = point.scene.smallest_radius
     heats, densities, energies, missing, stored, conducted = [], [], [], [], [], 0.0
     for run in runs(point):
         time, heat, kinetic = run.time, run.data["wall_energy"].values, run.data["kinetic_energy"].values

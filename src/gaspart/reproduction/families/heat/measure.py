@@ -18,7 +18,7 @@ from gaspart.reproduction.families.heat.gap import (
 )
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.scene.faces import thermal_face
 from gaspart.scene.scene import Scene
 from gaspart.state.insertion import per_body
@@ -33,7 +33,7 @@ INNER = dict.fromkeys(_PROFILES, ("bin",)) | {name.removesuffix("_error"): ("fra
 """The further dimension of the arrays of `heat_conduction_gas`."""
 
 
-def heat_conduction_gas(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def heat_conduction_gas(points: list[Point], settings: dict) -> xr.Dataset:
     """Flux through gases of one kind of particles, and their profiles.
 
     settings: `bins` across the gap; `blocks` of each replica; `clear`, the mean free paths next to the walls
@@ -52,9 +52,9 @@ def heat_conduction_gas(points: list[grid.Point], settings: dict) -> xr.Dataset:
     return from_rows("point", [_gas(point, settings) for point in points], INNER)
 
 
-def _gas(point: grid.Point, settings: dict) -> dict:
+def _gas(point: Point, settings: dict) -> dict:
     """The numbers of one point."""
-    scene = grid.scene(point)
+    scene = point.scene
     gap, diameter = Gap.of(scene), 2.0 * scene.smallest_radius
     found = averages(point, gap, settings["blocks"], settings["bins"])
     position = (np.arange(settings["bins"]) + 0.5) * gap.length / settings["bins"]
@@ -117,7 +117,7 @@ def _jump(gap: Gap, position: np.ndarray, energy: np.ndarray, density: np.ndarra
     return float(np.mean(np.array([gap.hot - gas[0], gas[1] - gap.cold]) / (path * gradient)))
 
 
-def heat_conduction_metal(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def heat_conduction_metal(points: list[Point], settings: dict) -> xr.Dataset:
     """Electrons, all particles that move, among fixed vibrating scatterers: profiles between walls of two
     temperatures, and the specific heat between walls of one.
 
@@ -142,9 +142,9 @@ def heat_conduction_metal(points: list[grid.Point], settings: dict) -> xr.Datase
     return ds.assign(slope=fit.values[1], slope_error=fit.errors[1])
 
 
-def _metal(point: grid.Point, settings: dict) -> dict:
+def _metal(point: Point, settings: dict) -> dict:
     """The numbers of one point."""
-    scene = grid.scene(point)
+    scene = point.scene
     gap, fixed = Gap.of(scene), per_body(scene, "fixed").astype(bool)
     bins, blocks = settings["bins"], settings["blocks"] if point.replicas == 1 else 1
     capacity = 0.5 * gap.dimension * np.sum(~fixed) + np.sum(fixed)

@@ -16,7 +16,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.statistics import fit_polynomial, mean_of
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 
 SAMPLES = 24
 """Times, equally spaced in ln t, at which a window's line is fitted."""
@@ -60,7 +60,7 @@ class Fill:
         return failures, successes
 
 
-def fill_failures(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def fill_failures(points: list[Point], settings: dict) -> xr.Dataset:
     """Failures per particle against packing fraction, and the saturation, of every container.
 
     settings: `bins`, number of packing-fraction bins up to the densest fill; `windows`, list of the ratios of
@@ -83,7 +83,7 @@ def fill_failures(points: list[grid.Point], settings: dict) -> xr.Dataset:
     ]
     windows = settings["windows"]
     saturated = [point.experiment in settings["saturated"] for point in points]
-    periodic = [grid.scene(point).container.periodic[0] for point in points]
+    periodic = [point.scene.container.periodic[0] for point in points]
 
     curves = np.array([np.transpose(failures_by_density(one, settings["bins"])) for one in fills])
     ends = np.array([
@@ -123,9 +123,9 @@ def _columns(dimensions: str | tuple[str, ...], table: np.ndarray, *names: str) 
     return {name: (dimensions, table[..., k], {"units": "1"}) for k, name in enumerate(names)}
 
 
-def _properties(points: list[grid.Point], fills: list[Fill]) -> dict[str, tuple]:
+def _properties(points: list[Point], fills: list[Fill]) -> dict[str, tuple]:
     """Variables of the containers and of their state at the end."""
-    sides = [min(grid.extents(point)[2]) / (2.0 * grid.extents(point)[1]) for point in points]
+    sides = [min(point.extents[2]) / (2.0 * point.extents[1]) for point in points]
     final = [one.placed * one.body for one in fills]
     return {
         "dimension": ("container", [one.dimension for one in fills]),
@@ -139,7 +139,7 @@ def _properties(points: list[grid.Point], fills: list[Fill]) -> dict[str, tuple]
     }
 
 
-def _read(point: grid.Point) -> Fill:
+def _read(point: Point) -> Fill:
     with xr.open_dataset(point.path) as dataset:
         return Fill(
             failures=dataset["failures"].values.astype(np.int64),
@@ -149,8 +149,8 @@ def _read(point: grid.Point) -> Fill:
         )
 
 
-def _rule(point: grid.Point) -> str:
-    if grid.scene(point).container.periodic[0]:
+def _rule(point: Point) -> str:
+    if point.scene.container.periodic[0]:
         return "periodic"
     return "centres_to_walls" if point.settings.get("centres_to_walls", False) else "wall"
 

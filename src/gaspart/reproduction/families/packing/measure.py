@@ -7,7 +7,7 @@ import xarray as xr
 from scipy.spatial import cKDTree
 
 from gaspart.reproduction.families.shared.rows import entries, from_rows
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 
 TOUCH = 1e-4
 """Gap, in diameters, up to which two particles of a jammed packing count as touching: contacts that carry the
@@ -16,7 +16,7 @@ BACKBONE = 4
 """Contacts that hold a sphere in place; one with fewer rattles in its cage."""
 
 
-def densest_fill(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def densest_fill(points: list[Point], settings: dict) -> xr.Dataset:
     """Packing fractions with standard errors over replicas, contacts per sphere where the spheres were grown,
     and the first replica of each packing for the picture.
 

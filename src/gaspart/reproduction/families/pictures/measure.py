@@ -9,31 +9,31 @@ import numpy as np
 import xarray as xr
 from scipy.spatial import cKDTree
 
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.trajectory.run import open_trajectory
 
 ROUNDING = 1e-5
 """Depth, in diameters, up to which an overlap is put down to the single precision of frames."""
 
 
-def gas_render(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def gas_render(points: list[Point], settings: dict) -> xr.Dataset:
     """The last frame of the first replica, and what is counted in the last frames of all; see `_scene`."""
     return _scene(points[0])
 
 
-def brownian_render(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def brownian_render(points: list[Point], settings: dict) -> xr.Dataset:
     """The same for the large sphere in its gas."""
     return _scene(points[0])
 
 
-def _scene(point: grid.Point) -> xr.Dataset:
+def _scene(point: Point) -> xr.Dataset:
     """Particles of one frame, and counts over replicas.
 
     `overlaps`: pairs that overlap by more than rounding. `resolved`: with the time-stepped engine, the
     collisions of the step before each frame, overlaps that it found and put right; with the other none.
     `mean_speed` of the last species, with the standard error over particles.
     """
-    scene, overlaps, collisions, speeds = grid.scene(point), [], [], []
+    scene, overlaps, collisions, speeds = point.scene, [], [], []
     for path in point.replica_paths:
         with open_trajectory(path) as dataset:
             last = dataset.isel(frame=-1)

@@ -11,14 +11,14 @@ from scipy.integrate import cumulative_trapezoid
 from gaspart.analysis.run import Run
 from gaspart.reproduction.families.shared.rows import from_rows
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 from gaspart.theory.enskog import enskog_longitudinal_viscosity
 from gaspart.theory.speeds import mean_speed
 
 
-def piston(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def piston(points: list[Point], settings: dict) -> xr.Dataset:
     """Three kinds of points, all of particles of mass 1 in containers whose first axis has walls.
 
     With a piston and without an equilibration, over (path, path_replica, frame): volume over that at first;
@@ -36,7 +36,7 @@ def piston(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """
     kinds: dict[str, list[dict]] = {"path": [], "state": [], "expansion": []}
     for point in points:
-        scene, equilibration = grid.scene(point), grid.schedule(point).equilibration_frames
+        scene, equilibration = point.scene, point.schedule.equilibration_frames
         kind = "expansion" if not pistons(scene) else "state" if equilibration else "path"
         read = {"path": _path, "state": _state, "expansion": _expansion}[kind]
         replicas = [read(run) for run in runs(point, equilibration if kind == "state" else 0)]

@@ -11,14 +11,14 @@ import xarray as xr
 
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.timings import log_ratios, per_event, ratio_of_jobs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.scene.scene import Scene
 
 PLAIN = "plain"
 WORK = ("pair_tests", "box_visits", "crossings")
 
 
-def price_of_features(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def price_of_features(points: list[Point], settings: dict) -> xr.Dataset:
     """Costs per event (a collision or a hit at a wall), and over those of the scene without beside it.
 
     Over point (a feature with an engine): engine, feature (which the other scene lacks), seconds per event,
@@ -49,7 +49,7 @@ def _together(jobs: list[dict]) -> dict:
     }
 
 
-def _row(point: grid.Point) -> dict:
+def _row(point: Point) -> dict:
     """One job: its costs per event, and the mean over its repeats of ln of the time per event over that of
     the scene without the feature, timed next to it."""
     with xr.open_dataset(point.path) as run:
@@ -59,7 +59,7 @@ def _row(point: grid.Point) -> dict:
     own = costs.isel(partition=0)
     return {
         "engine": engine,
-        "feature": _feature(grid.scene(point), recorded),
+        "feature": _feature(point.scene, recorded),
         "log_ratio": log_ratio,
         **{name: float(own[name]) for name in ("seconds", *WORK)},
     }

@@ -28,13 +28,13 @@ from gaspart.analysis.statistics import average, correlated_mean
 from gaspart.reproduction.families.shared.pressure import Series, combine, series_of, totals
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.scene.scene import Scene
 
 _STEP = 1e-4
 
 
-def radius_grid(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def radius_grid(points: list[Point], settings: dict) -> xr.Dataset:
     """Z and counted work of periodic points, of both engines.
 
     An experiment whose points have one packing fraction is the series "packing fraction", else "count".
@@ -47,7 +47,7 @@ def radius_grid(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """
     experiments = {point.experiment for point in points}
     fixed = {
-        name: len({round(grid.scene(p).packing_fraction, 9) for p in points if p.experiment == name}) == 1
+        name: len({round(p.scene.packing_fraction, 9) for p in points if p.experiment == name}) == 1
         for name in experiments
     }
     series = ["packing fraction" if fixed[point.experiment] else "count" for point in points]
@@ -57,8 +57,8 @@ def radius_grid(points: list[grid.Point], settings: dict) -> xr.Dataset:
     )
 
 
-def _row(point: grid.Point) -> dict[str, float]:
-    scene, engine = grid.scene(point), grid.engine(point)
+def _row(point: Point) -> dict[str, float]:
+    scene, engine = point.scene, point.engine
     per_side = getattr(engine, "boxes_per_side", None)
     assert isinstance(per_side, tuple), "every point of this figure gives its boxes"
     eta, dimension = scene.packing_fraction, scene.dimension

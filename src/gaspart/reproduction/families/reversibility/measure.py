@@ -9,7 +9,7 @@ import xarray as xr
 
 from gaspart.analysis.statistics import mean_of
 from gaspart.reproduction.families.shared.rows import from_rows
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 
 WINDOW = {"float64": (1e-13, 1e-2), "float32": (1e-5, 1e-2)}
 """Distances, in diameters, between which a growth is fitted: above the first roundings, below saturation."""
@@ -17,7 +17,7 @@ FORGOTTEN = 0.1
 """The memory ends where the echo is so many diameters from the start."""
 
 
-def reversibility(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def reversibility(points: list[Point], settings: dict) -> xr.Dataset:
     """Growth of the echo per collision of a particle, and the collisions after which the initial state is
     forgotten.
 

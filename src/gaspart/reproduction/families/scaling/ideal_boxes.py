@@ -12,10 +12,10 @@ from gaspart.reproduction.families.shared.timings import (
     per_body,
     trend,
 )
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 
 
-def ideal_boxes(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def ideal_boxes(points: list[Point], settings: dict) -> xr.Dataset:
     """The ideal number of boxes of many gases.
 
     settings: ``rule``, source A's boxes per particle; ``source_numbers``, those that it found for the largest

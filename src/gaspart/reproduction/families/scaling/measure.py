@@ -26,11 +26,11 @@ from gaspart.reproduction.families.shared.timings import (
     trend,
     weights,
 )
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.theory import partition as theory
 
 
-def naive_scaling(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def naive_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     """One box: the cost of a step against the number of particles N.
 
     Over ``count``: ``pair_tests`` per step, ``seconds`` per step with ``seconds_error``. Scalars:
@@ -51,7 +51,7 @@ def naive_scaling(points: list[grid.Point], settings: dict) -> xr.Dataset:
     )
 
 
-def box_count(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def box_count(points: list[Point], settings: dict) -> xr.Dataset:
     """One gas: cost against the number of boxes, time-stepped and event-driven.
 
     settings: ``round_per_side``, the boxes per side that source A found quicker for their round width;
@@ -122,7 +122,7 @@ def _crossings(events: xr.Dataset, run: xr.Dataset) -> dict[str, Any]:
     }
 
 
-def linear_scaling(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def linear_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     """The cost of a step with the cheapest partition of each gas, against the number of particles N.
 
     settings: ``source_figures``, radius and range of counts of source A's figures 8, 9 and 10;
@@ -174,7 +174,7 @@ def linear_scaling(points: list[grid.Point], settings: dict) -> xr.Dataset:
     )
 
 
-def event_scaling(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def event_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     """The cost of an event, by each method of searching for the next one, against the number of particles N.
 
     settings: ``fit_from``, for each search the least N in the fits. Over ``run``: ``search``, ``dimension``,

@@ -14,14 +14,14 @@ import xarray as xr
 from gaspart.analysis.run import Run
 from gaspart.reproduction.families.shared.rows import from_rows
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.scene.scene import Scene
 from gaspart.theory.granular import DISCHARGE_EXPONENT
 
 _FILLED = 0.84  # packing fraction of a filling of discs of two sizes (random close packing)
 
 
-def settling(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def settling(points: list[Point], settings: dict) -> xr.Dataset:
     """Piles (points without interior walls) and flows through the orifice between two walls (the others).
 
     settings: `gap`, `start`, `head` (see FIGURES).
@@ -34,7 +34,7 @@ def settling(points: list[grid.Point], settings: dict) -> xr.Dataset:
     (liquid_ratio); over `orifice` and `flow_frame` the discs `left` at `flow_time`; and the parameters of
     `_fit`.
     """
-    walls = [bool(grid.scene(point).walls) for point in points]
+    walls = [bool(point.scene.walls) for point in points]
     piles = [
         _pile(run, settings["gap"])
         for point, flows in zip(points, walls, strict=True)
@@ -116,9 +116,9 @@ class Flow:
         return float(np.exp(np.log(self.rates).mean()))
 
 
-def _flow(point: grid.Point, settings: dict) -> Flow:
+def _flow(point: Point, settings: dict) -> Flow:
     """The flow of a point. Raises ValueError if fewer discs leave the hopper than are to be timed."""
-    scene = grid.scene(point)
+    scene = point.scene
     _, left_end, right_end, _ = sorted(end for wall in scene.walls for end in wall.corners.values())
     height, width = left_end[1], right_end[0] - left_end[0]
     filled = _FILLED * scene.container.lengths[0]  # area of discs in a unit of height

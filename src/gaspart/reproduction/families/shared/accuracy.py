@@ -7,7 +7,7 @@ import xarray as xr
 
 from gaspart.analysis import statistics
 from gaspart.reproduction.families.shared.timings import median
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 
 
 def setting_name(rewind: bool, passes: int, precision: str) -> str:
@@ -16,7 +16,7 @@ def setting_name(rewind: bool, passes: int, precision: str) -> str:
     return name + ("" if rewind else ", no rewinding") + (", float32" if precision == "float32" else "")
 
 
-def errors(point: grid.Point) -> dict:
+def errors(point: Point) -> dict:
     """Errors over the accepted time steps of a `compare` point, the longest first."""
     run = xr.load_dataset(point.path)
     run = run.isel(setting=np.flatnonzero(run.refused == 0)).sortby("time_step", ascending=False)
@@ -61,7 +61,7 @@ def _difference(run: xr.Dataset, name: str, least: np.ndarray) -> np.ndarray:
     return np.stack([apart.sum(axis=1) / exact.sum(axis=1), np.maximum(error, least)])
 
 
-def costs(point: grid.Point) -> dict:
+def costs(point: Point) -> dict:
     """The costs of a `measure_cost` point, per time simulated."""
     run = xr.load_dataset(point.path)
     seconds, error = median(run.seconds.values)

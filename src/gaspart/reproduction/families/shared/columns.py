@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.scene.species import Body, Species
 
 
@@ -39,9 +39,9 @@ class Field:
         return float(self.strength * self.masses[np.isfinite(self.masses)].sum())
 
 
-def field(point: grid.Point) -> Field:
+def field(point: Point) -> Field:
     """The field and the container of a point."""
-    scene = grid.scene(point)
+    scene = point.scene
     radius = scene.smallest_radius
     lower, upper = scene.reach(radius)
     parts: list[tuple[Species | Body, int, int]] = [(body, 1, len(scene.species)) for body in scene.bodies]
@@ -78,7 +78,7 @@ class Stretch:
         return self.positions[..., 1]
 
 
-def stretches(point: grid.Point, number: int) -> list[Stretch]:
+def stretches(point: Point, number: int) -> list[Stretch]:
     """The measured part of every replica, cut into `number` stretches of equal length (a remainder is
     omitted).
 

@@ -8,12 +8,12 @@ import numpy as np
 
 from gaspart.analysis.correlations import Curves, accumulated
 from gaspart.errors import SceneError
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import plain_gas
 from gaspart.trajectory.run import open_trajectory
 
 
-def reduced_curves(point: grid.Point, path: str, longest: float) -> Curves:
+def reduced_curves(point: Point, path: str, longest: float) -> Curves:
     """The curves of one replica, to the lag `longest` (reduced time) or to the last one that it has.
 
     The particles' diameter, mass and temperature are 1: the temperature 2 E' / (d (N - 1)) is the replica's
@@ -21,7 +21,7 @@ def reduced_curves(point: grid.Point, path: str, longest: float) -> Curves:
     """
     if "lags" not in point.settings:
         raise SceneError(f"experiments.{point.experiment}.lags", None, "is required")
-    gas = plain_gas(grid.scene(point))
+    gas = plain_gas(point.scene)
     with open_trajectory(path) as trajectory:
         curves = accumulated(trajectory)
     thermal_speed = math.sqrt(curves.correlation[0] * gas.count / (gas.count - 1))

@@ -29,7 +29,7 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import autocorrelation_time, average, correlated_mean
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import plain_gas
 
 
@@ -90,7 +90,7 @@ def series_of(run: Run) -> Series:
     )
 
 
-def pressure(point: grid.Point) -> Pressure:
+def pressure(point: Point) -> Pressure:
     """Z and the collision rate of a periodic point, from all its replicas. See the module for the formula."""
     return combine([series_of(run) for run in runs(point)])
 

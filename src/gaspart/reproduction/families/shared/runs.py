@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from gaspart.analysis.run import Run
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.trajectory.run import open_trajectory
 
 
-def runs(point: grid.Point, first: int | None = None) -> Iterator[Run]:
+def runs(point: Point, first: int | None = None) -> Iterator[Run]:
     """The frames of each replica, from the end of its equilibration or from frame `first` on; each run is
     open until the next one is asked for.
 
     Raises OSError for a file that cannot be read and ValueError for one of another point.
     """
-    scene, schedule = grid.scene(point), grid.schedule(point)
+    scene, schedule = point.scene, point.schedule
     before = schedule.equilibration_frames
     kept = slice(before if first is None else first, None)
     for path in point.replica_paths:

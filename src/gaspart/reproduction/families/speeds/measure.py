@@ -16,7 +16,7 @@ from gaspart.analysis.statistics import histogram_chi_square, mean_of
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.rows import from_rows
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import plain_gas
 from gaspart.scene.scene import Scene
 
@@ -41,7 +41,7 @@ class Velocities:
         return np.sqrt(square / square.mean(axis=1, keepdims=True))
 
 
-def read(point: grid.Point, first: int | None = None) -> list[Velocities]:
+def read(point: Point, first: int | None = None) -> list[Velocities]:
     """Of all replicas of a point, without their equilibration or from frame `first` on."""
     return [
         Velocities(
@@ -82,7 +82,7 @@ def shared_error(samples: list[np.ndarray]) -> list[np.ndarray]:
     return [np.sqrt(squares / freedom / len(group)) for group in samples]
 
 
-def speed_relaxation(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def speed_relaxation(points: list[Point], settings: dict) -> xr.Dataset:
     """Kurtosis, fraction never hit and histogram during relaxation from equal speeds to Maxwell's
     distribution.
 
@@ -94,7 +94,7 @@ def speed_relaxation(points: list[grid.Point], settings: dict) -> xr.Dataset:
     """
     dimension = points[0].settings["dimension"]
     groups = [read(point, first=0) for point in points]
-    scene = grid.scene(points[0])
+    scene = points[0].scene
     time = groups[0][0].time
     _require_alike(points, groups)
     shown = np.array([_frame_at(time, chosen) for chosen in settings["times"]])
@@ -140,11 +140,11 @@ def speed_relaxation(points: list[grid.Point], settings: dict) -> xr.Dataset:
     return dataset
 
 
-def _require_alike(points: list[grid.Point], groups: list[list]) -> None:
+def _require_alike(points: list[Point], groups: list[list]) -> None:
     """Raise SceneError unless all points, with a group of runs each, have the first's scene and times."""
-    scene, time = grid.scene(points[0]), groups[0][0].time
+    scene, time = points[0].scene, groups[0][0].time
     for point, group in zip(points, groups, strict=True):
-        if grid.scene(point) != scene or any(
+        if point.scene != scene or any(
             run.time.shape != time.shape or not np.allclose(run.time, time) for run in group
         ):
             raise SceneError(
@@ -192,17 +192,17 @@ def _initial_slope(s: np.ndarray, values: np.ndarray) -> float:
     return float(np.linalg.lstsq(design, values[early] - 1.0, rcond=None)[0][0])
 
 
-def speed_distribution_spheres(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def speed_distribution_spheres(points: list[Point], settings: dict) -> xr.Dataset:
     """Maxwell's distribution in 3D; see `distribution`."""
     return distribution(points, settings)
 
 
-def speed_distribution_discs(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def speed_distribution_discs(points: list[Point], settings: dict) -> xr.Dataset:
     """Maxwell's distribution in 2D; see `distribution`."""
     return distribution(points, settings)
 
 
-def distribution(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def distribution(points: list[Point], settings: dict) -> xr.Dataset:
     """Speeds in equilibrium, of all snapshots and replicas, against Maxwell's distribution without a fit.
 
     Snapshots are the frames after equilibration; how many collisions per particle lie between them is in
@@ -228,9 +228,7 @@ def distribution(points: list[grid.Point], settings: dict) -> xr.Dataset:
     return dataset.assign_attrs(dimension=dimension)
 
 
-def _distribution(
-    point: grid.Point, dimension: int, edges: np.ndarray, steps: np.ndarray, classes: int
-) -> dict:
+def _distribution(point: Point, dimension: int, edges: np.ndarray, steps: np.ndarray, classes: int) -> dict:
     """The numbers of one point. Speeds are over the root-mean-square speed: Maxwell's temperature is 1/d."""
     temperature = 1.0 / dimension
     found = read(point)
@@ -246,7 +244,7 @@ def _distribution(
     between = min(float(np.diff(run.collisions).min()) for run in found)
     memory = np.exp(-theory.KURTOSIS_RELAXATION_RATE[dimension] * between)
     energy = np.concatenate([run.temperature for run in found])
-    scene = grid.scene(point)
+    scene = point.scene
     return {
         "density": share / width,
         "density_error": deviation / width,
@@ -273,12 +271,12 @@ def _distribution(
     }
 
 
-def _given_temperature(point: grid.Point) -> float:
+def _given_temperature(point: Point) -> float:
     """That of the speed that all particles were given, which no draw makes uncertain."""
     if "speed" not in point.settings:
         rule = "is required: all particles start with it"
         raise SceneError(f"experiments.{point.experiment}.speed", None, rule)
-    return plain_gas(grid.scene(point)).temperature
+    return plain_gas(point.scene).temperature
 
 
 def _kolmogorov_distance(cumulative: np.ndarray) -> float:

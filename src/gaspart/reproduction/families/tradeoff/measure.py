@@ -21,7 +21,7 @@ from gaspart.reproduction.families.shared.accuracy import (
 )
 from gaspart.reproduction.families.shared.pressure import pressure
 from gaspart.reproduction.families.shared.rows import entries, from_rows
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.tradeoff import table
 from gaspart.tradeoff.table import EQUILIBRATION, LEAST, PRECISIONS, QUANTILE, REFERENCE, STEP
 
@@ -33,7 +33,7 @@ FITTED = 3
 changes its sign."""
 
 
-def speed_accuracy(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     """Errors and costs over the time steps of each gas and setting.
 
     points: `compare` jobs; `measure_cost` jobs of both engines; and runs of the time-stepped engine long
@@ -113,7 +113,7 @@ def frontier(dataset: xr.Dataset) -> xr.Dataset:
     )
 
 
-def time_to_accuracy(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     """The cost of a required accuracy in gases that the model was not fitted to, measured and by the model.
 
     points: as for `speed_accuracy`, of gases that are not in the model's table; and timings of its reference
@@ -252,7 +252,7 @@ def _timed(run: dict) -> dict:
     }
 
 
-def _steady(point: grid.Point, rows: list[dict]) -> dict:
+def _steady(point: Point, rows: list[dict]) -> dict:
     """The error of Z in a long run of the time-stepped engine, minus that of the paired runs of its gas."""
     own = point.settings
     long, fraction, dimension = pressure(point).z, own["packing_fraction"], own["dimension"]
@@ -261,7 +261,7 @@ def _steady(point: grid.Point, rows: list[dict]) -> dict:
     row = next(row for row in rows if (row["dimension"], row["packing_fraction"], row["setting"]) == gas)
     at = int(np.argmin(np.abs(row["time_step"] - own["time_step"])))
     exact = float(theory.compressibility_factor(fraction, dimension))
-    count = grid.extents(point)[0]
+    count = point.extents[0]
     exact += float(theory.finite_size_correction(fraction, dimension, count, ensemble="canonical"))
     return {
         "steady_dimension": dimension,

@@ -25,10 +25,10 @@ from gaspart.analysis.correlations import between
 from gaspart.analysis.statistics import fit_linear, fit_polynomial, mean_of, means_of
 from gaspart.reproduction.families.shared.curves import reduced_curves
 from gaspart.reproduction.families.shared.rows import from_rows
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 
 
-def velocity_autocorrelation(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def velocity_autocorrelation(points: list[Point], settings: dict) -> xr.Dataset:
     """C(t) of every point, the rate of its start and the amplitude of its tail.
 
     settings: `start_to`, collisions of a particle up to which -ln C is fitted by a line and a parabola, where
@@ -43,8 +43,8 @@ def velocity_autocorrelation(points: list[grid.Point], settings: dict) -> xr.Dat
     return from_rows("point", rows, ("lag",), units={"time": "sigma sqrt(m / k_B T)"})
 
 
-def _row(point: grid.Point, settings: dict) -> dict:
-    scene = grid.scene(point)
+def _row(point: Point, settings: dict) -> dict:
+    scene = point.scene
     dimension, count, eta = scene.dimension, scene.count, scene.packing_fraction
     rate = float(theory.collision_rate(eta, dimension))
     rate *= float(theory.collision_rate_finite_size_factor(eta, dimension, count))

@@ -12,13 +12,13 @@ from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import means_of
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.scene.faces import Vibrating
 
 _FLOOR = 2  # the number of the face y_low
 
 
-def vibrated_bed(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def vibrated_bed(points: list[Point], settings: dict) -> xr.Dataset:
     """Temperature, energy flows and density of vibrated beds of one kind of discs, of mass 1.
 
     settings: `bins` of the density profile, and `highest`, the height up to which it reaches, over T/g.
@@ -39,8 +39,8 @@ def _edges(settings: dict) -> np.ndarray:
     return np.linspace(0.0, settings["highest"], settings["bins"] + 1)
 
 
-def _bed(point: grid.Point, settings: dict) -> dict[str, Any]:
-    scene = grid.scene(point)
+def _bed(point: Point, settings: dict) -> dict[str, Any]:
+    scene = point.scene
     floor, species, law = scene.faces["y_low"], scene.species[0], scene.restitution
     assert isinstance(floor, Vibrating) and law is not None and scene.gravity is not None
     width, sine = scene.container.lengths[0], floor.waveform == "sine"

@@ -11,21 +11,21 @@ from gaspart import theory
 from gaspart.analysis.statistics import Fit, fit_polynomial
 from gaspart.reproduction.families.shared.claims import freedoms
 from gaspart.reproduction.families.shared.pressure import pressure
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 from gaspart.theory.virial import linear_tail_uncertainty
 
 
-def virial_discs(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def virial_discs(points: list[Point], settings: dict) -> xr.Dataset:
     """Z of discs at each packing fraction, virial coefficients fitted to it. See `equation_of_state`."""
     return equation_of_state(points, settings)
 
 
-def virial_spheres(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def virial_spheres(points: list[Point], settings: dict) -> xr.Dataset:
     """Z of spheres at each packing fraction, virial coefficients fitted to it. See `equation_of_state`."""
     return equation_of_state(points, settings)
 
 
-def equation_of_state(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def equation_of_state(points: list[Point], settings: dict) -> xr.Dataset:
     """Z against packing fraction of one dimension, with the reference, and fits of B2, B3, B4.
 
     settings: `fits`, a list of mappings {free: highest coefficient left free, up_to: largest packing fraction
@@ -38,10 +38,10 @@ def equation_of_state(points: list[grid.Point], settings: dict) -> xr.Dataset:
     coefficient and coefficient_error (in powers of the packing fraction; NaN where it was not free), exact;
     over `fit`: free, up_to, held, chi_square, degrees_of_freedom, held_error (`order`, `fit`).
     """
-    points = sorted(points, key=lambda point: grid.scene(point).packing_fraction)
+    points = sorted(points, key=lambda point: point.scene.packing_fraction)
     dimension = points[0].settings["dimension"]
-    eta = np.array([grid.scene(point).packing_fraction for point in points])
-    count = np.array([grid.extents(point)[0] for point in points])
+    eta = np.array([point.scene.packing_fraction for point in points])
+    count = np.array([point.extents[0] for point in points])
     runs = [pressure(point) for point in points]
     shift = np.array([
         float(theory.finite_size_correction(x, dimension, n, ensemble="canonical"))

@@ -16,10 +16,10 @@ from gaspart.analysis.statistics import average, correlated_mean
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.points import grid
+from gaspart.reproduction.points.point import Point
 
 
-def wall_pressure(points: list[grid.Point], settings: dict) -> xr.Dataset:
+def wall_pressure(points: list[Point], settings: dict) -> xr.Dataset:
     """The pressure on the walls of containers that have them on some or all axes, with theory for each.
 
     Returns over `point`: pressure with its error, the mean force on a wall over the area that centres can
@@ -35,8 +35,8 @@ def wall_pressure(points: list[grid.Point], settings: dict) -> xr.Dataset:
     return from_rows("point", [_row(point) for point in points], units=units)
 
 
-def _row(point: grid.Point) -> dict:
-    scene = grid.scene(point)
+def _row(point: Point) -> dict:
+    scene = point.scene
     dimension, count, diameter = scene.dimension, scene.count, 2.0 * scene.largest_radius
     lengths = np.array(scene.container.lengths) / diameter
     walled = ~np.array(scene.container.periodic)

@@ -1,15 +1,14 @@
-"""From a config to the points of its grids, and from a point to the recipe of its job."""
+"""From a config to the points of its grids, and from a point to the parameters of its job."""
 
 import math
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
 from gaspart import theory
 from gaspart.errors import SceneError
-from gaspart.reproduction.points import grid, jobs
+from gaspart.reproduction.points.engine import boxes_per_side
 from gaspart.reproduction.points.points import points
 from gaspart.scene.scene import Scene
 
@@ -55,14 +54,14 @@ def test_without_a_grid_there_is_one_point():
     assert only().name == "single"
 
 
-def test_adding_a_value_changes_neither_names_nor_seeds_nor_recipes_of_the_others():
+def test_adding_a_value_changes_neither_names_nor_seeds_nor_parameters_of_the_others():
     before = points(config(grid={"packing_fraction": [0.1, 0.3]}), "gas")
     after = {
         point.name: point for point in points(config(grid={"packing_fraction": [0.05, 0.1, 0.3]}), "gas")
     }
     for point in before:
         assert after[point.name] == point
-        assert jobs.recipe(after[point.name]) == jobs.recipe(point)
+        assert after[point.name].parameters == point.parameters
 
 
 def test_seeds_differ_between_replicas_points_and_config_seeds():
@@ -80,7 +79,7 @@ def test_a_seed_is_the_same_today_and_tomorrow():
 def test_null_takes_a_key_back():
     point = only(point={"packing_fraction": None, "side": 20.0})
     assert "packing_fraction" not in point.settings
-    assert grid.scene(point).container.lengths == (20.0, 20.0)
+    assert point.scene.container.lengths == (20.0, 20.0)
 
 
 @pytest.mark.parametrize(
@@ -93,7 +92,7 @@ def test_null_takes_a_key_back():
     ],
 )
 def test_any_three_of_count_radius_packing_fraction_and_side_make_the_same_scene(given):
-    scene = grid.scene(only(point=given))
+    scene = only(point=given).scene
     assert scene.count == 100
     assert scene.largest_radius == pytest.approx(0.5, rel=1e-14)
     assert scene.packing_fraction == pytest.approx(0.2, rel=1e-14)
@@ -109,7 +108,7 @@ def test_paths_by_kind_of_job():
 
 
 def test_collisions_per_body_become_time_by_enskogs_rate():
-    schedule = grid.schedule(only())
+    schedule = only().schedule
     rate = theory.collision_rate(0.2, 2, 1.0, 2.0, 1.0)
     assert schedule.sample_interval == pytest.approx(50 / rate / 10)
     assert schedule.equilibration_frames == 1  # 3 collisions per body in intervals of 5, rounded up
@@ -117,40 +116,42 @@ def test_collisions_per_body_become_time_by_enskogs_rate():
 
 
 def test_a_fixed_speed_counts_as_the_temperature_it_relaxes_to():
-    by_speed = grid.schedule(only(point={"temperature": None, "speed": 2.0}))
-    assert by_speed == grid.schedule(only(point={"temperature": 2.0}))
+    by_speed = only(point={"temperature": None, "speed": 2.0}).schedule
+    assert by_speed == only(point={"temperature": 2.0}).schedule
 
 
 def test_steps_are_sampled_at_whole_time_steps():
     steps = {"engine": "step", "time_step": 0.03, "collisions_per_body": None, "steps": 1000, "samples": 7}
-    schedule = grid.schedule(only(point={**steps, "equilibration": 0}))
+    schedule = only(point={**steps, "equilibration": 0}).schedule
     assert schedule.sample_interval / 0.03 == pytest.approx(143, rel=1e-14)
     assert schedule.equilibration_frames == 0
 
 
 def test_boxes_per_body_are_never_smaller_than_a_diameter():
-    assert grid.boxes_per_side(1.0, 1000, 0.1, (10.0, 10.0, 10.0)) == (10, 10, 10)
-    assert grid.boxes_per_side(1000.0, 1000, 0.5, (10.0, 20.0)) == (10, 20)
-    assert grid.boxes_per_side(1e-6, 10, 0.5, (10.0, 10.0)) == (1, 1)
+    assert boxes_per_side(1.0, 1000, 0.1, (10.0, 10.0, 10.0)) == (10, 10, 10)
+    assert boxes_per_side(1000.0, 1000, 0.5, (10.0, 20.0)) == (10, 20)
+    assert boxes_per_side(1e-6, 10, 0.5, (10.0, 10.0)) == (1, 1)
 
 
 def test_a_scan_is_timed_beside_the_same_partitions_without_a_key_of_the_engine():
     steps = {"engine": "step", "time_step": 0.01, "scan_boxes_per_side": [3, 6], "near_boxes": True}
-    recipe = jobs.recipe(only(point=steps | {"without": ["near_boxes"]}, job="measure_cost"))
-    beside = recipe["rival"]
-    assert beside["scene"] == recipe["scene"]
-    assert [engine["near_boxes"] for engine in recipe["engines"] + beside["engines"]] == [True] * 2 + [
+    parameters = only(point=steps | {"without": ["near_boxes"]}, job="measure_cost").parameters
+    beside = parameters["rival"]
+    assert beside["scene"] == parameters["scene"]
+    assert [engine["near_boxes"] for engine in parameters["engines"] + beside["engines"]] == [True] * 2 + [
         False
     ] * 2
-    assert [engine["boxes_per_side"] for engine in recipe["engines"] + beside["engines"]] == [3, 6, 3, 6]
+    assert [engine["boxes_per_side"] for engine in parameters["engines"] + beside["engines"]] == [3, 6, 3, 6]
 
 
-def test_a_recipe_is_plain_and_makes_the_same_scene():
+def test_a_parameters_is_plain_and_makes_the_same_scene():
     point = only(point={"replicas": 2})
-    recipe = jobs.recipe(point)
-    assert Scene.from_dict(recipe["scene"]) == grid.scene(point)
-    assert recipe["seeds"] == [list(point.seed(0)), list(point.seed(1))]
-    assert eval(repr(recipe), {"__builtins__": {}}) == recipe  # Snakemake compares the text of parameters
+    parameters = point.parameters
+    assert Scene.from_dict(parameters["scene"]) == point.scene
+    assert parameters["seeds"] == [list(point.seed(0)), list(point.seed(1))]
+    assert (
+        eval(repr(parameters), {"__builtins__": {}}) == parameters
+    )  # Snakemake compares the text of parameters
 
 
 @pytest.mark.parametrize(
@@ -176,19 +177,16 @@ def test_a_recipe_is_plain_and_makes_the_same_scene():
 def test_what_contradicts_itself_is_refused_by_its_key(arguments, key):
     with pytest.raises(SceneError) as refused:
         for point in points(config(**arguments), "gas"):
-            jobs.recipe(point)
+            _ = point.parameters
     assert refused.value.key == key
     assert "\n" not in str(refused.value)
 
 
 def test_planning_imports_nothing_heavy():
     heavy = ["numpy", "numba", "xarray"]
-    names = "gaspart.reproduction.points.grid, gaspart.reproduction.config"
+    names = "gaspart.reproduction.points.point, gaspart.reproduction.config"
     code = f"import sys, {names}; print([m for m in {heavy} if m in sys.modules])"
-    source = Path(grid.__file__).parents[1]
-    result = subprocess.run(
-        [sys.executable, "-c", code], cwd=source, capture_output=True, text=True, check=True
-    )
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert result.stdout.strip() == "[]"
 
 
@@ -198,7 +196,7 @@ def test_engine_auto_becomes_the_engine_for_the_accuracy():
     assert point.settings["engine"] in ("event", "step")
     assert point.settings["collisions_per_body"] >= 20 and "accuracy" not in point.settings
     finer = only(point={**wanted, "accuracy": 0.001})
-    runs = [grid.schedule(one).duration * one.replicas for one in (point, finer)]
+    runs = [one.schedule.duration * one.replicas for one in (point, finer)]
     assert runs[1] > 30 * runs[0]
     assert only(point={**wanted, "collisions_per_body": 7}).settings["collisions_per_body"] == 7
     with pytest.raises(SceneError, match="accuracy.*required"):

@@ -1,0 +1,92 @@
+"""Trajectories, one for each replica of a point.
+
+Planning reads this module, so slow imports are made inside functions.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gaspart.engines import engine_from_dict, engine_to_dict
+from gaspart.kinds import Kind, count, flag
+from gaspart.reproduction.jobs.stretches import EQUILIBRATION
+
+if TYPE_CHECKING:
+    from gaspart.engines import Engine
+    from gaspart.reproduction.points.point import Point
+
+RESULT = "trajectories"
+KEYS: dict[str, Kind] = {
+    "equilibration": EQUILIBRATION,
+    "samples": count(
+        "number of intervals into which the length is divided, with a frame at the end of each", default=1
+    ),
+    "displacements": flag("keep displacements in float64, for mean-squared displacements", default=False),
+    "lags": count(
+        "accumulate time correlations of all samples up to so many intervals apart, but at most half the "
+        "length, and keep the first and the last frame only; with `displacements` of these too",
+        default=None,
+    ),
+    "follow": count(
+        "keep only the first so many particles (single `bodies` come first, then `species`); counters and "
+        "energies are those of all",
+        default=None,
+    ),
+}
+
+
+def engines(point: Point) -> list[Engine]:
+    """The engine of the trajectories."""
+    return [point.engine]
+
+
+def parameters(point: Point) -> dict:
+    """The arguments of `gaspart.run`, in plain values. Raises SceneError."""
+    times, follow = point.schedule, point.settings.get("follow")
+    if follow is not None and follow > point.extents.particles:
+        raise point.refused("follow", f"there are {point.extents.particles} particles")
+    correlations = None
+    if "lags" in point.settings:
+        lags = min(point.settings["lags"], (times.samples + 1) // 2)
+        correlations = {"interval": times.sample_interval, "lags": lags, "start": times.equilibration}
+    return {
+        "engine": engine_to_dict(point.engine),
+        "duration": times.duration,
+        "sample_interval": times.duration if correlations else times.sample_interval,
+        "displacements": point.settings.get("displacements", False),
+        "follow": follow,
+        "correlations": correlations,
+    }
+
+
+def run(parameters: dict, folder: Path) -> None:
+    """Write a trajectory for each seed.
+
+    They lie beside `folder`, which Snakemake deletes before a rerun, until all are complete: an interrupted
+    run resumes there.
+    """
+    from gaspart.scene.scene import Scene
+    from gaspart.trajectory import run as trajectory
+    from gaspart.trajectory.correlator import Correlations
+
+    partial = Path(f"{folder}.partial")
+    partial.mkdir(parents=True, exist_ok=True)
+    paths = [partial / f"replica-{replica}.nc" for replica in range(len(parameters["seeds"]))]
+    for path, seed in zip(paths, parameters["seeds"], strict=True):
+        print(f"{path}: seed {seed}, {parameters['duration']:g} units of time")
+        trajectory.run(
+            Scene.from_dict(parameters["scene"]),
+            engine_from_dict(parameters["engine"]),
+            seed=tuple(seed),
+            duration=parameters["duration"],
+            sample_interval=parameters["sample_interval"],
+            path=path,
+            displacements=parameters["displacements"],
+            follow=parameters["follow"],
+            correlations=parameters["correlations"] and Correlations(**parameters["correlations"]),
+            overwrite=True,  # the remainder of a run with other parameters
+        )
+    for leftover in set(partial.iterdir()) - set(paths):
+        leftover.unlink()
+    partial.rename(folder)

@@ -1,0 +1,35 @@
+"""What jobs that run a scene have in common: keys, and the division of a run into stretches of time."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from gaspart.engines import engine_to_dict
+from gaspart.kinds import NOT_NEGATIVE, POSITIVE, described, listed
+
+if TYPE_CHECKING:
+    from gaspart.reproduction.points.point import Point
+
+SLACK = 1e-6
+"""Part of a time step by which a run is longer, so that rounding of its duration loses no step."""
+EQUILIBRATION = described(
+    NOT_NEGATIVE,
+    "time before the length, in the same unit; rounded up to whole samples, which are not measured",
+    default=0,
+)
+SCAN_TIME_STEPS = listed(
+    POSITIVE,
+    "time steps that one job runs in turn; the length of the run is in multiples of `time_step`",
+    default=None,
+)
+
+
+def stretches(point: Point) -> dict:
+    """The parameters of a job that runs several engines for the same stretches of time."""
+    times = point.schedule
+    return {
+        "engines": [engine_to_dict(engine) for engine in point.engines],
+        "equilibration": times.equilibration,
+        "stretch": times.sample_interval,
+        "repeats": times.samples,
+    }

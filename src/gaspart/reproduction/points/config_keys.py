@@ -1,0 +1,127 @@
+"""The keys of a config, of an experiment and of all its points: kind, default and meaning of each.
+
+Validation, the JSON schema and the reference page follow from these tables. The settings of a figure are
+declared in the `__init__.py` of its family.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from gaspart.kinds import TEXT, Kind, choice, count, described, flag, listed, nullable, positive, record
+from gaspart.reproduction.points.jobs import JOBS
+from gaspart.reproduction.points.keys import (
+    ENGINE,
+    ENGINES,
+    EXTENTS,
+    GAS,
+    LENGTHS,
+    SCENE_FILE,
+)
+
+_NAME = {"pattern": r"^[a-z][a-z0-9_]*$(?!\n)", "maxLength": 100}  # $ matches before a final line break too
+
+
+def _of_any_engine() -> dict[str, Kind]:
+    """The keys of all engines; what one means is stated for each engine that has another meaning of it."""
+    merged: dict[str, Kind] = {}
+    for engine, keys in ENGINES.items():
+        for name, kind in keys.items():
+            meaning = kind["description"]
+            known = merged.setdefault(name, {**kind, "default": None})["description"]
+            if meaning not in known:
+                merged[name] = {**merged[name], "description": f"{known}; {engine}: {meaning}"}
+    return merged
+
+
+def _of_any_job() -> dict[str, Kind]:
+    """The keys of all jobs, each with its meaning for every job that has it."""
+    kinds: dict[str, Kind] = {}
+    meanings: dict[str, dict[str, list[str]]] = {}  # of each key: meaning, jobs
+    for job, module in JOBS.items():
+        for name, kind in module.KEYS.items():
+            kinds.setdefault(name, kind)
+            meanings.setdefault(name, {}).setdefault(kind["description"], []).append(f"`{job}`")
+    return {name: described(kind, _in_words(meanings[name])) for name, kind in kinds.items()}
+
+
+def _in_words(meanings: Mapping[str, list[str]]) -> str:
+    return "; ".join(f"{', '.join(jobs)}: {meaning}" for meaning, jobs in meanings.items())
+
+
+RUN: dict[str, Kind] = {
+    **_of_any_job(),
+    "replicas": count("independent runs within the point's job", maximum=10_000, default=1),
+}
+
+POINT: dict[str, Kind] = {
+    name: kind if name == "dimension" else nullable(kind)
+    for name, kind in (EXTENTS | GAS | SCENE_FILE | ENGINE | _of_any_engine() | LENGTHS | RUN).items()
+}
+"""All keys of a point; null takes a key back."""
+
+WHOLE = frozenset(
+    name
+    for name, kind in POINT.items()
+    if kind.get("type") == ["integer", "null"] or all(isinstance(item, int) for item in kind.get("enum", "-"))
+)
+"""Keys of whole numbers, which may be written 1e3."""
+
+_BLOCK: Kind = {"type": "object"}  # each value is checked against its key's kind
+_JOBS = "; ".join(f"`{name}`: {module.RESULT}" for name, module in JOBS.items())
+EXPERIMENT: dict[str, Kind] = {
+    "job": choice(_JOBS, *JOBS, default="simulate"),
+    "point": record(POINT, "the settings that all points share", patternProperties={r"^scene[.]": {}}),
+    "grid": {
+        "anyOf": [_BLOCK, listed(_BLOCK)],
+        "default": None,
+        "description": "the settings that vary: a mapping from a key to the list of its values, of which the "
+        "product is taken, or a list of such mappings, one after the other; a single value counts as a list "
+        "of one",
+    },
+}
+
+ANIMATION: dict[str, Kind] = {
+    "experiment": described(TEXT, "the experiment whose first point's first replica is filmed"),
+    "size": listed(
+        {"type": "integer", "minimum": 16}, "width and height in pixels", 2, 2, default=[1000, 750]
+    ),
+    "colour": choice("what the colour of a particle shows", "speed", "species", default="speed"),
+    "frames_per_second": positive("pictures per second", default=25.0),
+    "trail": count("number of a disc whose path is drawn", 0, default=None),
+    "clock": flag(
+        "write parameters, the meaning of the colours, time and scale above and below the pictures",
+        default=False,
+    ),
+    "figure": described(TEXT, "the figure beside which the report shows the film", default=None),
+}
+
+
+def config(figures: dict[str, Kind]) -> dict[str, Kind]:
+    """The top level of a config, given the entries of its figures."""
+    named = {"type": "object", "propertyNames": _NAME}
+    return {
+        "title": described({**TEXT, "minLength": 1}, "stands in the report and in each figure's data"),
+        "seed": count(
+            "with the names of experiment, point and replica it gives every random stream", minimum=0
+        ),
+        "points": described(
+            {**TEXT, "pattern": r"^results(/[A-Za-z0-9_.-]*[A-Za-z0-9_-])+$(?!\n)", "maxLength": 200},
+            "the folder of the simulations; figures, claims and report always lie in `results`",
+        ),
+        "experiments": described(
+            {**named, "minProperties": 1, "additionalProperties": record(EXPERIMENT)}, "what is simulated"
+        ),
+        "figures": {
+            "type": "object",
+            "minProperties": 1,
+            "additionalProperties": False,
+            "properties": figures,
+            "description": "what is drawn, and the settings of its measurement",
+        },
+        "animations": described(
+            {**named, "additionalProperties": nullable(record(ANIMATION))},
+            "films; null takes one back",
+            default={},
+        ),
+    }

@@ -1,0 +1,89 @@
+"""Duration and sampling of a point's runs.
+
+Planning a workflow reads every point of every grid, so slow imports are made inside functions.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from gaspart.errors import SceneError
+from gaspart.reproduction.points.keys import LENGTHS
+from gaspart.scene.validation import LARGEST, SMALLEST
+
+if TYPE_CHECKING:
+    from gaspart.reproduction.points.point import Point
+
+_MOST_INTERVALS = 2.0**53  # above, float64 does not distinguish their numbers
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """When a run is sampled, in the scene's time; the first ``equilibration_frames`` frames are dropped."""
+
+    duration: float
+    sample_interval: float
+    equilibration_frames: int
+    samples: int
+
+    @property
+    def equilibration(self) -> float:
+        """The time before the measurement."""
+        return self.equilibration_frames * self.sample_interval
+
+
+def schedule(point: Point) -> Schedule:
+    """Duration and sampling of a point's runs, in the scene's time.
+
+    The length is divided into ``samples`` intervals (whole time steps with the step engine); the
+    equilibration, rounded up to complete intervals, precedes it.
+    """
+    settings = point.settings
+    lengths = [key for key in LENGTHS if key in settings]
+    if len(lengths) != 1:
+        rule = f"exactly one of {', '.join(LENGTHS)} must be given"
+        raise SceneError(f"experiments.{point.experiment}", lengths, rule)
+    (unit,) = lengths
+    scale = _unit_of_time(point, unit)
+    samples = settings.get("samples", 1)
+    interval = settings[unit] * scale / samples
+    if not SMALLEST <= interval <= LARGEST:
+        rule = f"makes a sample interval of {interval:g}, which must be from {SMALLEST:g} to {LARGEST:g}"
+        raise point.refused(unit, rule)
+    if "time_step" in settings:
+        step = settings["time_step"]
+        interval = step * max(1, round(interval / step))
+    before = settings.get("equilibration", 0) * scale / interval
+    if not before < _MOST_INTERVALS:
+        rule = f"makes {before:g} sample intervals, which must be less than {_MOST_INTERVALS:g}"
+        raise point.refused("equilibration", rule)
+    dropped = math.ceil(before * (1.0 - 1e-12))
+    return Schedule(interval * (dropped + samples), interval, dropped, samples)
+
+
+def _unit_of_time(point: Point, unit: str) -> float:
+    """The scene's time in one ``unit`` of length; for collisions per particle, from Enskog's rate."""
+    if unit == "duration":
+        return 1.0
+    if unit == "steps":
+        if "time_step" not in point.settings:
+            raise point.refused(unit, f"has no meaning with engine: {point.engine.name}")
+        return point.settings["time_step"]
+    from gaspart import theory
+
+    key, given = f"experiments.{point.experiment}.collisions_per_body", point.settings[unit]
+    gas = point.scene.gas
+    if gas is None:
+        rule = "is known only for one species of smooth particles without gravity or obstacles; give duration"
+        raise SceneError(key, given, rule)
+    if not gas.temperature > 0.0:
+        raise SceneError(key, given, "needs a temperature or a speed above zero")
+    try:
+        rate = theory.collision_rate(**gas.parameters)
+    except ValueError as error:
+        raise SceneError(key, given, f"cannot be turned into a time: {error}") from None
+    if not 0.0 < rate < math.inf:
+        raise SceneError(key, given, f"cannot be turned into a time: the collision rate is {rate:g}")
+    return 1.0 / float(rate)
