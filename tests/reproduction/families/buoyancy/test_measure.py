@@ -9,6 +9,7 @@ import gaspart as gp
 from gaspart.reproduction.families.buoyancy import measure as buoyancy
 
 SETTINGS = {"bins": 30, "blocks": 8, "clear": 2, "far": 5.0, "near": 3.0, "source_density": 0.2}
+SETTINGS |= {"source": ["column_source"]}
 COUNT = 30
 
 

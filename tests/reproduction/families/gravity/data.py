@@ -76,7 +76,7 @@ def columns(kinds=1, error=0.002):
     return xr.Dataset(
         values,
         coords={
-            "experiment": ("point", ["column_dilute", "column_dense"]),
+            "column": ("point", ["dilute", "dense"]),
             "range_low": ("range", [0.1, 0.2]),
             "range_high": ("range", [0.2, 0.3]),
         },
@@ -84,8 +84,8 @@ def columns(kinds=1, error=0.002):
 
 
 def with_source(ds):
-    """The same, and the source's own column: in its sample and later, both as the dense one."""
-    more = [ds.isel(point=1).assign_coords(experiment=f"column_{name}") for name in ("source", "large")]
+    """These columns and the source's: in its sample and later, both as the dense one."""
+    more = [ds.isel(point=1).assign_coords(column=name) for name in ("source", "later")]
     made = xr.concat([ds, *more], "point")
     reported = np.linspace(0.2, 0.9, 10)
     share = reported + 0.01 * np.sqrt(2.0) * np.tile([1.0, -1.0], 5)  # each one standard deviation off

@@ -14,6 +14,7 @@ from gaspart.theory.gravity import ideal_profile
 
 SETTINGS = {"bins": 8, "blocks": 4, "clear": 0.5, "ranges": [[0.001, 0.01]]}
 SETTINGS |= {"source_collisions": 100.0, "source_temperature": 1.0, "source_shares": [0.5]}
+SETTINGS |= {"columns": {"source": "column_source"}}
 
 
 def run(point, root):

@@ -1,11 +1,12 @@
 """Under gravity."""
 
-from gaspart.kinds import count, positive
+from gaspart.kinds import count, names, positive
 
 TITLE = "Under gravity"
 CHAPTER = "Gravity, heat and walls"
 FIGURES = {
     "buoyancy": {
+        "source": names("the experiments of source C's own fluid"),
         "bins": count("bins of height"),
         "blocks": count("stretches of each replica"),
         "clear": positive("small diameters next to floor and ceiling that are left out, where layers are"),

@@ -13,7 +13,6 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.statistics import jackknife
-from gaspart.reproduction.families.shared.claims import is_source
 from gaspart.reproduction.families.shared.columns import (
     Field,
     Stretch,
@@ -33,18 +32,18 @@ def buoyancy(points: list[Point], settings: dict) -> xr.Dataset:
     """Fixed discs at several heights, and free ones of several masses, in one and the same fluid; and the
     source's free discs in its own fluid.
 
-    settings: `bins` of height; `blocks` of each replica; `clear`, the small diameters next to floor and
-    ceiling where layers are, not hydrostatics; `far`, the small diameters across from the large disc's edge
-    from which on the fluid is undisturbed; `near`, those within which it is disturbed, and the small discs
-    that are missing are counted; `source_density`, at which a disc floats in the middle by the source's
-    estimate.
+    settings: `source`, the experiments of the source's fluid; `bins` of height; `blocks` of each replica;
+    `clear`, the small diameters next to floor and ceiling where layers are, not hydrostatics; `far`, the
+    small diameters across from the large disc's edge from which on the fluid is undisturbed; `near`, those
+    within which it is disturbed, and the small discs that are missing are counted; `source_density`, at which
+    a disc floats in the middle by the source's estimate.
 
     Dimensions fixed, free, source, and height of a theoretical curve: the mass displaced in the mean fluid of
     the fixed points. Heights are those of `columns`; masses are in those of a small disc. `force_radius` is
     how much larger than the large disc, in small radii, is the disc of undisturbed fluid whose weight is the
     force; `count_radius`, that of as many discs as are missing.
     """
-    own = [point for point in points if not is_source(point.experiment)]
+    own = [point for point in points if point.experiment not in settings["source"]]
     held = [point for point in own if point.scene.bodies[0].fixed]
     fixed = [_fixed(point, settings) for point in held]
     free = [_free(point, settings) for point in own if point not in held]

@@ -1,9 +1,20 @@
 """Under gravity."""
 
-from gaspart.kinds import POSITIVE, count, listed, positive
+from gaspart.kinds import POSITIVE, TEXT, count, described, listed, positive, record
 
 TITLE = "Under gravity"
 CHAPTER = "Gravity, heat and walls"
+
+
+def _columns(**meanings: str) -> dict:
+    """The setting that names the experiment of each column."""
+    return record(
+        {name: described(TEXT, meaning, default=None) for name, meaning in meanings.items()},
+        "the experiment of each column that the figure distinguishes",
+    )
+
+
+_OWN = {"dilute": "nearly an ideal gas", "dense": "at fluid densities at the floor"}
 _PROFILES = {
     "bins": count("bins of height"),
     "blocks": count("stretches of each replica"),
@@ -17,11 +28,15 @@ _COLLISIONS = positive("collisions before the sample of source C's own run")
 FIGURES = {
     "barometric": _PROFILES
     | {
+        "columns": _columns(
+            **_OWN, source="source C's own run", later="its scene, after a longer time, without side walls"
+        ),
         "source_collisions": _COLLISIONS,
         "source_temperature": positive("that source C fits to the speeds of its sample"),
     },
     "separation": _PROFILES
     | {
+        "columns": _columns(**_OWN, source="source C's own run"),
         "source_collisions": _COLLISIONS,
         "source_shares": listed(
             POSITIVE, "of the light discs in source C's sample, in equal layers from the floor up"

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import is_source, rows
+from gaspart.reproduction.families.shared.claims import rows
 from gaspart.reproduction.families.shared.rows import estimates
 from gaspart.theory.gravity import ideal_heat_capacity
 
@@ -26,7 +26,7 @@ def barometric(ds: xr.Dataset) -> list[Claim]:
             claims += _source_column(row)
             continue
         at, discs = _at(row), row.isel(species=0)
-        if str(row["experiment"].values).endswith("_large"):
+        if row["column"] == "later":
             # Heat takes as long to cross it as a stretch lasts: only what is local is independent in each.
             claims += [_balance(row, at), *_pressures(row, at)]
             continue
@@ -154,7 +154,7 @@ def _species_temperature(row: xr.Dataset, at: str) -> Claim:
 
 
 def _is_source(row: xr.Dataset) -> bool:
-    return is_source(str(row["experiment"].values))
+    return bool(row["column"] == "source")
 
 
 def _dilute(row: xr.Dataset) -> bool:

@@ -19,7 +19,7 @@ KNOWN = 0.1
 def barometric(ds: xr.Dataset) -> Figure:
     """Density and temperature against height, the equation of state from the weight, and the source's
     column."""
-    of_source = _named(ds, "large", "source")
+    of_source = _named(ds, "later", "source")
     figure, axes = style.new((2.4, 1.1, 1.1), (1.7, 1.0), *([(1.5, 1.1)] if of_source else []))
     top, ratio, warm, state, off = axes[:5]
     for kind, row in enumerate(_named(ds, "dilute", "dense")):
@@ -59,7 +59,7 @@ def barometric(ds: xr.Dataset) -> Figure:
 def _source_columns(top: Axes, bottom: Axes, columns: list[xr.Dataset]) -> None:
     """Density and temperature of the source's column, in the source's sample and later."""
     for kind, row in enumerate(columns, start=2):
-        name = {"large": "later", "source": "source's sample"}[_name(row)]
+        name = {"later": "later", "source": "source's sample"}[_name(row)]
         _density(top, row, kind, None if kind > 2 else "hydrostatics", name)
         _temperature(bottom, row, kind)
     top.set_ylabel(r"density $\rho/\bar\rho$")
@@ -128,13 +128,13 @@ def _shares(axis: Axes, row: xr.Dataset) -> None:
 
 
 def _named(ds: xr.Dataset, *names: str) -> list[xr.Dataset]:
-    """The points whose experiments' names end so, in this order; those that there are."""
-    found = {_name(row): row for row in (ds.isel(point=n) for n in range(ds.sizes["point"]))}
-    return [found[name] for name in names if name in found]
+    """The columns of these names, in this order; those that there are."""
+    columns = {_name(row): row for row in (ds.isel(point=n) for n in range(ds.sizes["point"]))}
+    return [columns[name] for name in names if name in columns]
 
 
 def _name(row: xr.Dataset) -> str:
-    return str(row["experiment"].values).rpartition("_")[2]
+    return str(row["column"].values)
 
 
 def _density(axis: Axes, row: xr.Dataset, kind: int, theory: str | None, label: str) -> None:

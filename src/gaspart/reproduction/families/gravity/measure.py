@@ -15,7 +15,6 @@ import xarray as xr
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import jackknife
 from gaspart.reproduction.families.gravity import source
-from gaspart.reproduction.families.shared.claims import is_source
 from gaspart.reproduction.families.shared.columns import (
     Field,
     field,
@@ -65,8 +64,8 @@ def profiles(points: list[Point], settings: dict, of_source: Callable[[Point], d
 
     settings: `bins` of height; `blocks`, the time blocks of each replica; `clear`, the diameters next to
     floor and ceiling that are left out of every comparison (layers there are real, and not hydrostatics);
-    `ranges`, pairs of packing fractions between which the equation of state is averaged. of_source: further
-    numbers of a point that is the source's own run.
+    `ranges`, pairs of packing fractions between which the equation of state is averaged; `columns`, the
+    experiment of each column by name. of_source: further numbers of the column "source".
 
     Dimensions point, species, bin, range, layer (of the source's shares). `pressure_ratio` is the pressure
     that carries the weight of what is above over rho T Z(eta) of the reference; `slope_ratio` that of
@@ -74,9 +73,10 @@ def profiles(points: list[Point], settings: dict, of_source: Callable[[Point], d
     -(m_1 - m_0) g / T, which for particles of one size is exact at any density: given their places, which of
     them is heavy has no other energy.
     """
+    names = {experiment: name for name, experiment in settings["columns"].items()}
     rows = [_column(point, settings) for point in points]
     for row, point in zip(rows, points, strict=True):
-        if is_source(point.experiment):
+        if names.get(point.experiment) == "source":
             row |= {"collisions": source.collisions(point)} | of_source(point)
     by_bin = ("temperature_ratio", "packing_fraction", "compressibility", "pressure_ratio")
     by_bin += ("height", "used", "log_ratio", "log_ratio_expected")
@@ -90,7 +90,7 @@ def profiles(points: list[Point], settings: dict, of_source: Callable[[Point], d
     }
     low, high = np.array(settings["ranges"], dtype=float).T
     dataset = from_rows("point", rows, axes).assign_coords(
-        experiment=("point", [point.experiment for point in points]),
+        column=("point", [names.get(point.experiment, "") for point in points]),
         range_low=("range", low),
         range_high=("range", high),
     )

@@ -19,11 +19,6 @@ PARTICLES = {2: "discs", 3: "spheres"}
 MODE_COUPLING = "hydrodynamic modes of the container, transport coefficients Enskog's (gaspart.theory.modes)"
 
 
-def is_source(experiment: str) -> bool:
-    """Whether the experiment, by its name, is source C's own scene."""
-    return experiment.endswith("_source")
-
-
 def rows(dataset: xr.Dataset, dimension: str) -> list[xr.Dataset]:
     """The dataset at each position along `dimension`; an empty list if it has no such dimension."""
     return [dataset.isel({dimension: position}) for position in range(dataset.sizes.get(dimension, 0))]
