@@ -1,78 +1,76 @@
-"""The numbered references of the page: where a text cites one of them, its number follows as a link.
+"""The numbered references of the page, and the citations of them.
 
-A text cites by authors and year, as in "Haff 1983", "Yeh & Hummer, J. Phys. Chem. B 108, 15873 (2004)" or
-"Fernandez and others 2012".
+A text cites a reference by its key in square brackets: "the law of [Haff 1983]", "figure 4 of [source A]".
 """
 
 from __future__ import annotations
 
 import html
 import re
-import unicodedata
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 
 from gaspart.yaml_text import read_yaml
 
-_JOIN = r"(?:,|,?\s+and|\s+(?:&amp;|&))\s+"
-_UP_TO_YEAR = r"[^;<>]{0,60}?\b"
-_OTHERS = r"(?:\s+and\s+others|\s+et\s+al\.|,\s[^;()<>]{0,60}?)"
+CITATION = re.compile(r"\[([^][<>]+)\]")
 
 
 @dataclass(frozen=True)
 class Reference:
-    """number: from 1; authors: surnames, the last perhaps "others"; where: journal, volume, page, or a title;
-    doi: "" if there is none; called: another name under which texts cite it, such as "source A"."""
+    """number: from 1; key: by which texts cite it; authors: surnames, the last perhaps "others"; where:
+    journal, volume, page, or a title; doi: "" if there is none."""
 
     number: int
+    key: str
     authors: tuple[str, ...]
     year: int
     where: str
     doi: str = ""
-    called: str = ""
+
+    @property
+    def is_source(self) -> bool:
+        """Whether its key is a name, such as "source A", instead of an author and a year."""
+        return str(self.year) not in self.key
 
     @property
     def text(self) -> str:
         """As the list of references has it, without the DOI."""
         *first, last = self.authors
         names = f"{', '.join(first)} and {last}" if first else last
-        return f"{names}, {self.where} ({self.year})" + (f": {self.called}" if self.called else "")
+        return f"{names}, {self.where} ({self.year})" + (f": {self.key}" if self.is_source else "")
 
-    @cached_property
-    def pattern(self) -> re.Pattern[str]:
-        """Matches a citation in HTML."""
-        names = [_spelt(name) for name in self.authors if name != "others"]
-        others = _OTHERS if "others" in self.authors else ""
-        found = rf"\b{_JOIN.join(names)}{others}{_UP_TO_YEAR}{self.year}\)?"
-        return re.compile(rf"{found}|\b(?i:{re.escape(self.called)})\b" if self.called else found)
+    @property
+    def short(self) -> str:
+        """As a text cites it: by one or two authors and the year."""
+        names = self.authors if len(self.authors) < 3 else (self.authors[0], "others")
+        return f"{' and '.join(names)} {self.year}"
 
 
-def _spelt(name: str) -> str:
-    """A pattern of a name with and without its accents, and over the end of a line."""
-    plain = "".join(unicodedata.normalize("NFD", letter)[0] for letter in name)
-    letters = (a if a == b else f"[{a}{b}]" for a, b in zip(name, plain, strict=True))
-    return r"\s+".join("".join(letters).split())
+def read_references(path: str | Path) -> dict[str, Reference]:
+    """The references of a file by key, numbered in its order. Raises SceneError if it is not YAML."""
+    return {
+        key: Reference(**{**entry, "number": number, "key": key, "authors": tuple(entry["authors"])})
+        for number, (key, entry) in enumerate(read_yaml(path).items(), 1)
+    }
 
 
-def read_references(path: str | Path) -> list[Reference]:
-    """The references of a file, numbered in its order. Raises SceneError if it is not YAML."""
-    entries = read_yaml(path)
-    return [
-        Reference(**{**entry, "number": number, "authors": tuple(entry["authors"])})
-        for number, entry in enumerate(entries, 1)
-    ]
+def cited(citation: re.Match[str], references: Mapping[str, Reference]) -> Reference | None:
+    """The reference that a match of `CITATION` cites; None for other texts in square brackets."""
+    key = " ".join(citation[1].split())
+    return references.get(key) or references.get(key[0].lower() + key[1:])
 
 
-def linked(text: str, references: Sequence[Reference]) -> str:
-    """HTML in which the first citation of each reference is followed by its number, a link into the list."""
-    places = []
-    for reference in references:
-        found = reference.pattern.search(text)
-        if found:
-            places.append((found.end(), reference))
-    for end, one in sorted(places, key=lambda place: place[0], reverse=True):
-        link = f'<a href="#reference-{one.number}" title="{html.escape(one.text)}">[{one.number}]</a>'
-        text = f"{text[:end]}\N{NO-BREAK SPACE}{link}{text[end:]}"
-    return text
+def linked(text: str, references: Mapping[str, Reference]) -> str:
+    """HTML in which each citation has become names and a numbered link into the list."""
+
+    def link(citation: re.Match[str]) -> str:
+        reference = cited(citation, references)
+        if reference is None:
+            return citation[0]
+        name = citation[1] if reference.is_source else html.escape(reference.short)
+        title = html.escape(reference.text)
+        anchor = f'<a href="#reference-{reference.number}" title="{title}">[{reference.number}]</a>'
+        return f"{name}\N{NO-BREAK SPACE}{anchor}"
+
+    return CITATION.sub(link, text)

@@ -17,8 +17,8 @@ from gaspart.reproduction.families.shared.rows import estimates
 from gaspart.theory.adsorption import planck_constant, slow_flux_share
 
 LANGMUIR = (
-    "Boltzmann factor of the well (exact for an ideal gas; Langmuir's formula, source A section 4.5); what "
-    "spheres close to each other is subtracted, to first order in their density"
+    "Boltzmann factor of the well (exact for an ideal gas; Langmuir's formula, [source A], section 4.5); "
+    "what spheres close to each other is subtracted, to first order in their density"
 )
 OWN_LENGTH = (
     "equilibrium of an ideal gas with a step well: the length is its width (exact); what spheres close to "

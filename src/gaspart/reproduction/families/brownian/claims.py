@@ -7,7 +7,7 @@ import xarray as xr
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared.claims import rows
 
-LANGEVIN = "the Langevin equation with the friction of a dilute gas (Chapman and Cowling 1970)"
+LANGEVIN = "the Langevin equation with the friction of a dilute gas ([Chapman 1970])"
 BOLTZMANN = "the linear Boltzmann equation, direct simulation (gaspart.theory.tagged)"
 RELAXING = f"{BOLTZMANN}, in a gas that relaxes from equal speeds (gaspart.theory.homogeneous)"
 FAILS_IF = {

@@ -9,7 +9,7 @@ from gaspart.analysis.statistics import combine_estimates, fit_polynomial
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared.claims import combined, freedoms, rows
 
-THEORY = "scaled-particle theory (Helfand, Frisch and Lebowitz 1961)"
+THEORY = "scaled-particle theory ([Helfand 1961])"
 
 AFLOAT, LYING = 3.0, 1.8
 """Expected distances from floor and ceiling, in the source's lengths (a small disc is 1.6), above which its
@@ -150,7 +150,7 @@ def _neutral(ds: xr.Dataset, middle: float) -> Claim:
         measured=(-there / slope + neutral) / ds.attrs["source_density"],
         expected=1.0,
         required=0.02,
-        source="notebook of source C's code (tms-ninja/billiards), buoyancy: mean density of the small discs",
+        source="notebook of [source C]'s code (tms-ninja/billiards), buoyancy: mean density of small discs",
         why="a disc displaces the fluid of a larger radius than its own, as the claims above state",
         fails_if="a disc that displaces exactly its own area of the fluid",
     )

@@ -16,7 +16,7 @@ DILUTE = 0.02
 """Packing fraction up to which a gas counts as dilute."""
 DILUTE_BAND = 0.007
 """Most that D differs from Enskog's there, as a part of it: by Erpenbeck and Wood's fit 0.6 % at 0.02."""
-ERPENBECK_WOOD = "Erpenbeck & Wood, Phys. Rev. A 43, 4254 (1991)"
+ERPENBECK_WOOD = "[Erpenbeck 1991]"
 REQUIRED = 0.015
 """Relative uncertainty of D above which the claim is inconclusive."""
 
@@ -35,7 +35,7 @@ def msd_spheres(ds: xr.Dataset) -> list[Claim]:
                     expected=Estimate(1.0, theory.ERPENBECK_WOOD_UNCERTAINTY),
                     required=REQUIRED,
                     source=ERPENBECK_WOOD,
-                    allowance_source="its largest difference from Pieprzyk and others 2019",
+                    allowance_source="its largest difference from [Pieprzyk 2019]",
                     fails_if="correlated collisions missing, a msd not yet straight, a wrong finite-size "
                     "correction",
                 )
@@ -78,8 +78,7 @@ def _size_slope(ds: xr.Dataset) -> Claim:
         measured=Estimate.of(ds, "size_slope"),
         expected=expected,
         required=0.15 * abs(expected),
-        source="Yeh & Hummer, J. Phys. Chem. B 108, 15873 (2004), with Enskog's viscosity and modes that "
-        "decay with nu + D",
+        source="[Yeh 2004], with Enskog's viscosity and modes that decay with nu + D",
         alternative=0.0,
         fails_if="D that does not depend on the container as hydrodynamics states",
     )

@@ -9,11 +9,11 @@ from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared.claims import PARTICLES, rows
 
 BALANCE = (
-    "kicks against contacts at Enskog's rate; van Noije & Ernst 1998, first order in a2; no correlations, "
+    "kicks against contacts at Enskog's rate; [van Noije 1998], first order in a2; no correlations, "
     "which amount to less than 0.2 % at this density"
 )
 HEATED = (
-    "van Noije & Ernst 1998, first order in a2, derived again from the moments of the cooling gas; exact "
+    "[van Noije 1998], first order in a2, derived again from the moments of the cooling gas; exact "
     "correction for the number of particles"
 )
 

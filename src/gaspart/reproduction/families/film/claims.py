@@ -72,7 +72,7 @@ def _bulk(dataset: xr.Dataset) -> Claim:
         measured=(pressure + (bulk - bulk.value)) / bulk.value,
         expected=1.0,
         required=0.005,
-        source="uniform normal pressure (exact) and Kolafa, Labík and Malijevský 2004",
+        source="uniform normal pressure (exact) and [Kolafa 2004]",
         fails_if="wrong momentum transfer to walls, or layers that reach the middle",
     )
 
@@ -88,7 +88,7 @@ def _potential(dataset: xr.Dataset) -> Claim:
         measured=measured - bulk,
         expected=0.0,
         required=0.1,
-        source="uniform chemical potential (exact) and Kolafa, Labík and Malijevský 2004",
+        source="uniform chemical potential (exact) and [Kolafa 2004]",
         fails_if="the slit is not in equilibrium, or too small for its number to fluctuate freely",
     )
 
@@ -105,7 +105,7 @@ def _oscillation(dataset: xr.Dataset) -> list[Claim]:
             measured=Estimate(dataset.attrs["period"], dataset.attrs["period_error"]),
             expected=dataset.attrs["functional_period"],
             required=0.05,
-            source="White Bear functional (Roth and others 2002; computed), the same fit to the same widths",
+            source="White Bear functional ([Roth 2002]; computed), the same fit to the same widths",
             fails_if="no layers, or widths too far apart to resolve them",
         ),
         Claim.within(
@@ -114,7 +114,7 @@ def _oscillation(dataset: xr.Dataset) -> list[Claim]:
             measured=Estimate(np.sum(weights * excess * expected) / norm, norm**-0.5),
             expected=1.0,
             half_width=0.15,
-            source="White Bear functional (Roth and others 2002; computed)",
+            source="White Bear functional ([Roth 2002]; computed)",
             fails_if="the slits are not in equilibrium with one bulk",
         ),
     ]

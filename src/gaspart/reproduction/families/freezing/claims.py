@@ -25,8 +25,8 @@ equilibrium."""
 COMPARED = 6
 """Deviations at a packing fraction, of which the largest is taken: of pressure and order, between the starts
 and between the halves of each run."""
-DISCS_SOURCE = "Bernard and Krauth 2011, Engel and others 2013"
-SPHERES_SOURCE = "Fernandez and others 2012"
+DISCS_SOURCE = "[Bernard 2011], [Engel 2013]"
+SPHERES_SOURCE = "[Fernandez 2012]"
 
 
 def freezing_discs(dataset: xr.Dataset) -> list[Claim]:
@@ -92,8 +92,7 @@ def _orientation(at: xr.Dataset, melted: bool) -> Claim:
         measured=Estimate.of(_extreme(at, "start", melted), "order"),
         bound=bound,
         required=0.1,
-        source="liquid below 0.700, one orientation throughout above 0.720 (Bernard and Krauth, Phys. Rev. "
-        "Lett. 107, 155704 (2011))",
+        source="liquid below 0.700, one orientation throughout above 0.720 ([Bernard 2011])",
         fails_if="the crystal has not melted"
         if melted
         else "the fluid has not frozen, or into several grains",
@@ -110,7 +109,7 @@ def _lattice(at: xr.Dataset, melted: bool) -> Claim:
         measured=Estimate.of(_extreme(at, "packing_fraction", melted), "order"),
         bound=bound,
         required=0.02,
-        source="spheres melt below 0.49 and are stable above 0.55 (Hoover and Ree 1968)",
+        source="spheres melt below 0.49 and are stable above 0.55 ([Hoover 1968])",
         fails_if="a crystal that cannot melt, or one that disintegrates: contacts are wrong",
     )
 
@@ -132,8 +131,8 @@ def _branches_of_discs(dataset: xr.Dataset) -> list[Claim]:
     """Both branches where the literature has as many discs; the virial series is not accurate here."""
     claims = []
     for phase, (eta, expected, allowance), source, allowance_source in (
-        ("liquid", theory.LIQUID_OF_1024_DISCS, "Li and others 2022", "half of the step from 870 discs"),
-        ("crystal", theory.CRYSTAL_OF_1024_DISCS, "Zollweg and Chester 1992, figure 1", "its statement"),
+        ("liquid", theory.LIQUID_OF_1024_DISCS, "[Li 2022]", "half of the step from 870 discs"),
+        ("crystal", theory.CRYSTAL_OF_1024_DISCS, "[Zollweg 1992], figure 1", "its statement"),
     ):
         same = np.abs(dataset["packing_fraction"].values - eta) < 1e-4
         claims += [
@@ -189,9 +188,7 @@ def _branch(at: xr.Dataset, melting: float) -> Claim:
         measured=_with_drift(scaled, "Z"),
         expected=Estimate(reference, allowance),
         required=2e-3 * reference,
-        source="Speedy, J. Phys.: Condens. Matter 10, 4387 (1998), by SklogWiki's table of coefficients"
-        if solid
-        else "Kolafa, Labík and Malijevský 2004",
+        source="[Speedy 1998], by SklogWiki's table of coefficients" if solid else "[Kolafa 2004]",
         allowance_source="" if solid else "stated by its authors, or the distance from the virial series",
         no_verdict="a superheated crystal, which may be melting" if superheated else "",
         fails_if="contacts are missed, defects, or the other phase has begun to grow",

@@ -11,10 +11,10 @@ from gaspart.reproduction.families.shared.claims import PARTICLES, SOURCE_C, row
 from gaspart.theory.granular import ROUGH_START_UNCERTAINTY
 
 HUTHMANN = (
-    "Huthmann & Zippelius 1997: averages over Maxwellian velocities and spins, computed in "
+    "[Huthmann 1997]: averages over Maxwellian velocities and spins, computed in "
     "tests/theory/test_granular.py"
 )
-VAN_NOIJE = "Haff 1983; van Noije & Ernst, Granular Matter 1, 57 (1998), to first order in a2"
+VAN_NOIJE = "[Haff 1983]; [van Noije 1998], to first order in a2"
 
 
 def equipartition(ds: xr.Dataset) -> list[Claim]:
@@ -51,7 +51,7 @@ def _steady(row: xr.Dataset) -> Claim:
         expected=Estimate(1.0, error / ratio),
         required=0.03,
         source="homogeneous Boltzmann equation, direct simulation (gaspart.theory.homogeneous); Maxwellian "
-        f"velocities and spins (Huthmann and Zippelius 1997) would give {maxwell:.3f}",
+        f"velocities and spins ([Huthmann 1997]) would give {maxwell:.3f}",
         allowance_source="statistical, of the direct simulation" if known else "",
         no_verdict="" if known else "the reference was not computed for these coefficients",
         fails_if="a ratio that is not steady, or dissipation in the wrong place",
@@ -83,7 +83,7 @@ def _decay(row: xr.Dataset) -> list[Claim]:
             expected=Estimate(known[most], ROUGH_START_UNCERTAINTY) if np.isfinite(known[most]) else 0.0,
             required=0.005,
             source="homogeneous Boltzmann equation, direct simulation (gaspart.theory.homogeneous); "
-            "Maxwellian velocities and spins (Huthmann and Zippelius 1997) would give 0",
+            "Maxwellian velocities and spins ([Huthmann 1997]) would give 0",
             allowance_source="statistical, of the direct simulation",
             no_verdict="" if np.isfinite(known[most]) else "the reference was not computed for this inertia",
             fails_if="a gas that is not dilute, or energies that tend to other shares",
@@ -160,7 +160,7 @@ def _clusters(ds: xr.Dataset) -> list[Claim]:
                 "variance",
                 usual,
                 3.0,
-                "Goldhirsch & Zanetti 1993: a large inelastic gas forms clusters",
+                "[Goldhirsch 1993]: a large inelastic gas forms clusters",
                 "a gas that stays homogeneous",
             ),
             (

@@ -11,9 +11,9 @@ from gaspart.reproduction.families.shared.rows import estimates
 from gaspart.theory.gravity import ideal_heat_capacity
 
 HYDROSTATICS = "hydrostatics dP/dz = -m g rho"
-REFERENCE = "virial series to B10 with a linear tail (Clisby and McCoy 2006)"
+REFERENCE = "virial series to B10 with a linear tail ([Clisby 2006])"
 EXCHANGE = "exchange of two discs of one size costs (M - m) g dz (exact at any density)"
-C = "notebooks of source C's code (tms-ninja/billiards)"
+C = "notebooks of [source C]'s code (tms-ninja/billiards)"
 DILUTE = 0.01
 """Packing fraction up to which a column counts as an ideal gas."""
 
@@ -37,7 +37,7 @@ def barometric(ds: xr.Dataset) -> list[Claim]:
                 measured=-Estimate.of(row, "temperature_gradient"),
                 expected=0.5 / float(row["count"]),
                 required=0.005,
-                source="an isothermal column (Maxwell 1867); at fixed energy 1/C_V more, 2Nk in a high one",
+                source="an isothermal column ([Maxwell 1867]); at fixed energy 1/C_V more, 2Nk in a high one",
                 fails_if="a column that is warmer at one end: not in equilibrium, or an engine that heats",
             ),
             _balance(row, at),
@@ -248,7 +248,7 @@ def heat_capacity(ds: xr.Dataset) -> list[Claim]:
                     measured=_rounded(run, "fluctuation"),
                     expected=run["fluctuation_expected"],
                     required=0.03,
-                    source=f"Lebowitz, Percus and Verlet (1967); {finite}",
+                    source=f"[Lebowitz 1967]; {finite}",
                     fails_if="fluctuations that are not the microcanonical ones: not ergodic, or energy lost",
                 )
             )

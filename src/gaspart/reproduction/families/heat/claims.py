@@ -90,7 +90,7 @@ def _free(row: xr.Dataset, at: str) -> Claim:
 
 
 def _fluid(row: xr.Dataset, at: str) -> list[Claim]:
-    theory = "Fourier's law with Enskog's conductivity and temperature jumps (Sone, Ohwada and Aoki 1989)"
+    theory = "Fourier's law with Enskog's conductivity and temperature jumps ([Sone 1989])"
     square = float(row["knudsen"]) ** 2
     neglected = "the square of the Knudsen number, which an asymptotic theory of first order in it neglects"
     return [
@@ -117,7 +117,7 @@ def _fluid(row: xr.Dataset, at: str) -> list[Claim]:
             measured=Estimate.of(row, "jump"),
             expected=Estimate(TEMPERATURE_JUMP, TEMPERATURE_JUMP * square),
             required=0.3,
-            source="Sone, Ohwada and Aoki, Phys. Fluids A 1, 363 (1989), linear in the slope",
+            source="[Sone 1989], linear in the slope",
             allowance_source=neglected,
             alternative=ELEMENTARY_JUMP,
             fails_if="a gas that has the temperature of the wall, or one that the wall does not warm",

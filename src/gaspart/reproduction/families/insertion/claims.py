@@ -54,7 +54,7 @@ def _saturation(one: xr.Dataset) -> Claim:
             insertion_saturation_uncertainty(dimension, side, rule),
         ),
         required=1e-3 if rule == "periodic" else 4e-3,
-        source=f"Zhang and Torquato, Phys. Rev. E 88, 053312 (2013){wall}",
+        source=f"[Zhang 2013]{wall}",
         allowance_source="its last digits"
         if rule == "periodic"
         else "a fit to insertions, not in this repository",
@@ -70,7 +70,7 @@ def _approach(one: xr.Dataset) -> Claim:
         measured=Estimate.of(one, "approach"),
         expected=1.0 / dimension,
         half_width=0.15 / dimension,
-        source="Feder 1980, Swendsen 1981: 1/d, once only single holes remain",
+        source="[Feder 1980], [Swendsen 1981]: 1/d, once only single holes remain",
         fails_if="the window is too early, or attempts are counted wrongly",
     )
 
@@ -84,7 +84,7 @@ def _source(one: xr.Dataset) -> Claim:
         measured=Estimate.of(one.isel(window=0), "saturation"),
         expected=Estimate(SOURCE_FRACTION, np.hypot(one["final_spread"], SOURCE_ROUNDING)),
         required=4e-3,
-        source="source A, section 3.2: a single fill",
+        source="[source A], section 3.2: a single fill",
         allowance_source="the scatter of our fills, as that of its one fill, and its rounding to a percent",
         why="its centres go up to the walls, and its spheres are counted completely",
         fails_if="source A counted or placed its spheres by another rule",

@@ -25,7 +25,7 @@ def _compressed(one: xr.Dataset) -> list[Claim]:
             measured=Estimate(one["packing_fraction"], one["error"], one["freedom"]),
             bound=0.60,
             required=5e-3,
-            source="Lubachevsky and Stillinger 1990: random packings end at 0.60 to 0.65",
+            source="[Lubachevsky 1990]: random packings end at 0.60 to 0.65",
             fails_if="contacts of growing spheres are wrong, or growth stops before they jam",
         ),
         Claim.within(
@@ -33,7 +33,7 @@ def _compressed(one: xr.Dataset) -> list[Claim]:
             measured=Estimate(one["contacts"], one["contacts_error"], one["freedom"]),
             expected=6.0,
             half_width=0.5,
-            source="Donev, Torquato and Stillinger, Phys. Rev. E 71, 011105 (2005): isostatic, 2d contacts",
+            source="[Donev 2005]: isostatic, 2d contacts",
             no_verdict="how many contacts a growth of finite speed leaves open, and how many gaps count as "
             "contacts, is not known to less than the band",
             fails_if="growth is too fast to find all contacts, or spheres crystallise",
@@ -50,6 +50,6 @@ def _inserted(one: xr.Dataset) -> Claim:
         measured=Estimate(one["packing_fraction"], one["error"], one["freedom"]) / saturation,
         bound=1.0,
         required=0.02,
-        source="Zhang and Torquato 2013, with the wall excess of fill_failures",
+        source="[Zhang 2013], with the wall excess of fill_failures",
         fails_if="overlaps are accepted",
     )

@@ -25,7 +25,7 @@ def gas_render(ds: xr.Dataset) -> list[Claim]:
             measured=Estimate(_drawn_fraction(ds)),
             expected=0.001,
             half_width=0.0005,
-            source="Frederickx and Meerts (2010): about 0.1 %",
+            source="[source A]: about 0.1 %",
             fails_if="another radius or container than the source's",
         ),
         Claim(

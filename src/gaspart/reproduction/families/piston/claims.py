@@ -10,7 +10,7 @@ from gaspart.analysis.statistics import mean_of
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared.claims import PARTICLES, rows
 
-ENSEMBLE = "the ensemble of constant pressure and enthalpy (Andersen 1980)"
+ENSEMBLE = "the ensemble of constant pressure and enthalpy ([Andersen 1980])"
 
 
 def exponents(path: xr.Dataset) -> np.ndarray:

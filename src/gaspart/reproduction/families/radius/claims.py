@@ -47,7 +47,7 @@ def _reference(other: xr.Dataset) -> Claim:
     return Claim.joint(
         claim=f"Z of N = {int(other['count'][0])} at all radii against the equation of state",
         deviations=deviations(other, "Z", "reference"),
-        source="Kolafa, Labík and Malijevský 2004, shifted to first order in 1/N",
+        source="[Kolafa 2004], shifted to first order in 1/N",
         fails_if="Z is biased at some radius",
     )
 

@@ -40,7 +40,7 @@ def _growth(row: xr.Dataset, gas: str) -> list[Claim]:
             expected=1.0,
             required=0.1,
             source="the linearised dynamics of the same gas, by gaspart.analysis.lyapunov; the growth of the "
-            "exponent with dilution is that of van Zon, van Beijeren & Dellago 1998",
+            "exponent with dilution is that of [van Zon 1998]",
             fails_if="the engine amplifies errors more or less than collisions of hard particles do",
         ),
         Claim.within(

@@ -9,10 +9,7 @@ from gaspart.analysis.statistics import combine, mean_of
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.theory.granular import DISCHARGE_EXPONENT
 
-BEVERLOO = (
-    "Beverloo, Leniger & van de Velde, Chem. Eng. Sci. 15, 260 (1961), in two dimensions: free fall from an "
-    "arch as wide as the orifice"
-)
+BEVERLOO = "[Beverloo 1961], in two dimensions: free fall from an arch as wide as the orifice"
 
 
 def settling(ds: xr.Dataset) -> list[Claim]:

@@ -11,7 +11,7 @@ from gaspart.analysis.statistics import combine
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared.rows import estimates
 
-SOURCE_A, SOURCE_C = "Frederickx & Meerts 2010", "Spencer 2022"
+SOURCE_A, SOURCE_C = "[source A]", "[source C]"
 OTHER_MACHINE = "on this machine, and by this program, tests and boxes have other relative costs"
 """Why an optimum that source A reports need not be the one found here."""
 PARTICLES = {2: "discs", 3: "spheres"}

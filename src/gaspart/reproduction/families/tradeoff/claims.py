@@ -136,7 +136,7 @@ def _steady(at: xr.Dataset) -> Claim:
         measured=Estimate.of(at, "build_up"),
         expected=0.0,
         required=FLOOR,
-        source="Kolafa, Labik & Malijevsky (2004), first order in 1/N",
+        source="[Kolafa 2004], first order in 1/N",
         no_verdict=""
         if setting.startswith("4 passes")
         else "what one pass leaves builds up; the frontier allows for it",

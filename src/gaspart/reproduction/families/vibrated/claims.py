@@ -15,8 +15,8 @@ WAVEFORMS = {0: "sawtooth", 1: "sine"}
 """Names of the motions of the floor."""
 BALANCE = (
     "energy balance of an isothermal, nearly elastic bed, to first order in the density "
-    "(gaspart.theory.vibrated), losses at the floor included; the form is that of Kumaran 1998 and of "
-    "McNamara & Luding 1998"
+    "(gaspart.theory.vibrated), losses at the floor included; the form is that of [Kumaran 1998] and of "
+    "[McNamara 1998]"
 )
 
 

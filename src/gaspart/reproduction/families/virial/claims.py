@@ -15,16 +15,16 @@ RELATIVE_ERROR = 1e-3
 WANTED = {2: 1e-3, 3: 1e-2, 4: 1e-1}
 """Wanted relative accuracy of each virial coefficient; its standard error is to be half of it."""
 REFERENCE = {
-    2: "virial series to B10 (Clisby and McCoy 2006) and a linear tail",
-    3: "Kolafa, Labík and Malijevský 2004",
+    2: "virial series to B10 ([Clisby 2006]) and a linear tail",
+    3: "[Kolafa 2004]",
 }
 REFERENCE_ERROR = {
-    2: "of the virial coefficients (Clisby and McCoy 2006), and the tail's distance from Liu's equation",
+    2: "of the virial coefficients ([Clisby 2006]), and the tail's distance from Liu's equation",
     3: "stated by Kolafa, Labík and Malijevský, or the distance from the virial series, if less",
 }
 EXACT = {
-    2: "exact: source C, Eq. 48 (Rowlinson 1964, Hemmer 1965)",
-    3: "exact: Boltzmann 1899",
+    2: "exact: [source C], Eq. 48 ([Rowlinson 1964], [Hemmer 1965])",
+    3: "exact: [Boltzmann 1899]",
 }
 KOLAFA_RANGE = (0.19, 0.41)
 """Packing fractions at which Carnahan and Starling's equation is 0.13 to 0.3 % low, which is resolved."""
