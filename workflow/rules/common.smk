@@ -22,7 +22,7 @@ if " " in sys.executable:
 from gaspart.reproduction.claims.captions import filled
 from gaspart.reproduction.claims.table import summary
 from gaspart.reproduction.config import check, explained, read_numbers
-from gaspart.reproduction.families.registry import families, titles
+from gaspart.reproduction.families.registry import families, of_claims, titles
 from gaspart.reproduction.points.modules import digest, kernel_digest
 from gaspart.reproduction.points.points import all_points
 from gaspart.reproduction.points.points import figure_points as points_of_figure
@@ -98,12 +98,10 @@ def family(wildcards):
 
 
 def other_claims(wildcards):
-    """The claims tables of all other figures, for the figure that is made of them; none for the others."""
-    if family(wildcards) != "scatter":
+    """The claims tables of all other figures, for the figure that is made of them; none for others."""
+    if wildcards.figure not in of_claims():
         return []
-    return expand(
-        "results/claims/{figure}.csv", figure=[name for name in FIGURES if name != wildcards.figure]
-    )
+    return expand("results/claims/{figure}.csv", figure=[name for name in FIGURES if name not in of_claims()])
 
 
 def cores_of(wildcards):
@@ -137,6 +135,8 @@ def flagged(path, kind):
 
 # A digest of the modules of a stage, found from its imports, is a parameter of its rules.
 PARTS = {"measure": "measure", "judge": "claims", "draw": "figure"}
+# What families state about themselves, which the report reads by their names.
+FAMILIES = [f"gaspart.reproduction.families.{name}" for name in titles()]
 
 
 def sources(stage, family=None):

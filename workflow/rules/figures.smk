@@ -56,7 +56,7 @@ rule report:
         mem_mb=1000,
         runtime=10,
     params:
-        modules=digest(*sources("report")),
+        modules=digest(*sources("report"), *FAMILIES),
         figures=FIGURES,
         films=FILMS,
         title=lambda wildcards: config["title"],
@@ -74,7 +74,7 @@ use rule report as report_in_one_file with:
     benchmark:
         "results/benchmarks/report_in_one_file.tsv"
     params:
-        modules=digest(*sources("report")),
+        modules=digest(*sources("report"), *FAMILIES),
         figures=FIGURES,
         films=FILMS,
         title=lambda wildcards: config["title"],

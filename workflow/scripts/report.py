@@ -35,18 +35,6 @@ def attributes(path):
         return {name: file.getncattr(name) for name in file.ncattrs()}
 
 
-def explanations(datasets):
-    """What a reader may vary on the page, if its figures are there. datasets: {figure: path}."""
-    import xarray as xr
-
-    from gaspart.reproduction.report import explore
-
-    if not {*explore.SERIES, explore.COSTS} <= datasets.keys():
-        return None
-    loaded = {figure: xr.load_dataset(datasets[figure]) for figure in (*explore.SERIES, explore.COSTS)}
-    return {"series": explore.series(loaded), "costs": explore.costs(loaded[explore.COSTS])}
-
-
 with job(snakemake):
     import jinja2
     from markupsafe import Markup, escape
@@ -54,7 +42,7 @@ with job(snakemake):
     from gaspart import __version__
     from gaspart.files import whole_file
     from gaspart.reproduction.claims import table
-    from gaspart.reproduction.report import page, references
+    from gaspart.reproduction.report import explore, page, references
     from gaspart.trajectory import provenance
     from gaspart.yaml_text import read_yaml
 
@@ -104,7 +92,7 @@ with job(snakemake):
         findings=page.findings(read_yaml(given.findings), claims),
         headline=page.headline(claims),
         verdicts=page.verdicts(claims),
-        explore=explanations(dict(zip(params.figures, given.datasets, strict=True))),
+        explore=explore.explanations(dict(zip(params.figures, given.datasets, strict=True))),
         references=sources,
         words=table.COUNTED,
         kinds=table.PLURALS,

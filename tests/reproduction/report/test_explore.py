@@ -15,7 +15,7 @@ def test_the_series_reach_the_equation_of_state_where_it_is_dilute():
         {"Z": ("packing_fraction", [1.5]), "Z_error": ("packing_fraction", [np.nan])},
         coords={"packing_fraction": [0.1]},
     )
-    found = series({"virial_discs": at, "virial_spheres": at})
+    found = series({"first": at, "second": at}, {"first": (2, 0.65), "second": (3, 0.49)})
     assert [one["name"] for one in found] == ["discs", "spheres"]
     for dimension, one in zip((2, 3), found, strict=True):
         n = np.argmin(np.abs(np.array(one["packing_fraction"]) - 0.1))

@@ -3,6 +3,11 @@
 The folder of a family states its `TITLE`, its `CHAPTER` of the report and its `FIGURES` in `__init__.py`,
 which imports nothing heavy, and holds a function of the name of each figure in `measure.py`, `claims.py` and
 `figure.py`. `FIGURES` declares the settings of each figure: the kind of each key, with its meaning.
+
+A family may also state `OF_CLAIMS`, that its figures are made of the claims of all others instead of points;
+and what readers may vary on the page of the report (`report.explore`): `SERIES`, figures of an equation of
+state with the dimension and the largest packing fraction to choose; `COSTS`, figures of the cost of an
+accuracy.
 """
 
 from __future__ import annotations
@@ -36,6 +41,23 @@ def chapters() -> dict[str, str]:
 def families() -> dict[str, str]:
     """The family of each figure."""
     return {figure: name for name, package in _packages().items() for figure in package.FIGURES}
+
+
+def of_claims() -> frozenset[str]:
+    """The figures that are made of the claims of all others."""
+    stated = (package for package in _packages().values() if getattr(package, "OF_CLAIMS", False))
+    return frozenset(figure for package in stated for figure in package.FIGURES)
+
+
+def series() -> dict[str, tuple[int, float]]:
+    """Of each figure of an equation of state the dimension and the largest packing fraction to choose."""
+    parts = (getattr(package, "SERIES", {}) for package in _packages().values())
+    return {figure: stated for part in parts for figure, stated in part.items()}
+
+
+def costs() -> list[str]:
+    """The figures of the cost of an accuracy."""
+    return [figure for package in _packages().values() for figure in getattr(package, "COSTS", [])]
 
 
 def settings() -> dict[str, dict[str, Kind]]:

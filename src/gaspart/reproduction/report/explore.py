@@ -9,28 +9,45 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gaspart.reproduction.families import registry
 from gaspart.theory.state import compressibility_factor
 from gaspart.theory.virial import HIGHEST_ORDER, partial_sum
 
 if TYPE_CHECKING:
     import xarray as xr
 
-SERIES = {"virial_discs": (2, 0.65), "virial_spheres": (3, 0.49)}
-"""The figures of the equation of state: dimension, and the largest packing fraction to choose."""
-COSTS = "time_to_accuracy"
-"""The figure of the cost of an accuracy."""
 _STEPS = 100
 
 
-def series(datasets: Mapping[str, xr.Dataset]) -> list[dict[str, Any]]:
-    """Of discs and of spheres: the packing fractions to choose from, the partial sums of the virial series
-    to each order, Z of the best equation of state, and the measured Z with its standard error."""
-    found = []
-    for figure, (dimension, largest) in SERIES.items():
+def explanations(paths: Mapping[str, str]) -> dict[str, Any] | None:
+    """What a reader may vary, from the measurements of figures, {figure: path}; None unless there are an
+    equation of state and costs."""
+    import xarray as xr
+
+    states = {figure: stated for figure, stated in registry.series().items() if figure in paths}
+    prices = [figure for figure in registry.costs() if figure in paths]
+    if not states or not prices:
+        return None
+    return {
+        "series": series({figure: xr.load_dataset(paths[figure]) for figure in states}, states),
+        "costs": [row for figure in prices for row in costs(xr.load_dataset(paths[figure]))],
+    }
+
+
+def series(
+    datasets: Mapping[str, xr.Dataset], states: Mapping[str, tuple[int, float]]
+) -> list[dict[str, Any]]:
+    """For each figure of an equation of state the packing fractions to choose from, the partial sums of the
+    virial series to each order, Z of the best equation of state, and the measured Z with its standard error.
+
+    states: the dimension of each figure, and the largest packing fraction to choose.
+    """
+    rows = []
+    for figure, (dimension, largest) in states.items():
         eta = np.linspace(0.0, largest, _STEPS + 1)
         orders = range(1, HIGHEST_ORDER + 1)
         measured = datasets[figure]
-        found.append(
+        rows.append(
             {
                 "name": "discs" if dimension == 2 else "spheres",
                 "figure": figure,
@@ -42,20 +59,20 @@ def series(datasets: Mapping[str, xr.Dataset]) -> list[dict[str, Any]]:
                 ],
             }
         )
-    return found
+    return rows
 
 
 def costs(dataset: xr.Dataset) -> list[dict[str, Any]]:
-    """Of each gas, number of particles and observable of `time_to_accuracy`: the accuracies, and by engine
-    the seconds of processor time that reach them by the fitted model, None where the engine does not."""
-    found = []
+    """For each gas, number of particles and observable of a figure of costs the accuracies, and by engine the
+    seconds of processor time that reach them by the fitted model, None where the engine does not."""
+    rows = []
     for gas in range(dataset.sizes["gas"]):
         for count in dataset["count"].values:
             for observable in ("Z", "D"):
                 at = dataset.isel(gas=gas).sel(count=count, observable=observable)
                 kind = "discs" if int(at["gas_dimension"]) == 2 else "spheres"
                 eta = float(at["gas_packing_fraction"])
-                found.append(
+                rows.append(
                     {
                         "name": f"{observable} of {count} {kind} at packing fraction {eta:g}",
                         "accuracy": _numbers(dataset["accuracy"].values),
@@ -65,7 +82,7 @@ def costs(dataset: xr.Dataset) -> list[dict[str, Any]]:
                         },
                     }
                 )
-    return found
+    return rows
 
 
 def _numbers(values: np.ndarray) -> list[float | None]:

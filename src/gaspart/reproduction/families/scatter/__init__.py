@@ -4,6 +4,7 @@ from gaspart.kinds import TEXT, listed
 
 TITLE = "All claims together"
 CHAPTER = "Pictures and checks"
+OF_CLAIMS = True
 FIGURES = {
     "claims_scatter": {
         "experiments": listed(TEXT, "none: it is made of the claims of all other figures", least=0, most=0)

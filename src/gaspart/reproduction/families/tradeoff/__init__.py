@@ -4,6 +4,7 @@ from gaspart.kinds import COUNT, POSITIVE, listed, positive
 
 TITLE = "Speed against accuracy"
 CHAPTER = "Speed and accuracy"
+COSTS = ["time_to_accuracy"]
 _ACCURACIES = listed(POSITIVE, "relative accuracies of the cheapest settings")
 FIGURES = {
     "speed_accuracy": {

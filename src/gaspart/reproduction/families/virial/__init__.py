@@ -14,4 +14,5 @@ _FITS = listed(
     ),
     "fits of the virial coefficients; the first one is claimed",
 )
+SERIES = {"virial_discs": (2, 0.65), "virial_spheres": (3, 0.49)}
 FIGURES = {"virial_discs": {"fits": _FITS}, "virial_spheres": {"fits": _FITS}}
