@@ -16,6 +16,7 @@ import gaspart
 from gaspart import analysis, theory
 from gaspart.cli import commands
 from gaspart.cli.new import templates
+from gaspart.public import stated
 from gaspart.reproduction.claims.captions import filled
 from gaspart.reproduction.families.registry import families, titles
 
@@ -52,9 +53,9 @@ def entry(name):
 
 def api():
     """Pages of the public names: path -> text."""
-    pages = {}
+    pages, homes = {}, stated(f"{gaspart.__file__}i")
     for page, (title, packages) in GROUPS.items():
-        names = [name for name, home in gaspart._homes().items() if home.split(".")[0] in packages]
+        names = [name for name, home in homes.items() if f"{home}.".split(".")[1] in packages]
         pages[f"api/{page}.rst"] = heading(title) + "".join(
             entry(f"gaspart.{name}") for name in sorted(names)
         )

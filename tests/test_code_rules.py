@@ -5,7 +5,7 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).parents[1] / "src" / "gaspart"
 MOST_LINES = 60
-MOST_MODULES = 8
+MOST_MODULES = 9
 
 
 def long_functions(text):

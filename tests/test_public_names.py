@@ -1,9 +1,18 @@
 """The names of `import gaspart`: loaded when first used."""
 
+import os
 import subprocess
 import sys
+from importlib import import_module
+from pathlib import Path
+
+import pytest
 
 import gaspart as gp
+from gaspart.public import stated
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = ["gaspart", "gaspart.analysis", "gaspart.theory", "gaspart.reproduction.claims"]
 
 HEAVY = {"numpy", "numba", "xarray", "scipy", "matplotlib", "pandas", "netCDF4"}
 
@@ -12,6 +21,51 @@ def test_importing_the_package_imports_nothing_large():
     code = "import sys, gaspart; gaspart.__all__; print(*{name.split('.')[0] for name in sys.modules})"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert not HEAVY & set(done.stdout.split())
+
+
+def test_every_stub_belongs_to_a_package_that_loads_what_it_states():
+    stubs = {path.parent.relative_to(ROOT / "src") for path in (ROOT / "src/gaspart").rglob("*.pyi")}
+    assert {".".join(path.parts) for path in stubs} == set(PACKAGES)
+    for package in map(import_module, PACKAGES):
+        homes = stated(f"{package.__file__}i")
+        assert package.__all__ == list(homes) and dir(package) == sorted(homes)
+        for name, home in homes.items():
+            within = import_module(home)
+            assert getattr(package, name) is getattr(within, name)
+        with pytest.raises(AttributeError, match=f"module '{package.__name__}' has no attribute 'Scenes'"):
+            _ = package.Scenes
+
+
+def test_an_editor_sees_the_public_names():
+    jedi = pytest.importorskip("jedi")
+
+    def completions(text):
+        return {one.name for one in jedi.Script(f"import gaspart as gp\n{text}").complete()}
+
+    assert set(gp.__all__) <= completions("gp.")
+    assert set(gp.analysis.__all__) <= completions("gp.analysis.")
+    assert {"from_file", "packing_fraction"} <= completions("gp.Scene.")
+
+
+MISTAKES = """import gaspart as gp
+gas = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.5, temperature=1.0)])
+gp.run(gas, gp.EventDriven(), 1, 2.0, 0.5, "a.nc")
+gp.analysis.rdf("a.nc")
+gp.Scene(gp.Container((9.0, 9.0)), gravity=1.0)
+gp.run(gas, gp.EventDriven(), 1, 2.0, "0.5", "a.nc")
+gp.analysis.rdf(3)
+gp.theory.collision_rates(0.1, 2)
+"""
+
+
+@pytest.mark.thorough
+def test_a_type_checker_finds_mistakes_in_the_use_of_public_names(tmp_path):
+    (tmp_path / "mistakes.py").write_text(MISTAKES)
+    command = [sys.executable, "-m", "mypy", "mistakes.py", "--config-file", str(ROOT / "pyproject.toml")]
+    environment = {**os.environ, "MYPYPATH": str(ROOT / "src")}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
+    found = [int(line.split(":")[1]) for line in done.stdout.splitlines() if ": error:" in line]
+    assert found == [5, 6, 7, 8], done.stdout
 
 
 def test_theory_and_analysis_are_attributes():

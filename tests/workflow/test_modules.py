@@ -16,6 +16,7 @@ from gaspart.reproduction.points.modules import PACKAGE, closure, imported
 
 ROOT = Path(__file__).parents[2]
 LAYERS = [  # a module imports only from the packages above its own
+    {"public"},
     {"errors"},
     {"interruption"},
     {"files"},
@@ -72,6 +73,14 @@ class _Runs(ast.NodeTransformer):
         return None if ast.unparse(node.test) == "TYPE_CHECKING" else node
 
 
+@cache
+def reexported(package):
+    """The module of each name in the stub of a package, if it has one."""
+    stub = PACKAGE.joinpath(*package.split(".")[1:], "__init__.pyi")
+    nodes = ast.parse(stub.read_text(encoding="utf-8")).body if stub.exists() else []
+    return {node.names[0].name: node.module for node in nodes if isinstance(node, ast.ImportFrom)}
+
+
 def parsed(path):
     """Files that a file imports, found by a parser."""
     names = set()
@@ -81,6 +90,9 @@ def parsed(path):
         elif isinstance(node, ast.ImportFrom):
             assert not node.level, f"{path}:{node.lineno}: `imported` follows absolute imports only"
             names |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
+            for alias in node.names:
+                names |= set(reexported(f"{node.module}.{alias.name}").values())
+                names |= {reexported(node.module).get(alias.name, node.module)}
     names = {name for name in names if name.split(".")[0] == "gaspart"}
     names |= {".".join(name.split(".")[:n]) for name in names for n in range(1, name.count(".") + 1)}
     places = [PACKAGE.joinpath(*name.split(".")[1:]) for name in names]

@@ -5,41 +5,6 @@ xarray.Dataset with uncertainties, units and theory, which plots itself. They ar
 used. `lyapunov_exponent` takes a simulation that has recorded its events.
 """
 
-from __future__ import annotations
+from gaspart.public import attach as _attach
 
-from importlib import import_module
-
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import Any
-
-_HOMES = {
-    "Observable": "observable",
-    "bulk_viscosity": "transport",
-    "collision_rate": "pressure",
-    "compressibility_factor": "pressure",
-    "diffusion_coefficient": "motion",
-    "lyapunov_exponent": "lyapunov",
-    "mean_squared_displacement": "motion",
-    "order_parameter": "structure",
-    "pressure_tensor": "transport",
-    "profile": "structure",
-    "rdf": "structure",
-    "shear_viscosity": "transport",
-    "speed_distribution": "structure",
-    "thermal_conductivity": "transport",
-    "velocity_autocorrelation": "motion",
-    "wall_pressure": "pressure",
-}
-
-__all__ = [*_HOMES]
-
-
-def __getattr__(name: str) -> Any:
-    if name in _HOMES:
-        return getattr(import_module(f"gaspart.analysis.{_HOMES[name]}"), name)
-    raise AttributeError(f"module 'gaspart.analysis' has no attribute {name!r}")
-
-
-def __dir__() -> list[str]:
-    return sorted(__all__)
+__getattr__, __dir__, __all__ = _attach(__name__)

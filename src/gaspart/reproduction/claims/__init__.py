@@ -13,42 +13,6 @@ few samples, a deviation is that of Student's t. `families/<family>/claims.py` s
 claim.
 """
 
-from gaspart.reproduction.claims.claim import (
-    KINDS,
-    UNVERIFIED,
-    Claim,
-    Estimate,
-)
-from gaspart.reproduction.claims.judging import (
-    FAMILY_LEVEL,
-    VERDICTS,
-    family_test,
-    holm,
-    judge,
-)
-from gaspart.reproduction.claims.table import (
-    COLUMNS,
-    collect,
-    counts,
-    read,
-    summary,
-    write,
-)
+from gaspart.public import attach as _attach
 
-__all__ = [
-    "COLUMNS",
-    "FAMILY_LEVEL",
-    "KINDS",
-    "UNVERIFIED",
-    "VERDICTS",
-    "Claim",
-    "Estimate",
-    "collect",
-    "counts",
-    "family_test",
-    "holm",
-    "judge",
-    "read",
-    "summary",
-    "write",
-]
+__getattr__, __dir__, __all__ = _attach(__name__)

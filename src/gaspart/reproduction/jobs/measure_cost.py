@@ -9,6 +9,7 @@ Planning reads this module, so slow imports are made inside functions.
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Sequence
 from dataclasses import replace
@@ -100,31 +101,29 @@ def measure_cost(
 
     Raises SceneError, and SimulationError if the counted work of a repeat differs from the first one's.
     """
-    import numpy as np
-
     # By the shortest step: a longer one leaves overlaps, which would count against a shorter one.
     careful = min(engines, key=lambda engine: getattr(engine, "time_step", 0.0))
     runs = []
     for made, chosen, recorded in [(scene, engines, record), *([(*rival, False)] if rival else [])]:
         start = _start(made, careful, seed, equilibration)
         runs += [(made, start, engine, recorded) for engine in chosen]
-    seconds = np.empty((len(runs), repeats))
+    seconds = [[0.0] * repeats for _ in runs]
     counts: list[dict] = [{}] * len(runs)
     for repeat in range(repeats):
         order = range(len(runs))
         for n in order if repeat % 2 == 0 else reversed(order):
-            seconds[n, repeat], counted = _timed(*runs[n], stretch)
+            seconds[n][repeat], counted = _timed(*runs[n], stretch)
             if not counts[n]:
                 counts[n] = counted
             elif counted != counts[n]:
                 raise SimulationError(f"the same run twice: counted {counts[n]}, then {counted}")
-    columns = {name: ("partition", np.array([counted[name] for counted in counts])) for name in counts[0]}
-    sides = [_sides(engine, one.dimension) for one, _, engine, _ in runs]
+    columns = {name: ("partition", [counted[name] for counted in counts]) for name in counts[0]}
+    sides = [_sides(engine, made.dimension) for made, _, engine, _ in runs]
     return PointData(
         {
             "seconds": (("partition", "repeat"), seconds, {"units": "s"}),
-            "boxes": ("partition", np.array([int(np.prod(side)) for side in sides])),
-            "boxes_per_side": ("partition", np.array([side[0] for side in sides])),
+            "boxes": ("partition", [math.prod(side) for side in sides]),
+            "boxes_per_side": ("partition", [side[0] for side in sides]),
             **columns,
         },
         attributes={

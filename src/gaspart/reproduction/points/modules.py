@@ -3,7 +3,8 @@
 A digest of these modules is a parameter of the stage's rules: editing one reruns the stages that use it, and
 no others. As inputs they would be half a million files for ten thousand points. Imports are found by a search
 of the text, since parsing the whole package would take most of the time of a plan; a test compares the result
-with that of a parser.
+with that of a parser. A name that a package loads when it is used stands for the module that defines it, and
+such a package, where it is imported as a whole, for all of these (see `gaspart.public`).
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ import hashlib
 import re
 from functools import cache
 from pathlib import Path
+
+from gaspart.public import stated
 
 PACKAGE = Path(__file__).parents[2]
 _TYPES = re.compile(r"^if TYPE_CHECKING:\n(?:[ \t]+.*\n|\n)+", re.MULTILINE)
@@ -50,9 +53,18 @@ def imported(path: Path) -> frozenset[Path]:
     for base, items in _FROM.findall(text):
         names.add(base)
         for item in items.strip("()").split(","):
-            names.add(f"{base}.{item.split('#')[0].strip().split(' as ')[0]}")
+            name = item.split("#")[0].strip().split(" as ")[0]
+            names |= {f"{base}.{name}", *_homes(f"{base}.{name}").values()}
+            names |= {_homes(base)[name]} if name in _homes(base) else set()
     parents = {name.rsplit(".", depth)[0] for name in names for depth in range(1, name.count(".") + 1)}
     return frozenset(file for name in names | parents if (file := _file(name)) is not None)
+
+
+@cache
+def _homes(package: str) -> dict[str, str]:
+    """The module of each name that a package loads when it is used."""
+    stub = PACKAGE.joinpath(*package.split(".")[1:], "__init__.pyi")
+    return stated(str(stub)) if stub.is_file() else {}
 
 
 @cache

@@ -1,0 +1,16 @@
+from gaspart.analysis.lyapunov import lyapunov_exponent as lyapunov_exponent
+from gaspart.analysis.motion import diffusion_coefficient as diffusion_coefficient
+from gaspart.analysis.motion import mean_squared_displacement as mean_squared_displacement
+from gaspart.analysis.motion import velocity_autocorrelation as velocity_autocorrelation
+from gaspart.analysis.observable import Observable as Observable
+from gaspart.analysis.pressure import collision_rate as collision_rate
+from gaspart.analysis.pressure import compressibility_factor as compressibility_factor
+from gaspart.analysis.pressure import wall_pressure as wall_pressure
+from gaspart.analysis.structure import order_parameter as order_parameter
+from gaspart.analysis.structure import profile as profile
+from gaspart.analysis.structure import rdf as rdf
+from gaspart.analysis.structure import speed_distribution as speed_distribution
+from gaspart.analysis.transport import bulk_viscosity as bulk_viscosity
+from gaspart.analysis.transport import pressure_tensor as pressure_tensor
+from gaspart.analysis.transport import shear_viscosity as shear_viscosity
+from gaspart.analysis.transport import thermal_conductivity as thermal_conductivity

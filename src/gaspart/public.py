@@ -1,0 +1,39 @@
+"""The public names of packages, loaded when first used.
+
+A package states them once, in the stub `__init__.pyi` beside its `__init__.py`, a line for each:
+`from gaspart.scene.scene import Scene as Scene`. Type checkers and editors read the stub, and `attach` gives
+the package what it states.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from importlib import import_module
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:  # it takes longer to import than all else here
+    from typing import Any
+
+
+def stated(path: str) -> dict[str, str]:
+    """The module of each name that a stub re-exports."""
+    with open(path, encoding="utf-8") as file:
+        lines = [line.split() for line in file]
+    return {words[3]: words[1] for words in lines if len(words) == 6 and words[4] == "as"}
+
+
+def attach(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
+    """`__getattr__`, `__dir__` and `__all__` of a package that has a stub."""
+    namespace = vars(sys.modules[package])
+    homes = stated(f"{namespace['__file__']}i")
+
+    def load(name: str) -> Any:
+        if name not in homes:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        home = homes[name]
+        if home == package:  # a package within
+            return import_module(f"{package}.{name}")
+        return namespace.setdefault(name, getattr(import_module(home), name))
+
+    return load, lambda: sorted(homes), list(homes)

@@ -1,0 +1,15 @@
+from gaspart.analysis.estimate import Estimate as Estimate
+from gaspart.reproduction.claims.claim import KINDS as KINDS
+from gaspart.reproduction.claims.claim import UNVERIFIED as UNVERIFIED
+from gaspart.reproduction.claims.claim import Claim as Claim
+from gaspart.reproduction.claims.judging import FAMILY_LEVEL as FAMILY_LEVEL
+from gaspart.reproduction.claims.judging import VERDICTS as VERDICTS
+from gaspart.reproduction.claims.judging import family_test as family_test
+from gaspart.reproduction.claims.judging import holm as holm
+from gaspart.reproduction.claims.judging import judge as judge
+from gaspart.reproduction.claims.table import COLUMNS as COLUMNS
+from gaspart.reproduction.claims.table import collect as collect
+from gaspart.reproduction.claims.table import counts as counts
+from gaspart.reproduction.claims.table import read as read
+from gaspart.reproduction.claims.table import summary as summary
+from gaspart.reproduction.claims.table import write as write
