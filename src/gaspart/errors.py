@@ -27,7 +27,7 @@ class SceneError(ValueError):
         return (type(self), (self.key, self.value, self.rule, self.file))
 
     def inside(self, prefix: str, file: str | None = None) -> SceneError:
-        """The same error with the key of the enclosing mapping (`species[1].radius`), or with its file."""
+        """This error with the key of the enclosing mapping (`species[1].radius`), or with its file."""
         key = f"{prefix}.{self.key}" if prefix else self.key
         return SceneError(key, self.value, self.rule, file or self.file)
 

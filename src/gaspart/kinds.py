@@ -62,7 +62,7 @@ def record(keys: dict[str, Kind], meaning: str = "", **more: Any) -> Kind:
 
 
 def nullable(kind: Kind) -> Kind:
-    """The same kind or null, which counts as absent."""
+    """A kind or null, which counts as absent."""
     key, none = ("enum", None) if "enum" in kind else ("type", "null")
     values = [kind[key]] if isinstance(kind[key], str) else kind[key]
     return kind if none in values else {**kind, key: [*values, none]}

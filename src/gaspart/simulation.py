@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 ENERGY_DRIFT = {"float64": 1e-9, "float32": 1e-3}
 """Drift of the energy at which a run is stopped, relative to that of the gas, by the engine's precision."""
 EXCHANGE_ERROR = {"float64": 2.0**-52, "float32": 2.0**-23}
-"""The same, relative to the energy exchanged with contacts and thermal walls: its rounding."""
+"""Drift relative to the energy exchanged with contacts and thermal walls that is allowed for its rounding."""
 PROPERTIES = (
     "positions",
     "unwrapped",

@@ -20,7 +20,7 @@ from gaspart.errors import SceneError
 from gaspart.scene.validation import count_of
 
 GROUPS = 16
-"""Of particles, whose scatter gives the uncertainty."""
+"""Number of groups of particles, whose scatter gives the uncertainty."""
 MOST_FRAMES = 1000
 """That are correlated; of a longer run, every second or third ..."""
 LINEAR_FROM = 12.0
@@ -255,7 +255,7 @@ def _groups(run: Run, paths: bool = True, about: np.ndarray | None = None) -> _G
 
 
 def _stride(run: Run) -> int:
-    """Of how many frames one is taken."""
+    """The number of frames of which one is taken."""
     return -(-len(run.time) // MOST_FRAMES)
 
 

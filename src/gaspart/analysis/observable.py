@@ -19,7 +19,7 @@ _ROUNDING = 1e-12
 """Relative scatter of a series that does not change."""
 _LONG = 32  # characters of a label, from which on it has two lines
 STRETCHES = 20
-"""Of a run, whose means a plot of a scalar shows."""
+"""Number of stretches of a run, whose means a plot of a scalar shows."""
 
 
 class Observable(xr.Dataset):

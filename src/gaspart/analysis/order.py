@@ -17,7 +17,7 @@ import numpy as np
 from gaspart.errors import optional
 
 NEIGHBOURS = 12
-"""Of a sphere: those of a face-centred cubic crystal."""
+"""Number of neighbours of a sphere in a face-centred cubic crystal."""
 
 
 @cache

@@ -180,7 +180,7 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
 
 
 def _chosen(run: Run, values: np.ndarray) -> np.ndarray:
-    """Of values for each frame, up to `MOST_FRAMES`, evenly spaced. Raises SceneError for too few."""
+    """The values of up to `MOST_FRAMES` frames, evenly spaced. Raises SceneError for too few."""
     if len(run.time) < STRETCHES:
         raise SceneError("frames", len(run.time), f"an error needs {STRETCHES} or more")
     return values[:: -(-len(run.time) // MOST_FRAMES)]

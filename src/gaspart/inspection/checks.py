@@ -22,9 +22,9 @@ from gaspart.inspection.verdict import Check, compared
 __all__ = ["Check", "judge", "judge_places"]
 
 TOUCH = 1e-7
-"""Of a diameter: overlaps up to here are attributed to rounding; more if the file's numbers are coarser."""
+"""Overlap, over the diameter, that is attributed to rounding; more if the file's numbers are coarser."""
 COARSEST = 0.1
-"""Of a diameter: overlaps beyond are not attributed to rounding, however coarse the file is."""
+"""Overlap, over the diameter, beyond which it is no rounding, however coarse the file is."""
 MOST_FRAMES = 200
 """Number of frames, evenly spaced, that are searched for overlaps and contact values."""
 _LEAST_FRAMES = 16

@@ -13,7 +13,7 @@ from gaspart.inspection.frames import Frames
 from gaspart.scene.geometry import ball_volume
 
 WIDTH = 0.3
-"""Of the shells together, in diameters."""
+"""Width of all shells together, in diameters."""
 _SHELLS, _DEGREE = 15, 3
 FIT_ERROR = 0.005
 """Relative error of the cubic: 0.5 % for spheres at packing fraction 0.45, where g falls

@@ -97,7 +97,8 @@ def _read(file: Any, name: str) -> np.ndarray | None:
 
 
 def _read_frames(file: Any, name: str, path: Path, width: int | None = None) -> np.ndarray | None:
-    """The same of a variable of every frame, or of the single one of a restart file."""
+    """The values (frame, ...) of a variable of every frame, or of the single one of a restart file; None as
+    `_read` returns it."""
     values = _read(file, name)
     if values is None:
         return None

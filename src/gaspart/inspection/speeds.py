@@ -14,7 +14,7 @@ from gaspart.inspection.samples import UNEVEN, collided, independent, unevenness
 from gaspart.inspection.verdict import Check, compared
 
 RESIDUE = 0.25
-"""Of the scatter of the kurtosis in one frame: what may be left of its deviation in the initial state."""
+"""Deviation of the kurtosis that may remain from the initial state, over its scatter in one frame."""
 RARE = 1e-4
 """Probability below which the check of the distribution fails."""
 _MOST_SKEWED = 1.0  # skewness of a mean whose probability is known well enough

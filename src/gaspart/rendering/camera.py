@@ -31,7 +31,7 @@ class Camera:
     light: np.ndarray
 
     def pixels_per_length(self, point: np.ndarray, width: int) -> float:
-        """Of a short length across the view at a point (3,), in a picture `width` pixels wide."""
+        """Pixels per length across the view at a point (3,), in a picture `width` pixels wide."""
         return 0.5 * width / (self.half_width * float((point - self.eye) @ self.forward))
 
 

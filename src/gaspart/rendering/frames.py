@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 Source: TypeAlias = "str | Path | xr.Dataset | Simulation | State"
 """What pictures are made of: a trajectory, by its path or open, a simulation or a state."""
 _CORNERS = {2: ((0,), (1,)), 3: ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))}
-"""Of a face, in a container whose sides are 1, along the outline."""
+"""Corners of a face, along its outline, in a container whose sides are 1."""
 
 
 def render(

@@ -31,7 +31,7 @@ _PLACES: dict[Any, tuple[float, float]] = {
     "upper center": (0.5, 1.0),
     "lower center": (0.5, 0.0),
 }
-"""Of a legend in its panel: parts of the free width and height at its left and below."""
+"""Place of a legend in its panel: the parts of the free width and height that are at its left and below."""
 _NARROW, _LETTER = 0.8, 16.0
 """Part of a panel's width up to which a legend above it has room beside the letter; else it is so many pixels
 higher."""

@@ -45,7 +45,7 @@ class DrawnParticles:
 
     @property
     def root_mean_square_speed(self) -> float:
-        """Of all particles; 0 if there are none."""
+        """The root-mean-square speed of all particles; 0 if there are none."""
         return float(np.sqrt((self.speeds**2).mean())) if len(self.speeds) else 0.0
 
 

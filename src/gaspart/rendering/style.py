@@ -87,7 +87,7 @@ def applied(layout: str = "page") -> Iterator[None]:
 
 
 def width() -> float:
-    """Of a figure in the layout that is applied, in inches."""
+    """The width of a figure in the layout that is applied, in inches."""
     import matplotlib
 
     return float(matplotlib.rcParams["figure.figsize"][0])

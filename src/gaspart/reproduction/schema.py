@@ -121,7 +121,7 @@ def _parts(scene: Kind) -> list[tuple[str, Kind]]:
 
 
 def _outline(table: dict[str, Kind]) -> dict[str, Kind]:
-    """The same keys without those inside their mappings, which have tables of their own."""
+    """A table of keys without those inside their mappings, which have tables of their own."""
     return {name: {**kind, "properties": {}} for name, kind in table.items()}
 
 

@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 T = TypeVar("T", bound="DataclassInstance")
 
 SMALLEST, LARGEST = 1e-60, 1e60
-"""Of quantities: contacts multiply four of them, and the product must neither vanish nor overflow."""
+"""Size of any quantity: contacts multiply four of them, and the product must neither vanish nor overflow."""
 MOST_BODIES = 2**31 - 1
-"""Of a scene or a species: indices of particles have 32 bits."""
+"""Largest number of particles of a scene or a species: their indices have 32 bits."""
 MOST_BOXES = 2**26
-"""Of a partition: more exceed the memory of a common machine."""
+"""Largest number of boxes of a partition: more exceed the memory of a common machine."""
 MOST_LISTED = 50_000
 """Species, single particles or walls of a scene, each of which is written in the scene's text."""
 

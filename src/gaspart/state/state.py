@@ -95,8 +95,7 @@ class State:
 
     @property
     def potential_energy(self) -> float:
-        """Of all particles under gravity, 0 where their centres are at the container's origin, and in
-        wells."""
+        """The energy of all particles in wells and under gravity, 0 where their centres are at the origin."""
         energy = 0.0 if self.well_energies is None else float(self.well_energies.sum())
         if self.gravity is not None:
             energy -= float((_finite(self.masses)[:, None] * self.positions * self.gravity).sum())
@@ -104,7 +103,7 @@ class State:
 
     @property
     def vibrational_energy(self) -> float:
-        """Of all particles; 0 where none vibrates."""
+        """The energy of the vibrations of all particles; 0 where none vibrates."""
         return 0.0 if self.vibrations is None else float(self.vibrations.sum())
 
     @property

@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 _CELLS = 100
-"""Of the gap: within one of them electrons hit the same modes."""
+"""Number of cells of the gap: within one of them electrons hit the same modes."""
 _PER_CELL = 1.0
 """Modes over electrons: a steady state does not depend on it."""
 _STEP = 0.2

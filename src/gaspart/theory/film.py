@@ -99,7 +99,7 @@ def _bulk_measures(density: float) -> tuple[float, float]:
 def _derivatives(
     n3: np.ndarray, n2: np.ndarray, vector: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of the free energy density by n_3, n_2 and n_V2, the lower measures expressed by these."""
+    """Derivatives of the free energy density by n_3, n_2 and n_V2, the lower measures expressed by these."""
     void = 1.0 - n3
     logarithm = np.log(void)
     small = n3 < 1e-4

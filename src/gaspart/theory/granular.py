@@ -14,9 +14,9 @@ from gaspart.theory._arguments import Numbers, Values, checked, checked_dimensio
 from gaspart.theory.enskog import collision_rate
 
 DISCHARGE_EXPONENT = 1.5
-"""Of the width of an orifice, less some diameters of the grains, in the rate of their flow through it in two
-dimensions: the width times the speed of a free fall from an arch as wide. In three it is 5/2 (Beverloo,
-Leniger & van de Velde, Chem. Eng. Sci. 15, 260 (1961))."""
+"""Exponent of the width of an orifice, less some diameters of the grains, in the rate of their flow through
+it in two dimensions: the width times the speed of a free fall from an arch as wide. In three it is 5/2
+(Beverloo, Leniger & van de Velde, Chem. Eng. Sci. 15, 260 (1961))."""
 
 
 def fourth_cumulant(restitution: Numbers, dimension: int) -> Values:

@@ -18,8 +18,9 @@ TEMPERATURE_JUMP = 2.127
 sqrt(pi) / 2, Sone, Ohwada and Aoki, Phys. Fluids A 1, 363 (1989). Moments of the linearised Boltzmann
 equation, derived again, come within 0.5 % of it and converge (tested)."""
 ELEMENTARY_JUMP = 15.0 / 8.0
-"""The same by Maxwell's elementary argument, 2 gamma / (gamma + 1) / Pr with gamma = 5/3, Pr = 2/3: particles
-arrive with the distribution of the gas far from the wall. A measurement must distinguish the two."""
+"""`TEMPERATURE_JUMP` by Maxwell's elementary argument, 2 gamma / (gamma + 1) / Pr with gamma = 5/3 and
+Pr = 2/3: particles arrive with the distribution of the gas far from the wall. A measurement must distinguish
+the two."""
 METAL_GAP, METAL_BEND, METAL_BEND_ERROR = 10.0, 0.044, 0.0046
 """Gap, in mean free paths, between walls at 2 and at 1; the second-order coefficient of the temperature of
 electrons among scatterers with modes against position over the gap, without the outermost tenths; and its
@@ -109,7 +110,7 @@ def conducting_slab(
 
 
 def _between(length: float, density: float, hot: float, cold: float, diameter: float) -> Slab:
-    """The same for a gas that has the temperatures `hot` and `cold` at the walls."""
+    """The slab of a gas that has the temperatures `hot` and `cold` at the walls, without jumps."""
     temperature = np.linspace(hot, cold, 401)
     eta = np.linspace(0.0, 0.45, 4001)
     table = number_density(eta, 3, diameter) * compressibility_factor(eta, 3)  # pressure over temperature

@@ -32,7 +32,7 @@ from gaspart.theory.state import compressibility_factor, compressibility_uncerta
 _DENSEST = 0.49
 """Where the polynomials below end."""
 _SECOND_ORDER = {2: (-1.0 / 3.0, 1.0 / 16.0), 3: (-math.pi / 8.0, 1.0 / 15.0, -1.0 / 96.0)}
-"""Of gamma, tau and kappa in rho^2, from the overlap of two centres in a box (exact)."""
+"""Coefficients of rho^2 in gamma, tau and kappa, from the overlap of two centres in a box (exact)."""
 _SHAPES: dict[int, tuple[tuple[float, ...], ...]] = {
     2: ((1.0, 0.3564, 0.0695, -0.0916), (1.0, -4.5011, -1.1219, -0.004)),
     3: (

@@ -85,7 +85,8 @@ def _noise(virial: xr.Dataset, dimension: int) -> Iterator[dict]:
 
 
 def _diffusion(msd: xr.Dataset) -> Iterator[dict]:
-    """The same for D of spheres: one number, the median of all gases (each has few replicas)."""
+    """Relative variance of D of spheres, times the contacts that it comes from: one number, the median of all
+    gases (each has few replicas)."""
     length = msd.time.max("lag") * 2.0 * msd.collision_rate  # lags reach to half a run
     contacts = 0.5 * msd["count"] * length * msd.replicas
     values = ((msd.diffusion_error / msd.diffusion) ** 2 * contacts).values

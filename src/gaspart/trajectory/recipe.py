@@ -212,7 +212,8 @@ def open_netcdf(path: Path) -> netCDF4.Dataset:
 
 
 def open_checked(path: Path) -> tuple[netCDF4.Dataset, CheckedFrames]:
-    """The same, and the record of which of its frames were checked; both are to be closed by the caller."""
+    """A trajectory as `open_netcdf` opens it, and the record of which of its frames were checked; the caller
+    closes both."""
     with _checked(path) as (file, header, frames):
         return open_descriptor(file), CheckedFrames(file, header, frames)
 
@@ -226,7 +227,7 @@ def open_descriptor(file: BinaryIO) -> netCDF4.Dataset:
 
 @contextmanager
 def opened(path: Path) -> Iterator[netCDF4.Dataset]:
-    """The same as `open_netcdf`, closed after the block."""
+    """A trajectory as `open_netcdf` opens it, closed after the block."""
     with open_netcdf(path) as file:
         yield file
 

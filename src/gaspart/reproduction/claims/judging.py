@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from gaspart.reproduction.claims.claim import POWER, Claim
 
 VERDICTS = ("agrees", "disagrees", "inconclusive", "reproduced", "source in error", "no verdict")
-"""Of tests and identities the first three; a reproduction is reproduced, its source is in error (if there is
-a reason why), it disagrees for no known reason, or is inconclusive; no verdict: the number is reported
-only."""
+"""Tests and identities have one of the first three; a reproduction is reproduced, its source is in error (if
+there is a reason why), it disagrees for no known reason, or is inconclusive; no verdict: the number is
+reported only."""
 FAMILY_LEVEL = math.erfc(3.0 / math.sqrt(2.0))
 """Chance that a family of true statements has any "disagrees": that of one two-sided 3-sigma test, 0.0027."""
 
@@ -73,7 +73,7 @@ def judge(claims: Sequence[Claim]) -> list[str]:
 
 
 def _verdict(claim: Claim, is_significant: bool) -> str:
-    """Of one claim, whose deviation is significant or not."""
+    """The verdict of one claim, whose deviation is significant or not."""
     if claim.no_verdict:
         return "no verdict"
     if not claim.is_finite:

@@ -50,7 +50,7 @@ def of_claims() -> frozenset[str]:
 
 
 def series() -> dict[str, tuple[int, float]]:
-    """Of each figure of an equation of state the dimension and the largest packing fraction to choose."""
+    """The dimension and the largest packing fraction to choose of each figure of an equation of state."""
     parts = (getattr(package, "SERIES", {}) for package in _packages().values())
     return {figure: stated for part in parts for figure, stated in part.items()}
 

@@ -88,8 +88,8 @@ def digest(*roots: str | Path) -> str:
 
 @cache
 def kernel_digest(*roots: str | Path) -> str:
-    """The same of the compiled modules among them that `warm` may compile: jobs that need
-    the same ones share their stamps."""
+    """A short digest of the compiled modules in a closure that `warm` may compile: jobs that need equal ones
+    share their stamps."""
     total = hashlib.sha256()
     for path in _in_order(closure(*roots) & closure("gaspart.reproduction.points.variants")):
         if path.is_relative_to(PACKAGE / "kernels"):

@@ -18,7 +18,7 @@ from gaspart.reproduction.report.caption import Caption, divided, html_of
 from gaspart.reproduction.report.strip import dots
 
 _PIXELS_PER_INCH = 96.0 * 1.5
-"""Of a page, enlarged so that the lettering of the pictures, 8 points, is that of the text."""
+"""Pixels of the page per inch of a figure, so that its lettering of 8 points is as large as the text."""
 CHAPTERS = (
     "Equation of state and structure",
     "Motion and its memory",

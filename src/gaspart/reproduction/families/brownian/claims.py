@@ -26,7 +26,7 @@ def _name(row: xr.Dataset) -> str:
 
 
 def _source(row: xr.Dataset) -> str:
-    """Of what is expected of a row."""
+    """The source of what is expected of a row."""
     if not row["is_light"]:
         return LANGEVIN
     return RELAXING if row["equal_speeds"] else BOLTZMANN

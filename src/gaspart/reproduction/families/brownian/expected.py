@@ -20,7 +20,7 @@ HEAVY = 10.0
 limit of a large ratio; the velocity autocorrelation of one of equal mass decays 0.6 % more slowly up to half
 a friction time."""
 GROUPS, MOST = 200, 300
-"""Of paths of the linear Boltzmann equation, each as many as the point has replicas, up to MOST: the
+"""Groups of paths of the linear Boltzmann equation, each as many as the point has replicas, up to MOST: the
 statistical error of theory is the measurement's over sqrt(200), which is negligible, or that of 60 000
 paths."""
 GAS = 100_000

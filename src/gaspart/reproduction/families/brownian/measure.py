@@ -38,7 +38,7 @@ NAMES = {
 
 
 def _followed(point: Point) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Of each replica: times (T,), displacements and velocities of the first particle (T, 1, 3)."""
+    """Times (T,) of each replica, displacements and velocities of its first particle (T, 1, 3)."""
     if not point.settings.get("displacements", False):
         raise SceneError(f"experiments.{point.experiment}.displacements", False, "must be true")
     for run in runs(point, first=0):

@@ -49,7 +49,7 @@ def _shown(ds: xr.Dataset, long: np.ndarray) -> np.ndarray:
 
 
 def _spread(first: int, last: int) -> np.ndarray:
-    """Of the lags first ... last - 1 about eight in each decade."""
+    """Indices from first to last - 1, about eight in each decade."""
     number = int(np.ceil(8.0 * np.log10(last / first))) + 1
     return np.unique(np.geomspace(first, max(last - 1, first), number).round().astype(int))
 

@@ -34,7 +34,7 @@ def _outcome(row: xr.Dataset) -> Claim:
 
 
 def _exact(dataset: xr.Dataset) -> list[Claim]:
-    """Of the event-driven engine, over all rows that pass."""
+    """Errors of the event-driven engine, over all rows that pass."""
     event = dataset.sel(engine="event")
     passed = event.isel(row=np.flatnonzero(event["verdict"].values == "passes"))
     claims = []

@@ -99,7 +99,7 @@ def jammed() -> Scene:
 
 
 def touching() -> Scene:
-    """The same four, between periodic faces, without any gap."""
+    """Four discs that touch each other through periodic faces too, without any gap."""
     moves = {(0.5, 0.5): (1.0, 0.5), (1.5, 0.5): (-1.0, 0.5), (0.5, 1.5): (1.0, 0.5), (1.5, 1.5): (1.0, 0.5)}
     bodies = tuple(Body(place, move, 0.5) for place, move in moves.items())
     return Scene(Container((2.0, 2.0), "periodic"), bodies=bodies)

@@ -139,7 +139,7 @@ def momentum_drift(before: State, after: State) -> float:
 
 
 def deepest_overlap(state: State, periodic: tuple[bool, ...]) -> float:
-    """Of any pair, in contact distances, looking at all pairs."""
+    """The deepest overlap of any pair, in contact distances, from a look at all pairs."""
     deepest = 0.0
     for n in range(state.count - 1):
         apart = state.positions[n + 1 :] - state.positions[n]

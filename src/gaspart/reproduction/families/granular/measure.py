@@ -116,8 +116,8 @@ def _cooling(point: Point, steady_from: float) -> dict:
 
 
 def _walls(point: Point) -> dict:
-    """Of particles between two rough walls, over T_par at the start: T_par = m <v^2> of each direction along
-    the walls, and T_rot = I <w^2> of each spin that a hit changes, which are as many.
+    """Temperatures of particles between two rough walls, over T_par at the start: T_par = m <v^2> of each
+    direction along the walls, and T_rot = I <w^2> of each spin that a hit changes, which are as many.
 
     `exchange`: T_rot over theory's, by least squares until MIXING; `wall_ratio`: T_rot / T_par after MIXED,
     over theory's. wall_time: t sqrt(k_B T / m) / h.

@@ -128,7 +128,7 @@ def _source_mixture(row: xr.Dataset) -> list[Claim]:
 
 
 def _collisions(row: xr.Dataset) -> Claim:
-    """Of the source's own run until its end; one run, whose collisions are counted."""
+    """Collisions of the source's own run until its end; one run, whose collisions are counted."""
     reported = row.attrs["source_collisions"]
     count = float(row["collisions"])
     return Claim.within(
@@ -168,7 +168,7 @@ def _at(row: xr.Dataset) -> str:
 
 
 def _slope(one: xr.Dataset, name: str, at: str, required: float) -> Claim:
-    """Of one species."""
+    """The slope of the chemical potential of one species."""
     return Claim(
         claim=f"slope of the chemical potential of the {name} over -m g / kT, {at}",
         measured=Estimate.of(one, "slope_ratio"),
@@ -180,7 +180,7 @@ def _slope(one: xr.Dataset, name: str, at: str, required: float) -> Claim:
 
 
 def _mean_height(one: xr.Dataset, name: str, at: str) -> Claim:
-    """Of one species."""
+    """The mean height of one species."""
     return Claim(
         claim=f"mean height of the {name} over the ideal gas's, {at}",
         measured=Estimate.of(one, "mean_height_ratio"),

@@ -113,7 +113,7 @@ def separation(ds: xr.Dataset) -> Figure:
 
 
 def _shares(axis: Axes, row: xr.Dataset) -> None:
-    """Of the light discs in the source's mixture: as in its run, as in ours, and in equilibrium."""
+    """Shares of the light discs in the source's mixture: in its run, in ours, and in equilibrium."""
     reported = np.array(row.attrs["source_shares"])
     edges = np.linspace(0.0, float(row["top"]), len(reported) + 1)
     axis.stairs(reported, edges, baseline=None, color=style.GREY, label="source's run")
@@ -149,7 +149,7 @@ def _density(axis: Axes, row: xr.Dataset, kind: int, theory: str | None, label: 
 
 
 def _temperature(axis: Axes, row: xr.Dataset, kind: int) -> None:
-    """Of each height over that of all, where there are particles enough."""
+    """The temperature at each height over that of all, where there are particles enough."""
     density, error = estimates(row.isel(species=0), "density")
     seen = error < KNOWN * density
     _percent(axis, row["height"].values[seen], estimates(row, "temperature_ratio")[:, seen], kind)

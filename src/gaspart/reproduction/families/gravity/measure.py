@@ -49,7 +49,7 @@ def barometric(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def separation(points: list[Point], settings: dict) -> xr.Dataset:
-    """The same of heavy and light discs of one size, and the slope of their ratio; see `profiles`.
+    """Profiles of heavy and light discs of one size, and the slope of their ratio; see `profiles`.
 
     settings: also `source_collisions` before the source's sample, and `source_shares` in it, of the light
     discs in equal layers of the container.
@@ -98,7 +98,7 @@ def profiles(points: list[Point], settings: dict, of_source: Callable[[Point], d
 
 
 _PARTS = ("", "_error", "_freedom")
-"""Of the names of the variables that are an estimate."""
+"""Suffixes of the names of the variables that are an estimate."""
 
 
 @dataclass(frozen=True)
@@ -183,7 +183,7 @@ class Bins:
         return shown
 
     def _slope(self, y: np.ndarray, weight: np.ndarray) -> float:
-        """Of the line through the used bins where something was; variances are as 1 / weight."""
+        """Slope of the line through the used bins where something was; variances are as 1 / weight."""
         seen = self.used & (weight > 0.0)
         return float(np.polyfit(self.height[seen], y[seen], 1, w=np.sqrt(weight[seen]))[0])
 

@@ -13,7 +13,7 @@ from gaspart.theory.heat import TEMPERATURE_JUMP, Slab, steady_part
 FRAMES = 40
 """First frames of a run that show the approach."""
 HEAT_CAPACITY = 2.5
-"""Of a particle at constant pressure, in a dilute gas of spheres."""
+"""Heat capacity of a particle at constant pressure, in a dilute gas of spheres."""
 
 
 NO_APPROACH = dict.fromkeys(
@@ -54,8 +54,8 @@ def approach(point: Point, slab: Slab) -> dict[str, np.ndarray]:
 
 
 def expected_approach(time: np.ndarray, slab: Slab, density: float, diameter: float) -> np.ndarray:
-    """The same by the heat equation, which ends at the difference of the steady `slab`, with the conductivity
-    of the mean density and temperature; jumps at the walls lengthen the gap."""
+    """The difference of the halves' temperatures by the heat equation, with the conductivity of the mean
+    density and temperature: it ends at that of the steady `slab`; jumps at the walls lengthen the gap."""
     hot = slab.position < 0.5 * slab.position[-1]
     steady = _average(slab, hot) - _average(slab, ~hot)
     eta = packing_fraction(density, 3, diameter)

@@ -14,7 +14,7 @@ from gaspart.theory.heat import ELEMENTARY_JUMP, METAL_BEND, METAL_BEND_ERROR, M
 FREE = 100.0
 """Knudsen number above which collisions between particles are negligible."""
 CHANNELS = 0.1
-"""Of the flux among scatterers at random places, the most that the channels of a grid may add. Electrons
+"""The most that the channels of a grid may add to the flux among scatterers at random places. Electrons
 that fly from wall to wall add w/a (sqrt(1 + (L/w)^2) - L/w) = 0.008 of the flux of free flight, 0.06 of it
 (gap L = 40, channels of width w = 1.18 at each a = 2.22); the rest is for flights that end on the way."""
 
@@ -174,9 +174,9 @@ def _local(row: xr.Dataset) -> Claim:
 
 
 def _linear(row: xr.Dataset) -> list[Claim]:
-    """Of a gas, whose particles collide with each other, T^(3/2) would be linear. Nothing is claimed of
-    a grid: where channels let electrons fly far, their temperature is not a local one; nor of walls and gaps
-    for which theory has not been computed."""
+    """The bend of the temperature against position; in a gas T^(3/2) would be linear. Nothing is claimed of a
+    grid: where channels let electrons fly far, their temperature is not a local one; nor of walls and
+    gaps for which theory has not been computed."""
     if row["hot"] != 2.0 * row["cold"] or abs(row["gap_over_path"] / METAL_GAP - 1.0) > 0.1:
         return []
     slope, level = np.polyfit(row["position"].values[1:-1], row["electrons"].values[1:-1], 1)

@@ -86,7 +86,7 @@ class Averages:
 
 
 def averages(point: Point, gap: Gap, blocks: int, bins: int) -> Averages:
-    """Of the measured part of all replicas of particles of mass 1, each cut into `blocks`.
+    """Averages over the measured part of all replicas of particles of mass 1, each cut into `blocks`.
 
     Raises ValueError for too few frames.
     """

@@ -14,9 +14,9 @@ from gaspart.rendering.pictures import picture
 DOTS = 300
 """Pixels per inch of the pictures, as those of a saved figure."""
 HEIGHT = 0.75
-"""Of a picture, over its width."""
+"""Height of a picture, over its width."""
 HIGHEST = 4.2
-"""Of a picture, in inches."""
+"""Largest height of a picture, in inches."""
 
 
 def gas_render(ds: xr.Dataset) -> Figure:

@@ -22,7 +22,7 @@ def gas_render(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def brownian_render(points: list[Point], settings: dict) -> xr.Dataset:
-    """The same for the large sphere in its gas."""
+    """The last frame of the large sphere in its gas, and counts; see `_scene`."""
     return _scene(points[0])
 
 

@@ -35,7 +35,7 @@ class Field:
 
     @property
     def weight(self) -> float:
-        """Of all particles that move."""
+        """The temperature of all particles that move."""
         return float(self.strength * self.masses[np.isfinite(self.masses)].sum())
 
 

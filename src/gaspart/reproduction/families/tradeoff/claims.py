@@ -9,7 +9,7 @@ from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared.claims import PARTICLES, rows
 
 MISSED = {2: 1.0 / 4.0, 3: 2.0 / 3.0}
-"""Of a dilute gas: the part of all contacts that touch and part within a step, over (v_th dt / sigma)^2."""
+"""The part of all contacts of a dilute gas that touch and part within a step, over (v_th dt / sigma)^2."""
 BAND = {1.0: 0.15, 2.0: 0.3, 3.0: 0.6}
 """Half-width of the band around an order."""
 REQUIRED = {1.0: 0.1, 2.0: 0.2, 3.0: 0.4}
