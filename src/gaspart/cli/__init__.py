@@ -53,9 +53,9 @@ def main(arguments: Sequence[str] | None = None, without_output: bool = False) -
         set_note("")
         try:
             words = sys.argv[1:] if arguments is None else arguments
-            given, left = _parser(words).parse_known_args(words)
-            if left:
-                raise UsageError(_unrecognised(left, given.parser))
+            given, unknown = _parser(words).parse_known_args(words)
+            if unknown:
+                raise UsageError(_unrecognised(unknown, given.parser))
             if without_output and getattr(given, "output", None) is None and words[0] not in _WRITE_FILES:
                 raise OSError(errno.EBADF, os.strerror(errno.EBADF))
             given.command(given)

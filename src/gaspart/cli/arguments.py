@@ -97,8 +97,8 @@ def of_configs(command: str) -> Callable:
     the reproduction."""
     from importlib.metadata import entry_points  # 0.02 s
 
-    (found,) = entry_points(group="gaspart.configs", name=command)
-    return found.load()
+    (entry_point,) = entry_points(group="gaspart.configs", name=command)
+    return entry_point.load()
 
 
 def print_line(text: object) -> None:

@@ -53,7 +53,7 @@ def _check(given: argparse.Namespace) -> None:
         for key in ("radius", "lengths", "boundary", "time_step"):
             if getattr(given, key) is not None:
                 raise SceneError(key, getattr(given, key), "has a meaning for trajectories only")
-        found = _written(given.file, given.tolerance)
+        checks = _written(given.file, given.tolerance)
     else:
         from gaspart.inspection.checks import judge
         from gaspart.inspection.readers import read_frames
@@ -61,10 +61,10 @@ def _check(given: argparse.Namespace) -> None:
         frames = read_frames(given.file, given.radius, given.lengths, given.boundary, given.time_step)
         kind = "discs" if frames.dimension == 2 else "spheres"
         print_line(f"{given.file}: {frames.count} {kind} in {len(frames.positions)} frames")
-        found = judge(frames, given.tolerance)
-    for check in found:
+        checks = judge(frames, given.tolerance)
+    for check in checks:
         print_line(check)
-    if any(check.passed is False for check in found):
+    if any(check.passed is False for check in checks):
         raise CheckFailed
 
 

@@ -16,13 +16,16 @@ from gaspart.scene.keys import schema_of
 @cache
 def engine_settings() -> dict[str, Kind]:
     """The settings of all engines, by name; the meaning of each says of which engine it is."""
-    found: dict[str, Kind] = {}
+    settings: dict[str, Kind] = {}
     for name, engine in ENGINES.items():
         for key, kind in schema_of(engine)["properties"].items():
             meaning = f"{name} engine: {kind['description']}"
-            known = found.get(key)
-            found[key] = {**kind, "description": f"{known['description']}; {meaning}" if known else meaning}
-    return found
+            known = settings.get(key)
+            settings[key] = {
+                **kind,
+                "description": f"{known['description']}; {meaning}" if known else meaning,
+            }
+    return settings
 
 
 def add_setting(parser: Parser, name: str, kind: Kind) -> None:

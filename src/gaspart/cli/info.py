@@ -31,24 +31,24 @@ def _info(given: argparse.Namespace) -> None:
     from gaspart.trajectory.run import partial_path
 
     path = Path(given.trajectory)
-    found = path if path.exists() or not partial_path(path).exists() else partial_path(path)
-    recipe = read_recipe(found)
-    with opened(found) as file:
+    stored_at = path if path.exists() or not partial_path(path).exists() else partial_path(path)
+    recipe = read_recipe(stored_at)
+    with opened(stored_at) as file:
         stored, frames = file.__dict__, len(file.dimensions["frame"])
     if given.scene:
         print_line(stored["scene"].rstrip("\n"))
         return
-    check_frames(found)
+    check_frames(stored_at)
     scene = recipe.scene
     state = "complete" if frames == recipe.frames else "unfinished: `gaspart resume` continues it"
     versions = [f"{key.removesuffix('_version')} {stored[key]}" for key in stored if key.endswith("_version")]
     remake = [
-        f"gaspart info --scene {shlex.quote(str(found))} > scene.yaml",
+        f"gaspart info --scene {shlex.quote(str(stored_at))} > scene.yaml",
         "gaspart run scene.yaml " + shlex.join(_run_options(path, recipe, stored)),
     ]
-    print_line(f"{found}: {stored['title']}, {frames} of {recipe.frames} frames, {state}")
+    print_line(f"{stored_at}: {stored['title']}, {frames} of {recipe.frames} frames, {state}")
     print_line(f"packing fraction {scene.packing_fraction:.6g}, number density {scene.number_density:.6g}")
-    print_line("\n".join(certificate(found)))
+    print_line("\n".join(certificate(stored_at)))
     for key, value in recipe.engine.predictions(scene).items():
         print_line(f"predicted {key.replace('_', ' ')}: {100.0 * value:+.2g} % (by its cells and steps)")
     print_line(f"checksums: the header and {'all frames' if frames else 'no frames yet'} are undamaged")

@@ -68,23 +68,25 @@ def _measure(given: argparse.Namespace) -> None:
         for name in given.observables:
             function, arguments, _ = OBSERVABLES[name]
             with waiting(f"measuring {name}"):
-                found = getattr(analysis, function)(trajectory, start=given.start, **arguments)
-            if found.estimate.ndim:
-                _print_curve(name, found)
+                observable = getattr(analysis, function)(trajectory, start=given.start, **arguments)
+            if observable.estimate.ndim:
+                _print_curve(name, observable)
             else:
-                _print_scalar(name, found)
-            write(found)
+                _print_scalar(name, observable)
+            write(observable)
 
 
-def _print_scalar(name: str, found: Observable) -> None:
-    units = found.estimate.attrs["units"]
-    line = f"{name} = {_with_error(found.estimate, found.error)}{'' if units == '1' else f' {units}'}"
-    if found.theory is not None and found.deviation is not None:
-        unsure = found[f"{found.estimate.name}_theory_error"]
-        line += f", theory {_with_error(found.theory, unsure)}"
-        if np.isfinite(found.deviation):
-            line += f": {float(found.deviation):+.1f} standard deviations"
-        line += f" ({found.attrs['source']})"
+def _print_scalar(name: str, observable: Observable) -> None:
+    units = observable.estimate.attrs["units"]
+    line = (
+        f"{name} = {_with_error(observable.estimate, observable.error)}{'' if units == '1' else f' {units}'}"
+    )
+    if observable.theory is not None and observable.deviation is not None:
+        unsure = observable[f"{observable.estimate.name}_theory_error"]
+        line += f", theory {_with_error(observable.theory, unsure)}"
+        if np.isfinite(observable.deviation):
+            line += f": {float(observable.deviation):+.1f} standard deviations"
+        line += f" ({observable.attrs['source']})"
     print_line(line)
 
 
@@ -92,13 +94,13 @@ def _with_error(value: Any, error: Any) -> str:
     return f"{float(value):.6g} +- {float(error):.1g}" if float(error) > 0.0 else f"{float(value):.6g}"
 
 
-def _print_curve(name: str, found: Observable) -> None:
-    (along,) = found.estimate.dims
-    rows = found.sizes[along]
+def _print_curve(name: str, observable: Observable) -> None:
+    (along,) = observable.estimate.dims
+    rows = observable.sizes[along]
     stride = max(1, -(-rows // _ROWS))
-    columns = [found[along], found.estimate, found.error]
-    columns += [] if found.theory is None else [found.theory]
-    heads = [str(along), name, "error", *(["theory"] if found.theory is not None else [])]
+    columns = [observable[along], observable.estimate, observable.error]
+    columns += [] if observable.theory is None else [observable.theory]
+    heads = [str(along), name, "error", *(["theory"] if observable.theory is not None else [])]
     print_line("".join(f"{head:>14}" for head in heads))
     for row in range(0, rows, stride):
         cells = [column.values[row] for column in columns]
@@ -111,7 +113,7 @@ def _print_curve(name: str, found: Observable) -> None:
 def _writer(given: argparse.Namespace) -> Callable[[Observable], None]:
     """What writes the result, after the arguments were checked."""
     if given.output is None:
-        return lambda found: None
+        return lambda observable: None
     path = output_path(given.output)
     if len(given.observables) > 1:
         raise UsageError("-o takes one observable; give one, or leave -o out")
@@ -122,21 +124,21 @@ def _writer(given: argparse.Namespace) -> Callable[[Observable], None]:
     raise SceneError("output", given.output, "must end in .csv or .png")
 
 
-def _write_table(path: Any, overwrite: bool, found: Observable) -> None:
+def _write_table(path: Any, overwrite: bool, observable: Observable) -> None:
     with writing(path, _TABLE, overwrite) as scratch:
-        units = {name: variable.attrs.get("units", "1") for name, variable in found.variables.items()}
+        units = {name: variable.attrs.get("units", "1") for name, variable in observable.variables.items()}
         title = f"{_TITLE}: units " + ", ".join(f"{name}: {unit}" for name, unit in units.items())
-        scratch.write_text(f"{title}\n{found.to_dataframe().to_csv()}", encoding="utf-8")
+        scratch.write_text(f"{title}\n{observable.to_dataframe().to_csv()}", encoding="utf-8")
     print_line(path)
 
 
-def _write_plot(path: Any, overwrite: bool, found: Observable) -> None:
+def _write_plot(path: Any, overwrite: bool, observable: Observable) -> None:
     from gaspart.rendering import style
     from gaspart.rendering.pictures import PICTURE
 
     with writing(path, PICTURE, overwrite) as scratch, style.applied("journal"):
         figure, (axis,) = style.new((2.6,))
-        found.plot(theory=found.theory is not None, axis=axis)
+        observable.plot(theory=observable.theory is not None, axis=axis)
         picture = io.BytesIO()
         figure.savefig(picture, format="png", metadata={"Software": None})
         scratch.write_bytes(picture.getvalue())

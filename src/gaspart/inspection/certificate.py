@@ -36,8 +36,9 @@ def _contacts(series: dict) -> str:
     """Errors of the engine, from its counters."""
     counted = f"{series['collisions'][-1]:.0f} collisions"
     if "overlaps_left" in series:
-        deepest, left = series["deepest_overlap"][-1], series["overlaps_left"][-1]
-        return f"{counted}; deepest overlap {deepest:.2g} of a contact distance, {left:.0f} left after a step"
+        deepest, remaining = series["deepest_overlap"][-1], series["overlaps_left"][-1]
+        overlaps = f"deepest overlap {deepest:.2g} of a contact distance, {remaining:.0f} left after a step"
+        return f"{counted}; {overlaps}"
     return f"{counted}; worst contact off by {series['worst_contact'][-1]:.1e} of its distance, squared"
 
 

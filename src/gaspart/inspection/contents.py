@@ -58,32 +58,32 @@ class Given:
     time_step: float | None = None
 
 
-def complete_frames(found: Contents, given: Given, path: str) -> Frames:
+def complete_frames(contents: Contents, given: Given, path: str) -> Frames:
     """Frames from the contents of a file and the user's statements.
 
     Raises SceneError for missing, invalid or contradictory values.
     """
-    shape = found.positions.shape
+    shape = contents.positions.shape
     if len(shape) != 3 or shape[0] < 1 or shape[1] < 1:
         raise SceneError("file", path, "needs at least one frame of at least one particle")
-    _require_finite("positions", found.positions, path)
-    if found.velocities is not None:
-        _require_finite("velocities", found.velocities, path)
-    _sort_by_id(found, path)
-    if found.lengths is None and given.lengths is None:
+    _require_finite("positions", contents.positions, path)
+    if contents.velocities is not None:
+        _require_finite("velocities", contents.velocities, path)
+    _sort_by_id(contents, path)
+    if contents.lengths is None and given.lengths is None:
         raise SceneError("lengths", None, "is not stated: give --lengths X,Y[,Z]", path)
-    radii = _per_frame(_radii(found, given, path))
-    d = _dimension(found, given, 2.0 * float(radii.max()))
-    sides, container = _container(found, given, d, path)
-    if found.centred:
+    radii = _per_frame(_radii(contents, given, path))
+    d = _dimension(contents, given, 2.0 * float(radii.max()))
+    sides, container = _container(contents, given, d, path)
+    if contents.centred:
         origin = -0.5 * sides
     else:
-        origin = np.zeros((1, d)) if found.origin is None else _per_frame(found.origin)[:, :d]
-    places = found.positions[:, :, :d].astype(float) - origin[:, None, :]
+        origin = np.zeros((1, d)) if contents.origin is None else _per_frame(contents.origin)[:, :d]
+    places = contents.positions[:, :, :d].astype(float) - origin[:, None, :]
     size = sides[:, None, :]
     wrapped = np.where(container.periodic, places - size * np.floor(places / size), places)
     wrapped = np.where((wrapped >= size) & container.periodic, 0.0, wrapped)  # rounding of -1e-17
-    masses = None if found.masses is None else _per_frame(found.masses)
+    masses = None if contents.masses is None else _per_frame(contents.masses)
     alike = masses is None or np.ptp(masses) == 0.0
     steady = len(sides) == 1 and len(radii) == 1
     return Frames(
@@ -91,13 +91,13 @@ def complete_frames(found: Contents, given: Given, path: str) -> Frames:
         lengths=sides[0],
         radii=radii[0],
         periodic=container.periodic,
-        velocities=None if found.velocities is None else found.velocities[:, :, :d].astype(float),
-        time=_times(found, given, path),
-        plain=found.plain and steady and alike,
-        isolated=found.isolated and steady and alike,
-        part=found.part,
-        sampled=found.sampled,
-        resolution=found.resolution,
+        velocities=None if contents.velocities is None else contents.velocities[:, :, :d].astype(float),
+        time=_times(contents, given, path),
+        plain=contents.plain and steady and alike,
+        isolated=contents.isolated and steady and alike,
+        part=contents.part,
+        sampled=contents.sampled,
+        resolution=contents.resolution,
         masses=None if masses is None else masses[0],
         lengths_by_frame=sides if len(sides) > 1 else None,
         radii_by_frame=radii if len(radii) > 1 else None,
@@ -111,17 +111,17 @@ def _require_finite(name: str, values: np.ndarray, path: str) -> None:
         raise SceneError("file", path, f"has {name} that are not finite or absent, in frame {wrong.argmax()}")
 
 
-def _sort_by_id(found: Contents, path: str) -> None:
+def _sort_by_id(contents: Contents, path: str) -> None:
     """Bring the particles of every frame into the order of their ids. Refused: frames of other particles."""
-    if found.ids is None:
-        species = found.species
+    if contents.ids is None:
+        species = contents.species
         if species is not None and np.any(species != species[0]):
             frame = np.argmax(np.any(species != species[0], axis=1))
             rule = f"lists its particles in another order in frame {frame}, and has no ids to restore it"
             raise SceneError("file", path, rule)
         return
-    order = np.argsort(found.ids, axis=1, kind="stable")
-    ids = np.take_along_axis(found.ids, order, axis=1)
+    order = np.argsort(contents.ids, axis=1, kind="stable")
+    ids = np.take_along_axis(contents.ids, order, axis=1)
     if np.any(ids[:, 1:] == ids[:, :-1]):
         raise SceneError("file", path, "has two particles of the same id in a frame")
     if np.any(ids != ids[0]):
@@ -129,38 +129,38 @@ def _sort_by_id(found: Contents, path: str) -> None:
         rule = f"has other particles in frame {frame} than in frame 0, by their ids"
         raise SceneError("file", path, f"{rule}: changing particles cannot be checked")
     for name in ("positions", "velocities", "radii", "masses"):
-        values = getattr(found, name)
+        values = getattr(contents, name)
         if values is None:
             continue
         if name in ("radii", "masses") and values.ndim == 1:
             values = np.broadcast_to(values, order.shape)
         index = order[:, :, None] if values.ndim == 3 else order
-        setattr(found, name, np.take_along_axis(values, index, axis=1))
+        setattr(contents, name, np.take_along_axis(values, index, axis=1))
 
 
-def _dimension(found: Contents, given: Given, diameter: float) -> int:
+def _dimension(contents: Contents, given: Given, diameter: float) -> int:
     """2 or 3: as the file states it, or by whether anything happens along z.
 
     Particles that stay at one z are discs, unless three sides are given; those of a single frame without
     velocities only if the container is less than two diameters high, or no height is stated.
     """
-    positions, velocities = found.positions, found.velocities
+    positions, velocities = contents.positions, contents.velocities
     if positions.shape[2] == 2:
         return 2
-    if found.flat is not None:
-        return 2 if found.flat else 3
+    if contents.flat is not None:
+        return 2 if contents.flat else 3
     moving = np.any(positions != positions[0]) or bool(velocities is not None and velocities.any())
     along = velocities is not None and velocities.shape[2] == 3 and velocities[:, :, 2].any()
     if along or np.ptp(positions[:, :, 2]) > 0.0 or (given.lengths is not None and len(given.lengths) == 3):
         return 3
-    sides = given.lengths if found.lengths is None else found.lengths[0]
+    sides = given.lengths if contents.lengths is None else contents.lengths[0]
     low = sides is None or len(sides) < 3 or not sides[2] > 2.0 * diameter
     return 2 if moving or low else 3
 
 
-def _container(found: Contents, given: Given, d: int, path: str) -> tuple[np.ndarray, Container]:
+def _container(contents: Contents, given: Given, d: int, path: str) -> tuple[np.ndarray, Container]:
     """The sides, (1, d) or (T, d) if they change, and a container of those of the first frame."""
-    stated = None if found.lengths is None else np.asarray(found.lengths, dtype=float)[:, :d]
+    stated = None if contents.lengths is None else np.asarray(contents.lengths, dtype=float)[:, :d]
     if given.lengths is not None:
         if len(given.lengths) < d:
             rule = f"must be {d} sides: the positions have {d} dimensions"
@@ -177,35 +177,35 @@ def _container(found: Contents, given: Given, d: int, path: str) -> tuple[np.nda
             rule = "is 0 along an axis with walls, whose distance is not stated: give --lengths X,Y[,Z]"
         raise SceneError("lengths", wrong.tolist(), rule, path)
     boundary: str | tuple[str, ...] = tuple("wall" if wall else "periodic" for wall in walls)
-    if found.boundary is not None:
-        boundary = found.boundary[:d]
+    if contents.boundary is not None:
+        boundary = contents.boundary[:d]
     if given.boundary is not None:
         boundary = given.boundary
     return sides, Container(tuple(float(x) for x in sides[0]), boundary)
 
 
-def _radii(found: Contents, given: Given, path: str) -> np.ndarray:
+def _radii(contents: Contents, given: Given, path: str) -> np.ndarray:
     """(N,) or (T, N)."""
     if given.radius is not None:
-        return np.full(found.positions.shape[1], given.radius)
-    if found.radii is None:
+        return np.full(contents.positions.shape[1], given.radius)
+    if contents.radii is None:
         raise SceneError("radius", None, "is not stated: give --radius", path)
-    if not (np.asarray(found.radii) > 0.0).all() or not np.isfinite(found.radii).all():
-        least = float(np.nan_to_num(found.radii, nan=-np.inf).min())
+    if not (np.asarray(contents.radii) > 0.0).all() or not np.isfinite(contents.radii).all():
+        least = float(np.nan_to_num(contents.radii, nan=-np.inf).min())
         raise SceneError("radius", least, "must be positive and finite: give --radius", path)
-    return np.asarray(found.radii, dtype=float)
+    return np.asarray(contents.radii, dtype=float)
 
 
-def _times(found: Contents, given: Given, path: str) -> np.ndarray | None:
+def _times(contents: Contents, given: Given, path: str) -> np.ndarray | None:
     """(T,) times; None if the file states none, or the same in every frame, as of a field never set.
 
     Times that are even within their resolution are made so: numbers in single precision or with few digits
     deviate from it by more, the later they are.
     """
-    frames = len(found.positions)
-    time, resolution = found.time, found.time_resolution
+    frames = len(contents.positions)
+    time, resolution = contents.time, contents.time_resolution
     if given.time_step is not None:
-        steps = np.arange(frames) if found.steps is None else found.steps
+        steps = np.arange(frames) if contents.steps is None else contents.steps
         time, resolution = given.time_step * np.asarray(steps, dtype=float), 0.0
     if time is None or (frames > 1 and np.ptp(time) == 0.0):
         return None

@@ -31,15 +31,15 @@ _SECONDS = ("second", "microsecond", "nanosecond", "picosecond", "femtosecond", 
 def read_netcdf(path: Path, given: Given) -> Contents:
     """All frames. Raises SceneError for contents that cannot be checked, and what the library raises for a
     file that cannot be read."""
-    own = _is_own(path)
-    if own:
+    by_gaspart = _is_own(path)
+    if by_gaspart:
         check_frames(path)
-    with opened(path) if own else _foreign(path) as file:
+    with opened(path) if by_gaspart else _foreign(path) as file:
         _check_convention(file, path)
-        found = _contents(file, given, path)
-    if own:
-        _add_scene(found, path)
-    return found
+        contents = _contents(file, given, path)
+    if by_gaspart:
+        _add_scene(contents, path)
+    return contents
 
 
 def _is_own(path: Path) -> bool:
@@ -124,7 +124,7 @@ def _contents(file: Any, given: Given, path: Path) -> Contents:
         _check_units(file, path)
     radii = _read(file, "radius")
     diameters = _read(file, "diameter") if radii is None else None
-    found = Contents(
+    contents = Contents(
         positions=positions,
         velocities=_read_frames(file, "velocities", path),
         time=time,
@@ -138,9 +138,9 @@ def _contents(file: Any, given: Given, path: Path) -> Contents:
         time_resolution=time_resolution,
     )
     if "type" in file.variables and file["type"].ndim == 2:
-        found.species = _read_frames(file, "type", path)
-    _check_shapes(found, path)
-    return found
+        contents.species = _read_frames(file, "type", path)
+    _check_shapes(contents, path)
+    return contents
 
 
 def _positions(
@@ -203,9 +203,9 @@ def _check_units(file: Any, path: Path) -> None:
         raise SceneError("units", units, rule, str(path))
 
 
-def _check_shapes(found: Contents, path: Path) -> None:
+def _check_shapes(contents: Contents, path: Path) -> None:
     """Refuse fields of another number of frames or particles than the positions."""
-    frames, count, _ = found.positions.shape
+    frames, count, _ = contents.positions.shape
     expected: dict[str, list[tuple[int, ...]]] = {
         "velocities": [(frames, count, 3), (frames, count, 2)],
         "time": [(frames,)],
@@ -217,12 +217,12 @@ def _check_shapes(found: Contents, path: Path) -> None:
         "origin": [(frames, 3)],
     }
     for name, shapes in expected.items():
-        values = getattr(found, name)
+        values = getattr(contents, name)
         if values is not None and values.shape not in shapes:
             raise SceneError("file", str(path), f"has {name} of the shape {values.shape}, not {shapes[0]}")
 
 
-def _add_scene(found: Contents, path: Path) -> None:
+def _add_scene(contents: Contents, path: Path) -> None:
     """Add what the scene of a trajectory of gaspart states."""
     recipe = read_recipe(path)
     scene = recipe.scene
@@ -231,11 +231,11 @@ def _add_scene(found: Contents, path: Path) -> None:
     quiet = quiet and scene.thermostat is None
     free = not any(kind.fixed for kind in scene.kinds)
     alike = len({kind.mass for kind in scene.kinds}) == 1  # of all, also where the file has only a part
-    d, frames, count = scene.dimension, len(found.positions), found.positions.shape[1]
-    found.boundary = tuple("periodic" if periodic else "wall" for periodic in scene.container.periodic)
-    found.flat = d == 2
-    found.lengths = np.broadcast_to(scene.container.lengths, (frames, d))
-    found.masses = per_body(scene, "mass")[:count].astype(float)
-    found.plain = found.isolated = bool(elastic and quiet and free and alike)
-    found.part = recipe.stored_count < scene.count
-    found.sampled = not recipe.engine.keeps_apart
+    d, frames, count = scene.dimension, len(contents.positions), contents.positions.shape[1]
+    contents.boundary = tuple("periodic" if periodic else "wall" for periodic in scene.container.periodic)
+    contents.flat = d == 2
+    contents.lengths = np.broadcast_to(scene.container.lengths, (frames, d))
+    contents.masses = per_body(scene, "mass")[:count].astype(float)
+    contents.plain = contents.isolated = bool(elastic and quiet and free and alike)
+    contents.part = recipe.stored_count < scene.count
+    contents.sampled = not recipe.engine.keeps_apart

@@ -21,10 +21,10 @@ class _Header:
         self._file, self._offset, self._count = file, _OFFSETS[version], 8 if version == 5 else 4
 
     def _bytes(self, length: int) -> bytes:
-        found = self._file.read(length)
-        if len(found) < length:
+        content = self._file.read(length)
+        if len(content) < length:
             raise ValueError("the file ends within its header")
-        return found
+        return content
 
     def count(self) -> int:
         """A number of things."""
@@ -82,15 +82,15 @@ def _size(header: _Header) -> int | None:
     fixed, of_records = [0], []
     for _ in range(header.items()):
         header.skip(header.count())
-        own = [sides[header.count()] for _ in range(header.count())]
+        shape = [sides[header.count()] for _ in range(header.count())]
         header.skip_attributes()
         width = _WIDTHS.get(header.word(), 0)
         header.count()  # its size, which has 32 bits only
         begin = header.offset()
-        if own[:1] == [0]:
-            of_records.append((begin, width * math.prod(own[1:])))
+        if shape[:1] == [0]:
+            of_records.append((begin, width * math.prod(shape[1:])))
         else:
-            fixed.append(begin + width * math.prod(own))
+            fixed.append(begin + width * math.prod(shape))
     if not of_records or records == 0:
         return max(fixed)
     if records in (2**32 - 1, 2**64 - 1):

@@ -18,18 +18,18 @@ def deepest_overlap(
     with a tree each: so a search reaches no farther than its pair of classes may touch.
     """
     sides = np.where(periodic, lengths, 0.0)
-    own = 1.0 - np.where(periodic, lengths, np.inf) / (2.0 * radii.max())
-    deepest = max(0.0, float(own.max()))
+    on_itself = 1.0 - np.where(periodic, lengths, np.inf) / (2.0 * radii.max())
+    deepest = max(0.0, float(on_itself.max()))
     octave = np.floor(np.log2(radii / radii.min())).astype(int)
     members = [np.flatnonzero(octave == k) for k in np.unique(octave)]
-    trees = [cKDTree(positions[one], boxsize=sides) for one in members]
+    trees = [cKDTree(positions[indices], boxsize=sides) for indices in members]
     for a, b in combinations_with_replacement(range(len(members)), 2):
         reach = float(radii[members[a]].max() + radii[members[b]].max())
         if a == b:
             pairs = trees[a].query_pairs(reach, output_type="ndarray")
         else:  # the larger ones ask: they are fewer where sizes differ much
             near = trees[b].query_ball_tree(trees[a], reach)
-            asked = np.repeat(np.arange(len(near)), [len(one) for one in near])
+            asked = np.repeat(np.arange(len(near)), [len(neighbours) for neighbours in near])
             pairs = np.stack([np.fromiter(chain.from_iterable(near), dtype=int), asked], axis=1)
         if len(pairs):
             first, second = members[a][pairs[:, 0]], members[b][pairs[:, 1]]

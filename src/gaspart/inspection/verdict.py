@@ -24,14 +24,14 @@ class Check:
 
 
 def compared(
-    name: str, found: Estimate, theory: Estimate, basis: str, deviation: float | None = None
+    name: str, measured: Estimate, theory: Estimate, basis: str, deviation: float | None = None
 ) -> Check:
     """Passed within `LIMIT` standard errors, those of both sides in quadrature.
 
     basis: the source of theory, and how many samples there are; deviation: in standard errors, if it is not
     the one of a normal or Student's distribution.
     """
-    sigma = abs((found - theory).deviation if deviation is None else deviation)
-    text = f"{found.value:.5g} +- {found.error:.2g}, theory {theory.value:.5g}"
+    sigma = abs((measured - theory).deviation if deviation is None else deviation)
+    text = f"{measured.value:.5g} +- {measured.error:.2g}, theory {theory.value:.5g}"
     text += f" +- {theory.error:.2g}" if theory.error else ""
     return Check(name, sigma <= LIMIT, f"{text}: {sigma:.1f} standard errors ({basis})")

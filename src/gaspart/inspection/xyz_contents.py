@@ -105,25 +105,25 @@ def _read_frame(n: int, comment: str, rows: list[list[str]], path: Path) -> dict
         if len(row) < width or (extended and len(row) != named[""][0]):
             rule = f"has a line of {len(row)} columns in frame {n}, where {width} are stated"
             raise SceneError("file", str(path), rule)
-    found: dict = {}
+    fields: dict = {}
     for name, (first, count) in named.items():
         if not name:
             continue
         words = [row[first : first + count] for row in rows]
         if name == "species":
-            found[name] = [word[0] for word in words]
+            fields[name] = [word[0] for word in words]
         elif name == "move_mask":
-            found["fixed"] = [any(part.lower() in _FALSE for part in word) for word in words]
+            fields["fixed"] = [any(part.lower() in _FALSE for part in word) for word in words]
         else:
             values = _numbers(words)
-            found[name] = values if name in ("pos", "velo", "momenta", "forces") else values[:, 0]
+            fields[name] = values if name in ("pos", "velo", "momenta", "forces") else values[:, 0]
     first, count = named["pos"]
-    found["digits"] = max(_significant(word) for row in rows for word in row[first : first + count])
+    fields["digits"] = max(_significant(word) for row in rows for word in row[first : first + count])
     for name in ("velo", "momenta"):
-        if name in found and found[name].shape[1] != count:
+        if name in fields and fields[name].shape[1] != count:
             rule = f"{name} must have {count} columns"
             raise SceneError("Properties", pairs["properties"], rule, str(path))
-    return found | _of_comment(pairs, path)
+    return fields | _of_comment(pairs, path)
 
 
 def _columns(properties: str, path: Path) -> dict[str, tuple[int, int]]:
@@ -151,27 +151,27 @@ def _numbers(words: list[list[str]]) -> np.ndarray:
 
 def _of_comment(pairs: dict[str, str], path: Path) -> dict:
     """Container, boundary and time of a frame, as its comment states them."""
-    found: dict = {}
+    fields: dict = {}
     if "lattice" in pairs:
         cell = _vector(pairs, "lattice", (3, 9), path)
         matrix = np.diag(cell) if len(cell) == 3 else cell.reshape(3, 3)
         if np.any(matrix != np.diag(np.diag(matrix))):
             raise SceneError("Lattice", pairs["lattice"], "a tilted box cannot be checked", str(path))
-        found["lattice"] = np.diag(matrix)
+        fields["lattice"] = np.diag(matrix)
     if "origin" in pairs:
-        found["origin"] = _vector(pairs, "origin", (3,), path)
+        fields["origin"] = _vector(pairs, "origin", (3,), path)
     if "pbc" in pairs:
         words = re.findall(r"[^\s,\[\]{}]+", pairs["pbc"].lower())
         words = words * 3 if len(words) == 1 else words
         if len(words) != 3 or not set(words) <= {*_TRUE, *_FALSE}:
             raise SceneError("pbc", pairs["pbc"], "must be T or F for each of three axes", str(path))
-        found["boundary"] = tuple("periodic" if word in _TRUE else "wall" for word in words)
+        fields["boundary"] = tuple("periodic" if word in _TRUE else "wall" for word in words)
     if "time" in pairs:
-        found["time"] = _vector(pairs, "time", (1,), path)[0]
+        fields["time"] = _vector(pairs, "time", (1,), path)[0]
         decimals = len(pairs["time"].lower().partition("e")[0].partition(".")[2])
         exponent = pairs["time"].lower().partition("e")[2]
-        found["time_digit"] = 10.0 ** (int(exponent or 0) - decimals)
-    return found
+        fields["time_digit"] = 10.0 ** (int(exponent or 0) - decimals)
+    return fields
 
 
 def _vector(pairs: dict[str, str], key: str, sizes: tuple[int, ...], path: Path) -> np.ndarray:

@@ -152,13 +152,13 @@ def _of_state(state: State, scene: Scene | None) -> DrawnParticles:
 def _walls(scene: Scene, time: float, piston: float | np.ndarray | None) -> np.ndarray:
     """(M, 2, d) the segments, the four sides of each plate, and those of the faces that move. piston: the
     place of one along its axis, if there is one."""
-    found: list[tuple] = []
+    segments: list[tuple] = []
     for wall in scene.walls:
         if isinstance(wall, Wall):
-            found.append((wall.start, wall.end))
+            segments.append((wall.start, wall.end))
         else:
-            corner, one, other, far = wall.corners.values()
-            found += pairwise((corner, one, far, other, corner))
+            corner, second, third, fourth = wall.corners.values()
+            segments += pairwise((corner, second, fourth, third, corner))
     lengths = np.array(scene.container.lengths)
     for name, face in scene.faces.items():
         axis, upper = "xyz".index(name[0]), "high" in name
@@ -169,5 +169,5 @@ def _walls(scene: Scene, time: float, piston: float | np.ndarray | None) -> np.n
         else:
             continue
         corners = np.array(_CORNERS[scene.dimension]) * np.delete(lengths, axis)
-        found += pairwise(np.insert(corners, axis, place, axis=1))
-    return np.array(found, dtype=float).reshape(-1, 2, scene.dimension)
+        segments += pairwise(np.insert(corners, axis, place, axis=1))
+    return np.array(segments, dtype=float).reshape(-1, 2, scene.dimension)

@@ -130,23 +130,23 @@ def _marks(axis: Axes, lines: bool) -> np.ndarray:
     """
     from matplotlib.collections import LineCollection
 
-    found = [np.zeros((0, 2))]
+    marks = [np.zeros((0, 2))]
     for line in axis.lines:
         if line.get_transform() is not axis.transData or not line.get_visible():
             continue
         places = axis.transData.transform(np.asarray(line.get_xydata(), dtype=float))
         if line.get_marker() not in ("None", None, "", " "):
-            found.append(places)
+            marks.append(places)
         if lines and line.get_linestyle() != "None":
-            found.append(_along(places))
+            marks.append(_along(places))
     for collection in axis.collections:
         if isinstance(collection, LineCollection) and collection.get_transform() is axis.transData:
-            found += [_along(axis.transData.transform(part)) for part in collection.get_segments()]
+            marks += [_along(axis.transData.transform(part)) for part in collection.get_segments()]
     for patch in axis.patches:
         if patch.get_data_transform() is axis.transData:
             outline = patch.get_transform().transform_path(patch.get_path()).vertices
-            found.append(_along(np.asarray(outline, dtype=float)))
-    places = np.concatenate(found)
+            marks.append(_along(np.asarray(outline, dtype=float)))
+    places = np.concatenate(marks)
     return places[np.isfinite(places).all(axis=1)]
 
 
@@ -168,13 +168,13 @@ def flaws(figure: Figure) -> list[str]:
 
     figure.draw_without_rendering()  # labels have the places of the last drawing, of another resolution
     texts = list(_texts(figure))
-    found = [
+    sentences = [
         f"{first!r} overlaps {second!r}"
         for (first, box), (second, other) in combinations(texts, 2)
         if box.overlaps(other)
     ]
     width, height = figure.bbox.max
-    found += [
+    sentences += [
         f"{text!r} leaves the canvas"
         for text, box in texts
         if box.x0 < -1.0 or box.y0 < -1.0 or box.x1 > width + 1.0 or box.y1 > height + 1.0
@@ -185,12 +185,12 @@ def flaws(figure: Figure) -> list[str]:
         covers = [(repr(text.get_text()), Text.get_window_extent(text), points) for text in axis.texts]
         if legend:
             covers.append(("a legend", legend.get_window_extent(), _seen(axis, _marks(axis, lines=True))))
-        found += [
+        sentences += [
             f"{text} lies on data"
             for text, box, data in covers
             if _inside(data, box.x0, box.y0, box.x1, box.y1).any()
         ]
-    return found
+    return sentences
 
 
 def _texts(figure: Figure) -> Iterator[tuple[str, Bbox]]:

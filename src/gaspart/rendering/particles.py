@@ -86,12 +86,12 @@ def _differences(particles: DrawnParticles, used: np.ndarray) -> tuple[str, tupl
     for title, values in (("radius", particles.radii), ("mass", particles.masses)):
         if values is None:
             continue
-        found = [np.unique(values[particles.species == kind]) for kind in used]
-        if any(len(one) > 1 for one in found):
+        distinct = [np.unique(values[particles.species == kind]) for kind in used]
+        if any(len(unique) > 1 for unique in distinct):
             return "species", tuple(map(str, used))
-        if len({float(one[0]) for one in found}) > 1:
+        if len({float(unique[0]) for unique in distinct}) > 1:
             titles.append(title)
-            columns.append([f"{one[0]:.3g}" for one in found])
+            columns.append([f"{unique[0]:.3g}" for unique in distinct])
     if not titles:
         return "species", tuple(map(str, used))
     return ", ".join(titles), tuple(map(", ".join, zip(*columns, strict=True)))

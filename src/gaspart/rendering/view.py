@@ -147,10 +147,10 @@ def _lines(lengths: np.ndarray, walls: list[np.ndarray]) -> np.ndarray:
         walls = walls[:1]
     edges = edges_of(lengths)
     ends = np.stack([edges[:, :3], edges[:, :3] + edges[:, 3:6] * edges[:, 6:]], axis=1)
-    found = np.zeros((len(walls), len(ends) + len(walls[0]), 2, 3))
-    found[:, : len(ends)] = ends
-    found[:, len(ends) :, :, : walls[0].shape[-1]] = walls
-    return found.reshape(len(walls), -1, 3)
+    lines = np.zeros((len(walls), len(ends) + len(walls[0]), 2, 3))
+    lines[:, : len(ends)] = ends
+    lines[:, len(ends) :, :, : walls[0].shape[-1]] = walls
+    return lines.reshape(len(walls), -1, 3)
 
 
 def _text(values: np.ndarray) -> str:

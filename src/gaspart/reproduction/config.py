@@ -79,11 +79,11 @@ def _read_numbers(block: Any, held: list[Any]) -> None:
 def _check_values(config: object) -> None:
     """Raise SceneError unless a config is a tree of mappings, lists and plain values, not too deep and not
     too large, whose numbers are finite and neither too large nor too small to compute with."""
-    left = [("", config, 0)]  # a stack, so that a deep config does not exhaust Python's own
+    stack = [("", config, 0)]  # a stack, so that a deep config does not exhaust Python's own
     for count in range(MOST_VALUES):
-        if not left:
+        if not stack:
             return
-        where, value, depth = left.pop()
+        where, value, depth = stack.pop()
         if depth > DEEPEST:
             raise SceneError(where, count, f"values may be nested {DEEPEST} deep")
         if isinstance(value, dict):
@@ -91,9 +91,9 @@ def _check_values(config: object) -> None:
                 if not isinstance(key, str):
                     rule = "a key must be text: write it in quotes"
                     raise SceneError(f"{where}.{key!s:.100}".lstrip("."), key, rule)
-            left += [(f"{where}.{key}".lstrip("."), item, depth + 1) for key, item in value.items()]
+            stack += [(f"{where}.{key}".lstrip("."), item, depth + 1) for key, item in value.items()]
         elif isinstance(value, list):
-            left += [(where, item, depth + 1) for item in value]
+            stack += [(where, item, depth + 1) for item in value]
         elif isinstance(value, int | float) and not isinstance(value, bool):
             number = finite(value)
             if number is None:
@@ -101,7 +101,7 @@ def _check_values(config: object) -> None:
             size(where, number)
         elif value is not None and not isinstance(value, str | bool):
             raise SceneError(where, value, "must be text, a number, a list or a mapping: quotes make it text")
-    raise SceneError("config", len(left), f"there may be {MOST_VALUES} values")
+    raise SceneError("config", len(stack), f"there may be {MOST_VALUES} values")
 
 
 def _animation(config: dict, animation: str, block: dict | None) -> None:

@@ -53,11 +53,11 @@ def scene_schema() -> Kind:
 def documents() -> dict[str, str]:
     """The text of each generated file, by its path from the folder of the project."""
     schemas = {"config": schema(), "scene": scene_schema()}
-    found = {
+    texts = {
         f"workflow/schemas/{name}.schema.json": json.dumps(content, indent=1, ensure_ascii=False) + "\n"
         for name, content in schemas.items()
     }
-    return {**found, "docs/reference.md": reference()}
+    return {**texts, "docs/reference.md": reference()}
 
 
 def reference() -> str:
@@ -109,15 +109,15 @@ def _excluded() -> str:
 
 def _parts(scene: Kind) -> list[tuple[str, Kind]]:
     """The mappings inside a scene file, each with its title."""
-    found: dict[str, Kind] = {}
-    left = list(scene["properties"].values())
-    while left:
-        kind = left.pop(0)
+    titled: dict[str, Kind] = {}
+    queue = list(scene["properties"].values())
+    while queue:
+        kind = queue.pop(0)
         if "title" in kind:
-            found[kind["title"]] = kind
+            titled[kind["title"]] = kind
         inner = [kind[name] for name in ("items", "additionalProperties") if isinstance(kind.get(name), dict)]
-        left += [*kind.get("properties", {}).values(), *kind.get("anyOf", ()), *inner]
-    return list(found.items())
+        queue += [*kind.get("properties", {}).values(), *kind.get("anyOf", ()), *inner]
+    return list(titled.items())
 
 
 def _outline(table: dict[str, Kind]) -> dict[str, Kind]:
@@ -164,10 +164,10 @@ def _typed(kind: Kind, name: str) -> str:
         )
     if name != "array":
         return word
-    least, most = kind.get("minItems", 0), kind.get("maxItems")
-    if most == 0:
+    minimum, maximum = kind.get("minItems", 0), kind.get("maxItems")
+    if maximum == 0:
         return "empty list"
-    size = "" if most is None else f" {most}" if least == most else f" {least} to {most}"
+    size = "" if maximum is None else f" {maximum}" if minimum == maximum else f" {minimum} to {maximum}"
     item = f" ({in_words(kind['items'])})" if "items" in kind else ""
     return f"{word} of{size} values{item}" if size else f"{word}{item}"
 

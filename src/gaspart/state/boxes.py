@@ -41,11 +41,11 @@ class Boxes:
 
     def coordinates(self, positions: np.ndarray) -> np.ndarray:
         """(N, 3) box coordinates of positions (N, d); the outermost box for a position outside."""
-        found = np.zeros((len(positions), 3), dtype=np.int64)
+        boxes = np.zeros((len(positions), 3), dtype=np.int64)
         for k in range(positions.shape[1]):
             along = (positions[:, k] / self.widths[k]).astype(np.int64)
-            found[:, k] = np.clip(along, 0, self.per_side[k] - 1)
-        return found
+            boxes[:, k] = np.clip(along, 0, self.per_side[k] - 1)
+        return boxes
 
     def index_of(self, position: np.ndarray) -> int:
         """The linear index of the box that holds a position (d,)."""
@@ -108,9 +108,9 @@ def make_boxes(
         [length / n for length, n in zip(lengths, sides, strict=True)] + [1.0] * (3 - len(sides))
     )
     strides = np.array([1, per_side[0], per_side[0] * per_side[1]], dtype=np.int64)
-    most = int(per_side.max())
-    neighbour = np.full((3, most, 3), NOWHERE, dtype=np.int64)
-    shift = np.zeros((3, most, 3), dtype=np.int64)
+    largest = int(per_side.max())
+    neighbour = np.full((3, largest, 3), NOWHERE, dtype=np.int64)
+    shift = np.zeros((3, largest, 3), dtype=np.int64)
     for axis in range(3):
         n = int(per_side[axis])
         for step in (0, 1, -1)[: n if periodic[axis] and not images else 3]:

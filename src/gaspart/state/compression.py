@@ -146,13 +146,13 @@ class _Growing:
         """Some collisions per particle at this rate, or until the scale is `end`."""
         d, n = self._scene.dimension, self._scene.count
         rate /= 2.0 * self._scene.largest_radius * self.scale
-        left = (end / self.scale - 1.0) / rate
+        remaining = (end / self.scale - 1.0) / rate
         tally = self._kernels.empty_tally(2 * d)
         common = self.particles, self._queue, self.boxes, self._space
         self._growth.start(*common, rate)
-        time = self._growth.run(*common, tally, rate, left, _COLLISIONS * n)
+        time = self._growth.run(*common, tally, rate, remaining, _COLLISIONS * n)
         self._flight.restart_clocks(self.flights, time, self._space, None)
-        self.scale = end if time == left else self.scale * (1.0 + rate * time)
+        self.scale = end if time == remaining else self.scale * (1.0 + rate * time)
         self.flights["radius"] = self._radii * self.scale
         self.collisions += int(tally.counts[self._kernels.COLLISIONS])
         if time > 0.0:

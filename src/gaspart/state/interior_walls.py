@@ -73,7 +73,7 @@ def walls_near(rows: np.ndarray, boxes: Boxes, reach: float) -> tuple[np.ndarray
     numbers = rows.view(float).reshape(len(rows), -1)
     d = 2 if numbers.shape[1] == 5 else 3
     widths, per_side, strides = boxes.widths[:d], boxes.per_side[:d], boxes.strides[:d]
-    found = []
+    pairs = []
     for m, row in enumerate(numbers):
         corners = _corners(row)
         low = np.floor((corners.min(axis=0) - reach) / widths - _SLACK).astype(int)
@@ -84,8 +84,8 @@ def walls_near(rows: np.ndarray, boxes: Boxes, reach: float) -> tuple[np.ndarray
         normal = _normal(row)
         off = abs((((at + 0.5) * widths - row[:d]) * normal).sum(axis=1))
         near = off <= (reach + (0.5 * widths * abs(normal)).sum()) * (1 + _SLACK)
-        found += [(box, m) for box in (at * strides).sum(axis=1)[near]]
-    listed = np.array(sorted(found), dtype=np.int64).reshape(-1, 2)
+        pairs += [(box, m) for box in (at * strides).sum(axis=1)[near]]
+    listed = np.array(sorted(pairs), dtype=np.int64).reshape(-1, 2)
     first = np.searchsorted(listed[:, 0], np.arange(boxes.count + 1))
     walls = np.concatenate([listed[:, 1], np.arange(len(rows))])
     return np.append(first, len(walls)).astype(np.int64), walls

@@ -24,8 +24,8 @@ def boxes_per_particle(scene: Scene) -> float:
     discs, which cross many boxes between contacts, wide ones are best; measured with 10^4 particles at
     packing fractions of 0.01 to 0.4 (docs/design-notes.md). Not where gravity gathers the particles, or where
     kicks make most searches find nothing new: there is one each at least."""
-    dilute, by_density, most = _BOXES[scene.dimension]
-    best = min(dilute + by_density * scene.packing_fraction, most)
+    dilute, by_density, limit = _BOXES[scene.dimension]
+    best = min(dilute + by_density * scene.packing_fraction, limit)
     return max(1.0, best) if scene.gravity is not None or scene.thermostat else best
 
 

@@ -125,8 +125,10 @@ class Layout:
 
     def header(self, attributes: dict, radii: np.ndarray, types: np.ndarray) -> bytes:
         """A file of no frames. Its first attributes are those of `BOOKKEEPING`."""
-        own = dict(zip(BOOKKEEPING, (np.int32(0), np.int32(0), np.float64(self.frame.itemsize)), strict=True))
-        header = bytearray(self._header({**own, **attributes}, radii, types))
+        bookkeeping = dict(
+            zip(BOOKKEEPING, (np.int32(0), np.int32(0), np.float64(self.frame.itemsize)), strict=True)
+        )
+        header = bytearray(self._header({**bookkeeping, **attributes}, radii, types))
         for name, value in (("header_bytes", len), ("header_crc32", zlib.crc32)):
             at = _value_at(header, name)
             header[at : at + WORD] = struct.pack(">I", value(header))
@@ -207,8 +209,8 @@ def same_header(file: BinaryIO, header: bytes) -> bool:
     """Whether a file begins with this header, however many frames it counts."""
     after = FRAME_COUNT_AT + WORD
     file.seek(0)
-    found = file.read(len(header))
-    return found[:FRAME_COUNT_AT] == header[:FRAME_COUNT_AT] and found[after:] == header[after:]
+    stored = file.read(len(header))
+    return stored[:FRAME_COUNT_AT] == header[:FRAME_COUNT_AT] and stored[after:] == header[after:]
 
 
 def is_blank(file: BinaryIO) -> bool:

@@ -42,12 +42,12 @@ class CheckedStore(NetCDF4DataStore):
 
     def open_store_variable(self, name: str, var: netCDF4.Variable) -> xr.Variable:
         """A variable that is read as it is used."""
-        found = super().open_store_variable(name, var)
-        if found.dims[:1] != ("frame",) or name == "time":
-            return found
+        variable = super().open_store_variable(name, var)
+        if variable.dims[:1] != ("frame",) or name == "time":
+            return variable
         var.set_auto_maskandscale(False)
         data = indexing.LazilyIndexedArray(_CheckedArray(var, self))
-        return xr.Variable(found.dims, data, found.attrs, found.encoding)
+        return xr.Variable(variable.dims, data, variable.attrs, variable.encoding)
 
 
 class _CheckedArray(BackendArray):

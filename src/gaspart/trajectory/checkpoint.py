@@ -86,15 +86,15 @@ def _is_intact(file: BinaryIO) -> bool:
     size = file.seek(0, os.SEEK_END)
     if size < _CHECKSUM.size:
         return False
-    found = _checksum(file, size - _CHECKSUM.size)
-    return _CHECKSUM.unpack(file.read(_CHECKSUM.size)) == (found,)
+    checksum = _checksum(file, size - _CHECKSUM.size)
+    return _CHECKSUM.unpack(file.read(_CHECKSUM.size)) == (checksum,)
 
 
 def _checksum(file: BinaryIO, size: int | None = None) -> int:
     """The checksum of a file, or of its first `size` bytes; what is read next comes after these."""
-    left = file.seek(0, os.SEEK_END) if size is None else size
+    remaining = file.seek(0, os.SEEK_END) if size is None else size
     file.seek(0)
     value = 0
-    while left > 0 and (data := file.read(min(left, 1 << 20))):
-        value, left = zlib.crc32(data, value), left - len(data)
+    while remaining > 0 and (data := file.read(min(remaining, 1 << 20))):
+        value, remaining = zlib.crc32(data, value), remaining - len(data)
     return value

@@ -63,9 +63,9 @@ class CheckedFrames:
         new[numbers] = True
         edges = np.flatnonzero(np.diff((new & ~self._checked).astype(np.int8), prepend=0, append=0))
         for first, last in edges.reshape(-1, 2).tolist():
-            found = damaged_frame(self._file, self._header, range(first, last))
-            if found is not None:
-                return found
+            frame = damaged_frame(self._file, self._header, range(first, last))
+            if frame is not None:
+                return frame
             self._checked[first:last] = True
         return None
 
@@ -112,9 +112,9 @@ class Frames:
         self._count_frames()
 
     def _write(self, data: bytes | memoryview) -> None:
-        left = memoryview(data).cast("B")
-        while left:
-            left = left[self._file.write(left) :]
+        unwritten = memoryview(data).cast("B")
+        while unwritten:
+            unwritten = unwritten[self._file.write(unwritten) :]
 
     def _count_frames(self) -> None:
         os.pwrite(self._file.fileno(), struct.pack(">I", self.count), FRAME_COUNT_AT)

@@ -55,11 +55,11 @@ def git_revision() -> str:
 @cache
 def versions() -> dict[str, str]:
     """Versions of gaspart, Python, and the packages that results depend on. May raise OSError."""
-    found = {"gaspart_version": __version__, "python_version": platform.python_version()}
+    attributes = {"gaspart_version": __version__, "python_version": platform.python_version()}
     for package in _PACKAGES:
         try:
-            found[f"{package}_version"] = version(package)
+            attributes[f"{package}_version"] = version(package)
         except PackageNotFoundError:
             os.scandir(Path(__file__).parent).close()  # OSError where a folder could not be searched either
-            found[f"{package}_version"] = "unknown"
-    return found
+            attributes[f"{package}_version"] = "unknown"
+    return attributes

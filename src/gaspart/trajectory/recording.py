@@ -126,8 +126,8 @@ class Recording:
 
     def _arrays(self) -> dict[str, np.ndarray]:
         """The arrays of a checkpoint."""
-        own = self._correlator.checkpoint() if self._correlator else {}
-        return {**self._simulation.checkpoint(), **own}
+        correlations = self._correlator.checkpoint() if self._correlator else {}
+        return {**self._simulation.checkpoint(), **correlations}
 
     def _note(self) -> None:
         command = f"gaspart resume {shlex.quote(str(self._path))}"

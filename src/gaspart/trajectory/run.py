@@ -201,9 +201,9 @@ def resume(path: str | Path, checkpoint_seconds: float = 30.0, progress: Progres
             check_frames(path)  # raises SceneError for a damaged file, and one of another program
             wanted = read_recipe(path)
             with path.open("rb") as file:
-                found = frame_count(file)
-            missing = f"has {found} of {wanted.frames} frames, and {rule}"
-            rule = "is already complete" if found == wanted.frames else missing
+                frames = frame_count(file)
+            missing = f"has {frames} of {wanted.frames} frames, and {rule}"
+            rule = "is already complete" if frames == wanted.frames else missing
         raise SceneError("path", str(path), rule) from None
     return _carry_out(wanted, path, checkpoint_seconds, progress, overwrite=False)
 
@@ -300,13 +300,15 @@ def _record(
     partial = partial_path(path)
     continued = begun_as(partial, wanted)
     header = wanted.header(stored_revision(partial) if continued else provenance.git_revision())
-    found = read_checkpoint(checkpoint_path(path), header) if continued else None
-    if found and (found.frames > frame_count(file) or not _can_keep(partial, found.frames, overwrite)):
-        found = None
-    frames = Frames(file, wanted.layout, header, kept=found.frames if found else 0)
+    checkpoint = read_checkpoint(checkpoint_path(path), header) if continued else None
+    if checkpoint and (
+        checkpoint.frames > frame_count(file) or not _can_keep(partial, checkpoint.frames, overwrite)
+    ):
+        checkpoint = None
+    frames = Frames(file, wanted.layout, header, kept=checkpoint.frames if checkpoint else 0)
     recording = Recording(wanted, simulation, frames, header, path, every, progress)
-    if found:
-        recording.restore(found.arrays)
+    if checkpoint:
+        recording.restore(checkpoint.arrays)
     recording.finish()
 
 

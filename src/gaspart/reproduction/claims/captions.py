@@ -27,12 +27,12 @@ def filled(caption: str, rows: Iterable[dict[str, Any]], absent: str = NOT_MEASU
 
     def value(place: re.Match) -> str:
         beginning = " ".join(place[1].split())
-        found = [row for row in known if row["claim"].startswith(beginning)]
-        if len(found) > 1:
-            raise ValueError(f"{{{{{beginning}}}}}: {len(found)} claims begin so")
-        if not found or not math.isfinite(_number(found[0], "measured")):
+        matching = [row for row in known if row["claim"].startswith(beginning)]
+        if len(matching) > 1:
+            raise ValueError(f"{{{{{beginning}}}}}: {len(matching)} claims begin so")
+        if not matching or not math.isfinite(_number(matching[0], "measured")):
             return absent
-        return concise(_number(found[0], "measured"), _number(found[0], "uncertainty"))
+        return concise(_number(matching[0], "measured"), _number(matching[0], "uncertainty"))
 
     return _PLACE.sub(value, caption)
 

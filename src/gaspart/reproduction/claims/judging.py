@@ -102,10 +102,10 @@ def reason(claim: Claim, verdict: str) -> str:
         return f"the uncertainty is above the required one: {more:.3g} times the measurement would decide it"
     if not claim.has_power:
         difference = abs(float(claim.alternative or 0.0) - claim.expected.value) / POWER
-        left = difference**2 - claim.expected.error**2
-        if left <= 0.0:
+        room = difference**2 - claim.expected.error**2
+        if room <= 0.0:
             return "the theory's own uncertainty hides the alternative: only a better theory would decide it"
-        more = claim.measured.error**2 / left
+        more = claim.measured.error**2 / room
         return f"the alternative is not excluded: {more:.3g} times the measurement would decide it"
     more = (3.0 / claim.deviation_sigma) ** 2
     return f"outside the bounds, but not significantly: {more:.3g} times the measurement would decide it"

@@ -125,7 +125,7 @@ def counts(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, int]]:
     return {
         kind: {verdict: pairs.count((kind, verdict)) for verdict in VERDICTS if (kind, verdict) in pairs}
         for kind in KINDS
-        if any(kind == one for one, _ in pairs)
+        if any(kind == other for other, _ in pairs)
     }
 
 
@@ -134,8 +134,8 @@ def summary(path: str | Path) -> str:
     and a line for each claim that disagrees. Raises ValueError as `read` does."""
     rows = read(path)
     lines = [f"{len(rows)} claims"]
-    for kind, found in counts(rows).items():
-        parts = (f"{number} {COUNTED.get(verdict, verdict)}" for verdict, number in found.items())
+    for kind, verdicts in counts(rows).items():
+        parts = (f"{number} {COUNTED.get(verdict, verdict)}" for verdict, number in verdicts.items())
         lines.append(f"{PLURALS[kind]}: {', '.join(parts)}")
     lines += [f"disagrees: {row['figure']}: {row['claim']}" for row in rows if row["verdict"] == "disagrees"]
     return "\n".join(lines)

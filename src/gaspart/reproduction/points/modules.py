@@ -28,16 +28,16 @@ def closure(*roots: str | Path) -> frozenset[Path]:
 
     With a module that reads tables, the tables in the folder `data` beside it.
     """
-    found: set[Path] = set()
+    files: set[Path] = set()
     queue = [root if isinstance(root, Path) else _file(root) for root in roots]
     queue = [path for path in queue if path is not None]
-    found |= {path for path in queue if path.is_relative_to(PACKAGE)}
+    files |= {path for path in queue if path.is_relative_to(PACKAGE)}
     while queue:
-        for path in imported(queue.pop()) - found:
-            found.add(path)
+        for path in imported(queue.pop()) - files:
+            files.add(path)
             queue.append(path)
-    folders = {path.parent for path in found}
-    return frozenset(found.union(*map(_tables, folders)))
+    folders = {path.parent for path in files}
+    return frozenset(files.union(*map(_tables, folders)))
 
 
 @cache

@@ -65,10 +65,10 @@ class Section:
 def by_chapter(sections: Iterable[Section]) -> dict[str, list[Section]]:
     """The sections of each chapter, in the order of the figures."""
     of_family = chapters()
-    found: dict[str, list[Section]] = {chapter: [] for chapter in CHAPTERS}
+    of_chapter: dict[str, list[Section]] = {chapter: [] for chapter in CHAPTERS}
     for section in sections:
-        found[of_family[families()[section.name]]].append(section)
-    return {chapter: own for chapter, own in found.items() if own}
+        of_chapter[of_family[families()[section.name]]].append(section)
+    return {chapter: members for chapter, members in of_chapter.items() if members}
 
 
 def findings(chosen: Iterable[Mapping[str, str]], rows: list[dict[str, Any]]) -> list[dict[str, str]]:
@@ -77,20 +77,22 @@ def findings(chosen: Iterable[Mapping[str, str]], rows: list[dict[str, Any]]) ->
     present = {row["figure"] for row in rows}
     return [
         {
-            "figure": one["figure"],
-            "text": html_of(filled(one["text"], [row for row in rows if row["figure"] == one["figure"]])),
+            "figure": finding["figure"],
+            "text": html_of(
+                filled(finding["text"], [row for row in rows if row["figure"] == finding["figure"]])
+            ),
         }
-        for one in chosen
-        if one["figure"] in present
+        for finding in chosen
+        if finding["figure"] in present
     ]
 
 
 def headline(rows: list[dict[str, Any]]) -> dict[str, Any]:
     """The claims on the first screen: how many there are of each kind with each verdict, and those
     that disagree."""
-    found = counts(rows)
+    numbers = counts(rows)
     return {
-        "kinds": {kind: found[kind] for kind in HEADLINE if kind in found},
+        "kinds": {kind: numbers[kind] for kind in HEADLINE if kind in numbers},
         "disagree": [row for row in rows if row["verdict"] == "disagrees"],
     }
 

@@ -31,18 +31,18 @@ def deviation(row: dict[str, Any]) -> float:
     low, high, measured = row["lowest"], row["highest"], row["measured"]
     if math.isfinite(low) and math.isfinite(high) and math.isfinite(measured) and high > low:
         return _BAND * (2.0 * measured - low - high) / (high - low)
-    found = row["deviation_sigma"]
-    return found if not math.isnan(found) else 0.0
+    sigma = row["deviation_sigma"]
+    return sigma if not math.isnan(sigma) else 0.0
 
 
 def dots(rows: Iterable[dict[str, Any]]) -> list[Dot]:
     """The dots of some claims, from the lowest deviation to the highest."""
     last = [-math.inf] * _LEVELS
-    found = []
+    placed = []
     for row in sorted(rows, key=deviation):
         at = min(max(deviation(row), -LIMIT), LIMIT)
         free = [level for level in range(_LEVELS) if at - last[level] >= _WIDTH]
         level = free[0] if free else min(range(_LEVELS), key=last.__getitem__)
         last[level] = at
-        found.append(Dot(row, 50.0 * (1.0 + at / LIMIT), level))
-    return found
+        placed.append(Dot(row, 50.0 * (1.0 + at / LIMIT), level))
+    return placed

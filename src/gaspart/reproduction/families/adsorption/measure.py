@@ -118,7 +118,8 @@ class Holder:
         return self.width * np.exp(self.depth / self.temperature) * body_volume(2, 2.0 * self.radius)
 
     def fugacity(self, density: float | np.ndarray) -> float | np.ndarray:
-        """`activity` with that of the gas, rho exp(mu_excess / kT), in the place of its pressure: what it would be if the layer felt nothing of the gas in front of it."""
+        """`activity` with that of the gas, rho exp(mu_excess / kT), in the place of its pressure: what it
+        would be if the layer felt nothing of the gas in front of it."""
         eta = density * body_volume(3, 2.0 * self.radius)
         return density * np.exp(excess_chemical_potential(eta, 3)) * self._hold
 

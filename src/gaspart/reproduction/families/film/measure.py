@@ -196,8 +196,8 @@ def _profile(slits: list[Slit], place: np.ndarray, functional: np.ndarray) -> xr
 
 
 def _period(dataset: xr.Dataset, excess: xr.DataArray) -> tuple[float, float]:
-    """The period, and its error, of a damped oscillation that is fitted to the excess of the pressure over the
-    bulk's against the width, with the errors of the measured one; NaN through fewer than six widths."""
+    """The period, and its error, of a damped oscillation that is fitted to the excess of the pressure over
+    the bulk's against the width, with the errors of the measured one; NaN through fewer than six widths."""
     from scipy.optimize import curve_fit
 
     if dataset.sizes["width"] < 6:
