@@ -56,7 +56,7 @@ COUNTED = ("steps", "collisions", "wall_hits", "pair_tests", "box_visits", "cros
 
 
 def engines(point: Point) -> list[Engine]:
-    """The engines that are timed, without those of the rival, which need no other kernels."""
+    """The engines that are timed, but for those of the rival."""
     return point.engines
 
 
@@ -75,7 +75,7 @@ def _rival(point: Point) -> dict | None:
         return None
     settings = {key: value for key, value in point.settings.items() if key not in point.settings["without"]}
     rival = replace(point, settings=settings)
-    return {"scene": rival.scene.to_dict(), "engines": [engine_to_dict(one) for one in rival.engines]}
+    return {"scene": rival.scene.to_dict(), "engines": [engine_to_dict(engine) for engine in rival.engines]}
 
 
 def measure_cost(
