@@ -215,7 +215,7 @@ def test_the_command_prints_and_writes_the_same_numbers(spheres, tmp_path, capsy
         (["speeds", "-o", str(table)], "exists; move it away"),
         (["speeds", "Z", "-o", str(table), "--force"], "-o takes one observable"),
         (["speeds", "-o", "a.txt"], "must end in .csv or .png"),
-        (["viscosity"], "'viscosity': unknown name; known are Z"),
+        (["friction"], "'friction': unknown name; known are Z"),
     ):
         assert main(["measure", path, *arguments]) == 2
         assert complaint in capsys.readouterr().err

@@ -34,8 +34,9 @@ def shear_viscosity(source: Source, lag: float | None = None, start: float | Non
 
     source: a trajectory with correlations of the stress; lag: the time until which correlations count, by
     default the longest; start: the time from which frames count. The result has `green_kubo` and `helfand`
-    (lag,) beside the value. Theory: Enskog's. Raises SceneError for a run without correlations of the stress,
-    a lag that is longer than theirs, and fewer than 17 frames.
+    (lag,) beside the value. The antisymmetric part of the stress is included, which is zero unless
+    collisions do not conserve angular momentum, as in the cells of DSMC. Theory: Enskog's. Raises SceneError
+    for a run without correlations of the stress, a lag that is longer than theirs, and fewer than 17 frames.
     """
     return _coefficient(source, "shear", lag, start, theory.enskog_viscosity)
 
@@ -116,7 +117,10 @@ def _coefficient(
         if name == "heat" and len({(it.mass, it.radius) for it in run.scene.kinds}) > 1:
             raise SceneError("species", len(run.scene.kinds), "the heat flux of a mixture contains diffusion")
         lags = _lags_until(settings, lag)
-        running, slopes = green_kubo(run, name), helfand(run, name)
+        running, slopes = (
+            np.sum([form(run, part) for part in _PARTS.get(name, (name,))], axis=0)
+            for form in (green_kubo, helfand)
+        )
         expected: dict[str, Any] = {}
         if gas := run.fluid:
             value = enskog(**replace(gas, temperature=_temperature(run)).parameters)
@@ -139,6 +143,7 @@ def _coefficient(
         return result
 
 
+_PARTS = {"shear": ("shear", "rotational")}
 _PUBLIC = {
     "shear": ("shear_viscosity", "η"),
     "bulk": ("bulk_viscosity", "ζ"),

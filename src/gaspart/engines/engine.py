@@ -70,6 +70,14 @@ class Dynamics(Protocol):
         """Continue from a checkpoint of the same scene and engine."""
 
 
+class FluxDynamics(Dynamics, Protocol):
+    """A scene in progress whose stress tensor and heat flux are tallied."""
+
+    @property
+    def flux_sums(self) -> np.ndarray:
+        """See `Simulation.flux_sums`."""
+
+
 @dataclass(frozen=True)
 class Engine:
     """Settings of an engine.

@@ -4,7 +4,9 @@ Earlier samples lie side by side, so that the inner loop runs over them: each la
 particles in their order. It is compiled to vector instructions, and the bits do not depend on their width.
 """
 
-from gaspart.kernels.compile.policy import kernel
+from math import sqrt
+
+from gaspart.kernels.compile.policy import inner_helper, kernel
 
 
 @kernel
@@ -32,3 +34,54 @@ def add_displacement_products(earlier, now, used, sums):
             sums[0, s] += u * v
             sums[1, s] += moved * moved
             sums[2, s] += moved * (u + v)
+
+
+@inner_helper
+def shear_components(sums, first, d, components, filled):
+    """The (d - 1)(d + 2) / 2 components of a tensor's symmetric part that shear, which fluctuate alike in an
+    isotropic fluid; the tensor begins at `first`, they at `filled`. Returns where they end."""
+    for a in range(d):
+        for b in range(a + 1, d):
+            components[filled] = 0.5 * (sums[first + d * a + b] + sums[first + d * b + a])
+            filled += 1
+    x, y = sums[first], sums[first + d + 1]
+    components[filled] = 0.5 * (x - y)
+    filled += 1
+    if d == 3:
+        components[filled] = (x + y - 2.0 * sums[first + 8]) / (2.0 * sqrt(3.0))
+        filled += 1
+    return filled
+
+
+@kernel
+def flux_components(sums, dimension, components):
+    """What is correlated of the sums (2 d^2 + d,) of the stress tensor, of its collisional part and of the
+    heat flux: the components of the first that shear, those of its antisymmetric part, those of the second
+    that shear, a d-th of the trace of the first, and the vector."""
+    d = dimension
+    filled = shear_components(sums, 0, d, components, 0)
+    for a in range(d):
+        for b in range(a + 1, d):
+            components[filled] = 0.5 * (sums[d * a + b] - sums[d * b + a])
+            filled += 1
+    filled = shear_components(sums, d * d, d, components, filled)
+    trace = 0.0
+    for a in range(d):
+        trace += sums[d * a + a]
+        components[filled + 1 + a] = sums[2 * d * d + a]
+    components[filled] = trace / d
+
+
+@kernel
+def add_flux_products(earlier, now, groups, used, sums):
+    """Add J(0) J(t) and (G(t) - G(0))^2 to sums (groups, 2, S) for the first `used` of S earlier samples.
+
+    earlier: (2, K, S), fluxes J and their integrals G; now: (2, K), the present ones; groups (K,): the group
+    of each component.
+    """
+    for k in range(now.shape[1]):
+        flux, integral, group = now[0, k], now[1, k], groups[k]
+        for s in range(used):
+            moved = integral - earlier[1, k, s]
+            sums[group, 0, s] += earlier[0, k, s] * flux
+            sums[group, 1, s] += moved * moved

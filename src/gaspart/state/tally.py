@@ -11,6 +11,14 @@ ACTION, HEAT = "mass length^2/time", "mass length^3/time^2"
 """Units of sums."""
 
 
+def tallied_fluxes(sums: np.ndarray, dimension: int) -> dict[str, np.ndarray]:
+    """The fields of `Tally` from the sums of the stress tensor, of its collisional part, each by rows, and of
+    the heat flux, (2 d^2 + d,)."""
+    stress = sums[: 2 * dimension**2].reshape(2, dimension, dimension)
+    heat = sums[2 * dimension**2 :]
+    return {"stress_sum": stress[0], "collisional_stress_sum": stress[1], "heat_sum": heat}
+
+
 @dataclass
 class Tally:
     """Sums since the last reset.
@@ -26,8 +34,9 @@ class Tally:
 
     If they were asked for, otherwise None: stress_sum (d, d), the time integral of the stress tensor times
     the volume, of m v v and, at a collision, of r dp, with r the vector from the second particle to the
-    first and dp the momentum that this gains; heat_sum (d,), that of the heat flux times the volume,
-    likewise of E v and r dE (Helfand, Phys. Rev. 119, 1 (1960)).
+    first and dp the momentum that this gains; collisional_stress_sum (d, d), the latter alone; heat_sum
+    (d,), that of the heat flux times the volume, likewise of E v and r dE (Helfand, Phys. Rev. 119, 1
+    (1960)).
 
     The time-stepped engine also reports its errors: steps; overlaps_left, pairs that still overlap and
     approach when a step ends; deepest_overlap met, as a fraction of the contact distance;
@@ -54,6 +63,9 @@ class Tally:
     multiple_contacts: int = 0
     rebuilds: int = 0
     stress_sum: np.ndarray | None = field(
+        default=None, metadata={"along": ("axis", "direction"), "units": ACTION, "optional": True}
+    )
+    collisional_stress_sum: np.ndarray | None = field(
         default=None, metadata={"along": ("axis", "direction"), "units": ACTION, "optional": True}
     )
     heat_sum: np.ndarray | None = field(

@@ -7,7 +7,7 @@ velocity components the memory is that of L + 1 samples, and a sample costs abou
 from __future__ import annotations
 
 import json
-import math
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -25,9 +25,10 @@ SUMS = {
     "displacement_velocity_sum": "(r(t) - r(0)).(v(t) + v(0))",
 }
 """Sums over pairs of samples, by lag, of means over particles."""
-STRESS = {"shear": ACTION, "bulk": ACTION, "heat": HEAT}
-"""What is correlated of the stress tensor and the heat flux, with the units of its time integral G: the mean
-over the components that shear, a d-th of the trace, and the mean over the components of the heat flux."""
+STRESS = {"shear": ACTION, "rotational": ACTION, "collisional": ACTION, "bulk": ACTION, "heat": HEAT}
+"""What is correlated of the stress tensor and the heat flux, with the units of its time integral G: means
+over the components of the symmetric part that shear, over those of the antisymmetric part, and over those
+that shear of what collisions add; a d-th of the trace; the mean over the components of the heat flux."""
 _PREFIX = "correlator "  # of its arrays in a checkpoint
 
 
@@ -92,44 +93,47 @@ def meaning_of(name: str) -> str:
     return f"{product}, G the time integral of the volume times the {group} flux"
 
 
-class _Sums:
-    """Sums over all pairs of samples of K components, up to a largest lag of slots - 1.
+class _Correlator:
+    """Sums over all pairs of samples, up to a largest lag.
 
-    positioned: whether a sample has positions beside velocities (2, K), or not (1, K).
+    earlier: the latest samples, one for each lag, along the last axis; sums: over pairs, likewise by lag.
     """
 
-    def __init__(self, positioned: bool, components: int, slots: int) -> None:
-        self.earlier = np.zeros((2 if positioned else 1, components, slots))
-        self.sums = np.zeros((3 if positioned else 1, slots))
-        self.samples = 0
+    def __init__(self, settings: Correlations, earlier: tuple[int, ...], sums: tuple[int, ...]) -> None:
+        self._earlier = np.zeros((*earlier, settings.lags + 1))
+        self._sums = np.zeros((*sums, settings.lags + 1))
+        self.interval, self._first, self._samples = settings.interval, settings.first, 0
 
-    def add(self, now: np.ndarray, terms: int) -> None:
-        """The next sample; its products, summed over components, are divided by `terms`."""
-        from gaspart.kernels.correlation import add_displacement_products, add_velocity_products
+    @property
+    def next(self) -> int:
+        """The number of the next sample, in intervals from time 0."""
+        return self._first + self._samples
 
-        slots = self.earlier.shape[2]
-        slot, used = self.samples % slots, min(self.samples + 1, slots)
-        self.earlier[:, :, slot] = now
-        added = np.zeros_like(self.sums)
-        add_products = add_displacement_products if len(now) > 1 else add_velocity_products
-        add_products(self.earlier, now, used, added)
+    def _add(self, now: np.ndarray, add_products: Callable[..., None], terms: float | np.ndarray) -> None:
+        """The next sample: its products with the earlier ones, by `add_products`, over the number of
+        terms."""
+        slots = self._earlier.shape[-1]
+        slot, used = self._samples % slots, min(self._samples + 1, slots)
+        self._earlier[..., slot] = now
+        added = np.zeros_like(self._sums)
+        add_products(self._earlier, now, used, added)
         lags = (slot - np.arange(used)) % slots
-        self.sums[:, lags] += added[:, :used] / terms
-        self.samples += 1
+        self._sums[..., lags] += added[..., :used] / terms
+        self._samples += 1
 
-    def arrays(self, prefix: str = _PREFIX) -> dict[str, Any]:
-        """All that a continuation needs."""
-        arrays = {"samples": np.array(self.samples), "earlier": self.earlier, "sums": self.sums}
-        return {prefix + name: values for name, values in arrays.items()}
+    def checkpoint(self) -> dict[str, Any]:
+        """Arrays from which `restore` continues to the same bits."""
+        arrays = {"samples": np.array(self._samples), "earlier": self._earlier, "sums": self._sums}
+        return {_PREFIX + name: values for name, values in arrays.items()}
 
-    def restore(self, arrays: dict[str, np.ndarray], prefix: str = _PREFIX) -> None:
-        """Continue from these."""
-        self.samples = int(arrays[prefix + "samples"])
-        self.earlier[...] = arrays[prefix + "earlier"]
-        self.sums[...] = arrays[prefix + "sums"]
+    def restore(self, arrays: dict[str, np.ndarray]) -> None:
+        """Continue from a checkpoint of a correlator of the same settings."""
+        self._samples = int(arrays[_PREFIX + "samples"])
+        self._earlier[...] = arrays[_PREFIX + "earlier"]
+        self._sums[...] = arrays[_PREFIX + "sums"]
 
 
-class Correlator:
+class Correlator(_Correlator):
     """Correlations of the motion of the particles.
 
     Velocities and positions of the moving particles count, relative to those of the centre of mass along
@@ -147,19 +151,19 @@ class Correlator:
         self._weights = (weights / weights.sum())[:, None]
         self._conserved = np.array(scene.container.periodic) & self._moving.all()
         self._positioned = displacements
-        self._sums = _Sums(displacements, self._moving.sum() * scene.dimension, settings.lags + 1)
-        self.interval, self._first = settings.interval, settings.first
-
-    @property
-    def next(self) -> int:
-        """The number of the next sample, in intervals from time 0."""
-        return self._first + self._sums.samples
+        components = self._moving.sum() * scene.dimension
+        earlier = (2 if displacements else 1, components)
+        super().__init__(settings, earlier, (len(sums_of(displacements)),))
 
     def add(self, simulation: Simulation) -> None:
         """The next sample."""
+        from gaspart.kernels.correlation import add_displacement_products, add_velocity_products
+
         state = simulation.state
         values = (state.velocities, state.unwrapped) if self._positioned else (state.velocities,)
-        self._sums.add(np.array([self._relative(each) for each in values]), self._moving.sum())
+        now = np.array([self._relative(each) for each in values])
+        products = add_displacement_products if self._positioned else add_velocity_products
+        self._add(now, products, self._moving.sum())
 
     def _relative(self, values: np.ndarray) -> np.ndarray:
         """(M d,) values (N, d) of the moving particles relative to the centre of mass."""
@@ -169,76 +173,54 @@ class Correlator:
 
     def sums(self) -> dict[str, np.ndarray | float]:
         """The sums of `SUMS` so far, (lags + 1,) each, and the number of samples."""
-        named = zip(SUMS, self._sums.sums, strict=False)
-        return {"correlated_samples": float(self._sums.samples), **dict(named)}
-
-    def checkpoint(self) -> dict[str, Any]:
-        """Arrays from which `restore` continues to the same bits."""
-        return self._sums.arrays()
-
-    def restore(self, arrays: dict[str, np.ndarray]) -> None:
-        """Continue from a checkpoint of a correlator of the same settings."""
-        self._sums.restore(arrays)
+        named = zip(SUMS, self._sums, strict=False)
+        return {"correlated_samples": float(self._samples), **dict(named)}
 
 
-class StressCorrelator:
+class StressCorrelator(_Correlator):
     """Correlations of the stress tensor and the heat flux, each the mean over an interval: with its impulses,
     which last no time, it is finite so. The first sample gives no mean and does not count."""
 
     def __init__(self, settings: Correlations, dimension: int) -> None:
-        components = {"shear": dimension * (dimension + 1) // 2 - 1, "bulk": 1, "heat": dimension}
-        self._sums = {name: _Sums(True, number, settings.lags + 1) for name, number in components.items()}
-        self._latest = np.zeros(dimension * dimension + dimension)
-        self._begun = False
-        self.interval, self._first = settings.interval, settings.first
+        shear = dimension * (dimension + 1) // 2 - 1
+        turning = dimension * (dimension - 1) // 2
+        number = [shear, turning, shear, 1, dimension]  # of components, as in STRESS
+        self._groups = np.repeat(np.arange(len(STRESS)), number)
+        self._terms = np.array(number, dtype=float)[:, None, None]
+        self._dimension, self._latest, self._begun = dimension, np.zeros(len(self._groups)), False
+        super().__init__(settings, (2, len(self._groups)), (len(STRESS), 2))
 
     @property
     def next(self) -> int:
         """The number of the next sample, in intervals from time 0."""
-        return self._first + self._begun + self._sums["bulk"].samples
+        return super().next + self._begun
 
     def add(self, simulation: Simulation) -> None:
-        """The next sample. Raises ValueError for a simulation without a tally of the stress."""
-        tally = simulation.tally
-        if tally.stress_sum is None or tally.heat_sum is None:
-            raise ValueError("the tally has no stress tensor")
-        moments = np.concatenate([tally.stress_sum.ravel(), tally.heat_sum])
+        """The next sample, of a simulation that tallies the stress."""
+        from gaspart.kernels.correlation import add_flux_products, flux_components
+
+        integrals = np.empty_like(self._latest)
+        flux_components(simulation.flux_sums, self._dimension, integrals)
         if self._begun:
-            flux, now = _parts((moments - self._latest) / self.interval), _parts(moments)
-            for name, sums in self._sums.items():
-                sums.add(np.array([flux[name], now[name]]), len(now[name]))
-        self._latest[...], self._begun = moments, True
+            now = np.array([(integrals - self._latest) / self.interval, integrals])
+
+            def add(earlier: np.ndarray, now: np.ndarray, used: int, sums: np.ndarray) -> None:
+                add_flux_products(earlier, now, self._groups, used, sums)
+
+            self._add(now, add, self._terms)
+        self._latest, self._begun = integrals, True
 
     def sums(self) -> dict[str, np.ndarray | float]:
         """The sums of `stress_sums` so far, (lags + 1,) each, and the number of samples."""
-        rows = [row for sums in self._sums.values() for row in sums.sums[:2]]
-        named = zip(stress_sums(), rows, strict=True)
-        return {"correlated_samples": float(self._sums["bulk"].samples), **dict(named)}
+        named = zip(stress_sums(), self._sums.reshape(-1, self._sums.shape[-1]), strict=True)
+        return {"correlated_samples": float(self._samples), **dict(named)}
 
     def checkpoint(self) -> dict[str, Any]:
         """Arrays from which `restore` continues to the same bits."""
-        parts = {_PREFIX + "latest": self._latest, _PREFIX + "begun": np.array(self._begun)}
-        for name, sums in self._sums.items():
-            parts |= sums.arrays(f"{_PREFIX}{name} ")
-        return parts
+        begun = {_PREFIX + "latest": self._latest, _PREFIX + "begun": np.array(self._begun)}
+        return {**super().checkpoint(), **begun}
 
     def restore(self, arrays: dict[str, np.ndarray]) -> None:
         """Continue from a checkpoint of a correlator of the same settings."""
-        self._latest[...], self._begun = arrays[_PREFIX + "latest"], bool(arrays[_PREFIX + "begun"])
-        for name, sums in self._sums.items():
-            sums.restore(arrays, f"{_PREFIX}{name} ")
-
-
-def _parts(moments: np.ndarray) -> dict[str, np.ndarray]:
-    """The components of each of `STRESS`, from a tensor (d, d), by rows, and a vector (d,).
-
-    In an isotropic fluid the differences of normal stresses fluctuate as the off-diagonal components do.
-    """
-    d = 2 if len(moments) == 6 else 3
-    tensor = moments[: d * d].reshape(d, d)
-    normal = np.diag(tensor)
-    upper = np.triu_indices(d, 1)
-    shear = [*(0.5 * (tensor + tensor.T)[upper]), 0.5 * (normal[0] - normal[1])]
-    if d == 3:
-        shear.append((normal[0] + normal[1] - 2.0 * normal[2]) / (2.0 * math.sqrt(3.0)))
-    return {"shear": np.array(shear), "bulk": normal.mean(keepdims=True), "heat": moments[d * d :]}
+        super().restore(arrays)
+        self._latest, self._begun = arrays[_PREFIX + "latest"].copy(), bool(arrays[_PREFIX + "begun"])

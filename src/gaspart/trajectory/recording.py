@@ -138,7 +138,7 @@ class Recording:
         simulation, recipe = self._simulation, self._recipe
         if step := recipe.engine.quantum:
             goal = number * multiple("interval", interval, "time_step", step)
-            while (done := simulation.tally.steps) < goal:
+            while (done := round(simulation.time / step)) < goal:
                 # half a step more than required, so that rounding does not cost a step
                 self._advance(goal * step, until=(min(goal, done + self._stretch) + 0.5) * step)
                 yield

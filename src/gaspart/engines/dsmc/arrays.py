@@ -101,7 +101,8 @@ def stress_for(scene: Scene, state: State, threads: int) -> Stress:
     d = scene.dimension
     momentum, energy = largest_terms(scene, state, 1.0)
     length = 2.0 ** math.frexp(max(scene.container.lengths))[1]
-    sums, cell = np.zeros((threads, d * d + d, 2), np.int64), np.zeros((threads, d * d + d))
+    number = 2 * d * d + d
+    sums, cell = np.zeros((threads, number, 2), np.int64), np.zeros((threads, number))
     scales = np.array([momentum * length, energy * length])
     return Stress(sums, cell, np.zeros((threads, 2, d + 1)), scales)
 

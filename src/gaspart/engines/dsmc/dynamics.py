@@ -17,7 +17,7 @@ from gaspart.engines.features.thermostat import step_kicks
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
-from gaspart.state.tally import Tally
+from gaspart.state.tally import Tally, tallied_fluxes
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC
@@ -178,17 +178,13 @@ class DsmcDynamics:
         return float(self._lost[1]) + gross + abs(self._sums.net(self._given))
 
     @property
-    def _stress_sums(self) -> dict[str, Any]:
-        """The fields of `Tally` that only some runs fill."""
-        if self._stress is None:
-            return {}
-        d, (action, heat) = self._scene.dimension, self._stress.scales
-        sums = self._stress.sums.sum(axis=0)
-        stress = self._sums.whole_parts(sums[: d * d], action).sum(axis=-1)
-        return {
-            "stress_sum": stress.reshape(d, d),
-            "heat_sum": self._sums.whole_parts(sums[d * d :], heat).sum(axis=-1),
-        }
+    def flux_sums(self) -> np.ndarray:
+        """(2 d^2 + d,) the sums of the stress tensor, of its collisional part and of the heat flux."""
+        assert self._stress is not None
+        sums, (action, heat) = self._stress.sums.sum(axis=0), self._stress.scales
+        found = self._sums.whole_parts(sums, action).sum(axis=-1)
+        found[-self._scene.dimension :] *= heat / action  # powers of two
+        return found
 
     @property
     def state(self) -> State:
@@ -208,6 +204,9 @@ class DsmcDynamics:
     def tally(self) -> Tally:
         """What was counted since the last `reset_tally`."""
         tools, layout = self._tools, self._layout
+        fluxes: dict[str, Any] = {}
+        if self._stress is not None:
+            fluxes = tallied_fluxes(self.flux_sums, self._scene.dimension)
         counts = tools.counts.sum(axis=0)
         impulse = self._sums.whole_parts(tools.wall_impulse.sum(axis=0), tools.scales[layout.MOMENTUM])
         virial = self._sums.whole_parts(tools.virial.sum(axis=0), tools.scales[layout.ACTION])
@@ -223,7 +222,7 @@ class DsmcDynamics:
             dissipated_energy=self._sums.net(self._loss),
             thermostat_energy=self._sums.net(self._given),
             steps=self._steps - self._since,
-            **self._stress_sums,
+            **fluxes,
         )
 
     def checkpoint(self) -> dict[str, np.ndarray]:

@@ -59,8 +59,8 @@ class EventDynamics:
         self._model, unit_mass = event_model(scene, state, seed, self._grid, largest)
         self._collapse = CollapsePart(self._model, n)
         self._parts = [*event_parts(scene, state, seed, self._model, unit_mass), self._collapse]
-        flux = StressPart(self._flights, self._model, unit_mass) if stress else None
-        self._parts += [flux] if flux else []
+        self._stress = StressPart(self._flights, self._model, unit_mass) if stress else None
+        self._parts += [self._stress] if self._stress else []
         self._epochs = Epochs(scene, sum(part.gained for part in self._parts) if n else 0.0)
         self._base, self._quiet = self._epochs.length(self._epochs.speed(state.velocities)), 0
         epochs, self._clock = divmod(state.time, self._base)
@@ -69,7 +69,7 @@ class EventDynamics:
             part.set_clock(self._clock)
         self._begin_epoch(self._base)
         self._flights["clock"] = self._clock
-        self._tally = EventTally(scene, unit_mass, self._parts, flux)
+        self._tally = EventTally(scene, unit_mass, self._parts, self._stress)
         self._tally.begin(self.time, self._clock)
         self._predict()
 
@@ -196,6 +196,12 @@ class EventDynamics:
     def tally(self) -> Tally:
         """What was counted since the last `reset_tally`."""
         return self._tally.read(self.time, self._clock)
+
+    @property
+    def flux_sums(self) -> np.ndarray:
+        """(2 d^2 + d,) the sums of the stress tensor, of its collisional part and of the heat flux."""
+        assert self._stress is not None
+        return self._stress.read(self._clock)
 
     @property
     def dissipated(self) -> float:

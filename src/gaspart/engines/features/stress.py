@@ -10,6 +10,7 @@ from gaspart.engines.features.part import Part
 from gaspart.kernels.event.stress import Stress, add_flights
 from gaspart.kernels.model import Model
 from gaspart.kernels.physics.running_sum import values
+from gaspart.state.tally import tallied_fluxes
 
 
 class StressPart(Part):
@@ -23,7 +24,7 @@ class StressPart(Part):
         self._flights, self._unit_mass = flights, unit_mass
         self._masses = model.space, model.masses, model.law
         self._dimension = d = len(model.space.lengths)
-        self.sums = Stress(np.zeros((d * d + d, 2)), np.zeros((2, d + 1)))
+        self.sums = Stress(np.zeros((2 * d * d + d, 2)), np.zeros((2, d + 1)))
         super().__init__({"stress": self.sums.sums})
 
     def end_epoch(self, length: float, start: float) -> None:
@@ -35,9 +36,12 @@ class StressPart(Part):
         self.sums.sums[...] = 0.0
         add_flights(self._flights, -clock, *self._masses, self.sums)
 
-    def counts(self, clock: float) -> dict[str, Any]:
-        """Both sums."""
-        total, d = self.sums._replace(sums=self.sums.sums.copy()), self._dimension
+    def read(self, clock: float) -> np.ndarray:
+        """(2 d^2 + d,) the sums until this time on the clocks of the epoch."""
+        total = self.sums._replace(sums=self.sums.sums.copy())
         add_flights(self._flights, clock, *self._masses, total)
-        found = values(total.sums) * self._unit_mass
-        return {"stress_sum": found[: d * d].reshape(d, d), "heat_sum": found[d * d :]}
+        return values(total.sums) * self._unit_mass
+
+    def counts(self, clock: float) -> dict[str, Any]:
+        """The sums, by the fields of `Tally`."""
+        return tallied_fluxes(self.read(clock), self._dimension)

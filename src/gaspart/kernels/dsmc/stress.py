@@ -3,7 +3,8 @@
 The stress sum S (d, d) grows by m v v dt while particles fly, and by r dp at a collision, with r the vector
 from the second particle to the first and dp what that gains. The heat sum Q (d,) grows by E v dt and by r
 times half of the difference of what the two particles gain in energy E, which with spins includes that of
-rotation. A particle's velocity is constant in a step without walls and pull, so nothing is approximated.
+rotation. A particle's velocity is constant in a step without walls and pull, so nothing is approximated. The
+collisions' part of S is summed by itself too.
 
 The sums of a cell are made by one thread and added as whole numbers, so that they do not depend on threads.
 """
@@ -18,9 +19,9 @@ from gaspart.kernels.physics.running_sum import add_whole
 
 
 class Stress(NamedTuple):
-    """By thread: sums (threads, d^2 + d, 2), those of S, by rows, and of Q; cell (threads, d^2 + d), what the
-    present cell adds; before (threads, 2, d + 1), velocity and energy of two particles before they collide.
-    scales (2,): the powers of two that few terms of S and Q exceed."""
+    """By thread: sums (threads, 2 d^2 + d, 2), those of S, by rows, of its part from collisions, and of Q;
+    cell (threads, 2 d^2 + d), what the present cell adds; before (threads, 2, d + 1), velocity and energy of
+    two particles before they collide. scales (2,): the powers of two that few terms of S and Q exceed."""
 
     sums: np.ndarray
     cell: np.ndarray
@@ -54,7 +55,7 @@ def add_flight(particles, slot, setting, stress, law):
     mass, energy = tools.mass[kind_in(particles, slot, tools)], energy_of(particles, slot, setting, law)
     for k in range(d):
         way = particles.data[velocity_row(particles, k), slot] * tools.dt
-        cell[d * d + k] += energy * way
+        cell[2 * d * d + k] += energy * way
         for n in range(d):
             cell[d * k + n] += way * mass * particles.data[velocity_row(particles, n), slot]
 
@@ -64,7 +65,7 @@ def finish_cell(setting, stress):
     """Move the sums of the present cell to those of its thread."""
     cell, sums, d = stress.cell[setting.part], stress.sums[setting.part], len(setting.space.lengths)
     for n in range(len(cell)):
-        add_whole(sums[n], cell[n], stress.scales[0] if n < d * d else stress.scales[1])
+        add_whole(sums[n], cell[n], stress.scales[0] if n < 2 * d * d else stress.scales[1])
         cell[n] = 0.0
 
 
@@ -98,6 +99,7 @@ def add_contact(particles, pair, apart, setting, stress, law):
     second = energy_of(particles, pair[1], setting, law) - before[1, d]
     for n in range(d):
         gained = mass * (particles.data[velocity_row(particles, n), pair[0]] - before[0, n])
-        cell[d * d + n] += apart[n] * 0.5 * (first - second)
+        cell[2 * d * d + n] += apart[n] * 0.5 * (first - second)
         for k in range(d):
             cell[d * k + n] += apart[k] * gained
+            cell[d * d + d * k + n] += apart[k] * gained

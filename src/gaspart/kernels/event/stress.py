@@ -6,7 +6,7 @@ times half of the difference of what the two particles gain in energy E, with sp
 
 Between contacts m v v summed over all particles, K, is constant, so that its integral until the time t is
 K(t) t minus the sum over contacts of their time and of the change of K: a contact adds what concerns its two
-particles, and K is summed when S is read.
+particles, and K is summed when S is read. The contacts' part of S is summed by itself too.
 """
 
 from typing import NamedTuple
@@ -19,7 +19,8 @@ from gaspart.kernels.physics.running_sum import add
 
 
 class Stress(NamedTuple):
-    """sums (d^2 + d, 2), those of S, by rows, and of Q without K(t) t, see `running_sum.add`; before
+    """sums (2 d^2 + d, 2), those of S, by rows, and of its part from contacts, and of Q, without K(t) t, see
+    `running_sum.add`; before
     (2, d + 1), velocity and energy of two particles before their contact."""
 
     sums: np.ndarray
@@ -82,12 +83,14 @@ def add_contact(flights, i, j, time, space, masses, law, stress):
             apart = -gap_along(flights, i, j, k, space)
             u, v = flights[i].velocity[k], flights[j].velocity[k]
             heat = energy * u - before[0, d] * before[0, k] + other_energy * v - before[1, d] * before[1, k]
-            add(sums, d * d + k, apart * passed - time * heat)
+            add(sums, 2 * d * d + k, apart * passed - time * heat)
             for n in range(d):
                 x, y = flights[i].velocity[n], flights[j].velocity[n]
                 flux = mass * (u * x - before[0, k] * before[0, n])
                 flux += other * (v * y - before[1, k] * before[1, n])
-                add(sums, d * k + n, apart * mass * (x - before[0, n]) - time * flux)
+                passes = apart * mass * (x - before[0, n])
+                add(sums, d * k + n, passes - time * flux)
+                add(sums, d * d + d * k + n, passes)
 
 
 @kernel
@@ -98,6 +101,6 @@ def add_flights(flights, time, space, masses, law, stress):
         mass, energy = mass_of(i, masses, law), energy_of(flights, i, space, masses, law)
         for k in range(d):
             way = time * flights[i].velocity[k]
-            add(sums, d * d + k, energy * way)
+            add(sums, 2 * d * d + k, energy * way)
             for n in range(d):
                 add(sums, d * k + n, mass * way * flights[i].velocity[n])
