@@ -14,13 +14,12 @@ import yaml
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-COLUMNS = (
-    ("gas_render", "brownian_render"),
-    ("virial_spheres",),
-    ("velocity_autocorrelation",),
-    ("separation",),
-)
-WIDTH, GAP = 420, 12  # pixels
+COLUMNS = {
+    ("gas_render", "brownian_render"): 640,
+    ("virial_spheres", "velocity_autocorrelation"): 860,
+}
+"""Figures above one another -> their width in pixels."""
+GAP = 12  # pixels
 CONFIG = Path(__file__).parents[1] / "config/config.yaml"
 
 
@@ -40,9 +39,9 @@ def source(results: Path) -> dict[str, str]:
     return {"config": title, "revision": " ".join(sorted(found))}
 
 
-def _column(folder: Path, names: tuple[str, ...]) -> list[Image.Image]:
+def _column(folder: Path, names: tuple[str, ...], width: int) -> list[Image.Image]:
     pictures = [Image.open(folder / f"{name}.png").convert("RGB") for name in names]
-    return [picture.resize((WIDTH, round(picture.height * WIDTH / picture.width))) for picture in pictures]
+    return [picture.resize((width, round(picture.height * width / picture.width))) for picture in pictures]
 
 
 def gallery(results: Path, path: Path) -> None:
@@ -50,14 +49,16 @@ def gallery(results: Path, path: Path) -> None:
     about = PngInfo()
     for key, text in source(results).items():
         about.add_text(key, text)
-    columns = [_column(results / "figures", names) for names in COLUMNS]
+    columns = [_column(results / "figures", names, width) for names, width in COLUMNS.items()]
     heights = [sum(picture.height for picture in column) + GAP * (len(column) - 1) for column in columns]
-    page = Image.new("RGB", (len(columns) * (WIDTH + GAP) - GAP, max(heights)), "white")
-    for k, column in enumerate(columns):
+    page = Image.new("RGB", (sum(COLUMNS.values()) + GAP * (len(columns) - 1), max(heights)), "white")
+    right = 0
+    for column in columns:
         below = 0
         for picture in column:
-            page.paste(picture, (k * (WIDTH + GAP), below))
+            page.paste(picture, (right, below))
             below += picture.height + GAP
+        right += column[0].width + GAP
     page.save(path, optimize=True, pnginfo=about)
 
 

@@ -36,22 +36,22 @@ def test_it_is_made_of_the_figures_and_names_their_results(module, results):
     assert (results / "a.png").read_bytes() == (results / "b.png").read_bytes()
     with Image.open(results / "a.png") as picture:
         assert picture.text == {"config": "full reproduction", "revision": "abc"}
-        width = module.WIDTH + module.GAP
-        assert [picture.getpixel((k * width + 9, 9))[0] for k in range(4)] == [0, 80, 120, 160]
+        first, second = module.COLUMNS.values()
+        assert picture.width == first + module.GAP + second
+        assert [picture.getpixel((x + 9, 9))[0] for x in (0, first + module.GAP)] == [0, 80]
 
 
 def test_results_of_another_config_do_not_replace_it(module, results):
-    with netCDF4.Dataset(results / "measurements/separation.nc", "a") as data:
+    with netCDF4.Dataset(results / "measurements/virial_spheres.nc", "a") as data:
         data.config = "smoke"
     with pytest.raises(ValueError, match="is of 'smoke', not of 'full reproduction'"):
         module.gallery(results, results / "a.png")
-    (results / "figures/separation.png").unlink()
+    (results / "figures/virial_spheres.png").unlink()
     with pytest.raises(ValueError, match="missing"):
         module.gallery(results, results / "a.png")
     assert not (results / "a.png").exists()
 
 
-@pytest.mark.xfail(strict=True, reason="the next complete reproduction replaces it: make docs")
 def test_the_picture_that_is_kept_names_its_results():
     with Image.open(ROOT / "docs/gallery.png") as picture:
         assert picture.text["config"] == "full reproduction" and picture.text["revision"]
