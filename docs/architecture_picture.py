@@ -105,7 +105,7 @@ def main():
         axes.text(x, y + 0.17, name, ha="center", va="center", weight="bold", zorder=3)
         text = "\n".join(textwrap.wrap(purpose[name], 27))
         axes.text(x, y - 0.09, text, ha="center", va="center", fontsize=6, linespacing=1.15, zorder=3)
-        for other in graph[name]:
+        for other in sorted(graph[name]):
             u, v = place[other]
             axes.annotate(
                 "", (u, v - HEIGHT / 2), (x, y + HEIGHT / 2),

@@ -24,6 +24,7 @@ from gaspart.theory.enskog import enskog_diffusion as enskog_diffusion
 from gaspart.theory.enskog import enskog_longitudinal_viscosity as enskog_longitudinal_viscosity
 from gaspart.theory.enskog import enskog_viscosity as enskog_viscosity
 from gaspart.theory.enskog import mean_free_path as mean_free_path
+from gaspart.theory.enskog import transport_finite_size_factor as transport_finite_size_factor
 from gaspart.theory.equations import carnahan_starling as carnahan_starling
 from gaspart.theory.equations import henderson as henderson
 from gaspart.theory.equations import kolafa_1986 as kolafa_1986

@@ -182,3 +182,18 @@ def enskog_conductivity(
     kinetic = _kinetic(dilute, 3.0, packing_fraction, dimension)
     bulk = enskog_bulk_viscosity(packing_fraction, dimension, diameter, temperature, mass)
     return kinetic + 0.5 * dimension / mass * bulk
+
+
+@checked
+def transport_finite_size_factor(count: int, dimension: int, quantity: str) -> float:
+    """A coefficient of a dilute gas of N particles at a fixed energy without total momentum, over that of an
+    infinite one; quantity: "viscosity" or "conductivity".
+
+    With D = d (N - 1), the mean square of the stress is lower by (1 - 1/N) D / (D + 2), that of the heat flux
+    by (1 - 1/N)^3 D^2 / ((D + 2)(D + 4)) (moments of the uniform distribution on a sphere; to O(1/N^2)), and
+    both last longer by 1 / (1 - 1/N), since a particle has N - 1 partners.
+    """
+    share, freedom = 1.0 - 1.0 / count, dimension * (count - 1.0)
+    if quantity == "viscosity":
+        return freedom / (freedom + 2.0)
+    return share**2 * freedom**2 / ((freedom + 2.0) * (freedom + 4.0))

@@ -28,6 +28,9 @@ KEYS: dict[str, Kind] = {
         "length, and keep the first and the last frame only; with `displacements` of these too",
         default=None,
     ),
+    "stress": flag(
+        "with `lags`: correlate the stress tensor and the heat flux instead of velocities", default=False
+    ),
     "follow": count(
         "keep only the first so many particles (single `bodies` come first, then `species`); counters and "
         "energies are those of all",
@@ -50,6 +53,7 @@ def parameters(point: Point) -> dict:
     if "lags" in point.settings:
         lags = min(point.settings["lags"], (times.samples + 1) // 2)
         correlations = {"interval": times.sample_interval, "lags": lags, "start": times.equilibration}
+        correlations |= {"stress": True} if point.settings.get("stress") else {}
     return {
         "engine": engine_to_dict(point.engine),
         "duration": times.duration,

@@ -39,6 +39,8 @@ def variant(point: Point) -> str:
         engine = engines[0]  # which differ in numbers only
         parts = [engine.name, engine.variant(scene), f"{scene.dimension}d"]
     present = sorted(features(scene))
+    if point.settings.get("stress"):
+        present.append("stress")
     if present:
         parts.append(hashlib.sha256(" ".join(present).encode()).hexdigest()[:8])
     return "-".join(parts)
@@ -85,8 +87,8 @@ def _differing(thing: Any, prefix: str = "") -> Iterator[str]:
 
 
 def task(point: Point) -> str:
-    """The task of `warm` for a point, as JSON: its engine, and its scene with only a few particles if these
-    have all of its features."""
+    """The task of `warm` for a point, as JSON: its engine, its scene with only a few particles if these have
+    all of its features, and whether it tallies the stress."""
     from gaspart.scene.scene import Scene
 
     parameters, full = point.parameters, point.scene
@@ -100,7 +102,8 @@ def task(point: Point) -> str:
     engine = parameters.get("engine") or parameters.get("engines", [None])[0]
     if engine:
         engine = engine_to_dict(engine_from_dict(engine).for_few(full))
-    return json.dumps({"scene": scene, "engine": engine})
+    stress = point.settings.get("stress", False)
+    return json.dumps({"scene": scene, "engine": engine, **({"stress": True} if stress else {})})
 
 
 def warm(job: str) -> None:
@@ -115,7 +118,7 @@ def warm(job: str) -> None:
         initial_state(scene, seed=1)
         return
     engine = engine_from_dict(given["engine"]).resolved(scene)
-    simulation = Simulation(scene, engine, seed=1)
+    simulation = Simulation(scene, engine, 1, given.get("stress", False))
     step = engine.quantum
     limits: dict = {"duration": 4 * step} if step else {"duration": 1.0, "max_work": 1000}
     with suppress(SimulationError):  # a collapse; everything has been compiled before

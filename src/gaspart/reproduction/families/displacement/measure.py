@@ -52,14 +52,14 @@ def replicas(point: Point, longest: float) -> list[Curves]:
 
 
 def msd_spheres(points: list[Point], settings: dict) -> xr.Dataset:
-    """Mean-squared displacement and diffusion coefficient of spheres; see `_spheres` for a point's numbers.
+    """Mean-squared displacement and diffusion coefficient of spheres; see `spheres` for a point's numbers.
 
     Dimensions point and lag (NaN beyond a point's own lags). `largest`: the long run with the most particles
     at its packing fraction. `in_series`: one of three or more sizes at one packing fraction; through these
     goes the line size_intercept + size_slope / L, or with Yeh and Hummer's slope one from `size_limit`.
     Raises SceneError for a run too short for its straight stretch.
     """
-    dataset = _dataset([_spheres(point) for point in points], 3)
+    dataset = _dataset([spheres(point) for point in points], 3)
     eta, count = dataset["packing_fraction"].values.round(6), dataset["count"].values
     long = np.isfinite(dataset["diffusion"].values)
     same = long & long[:, None] & (eta == eta[:, None])
@@ -134,7 +134,7 @@ def _absent(*names: str, empty: float | np.ndarray = math.nan) -> dict:
     return values | {f"{name}_freedom": math.nan for name in names}
 
 
-def _spheres(point: Point) -> dict:
+def spheres(point: Point) -> dict:
     """D, D of the infinite system, and the curves.
 
     Of N particles whose total momentum is zero, D is (N - 1) / N of that of N particles without this

@@ -14,7 +14,7 @@ from gaspart.scene.restitution import Restitution
 
 @dataclass(frozen=True)
 class Temperatures:
-    """Of T frames of a run: time, collisions per particle, T_tr and T_rot, (T,) each; first T_tr."""
+    """Temperatures in T frames of a run: time, collisions per particle, T_tr, T_rot (T,); first T_tr."""
 
     time: np.ndarray
     collisions: np.ndarray
@@ -24,7 +24,7 @@ class Temperatures:
 
 
 def temperatures(run: Run, first: int) -> Temperatures:
-    """Of all frames of a run of like particles from number `first` on."""
+    """Temperatures in all frames of a run of like particles from number `first` on."""
     count, dimension, mass = run.count, run.dimension, run.scene.species[0].mass
     total = mass * (run.velocities**2).sum(axis=(1, 2))
     drift = run.velocities.mean(axis=1)
@@ -41,7 +41,7 @@ def temperatures(run: Run, first: int) -> Temperatures:
 
 
 def read(point: Point) -> list[Temperatures]:
-    """Of all replicas of a point, without their equilibration."""
+    """Temperatures in all replicas of a point, without their equilibration."""
     first = point.schedule.equilibration_frames
     return [temperatures(run, first) for run in runs(point, first=0)]
 

@@ -23,7 +23,7 @@ from gaspart.scene.scene import Scene
 
 @dataclass(frozen=True)
 class Velocities:
-    """Of a run of T frames, N particles, d axes.
+    """Velocities in a run of T frames, N particles, d axes.
 
     time (T,); collisions (T,), per particle since the start; velocities (T, N, d), single precision as
     stored; temperature (T,), 2 E / (d N) from the energy in double precision.
@@ -42,7 +42,7 @@ class Velocities:
 
 
 def read(point: Point, first: int | None = None) -> list[Velocities]:
-    """Of all replicas of a point, without their equilibration or from frame `first` on."""
+    """Velocities in all replicas of a point, without their equilibration or from frame `first` on."""
     return [
         Velocities(
             time=run.time,

@@ -1,0 +1,186 @@
+"""What cells, steps and models of the DSMC engine do to a gas, beside the event-driven engine.
+
+Widths of cells are in mean free paths l of the dilute gas, 1 / (sqrt 2 pi n sigma^2), steps in l / c with
+c = sqrt(2 k_B T / m), in which the discretisation errors of the literature are stated. Transport coefficients
+are over those of Chapman and Enskog, without the change that a finite number of particles makes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
+
+import numpy as np
+import xarray as xr
+
+from gaspart import theory
+from gaspart.analysis.correlations import accumulated
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.run import Run
+from gaspart.analysis.statistics import fit_linear, means_of
+from gaspart.analysis.transport import green_kubo
+from gaspart.reproduction.families.displacement.measure import spheres
+from gaspart.reproduction.families.heat.gap import Gap, averages
+from gaspart.reproduction.families.shared.pressure import series_of
+from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.points.point import Point
+from gaspart.scene.gas import plain_gas
+from gaspart.theory.heat import free_molecular_flux
+from gaspart.trajectory.run import open_trajectory
+
+SHORT, NARROW = 1.0, 0.6
+"""Of steps and widths: up to which the transfer at collisions is fitted."""
+NONE = 1e-12
+"""Packing fraction of a gas so dilute that only the Boltzmann equation matters."""
+
+
+def dsmc_convergence(points: list[Point], settings: dict) -> xr.Dataset:
+    """Viscosity, conductivity and diffusion by cells and steps; the dense gas; the flux between plates.
+
+    settings: `parts`, the experiments of each part; `blocks`, the stretches of each run between plates.
+    Dimension point; `_error` and `_freedom`, the degrees of freedom of the error. part and engine of each
+    point; of dilute gases width and step, and viscosity, conductivity and diffusion, each over its exact
+    value, and `transfer`, the part of the viscosity that passes at collisions, likewise; of dense ones
+    packing_fraction, `excess`, Z - 1, `rate`, the collision rate, and diffusion over Enskog's; of plates
+    knudsen, l over the gap of centres, and `flux` over that of free flight. Without dimension: coefficient,
+    width_slope and step_slope, see `_narrow`.
+    """
+    measures = {
+        "fluxes": _fluxes,
+        "paths": _paths,
+        "dense": _dense,
+        "plates": _plates,
+        "event_paths": _event_paths,
+        "event_plates": _plates,
+    }
+    rows = []
+    for part, experiments in settings["parts"].items():
+        for point in (point for point in points if point.experiment in experiments):
+            found = measures[part](point, settings)
+            rows.append({"part": part, "engine": point.engine.title, **found})
+    units = {"width": "mean free path", "step": "mean free path / sqrt(2 k_B T / m)"}
+    return from_rows("point", rows, units=units).assign(entries(_narrow(rows)))
+
+
+def _narrow(rows: list[dict]) -> dict[str, Estimate]:
+    """What collisions transfer over width^2 with narrow cells and short steps, and its slopes by both.
+
+    In a wider cell a particle is often still near the place of its last collision at the next one, and
+    passes back on what it was given; so it is after several collisions in a step. The transfer is less than
+    its limit by parts that are linear in width and step.
+    """
+    names = ("coefficient", "width_slope", "step_slope")
+    fine = [row for row in rows if row["part"] == "fluxes" and row["step"] < SHORT and row["width"] < NARROW]
+    if len(fine) < len(names):
+        return dict.fromkeys(names, Estimate(math.nan, math.nan))
+    width, step = (np.array([row[key] for row in fine]) for key in ("width", "step"))
+    over, error = (np.array([row[key] for row in fine]) / width**2 for key in ("transfer", "transfer_error"))
+    design = np.stack([np.ones(len(fine)), width, step], axis=1)
+    fit = fit_linear(design, over, error, [row["transfer_freedom"] for row in fine])
+    return {name: fit.estimate(n) for n, name in enumerate(names)}
+
+
+def _dilute_path(point: Point) -> float:
+    """The mean free path l of the dilute gas."""
+    gas = plain_gas(point.scene)
+    path = theory.mean_free_path(gas.packing_fraction, 3, gas.diameter)
+    return float(path * theory.contact_value(gas.packing_fraction, 3))
+
+
+def _resolution(point: Point) -> dict[str, float]:
+    """Width of the cells and length of a step."""
+    gas, path = plain_gas(point.scene), _dilute_path(point)
+    engine = asdict(point.engine.resolved(point.scene, point.schedule.sample_interval))
+    sides = np.array(point.scene.container.lengths) / np.array(engine["cells_per_side"])
+    speed = math.sqrt(2.0) * gas.thermal_speed
+    return {"width": float(sides.max()) / path, "step": engine["time_step"] * speed / path}
+
+
+def _runs(point: Point) -> Iterator[Run]:
+    """Each replica from its start, which is in equilibrium, to its end."""
+    for path in point.replica_paths:
+        with open_trajectory(path) as trajectory:
+            yield Run(point.scene, trajectory["time"].values, trajectory)
+
+
+def _fluxes(point: Point, settings: dict) -> dict:
+    """Viscosity and conductivity, by Green and Kubo to the longest lag, as of an infinite gas."""
+    gas = plain_gas(point.scene)
+    shear, heat = (
+        theory.transport_finite_size_factor(gas.count, 3, name) for name in ("viscosity", "conductivity")
+    )
+    share = 1.0 - 1.0 / gas.count
+    exact = {
+        "viscosity": (("shear", "rotational"), shear * theory.enskog_viscosity(NONE, 3, **gas.particle)),
+        "transfer": (("collisional", "rotational"), share * theory.enskog_viscosity(NONE, 3, **gas.particle)),
+        "conductivity": (("heat",), heat * theory.enskog_conductivity(NONE, 3, **gas.particle)),
+    }
+    found: dict[str, list[float]] = {name: [] for name in exact}
+    for run in _runs(point):
+        for name, (fluxes, value) in exact.items():
+            found[name] += list(np.sum([green_kubo(run, flux)[:, -1] for flux in fluxes], axis=0) / value)
+    return {**_resolution(point), **_means(found)}
+
+
+def _means(samples: Mapping[str, Sequence[float] | np.ndarray]) -> dict:
+    """The entries of the means of independent samples, by name."""
+    freedom = min(map(len, samples.values())) - 1
+    return entries({name: means_of(values) for name, values in samples.items()}, freedom)
+
+
+def _running_diffusion(point: Point) -> np.ndarray:
+    """(R,) D of each replica at the longest lag, over that of a dilute gas by Chapman and Enskog.
+
+    With N - 1 partners a particle keeps its velocity longer by as much as the mean square of velocities is
+    lower about the centre of mass: at a given density this D does not depend on N.
+    """
+    gas = plain_gas(point.scene)
+    dilute = theory.enskog_diffusion(**gas.parameters) * theory.contact_value(gas.packing_fraction, 3)
+    return np.array([accumulated(run.data).running[-1] for run in _runs(point)]) / float(dilute)
+
+
+def _paths(point: Point, settings: dict) -> dict:
+    """D of a dilute gas."""
+    return {**_resolution(point), **_means({"diffusion": _running_diffusion(point)})}
+
+
+def _dense(point: Point, settings: dict) -> dict:
+    """Z, the collision rate and D of the Enskog model, over those of Carnahan and Starling's contact value,
+    which it is given. It has N (N - 1) pairs where the equation of state has N^2."""
+    gas = plain_gas(point.scene)
+    eta, partners = gas.packing_fraction, 1.0 - 1.0 / gas.count
+    excess = float(theory.carnahan_starling(eta)) - 1.0
+    contact = excess / (4.0 * eta)
+    rate = float(theory.collision_rate(eta, 3) / theory.contact_value(eta, 3)) * contact
+    found = [series_of(run) for run in _runs(point)]
+    samples: dict[str, Sequence[float] | np.ndarray] = {
+        "excess": [(one.z.mean() - 1.0) / (partners * excess) for one in found],
+        "rate": [one.rate.mean() / (partners * rate) for one in found],
+        "diffusion": _running_diffusion(point) * contact,
+    }
+    return {"packing_fraction": eta, **_means(samples)}
+
+
+def _event_paths(point: Point, settings: dict) -> dict:
+    """D of the event-driven engine in an infinite container, over Enskog's."""
+    row = spheres(point)
+    enskog = float(theory.enskog_diffusion(row["packing_fraction"], 3))
+    measured = Estimate(row["diffusion"], row["diffusion_error"], row["diffusion_freedom"])
+    infinite = measured + Estimate(row["correction"], row["correction_uncertainty"])
+    return {"packing_fraction": row["packing_fraction"], **entries({"diffusion": infinite / enskog})}
+
+
+def _plates(point: Point, settings: dict) -> dict:
+    """The flux between plates over that of free flight."""
+    scene = point.scene
+    gap, kind = Gap.of(scene), scene.kinds[0]
+    density = scene.count / (gap.length * gap.area)
+    free = float(free_molecular_flux(density, gap.hot, gap.cold, 3))
+    path = 1.0 / (math.sqrt(2.0) * math.pi * density * (2.0 * kind.radius) ** 2)
+    flux = averages(point, gap, settings["blocks"], 1).flux() / free
+    return {
+        "knudsen": path / gap.length,
+        "packing_fraction": scene.packing_fraction,
+        **entries({"flux": flux}),
+    }

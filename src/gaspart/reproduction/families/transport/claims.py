@@ -1,0 +1,70 @@
+"""Claims about viscosity and conductivity."""
+
+from __future__ import annotations
+
+import xarray as xr
+
+from gaspart.reproduction.claims import Claim, Estimate
+from gaspart.reproduction.families.shared.claims import PARTICLES, rows
+
+DILUTE = 0.02
+"""Packing fraction up to which a gas counts as dilute."""
+DILUTE_BAND = 0.01
+"""Most that a coefficient of such a gas differs from Enskog's, as a part of it: at 0.02 a particle meets a
+former partner again in 2 of 100 collisions, which changes D by 0.6 %."""
+ENSKOG = "Enskog's theory, with the Sonine polynomials that matter [Chapman 1970]"
+ACCURATE = 0.3
+"""Packing fraction up to which Enskog's coefficients of spheres are known to be good to a few per cent."""
+FEW_PER_CENT = 0.05
+
+
+def viscosity(ds: xr.Dataset) -> list[Claim]:
+    """The shear viscosity of spheres and discs."""
+    return _claims(ds, "viscosity")
+
+
+def conductivity(ds: xr.Dataset) -> list[Claim]:
+    """The conductivity of heat of spheres and discs."""
+    return _claims(ds, "conductivity")
+
+
+def _claims(ds: xr.Dataset, name: str) -> list[Claim]:
+    claims = []
+    for row in rows(ds, "point"):
+        eta, dimension = float(row["packing_fraction"]), int(row["dimension"])
+        where = f"{PARTICLES[dimension]}, packing fraction {eta:.3g}, {int(row['count'])} particles"
+        value = Estimate.of(row, "value")
+        if eta <= DILUTE * (1.0 + 1e-6):
+            claims.append(
+                Claim.within(
+                    claim=f"{name} over Chapman and Enskog's, {where}",
+                    measured=value / float(row["finite"]),
+                    expected=1.0,
+                    half_width=DILUTE_BAND,
+                    source=ENSKOG,
+                    fails_if="a wrong flux, correlations cut too early, or a wrong effect of finite numbers",
+                )
+            )
+        elif dimension == 3 and eta <= ACCURATE * (1.0 + 1e-6):
+            claims.append(
+                Claim.within(
+                    claim=f"{name} over Enskog's, {where}",
+                    measured=value,
+                    expected=1.0,
+                    half_width=FEW_PER_CENT,
+                    source=f"{ENSKOG}; correlated collisions change it by a few per cent [Alder 1970b]",
+                    fails_if="a collisional part of the flux that is wrong or missing",
+                )
+            )
+        claims.append(
+            Claim(
+                claim=f"{name} by Helfand's growth over Green and Kubo's integral, {where}",
+                kind="identity",
+                measured=Estimate.of(row, "difference") + 1.0,
+                expected=1.0,
+                required=0.05,
+                source="both are one double integral (exact), if the correlation has decayed",
+                fails_if="a correlation that has not decayed, or sums that are not those of the fluxes",
+            )
+        )
+    return claims

@@ -1,0 +1,85 @@
+"""Viscosity and conductivity of heat from equilibrium, by Green and Kubo and by Helfand.
+
+A point is a gas whose runs have correlated the stress tensor and the heat flux. Its coefficients are over
+those of Enskog's theory; times are in collisions of a particle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gaspart import theory
+from gaspart.analysis.run import Run
+from gaspart.analysis.statistics import means_of
+from gaspart.analysis.transport import green_kubo, helfand
+from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.points.point import Point
+from gaspart.scene.gas import plain_gas
+from gaspart.trajectory.run import open_trajectory
+
+QUANTITIES = {"shear": "viscosity", "heat": "conductivity"}
+"""What the correlation of each flux makes."""
+LATE = 0.5
+"""Part of the longest lag from which on the squared change of Helfand's sum is taken to grow evenly."""
+
+
+def viscosity(points: list[Point], settings: dict) -> xr.Dataset:
+    """Shear viscosity; see `_dataset`."""
+    return _dataset(points, "shear", theory.enskog_viscosity)
+
+
+def conductivity(points: list[Point], settings: dict) -> xr.Dataset:
+    """Conductivity of heat; see `_dataset`."""
+    return _dataset(points, "heat", theory.enskog_conductivity)
+
+
+def _dataset(points: list[Point], flux: str, enskog: Callable[..., Any]) -> xr.Dataset:
+    """Coefficients over Enskog's, by point.
+
+    `value`, the integral of the correlation until the longest lag, and `growth`, half of the slope of
+    Helfand's squared change between lags `LATE` and 1 of the longest; `difference`, growth over value minus
+    1, from the same runs; each with `_error` and `_freedom`, the degrees of freedom of the error. running
+    (lag,), the integral until each lag, its `_error`, and `time`, that lag. dimension, packing_fraction,
+    count; `finite`, what a dilute gas of so many particles has over an infinite one.
+    """
+    rows = [_row(point, flux, enskog) for point in points]
+    return from_rows("point", rows, ("lag",), {"time": "collisions per particle"})
+
+
+def _row(point: Point, flux: str, enskog: Callable[..., Any]) -> dict:
+    gas = plain_gas(point.scene)
+    exact, rate = float(enskog(**gas.parameters)), float(theory.collision_rate(**gas.parameters))
+    curves, growths = [], []
+    for path in point.replica_paths:
+        with open_trajectory(path) as trajectory:
+            run = Run(point.scene, trajectory["time"].values, trajectory)
+            lags = trajectory["lag"].values
+            curves += list(green_kubo(run, flux) / exact)
+            growths += [_growth(lags, one) for one in helfand(run, flux) / exact]
+    samples, freedom = np.array(curves), len(curves) - 1
+    value, growth = samples[:, -1], np.array(growths)
+    numbers = {
+        "value": means_of(value),
+        "growth": means_of(growth),
+        "difference": means_of((growth - value) / value.mean()),
+    }
+    return {
+        "dimension": gas.dimension,
+        "packing_fraction": gas.packing_fraction,
+        "count": gas.count,
+        "finite": theory.transport_finite_size_factor(gas.count, gas.dimension, QUANTITIES[flux]),
+        **entries(numbers, freedom),
+        "time": rate * lags,
+        **entries({"running": means_of(samples)}),
+    }
+
+
+def _growth(lags: np.ndarray, slopes: np.ndarray) -> float:
+    """Half of the slope of the squared change between two lags; slopes: half of it over each lag."""
+    first = round(LATE * (len(lags) - 1))
+    change = slopes * lags
+    return float((change[-1] - change[first]) / (lags[-1] - lags[first]))

@@ -1,0 +1,31 @@
+"""Made-up measurements of viscosity and conductivity."""
+
+import numpy as np
+
+from gaspart.reproduction.families.shared.rows import from_rows
+
+
+def measured(error=0.002, seed=1):
+    """Spheres and discs whose coefficients are Enskog's, each off by a random error."""
+    rng, rows = np.random.default_rng(seed), []
+    for dimension, eta in ((3, 0.01), (3, 0.2), (3, 0.3), (3, 0.45), (2, 0.01), (2, 0.4)):
+        finite = 0.99 if eta <= 0.02 else 1.0
+        lags = 16 if eta < 0.45 else 31
+        known = {"value": finite + error * rng.normal(), "growth": finite + error * rng.normal()}
+        known["difference"] = known["growth"] / known["value"] - 1.0
+        time = 1.0 * np.arange(lags)
+        rows.append(
+            {
+                "dimension": dimension,
+                "packing_fraction": eta,
+                "count": 256,
+                "finite": finite,
+                **known,
+                **{f"{name}_error": error for name in known},
+                **{f"{name}_freedom": 15.0 for name in known},
+                "time": time,
+                "running": finite * -np.expm1(-time),
+                "running_error": np.full(lags, error),
+            }
+        )
+    return from_rows("point", rows, ("lag",))

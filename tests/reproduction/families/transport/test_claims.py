@@ -1,0 +1,36 @@
+import numpy as np
+import pytest
+from reproduction.claims.data import judged
+from reproduction.families.transport.data import measured
+
+from gaspart.reproduction.families.transport import claims as transport
+
+
+@pytest.mark.parametrize("figure", ["viscosity", "conductivity"])
+def test_enskogs_coefficients_agree(figure):
+    found = judged(getattr(transport, figure)(measured()))
+    assert len(found) == 2 + 2 + 6
+    assert set(found.values()) == {"agrees"}
+
+
+@pytest.mark.parametrize(
+    ("name", "factor", "point", "text"),
+    [
+        ("value", 1.03, 0, "Chapman"),
+        ("value", 0.97, 4, "Chapman"),
+        ("value", 1.09, 1, "over Enskog's"),
+        ("difference", None, 3, "Helfand"),
+    ],
+)
+def test_each_claim_can_fail(name, factor, point, text):
+    ds = measured()
+    values = ds[name].values.copy()
+    values[point] = 0.1 if factor is None else factor * values[point]
+    found = judged(transport.viscosity(ds.assign({name: (ds[name].dims, values)})))
+    assert "disagrees" in {verdict for claim, verdict in found.items() if text in claim}
+
+
+def test_noise_is_inconclusive():
+    found = judged(transport.viscosity(measured(error=0.05)))
+    assert {verdict for claim, verdict in found.items() if "Chapman" in claim} == {"inconclusive"}
+    assert np.isfinite(measured()["value"].values).all()
