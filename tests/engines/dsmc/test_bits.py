@@ -48,7 +48,7 @@ def drawn(scene, model, seed):
         return None
 
 
-@settings(max_examples=25)
+@settings(max_examples=settings.default.max_examples // 2)
 @given(scenes(), st.sampled_from(["boltzmann", "enskog"]), st.integers(0, 2**32))
 @pytest.mark.filterwarnings("ignore:gaspart")
 def test_random_scenes_keep_what_is_conserved(scene, model, seed):
@@ -77,7 +77,7 @@ def test_random_scenes_keep_what_is_conserved(scene, model, seed):
         assert np.allclose(change, 0.0, atol=1e-12 * scale)
 
 
-@settings(max_examples=15)
+@settings(max_examples=settings.default.max_examples // 5)
 @given(
     scenes(), st.sampled_from(["boltzmann", "enskog"]), st.lists(st.floats(0.0, 2.0), min_size=1, max_size=3)
 )
