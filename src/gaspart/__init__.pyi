@@ -29,10 +29,12 @@ from gaspart.simulation import Simulation as Simulation
 from gaspart.state.compression import compress as compress
 from gaspart.state.state import State as State
 from gaspart.state.tally import Tally as Tally
+from gaspart.tradeoff.until import reached_accuracy as reached_accuracy
+from gaspart.tradeoff.until import resume as resume
+from gaspart.tradeoff.until import run as run
 from gaspart.trajectory.correlator import Correlations as Correlations
 from gaspart.trajectory.export import export as export
 from gaspart.trajectory.run import open_trajectory as open_trajectory
-from gaspart.trajectory.run import resume as resume
-from gaspart.trajectory.run import run as run
+from gaspart.trajectory.until import Accuracy as Accuracy
 
 __version__: str

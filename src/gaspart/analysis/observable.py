@@ -28,7 +28,8 @@ class Observable(xr.Dataset):
     Variables: the quantity, by the name in the attribute `quantity`; the same with the suffix _error, one
     standard deviation; where theory exists, with the suffixes _theory and _theory_error (NaN if the
     uncertainty is not known, as of an approximation). A scalar also has `stretches` (time), its means over
-    consecutive parts of the run. Every variable has `units`.
+    consecutive parts of the run, and the degrees of freedom of its error as the attribute `freedom`. Every
+    variable has `units`.
     """
 
     __slots__ = ()
@@ -129,6 +130,7 @@ def scalar(name: str, series: np.ndarray, edges: np.ndarray, **about: Any) -> Ob
     result = observable(name, {}, found.value, error, **about)
     result["stretches"] = ("time", np.array(stretches), {"units": about["units"]})
     result["time"] = ("time", np.array(ends), {"units": "time", "long_name": "time"})
+    result.attrs["freedom"] = found.freedom
     return result.set_coords("time")
 
 

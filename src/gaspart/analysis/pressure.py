@@ -70,30 +70,40 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
     particles rest in a scene with obstacles, which may carry them.
     """
     with measured(source, start) as run:
-        d, walled = run.dimension, ~run.periodic
-        if not walled.any():
-            raise SceneError("container.boundary", "periodic", "has no walls: measure compressibility_factor")
+        _require_walls(run)
         blocks = min(_BLOCKS, len(run.time) - 1)
         if blocks < 4:
             raise SceneError("frames", len(run.time), "an error needs 5 or more")
-        lower, upper = run.scene.reach(run.scene.largest_radius)
-        touched = np.subtract(upper, lower)
-        areas = np.repeat(touched.prod() / touched, 2)
         ends = np.linspace(0, len(run.time) - 1, blocks + 1).astype(int)
-        impulse = np.diff(run.data["wall_impulse"].values[ends, : 2 * d], axis=0)
-        series = (np.abs(impulse) + _rest_on_floors(run, ends)) / np.diff(run.time[ends])[:, None] / areas
-        faces = np.array(face_names(d))
-        chosen = np.repeat(walled, 2)
-        values, errors = means_of(series[:, chosen] - series[0, chosen])  # no error of rounding at rest
+        faces, series = pressures_on_walls(run, ends)
+        values, errors = means_of(series - series[0])  # no error of rounding at rest
         return observable(
             "wall_pressure",
-            {"face": (faces[chosen], {"long_name": "face of the container"})},
-            values + series[0, chosen],
+            {"face": (faces, {"long_name": "face of the container"})},
+            values + series[0],
             errors,
             units="energy / length^d",
             long_name="pressure",
-            **_theory_at_walls(run, touched),
+            **_theory_at_walls(run),
         )
+
+
+def _require_walls(run: Run) -> None:
+    """Raise SceneError for a periodic container."""
+    if run.periodic.all():
+        raise SceneError("container.boundary", "periodic", "has no walls: measure compressibility_factor")
+
+
+def pressures_on_walls(run: Run, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Names (W,) of the faces that are walls, and the pressures on them (K, W) between the frames `ends`
+    (K + 1,). Raises SceneError as `wall_pressure`."""
+    _require_walls(run)
+    d, touched = run.dimension, _touched(run)
+    areas = np.repeat(touched.prod() / touched, 2)
+    impulse = np.diff(run.data["wall_impulse"].values[ends, : 2 * d], axis=0)
+    series = (np.abs(impulse) + _rest_on_floors(run, ends)) / np.diff(run.time[ends])[:, None] / areas
+    chosen = np.repeat(~run.periodic, 2)
+    return np.array(face_names(d))[chosen], series[:, chosen]
 
 
 def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
@@ -133,8 +143,14 @@ def refuse_rest(run: Run, rule: str) -> None:
             raise SceneError("particles at rest", int(resting), rule)
 
 
-def _theory_at_walls(run: Run, touched: np.ndarray) -> dict[str, Any]:
-    walled, lengths = ~run.periodic, np.array(run.scene.container.lengths)
+def _touched(run: Run) -> np.ndarray:
+    """(d,) sides of the volume that centres of the largest particles can reach."""
+    lower, upper = run.scene.reach(run.scene.largest_radius)
+    return np.subtract(upper, lower)
+
+
+def _theory_at_walls(run: Run) -> dict[str, Any]:
+    walled, lengths, touched = ~run.periodic, np.array(run.scene.container.lengths), _touched(run)
     sides = lengths[walled]
     gas = run.scene.gas
     if gas is None or run.scene.centres_to_walls or np.ptp(sides) > 1e-9 * sides.max():

@@ -40,13 +40,17 @@ def _info(given: argparse.Namespace) -> None:
         return
     check_frames(stored_at)
     scene = recipe.scene
-    state = "complete" if frames == recipe.frames else "unfinished: `gaspart resume` continues it"
+    complete = frames == recipe.frames if recipe.until is None else stored_at == path
+    state = "complete" if complete else "unfinished: `gaspart resume` continues it"
+    of_all = f"{frames} frames" if recipe.until else f"{frames} of {recipe.frames} frames"
     versions = [f"{key.removesuffix('_version')} {stored[key]}" for key in stored if key.endswith("_version")]
     remake = [
         f"gaspart info --scene {shlex.quote(str(stored_at))} > scene.yaml",
         "gaspart run scene.yaml " + shlex.join(_run_options(path, recipe, stored)),
     ]
-    print_line(f"{stored_at}: {stored['title']}, {frames} of {recipe.frames} frames, {state}")
+    print_line(f"{stored_at}: {stored['title']}, {of_all}, {state}")
+    for line in _request(recipe, stored_at, frames):
+        print_line(line)
     print_line(f"packing fraction {scene.packing_fraction:.6g}, number density {scene.number_density:.6g}")
     print_line("\n".join(certificate(stored_at)))
     for key, value in recipe.engine.predictions(scene).items():
@@ -59,6 +63,19 @@ def _info(given: argparse.Namespace) -> None:
     print_line("\n".join(f"    {line}" for line in stored["scene"].splitlines()))
 
 
+def _request(recipe: Recipe, path: Path, frames: int) -> list[str]:
+    """What ends a run that has no fixed duration, and what it has reached."""
+    from gaspart.cli.run import accuracy_lines
+
+    if recipe.until is None:
+        return []
+    asked = ", ".join(f"{one.name}={one.accuracy:g}" for one in recipe.until.accuracies)
+    longest = f", at most until time {recipe.until.at_most:g}" if recipe.until.at_most else ""
+    return [f"runs until {asked} (relative standard errors){longest}"] + (
+        accuracy_lines(path) if frames else []
+    )
+
+
 def _run_options(path: Path, recipe: Recipe, stored: dict) -> list[str]:
     """The options of `gaspart run` for a recipe."""
     from gaspart.cli.engine_options import joined, stated
@@ -66,7 +83,14 @@ def _run_options(path: Path, recipe: Recipe, stored: dict) -> list[str]:
 
     settings = engine_to_dict(recipe.engine)
     options = ["-o", str(path), "--engine", settings["name"], "--seed", joined(recipe.seed)]
-    options += ["--duration", repr(recipe.duration), "--sample-interval", repr(recipe.sample_interval)]
+    if recipe.until is None:
+        options += ["--duration", repr(recipe.duration)]
+    else:
+        asked = recipe.until.accuracies
+        options += ["--until", ",".join(f"{one.name}={one.accuracy!r}" for one in asked)]
+        options += [] if asked[0].start is None else ["--start", repr(asked[0].start)]
+        options += [] if recipe.until.at_most is None else ["--at-most", repr(recipe.until.at_most)]
+    options += ["--sample-interval", repr(recipe.sample_interval)]
     options += stated(settings)
     if recipe.displacements:
         options.append("--displacements")

@@ -62,9 +62,11 @@ def counted() -> Callable[[int, int], None] | None:
     return show
 
 
-def progress(quiet: bool, started: Callable[[], None] | None = None) -> Progress | None:
+def progress(
+    quiet: bool, started: Callable[[], None] | None = None, remark: Callable[[], str] = str
+) -> Progress | None:
     """A function that shows the progress of a run; None if quiet or without a terminal. started: is called
-    first."""
+    first; remark: gives the end of the line."""
     if quiet or not sys.stderr.isatty():
         return None
     begun: tuple[float, float, int] | None = None
@@ -81,7 +83,7 @@ def progress(quiet: bool, started: Callable[[], None] | None = None) -> Progress
         rate = (reached - begun[1]) / took
         left = f"{clock((duration - reached) / rate)} left" if rate > 0.0 else ""
         speed = f"{(collisions - begun[2]) / took:.3g} collisions/s"
-        show_line(f"{reached / duration:6.1%}  {speed}  {left}")
+        show_line(f"{reached / duration:6.1%}  {speed}  {left}{remark()}")
 
     return show
 

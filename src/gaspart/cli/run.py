@@ -16,14 +16,17 @@ from gaspart.errors import SceneError
 from gaspart.interruption import set_note
 from gaspart.kernels.compile.loading import load_numba
 from gaspart.scene.scene import Scene
+from gaspart.trajectory.until import OBSERVABLES, Accuracy
 
 if TYPE_CHECKING:
+    from gaspart.tradeoff.until import Reached
     from gaspart.trajectory.correlator import Correlations
 
 _PREPARING = "placing particles, compiling kernels (once for each kind of scene)"
 
 _EXAMPLES = """examples:
   gaspart run scene.yaml -o run.nc --duration 100 --sample-interval 1 --seed 1
+  gaspart run scene.yaml -o run.nc --until Z=1e-3 --at-most 1000
   gaspart run scene.yaml -o run.nc --engine step --time-step 0.01 --duration 100 --sample-interval 1
   gaspart info run.nc"""
 
@@ -32,16 +35,29 @@ def add_run(parser: Parser) -> None:
     """Add the arguments of the command to its parser."""
     text = (
         "Run a scene and write its trajectory. A run of the same settings that was cut short is continued, "
-        "and a complete one is not changed; another one is replaced only with --force."
+        "and a complete one is not changed; another one is replaced only with --force. It ends after "
+        "--duration, or when the standard errors, correlations included, of all observables of --until are "
+        "as small as required, which is examined at 64, 96, 128, 192 ... frames."
     )
     set_command(parser, _run, text, _EXAMPLES)
     add, integers = parser.add_argument, several(int)
     add("scene", help="scene file (YAML)")
     add("-o", "--output", required=True, metavar="FILE", help="trajectory (AMBER NetCDF)")
     add("--engine", default="event", metavar="NAME", help=f"{one_of(ENGINES)}; default: event")
-    add("--duration", type=float, required=True, metavar="T", help="duration of the run, in the scene's unit")
-    text = "time between frames, of which the duration is a multiple"
-    add("--sample-interval", type=float, required=True, metavar="T", help=text)
+    add("--duration", type=float, metavar="T", help="duration of the run, in the scene's unit")
+    text = (
+        "time between frames, of which the duration is a multiple; default with --until, for plain gases: "
+        "the mean time between collisions of a particle"
+    )
+    add("--sample-interval", type=float, metavar="T", help=text)
+    text = (
+        f"relative standard error at which the run ends, instead of --duration; several with commas, or by "
+        f"repeating it; {one_of(OBSERVABLES)}; pressure:'x low' is that on one wall"
+    )
+    add("--until", action="extend", type=_requests, metavar="NAME=X", help=text)
+    add("--at-most", type=float, metavar="T", help="longest duration of a run with --until")
+    text = "time from which frames count for --until; default: a quarter of the run"
+    add("--start", type=float, metavar="T", help=text)
     add("--seed", type=integers, default=(0,), metavar="N[,N...]", help="default: 0")
     add(
         "--displacements",
@@ -80,14 +96,16 @@ def _add_progress(parser: argparse.ArgumentParser) -> None:
 
 def _run(given: argparse.Namespace) -> None:
     set_note("no state was saved yet; the same command starts it again")
-    from gaspart.trajectory.run import run
+    from gaspart.tradeoff.until import run
 
+    until = _until(given)
     settings = {key: getattr(given, key) for key in engine_settings() if getattr(given, key) is not None}
     scene, correlations = Scene.from_file(given.scene), _correlations(given.correlations, given.stress)
     try:
         engine = engine_from_dict({"name": given.engine, **settings})
     except SceneError as error:
         raise UsageError(as_option(error, given.engine)) from None
+    status: list[Reached] = []
     with waiting(_PREPARING, given.quiet) as started:
         load_numba(ours=True)
         path = run(
@@ -97,14 +115,64 @@ def _run(given: argparse.Namespace) -> None:
             duration=given.duration,
             sample_interval=given.sample_interval,
             path=given.output,
+            until=until,
+            at_most=given.at_most,
             displacements=given.displacements,
             follow=given.follow,
             correlations=correlations,
             checkpoint_seconds=given.checkpoint_seconds,
-            progress=progress(given.quiet, started),
+            progress=progress(given.quiet, started, lambda: _worst(status)),
+            examined=lambda reached: _replace(status, reached),
             overwrite=given.force,
         )
     _report(path)
+
+
+def _requests(text: str) -> list[tuple[str, str | None, float]]:
+    """Observable, face if one is stated, and accuracy, of each NAME=X between commas."""
+    requests = []
+    for part in text.split(","):
+        name, _, accuracy = part.partition("=")
+        observable, colon, face = name.strip().partition(":")
+        try:
+            requests.append((observable, face.strip() if colon else None, float(accuracy)))
+        except ValueError:
+            rule = "must be the name of an observable, = and its accuracy, as Z=1e-3"
+            raise argparse.ArgumentTypeError(f"{part!r} {rule}") from None
+    return requests
+
+
+def _until(given: argparse.Namespace) -> list[Accuracy] | None:
+    """What --until asks for. Raises UsageError for options that exclude or need each other."""
+    if given.until is not None:
+        if given.duration is not None:
+            raise UsageError("--duration: excludes --until; the longest duration is --at-most")
+        return [Accuracy(name, value, given.start, face) for name, face, value in given.until]
+    for option, value in (("--at-most", given.at_most), ("--start", given.start)):
+        if value is not None:
+            raise UsageError(f"{option}: needs --until")
+    missing = [
+        option
+        for option, value in (("--duration", given.duration), ("--sample-interval", given.sample_interval))
+        if value is None
+    ]
+    if missing:
+        rule = "the following arguments are required"
+        raise UsageError(f"{rule}: {', '.join(missing)}, or --until; see `gaspart run --help`")
+    return None
+
+
+def _replace(status: list[Reached], reached: list[Reached]) -> None:
+    status[:] = reached
+
+
+def _worst(status: list[Reached]) -> str:
+    """The present error that is largest beside the required one, for the line of progress."""
+    known = [one for one in status if one.accuracy < float("inf")]
+    if not known:
+        return ""
+    worst = max(known, key=lambda one: one.accuracy / one.asked.accuracy)
+    return f"  {worst.asked.name}: error {worst.accuracy:.2g}, required {worst.asked.accuracy:g}"
 
 
 def _correlations(given: tuple[float, ...] | None, stress: bool) -> Correlations | None:
@@ -122,15 +190,40 @@ def _correlations(given: tuple[float, ...] | None, stress: bool) -> Correlations
 
 def _resume(given: argparse.Namespace) -> None:
     set_note("nothing was changed; the same command starts it again")
-    from gaspart.trajectory.run import resume
+    from gaspart.tradeoff.until import resume
 
+    status: list[Reached] = []
     with waiting(_PREPARING, given.quiet) as started:
         load_numba(ours=True)
-        path = resume(given.trajectory, given.checkpoint_seconds, progress(given.quiet, started))
+        show = progress(given.quiet, started, lambda: _worst(status))
+        path = resume(
+            given.trajectory, given.checkpoint_seconds, show, lambda reached: _replace(status, reached)
+        )
     _report(path)
 
 
 def _report(path: Path) -> None:
     if wiped := clear_line():  # even an empty line fails where stderr is full
         print(wiped, end="", file=sys.stderr)
+    for line in accuracy_lines(path):
+        print_line(line)
     print_line(f"{path} is complete; `gaspart info {shlex.quote(str(path))}` lists its contents")
+
+
+def accuracy_lines(path: Path) -> list[str]:
+    """What a run with --until was to reach, and what it has reached."""
+    from gaspart.tradeoff.until import reached_accuracy
+
+    lines = []
+    for one in reached_accuracy(path):
+        where = f" ({one.component})" if one.component and one.asked.face is None else ""
+        required = f"required {one.asked.accuracy:g}"
+        if one.rule:
+            lines.append(f"{one.asked.name}: {required}, not measured: {one.rule}")
+            continue
+        low, high = one.interval
+        value = f"{one.value:.6g} +- {one.error:.2g}, 95 % interval {low:.6g} to {high:.6g}"
+        error = f"relative error {one.accuracy:.2g}, by its uncertainty at most {one.bound:.2g}"
+        verdict = "reached" if one.met else "not reached"
+        lines.append(f"{one.asked.name}{where} = {value}; {error}; {required}: {verdict}")
+    return lines

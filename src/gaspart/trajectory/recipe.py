@@ -23,6 +23,7 @@ from gaspart.state.random import stream
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.correlator import Correlations, stress_sums, sums_of
 from gaspart.trajectory.frames import CheckedFrames, damaged_frame, frame_count
+from gaspart.trajectory.until import Until
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 if TYPE_CHECKING:
@@ -48,21 +49,23 @@ class Recipe:
 
     duration and sample_interval are in the scene's time; duration is an integer multiple of sample_interval,
     and that, for the time-stepped engine, of time_step. follow: how many particles, from the first on, are in
-    the file; None: all. correlations: sample_interval is an integer multiple of their interval.
+    the file; None: all. correlations: sample_interval is an integer multiple of their interval. until: what
+    ends the run in place of a duration, which is then None.
     """
 
     scene: Scene
     engine: Engine
     seed: int | tuple[int, ...]
-    duration: float
+    duration: float | None
     sample_interval: float
     displacements: bool = False
     follow: int | None = None
     correlations: Correlations | None = None
+    until: Until | None = None
 
     def __post_init__(self) -> None:
         stream(self.seed)  # raises SceneError for an invalid seed
-        for key in ("duration", "sample_interval"):
+        for key in ("sample_interval",) if self.until else ("duration", "sample_interval"):
             value = number(key, getattr(self, key), "must be positive", above=0.0)
             object.__setattr__(self, key, value)
         if self.scene.count == 0:
@@ -105,8 +108,17 @@ class Recipe:
 
     @property
     def frames(self) -> int:
-        """Frames of the complete trajectory, including the one at time 0."""
+        """Frames of the complete trajectory, including the one at time 0; of a run until it is accurate, of
+        the longest."""
+        if self.until:
+            return self.until.most_frames(self.sample_interval) or amber.MOST_FRAMES
+        assert self.duration is not None
         return multiple("duration", self.duration, "sample_interval", self.sample_interval) + 1
+
+    @property
+    def longest(self) -> float:
+        """The duration, of a run until it is accurate the largest."""
+        return (self.frames - 1) * self.sample_interval if self.duration is None else self.duration
 
     @property
     def stored_count(self) -> int:
@@ -139,12 +151,19 @@ class Recipe:
             "engine": json.dumps(engine_to_dict(self.engine)),
             "seed": json.dumps(seed),
             **{f"predicted_{key}": value for key, value in self.engine.predictions(self.scene).items()},
-            "duration": self.duration,
+            **self._length(),
             "sample_interval": self.sample_interval,
             "displacements": np.int32(self.displacements),
             **({} if self.follow is None else {"follow": np.int32(self.follow)}),
             **({} if self.correlations is None else {"correlations": self.correlations.to_json()}),
         }
+
+    def _length(self) -> dict:
+        """The attributes that state when the run ends."""
+        if self.until is None:
+            return {"duration": self.duration}
+        longest = self.until.at_most
+        return {"until": self.until.to_json()} | ({} if longest is None else {"at_most": longest})
 
     def header(self, revision: str) -> bytes:
         """The file before its first frame, as made by the present program at a git revision ("": none)."""
@@ -263,11 +282,12 @@ def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
             scene=scene,
             engine=engine_from_dict(json.loads(stored["engine"])),
             seed=tuple(seed) if isinstance(seed, list) else seed,
-            duration=float(stored["duration"]),
+            duration=None if "until" in stored else float(stored["duration"]),
             sample_interval=float(stored["sample_interval"]),
             displacements=bool(stored["displacements"]),
             follow=int(stored["follow"]) if "follow" in stored else None,
             correlations=Correlations.from_json(stored["correlations"]) if "correlations" in stored else None,
+            until=Until.from_json(stored["until"], stored.get("at_most")) if "until" in stored else None,
         )
     except SceneError:
         raise

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shlex
 import time
 from collections.abc import Callable, Iterator
@@ -19,9 +20,13 @@ from gaspart.trajectory.checkpoint import checkpoint_path, write_checkpoint
 from gaspart.trajectory.correlator import Correlator, StressCorrelator
 from gaspart.trajectory.frames import Frames
 from gaspart.trajectory.recipe import Recipe, multiple
+from gaspart.trajectory.until import examined_before, examined_from, is_examined
 
 Progress = Callable[[float, float, int], None]
-"""Called with the time reached, the duration, and the collisions so far."""
+"""Called with the time reached, the duration, and the collisions so far. Of a run until it is accurate the
+duration is the present estimate."""
+Examine = Callable[[int], float]
+"""Called with a number of frames; returns the error after these frames over the required one, or inf."""
 
 _STRETCH = 0.1  # seconds of work between two looks at the clock and at signals, to within a factor of 2
 _PROGRESS = 0.5  # seconds between two reports of progress
@@ -30,8 +35,8 @@ _PROGRESS = 0.5  # seconds between two reports of progress
 class Recording:
     """A simulation under way to its duration, the file of its frames, and the finished trajectory's path.
 
-    every: seconds between checkpoints. Observing changes nothing: neither checkpoints nor the division into
-    stretches changes a bit of the result.
+    every: seconds between checkpoints; examine: of a run that ends when it is accurate. Observing changes
+    nothing: neither checkpoints nor the division into stretches changes a bit of the result.
     """
 
     def __init__(
@@ -43,6 +48,7 @@ class Recording:
         path: Path,
         every: float,
         progress: Progress | None,
+        examine: Examine | None = None,
     ) -> None:
         self._recipe, self._simulation, self._frames = recipe, simulation, frames
         self._header, self._path, self._every, self._progress = header, path, every, progress
@@ -54,6 +60,8 @@ class Recording:
         elif recipe.correlations:
             masses = simulation.initial_state.masses
             self._correlator = Correlator(recipe.correlations, recipe.scene, masses, recipe.displacements)
+        self._examine = examine
+        self._duration = recipe.longest if examine is None else self._estimate(0, math.inf)
         self._stretch = recipe.engine.first_stretch
         self._saved = self._reported = time.monotonic()
 
@@ -73,7 +81,8 @@ class Recording:
         """
         try:
             with deferred() as signals:
-                while self._frames.count < self._recipe.frames:
+                self._estimate_again()
+                while not self._is_complete():
                     self._finish_frame(signals)
         except SimulationError as error:
             failed = self._path.with_name(self._path.name + ".failed.npz")
@@ -81,6 +90,31 @@ class Recording:
             raise SimulationError(f"{error}; its state is kept in {failed}") from None
         self._frames.sync()
         set_note("")
+
+    def _is_complete(self) -> bool:
+        """Whether the file has all frames. That depends on the frames alone, so that a run that was cut short
+        ends at the same one."""
+        count = self._frames.count
+        if count >= self._recipe.frames:
+            return True
+        if self._examine is None or not is_examined(count):
+            return False
+        excess = self._examine(count)
+        self._duration = self._estimate(count, excess)
+        return excess <= 1.0
+
+    def _estimate(self, frames: int, excess: float) -> float:
+        """The time at which a run is expected to be accurate, if its error is now `excess` times the required
+        one: errors fall as 1 / sqrt(time), and examinations are at certain frames only."""
+        needed = frames * excess**2 if math.isfinite(excess) else 0.0
+        expected = examined_from(min(max(needed, frames + 1.0), self._recipe.frames))
+        return min((expected - 1) * self._recipe.sample_interval, self._recipe.longest)
+
+    def _estimate_again(self) -> None:
+        """Estimate the duration of a continued run, to report it; the result of the run does not change."""
+        before = examined_before(self._frames.count)
+        if self._progress and self._examine and before is not None:
+            self._duration = self._estimate(before, self._examine(before))
 
     def _finish_frame(self, signals: Deferral) -> None:
         """Take the samples until the next frame that are missing, and write the frame."""
@@ -108,7 +142,7 @@ class Recording:
         now = time.monotonic()
         if self._progress and now - self._reported >= _PROGRESS:
             collisions = self._simulation.tally.collisions
-            self._progress(self._simulation.time, self._recipe.duration, collisions)
+            self._progress(self._simulation.time, self._duration, collisions)
             self._reported = now
         if signals.pending is not None:
             self._save()
@@ -131,7 +165,8 @@ class Recording:
 
     def _note(self) -> None:
         command = f"gaspart resume {shlex.quote(str(self._path))}"
-        set_note(f"`{command}` continues it from time {self._simulation.time:g} of {self._recipe.duration:g}")
+        end = "" if self._recipe.duration is None else f" of {self._recipe.duration:g}"
+        set_note(f"`{command}` continues it from time {self._simulation.time:g}{end}")
 
     def _approach(self, number: int, interval: float) -> Iterator[None]:
         """Advance to the time number x interval by stretches."""

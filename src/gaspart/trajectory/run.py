@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import fcntl
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, BinaryIO, TypeAlias
 
 import numpy as np
 
@@ -37,11 +37,14 @@ from gaspart.trajectory.recipe import (
     stored_recipe,
     stored_revision,
 )
-from gaspart.trajectory.recording import Progress, Recording
+from gaspart.trajectory.recording import Examine, Progress, Recording
+from gaspart.trajectory.until import Accuracy, Until, is_examined
 
 if TYPE_CHECKING:
     import xarray as xr
 
+Examiner: TypeAlias = Callable[[Path, tuple[Accuracy, ...], int], float]
+"""What examines the first frames of a file: the largest error over the required one, inf if unknown."""
 _REDUCED = {
     "angstrom": "length",
     "picosecond": "time",
@@ -140,49 +143,44 @@ def run(
     scene: Scene,
     engine: Engine,
     seed: int | tuple[int, ...],
-    duration: float,
+    duration: float | None,
     sample_interval: float,
     path: str | Path,
     *,
     displacements: bool = False,
     follow: int | None = None,
     correlations: Correlations | None = None,
+    until: Until | None = None,
+    examiner: Examiner | None = None,
     checkpoint_seconds: float = 30.0,
     progress: Progress | None = None,
     overwrite: bool = False,
 ) -> Path:
     """Run a scene and write its trajectory to `path`; returns `path`.
 
-    A frame at time 0 and at every sample_interval to the duration, which must be an integer multiple of it;
-    with `displacements` also each particle's float64 way since time 0, unwrapped; with rough contacts also
-    the spins; with `follow` only so many particles, from the first on (counters are still those of all).
-    With `correlations` each frame has the sums so far of the velocities' correlations, and with
-    `displacements` of the mean-squared displacement, over all pairs of samples, which may lie much closer
-    than frames; with `Correlations(stress=True)` those of the stress tensor and the heat flux instead. A run
-    of the same recipe and program that was cut short is continued, and a complete one is
-    not changed. Another trajectory at `path`, or unfinished next to it, is replaced only with `overwrite`; a
-    file of another kind never.
-
-    `progress(time, duration, collisions)` is called about twice a second.
-
-    SIGINT and SIGTERM take effect after a checkpoint was written: the handlers of the program that calls
-    this are then called, of which Python's own raises KeyboardInterrupt.
-
-    Raises SceneError for invalid settings, and for a file that cannot be written; SimulationError
-    if the run breaks an invariant, with its state kept in `path.failed.npz`.
+    The arguments of `gaspart.run` (`gaspart.tradeoff.until`), but for `until`, which is complete here and
+    needs an `examiner`. Raises what that raises.
     """
-    wanted = Recipe(scene, engine, seed, duration, sample_interval, displacements, follow, correlations)
+    wanted = Recipe(
+        scene, engine, seed, duration, sample_interval, displacements, follow, correlations, until
+    )
     path = output_path(path)
     if path.suffix != ".nc" and not path.is_dir():  # `gaspart check` knows the format by it
         raise SceneError("path", str(path), "must end in .nc: a trajectory is a netCDF file")
-    return _carry_out(wanted, path, checkpoint_seconds, progress, overwrite)
+    return _carry_out(wanted, path, checkpoint_seconds, progress, overwrite, examiner)
 
 
-def resume(path: str | Path, checkpoint_seconds: float = 30.0, progress: Progress | None = None) -> Path:
+def resume(
+    path: str | Path,
+    checkpoint_seconds: float = 30.0,
+    progress: Progress | None = None,
+    examiner: Examiner | None = None,
+) -> Path:
     """Finish the run that left `path.partial`, from its files only; returns `path`.
 
-    Raises SceneError if there is nothing to resume, if another version of the program began it, and for a
-    file at `path` that is no complete trajectory of gaspart.
+    examiner: for a run that ends when it is accurate. Raises SceneError if there is nothing to resume, if
+    another version of the program began it, and for a file at `path` that is no complete trajectory of
+    gaspart.
     """
     path = Path(path)
     partial = partial_path(path)
@@ -202,20 +200,27 @@ def resume(path: str | Path, checkpoint_seconds: float = 30.0, progress: Progres
             wanted = read_recipe(path)
             with path.open("rb") as file:
                 frames = frame_count(file)
-            missing = f"has {frames} of {wanted.frames} frames, and {rule}"
-            rule = "is already complete" if frames == wanted.frames else missing
+            missing = f"has {frames} of {'more' if wanted.until else wanted.frames} frames, and {rule}"
+            rule = "is already complete" if _is_all(path, wanted, frames, examiner) else missing
         raise SceneError("path", str(path), rule) from None
-    return _carry_out(wanted, path, checkpoint_seconds, progress, overwrite=False)
+    return _carry_out(wanted, path, checkpoint_seconds, progress, False, examiner)
 
 
-def _carry_out(wanted: Recipe, path: Path, every: float, progress: Progress | None, overwrite: bool) -> Path:
+def _carry_out(
+    wanted: Recipe,
+    path: Path,
+    every: float,
+    progress: Progress | None,
+    overwrite: bool,
+    examiner: Examiner | None,
+) -> Path:
     """Finish a trajectory from its present state."""
     number("checkpoint_seconds", every, "must not be negative", least=0.0)
     partial, checkpoint = partial_path(path), checkpoint_path(path)
     with _writing(path):
         if path.is_dir() or not os.access(path.parent, os.W_OK | os.X_OK):
             raise SceneError("path", str(path), "must be a file in an existing folder that can be written to")
-        if _is_finished(wanted, path, overwrite):
+        if _is_finished(wanted, path, overwrite, examiner):
             if not partial.exists():
                 remove_checkpoint(checkpoint)
             return path
@@ -223,18 +228,18 @@ def _carry_out(wanted: Recipe, path: Path, every: float, progress: Progress | No
         simulation = Simulation(wanted.scene, wanted.engine, wanted.seed, stress)
         with _locked(partial) as file:
             # again: another process may have finished or begun a run before the lock
-            if not _is_finished(wanted, path, overwrite):
-                _record(wanted, simulation, file, path, every, progress, overwrite)
+            if not _is_finished(wanted, path, overwrite, examiner):
+                _record(wanted, simulation, file, path, every, progress, overwrite, examiner)
                 place(partial, path, TRAJECTORY, overwrite)
                 remove_checkpoint(checkpoint)
     return path
 
 
-def _is_finished(wanted: Recipe, path: Path, overwrite: bool) -> bool:
+def _is_finished(wanted: Recipe, path: Path, overwrite: bool, examiner: Examiner | None) -> bool:
     """Whether this run is complete at `path`. Raises SceneError if it may not be begun or continued."""
     partial = partial_path(path)
     exists = may_replace(path, TRAJECTORY, overwrite=True)
-    if exists and _holds(path, wanted, frames=wanted.frames):
+    if exists and _holds(path, wanted, examiner):
         return True
     if (exists or not _can_continue(partial, wanted)) and not overwrite:
         rule = f"exists, of another run or version, or damaged; move it away, or {OVERWRITE}"
@@ -250,14 +255,30 @@ def _can_continue(partial: Path, wanted: Recipe) -> bool:
     return True
 
 
-def _holds(path: Path, wanted: Recipe, frames: int) -> bool:
-    """Whether a file is of this run, has `frames` frames, and is undamaged."""
+def _holds(path: Path, wanted: Recipe, examiner: Examiner | None) -> bool:
+    """Whether a file is of this run, complete and undamaged."""
     if not begun_as(path, wanted):
         return False
     with suppress(SceneError), path.open("rb") as file:
         check_frames(path)
-        return frame_count(file) == frames
+        return _is_all(path, wanted, frame_count(file), examiner)
     return False
+
+
+def _is_all(path: Path, wanted: Recipe, frames: int, examiner: Examiner | None) -> bool:
+    """Whether the complete trajectory has so many frames."""
+    examine = _examination(wanted, path, examiner)
+    return frames == wanted.frames or (examine is not None and is_examined(frames) and examine(frames) <= 1.0)
+
+
+def _examination(wanted: Recipe, path: Path, examiner: Examiner | None) -> Examine | None:
+    """What examines the first frames of a file of a run that ends when it is accurate."""
+    until = wanted.until
+    if until is None:
+        return None
+    if examiner is None:
+        raise ValueError("examiner: None (a run that ends when it is accurate needs one)")
+    return lambda frames: examiner(path, until.accuracies, frames)
 
 
 def _can_keep(partial: Path, frames: int, overwrite: bool) -> bool:
@@ -295,6 +316,7 @@ def _record(
     every: float,
     progress: Progress | None,
     overwrite: bool,
+    examiner: Examiner | None,
 ) -> None:
     """Write all missing frames to the open partial file."""
     partial = partial_path(path)
@@ -306,7 +328,8 @@ def _record(
     ):
         checkpoint = None
     frames = Frames(file, wanted.layout, header, kept=checkpoint.frames if checkpoint else 0)
-    recording = Recording(wanted, simulation, frames, header, path, every, progress)
+    examine = _examination(wanted, partial, examiner)
+    recording = Recording(wanted, simulation, frames, header, path, every, progress, examine)
     if checkpoint:
         recording.restore(checkpoint.arrays)
     recording.finish()
