@@ -27,7 +27,7 @@ def add_info(parser: Parser) -> None:
 
 def _info(given: argparse.Namespace) -> None:
     from gaspart.inspection.certificate import certificate
-    from gaspart.trajectory.recipe import check_frames, opened, read_recipe
+    from gaspart.trajectory.recipe import PARTIAL, check_frames, opened, read_recipe
     from gaspart.trajectory.run import partial_path
 
     path = Path(given.trajectory)
@@ -40,7 +40,7 @@ def _info(given: argparse.Namespace) -> None:
         return
     check_frames(stored_at)
     scene = recipe.scene
-    complete = frames == recipe.frames if recipe.until is None else stored_at == path
+    complete = frames == recipe.frames if recipe.until is None else stored_at.suffix != PARTIAL
     state = "complete" if complete else "unfinished: `gaspart resume` continues it"
     of_all = f"{frames} frames" if recipe.until else f"{frames} of {recipe.frames} frames"
     versions = [f"{key.removesuffix('_version')} {stored[key]}" for key in stored if key.endswith("_version")]

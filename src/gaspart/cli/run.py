@@ -213,9 +213,10 @@ def _report(path: Path) -> None:
 def accuracy_lines(path: Path) -> list[str]:
     """What a run with --until was to reach, and what it has reached."""
     from gaspart.tradeoff.until import reached_accuracy
+    from gaspart.trajectory.recipe import PARTIAL
 
-    lines = []
-    for one in reached_accuracy(path):
+    lines, reached = [], reached_accuracy(path)
+    for one in reached:
         where = f" ({one.component})" if one.component and one.asked.face is None else ""
         required = f"required {one.asked.accuracy:g}"
         if one.rule:
@@ -226,4 +227,6 @@ def accuracy_lines(path: Path) -> list[str]:
         error = f"relative error {one.accuracy:.2g}, by its uncertainty at most {one.bound:.2g}"
         verdict = "reached" if one.met else "not reached"
         lines.append(f"{one.asked.name}{where} = {value}; {error}; {required}: {verdict}")
+    if path.suffix != PARTIAL and not all(one.met for one in reached):
+        lines.append("the longest duration (--at-most) ended the run before all were reached")
     return lines

@@ -29,7 +29,7 @@ from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.trajectory import run as trajectory
 from gaspart.trajectory.correlator import Correlations
-from gaspart.trajectory.recipe import read_recipe
+from gaspart.trajectory.recipe import Recipe, read_recipe
 from gaspart.trajectory.recording import Progress
 from gaspart.trajectory.until import Accuracy, Until, examined_before
 
@@ -141,65 +141,58 @@ def run(
 ) -> Path:
     """Run a scene and write its trajectory to `path`; returns `path`.
 
-    A frame at time 0 and at every sample_interval to the duration, which must be an integer multiple of it;
-    with `displacements` also each particle's float64 way since time 0, unwrapped; with rough contacts also
-    the spins; with `follow` only so many particles, from the first on (counters are still those of all).
-    With `correlations` each frame has the sums so far of the velocities' correlations, and with
-    `displacements` of the mean-squared displacement, over all pairs of samples, which may lie much closer
-    than frames; with `Correlations(stress=True)` those of the stress tensor and the heat flux instead. A run
-    of the same recipe and program that was cut short is continued, and a complete one is
-    not changed. Another trajectory at `path`, or unfinished next to it, is replaced only with `overwrite`; a
-    file of another kind never.
+    A frame at time 0 and at every sample_interval to the duration, which is an integer multiple of it; with
+    `displacements` also each particle's float64 way since time 0, unwrapped; with rough contacts also the
+    spins; with `follow` only so many particles, from the first on (counters are still those of all). With
+    `correlations` each frame has the sums so far of the velocities' correlations, and with `displacements`
+    of the mean-squared displacement, over all pairs of samples, which may lie much closer than frames; with
+    `Correlations(stress=True)` those of the stress tensor and the heat flux instead. A run of the same recipe
+    and program that was cut short is continued, a complete one is not changed. Another trajectory at `path`,
+    or unfinished next to it, is replaced only with `overwrite`; a file of another kind never.
 
-    With `until` in place of a duration the run ends when all of these accuracies are reached: the standard
-    error, correlations included, over the value. It is examined at 64, 96, 128, 192 ... frames, and ends at
-    the same one after a kill; `gaspart.reached_accuracy` states values and 95 % intervals (see
-    `gaspart.tradeoff.until` for the correction that ending on a measured error needs). at_most: the longest
-    duration, at the last frame of which the run ends in any case. The sample_interval is by default the mean
-    time between two collisions of a particle of a plain gas.
+    With `until` the run ends when standard error / |value| of all these observables is as small as required,
+    which is examined at 64, 96, 128, 192 ... frames, or at_most after so long; see `gaspart.tradeoff.until`
+    and `gaspart.reached_accuracy`. The sample_interval is then by default the mean time between collisions.
 
-    `progress(time, duration, collisions)` is called about twice a second, with the estimated duration of a
-    run `until`; `examined(reached)` after each examination.
+    `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` after each
+    examination. SIGINT and SIGTERM take effect after a checkpoint was written: the handlers of the program
+    that calls this are then called, of which Python's own raises KeyboardInterrupt.
 
-    SIGINT and SIGTERM take effect after a checkpoint was written: the handlers of the program that calls
-    this are then called, of which Python's own raises KeyboardInterrupt.
-
-    Raises SceneError for invalid settings, for a file that cannot be written, and for observables that this
-    run cannot give; SimulationError if the run breaks an invariant, with its state kept in
-    `path.failed.npz`.
+    Raises SceneError for invalid settings, a file that cannot be written, and what this run cannot measure;
+    SimulationError if it breaks an invariant, with its state kept in `path.failed.npz`.
     """
     if path is None:
         raise SceneError("path", None, "must be given: the file of the trajectory")
-    wanted = None
+    wanted = _request(duration, sample_interval, until, at_most)
+    for asked in wanted.accuracies if wanted else ():
+        _require_measurable(asked, scene, follow, correlations)
+    if sample_interval is None:
+        sample_interval = _sample_interval(scene, engine, correlations)
+    recipe = Recipe(
+        scene, engine, seed, duration, sample_interval, displacements, follow, correlations, wanted
+    )
+    return trajectory.record(recipe, path, checkpoint_seconds, progress, overwrite, _Examiner(examined))
+
+
+def _request(
+    duration: float | None,
+    sample_interval: float | None,
+    until: Accuracy | Sequence[Accuracy] | None,
+    at_most: float | None,
+) -> Until | None:
+    """What ends a run in place of a duration. Raises SceneError for what excludes or needs each other."""
     if until is not None:
         if duration is not None:
             rule = "excludes until, which ends the run; the longest duration is at_most"
             raise SceneError("duration", duration, rule)
-        wanted = Until((until,) if isinstance(until, Accuracy) else tuple(until), at_most)
-        for asked in wanted.accuracies:
-            _require_measurable(asked, scene, follow, correlations)
-        if sample_interval is None:
-            sample_interval = _sample_interval(scene, engine, correlations)
-    elif at_most is not None:
+        return Until((until,) if isinstance(until, Accuracy) else tuple(until), at_most)
+    if at_most is not None:
         raise SceneError("at_most", at_most, "needs until; without it give duration")
-    elif sample_interval is None:
+    if duration is None:
+        raise SceneError("duration", None, "must be given, or until")
+    if sample_interval is None:
         raise SceneError("sample_interval", None, "must be given with a duration")
-    return trajectory.run(
-        scene,
-        engine,
-        seed,
-        duration,
-        sample_interval,
-        path,
-        displacements=displacements,
-        follow=follow,
-        correlations=correlations,
-        until=wanted,
-        examiner=_Examiner(examined),
-        checkpoint_seconds=checkpoint_seconds,
-        progress=progress,
-        overwrite=overwrite,
-    )
+    return None
 
 
 def resume(

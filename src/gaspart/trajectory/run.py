@@ -38,7 +38,7 @@ from gaspart.trajectory.recipe import (
     stored_revision,
 )
 from gaspart.trajectory.recording import Examine, Progress, Recording
-from gaspart.trajectory.until import Accuracy, Until, is_examined
+from gaspart.trajectory.until import Accuracy, is_examined
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -143,27 +143,35 @@ def run(
     scene: Scene,
     engine: Engine,
     seed: int | tuple[int, ...],
-    duration: float | None,
+    duration: float,
     sample_interval: float,
     path: str | Path,
     *,
     displacements: bool = False,
     follow: int | None = None,
     correlations: Correlations | None = None,
-    until: Until | None = None,
-    examiner: Examiner | None = None,
     checkpoint_seconds: float = 30.0,
     progress: Progress | None = None,
     overwrite: bool = False,
 ) -> Path:
-    """Run a scene and write its trajectory to `path`; returns `path`.
+    """Run a scene for a duration and write its trajectory to `path`; returns `path`.
 
-    The arguments of `gaspart.run` (`gaspart.tradeoff.until`), but for `until`, which is complete here and
-    needs an `examiner`. Raises what that raises.
+    The arguments, and what is raised, are those of `gaspart.run` (`gaspart.tradeoff.until`).
     """
-    wanted = Recipe(
-        scene, engine, seed, duration, sample_interval, displacements, follow, correlations, until
-    )
+    wanted = Recipe(scene, engine, seed, duration, sample_interval, displacements, follow, correlations)
+    return record(wanted, path, checkpoint_seconds, progress, overwrite)
+
+
+def record(
+    wanted: Recipe,
+    path: str | Path,
+    checkpoint_seconds: float = 30.0,
+    progress: Progress | None = None,
+    overwrite: bool = False,
+    examiner: Examiner | None = None,
+) -> Path:
+    """Make the trajectory of a recipe at `path`; returns `path`. As `run`; examiner: for a recipe that ends
+    when it is accurate."""
     path = output_path(path)
     if path.suffix != ".nc" and not path.is_dir():  # `gaspart check` knows the format by it
         raise SceneError("path", str(path), "must end in .nc: a trajectory is a netCDF file")
