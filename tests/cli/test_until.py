@@ -86,5 +86,9 @@ def test_what_is_refused_in_one_line(folder, capsys, options, complaint):
 def test_the_line_of_progress_states_the_error_that_is_worst_beside_the_required_one():
     z = Reached(gp.Accuracy("Z", 1e-3), "", 2.0, 4e-3, 20.0, True)
     rate = Reached(gp.Accuracy("collision_rate", 1e-2), "", 3.0, 0.05, 20.0, True)
-    assert run._worst([]) == run._worst([Reached(gp.Accuracy("D", 0.1), rule="frames: few")]) == ""
-    assert run._worst([rate, z]) == "  Z: error 0.002, required 0.001"
+    status = run._Status()
+    assert status.remark() == ""
+    status.update([Reached(gp.Accuracy("D", 0.1), rule="frames: few")])
+    assert status.remark() == ""
+    status.update([rate, z])
+    assert status.remark() == "  Z: error 0.002, at most 0.0025, required 0.001"

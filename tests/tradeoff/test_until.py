@@ -213,6 +213,15 @@ def test_other_observables(tmp_path, asked, more):
     assert asked.face in (None, one.component)
 
 
+def test_what_no_longer_run_can_measure_ends_it_with_one_line(tmp_path):
+    """Particles that cannot be followed from frame to frame. What is measured later, as D from 48 collisions
+    on, is waited for."""
+    path, asked = tmp_path / "run.nc", gp.Accuracy("D", 0.1)
+    with pytest.raises(gp.SceneError, match="until = 'D': sample_interval: is too long to follow particles"):
+        gp.run(**SETTINGS | {"sample_interval": 8.0}, until=asked, path=path)
+    assert not path.exists() and partial_path(path).exists()
+
+
 def test_the_default_interval_is_the_time_between_collisions(tmp_path):
     rate = float(gp.theory.collision_rate(**GAS.gas.parameters))
     path = gp.run(GAS, gp.EventDriven("direct"), 1, until=ASKED[0], at_most=3.0, path=tmp_path / "a.nc")
@@ -227,6 +236,7 @@ def test_the_default_interval_is_the_time_between_collisions(tmp_path):
     [
         ({"duration": 8.0}, "duration = 8.0: excludes until"),
         ({"until": ()}, r"until = \(\): must be a gaspart.Accuracy"),
+        ({"until": "Z=0.1"}, "until = \\('Z=0.1',\\): must be a gaspart.Accuracy"),
         ({"until": (ASKED[0], ASKED[0])}, "until = 'Z': is asked for twice"),
         ({"at_most": 0.3}, "at_most = 0.3: must be at least the sample_interval, 0.4"),
         ({"at_most": -1.0}, "at_most = -1.0: must be positive"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import shlex
 import sys
 from pathlib import Path
@@ -105,7 +106,7 @@ def _run(given: argparse.Namespace) -> None:
         engine = engine_from_dict({"name": given.engine, **settings})
     except SceneError as error:
         raise UsageError(as_option(error, given.engine)) from None
-    status: list[Reached] = []
+    status = _Status()
     with waiting(_PREPARING, given.quiet) as started:
         load_numba(ours=True)
         path = run(
@@ -121,8 +122,8 @@ def _run(given: argparse.Namespace) -> None:
             follow=given.follow,
             correlations=correlations,
             checkpoint_seconds=given.checkpoint_seconds,
-            progress=progress(given.quiet, started, lambda: _worst(status)),
-            examined=lambda reached: _replace(status, reached),
+            progress=progress(given.quiet, started, status.remark),
+            examined=status.update,
             overwrite=given.force,
         )
     _report(path)
@@ -162,17 +163,24 @@ def _until(given: argparse.Namespace) -> list[Accuracy] | None:
     return None
 
 
-def _replace(status: list[Reached], reached: list[Reached]) -> None:
-    status[:] = reached
+class _Status:
+    """The last examination of a run with --until, for the line of progress."""
 
+    def __init__(self) -> None:
+        self._reached: list[Reached] = []
 
-def _worst(status: list[Reached]) -> str:
-    """The present error that is largest beside the required one, for the line of progress."""
-    known = [one for one in status if one.accuracy < float("inf")]
-    if not known:
-        return ""
-    worst = max(known, key=lambda one: one.accuracy / one.asked.accuracy)
-    return f"  {worst.asked.name}: error {worst.accuracy:.2g}, required {worst.asked.accuracy:g}"
+    def update(self, reached: list[Reached]) -> None:
+        """Take the result of an examination."""
+        self._reached = reached
+
+    def remark(self) -> str:
+        """The present error that is largest beside the required one."""
+        known = [one for one in self._reached if one.accuracy < math.inf]
+        if not known:
+            return ""
+        worst = max(known, key=lambda one: one.accuracy / one.asked.accuracy)
+        error = f"error {worst.accuracy:.2g}, at most {worst.bound:.2g}"
+        return f"  {worst.asked.name}: {error}, required {worst.asked.accuracy:g}"
 
 
 def _correlations(given: tuple[float, ...] | None, stress: bool) -> Correlations | None:
@@ -192,13 +200,11 @@ def _resume(given: argparse.Namespace) -> None:
     set_note("nothing was changed; the same command starts it again")
     from gaspart.tradeoff.until import resume
 
-    status: list[Reached] = []
+    status = _Status()
     with waiting(_PREPARING, given.quiet) as started:
         load_numba(ours=True)
-        show = progress(given.quiet, started, lambda: _worst(status))
-        path = resume(
-            given.trajectory, given.checkpoint_seconds, show, lambda reached: _replace(status, reached)
-        )
+        show = progress(given.quiet, started, status.remark)
+        path = resume(given.trajectory, given.checkpoint_seconds, show, status.update)
     _report(path)
 
 

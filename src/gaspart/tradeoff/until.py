@@ -19,7 +19,7 @@ independent samples the first is the problem of Chow and Robbins, Ann. Math. Sta
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -43,6 +43,13 @@ LEAST_FREEDOM = 15.0
 _DOUBT = 0.1
 """Probability with which the true error exceeds its bound."""
 _CONFIDENCE = 0.95
+_FUNCTIONS = {
+    "Z": "compressibility_factor",
+    "D": "diffusion_coefficient",
+    "collision_rate": "collision_rate",
+    "shear_viscosity": "shear_viscosity",
+}
+"""Observables -> functions of `gaspart.analysis`; those of walls are in `_pressures`."""
 _TOO_SHORT = ("frames", "duration", "collisions", "start", "D")
 """Keys of the errors of an analysis that a longer run may not have."""
 
@@ -129,7 +136,7 @@ def run(
     sample_interval: float | None = None,
     path: str | Path | None = None,
     *,
-    until: Accuracy | Sequence[Accuracy] | None = None,
+    until: Accuracy | list[Accuracy] | tuple[Accuracy, ...] | None = None,
     at_most: float | None = None,
     displacements: bool = False,
     follow: int | None = None,
@@ -177,7 +184,7 @@ def run(
 def _request(
     duration: float | None,
     sample_interval: float | None,
-    until: Accuracy | Sequence[Accuracy] | None,
+    until: Accuracy | list[Accuracy] | tuple[Accuracy, ...] | None,
     at_most: float | None,
 ) -> Until | None:
     """What ends a run in place of a duration. Raises SceneError for what excludes or needs each other."""
@@ -185,7 +192,7 @@ def _request(
         if duration is not None:
             rule = "excludes until, which ends the run; the longest duration is at_most"
             raise SceneError("duration", duration, rule)
-        return Until((until,) if isinstance(until, Accuracy) else tuple(until), at_most)
+        return Until(tuple(until) if isinstance(until, (list, tuple)) else (until,), at_most)
     if at_most is not None:
         raise SceneError("at_most", at_most, "needs until; without it give duration")
     if duration is None:
@@ -286,12 +293,7 @@ def _measure(data: xr.Dataset, asked: Accuracy) -> dict[str, Estimate]:
 
     if asked.observable == "pressure":
         return _pressures(data, asked)
-    function = {
-        "Z": analysis.compressibility_factor,
-        "D": analysis.diffusion_coefficient,
-        "collision_rate": analysis.collision_rate,
-        "shear_viscosity": analysis.shear_viscosity,
-    }[asked.observable]
+    function = getattr(analysis, _FUNCTIONS[asked.observable])
     result = function(data, start=asked.start)
     freedom = result.attrs.get("freedom", GROUPS - 1)
     if not result.estimate.ndim:
