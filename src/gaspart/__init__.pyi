@@ -29,7 +29,7 @@ from gaspart.simulation import Simulation as Simulation
 from gaspart.state.compression import compress as compress
 from gaspart.state.state import State as State
 from gaspart.state.tally import Tally as Tally
-from gaspart.tradeoff.until import reached_accuracy as reached_accuracy
+from gaspart.tradeoff.reached import reached_accuracy as reached_accuracy
 from gaspart.tradeoff.until import resume as resume
 from gaspart.tradeoff.until import run as run
 from gaspart.trajectory.correlator import Correlations as Correlations

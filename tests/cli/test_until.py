@@ -6,7 +6,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.cli import main, run
-from gaspart.tradeoff.until import Reached
+from gaspart.tradeoff.reached import Reached
 from gaspart.trajectory.run import partial_path
 
 GAS = """\

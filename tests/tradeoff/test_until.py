@@ -11,8 +11,7 @@ import gaspart as gp
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.analysis.statistics.blocks import ORDER
-from gaspart.tradeoff import until as rule
-from gaspart.tradeoff.until import Reached, confirmed
+from gaspart.tradeoff.reached import Examiner, Reached, confirmed
 from gaspart.trajectory import recording
 from gaspart.trajectory.recipe import read_recipe
 from gaspart.trajectory.run import partial_path
@@ -126,7 +125,7 @@ def test_a_gas_is_run_until_it_is_accurate(whole):
         assert abs(one.value - float(observable.theory)) < high - low
     before = gp.analysis.compressibility_factor  # one examination earlier it was not accurate
     with gp.open_trajectory(whole) as data:
-        earlier = rule._Examiner().examine(data, ASKED, examined_before(frames))
+        earlier = Examiner().examine(data, ASKED, examined_before(frames))
         assert before(data.isel(frame=slice(examined_before(frames)))).estimate == earlier[0].value
     assert not all(one.met for one in earlier)
 

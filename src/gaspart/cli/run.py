@@ -20,7 +20,7 @@ from gaspart.scene.scene import Scene
 from gaspart.trajectory.until import OBSERVABLES, Accuracy
 
 if TYPE_CHECKING:
-    from gaspart.tradeoff.until import Reached
+    from gaspart.tradeoff.reached import Reached
     from gaspart.trajectory.correlator import Correlations
 
 _PREPARING = "placing particles, compiling kernels (once for each kind of scene)"
@@ -218,7 +218,7 @@ def _report(path: Path) -> None:
 
 def accuracy_lines(path: Path) -> list[str]:
     """What a run with --until was to reach, and what it has reached."""
-    from gaspart.tradeoff.until import reached_accuracy
+    from gaspart.tradeoff.reached import reached_accuracy
     from gaspart.trajectory.recipe import PARTIAL
 
     lines, reached = [], reached_accuracy(path)
