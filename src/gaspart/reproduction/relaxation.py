@@ -34,7 +34,8 @@ def relaxation(dimension: int, count: int, collisions: float, seed: int) -> np.n
     simulation = Simulation(scene, DSMC(), seed)
     step = simulation.engine.resolved(scene).quantum
     assert step is not None
-    start, rows = simulation.state.velocities, []
+    start = simulation.state.velocities
+    rows: list[tuple[float, ...]] = []
     while not rows or rows[-1][0] < collisions:
         velocities = simulation.state.velocities
         square = (velocities**2).sum(axis=1)
