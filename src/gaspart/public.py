@@ -8,11 +8,11 @@ the package what it states.
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
 from importlib import import_module
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:  # it takes longer to import than all else here
+    from collections.abc import Callable
     from typing import Any
 
 

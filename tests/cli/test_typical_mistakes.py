@@ -86,7 +86,7 @@ MISTAKES = {
     "picture of an unknown kind": (line("render", "a.nc", "-o", "a.jpg"), "must end in .png, .mp4, .gif"),
     "frame of a film": (line("render", "a.nc", "-o", "a.mp4", "--frame", "1"), "has no meaning for a film"),
     "size is one number": (line("render", "a.nc", "-o", "a.png", "--size", "9"), "of the form 1000x750"),
-    "unknown observable": (line("measure", "run.nc", "viscosity"), "'viscosity': unknown name; known are Z"),
+    "unknown observable": (line("measure", "run.nc", "friction"), "'friction': unknown name; known are Z"),
     "misspelt observable": (line("measure", "run.nc", "mds"), "did you mean msd?"),
     "table of two": (line("measure", "run.nc", "Z", "D", "-o", "a.csv"), "-o takes one observable"),
     "unknown quantity of theory": (line("theory", "pressure", "--eta", "0.1"), "'pressure': unknown name"),
