@@ -48,7 +48,7 @@ BOOKKEEPING = ("header_bytes", "header_crc32", "frame_bytes")
 MOST_FRAMES = 2**31 - 1
 
 
-def counters(engine: Engine, stress: bool) -> tuple[str, ...]:
+def counters(engine: Engine, stress: bool = False) -> tuple[str, ...]:
     """Sums since time 0 that a file of this engine has, one variable each; those of other engines alone would
     be zero. stress: whether those that must be asked for are among them."""
     absent = {name for kind in ENGINES.values() for name in kind.counters} - set(engine.counters)
