@@ -1,5 +1,5 @@
 # make            set up, reproduce every figure, write results/report.html, print the verdicts
-# make test       set up, run all tests (among them the whole workflow, small)
+# make test       set up, run all tests (among them the whole workflow, small); OPTIONS=... are options of pytest
 # make check-all  the linters, the tests, 2500 new random scenes for each property of the engines, and the slow tests
 # make smoke      all figures, small
 # make docs       the documentation site, with executed notebooks: results/docs/html/index.html; after a complete
@@ -51,7 +51,7 @@ setup: .venv/gaspart.stamp
 	@touch $@
 
 test: setup
-	.venv/bin/python -m pytest --numprocesses=auto
+	.venv/bin/python -m pytest --numprocesses=auto $(OPTIONS)
 
 check-all: lint test
 	.venv/bin/python -m pytest --numprocesses=auto -m hypothesis --hypothesis-profile=search

@@ -4,6 +4,7 @@ import gc
 import os
 import signal
 
+import pytest
 from hypothesis import settings
 from xdist.scheduler import LoadScopeScheduling
 
@@ -32,6 +33,18 @@ class ByFile(LoadScopeScheduling):
     def _split_scope(self, nodeid):
         path = nodeid.split("::")[0]
         return "workflow" if "workflow/" in path else path
+
+
+def pytest_addoption(parser):
+    parser.addoption("--no-skips", action="store_true", help="fail if any test is skipped")
+
+
+@pytest.hookimpl(tryfirst=True)  # before the terminal prints its summary
+def pytest_sessionfinish(session):
+    """With --no-skips the exit code is that of a failed test where any was skipped; -ra names each."""
+    reporter = session.config.pluginmanager.get_plugin("terminalreporter")
+    if session.config.getoption("no_skips") and reporter and reporter.stats.get("skipped"):
+        session.exitstatus = session.exitstatus or pytest.ExitCode.TESTS_FAILED
 
 
 def pytest_xdist_make_scheduler(config, log):
