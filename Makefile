@@ -36,13 +36,14 @@ setup: .venv/gaspart.stamp
 
 # All packages are listed with their dependencies. If pip looked for these again, it would refuse a release newer than
 # the one listed.
+# Nothing is compiled to bytecode, which takes a minute: Python does so with what it imports, a small part of all.
 .venv/environment.stamp: environment.txt
 	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
 		|| { echo "gaspart needs Python 3.11 or later: make PYTHON=/path/to/python3.11" >&2; exit 2; }
 	$(OWN_VENV)
 	"$(PYTHON)" -m venv --clear .venv
 	@touch .venv/made_by_make
-	$(PIP) install --no-deps --require-hashes --requirement environment.txt
+	$(PIP) install --no-deps --no-compile --require-hashes --requirement environment.txt
 	@touch $@
 
 # Only locked packages are installed: neither dependencies nor build tools come from the network here.

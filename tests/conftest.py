@@ -3,6 +3,7 @@
 import gc
 import os
 import signal
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -26,13 +27,21 @@ settings.register_profile("search", max_examples=2500, deadline=None)
 settings.load_profile("fixed")
 
 
+TESTS = Path(__file__).parent
+# The files whose tests look at one run of the smoke workflow.
+OF_SMOKE_RUN = ("test_smoke.py", "test_accessibility.py", "test_planning.py")
+# Packages whose tests compile hardly any kernel. They run while the smoke workflow compiles those that the
+# others share with it: two processes that need a kernel at the same time both compile it.
+WITHOUT_KERNELS = ("theory", "reproduction", "scene", "cli")
+
+
 class ByFile(LoadScopeScheduling):
-    """A file's tests go to one process, since they share compiled kernels, and the workflow's all to one,
-    since they share a run of it."""
+    """A file's tests go to one process, since they share compiled kernels, and all of those that look at the
+    smoke workflow to one, since they share a run of it."""
 
     def _split_scope(self, nodeid):
         path = nodeid.split("::")[0]
-        return "workflow" if "workflow/" in path else path
+        return "smoke" if path.endswith(OF_SMOKE_RUN) else path
 
 
 def pytest_addoption(parser):
@@ -52,5 +61,13 @@ def pytest_xdist_make_scheduler(config, log):
 
 
 def pytest_collection_modifyitems(items):
-    """Begin with the workflow, which takes longest."""
-    items.sort(key=lambda item: "workflow" not in item.path.parent.name)
+    """Begin with the smoke workflow, which takes longest; the other tests of the workflow, which use its
+    kernels, come last."""
+
+    def place(item):
+        package = item.path.relative_to(TESTS).parts[0] if item.path.is_relative_to(TESTS) else ""
+        if package == "workflow":
+            return 0 if item.path.name in OF_SMOKE_RUN else 3
+        return 1 if package in WITHOUT_KERNELS else 2
+
+    items.sort(key=place)

@@ -91,13 +91,15 @@ def test_a_piston_that_lies_on_a_particle_at_rest_takes_it_along():
 
 @st.composite
 def pressed(draw):
-    """Some discs or spheres of one or two kinds behind a piston on one of the walls."""
+    """Some discs or spheres of one or two kinds behind a piston on one of the walls; spheres have one mass, so
+    that fewer kernels are compiled."""
     dimension = draw(st.sampled_from([2, 3]))
     lengths = draw(st.lists(st.floats(4.5, 9.0), min_size=dimension, max_size=dimension))
     boundary = ["wall", *draw(st.lists(st.sampled_from(["wall", "periodic"]), min_size=1, max_size=2))]
     species = [gp.Species(draw(st.integers(1, 12)), draw(st.floats(0.1, 0.4)), temperature=1.0)]
     if draw(st.booleans()):
-        species.append(gp.Species(3, 0.3, draw(st.floats(0.01, 100.0)), temperature=1.0))
+        mass = draw(st.floats(0.01, 100.0)) if dimension == 2 else 1.0
+        species.append(gp.Species(3, 0.3, mass, temperature=1.0))
     piston = gp.Piston(draw(st.floats(1e-3, 1e4)), draw(st.sampled_from([0.0, 0.01, 0.5, 20.0])))
     boundary = (boundary * 2)[:dimension] if dimension == 3 else boundary[:2]
     return gp.Scene(
@@ -157,7 +159,7 @@ def test_an_ideal_gas_follows_its_adiabat():
     dimension, and a heavy piston keeps the action of each, speed times length."""
     container = gp.Container((10.0, 10.0), ("wall", "periodic"))
     scene = gp.Scene(
-        container, [gp.Species(200, 1e-6, temperature=1.0)], faces={"x_high": gp.Piston(1e6, 100.0)}
+        container, [gp.Species(100, 1e-6, temperature=1.0)], faces={"x_high": gp.Piston(1e6, 100.0)}
     )
     sim = gp.Simulation(scene, gp.EventDriven(), seed=2)
     energy = 0.5 * (sim.state.velocities[:, 0] ** 2).sum()

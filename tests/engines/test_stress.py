@@ -123,7 +123,7 @@ def test_threads_change_no_bit():
 
 def test_many_epochs_of_the_clocks_lose_nothing():
     """Until the clocks have started again a hundred times: the trace is exact to rounding."""
-    sim = gp.Simulation(gas(2, 30, 0.1), gp.EventDriven(), seed=1, stress=True)
+    sim = gp.Simulation(SCENES["discs"], gp.EventDriven(), seed=1, stress=True)
     sim.advance(duration=3000.0)
     tally = sim.tally
     expected = 2.0 * sim.state.kinetic_energy * tally.time + tally.virial_sum
