@@ -49,8 +49,8 @@ def mixtures(draw, most=12):
 
 @st.composite
 def falling(draw, most=12):
-    """The same under gravity of any direction that the boundary allows, weak to strong; spheres have one mass,
-    so that fewer kernels are compiled."""
+    """The same under gravity of any direction that the boundary allows, weak to strong; spheres have one
+    mass, so that fewer kernels are compiled."""
     scene = draw(mixtures(most))
     if scene.dimension == 3:
         mass = scene.species[0].mass

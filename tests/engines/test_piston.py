@@ -91,8 +91,8 @@ def test_a_piston_that_lies_on_a_particle_at_rest_takes_it_along():
 
 @st.composite
 def pressed(draw):
-    """Some discs or spheres of one or two kinds behind a piston on one of the walls; spheres have one mass, so
-    that fewer kernels are compiled."""
+    """Some discs or spheres of one or two kinds behind a piston on one of the walls; spheres have one mass,
+    so that fewer kernels are compiled."""
     dimension = draw(st.sampled_from([2, 3]))
     lengths = draw(st.lists(st.floats(4.5, 9.0), min_size=dimension, max_size=dimension))
     boundary = ["wall", *draw(st.lists(st.sampled_from(["wall", "periodic"]), min_size=1, max_size=2))]
