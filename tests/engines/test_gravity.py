@@ -172,7 +172,7 @@ def test_zero_gravity_is_none_from_the_start(zero):
     assert scene.to_dict() == replace(scene, gravity=None).to_dict()
     lossy = replace(scene, restitution=gp.Restitution(0.9))
     assert lossy.contact_duration == 0.0
-    gp.Simulation(lossy, gp.TimeStepped(0.001))
+    gp.Simulation(lossy, gp.TimeStepped(0.001)).advance(until=0.01)
     replace(scene, faces={"y_low": gp.Sticky(0.1), "y_high": gp.Piston(10.0, 1.0)})
     with pytest.raises(gp.SceneError, match="gravity.*list of 2"):
         replace(scene, gravity=(0.0, 0.0, 0.0))

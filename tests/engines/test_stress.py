@@ -164,7 +164,7 @@ def test_viscosity_and_conductivity_of_a_dilute_gas_are_those_of_chapman_and_ens
     sigma = math.sqrt(length**3 / (count * math.sqrt(2.0) * math.pi))  # the mean free path is 1
     kind = gp.Species(count, 0.5 * sigma, temperature=1.0, exact_temperature=True)
     scene = gp.Scene(gp.Container((length,) * 3, "periodic"), [kind])
-    path = run(tmp_path / "run.nc", scene, gp.DSMC(step, 2), 2.0 * step, 40, 30, 1200)
+    path = run(tmp_path / "run.nc", scene, gp.DSMC(step, 2), 4.0 * step, 20, 30, 600)
     coarse = 1.0 + 16.0 / (45.0 * math.pi) * width**2 + 16.0 / (75.0 * math.pi) * 2.0 * step**2
     viscosity = gp.analysis.shear_viscosity(path, start=0.0)
     expected = coarse * float(theory.enskog_viscosity(1e-12, 3, sigma))

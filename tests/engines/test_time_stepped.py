@@ -30,6 +30,8 @@ SEARCHES = (
     st.integers(0, 2**32),
 )  # fmt: skip
 def test_any_search_gives_the_same_bits(scene, precision, rewind, passes, seed):
+    """Discs in double precision only, so that fewer kernels are compiled."""
+    precision = precision if scene.dimension == 3 else "float64"
     ends = []
     for search in SEARCHES:
         engine = gp.TimeStepped(0.01, precision=precision, rewind=rewind, passes=passes, **search)
