@@ -146,7 +146,8 @@ def correlations(displacements):
     scene, rng = gas(3, 4, 0.1), np.random.default_rng(2)
     correlator = Correlator(gp.Correlations(1.0, 5), scene, np.array([1.0, 2.0, 3.0, 0.1]), displacements)
     for velocities, unwrapped in rng.normal(size=(9, 2, 4, 3)):
-        correlator.add(SimpleNamespace(velocities=velocities, unwrapped=unwrapped))
+        state = SimpleNamespace(velocities=velocities, unwrapped=unwrapped)
+        correlator.add(SimpleNamespace(state=state))
     return np.concatenate([np.ravel(values) for values in correlator.sums().values()])
 
 

@@ -179,7 +179,7 @@ def linear_scaling(ds: xr.Dataset) -> list[Claim]:
             claim="log10 of time, one box scanned 27 times over best partition, "
             f"N = {int(ds.extrapolated_count)}",
             kind="reproduction",
-            measured=Estimate(math.log10(ratio.value), ratio.error / ratio.value / math.log(10.0)),
+            measured=_log10(ratio),
             expected=math.log10(float(ds.source_years) * YEAR),
             required=0.1,
             source=f"{SOURCE_A}, section 3.4: {float(ds.source_years):g} years instead of a second",
@@ -187,6 +187,14 @@ def linear_scaling(ds: xr.Dataset) -> list[Claim]:
             fails_if="the source's years are not those of one step",
         ),
     ]
+
+
+def _log10(ratio: Estimate) -> Estimate:
+    """The decimal logarithm; not a number of a time that noise has made negative, as in a short run beside
+    others."""
+    if not ratio.value > 0.0:
+        return Estimate(math.nan, math.nan)
+    return Estimate(math.log10(ratio.value), ratio.error / ratio.value / math.log(10.0))
 
 
 def _regime(part: xr.Dataset, number: int) -> Claim:
