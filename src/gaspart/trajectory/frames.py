@@ -78,7 +78,7 @@ class Frames:
 
     def __init__(self, file: BinaryIO, layout: Layout, header: bytes, kept: int = 0) -> None:
         self._file, self._frame = file, np.zeros((), layout.frame)
-        self.count = kept
+        self.header, self.count = header, kept
         self._header_checksum = zlib.crc32(header)
         if kept == 0:
             self._begin(header)

@@ -126,6 +126,11 @@ class Recipe:
         return self.scene.count if self.follow is None else self.follow
 
     @property
+    def stress(self) -> bool:
+        """Whether the stress tensor and the heat flux are tallied, for their correlations."""
+        return self.correlations is not None and self.correlations.stress
+
+    @property
     def layout(self) -> amber.Layout:
         """The variables of a frame."""
         scene, walls = self.scene, len(self.scene.walls)
@@ -136,11 +141,11 @@ class Recipe:
             "piston": bool(pistons(scene)),
         }
         extra = [name for name, present in names.items() if present]
-        sums, lags, stress = [], 0, False
+        sums, lags = [], 0
         if self.correlations:
-            lags, stress = self.correlations.lags, self.correlations.stress
-            sums = stress_sums() if stress else sums_of(self.displacements)
-        counters = amber.counters(self.engine, stress)
+            sums = stress_sums() if self.stress else sums_of(self.displacements)
+            lags = self.correlations.lags
+        counters = amber.counters(self.engine, self.stress)
         return amber.Layout(self.stored_count, scene.dimension, extra, walls, counters, sums, lags)
 
     def attributes(self) -> dict:

@@ -44,18 +44,16 @@ class Recording:
         recipe: Recipe,
         simulation: Simulation,
         frames: Frames,
-        header: bytes,
         path: Path,
         every: float,
         progress: Progress | None,
         examine: Examine | None = None,
     ) -> None:
         self._recipe, self._simulation, self._frames = recipe, simulation, frames
-        self._header, self._path, self._every, self._progress = header, path, every, progress
+        self._path, self._every, self._progress = path, every, progress
         self._origin = simulation.initial_state.unwrapped
         self._correlator: Correlator | StressCorrelator | None = None
-        self._stress = recipe.correlations is not None and recipe.correlations.stress
-        if recipe.correlations and self._stress:
+        if recipe.correlations and recipe.stress:
             self._correlator = StressCorrelator(recipe.correlations, recipe.scene.dimension)
         elif recipe.correlations:
             masses = simulation.initial_state.masses
@@ -86,7 +84,7 @@ class Recording:
                     self._finish_frame(signals)
         except SimulationError as error:
             failed = self._path.with_name(self._path.name + ".failed.npz")
-            write_checkpoint(failed, self._header, self._frames.count, self._arrays())
+            write_checkpoint(failed, self._frames.header, self._frames.count, self._arrays())
             raise SimulationError(f"{error}; its state is kept in {failed}") from None
         self._frames.sync()
         set_note("")
@@ -154,7 +152,7 @@ class Recording:
         """Write a checkpoint, from which the run can continue to the same bits."""
         self._simulation.check_invariants()
         self._frames.sync()  # before the checkpoint, which counts them
-        write_checkpoint(checkpoint_path(self._path), self._header, self._frames.count, self._arrays())
+        write_checkpoint(checkpoint_path(self._path), self._frames.header, self._frames.count, self._arrays())
         self._note()
         self._saved = time.monotonic()
 
@@ -196,6 +194,7 @@ class Recording:
 
     def _frame(self, state: State) -> dict[str, np.ndarray | float]:
         """The present state and counters, as the variables of a frame."""
+        counted = amber.counters(self._recipe.engine, self._recipe.stress)
         tally, followed = self._simulation.tally, slice(self._recipe.stored_count)
         inner: dict[str, np.ndarray] = {}
         if self._recipe.scene.rough:
@@ -213,7 +212,7 @@ class Recording:
             "cell_lengths": lengths,
             "cell_angles": np.full(3, 90.0),
             "kinetic_energy": state.kinetic_energy,
-            **{name: getattr(tally, name) for name in amber.counters(self._recipe.engine, self._stress)},
+            **{name: getattr(tally, name) for name in counted},
             "coordinates": state.positions[followed],
             "velocities": state.velocities[followed],
             **(self._correlator.sums() if self._correlator else {}),

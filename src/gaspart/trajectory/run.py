@@ -232,8 +232,7 @@ def _carry_out(
             if not partial.exists():
                 remove_checkpoint(checkpoint)
             return path
-        stress = wanted.correlations is not None and wanted.correlations.stress
-        simulation = Simulation(wanted.scene, wanted.engine, wanted.seed, stress)
+        simulation = Simulation(wanted.scene, wanted.engine, wanted.seed, wanted.stress)
         with _locked(partial) as file:
             # again: another process may have finished or begun a run before the lock
             if not _is_finished(wanted, path, overwrite, examiner):
@@ -337,7 +336,7 @@ def _record(
         checkpoint = None
     frames = Frames(file, wanted.layout, header, kept=checkpoint.frames if checkpoint else 0)
     examine = _examination(wanted, partial, examiner)
-    recording = Recording(wanted, simulation, frames, header, path, every, progress, examine)
+    recording = Recording(wanted, simulation, frames, path, every, progress, examine)
     if checkpoint:
         recording.restore(checkpoint.arrays)
     recording.finish()

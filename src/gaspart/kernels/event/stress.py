@@ -15,26 +15,16 @@ import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, kernel
 from gaspart.kernels.physics.collision import gap_along
+from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.running_sum import add
 
 
 class Stress(NamedTuple):
     """sums (2 d^2 + d, 2), those of S, by rows, and of its part from contacts, and of Q, without K(t) t, see
-    `running_sum.add`; before
-    (2, d + 1), velocity and energy of two particles before their contact."""
+    `running_sum.add`; before (2, d + 1), velocity and energy of two particles before their contact."""
 
     sums: np.ndarray
     before: np.ndarray
-
-
-@inner_helper
-def mass_of(i, masses, law):
-    """The mass of a particle."""
-    if law is not None:
-        return 1.0 / law.inverse_mass[i]
-    if masses is not None:
-        return masses[i]
-    return 1.0
 
 
 @inner_helper

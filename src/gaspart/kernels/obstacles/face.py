@@ -15,10 +15,11 @@ from gaspart.kernels.obstacles.sticky import collide_sticky
 from gaspart.kernels.obstacles.support import release, release_after
 from gaspart.kernels.obstacles.thermal import collide_thermal
 from gaspart.kernels.obstacles.vibrating import collide_moving, find_vibrating, moves
-from gaspart.kernels.obstacles.well import mass_of, time_to_edge
+from gaspart.kernels.obstacles.well import time_to_edge
 from gaspart.kernels.physics.ballistic import time_against, time_along
 from gaspart.kernels.physics.contact import time_to_plane
 from gaspart.kernels.physics.flight import acceleration_of, advance, face_plane
+from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.running_sum import add
 
 RULES = {

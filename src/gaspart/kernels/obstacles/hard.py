@@ -1,8 +1,8 @@
 """Hard faces: what passes at a contact with one at rest."""
 
 from gaspart.kernels.compile.policy import inner_helper
-from gaspart.kernels.obstacles.well import mass_of
 from gaspart.kernels.physics.collision import collide_wall_by_law
+from gaspart.kernels.physics.mass import mass_of
 
 
 @inner_helper

@@ -11,7 +11,6 @@ from gaspart.kernels.obstacles.resting import come_to_rest, leave
 from gaspart.kernels.obstacles.segment import time_to_segment
 from gaspart.kernels.obstacles.short_bounce import longest_rest
 from gaspart.kernels.obstacles.support import is_resting_on, release
-from gaspart.kernels.obstacles.well import mass_of
 from gaspart.kernels.physics.collision import (
     LEAST,
     collide_wall_by_law,
@@ -21,6 +20,7 @@ from gaspart.kernels.physics.collision import (
 )
 from gaspart.kernels.physics.contact import normal_change
 from gaspart.kernels.physics.flight import advance
+from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.running_sum import add
 
 

@@ -9,9 +9,9 @@ from math import inf
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.model import NONE, PISTON_CLOCK, PISTON_PLACE, PISTON_VELOCITY
-from gaspart.kernels.obstacles.well import mass_of
 from gaspart.kernels.physics.ballistic import flown, time_to_side
 from gaspart.kernels.physics.flight import face_plane
+from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.running_sum import add
 
 

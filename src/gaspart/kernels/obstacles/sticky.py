@@ -7,10 +7,10 @@ What has hit it keeps of its approach what rounding makes of zero, and must not 
 from math import sqrt
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
-from gaspart.kernels.obstacles.well import mass_of
 from gaspart.kernels.physics.collision import LEAST, fastest_component, gap_along
 from gaspart.kernels.physics.contact import time_to_contact
 from gaspart.kernels.physics.flight import face_plane
+from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.running_sum import add
 
 

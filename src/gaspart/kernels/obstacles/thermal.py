@@ -4,7 +4,7 @@ from math import sqrt
 
 from gaspart.kernels.compile.policy import inner_kernel
 from gaspart.kernels.model import THERMAL
-from gaspart.kernels.obstacles.well import mass_of
+from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.rng import flux_speed, normal_pair
 from gaspart.kernels.physics.running_sum import add
 

@@ -11,9 +11,9 @@ from math import inf, sqrt
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.model import NONE
 from gaspart.kernels.obstacles.hard import bounce
-from gaspart.kernels.obstacles.well import mass_of
 from gaspart.kernels.physics.ballistic import flown, time_to_side
 from gaspart.kernels.physics.flight import acceleration_of, face_plane
+from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.running_sum import add
 from gaspart.kernels.physics.sine import TURN, sine_cosine
 

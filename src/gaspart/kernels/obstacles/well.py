@@ -5,17 +5,8 @@ from math import inf, sqrt
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.model import NONE, STICKY, WELL_EDGES
 from gaspart.kernels.physics.flight import advance, face_plane
+from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.running_sum import add
-
-
-@inner_kernel
-def mass_of(i, masses, law):
-    """The mass of a particle that can move, in the kernel's unit."""
-    if law is not None:
-        return 1.0 / law.inverse_mass[i]
-    if masses is not None:
-        return masses[i]
-    return 1.0
 
 
 @inner_helper

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis.statistics import combine_estimates
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import MODE_COUPLING, rows
+from gaspart.reproduction.families.shared.claims import MODE_COUPLING, rows, weighted_mean
 
 DILUTE = 0.02
 """Packing fraction up to which a gas counts as dilute."""
@@ -56,12 +53,9 @@ def _diffusion(row: xr.Dataset) -> Estimate:
 def _dilute_limit(dilute: list[xr.Dataset]) -> Claim:
     """Mean of D over Enskog's at the lowest packing fractions, weighted by the errors."""
     ratios = [_diffusion(row) / theory.enskog_diffusion(float(row["packing_fraction"]), 3) for row in dilute]
-    measured = Estimate(math.nan, math.nan)
-    if ratios:
-        measured = combine_estimates(ratios)
     return Claim.within(
         claim=f"D over Enskog's in the dilute limit (packing fraction {DILUTE:g} and below)",
-        measured=measured,
+        measured=weighted_mean(ratios),
         expected=1.0,
         half_width=DILUTE_BAND,
         source="Enskog theory, 1.01895 times the first Sonine approximation",

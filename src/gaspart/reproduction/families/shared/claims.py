@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.statistics import combine
+from gaspart.analysis.statistics import combine, combine_estimates
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared.rows import estimates
 
@@ -17,6 +17,11 @@ OTHER_MACHINE = "on this machine, and by this program, tests and boxes have othe
 PARTICLES = {2: "discs", 3: "spheres"}
 """Names of the particles in each dimension."""
 MODE_COUPLING = "hydrodynamic modes of the container, transport coefficients Enskog's (gaspart.theory.modes)"
+
+
+def weighted_mean(estimates: list[Estimate]) -> Estimate:
+    """Their mean, weighted by the errors; not a number of none, as in a run of fewer points."""
+    return combine_estimates(estimates) if estimates else Estimate(np.nan, np.nan)
 
 
 def rows(dataset: xr.Dataset, dimension: str) -> list[xr.Dataset]:
