@@ -12,6 +12,7 @@ from gaspart.errors import SimulationError as SimulationError
 from gaspart.rendering.films import film as film
 from gaspart.rendering.frames import render as render
 from gaspart.rendering.view import view as view
+from gaspart.reproduction.sweep import sweep as sweep
 from gaspart.scene.container import Container as Container
 from gaspart.scene.faces import Piston as Piston
 from gaspart.scene.faces import Sticky as Sticky

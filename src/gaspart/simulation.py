@@ -59,7 +59,9 @@ class Simulation:
         if not isinstance(scene, Scene):
             raise SceneError("scene", scene, "must be a Scene, such as Scene.from_file(path)")
         if not isinstance(engine, Engine):
-            raise SceneError("engine", engine, "must be an engine: EventDriven(), TimeStepped(time_step) or DSMC()")
+            raise SceneError(
+                "engine", engine, "must be an engine: EventDriven(), TimeStepped(time_step) or DSMC()"
+            )
         self.scene, self.engine, self.seed = scene, engine, seed
         self._asked, self._stress = engine, stress
         self._log: EventLog | None = None

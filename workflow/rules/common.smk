@@ -24,6 +24,7 @@ from gaspart.reproduction.claims.table import summary
 from gaspart.reproduction.config import check, explained, read_numbers
 from gaspart.reproduction.families.registry import families, of_claims, titles
 from gaspart.reproduction.points.modules import digest, kernel_digest
+from gaspart.reproduction.points.point import TRAJECTORIES
 from gaspart.reproduction.points.points import all_points
 from gaspart.reproduction.points.points import figure_points as points_of_figure
 from gaspart.reproduction.points.variants import task, variant
@@ -60,15 +61,10 @@ def share(paths):
     return paths[number - 1 :: of]
 
 
-# The experiments of each kind of job.
-EXPERIMENTS = {"simulate": []}
-for name, block in config["experiments"].items():
-    EXPERIMENTS.setdefault(block.get("job", "simulate"), []).append(name)
-
-
-def pattern(groups):
-    """A pattern that matches the names of all groups, and nothing if there are none."""
-    return "|".join(name for names in groups for name in names) or "(?!)"
+def pattern(trajectories):
+    """A pattern that matches the experiments that make trajectories, or the others; nothing if there are none."""
+    jobs = {name: block.get("job", "simulate") for name, block in config["experiments"].items()}
+    return "|".join(name for name, job in jobs.items() if (job in TRAJECTORIES) == trajectories) or "(?!)"
 
 
 def point_of(wildcards):
@@ -143,10 +139,12 @@ def sources(stage, family=None):
     """The script of a stage and what it imports by name: a family's part, or a job's module."""
     job = f"gaspart.reproduction.jobs.{stage}"
     script = stage if (SCRIPTS / f"{stage}.py").exists() else "compute"
+    if stage in TRAJECTORIES:
+        script = "simulate"
     named = (
         [f"gaspart.reproduction.families.{family}.{PARTS[stage]}"]
         if family
-        else [job] if script == "compute" else []
+        else [job] if script in ("simulate", "compute") else []
     )
     return [SCRIPTS / "_job.py", SCRIPTS / f"{script}.py", *named]
 

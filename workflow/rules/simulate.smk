@@ -13,7 +13,7 @@ rule simulate:
     benchmark:
         "results/benchmarks/simulate/{experiment}/{point}.tsv"
     wildcard_constraints:
-        experiment=pattern([EXPERIMENTS["simulate"]]),
+        experiment=pattern(trajectories=True),
     priority: 1
     conda:
         "../envs/gaspart.yaml"
@@ -22,7 +22,8 @@ rule simulate:
         mem_mb=memory_of,
         runtime=120,
     params:
-        modules=digest(*sources("simulate")),
+        modules=lambda wildcards: digest(*sources(point_of(wildcards).job)),
+        job=lambda wildcards: point_of(wildcards).job,
         parameters=parameters_of,
     script:
         "../scripts/simulate.py"
@@ -39,7 +40,7 @@ rule compute:
     benchmark:
         "results/benchmarks/compute/{experiment}/{point}.tsv"
     wildcard_constraints:
-        experiment=pattern(names for job, names in EXPERIMENTS.items() if job != "simulate"),
+        experiment=pattern(trajectories=False),
     priority: 1
     conda:
         "../envs/gaspart.yaml"

@@ -2,12 +2,11 @@
 
 from pathlib import Path
 
-from _job import job
+from _job import function, job
 
 with job(snakemake):
     from gaspart.kernels.compile.loading import load_numba
 
     load_numba(ours=True)
-    from gaspart.reproduction.jobs import simulate
-
-    simulate.run(snakemake.params.parameters, Path(snakemake.output[0]))
+    run = function(f"gaspart.reproduction.jobs.{snakemake.params.job}", "run")
+    run(snakemake.params.parameters, Path(snakemake.output[0]))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gaspart.analysis.names import OBSERVABLES, measure
 from gaspart.cli.arguments import Parser, UsageError, add_trajectory, print_line, real, set_command
 from gaspart.cli.progress import waiting
 from gaspart.errors import SceneError
@@ -18,24 +19,6 @@ from gaspart.files import Kind, begins_with, output_path, writing
 if TYPE_CHECKING:
     from gaspart.analysis.observable import Observable
 
-OBSERVABLES = {
-    "Z": ("compressibility_factor", {}, "compressibility factor PV/(N k_B T), periodic"),
-    "pressure": ("wall_pressure", {}, "pressure on each wall"),
-    "collision_rate": ("collision_rate", {}, "collisions of a particle per time"),
-    "msd": ("mean_squared_displacement", {}, "mean-squared displacement"),
-    "D": ("diffusion_coefficient", {}, "diffusion coefficient"),
-    "vacf": ("velocity_autocorrelation", {}, "velocity autocorrelation"),
-    "speeds": ("speed_distribution", {}, "distribution of speeds"),
-    "rdf": ("rdf", {}, "radial distribution function, periodic"),
-    "density": ("profile", {"of": "density"}, "density along the last axis"),
-    "temperature": ("profile", {"of": "temperature"}, "temperature along the last axis"),
-    "shear_viscosity": ("shear_viscosity", {}, "shear viscosity, of a run with --stress"),
-    "bulk_viscosity": ("bulk_viscosity", {}, "bulk viscosity, likewise"),
-    "thermal_conductivity": ("thermal_conductivity", {}, "conductivity of heat, likewise"),
-    "pressure_tensor": ("pressure_tensor", {}, "components of the pressure tensor, likewise"),
-    "order": ("order_parameter", {}, "global bond order, periodic"),
-}
-"""Names on the command line -> function of `gaspart.analysis`, its arguments, meaning."""
 _ROWS = 12  # of a curve that are printed
 _TITLE = "# gaspart measure"
 _TABLE = Kind("a table written by gaspart measure", begins_with(_TITLE.encode()))
@@ -60,15 +43,13 @@ def add_measure(parser: Parser) -> None:
 
 
 def _measure(given: argparse.Namespace) -> None:
-    from gaspart import analysis
     from gaspart.trajectory.run import open_trajectory
 
     write = _writer(given)
     with open_trajectory(given.trajectory) as trajectory:
         for name in given.observables:
-            function, arguments, _ = OBSERVABLES[name]
             with waiting(f"measuring {name}"):
-                observable = getattr(analysis, function)(trajectory, start=given.start, **arguments)
+                observable = measure(name, trajectory, given.start)
             if observable.estimate.ndim:
                 _print_curve(name, observable)
             else:

@@ -129,14 +129,13 @@ def _run(given: argparse.Namespace) -> None:
     _report(path)
 
 
-def _requests(text: str) -> list[tuple[str, str | None, float]]:
-    """Observable, face if one is stated, and accuracy, of each NAME=X between commas."""
+def _requests(text: str) -> list[tuple[str, float]]:
+    """Observable, perhaps with a face, and accuracy, of each NAME=X between commas."""
     requests = []
     for part in text.split(","):
         name, _, accuracy = part.partition("=")
-        observable, colon, face = name.strip().partition(":")
         try:
-            requests.append((observable, face.strip() if colon else None, float(accuracy)))
+            requests.append((name, float(accuracy)))
         except ValueError:
             rule = "must be the name of an observable, = and its accuracy, as Z=1e-3"
             raise argparse.ArgumentTypeError(f"{part!r} {rule}") from None
@@ -148,7 +147,7 @@ def _until(given: argparse.Namespace) -> list[Accuracy] | None:
     if given.until is not None:
         if given.duration is not None:
             raise UsageError("--duration: excludes --until; the longest duration is --at-most")
-        return [Accuracy(name, value, given.start, face) for name, face, value in given.until]
+        return [Accuracy.named(name, value, given.start) for name, value in given.until]
     for option, value in (("--at-most", given.at_most), ("--start", given.start)):
         if value is not None:
             raise UsageError(f"{option}: needs --until")

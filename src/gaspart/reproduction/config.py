@@ -14,7 +14,7 @@ from gaspart.kinds import Kind
 from gaspart.reproduction.points import jobs, keys
 from gaspart.reproduction.points.config_keys import POINT
 from gaspart.reproduction.points.overlay import laid_over
-from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.points.point import TRAJECTORIES, Point
 from gaspart.reproduction.points.points import figure_points, points
 from gaspart.reproduction.schema import schema
 from gaspart.scene.validation import finite, size
@@ -44,7 +44,7 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str,
     try:
         _check_values(config)
         _against(schema(), config, "")
-        planned = {experiment: _experiment(config, experiment) for experiment in config["experiments"]}
+        planned = {experiment: checked_points(config, experiment) for experiment in config["experiments"]}
         for figure in config["figures"]:
             figure_points(config, figure, planned)
         for animation, block in config.get("animations", {}).items():
@@ -108,7 +108,7 @@ def _animation(config: dict, animation: str, block: dict | None) -> None:
     """Refuse a film of an experiment that the config does not have, or that makes no trajectories."""
     experiment = block["experiment"] if block else None
     kinds = {name: made.get("job", "simulate") for name, made in config["experiments"].items()}
-    if block and kinds.get(experiment) != "simulate":
+    if block and kinds.get(experiment) not in TRAJECTORIES:
         rule = "must be the name of an experiment that makes trajectories"
         raise SceneError(f"animations.{animation}.experiment", experiment, rule)
     figure = block.get("figure") if block else None
@@ -116,8 +116,9 @@ def _animation(config: dict, animation: str, block: dict | None) -> None:
         raise SceneError(f"animations.{animation}.figure", figure, unknown_word(figure, config["figures"]))
 
 
-def _experiment(config: dict, experiment: str) -> dict[str, Point]:
-    """The points of an experiment, by name, after a check of each value of the grid and of every point."""
+def checked_points(config: dict, experiment: str) -> dict[str, Point]:
+    """The points of an experiment, by name, after a check of each value of the grid and of every point.
+    Raises SceneError."""
     where = f"experiments.{experiment}"
     for key, value in _grid_values(config["experiments"][experiment].get("grid")):
         if key.startswith(keys.PREFIX):  # a value of a scene file, which the scene validates

@@ -63,9 +63,9 @@ def run(
         raise SceneError("path", None, "must be given: the file of the trajectory")
     wanted = _request(duration, sample_interval, until, at_most)
     for asked in wanted.accuracies if wanted else ():
-        _require_measurable(asked, scene, follow, correlations)
+        require_measurable(asked, scene, follow, correlations)
     if sample_interval is None:
-        sample_interval = _sample_interval(scene, engine, correlations)
+        sample_interval = default_sample_interval(scene, engine, correlations)
     recipe = Recipe(
         scene, engine, seed, duration, sample_interval, displacements, follow, correlations, wanted
     )
@@ -107,8 +107,11 @@ def resume(
     return trajectory.resume(path, checkpoint_seconds, progress, Examiner(examined))
 
 
-def _require_measurable(
-    asked: Accuracy, scene: Scene, follow: int | None, correlations: Correlations | None
+def require_measurable(
+    asked: Accuracy,
+    scene: Scene,
+    follow: int | None = None,
+    correlations: Correlations | None = None,
 ) -> None:
     """Raise SceneError for an observable that a scene does not have, however long the run."""
     periodic, rule = scene.container.periodic, ""
@@ -132,7 +135,7 @@ def _require_measurable(
         raise SceneError("until", asked.name, rule)
 
 
-def _sample_interval(scene: Scene, engine: Engine, correlations: Correlations | None) -> float:
+def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlations | None) -> float:
     """The mean time between two collisions of a particle, to two digits, as a multiple of the engine's steps
     and the samples of correlations. Raises SceneError where theory does not give it."""
     from gaspart import theory

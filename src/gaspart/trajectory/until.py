@@ -49,6 +49,12 @@ class Accuracy:
         if self.face is not None and self.observable != "pressure":
             raise SceneError("until.face", self.face, f"has no meaning for {self.observable}")
 
+    @classmethod
+    def named(cls, name: str, accuracy: float, start: float | None = None) -> Accuracy:
+        """From its `name`, as on the command line and in a config: `Z`, or `pressure:x low`."""
+        observable, colon, face = name.partition(":")
+        return cls(observable.strip(), accuracy, start, face.strip() if colon else None)
+
     @property
     def name(self) -> str:
         """The observable, with its face if one is stated, as on the command line."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from gaspart.engines import engine_from_dict, engine_to_dict
 from gaspart.kinds import Kind, count, flag
+from gaspart.reproduction.jobs.replicas import write_replicas
 from gaspart.reproduction.jobs.stretches import EQUILIBRATION
 
 if TYPE_CHECKING:
@@ -65,32 +66,25 @@ def parameters(point: Point) -> dict:
 
 
 def run(parameters: dict, folder: Path) -> None:
-    """Write a trajectory for each seed.
+    """Write a trajectory for each seed; see `write_replicas`."""
+    write_replicas(record, parameters, folder, print)
 
-    They lie beside `folder`, which Snakemake deletes before a rerun, until all are complete: an interrupted
-    run resumes there.
-    """
+
+def record(parameters: dict, seed: tuple[int, ...], path: Path, overwrite: bool) -> None:
+    """Make one trajectory, or continue it, or find it complete."""
     from gaspart.scene.scene import Scene
     from gaspart.trajectory import run as trajectory
     from gaspart.trajectory.correlator import Correlations
 
-    partial = Path(f"{folder}.partial")
-    partial.mkdir(parents=True, exist_ok=True)
-    paths = [partial / f"replica-{replica}.nc" for replica in range(len(parameters["seeds"]))]
-    for path, seed in zip(paths, parameters["seeds"], strict=True):
-        print(f"{path}: seed {seed}, {parameters['duration']:g} units of time")
-        trajectory.run(
-            Scene.from_dict(parameters["scene"]),
-            engine_from_dict(parameters["engine"]),
-            seed=tuple(seed),
-            duration=parameters["duration"],
-            sample_interval=parameters["sample_interval"],
-            path=path,
-            displacements=parameters["displacements"],
-            follow=parameters["follow"],
-            correlations=parameters["correlations"] and Correlations(**parameters["correlations"]),
-            overwrite=True,  # the remainder of a run with other parameters
-        )
-    for leftover in set(partial.iterdir()) - set(paths):
-        leftover.unlink()
-    partial.rename(folder)
+    trajectory.run(
+        Scene.from_dict(parameters["scene"]),
+        engine_from_dict(parameters["engine"]),
+        seed=seed,
+        duration=parameters["duration"],
+        sample_interval=parameters["sample_interval"],
+        path=path,
+        displacements=parameters["displacements"],
+        follow=parameters["follow"],
+        correlations=parameters["correlations"] and Correlations(**parameters["correlations"]),
+        overwrite=overwrite,
+    )

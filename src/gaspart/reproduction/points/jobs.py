@@ -16,6 +16,7 @@ from gaspart.reproduction.jobs import (
     measure_cost,
     pack,
     simulate,
+    simulate_until,
 )
 
 if TYPE_CHECKING:
@@ -41,6 +42,7 @@ class Job(Protocol):
 
 JOBS: Mapping[str, Job] = {
     "simulate": simulate,
+    "simulate_until": simulate_until,
     "measure_cost": measure_cost,
     "compare": compare,
     "echo": echo,

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from gaspart.reproduction.points.schedule import Schedule
     from gaspart.scene.scene import Scene
 
+TRAJECTORIES = ("simulate", "simulate_until")
+"""The jobs whose result is a folder of trajectories, one for each replica."""
 _LONGEST_NAME = 200  # of the 255 bytes of a file name, with which suffixes and names of logs are made
 
 
@@ -38,8 +40,8 @@ class Point:
 
     @property
     def path(self) -> str:
-        """Where the result lies: a folder of trajectories (``simulate``) or one netCDF file."""
-        suffix = "" if self.job == "simulate" else ".nc"
+        """Where the result lies: a folder of trajectories (see TRAJECTORIES) or one netCDF file."""
+        suffix = "" if self.job in TRAJECTORIES else ".nc"
         return f"{self.root}/{self.experiment}/{self.name}{suffix}"
 
     @property
@@ -48,7 +50,7 @@ class Point:
         return self.settings.get("replicas", 1)
 
     def replica_path(self, replica: int) -> str:
-        """The trajectory of one replica (``simulate`` only)."""
+        """The trajectory of one replica (of TRAJECTORIES only)."""
         return f"{self.path}/replica-{replica}.nc"
 
     @property

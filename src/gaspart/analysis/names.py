@@ -1,0 +1,46 @@
+"""The observables that have a name: on the command line, in a sweep and in a config."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from gaspart.errors import SceneError, unknown_word
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from gaspart.analysis.observable import Observable
+
+OBSERVABLES: dict[str, tuple[str, dict[str, Any], str]] = {
+    "Z": ("compressibility_factor", {}, "compressibility factor PV/(N k_B T), periodic"),
+    "pressure": ("wall_pressure", {}, "pressure on each wall"),
+    "collision_rate": ("collision_rate", {}, "collisions of a particle per time"),
+    "msd": ("mean_squared_displacement", {}, "mean-squared displacement"),
+    "D": ("diffusion_coefficient", {}, "diffusion coefficient"),
+    "vacf": ("velocity_autocorrelation", {}, "velocity autocorrelation"),
+    "speeds": ("speed_distribution", {}, "distribution of speeds"),
+    "rdf": ("rdf", {}, "radial distribution function, periodic"),
+    "density": ("profile", {"of": "density"}, "density along the last axis"),
+    "temperature": ("profile", {"of": "temperature"}, "temperature along the last axis"),
+    "shear_viscosity": ("shear_viscosity", {}, "shear viscosity, of a run with --stress"),
+    "bulk_viscosity": ("bulk_viscosity", {}, "bulk viscosity, likewise"),
+    "thermal_conductivity": ("thermal_conductivity", {}, "conductivity of heat, likewise"),
+    "pressure_tensor": ("pressure_tensor", {}, "components of the pressure tensor, likewise"),
+    "order": ("order_parameter", {}, "global bond order, periodic"),
+}
+"""Name -> function of `gaspart.analysis`, its arguments, meaning."""
+
+
+def known(name: object) -> str:
+    """The name of an observable. Raises SceneError for any other value."""
+    if name not in OBSERVABLES:
+        raise SceneError("observable", name, unknown_word(name, OBSERVABLES, "observable"))
+    return str(name)
+
+
+def measure(name: str, trajectory: xr.Dataset, start: float | None = None) -> Observable:
+    """An observable of a trajectory; start: as of the functions of `gaspart.analysis`. Raises SceneError for
+    an unknown name, and as that function does."""
+    function, arguments, _ = OBSERVABLES[known(name)]
+    return getattr(import_module("gaspart.analysis"), function)(trajectory, start=start, **arguments)

@@ -1,0 +1,128 @@
+"""The table of a sweep: observables of all points, by what varies."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gaspart.analysis.names import measure
+from gaspart.analysis.observable import Observable
+from gaspart.engines import Engine, engine_to_dict
+from gaspart.errors import SceneError
+from gaspart.reproduction.points.point import Point
+from gaspart.scene.scene import Scene
+from gaspart.trajectory.run import open_trajectory
+from gaspart.yaml_text import dump_yaml
+
+_PARTS = ("", "_error", "_theory")
+
+
+@dataclass(frozen=True)
+class Measured:
+    """The observables of one point, each of all its replicas, and the duration of each replica."""
+
+    observables: dict[str, list[Observable]]
+    durations: list[float]
+
+
+def measured(point: Point, names: Sequence[str], part: bool) -> Measured:
+    """Observables of a point, by name, of its frames after the equilibration, or, with `part`, after the
+    first quarter of each run. Raises SceneError as `gaspart.analysis.names.measure`."""
+    start = None if part else point.schedule.equilibration
+    found: dict[str, list[Observable]] = {name: [] for name in names}
+    durations = []
+    for path in point.replica_paths:
+        with open_trajectory(path) as trajectory:
+            durations.append(float(trajectory["time"][-1]))
+            for name in names:
+                try:
+                    found[name].append(measure(name, trajectory, start))
+                except SceneError as error:
+                    raise error.inside(f"{name} of {path}") from None
+    return Measured(found, durations)
+
+
+def table(
+    rows: list[Measured], names: Sequence[str], axes: Mapping[str, list], run: Mapping[str, Any]
+) -> xr.Dataset:
+    """The Dataset of a sweep; rows: in the order of the product of the values of `axes`; run: scene, engine
+    and seed, which its attributes state."""
+    data = xr.Dataset(
+        coords={key: [_label(value) for value in values] for key, values in axes.items()},
+        attrs=_attributes(**run),
+    )
+    for name in names:
+        for key, variable in _variables(name, [row.observables[name] for row in rows], axes).items():
+            data[key] = variable
+    durations = [np.mean(row.durations) for row in rows]
+    shape = [len(values) for values in axes.values()]
+    data["duration"] = (tuple(axes), np.reshape(durations, shape), {"units": "time"})
+    return data
+
+
+def _attributes(scene: Scene, engine: Engine, seed: int) -> dict[str, Any]:
+    return {"scene": dump_yaml(scene.to_dict()), "engine": json.dumps(engine_to_dict(engine)), "seed": seed}
+
+
+def _label(value: Any) -> Any:
+    """A value as a coordinate: of a list, its text."""
+    return value if isinstance(value, (int, float, str)) else str(value)
+
+
+def _variables(
+    name: str, points: list[list[Observable]], axes: Mapping[str, list]
+) -> dict[str, xr.DataArray]:
+    """An observable of all points and, where they differ, the places of its curve, as arrays over `axes`."""
+    first = points[0][0]
+    along = [str(dim) for dim in first.estimate.dims]
+    places = [[one.estimate[dim].values for dim in along] for replicas in points for one in replicas]
+    common = all(np.array_equal(a, b) for row in places for a, b in zip(row, places[0], strict=True))
+    dims = (*axes, *(f"{name}_{dim}" for dim in along))
+    found = {}
+    for part in _PARTS:
+        each = [_mean(replicas, part) for replicas in points]
+        if part == "_theory" and all(one is None for one in each):
+            continue
+        about = dict(first.estimate.attrs)
+        found[name + part] = xr.DataArray(_stacked(each, axes), dims=dims, attrs=about)
+    for axis, dim in enumerate(along):
+        about = dict(first[dim].attrs)
+        if common:
+            found[f"{name}_{dim}"] = xr.DataArray(places[0][axis], dims=(f"{name}_{dim}",), attrs=about)
+        else:
+            each = [replicas[0].estimate[dim].values for replicas in points]
+            at = xr.DataArray(_stacked(each, axes), dims=(*axes, f"{name}_{dim}"), attrs=about)
+            found[f"{name}_{dim}_places"] = at
+    return found
+
+
+def _mean(replicas: list[Observable], part: str) -> np.ndarray | None:
+    """The mean of independent runs, or its standard uncertainty; None where there is no theory. Runs that end
+    when they are accurate may have curves of different lengths, of which the common part is taken."""
+    quantity = replicas[0].attrs["quantity"]
+    if part == "_theory" and any(one.theory is None for one in replicas):
+        return None
+    values = [one[quantity + part].values for one in replicas]
+    shape = np.min([value.shape for value in values], axis=0).astype(int)
+    values = [value[tuple(slice(size) for size in shape)] for value in values]
+    if part == "_error":
+        return np.sqrt(np.sum(np.square(values), axis=0)) / len(values)
+    return np.mean(values, axis=0)
+
+
+def _stacked(each: list[np.ndarray | None], axes: Mapping[str, list]) -> np.ndarray:
+    """The arrays of all points, of which some may be shorter or missing, as one; the rest is nan."""
+    known = [np.asarray(one) for one in each if one is not None]
+    inner = tuple(np.max([one.shape for one in known], axis=0).astype(int))
+    whole = np.full((len(each), *inner), np.nan if known[0].dtype.kind in "fiu" else "", dtype=object)
+    if known[0].dtype.kind in "fiu":
+        whole = whole.astype(float)
+    for row, one in enumerate(each):
+        if one is not None:
+            whole[(row, *(slice(size) for size in np.shape(one)))] = one
+    return whole.reshape(*(len(values) for values in axes.values()), *inner)
