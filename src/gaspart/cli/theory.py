@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
 
 from gaspart.cli.arguments import Parser, real, set_command, several
 from gaspart.errors import SceneError
@@ -39,8 +42,20 @@ _QUANTITIES = {
     "diffusion_coefficient": _Quantity("enskog_diffusion", _PARTICLE, "self-diffusion coefficient", _ENSKOG),
     "viscosity": _Quantity("enskog_viscosity", _PARTICLE, "shear viscosity", _ENSKOG),
 }
+_MIXTURE = {
+    "Z": ("mixture_compressibility_factor", ()),
+    "contact_value": ("mixture_contact_values", ()),
+    "collision_rate": ("mixture_collision_rates", ("temperature",)),
+}
+"""Quantity -> its function of a mixture, and the properties that this takes."""
+_MIXTURE_SOURCES = {
+    "boublik": "Boublik 1970, Mansoori and others 1971",
+    "linear": "Santos, Yuste and Lopez de Haro 1999",
+    "santos": "Santos, Yuste and Lopez de Haro 2002",
+}
 _EXAMPLES = """examples:
   gaspart theory Z --eta 0.3
+  gaspart theory contact_value --eta 0.3 --diameters 1,0.5 --fractions 0.2,0.8
   gaspart theory collision_rate --eta 0.1,0.2,0.3 --dimension 2 --diameter 0.1"""
 
 
@@ -55,11 +70,22 @@ def add_theory(parser: Parser) -> None:
     add("--dimension", type=int, choices=(2, 3), default=3, help="default: 3")
     for name in _PARTICLE:
         add(f"--{name}", type=real(above=0.0), help="default: 1")
+    text = "of the species of a mixture, in the place of --diameter"
+    add("--diameters", type=several(real(above=0.0)), metavar="X[,X...]", help=text)
+    text = "number fractions of the species; default: equal"
+    add("--fractions", type=several(real(least=0.0)), metavar="X[,X...]", help=text)
+    add("--masses", type=several(real(above=0.0)), metavar="X[,X...]", help="likewise; default: 1")
 
 
 def _theory(given: argparse.Namespace) -> None:
     from gaspart import theory
 
+    if given.diameters is not None:
+        _of_mixture(given)
+        return
+    for key in ("fractions", "masses"):
+        if getattr(given, key) is not None:
+            raise SceneError(key, getattr(given, key), "needs the --diameters of a mixture")
     quantity, dimension = _QUANTITIES[given.quantity], given.dimension
     properties = {key: getattr(given, key) for key in _PARTICLE}
     properties = {key: value for key, value in properties.items() if value is not None}
@@ -74,3 +100,41 @@ def _theory(given: argparse.Namespace) -> None:
     highest = theory.HIGHEST_PACKING_FRACTION[dimension]
     print(f"{quantity.meaning}, {quantity.source[dimension]}")
     print(f"holds for eta from 0 to {highest:g}, {_FLUID[dimension]}")
+
+
+def _of_mixture(given: argparse.Namespace) -> None:
+    """A line for each theory, density and, of properties of pairs, pair of species."""
+    from gaspart import theory
+
+    if given.quantity not in _MIXTURE:
+        rule = f"of mixtures there are {', '.join(_MIXTURE)}"
+        raise SceneError("quantity", given.quantity, rule)
+    name, takes = _MIXTURE[given.quantity]
+    properties = {key: getattr(given, key) for key in _PARTICLE if getattr(given, key) is not None}
+    for key in properties:
+        if key not in takes:
+            raise SceneError(key, properties[key], f"{given.quantity} of a mixture does not depend on it")
+    if given.masses is not None:
+        if given.quantity != "collision_rate":
+            raise SceneError("masses", given.masses, f"{given.quantity} does not depend on them")
+        properties["masses"] = given.masses
+    state = given.dimension, given.diameters, given.fractions
+    of_first = ", of a particle of the first of the pair with all of the second"
+    for eta in given.eta:
+        for kind, dimensions in theory.MIXTURE_THEORIES.items():
+            if given.dimension in dimensions:
+                value = getattr(theory, name)(eta, *state, theory=kind, **properties)
+                print(
+                    f"{given.quantity}(eta = {eta:g}, dimension = {given.dimension}), {kind}: {_pairs(value)}"
+                )
+    print(f"{_QUANTITIES[given.quantity].meaning}{of_first if given.quantity == 'collision_rate' else ''}")
+    print("; ".join(f"{kind}: {source}" for kind, source in _MIXTURE_SOURCES.items()))
+    highest = theory.HIGHEST_PACKING_FRACTION[given.dimension]
+    print(f"approximations, for eta from 0 to {highest:g}; their differences are a measure of their errors")
+
+
+def _pairs(value: Any) -> str:
+    """A number, or one for each pair of species, numbered from 1."""
+    if np.ndim(value) == 0:
+        return f"{float(value):.8g}"
+    return ", ".join(f"{i + 1}-{j + 1} {number:.8g}" for (i, j), number in np.ndenumerate(value))

@@ -13,7 +13,7 @@ import numpy as np
 
 from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
 from gaspart.theory.geometry import number_density, unit_sphere_surface
-from gaspart.theory.speeds import mean_speed
+from gaspart.theory.speeds import mean_speed, mean_speed_factor
 from gaspart.theory.state import compressibility_factor, contact_value, finite_size_correction
 
 # Exact solutions of the linear Boltzmann equation over the first Sonine approximation, at zero density:
@@ -63,9 +63,7 @@ def collision_rate_finite_size_factor(packing_fraction: Numbers, dimension: int,
     Speeds: <|v_12 . n|> of velocities uniform on the sphere in D = d (N-1) dimensions over Maxwell's,
     sqrt(d N / 2) Gamma(D/2) / Gamma((D+1)/2) (exact).
     """
-    freedoms = dimension * (count - 1)
-    log_ratio = math.lgamma(0.5 * freedoms) - math.lgamma(0.5 * (freedoms + 1))
-    speeds = math.sqrt(0.5 * dimension * count) * math.exp(log_ratio)
+    speeds = math.sqrt(count / (count - 1.0)) * mean_speed_factor(dimension * (count - 1))
     eta = np.maximum(packing_fraction, 1e-6)  # the ratio's limit, where the excess itself vanishes
     shift = finite_size_correction(eta, dimension, count, ensemble="canonical")
     return speeds * (1.0 + shift / (compressibility_factor(eta, dimension) - 1.0))

@@ -34,8 +34,14 @@ def mean_speed(
     infinite = math.sqrt(ratio * temperature / mass)
     if count is None:
         return infinite
-    half = 0.5 * dimension * count
-    return infinite * math.sqrt(half) * math.exp(math.lgamma(half) - math.lgamma(half + 0.5))
+    return infinite * mean_speed_factor(dimension * count)
+
+
+def mean_speed_factor(freedoms: float) -> float:
+    """<|v|> of a velocity component of particles at fixed energy, over that of Maxwell's distribution with
+    the same <v^2>: sqrt(n) Gamma(n) / Gamma(n + 1/2), n half the number of degrees of freedom (exact)."""
+    half = 0.5 * freedoms
+    return math.sqrt(half) * math.exp(math.lgamma(half) - math.lgamma(half + 0.5))
 
 
 @checked
