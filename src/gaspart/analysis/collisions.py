@@ -141,10 +141,9 @@ def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
     Raises SceneError for a scene of several kinds of particles.
     """
     scene = Scene.from_dict(json.loads(data.attrs["scene"]))
-    kinds = {(thing.radius, thing.mass) for thing in scene.kinds}
-    if len(kinds) != 1:
-        raise SceneError("species", len(kinds), "the contact value is defined for equal particles only")
-    diameter = 2.0 * kinds.pop()[0]
+    if not scene.alike:
+        raise SceneError("species", len(scene.kinds), "the contact value is defined for equal particles only")
+    diameter = 2.0 * scene.largest_radius
     surface = unit_sphere_surface(scene.dimension)
     times, approach = data["time"].values, data["approach"].values
     ends = np.linspace(0, len(times), blocks + 1).astype(int)

@@ -193,7 +193,9 @@ def _density(run: Run, axis: int, edges: np.ndarray) -> Callable[[np.ndarray], n
     if stored < run.count and len(run.scene.kinds) > 1:
         raise SceneError("follow", stored, f"needs all {run.count} particles, of several kinds, in the file")
     free, radii = np.isfinite(run.masses[:stored]), run.radii[:stored]
-    kinds = [free & (radii == radius) for radius in np.unique(radii[free])]
+    kinds = [free]
+    if not np.isfinite(run.masses).all():  # fixed particles leave less room to larger ones
+        kinds = [free & (radii == radius) for radius in np.unique(radii[free])]
     rooms = [_room(run, radii[members][0], axis, edges) for members in kinds]
     empty = np.where(np.any(rooms, axis=0), 0.0, np.nan) if kinds else np.zeros(len(edges) - 1)
 
@@ -255,7 +257,7 @@ def _theory_of_density(run: Run, axis: int, edges: np.ndarray) -> dict[str, Any]
     scene, kinds = run.scene, run.scene.kinds
     field = 0.0 if scene.gravity is None else scene.gravity[axis]
     across = scene.gravity is not None and any(g for n, g in enumerate(scene.gravity) if n != axis)
-    equal = len({(kind.radius, kind.mass, kind.fixed) for kind in kinds}) == 1 and not kinds[0].fixed
+    equal = scene.alike and not any(kind.fixed for kind in kinds)
     if not equal or scene.walls or scene.faces or across or not (field or run.periodic[axis]):
         return {}
     if field and (run.dissipates or run.followed or not run.temperature > 0.0):

@@ -114,7 +114,7 @@ def _coefficient(
     public, symbol = _PUBLIC[name]
     with measured(source, start) as run:
         settings = _stored(run)
-        if name == "heat" and len({(it.mass, it.radius) for it in run.scene.kinds}) > 1:
+        if name == "heat" and not run.scene.alike:
             raise SceneError("species", len(run.scene.kinds), "the heat flux of a mixture contains diffusion")
         lags = _lags_until(settings, lag)
         running, slopes = (

@@ -71,6 +71,11 @@ FEATURES: dict[str, Feature] = {
         "fixed",
         lambda scene: True if any(kind.fixed and kind.count for kind in scene.kinds) else None,
     ),
+    "polydispersity": Feature(
+        "species of particles of different sizes",
+        "species.polydispersity",
+        lambda scene: next((kind.polydispersity for kind in scene.species if not kind.alike), None),
+    ),
     "centres_to_walls": Feature(
         "walls that stop the centres of particles",
         "centres_to_walls",

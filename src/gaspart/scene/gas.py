@@ -43,6 +43,52 @@ class Gas:
         return {"packing_fraction": self.packing_fraction, "dimension": self.dimension, **self.particle}
 
 
+@dataclass(frozen=True)
+class Mixture:
+    """Smooth and elastic particles of any sizes and masses that only their contacts with each other and hard
+    faces deflect.
+
+    dimension: 2 or 3; packing_fraction; counts, diameters and masses of S sizes (S,), those of a polydisperse
+    species one for each particle; temperature: k_B T of the initial velocities.
+    """
+
+    dimension: int
+    packing_fraction: float
+    counts: tuple[int, ...]
+    diameters: tuple[float, ...]
+    masses: tuple[float, ...]
+    temperature: float
+
+    @property
+    def sizes(self) -> tuple[float, int, tuple[float, ...], tuple[int, ...]]:
+        """Packing fraction, dimension, diameters and numbers, as the functions of mixtures in
+        `gaspart.theory` take them."""
+        return self.packing_fraction, self.dimension, self.diameters, self.counts
+
+    def thinned(self, most: int) -> Mixture:
+        """The same with every k-th size only, at most so many if they are of one species."""
+        step = -(-len(self.counts) // most)
+        kept = slice(step // 2, None, step)
+        sizes = self.counts[kept], self.diameters[kept], self.masses[kept]
+        return Mixture(self.dimension, self.packing_fraction, *sizes, self.temperature)
+
+
+def mixture_of(scene: Scene) -> Mixture | None:
+    """See `Scene.mixture`."""
+    counts, diameters, masses = [], [], []
+    kinds = [kind for kind in scene.kinds if kind.count]
+    for kind in kinds:
+        sizes = [kind.radius] if kind.alike else kind.radii.tolist()
+        counts += [kind.count // len(sizes)] * len(sizes)
+        diameters += [2.0 * radius for radius in sizes]
+        masses += [kind.mass] * len(sizes)
+    if not kinds:
+        return None
+    energies = (kind.count * kind.initial_temperature(scene.dimension) for kind in kinds)
+    parts = tuple(counts), tuple(diameters), tuple(masses)
+    return Mixture(scene.dimension, scene.packing_fraction, *parts, sum(energies) / scene.count)
+
+
 def plain_gas(scene: Scene) -> Gas:
     """`Scene.gas`. Raises SceneError for a scene that is none."""
     if scene.gas is None:

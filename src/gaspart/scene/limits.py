@@ -14,7 +14,7 @@ from gaspart.scene.validation import vector
 if TYPE_CHECKING:
     from gaspart.scene.container import Container
     from gaspart.scene.scene import Scene
-    from gaspart.scene.species import Species
+    from gaspart.scene.species import Body, Species
 
 _RESOLVED = 1e12  # diameters in the longest side, at most: contacts are then accurate to a thousandth
 _ROOM = 1e-6  # of a radius: the least room of a particle between two walls
@@ -32,7 +32,7 @@ def closest_packing(scene: Scene) -> float:
     """The highest packing fraction that the particles may have: proven for equal ones, 1 for others."""
     alike = (
         len({kind.radius for kind in scene.species if kind.count} | {it.radius for it in scene.bodies}) < 2
-    )
+    ) and all(kind.alike for kind in scene.species)
     return CLOSE_PACKING[scene.dimension] if alike else 1.0
 
 
@@ -42,9 +42,10 @@ def check_packing(scene: Scene) -> None:
         raise SceneError("packing_fraction", scene.packing_fraction, "exceeds close packing")
 
 
-def check_room(container: Container, centres_to_walls: bool, key: str, radius: float, fixed: bool) -> None:
-    """Raise SceneError, with `key`, if a particle of this radius does not fit into the container, cannot move
-    in it though it is not `fixed`, or is so small that its contacts are lost in rounding."""
+def check_room(container: Container, centres_to_walls: bool, key: str, thing: Body | Species) -> None:
+    """Raise SceneError, with `key`, if a particle does not fit into the container, cannot move in it though
+    it is not fixed, or is so small that its contacts are lost in rounding."""
+    radius = thing.largest_radius
     shortest, longest = min(container.lengths), max(container.lengths)
     if not centres_to_walls:
         if 2 * radius > shortest:
@@ -52,10 +53,11 @@ def check_room(container: Container, centres_to_walls: bool, key: str, radius: f
             raise SceneError(key, radius, rule)
         walled = zip(container.lengths, container.periodic, strict=True)
         narrow = any(2 * radius * (1.0 + _ROOM) > length for length, periodic in walled if not periodic)
-        if narrow and not fixed:
+        if narrow and not thing.fixed:
             rule = "leaves no room between two walls, which it would hit infinitely often in no time"
             raise SceneError(key, radius, rule)
-    if 2 * radius * _RESOLVED < longest:
+    if 2 * thing.smallest_radius * _RESOLVED < longest:
+        radius = thing.smallest_radius
         rule = f"too small to resolve its contacts, in a container whose longest side is {longest:g}"
         raise SceneError(key, radius, rule)
 
@@ -71,8 +73,10 @@ def check_region(container: Container, key: str, kind: Species) -> None:
     for low, high, length in zip(lower, upper, container.lengths, strict=True):
         if low < 0.0 or high > length:
             raise SceneError(key, kind.region, "must lie inside the container")
-        if not high - low > 2.0 * kind.radius:
-            raise SceneError(key, kind.region, f"has no room for a particle of radius {kind.radius:g}")
+        if not high - low > 2.0 * kind.largest_radius:
+            raise SceneError(
+                key, kind.region, f"has no room for a particle of radius {kind.largest_radius:g}"
+            )
 
 
 class Nearby:

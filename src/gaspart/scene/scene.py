@@ -19,7 +19,7 @@ from gaspart.scene.face_checks import check_faces
 from gaspart.scene.faces import SCHEMA as FACES_SCHEMA
 from gaspart.scene.faces import Sticky, Surface, surface_from_dict, surface_to_dict
 from gaspart.scene.features import check_features, features
-from gaspart.scene.gas import Gas
+from gaspart.scene.gas import Gas, Mixture, mixture_of
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.keys import FLAG, VECTOR, checked_by_class, declared, instance_of, list_of, validate
 from gaspart.scene.limits import Nearby, check_packing, check_region, check_room, rounding
@@ -129,7 +129,7 @@ class Scene:
         return None
 
     def _fits(self, key: str, thing: Body | Species) -> None:
-        check_room(self.container, self.centres_to_walls, key, thing.radius, thing.fixed)
+        check_room(self.container, self.centres_to_walls, key, thing)
 
     def _check_body(self, n: int, body: Body, earlier: Nearby) -> None:
         where = f"bodies[{n}]"
@@ -211,25 +211,31 @@ class Scene:
     def packing_fraction(self) -> float:
         """Volume (3D) or area (2D) of all particles over that of the container."""
         bodies = sum(body.radius**self.dimension for body in self.bodies)
-        species = sum(kind.count * kind.radius**self.dimension for kind in self.species)
+        species = sum(kind.total_power(self.dimension) for kind in self.species)
         return ball_volume(self.dimension) * (bodies + species) / self.container.volume
 
     @property
     def largest_radius(self) -> float:
         """The largest radius of any particle (0 in an empty scene)."""
-        return max((kind.radius for kind in self.kinds if kind.count), default=0.0)
+        return max((kind.largest_radius for kind in self.kinds if kind.count), default=0.0)
 
     @property
     def smallest_radius(self) -> float:
         """The smallest radius of any particle (0 in an empty scene)."""
-        return min((kind.radius for kind in self.kinds if kind.count), default=0.0)
+        return min((kind.smallest_radius for kind in self.kinds if kind.count), default=0.0)
+
+    @property
+    def alike(self) -> bool:
+        """Whether all particles have one radius and one mass."""
+        kinds = [kind for kind in self.kinds if kind.count]
+        return len({(kind.radius, kind.mass) for kind in kinds}) < 2 and all(kind.alike for kind in kinds)
 
     @property
     def gas(self) -> Gas | None:
         """The plain gas that the scene is, at the temperature of its initial velocities; None if it is empty,
         has particles of several sizes or masses, or has any feature but `centres_to_walls`."""
         kinds = [kind for kind in self.kinds if kind.count]
-        if len({(kind.radius, kind.mass) for kind in kinds}) != 1 or features(self) - {"centres_to_walls"}:
+        if not kinds or not self.alike or features(self) - {"centres_to_walls"}:
             return None
         kind, dimension, count = kinds[0], self.dimension, self.count
         temperature = kind.initial_temperature(dimension)
@@ -237,6 +243,14 @@ class Scene:
             temperature = sum(each.count * each.initial_temperature(dimension) for each in kinds) / count
         fraction = count * ball_volume(dimension, kind.radius) / self.container.volume
         return Gas(dimension, fraction, count, 2.0 * kind.radius, temperature, kind.mass)
+
+    @property
+    def mixture(self) -> Mixture | None:
+        """The mixture of plain gases that the scene is; None if it is empty, or has any feature but
+        `polydispersity` and `centres_to_walls`."""
+        if features(self) - {"polydispersity", "centres_to_walls"}:
+            return None
+        return mixture_of(self)
 
     def reach(self, radius: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """(d,), (d,): the lowest and highest coordinates of the centre of a particle of this radius."""

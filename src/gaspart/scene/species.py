@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from gaspart.errors import SceneError
 from gaspart.scene.keys import (
@@ -13,6 +14,7 @@ from gaspart.scene.keys import (
     POSITIVE,
     VECTOR,
     Rule,
+    between,
     checked_by_class,
     choice,
     count,
@@ -20,7 +22,11 @@ from gaspart.scene.keys import (
     two_vectors,
     validate,
 )
+from gaspart.scene.sizes import DISTRIBUTIONS, MOST_UNIFORM, relative_radii
 from gaspart.scene.validation import LARGEST, MOST_BODIES, SMALLEST, number, set_fields, size, vector
+
+if TYPE_CHECKING:
+    import numpy as np
 
 LATTICES = ("lattice", "slab")
 SHARED = (*LATTICES, "compressed")
@@ -59,10 +65,15 @@ class Species:
     to a density beyond that of insertion (see `compression`). A `fixed` particle with a `vibration` or a
     `temperature` has one mode of vibration: a contact exchanges its energy with the normal energy of the
     other particle.
+
+    With a `polydispersity` the radii differ: `radius` is their mean, and they are the equally probable
+    quantiles of a `radius_distribution` of that relative standard deviation, the largest first. They follow
+    from these numbers alone, not from the seed, so that every run has the same packing fraction. The mass is
+    the same for all.
     """
 
     count: int = field(metadata=declared(count(MOST_BODIES), "number of particles"))
-    radius: float = field(metadata=_RADIUS)
+    radius: float = field(metadata=declared(POSITIVE, "radius; the mean, if there is a polydispersity"))
     mass: float = field(default=1.0, metadata=_MASS)
     speed: float | None = field(default=None, metadata=declared(NOT_NEGATIVE, "one initial speed for all"))
     temperature: float | None = field(
@@ -96,6 +107,16 @@ class Species:
             NOT_NEGATIVE, "of fixed particles, instead of `temperature`: initial energy of vibration"
         ),
     )
+    polydispersity: float | None = field(
+        default=None,
+        metadata=declared(
+            between(0.0, 1.0), "standard deviation of the radii over their mean; by default all are equal"
+        ),
+    )
+    radius_distribution: str | None = field(
+        default=None,
+        metadata=declared(choice(*DISTRIBUTIONS), "of the radii, with a polydispersity; default: lognormal"),
+    )
 
     def __post_init__(self) -> None:
         validate(self)
@@ -110,6 +131,52 @@ class Species:
             raise SceneError("exact_temperature", True, "needs the temperature of a species that moves")
         if self.vibration is not None and self.temperature is not None:
             raise SceneError("temperature", self.temperature, "give vibration or temperature, not both")
+        if self.polydispersity == 0.0:  # absent everywhere, so that no other place has to ask
+            set_fields(self, polydispersity=None, radius_distribution=None)
+        self._check_sizes()
+
+    def _check_sizes(self) -> None:
+        """The rules of a polydisperse species."""
+        if self.polydispersity is None:
+            if self.radius_distribution is not None:
+                raise SceneError("radius_distribution", self.radius_distribution, "needs a polydispersity")
+        elif self.radius_distribution == "uniform" and not self.polydispersity < MOST_UNIFORM:
+            rule = f"of a uniform distribution must be below {MOST_UNIFORM:.4g}, where radii would be zero"
+            raise SceneError("polydispersity", self.polydispersity, rule)
+        elif self.moment_of_inertia is not None:
+            rule = "of a polydisperse species is that of uniform discs or spheres"
+            raise SceneError("moment_of_inertia", self.moment_of_inertia, rule)
+
+    @property
+    def alike(self) -> bool:
+        """Whether its particles have one radius."""
+        return self.polydispersity is None
+
+    @property
+    def radii(self) -> np.ndarray:
+        """(count,) radii of its particles."""
+        import numpy as np
+
+        if self.polydispersity is None:
+            return np.full(self.count, self.radius)
+        distribution = self.radius_distribution or DISTRIBUTIONS[0]
+        return self.radius * relative_radii(self.count, self.polydispersity, distribution)
+
+    @property
+    def largest_radius(self) -> float:
+        """The largest of its radii."""
+        return self.radius if self.alike or not self.count else float(self.radii[0])
+
+    @property
+    def smallest_radius(self) -> float:
+        """The smallest of its radii."""
+        return self.radius if self.alike or not self.count else float(self.radii[-1])
+
+    def total_power(self, dimension: int) -> float:
+        """The sum of radius^dimension over its particles."""
+        if self.alike:
+            return self.count * self.radius**dimension
+        return math.fsum(radius**dimension for radius in self.radii.tolist())
 
     @property
     def vibrates(self) -> bool:
@@ -128,6 +195,7 @@ class Body:
     """One particle at a given position. In 2D its spin, the angular velocity, is a number, in 3D (3,)."""
 
     count: ClassVar[int] = 1
+    alike: ClassVar[bool] = True
     position: tuple[float, ...] = field(metadata=declared(POSITION, "initial position of its centre"))
     velocity: tuple[float, ...] = field(metadata=declared(VECTOR, "initial velocity"))
     radius: float = field(metadata=_RADIUS)
@@ -153,6 +221,20 @@ class Body:
         for key, value in (("velocity", self.velocity), ("spin", self.spin_vector)):
             if self.fixed and any(value):
                 raise SceneError(key, value, "a fixed particle has none")
+
+    @property
+    def radii(self) -> np.ndarray:
+        """(1,) its radius."""
+        import numpy as np
+
+        return np.array([self.radius])
+
+    @property
+    def largest_radius(self) -> float:
+        """Its radius."""
+        return self.radius
+
+    smallest_radius = largest_radius
 
     @property
     def vibrates(self) -> bool:

@@ -185,7 +185,7 @@ def lattice(scene: Scene, rng: np.random.Generator, slab: bool = False) -> np.nd
             raise SceneError("arrangement", "slab", f"{scene.count} particles do not fill the crystal's half")
     empty = rng.permutation(spare)[: len(sites) - scene.count]
     chosen = np.setdiff1d(np.arange(len(sites)), empty, assume_unique=True)
-    if len(scene.species) > 1:
+    if len(scene.species) > 1 or not all(kind.alike for kind in scene.species):
         chosen = rng.permutation(chosen)
     return sites[chosen]
 

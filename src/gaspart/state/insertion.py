@@ -22,17 +22,21 @@ PATIENCE = 2_000_000
 
 
 def per_body(scene: Scene, attribute: str) -> np.ndarray:
-    """(N,) an attribute of all particles; all of one species have the same."""
+    """(N,) an attribute of all particles; all of one species have the same, but for the radius."""
     alone = [getattr(body, attribute) for body in scene.bodies]
+    if attribute == "radius":
+        return np.concatenate([alone, *(kind.radii for kind in scene.species)])
     return np.concatenate([alone, *(np.full(kind.count, getattr(kind, attribute)) for kind in scene.species)])
 
 
 def range_of_centres(scene: Scene, kind: Species) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """(d,), (d,): the lowest and highest coordinates at which centres of a species are placed."""
+    """(d,), (d,): the lowest and highest coordinates at which centres of a species are placed, of which all
+    keep the distance of the largest from walls."""
+    radius = kind.largest_radius
     if kind.region is None:
-        return scene.reach(kind.radius)
+        return scene.reach(radius)
     lower, upper = kind.region
-    return tuple(x + kind.radius for x in lower), tuple(x - kind.radius for x in upper)
+    return tuple(x + radius for x in lower), tuple(x - radius for x in upper)
 
 
 def empty_arrays(scene: Scene, boxes: Boxes, radii: np.ndarray) -> tuple[Placed, PeriodicBoxes, Block]:
@@ -64,13 +68,12 @@ def random_insertion(
     from gaspart.kernels.insertion import Task, place, put
 
     dimension, explicit = scene.dimension, len(scene.bodies)
-    species = sorted(range(len(scene.species)), key=lambda n: -scene.species[n].radius)
+    species = sorted(range(len(scene.species)), key=lambda n: -scene.species[n].largest_radius)
     order = [np.arange(explicit)]  # particles in the order in which they are placed
     first = explicit + np.cumsum([0, *(kind.count for kind in scene.species)])
     order += [np.arange(first[n], first[n + 1]) for n in species]
     radii = np.concatenate(
-        [[body.radius for body in scene.bodies]]
-        + [np.full(scene.species[n].count, scene.species[n].radius) for n in species]
+        [[body.radius for body in scene.bodies]] + [scene.species[n].radii for n in species]
     ).astype(float)
     largest = largest_in_boxes(scene)
     boxes = make_boxes(scene, sides_for(scene, 2 * largest), images=False, narrowest=2 * largest)
@@ -91,12 +94,10 @@ def random_insertion(
         lower, upper = range_of_centres(scene, kind)
         failures = 0
         numbers = np.empty((max(256, min(1_000_000, 2 * kind.count)), dimension))
-        alone = kind.radius > largest
-        oversized = np.flatnonzero(radii[:done] > largest)
         while done < stop:
             draws = rng.random(out=numbers[: max(256, min(1_000_000, 2 * (stop - done)))])
-            if alone:  # too large for the boxes: it is tested against all that are placed already, and alone
-                oversized = np.arange(done)
+            alone = radii[done] > largest  # the boxes: it is tested against all that are placed already
+            oversized = np.arange(done) if alone else np.flatnonzero(radii[:done] > largest)
             task = Task(done, done + 1 if alone else stop, failures, patience, lower, upper)
             done, failures, _ = place(draws, placed, grid, block, task, oversized, walls)
             if failures >= patience:

@@ -64,6 +64,8 @@ def boxes_and_largest(scene: Scene, boxes_per_side: int | tuple[int, ...] | None
 def sizes(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """The different radii (K,) in rising order, and (K,) how many particles have each."""
     kinds = [kind for kind in scene.kinds if kind.count]
+    if not all(kind.alike for kind in kinds):
+        return np.unique(np.concatenate([kind.radii for kind in kinds]), return_counts=True)
     different, which = np.unique(np.array([kind.radius for kind in kinds], float), return_inverse=True)
     return different, np.bincount(which, [kind.count for kind in kinds], len(different)).astype(np.int64)
 

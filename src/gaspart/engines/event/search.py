@@ -73,9 +73,8 @@ def chosen_search(scene: Scene, search: str, boxes_given: bool) -> str:
         if obstacle:
             raise SceneError("search", search, f"neighbour lists do not support {obstacle}; use boxes")
         return search
-    radii = [kind.radius for kind in scene.kinds]
     dense = scene.packing_fraction >= _DENSE[scene.dimension][scene.count > _MANY]
-    alike = bool(radii) and max(radii) <= _ALIKE * min(radii)
+    alike = 0.0 < scene.largest_radius <= _ALIKE * scene.smallest_radius
     return "lists" if dense and alike and not obstacle and not boxes_given else "boxes"
 
 

@@ -67,7 +67,7 @@ class TimeStepped(Engine):
     name: ClassVar[str] = "step"
     title: ClassVar[str] = "time-stepped"
     models: ClassVar[frozenset[str]] = frozenset(
-        ("gravity", "restitution", "roughness", "fixed", "vibrations", "centres_to_walls")
+        ("gravity", "restitution", "roughness", "fixed", "vibrations", "centres_to_walls", "polydispersity")
     ) | {kind for kind, face in KINDS.items() if not face.moves}
     excludes: ClassVar[tuple[tuple[str, str], ...]] = (("restitution", "gravity"), ("fixed", "gravity"))
     same_bits: ClassVar[tuple[str, ...]] = ("boxes_per_side", "near_boxes", "skin", "threads")
