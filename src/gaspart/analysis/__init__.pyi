@@ -1,4 +1,6 @@
 from gaspart.analysis.lyapunov import lyapunov_exponent as lyapunov_exponent
+from gaspart.analysis.mixtures import contact_values as contact_values
+from gaspart.analysis.mixtures import pair_collision_rates as pair_collision_rates
 from gaspart.analysis.motion import diffusion_coefficient as diffusion_coefficient
 from gaspart.analysis.motion import mean_squared_displacement as mean_squared_displacement
 from gaspart.analysis.motion import velocity_autocorrelation as velocity_autocorrelation

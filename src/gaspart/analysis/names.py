@@ -16,6 +16,16 @@ OBSERVABLES: dict[str, tuple[str, dict[str, Any], str]] = {
     "Z": ("compressibility_factor", {}, "compressibility factor PV/(N k_B T), periodic"),
     "pressure": ("wall_pressure", {}, "pressure on each wall"),
     "collision_rate": ("collision_rate", {}, "collisions of a particle per time"),
+    "pair_rates": (
+        "pair_collision_rates",
+        {},
+        "collision rate of each pair of species, of a run with --pairs",
+    ),
+    "contact_values": (
+        "contact_values",
+        {},
+        "pair distribution at contact of each pair of species, likewise",
+    ),
     "msd": ("mean_squared_displacement", {}, "mean-squared displacement"),
     "D": ("diffusion_coefficient", {}, "diffusion coefficient"),
     "vacf": ("velocity_autocorrelation", {}, "velocity autocorrelation"),

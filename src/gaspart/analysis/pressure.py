@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from gaspart import theory
+from gaspart.analysis.mixtures import theory_of_z
 from gaspart.analysis.observable import Observable, observable, scalar
 from gaspart.analysis.run import (
     Run,
@@ -29,7 +30,8 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
 
     Z = 1 + sum |dr . dp| / (d N k_B T t), with k_B T = 2 E / (d (N - 1)) about the centre of mass. source: a
     trajectory, by its path or open, or a simulation; start: the time from which frames count (by default a
-    quarter of the run). Theory is that of the fluid, with the correction of first order in 1/N.
+    quarter of the run). Theory is that of the fluid, with the correction of first order in 1/N; of mixtures
+    an approximation, without an uncertainty.
 
     Raises SceneError for walls, fixed particles, contacts that lose energy, too few frames, and no collision.
     """
@@ -50,7 +52,8 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
 def _theory_of_z(run: Run) -> dict[str, Any]:
     gas = run.moving_fluid
     if gas is None:
-        return {}
+        mixture = run.mixture if run.scene.gas is None else None
+        return theory_of_z(mixture) if mixture else {}
     eta, d = gas.packing_fraction, gas.dimension
     value = float(theory.compressibility_factor(eta, d))
     value += float(theory.finite_size_correction(eta, d, run.count, "canonical"))

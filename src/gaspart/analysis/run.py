@@ -14,11 +14,12 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.errors import SceneError
-from gaspart.scene.gas import Gas
+from gaspart.scene.gas import Gas, Mixture
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
 from gaspart.simulation import Simulation
 from gaspart.state.insertion import per_body
+from gaspart.trajectory.pairs import PairCounter
 from gaspart.trajectory.run import open_trajectory
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
@@ -166,6 +167,18 @@ class Run:
         return gas if gas.packing_fraction <= theory.HIGHEST_PACKING_FRACTION[gas.dimension] else None
 
     @property
+    def mixture(self) -> Mixture | None:
+        """The scene's mixture, in which alike species are one each, likewise."""
+        mixture = self.scene.mixture
+        if mixture is None or not self.periodic.all() or self.count < 2:
+            return None
+        return (
+            mixture
+            if mixture.packing_fraction <= theory.HIGHEST_PACKING_FRACTION[mixture.dimension]
+            else None
+        )
+
+    @property
     def moving_fluid(self) -> Gas | None:
         """The `fluid` at the temperature of the run, None if it is at rest. Raises SceneError as `moving`."""
         gas = self.fluid
@@ -193,14 +206,15 @@ def require_collisions(run: Run) -> None:
 
 
 @contextmanager
-def measured(source: Source, start: float | None) -> Iterator[Run]:
+def measured(source: Source, start: float | None, pairs: bool = False) -> Iterator[Run]:
     """The part of a source from the time `start` on; by default without its first quarter.
 
-    A simulation is run again, from its start to the present time. Raises SceneError for fewer than two frames
+    A simulation is run again, from its start to the present time; with `pairs`, the collisions of each pair
+    of species are counted then. Raises SceneError for fewer than two frames
     and for what `open_trajectory` refuses.
     """
     if isinstance(source, Simulation):
-        opened = nullcontext(repeated(source))
+        opened = nullcontext(repeated(source, pairs))
     elif isinstance(source, xr.Dataset):
         opened = nullcontext(source)
     else:
@@ -220,7 +234,7 @@ def measured(source: Source, start: float | None) -> Iterator[Run]:
         yield Run(Scene.from_dict(parse_yaml(data.attrs["scene"])), time[chosen], part)
 
 
-def repeated(simulation: Simulation) -> xr.Dataset:
+def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
     """The frames of a simulation, which is run again from its start, at even times. Raises SceneError for one
     that has not advanced."""
     scene, engine = simulation.scene, simulation.engine
@@ -233,17 +247,23 @@ def repeated(simulation: Simulation) -> xr.Dataset:
         times = np.append(0.0, (steps * np.arange(1, frames) + 0.5) * step)
         times = times[times < simulation.time + step]
     again, rows = Simulation(scene, engine, simulation.seed), []
+    counter = PairCounter(again) if pairs else None
     for time in times:
         again.advance(until=time)
         state, tally = again.state, again.tally
         places = {"coordinates": state.positions, "displacements": state.unwrapped}
-        piston = {} if state.piston is None else {"piston_position": state.piston[0]}
-        row = {**vars(tally), **places, "velocities": state.velocities, **piston, "time": again.time}
+        extra = {} if state.piston is None else {"piston_position": state.piston[0]}
+        if counter:
+            counter.take()
+            extra["pair_collisions"] = counter.counts.copy()
+        row = {**vars(tally), **places, "velocities": state.velocities, **extra, "time": again.time}
         rows.append({name: value for name, value in row.items() if value is not None})
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     columns["displacements"] = columns["displacements"] - columns["displacements"][0]
     dims = {3: ("frame", "atom", "spatial"), 2: ("frame", "face"), 1: ("frame",)}
+    along = {name: dims[values.ndim] for name, values in columns.items()}
+    along["pair_collisions"] = ("frame", "pair")
     return xr.Dataset(
-        {name: (dims[values.ndim], values) for name, values in columns.items()},
+        {name: (along[name], values) for name, values in columns.items()},
         attrs={"scene": dump_yaml(scene.to_dict())},
     )

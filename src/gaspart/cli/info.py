@@ -94,6 +94,8 @@ def _run_options(path: Path, recipe: Recipe, stored: dict) -> list[str]:
     options += stated(settings)
     if recipe.displacements:
         options.append("--displacements")
+    if recipe.pairs:
+        options.append("--pairs")
     if recipe.follow is not None:
         options += ["--follow", str(recipe.follow)]
     if recipe.correlations is not None:

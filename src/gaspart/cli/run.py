@@ -74,6 +74,8 @@ def add_run(parser: Parser) -> None:
     )
     text = "correlate the stress tensor and the heat flux instead of velocities"
     add("--stress", action="store_true", help=text)
+    text = "count the collisions of each pair of species, for `gaspart measure FILE contact_values`"
+    add("--pairs", action="store_true", help=text)
     for name, kind in engine_settings().items():
         add_setting(parser, name, kind)
     add("--force", action="store_true", help="replace a trajectory of another run")
@@ -121,6 +123,7 @@ def _run(given: argparse.Namespace) -> None:
             displacements=given.displacements,
             follow=given.follow,
             correlations=correlations,
+            pairs=given.pairs,
             checkpoint_seconds=given.checkpoint_seconds,
             progress=progress(given.quiet, started, status.remark),
             examined=status.update,

@@ -32,6 +32,7 @@ def run(
     displacements: bool = False,
     follow: int | None = None,
     correlations: Correlations | None = None,
+    pairs: bool = False,
     checkpoint_seconds: float = 30.0,
     progress: Progress | None = None,
     examined: Callable[[list[Reached]], None] | None = None,
@@ -44,7 +45,8 @@ def run(
     spins; with `follow` only so many particles, from the first on (counters are still those of all). With
     `correlations` each frame has the sums so far of the velocities' correlations, and with `displacements`
     of the mean-squared displacement, over all pairs of samples, which may lie much closer than frames; with
-    `Correlations(stress=True)` those of the stress tensor and the heat flux instead. A run of the same recipe
+    `Correlations(stress=True)` those of the stress tensor and the heat flux instead. With `pairs` each frame
+    counts the collisions of each pair of species so far (event-driven engine). A run of the same recipe
     and program that was cut short is continued, a complete one is not changed. Another trajectory at `path`,
     or unfinished next to it, is replaced only with `overwrite`; a file of another kind never.
 
@@ -67,7 +69,7 @@ def run(
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
     recipe = Recipe(
-        scene, engine, seed, duration, sample_interval, displacements, follow, correlations, wanted
+        scene, engine, seed, duration, sample_interval, displacements, follow, correlations, wanted, pairs
     )
     return trajectory.record(recipe, path, checkpoint_seconds, progress, overwrite, Examiner(examined))
 

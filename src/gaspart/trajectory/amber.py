@@ -40,6 +40,7 @@ _EXTRA: dict[str, tuple[str, tuple[str, ...], dict[str, str]]] = {
     ),
     "vibrations": (">f4", ("atom",), {"long_name": "energy of a body's vibration"}),
     "displacements": (">f8", _VECTORS, {"units": "angstrom", "long_name": "way since time 0, unwrapped"}),
+    "pair_collisions": (">f8", ("pair",), {"long_name": "collisions of each pair of species so far"}),
     "piston": (">f8", ("motion",), {"long_name": "place along its axis, and velocity, of the piston"}),
 }
 """The variables that only some files have, as in `Layout`, in their order."""
@@ -68,7 +69,7 @@ class Layout:
 
     count: particles in the file; extra: which variables of `_EXTRA` the file has; walls: the number of
     interior walls; counters: names of those that the file has; sums: of the correlations, from lag 0 to
-    `lags`.
+    `lags`; pairs: names of those of species whose collisions are counted.
     """
 
     def __init__(
@@ -80,6 +81,7 @@ class Layout:
         counters: Collection[str],
         sums: Collection[str],
         lags: int,
+        pairs: Collection[str] = (),
     ) -> None:
         self.sizes = {
             "spatial": 3,
@@ -91,6 +93,7 @@ class Layout:
             **({"axis": dimension, "direction": dimension} if "stress_sum" in counters else {}),
             **({"lag": lags + 1} if sums else {}),
             **({"motion": 2} if "piston" in extra else {}),
+            **({"pair": len(pairs)} if pairs else {}),
         }
         faces = {"faces": ", ".join(face_names(dimension, walls))}
         self.variables = {

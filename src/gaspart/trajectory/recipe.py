@@ -19,10 +19,12 @@ from gaspart.files import descriptor_path
 from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of, number
+from gaspart.state.insertion import per_body
 from gaspart.state.random import stream
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.correlator import Correlations, stress_sums, sums_of
 from gaspart.trajectory.frames import CheckedFrames, damaged_frame, frame_count
+from gaspart.trajectory.pairs import pair_names, pairs_of
 from gaspart.trajectory.until import Until
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
@@ -50,7 +52,8 @@ class Recipe:
     duration and sample_interval are in the scene's time; duration is an integer multiple of sample_interval,
     and that, for the time-stepped engine, of time_step. follow: how many particles, from the first on, are in
     the file; None: all. correlations: sample_interval is an integer multiple of their interval. until: what
-    ends the run in place of a duration, which is then None.
+    ends the run in place of a duration, which is then None. pairs: count the collisions of each pair of
+    species.
     """
 
     scene: Scene
@@ -62,6 +65,7 @@ class Recipe:
     follow: int | None = None
     correlations: Correlations | None = None
     until: Until | None = None
+    pairs: bool = False
 
     def __post_init__(self) -> None:
         stream(self.seed)  # raises SceneError for an invalid seed
@@ -82,6 +86,10 @@ class Recipe:
             raise SceneError("sample_interval", self.sample_interval, rule)
         if self.correlations:
             self._check_correlations(self.correlations)
+        if self.pairs:
+            pairs_of(self.scene)
+            if not self.engine.records_events:
+                raise SceneError("pairs", True, 'collisions of pairs are counted by the "event" engine')
 
     def _check_correlations(self, asked: Correlations) -> None:
         """Refuse correlations that this run cannot have, with SceneError."""
@@ -139,6 +147,7 @@ class Recipe:
             "vibrations": scene.vibrates,
             "displacements": self.displacements,
             "piston": bool(pistons(scene)),
+            "pair_collisions": self.pairs,
         }
         extra = [name for name, present in names.items() if present]
         sums, lags = [], 0
@@ -146,7 +155,8 @@ class Recipe:
             sums = stress_sums() if self.stress else sums_of(self.displacements)
             lags = self.correlations.lags
         counters = amber.counters(self.engine, self.stress)
-        return amber.Layout(self.stored_count, scene.dimension, extra, walls, counters, sums, lags)
+        pairs = pair_names(scene) if self.pairs else []
+        return amber.Layout(self.stored_count, scene.dimension, extra, walls, counters, sums, lags, pairs)
 
     def attributes(self) -> dict:
         """The recipe as the file's attributes, from which `read_recipe` restores it."""
@@ -161,6 +171,7 @@ class Recipe:
             "displacements": np.int32(self.displacements),
             **({} if self.follow is None else {"follow": np.int32(self.follow)}),
             **({} if self.correlations is None else {"correlations": self.correlations.to_json()}),
+            **({"pairs": np.int32(1)} if self.pairs else {}),
         }
 
     def _length(self) -> dict:
@@ -175,13 +186,10 @@ class Recipe:
         from gaspart.kernels.compile.policy import source_digest
 
         scene, versions = self.scene, provenance.versions()
-        groups = [(len(scene.species), body.radius, 1) for body in scene.bodies]
-        groups += [(n, kind.radius, kind.count) for n, kind in enumerate(scene.species)]
-        types, radii, counts = (np.array(column) for column in zip(*groups, strict=True))
-        radii, types = (
-            np.repeat(radii, counts)[: self.stored_count],
-            np.repeat(types, counts)[: self.stored_count],
-        )
+        groups = [len(scene.species)] * len(scene.bodies) + list(range(len(scene.species)))
+        counts = [1] * len(scene.bodies) + [kind.count for kind in scene.species]
+        types = np.repeat(groups, counts)[: self.stored_count]
+        radii = per_body(scene, "radius")[: self.stored_count]
         attributes = {
             "Conventions": "AMBER",
             "ConventionVersion": "1.0",
@@ -293,6 +301,7 @@ def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
             follow=int(stored["follow"]) if "follow" in stored else None,
             correlations=Correlations.from_json(stored["correlations"]) if "correlations" in stored else None,
             until=Until.from_json(stored["until"], stored.get("at_most")) if "until" in stored else None,
+            pairs=bool(stored.get("pairs", False)),
         )
     except SceneError:
         raise

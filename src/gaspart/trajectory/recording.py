@@ -19,6 +19,7 @@ from gaspart.trajectory import amber
 from gaspart.trajectory.checkpoint import checkpoint_path, write_checkpoint
 from gaspart.trajectory.correlator import Correlator, StressCorrelator
 from gaspart.trajectory.frames import Frames
+from gaspart.trajectory.pairs import PairCounter
 from gaspart.trajectory.recipe import Recipe, multiple
 from gaspart.trajectory.until import examined_before, examined_from, is_examined
 
@@ -58,6 +59,7 @@ class Recording:
         elif recipe.correlations:
             masses = simulation.initial_state.masses
             self._correlator = Correlator(recipe.correlations, recipe.scene, masses, recipe.displacements)
+        self._pairs = PairCounter(simulation) if recipe.pairs else None
         self._examine = examine
         self._duration = recipe.longest if examine is None else self._estimate(0, math.inf)
         self._stretch = recipe.engine.first_stretch
@@ -68,6 +70,8 @@ class Recording:
         self._simulation.restore(arrays)
         if self._correlator:
             self._correlator.restore(arrays)
+        if self._pairs:
+            self._pairs.restore(arrays)
         if self._simulation.time > 0.0:
             self._note()
 
@@ -159,7 +163,8 @@ class Recording:
     def _arrays(self) -> dict[str, np.ndarray]:
         """The arrays of a checkpoint."""
         correlations = self._correlator.checkpoint() if self._correlator else {}
-        return {**self._simulation.checkpoint(), **correlations}
+        pairs = self._pairs.checkpoint() if self._pairs else {}
+        return {**self._simulation.checkpoint(), **correlations, **pairs}
 
     def _note(self) -> None:
         command = f"gaspart resume {shlex.quote(str(self._path))}"
@@ -181,11 +186,15 @@ class Recording:
             self._advance(until, until=until, max_work=self._stretch)
             yield
         simulation.advance(until=until)  # remaining events at exactly this time
+        if self._pairs:
+            self._pairs.take()
 
     def _advance(self, goal: float, **limits: Any) -> None:
         """One stretch towards the time `goal`; the next one is fitted to take about `_STRETCH` seconds."""
         begun = time.monotonic()
         self._simulation.advance(**limits)
+        if self._pairs:
+            self._pairs.take()
         took = time.monotonic() - begun
         if took > _STRETCH * 2:
             self._stretch = max(1, self._stretch // 2)
@@ -218,4 +227,5 @@ class Recording:
             **(self._correlator.sums() if self._correlator else {}),
             **{name: values[followed] for name, values in inner.items()},
             **({} if state.piston is None else {"piston": state.piston}),
+            **({"pair_collisions": self._pairs.counts} if self._pairs else {}),
         }

@@ -27,6 +27,7 @@ from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.checkpoint import checkpoint_path, read_checkpoint, remove_checkpoint
 from gaspart.trajectory.correlator import Correlations, stress_units
 from gaspart.trajectory.frames import Frames, frame_count
+from gaspart.trajectory.pairs import pair_names
 from gaspart.trajectory.recipe import (
     PARTIAL,
     Recipe,
@@ -109,6 +110,8 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     if "piston" in data:
         data = _with_piston(data)
     coordinates: dict = {"spatial": list("xyz"[: scene.dimension]), "face": faces}
+    if recipe.pairs:
+        coordinates["pair"] = ("pair", pair_names(scene), {"long_name": "numbers of two species, from 0"})
     if recipe.correlations:
         lags = recipe.correlations.interval * np.arange(data.sizes["lag"])
         coordinates["lag"] = ("lag", lags, {"units": "time"})
@@ -150,6 +153,7 @@ def run(
     displacements: bool = False,
     follow: int | None = None,
     correlations: Correlations | None = None,
+    pairs: bool = False,
     checkpoint_seconds: float = 30.0,
     progress: Progress | None = None,
     overwrite: bool = False,
@@ -158,7 +162,9 @@ def run(
 
     The arguments, and what is raised, are those of `gaspart.run` (`gaspart.tradeoff.until`).
     """
-    wanted = Recipe(scene, engine, seed, duration, sample_interval, displacements, follow, correlations)
+    wanted = Recipe(
+        scene, engine, seed, duration, sample_interval, displacements, follow, correlations, pairs=pairs
+    )
     return record(wanted, path, checkpoint_seconds, progress, overwrite)
 
 

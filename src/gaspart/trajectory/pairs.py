@@ -1,0 +1,61 @@
+"""Collisions of each pair of species, counted from the recorded events of a run."""
+
+from __future__ import annotations
+
+from itertools import combinations_with_replacement
+
+import numpy as np
+
+from gaspart.errors import SceneError
+from gaspart.scene.scene import Scene
+from gaspart.simulation import Simulation
+
+_NAME = "pair collisions"  # of the array in a checkpoint
+
+
+def pairs_of(scene: Scene) -> list[tuple[int, int]]:
+    """The pairs of species by their numbers, the lower one first. Raises SceneError for single particles."""
+    if scene.bodies:
+        raise SceneError(
+            "bodies", len(scene.bodies), "pairs are counted by species: there are single particles"
+        )
+    return list(combinations_with_replacement(range(len(scene.species)), 2))
+
+
+def pair_names(scene: Scene) -> list[str]:
+    """Their names, such as "0-1"."""
+    return [f"{first}-{second}" for first, second in pairs_of(scene)]
+
+
+class PairCounter:
+    """The collisions of each pair of species since time 0, of a simulation whose events it has recorded.
+
+    counts (pairs,), as in `pairs_of`.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        scene = simulation.scene
+        pairs, kinds = pairs_of(scene), len(scene.species)
+        self._number = np.zeros((kinds, kinds), dtype=np.int64)
+        for n, (first, second) in enumerate(pairs):
+            self._number[first, second] = self._number[second, first] = n
+        self._species = np.repeat(np.arange(kinds), [kind.count for kind in scene.species])
+        self.counts = np.zeros(len(pairs))
+        self._simulation = simulation
+        simulation.record_events = True
+
+    def take(self) -> None:
+        """Count the events since the last call, and forget them."""
+        bodies = self._simulation.events["bodies"]
+        species = self._species[bodies[bodies[:, 1] >= 0]]  # without hits of faces and walls
+        found = self._number[species[:, 0], species[:, 1]]
+        self.counts += np.bincount(found, minlength=len(self.counts))
+        self._simulation.record_events = True  # a new, empty list
+
+    def checkpoint(self) -> dict[str, np.ndarray]:
+        """Arrays from which `restore` continues."""
+        return {_NAME: self.counts}
+
+    def restore(self, arrays: dict[str, np.ndarray]) -> None:
+        """Continue from a checkpoint."""
+        self.counts = arrays[_NAME].copy()
