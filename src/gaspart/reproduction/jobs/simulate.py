@@ -32,6 +32,7 @@ KEYS: dict[str, Kind] = {
     "stress": flag(
         "with `lags`: correlate the stress tensor and the heat flux instead of velocities", default=False
     ),
+    "pairs": flag("count the collisions of each pair of species", default=False),
     "follow": count(
         "keep only the first so many particles (single `bodies` come first, then `species`); counters and "
         "energies are those of all",
@@ -62,6 +63,7 @@ def parameters(point: Point) -> dict:
         "displacements": point.settings.get("displacements", False),
         "follow": follow,
         "correlations": correlations,
+        **({"pairs": True} if point.settings.get("pairs") else {}),
     }
 
 
@@ -86,5 +88,6 @@ def record(parameters: dict, seed: tuple[int, ...], path: Path, overwrite: bool)
         displacements=parameters["displacements"],
         follow=parameters["follow"],
         correlations=parameters["correlations"] and Correlations(**parameters["correlations"]),
+        pairs=parameters.get("pairs", False),
         overwrite=overwrite,
     )

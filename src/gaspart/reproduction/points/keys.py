@@ -10,6 +10,7 @@ from typing import Any
 from gaspart import engines
 from gaspart.kinds import POSITIVE, TEXT, Kind, choice, count, described, flag, positive
 from gaspart.scene.keys import schema_of
+from gaspart.scene.sizes import DISTRIBUTIONS
 
 PREFIX = "scene."
 """Start of a key that replaces a value of the scene file: ``scene.species.0.mass``."""
@@ -40,6 +41,22 @@ GAS: dict[str, Kind] = {
         default=False,
     ),
     "mass": positive("mass of a particle", default=1.0),
+    "size_ratio": positive(
+        "radius of the particles of a second species over that of the first, whose `radius` is given",
+        maximum=1,
+        default=None,
+    ),
+    "small_fraction": positive(
+        "number of these smaller particles over that of all; required with `size_ratio`",
+        exclusiveMaximum=1,
+        default=None,
+    ),
+    "polydispersity": positive(
+        "standard deviation of the radii over their mean, which is the `radius`", maximum=1, default=None
+    ),
+    "radius_distribution": choice(
+        "of the radii, with `polydispersity`", *DISTRIBUTIONS, default=DISTRIBUTIONS[0]
+    ),
     "temperature": positive("temperature of the Maxwellian velocities at the start", default=None),
     "exact_temperature": flag(
         "the velocities are scaled to exactly the `temperature`, without a mean velocity along axes on which "
@@ -56,7 +73,7 @@ GAS: dict[str, Kind] = {
         default="random",
     ),
 }
-"""One species in a container."""
+"""One species in a container, or two of different sizes."""
 
 SCENE_FILE: dict[str, Kind] = {
     "scene": described(

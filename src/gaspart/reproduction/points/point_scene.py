@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from copy import deepcopy
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from gaspart.errors import SceneError, shown
 from gaspart.reproduction.points.keys import EXTENTS, GAS, PREFIX
 from gaspart.scene.geometry import ball_volume
+from gaspart.scene.sizes import DISTRIBUTIONS
 from gaspart.scene.validation import MOST_BODIES
 from gaspart.yaml_text import read_yaml
 
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class Extents(NamedTuple):
-    """Number of particles, largest radius and side lengths (d,)."""
+    """Number of particles, largest radius (of a polydisperse species the mean) and side lengths (d,)."""
 
     particles: int
     radius: float
@@ -50,7 +52,7 @@ def extents(point: Point) -> Extents:
         return Extents(read.count, read.largest_radius, read.container.lengths)
     _check_gas(point)
     dimension = settings["dimension"]
-    unit = ball_volume(dimension)
+    unit = ball_volume(dimension) * _mean_volume(point)
     values: list[Any] = [settings.get(key) for key in EXTENTS]
     count, radius, fraction, side = values
     if side is None:
@@ -72,7 +74,7 @@ def extents(point: Point) -> Extents:
 
 
 def _check_gas(point: Point) -> None:
-    """Refuse settings that do not describe one species in a container."""
+    """Refuse settings that do not describe a gas in a container."""
     settings = point.settings
     replaced = next((key for key in settings if key.startswith(PREFIX)), None)
     if replaced:
@@ -85,8 +87,38 @@ def _check_gas(point: Point) -> None:
         raise SceneError(f"experiments.{point.experiment}", extents, rule)
 
 
+def _small_count(point: Point) -> int:
+    """The number of particles of the second species."""
+    count = int(point.settings["count"])
+    return min(max(round(count * point.settings["small_fraction"]), 1), count - 1)
+
+
+def _mean_volume(point: Point) -> float:
+    """The mean of the radii's power d, over that of the radius in the settings."""
+    from gaspart.scene.sizes import relative_radii
+
+    settings = point.settings
+    mixed = [key for key in ("size_ratio", "small_fraction") if key in settings]
+    sized = [key for key in ("polydispersity", "radius_distribution") if key in settings]
+    if not mixed and not sized:
+        return 1.0
+    if settings.get("count", 1) < 2 or "count" not in settings:
+        raise point.refused((mixed + sized)[0], "needs a count of two or more")
+    count, dimension = int(settings["count"]), settings["dimension"]
+    if mixed:
+        if len(mixed) == 1 or sized:
+            raise point.refused(mixed[0], "needs size_ratio and small_fraction, and no polydispersity")
+        small = _small_count(point)
+        return (count - small + small * settings["size_ratio"] ** dimension) / count
+    if "polydispersity" not in settings:
+        raise point.refused("radius_distribution", "needs a polydispersity")
+    distribution = settings.get("radius_distribution", DISTRIBUTIONS[0])
+    radii = relative_radii(count, float(settings["polydispersity"]), distribution)
+    return math.fsum(radius**dimension for radius in radii.tolist()) / count
+
+
 def _made(point: Point) -> Scene:
-    """The scene of one species that the settings describe."""
+    """The scene of one species, or of two sizes, that the settings describe."""
     from gaspart.scene.container import Container
     from gaspart.scene.scene import Scene
     from gaspart.scene.species import Species
@@ -97,6 +129,8 @@ def _made(point: Point) -> Scene:
     species = Species(
         count=count,
         radius=radius,
+        polydispersity=settings.get("polydispersity"),
+        radius_distribution=settings.get("radius_distribution"),
         mass=settings.get("mass", 1.0),
         speed=settings.get("speed"),
         temperature=settings.get("temperature"),
@@ -106,9 +140,12 @@ def _made(point: Point) -> Scene:
     container = Container(
         lengths=lengths, boundary=boundary if isinstance(boundary, str) else tuple(boundary)
     )
-    return Scene(
-        container=container, species=(species,), centres_to_walls=settings.get("centres_to_walls", False)
-    )
+    mixed: tuple[Species, ...] = (species,)
+    if "size_ratio" in settings:
+        small = _small_count(point)
+        smaller = replace(species, count=small, radius=radius * settings["size_ratio"])
+        mixed = replace(species, count=count - small), smaller
+    return Scene(container=container, species=mixed, centres_to_walls=settings.get("centres_to_walls", False))
 
 
 def _read(point: Point) -> Scene:

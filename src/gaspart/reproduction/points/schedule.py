@@ -15,8 +15,10 @@ from gaspart.scene.validation import LARGEST, SMALLEST
 
 if TYPE_CHECKING:
     from gaspart.reproduction.points.point import Point
+    from gaspart.scene.gas import Mixture
 
 _MOST_INTERVALS = 2.0**53  # above, float64 does not distinguish their numbers
+_SIZES = 64  # of a polydisperse gas, by which its collision rate is estimated
 
 
 @dataclass(frozen=True)
@@ -74,16 +76,25 @@ def _unit_of_time(point: Point, unit: str) -> float:
     from gaspart import theory
 
     key, given = f"experiments.{point.experiment}.collisions_per_body", point.settings[unit]
-    gas = point.scene.gas
-    if gas is None:
-        rule = "is known only for one species of smooth particles without gravity or obstacles; give duration"
+    gas, mixture = point.scene.gas, point.scene.mixture
+    if mixture is None:
+        rule = "is known only for smooth particles without gravity or obstacles; give duration"
         raise SceneError(key, given, rule)
-    if not gas.temperature > 0.0:
+    if not mixture.temperature > 0.0:
         raise SceneError(key, given, "needs a temperature or a speed above zero")
     try:
-        rate = theory.collision_rate(**gas.parameters)
+        rate = theory.collision_rate(**gas.parameters) if gas else _mean_rate(mixture)
     except ValueError as error:
         raise SceneError(key, given, f"cannot be turned into a time: {error}") from None
     if not 0.0 < rate < math.inf:
         raise SceneError(key, given, f"cannot be turned into a time: the collision rate is {rate:g}")
     return 1.0 / float(rate)
+
+
+def _mean_rate(mixture: Mixture) -> float:
+    """The mean collision rate of its particles; of many sizes by a part of them."""
+    from gaspart import theory
+
+    few = mixture.thinned(_SIZES)
+    rates = theory.mixture_collision_rates(*few.sizes, temperature=few.temperature, masses=few.masses)
+    return float(rates.sum(axis=1) @ few.counts) / sum(few.counts)

@@ -21,7 +21,7 @@ _FEW = 8  # particles and walls that a tiny run has of each kind
 _MATTER = {"species.Species", "bodies.Body", "restitution.Restitution"}  # whose properties are features
 # in every kernel, or in none
 _NO_FEATURE = ("container", "count", "radius", "speed", "temperature", "centres_to_walls", "region")
-_NO_FEATURE += ("exact_temperature",)
+_NO_FEATURE += ("exact_temperature", "polydispersity", "radius_distribution")
 _NO_FEATURE += ("components", "waveform")  # of faces: numbers to the kernels, as the boundary is
 # All that makes kernels have a law of contacts, as an entry of `Model`.
 _LAW = {"restitution.normal", "restitution.tangential", "species.moment_of_inertia"}
@@ -41,6 +41,8 @@ def variant(point: Point) -> str:
     present = sorted(features(scene))
     if point.settings.get("stress"):
         present.append("stress")
+    if point.settings.get("pairs"):
+        present.append("events")
     if present:
         parts.append(hashlib.sha256(" ".join(present).encode()).hexdigest()[:8])
     return "-".join(parts)
@@ -59,7 +61,7 @@ def features(scene: Scene) -> set[str]:
         names.add("contact_duration")
     if scene.vibrates:  # by a temperature too
         names.add("vibrates")
-    if len({kind.radius for kind in scene.kinds}) > 1:
+    if scene.largest_radius > scene.smallest_radius:
         from gaspart.state.oversized import largest_in_boxes
 
         if largest_in_boxes(scene) < scene.largest_radius:
@@ -88,7 +90,7 @@ def _differing(thing: Any, prefix: str = "") -> Iterator[str]:
 
 def task(point: Point) -> str:
     """The task of `warm` for a point, as JSON: its engine, its scene with only a few particles if these have
-    all of its features, and whether it tallies the stress."""
+    all of its features, whether it tallies the stress, and whether it records events."""
     from gaspart.scene.scene import Scene
 
     parameters, full = point.parameters, point.scene
@@ -102,8 +104,9 @@ def task(point: Point) -> str:
     engine = parameters.get("engine") or parameters.get("engines", [None])[0]
     if engine:
         engine = engine_to_dict(engine_from_dict(engine).for_few(full))
-    stress = point.settings.get("stress", False)
-    return json.dumps({"scene": scene, "engine": engine, **({"stress": True} if stress else {})})
+    asked = {"stress": "stress", "events": "pairs"}  # of the task, by a key of the point
+    extra = {name: True for name, key in asked.items() if point.settings.get(key)}
+    return json.dumps({"scene": scene, "engine": engine, **extra})
 
 
 def warm(job: str) -> None:
@@ -119,6 +122,8 @@ def warm(job: str) -> None:
         return
     engine = engine_from_dict(given["engine"]).resolved(scene)
     simulation = Simulation(scene, engine, 1, given.get("stress", False))
+    if given.get("events"):
+        simulation.record_events = True
     step = engine.quantum
     limits: dict = {"duration": 4 * step} if step else {"duration": 1.0, "max_work": 1000}
     with suppress(SimulationError):  # a collapse; everything has been compiled before

@@ -1,0 +1,136 @@
+"""Z, contact values and collision rates of mixtures and polydisperse gases.
+
+A point is a periodic gas of two sizes whose collisions were counted by pairs of species, or a polydisperse
+one.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from gaspart import theory
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.mixtures import contact_scales, estimates_of, rate_scales
+from gaspart.analysis.run import Run
+from gaspart.analysis.statistics import average, correlated_mean
+from gaspart.errors import SceneError
+from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.families.shared.runs import runs
+from gaspart.reproduction.points.point import Point
+from gaspart.scene.gas import Mixture
+from gaspart.scene.sizes import DISTRIBUTIONS
+from gaspart.theory.speeds import mean_speed_factor
+from gaspart.trajectory.pairs import pairs_of
+
+_PAIRS = {"large-large": (0, 0), "large-small": (0, 1), "small-small": (1, 1)}
+
+
+def mixture_state(points: list[Point], settings: dict) -> xr.Dataset:
+    """Z, contact values and collision rates, beside theories.
+
+    Dimension point. dimension, packing_fraction, count; size_ratio and small_fraction of two sizes,
+    polydispersity and `distribution` of many, NaN or empty otherwise. Z with `_error` and `_freedom`, that of
+    the infinite gas: the measured one without the correction of first order in 1/N, that of equal particles
+    of the same packing fraction, which is `correction`; `reference_error`, the uncertainty of the equation of
+    equal particles; boublik, linear and santos, Z by these theories (see `gaspart.theory.mixtures`), and
+    `starling`, by the linear one with Carnahan and Starling's equation of equal spheres; NaN where there is
+    none. Of two sizes `virial`, the sum of |dr . dp| over what the numbers of collisions of each pair predict
+    for Maxwellian velocities, minus 1, with `_error` and `_freedom`; over pair ("large-large", "large-small",
+    "small-small") contact and rate, those of collisions of a particle of the first kind with all of the
+    second, in sqrt(k_B T / m) over the larger diameter, with `_error`, and each by the theories, such as
+    contact_boublik.
+    """
+    units = {"rate": "sqrt(k_B T / m) / diameter"}
+    dataset = from_rows("point", [_row(point) for point in points], ("pair",), units)
+    return dataset.assign_coords(pair=list(_PAIRS))
+
+
+def _row(point: Point) -> dict:
+    scene, settings = point.scene, point.settings
+    gas = scene.mixture
+    if gas is None:
+        raise SceneError("species", len(scene.kinds), "must be smooth and elastic particles alone")
+    eta, d = gas.packing_fraction, gas.dimension
+    correction = float(theory.finite_size_correction(eta, d, scene.count, "canonical"))
+    two = "size_ratio" in settings
+    found = [_of_run(run, two) for run in runs(point)]
+    means = {
+        name: [average(list(same)) for same in zip(*values, strict=True)] for name, values in _joined(found)
+    }
+    row = {
+        "dimension": d,
+        "packing_fraction": eta,
+        "count": scene.count,
+        "size_ratio": settings.get("size_ratio", math.nan),
+        "small_fraction": settings.get("small_fraction", math.nan),
+        "polydispersity": settings.get("polydispersity", math.nan),
+        "distribution": "" if two else settings.get("radius_distribution", DISTRIBUTIONS[0]),
+        **entries({"Z": means["Z"][0] - correction}),
+        "correction": correction,
+        "reference_error": float(theory.compressibility_uncertainty(eta, d)),
+        **_theories(gas),
+    }
+    return row | _pairs(means, gas) if two else row
+
+
+def _joined(found: list[dict]) -> list[tuple[str, list]]:
+    """By name, the values of each run."""
+    return [(name, [one[name] for one in found]) for name in found[0]]
+
+
+def _of_run(run: Run, two: bool) -> dict[str, list[Estimate]]:
+    """Z, and of two sizes what the collisions of each pair of species give."""
+    scale = run.dimension * run.count * run.temperature
+    z = 1.0 + run.increments("virial_sum") / (scale * np.diff(run.time))
+    found = {"Z": [correlated_mean(z).estimate]}
+    if two:
+        found["virial"] = [_virial(run)]
+        found["contact"] = estimates_of(run, contact_scales(run))
+        found["rate"] = estimates_of(run, rate_scales(run))
+    return found
+
+
+def _theories(gas: Mixture) -> dict[str, float]:
+    found = {
+        name: theory.mixture_compressibility_factor(*gas.sizes, theory=name)
+        for name, dimensions in theory.MIXTURE_THEORIES.items()
+        if gas.dimension in dimensions
+    }
+    if gas.dimension == 3:
+        eta = gas.packing_fraction
+        pure = (float(theory.carnahan_starling(eta)) - 1.0) / (4.0 * eta)
+        found["starling"] = theory.mixture_compressibility_factor(*gas.sizes, theory="linear", pure=pure)
+    return found
+
+
+def _pairs(means: dict[str, list[Estimate]], gas: Mixture) -> dict:
+    """Contact values and rates of each pair of species, and the virial."""
+    unit = math.sqrt(gas.temperature / gas.masses[0]) / gas.diameters[0]
+    row: dict = entries({"virial": means["virial"][0]})
+    for name, scale in (("contact", 1.0), ("rate", unit)):
+        scaled = [mean / scale for mean in means[name]]
+        row |= entries({name: ([one.value for one in scaled], [one.error for one in scaled])})
+    for name, dimensions in theory.MIXTURE_THEORIES.items():
+        if gas.dimension in dimensions:
+            contact = theory.mixture_contact_values(*gas.sizes, theory=name)
+            rate = theory.mixture_collision_rates(
+                *gas.sizes, theory=name, temperature=gas.temperature, masses=gas.masses
+            )
+            row[f"contact_{name}"] = [contact[pair] for pair in _PAIRS.values()]
+            row[f"rate_{name}"] = [rate[pair] / unit for pair in _PAIRS.values()]
+    return row
+
+
+def _virial(run: Run) -> Estimate:
+    """Two particles of reduced mass mu that collide have |dr . dp| = sigma sqrt(2 pi mu k_B T) on average."""
+    weights = []
+    for i, j in pairs_of(run.scene):
+        one, other = run.scene.species[i], run.scene.species[j]
+        reduced = one.mass * other.mass / (one.mass + other.mass)
+        impulse = math.sqrt(2.0 * math.pi * reduced * run.temperature) / mean_speed_factor(run.freedom)
+        weights.append((one.radius + other.radius) * impulse)
+    predicted = run.increments("pair_collisions") @ np.array(weights)
+    return correlated_mean(run.increments("virial_sum") / predicted - 1.0).estimate
