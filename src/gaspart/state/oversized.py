@@ -62,11 +62,11 @@ def boxes_and_largest(scene: Scene, boxes_per_side: int | tuple[int, ...] | None
 
 
 def sizes(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """The different radii (K,) in rising order, and (K,) how many particles have each."""
+    """The different radii (K,) in rising order, and (K,) how many particles have each; all of a polydisperse
+    species count as the largest of it, because boxes wide enough for it are faster than a long list."""
     kinds = [kind for kind in scene.kinds if kind.count]
-    if not all(kind.alike for kind in kinds):
-        return np.unique(np.concatenate([kind.radii for kind in kinds]), return_counts=True)
-    different, which = np.unique(np.array([kind.radius for kind in kinds], float), return_inverse=True)
+    largest = np.array([kind.largest_radius for kind in kinds], float)
+    different, which = np.unique(largest, return_inverse=True)
     return different, np.bincount(which, [kind.count for kind in kinds], len(different)).astype(np.int64)
 
 

@@ -38,7 +38,7 @@ def mixture_state(dataset: xr.Dataset) -> list[Claim]:
     for row in rows(dataset, "point"):
         if _sharp(row):
             claims.append(_compressibility(row))
-        if float(row["size_ratio"]) >= NEARLY_EQUAL["size_ratio"]:
+        if float(row["size_ratio"]) >= NEARLY_EQUAL["size_ratio"] and float(row["small_fraction"]) == 0.5:
             claims += [_contact(row, pair) for pair in dataset["pair"].values]
         if np.isfinite(row["size_ratio"]):
             claims.append(_virial(row))

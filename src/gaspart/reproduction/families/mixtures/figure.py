@@ -79,14 +79,14 @@ def _by_ratio(axis: Axes, two: xr.Dataset, dimension: int) -> None:
     x = np.linspace(0.28, 1.0, 60)
     for kind, small in enumerate(np.unique(part["small_fraction"].values)):
         chosen = _part(part, part["small_fraction"] == small)
-        eta = float(chosen["packing_fraction"][0])
+        eta, shift = float(chosen["packing_fraction"][0]), 0.008 * (kind - 0.5)
 
         def of(q: float, eta: float = eta, small: float = float(small)) -> tuple:
             return eta, (1.0, q), (1.0 - small, small)
 
-        _points(axis, chosen["size_ratio"], chosen, BASE[dimension], kind, f"{small:.0%} small")
+        _points(axis, chosen["size_ratio"] + shift, chosen, BASE[dimension], kind, f"{small:.0%} small")
         _curve(axis, x, dimension, of, style.COLOURS[kind], kind == 0)
-    axis.axhline(0.0, color=style.GREY, lw=0.8)
+    axis.axhline(0.0, color=style.GREY, lw=0.8, label="BMCSL" if dimension == 3 else "SYH 1999, 2002")
     axis.set_xlabel(r"size ratio $\sigma_2/\sigma_1$")
     axis.set_ylabel(f"{_OVER[dimension]}, {PARTICLES[dimension]}")
     axis.legend(loc="best")
@@ -131,7 +131,7 @@ def _by_polydispersity(axis: Axes, many: xr.Dataset) -> None:
 
         _curve(axis, x, dimension, of, style.COLOURS[kind], True)
     axis.axhline(0.0, color=style.GREY, lw=0.8)
-    axis.set_xlabel("polydispersity (standard deviation over mean)")
+    axis.set_xlabel("polydispersity of the radii")
     axis.set_ylabel("$Z$ over theory $-1$ (%)")
     axis.legend(loc="best")
 

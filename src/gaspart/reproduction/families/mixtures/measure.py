@@ -71,7 +71,7 @@ def _row(point: Point) -> dict:
         **entries({"Z": means["Z"][0] - correction}),
         "correction": correction,
         "reference_error": float(theory.compressibility_uncertainty(eta, d)),
-        **_theories(gas),
+        **theories(gas),
     }
     return row | _pairs(means, gas) if two else row
 
@@ -93,34 +93,38 @@ def _of_run(run: Run, two: bool) -> dict[str, list[Estimate]]:
     return found
 
 
-def _theories(gas: Mixture) -> dict[str, float]:
-    found = {
-        name: theory.mixture_compressibility_factor(*gas.sizes, theory=name)
-        for name, dimensions in theory.MIXTURE_THEORIES.items()
-        if gas.dimension in dimensions
-    }
-    if gas.dimension == 3:
-        eta = gas.packing_fraction
+def theories(gas: Mixture) -> dict:
+    """Z by each theory; of two sizes the contact value and the rate of each pair too."""
+    found: dict = {}
+    eta, d, diameters, _ = gas.sizes
+    for name, dimensions in theory.MIXTURE_THEORIES.items():
+        if d not in dimensions:
+            continue
+        found[name] = theory.mixture_compressibility_factor(*gas.sizes, theory=name)
+        if len(diameters) == 2:
+            contact = theory.mixture_contact_values(*gas.sizes, theory=name)
+            heat = {"temperature": gas.temperature, "masses": gas.masses}
+            rate = theory.mixture_collision_rates(*gas.sizes, theory=name, **heat) / _unit_of_rate(gas)
+            found[f"contact_{name}"] = [contact[pair] for pair in _PAIRS.values()]
+            found[f"rate_{name}"] = [rate[pair] for pair in _PAIRS.values()]
+    if d == 3:
         pure = (float(theory.carnahan_starling(eta)) - 1.0) / (4.0 * eta)
         found["starling"] = theory.mixture_compressibility_factor(*gas.sizes, theory="linear", pure=pure)
     return found
 
 
+def _unit_of_rate(gas: Mixture) -> float:
+    """sqrt(k_B T / m) over the larger diameter."""
+    return math.sqrt(gas.temperature / gas.masses[0]) / gas.diameters[0]
+
+
 def _pairs(means: dict[str, list[Estimate]], gas: Mixture) -> dict:
     """Contact values and rates of each pair of species, and the virial."""
-    unit = math.sqrt(gas.temperature / gas.masses[0]) / gas.diameters[0]
     row: dict = entries({"virial": means["virial"][0]})
-    for name, scale in (("contact", 1.0), ("rate", unit)):
+    for name, scale in (("contact", 1.0), ("rate", _unit_of_rate(gas))):
         scaled = [mean / scale for mean in means[name]]
         row |= entries({name: ([one.value for one in scaled], [one.error for one in scaled])})
-    for name, dimensions in theory.MIXTURE_THEORIES.items():
-        if gas.dimension in dimensions:
-            contact = theory.mixture_contact_values(*gas.sizes, theory=name)
-            rate = theory.mixture_collision_rates(
-                *gas.sizes, theory=name, temperature=gas.temperature, masses=gas.masses
-            )
-            row[f"contact_{name}"] = [contact[pair] for pair in _PAIRS.values()]
-            row[f"rate_{name}"] = [rate[pair] / unit for pair in _PAIRS.values()]
+        row[f"{name}_freedom"] = [one.freedom for one in scaled]
     return row
 
 
