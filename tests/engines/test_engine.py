@@ -56,6 +56,7 @@ WITH = {
     "walls": {"walls": [gp.Wall((5.0, 5.0), (9.0, 9.0))]},
     "fixed": {"bodies": [gp.Body((5.0, 5.0), (0.0, 0.0), radius=0.5, fixed=True)]},
     "vibrations": {"bodies": [gp.Body((5.0, 5.0), (0.0, 0.0), radius=0.5, fixed=True, vibration=1.0)]},
+    "polydispersity": {"species": [gp.Species(3, 0.5, temperature=1.0, polydispersity=0.1)]},
     "centres_to_walls": {"centres_to_walls": True},
     "thermal": {"faces": {"x_low": gp.Thermal(1.0)}},
     "well": {"faces": {"x_low": gp.Well(1.0, 0.5)}},
@@ -63,6 +64,10 @@ WITH = {
     "vibrating": {"faces": {"x_low": gp.Vibrating(0.1, 1.0)}},
     "piston": {"faces": {"x_low": gp.Piston(1.0, 0.1)}},
 }
+
+
+def scene_with(parts):
+    return gp.Scene(**({"container": CONTAINER, "species": [DISCS]} | parts))
 
 
 def test_a_new_engine_appears_in_the_command_line_the_schema_and_the_reference():
@@ -75,14 +80,14 @@ def test_a_new_engine_appears_in_the_command_line_the_schema_and_the_reference()
 def test_every_feature_has_a_scene():
     assert set(WITH) == set(FEATURES)
     for name, parts in WITH.items():
-        assert name in features(gp.Scene(CONTAINER, [DISCS], **parts)), name
+        assert name in features(scene_with(parts)), name
     assert not features(gp.Scene(CONTAINER, [DISCS]))
 
 
 @pytest.mark.parametrize("name", FEATURES)
 @pytest.mark.parametrize("engine", ENGINES.values(), ids=ENGINES)
 def test_an_engine_refuses_what_it_does_not_model_and_names_one_that_does(engine, name):
-    scene = gp.Scene(CONTAINER, [DISCS], **WITH[name])
+    scene = scene_with(WITH[name])
     settings = engine(time_step=0.01) if "time_step" in engine.__dataclass_fields__ else engine()
     missing = features(scene) - engine.models
     if missing:
