@@ -139,7 +139,7 @@ def _better(spheres: xr.Dataset) -> Claim:
         required=0.2,
         source="abstract of [Santos 1999]",
         fails_if="mixtures that the equation describes less well",
-        why="the statement is of the mixtures that were simulated by 1999",
+        why="the statement is of the mixtures that had been simulated then",
     )
 
 

@@ -103,8 +103,9 @@ def theories(gas: Mixture) -> dict:
         found[name] = theory.mixture_compressibility_factor(*gas.sizes, theory=name)
         if len(diameters) == 2:
             contact = theory.mixture_contact_values(*gas.sizes, theory=name)
-            heat = {"temperature": gas.temperature, "masses": gas.masses}
-            rate = theory.mixture_collision_rates(*gas.sizes, theory=name, **heat) / _unit_of_rate(gas)
+            rate = theory.mixture_collision_rates(
+                *gas.sizes, theory=name, temperature=gas.temperature, masses=gas.masses
+            ) / _unit_of_rate(gas)
             found[f"contact_{name}"] = [contact[pair] for pair in _PAIRS.values()]
             found[f"rate_{name}"] = [rate[pair] for pair in _PAIRS.values()]
     if d == 3:
