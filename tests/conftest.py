@@ -30,9 +30,16 @@ settings.load_profile("fixed")
 TESTS = Path(__file__).parent
 # The files whose tests look at one run of the smoke workflow.
 OF_SMOKE_RUN = ("test_smoke.py", "test_accessibility.py", "test_planning.py")
-# Packages whose tests compile hardly any kernel. They run while the smoke workflow compiles those that the
-# others share with it: two processes that need a kernel at the same time both compile it.
-WITHOUT_KERNELS = ("theory", "reproduction", "scene", "cli")
+# Packages whose tests compile hardly any kernel, but for those of some files. They run while the smoke workflow
+# compiles those that the others share with it: two processes that need a kernel at the same time both compile it.
+WITHOUT_KERNELS = ("theory", "reproduction", "scene")
+COMPILING = (
+    "test_measure.py",
+    "test_rows.py",
+    "test_sweep.py",
+    "test_relaxation.py",
+    "test_simulate_until.py",
+)
 
 
 class ByFile(LoadScopeScheduling):
@@ -68,6 +75,6 @@ def pytest_collection_modifyitems(items):
         package = item.path.relative_to(TESTS).parts[0] if item.path.is_relative_to(TESTS) else ""
         if package == "workflow":
             return 0 if item.path.name in OF_SMOKE_RUN else 3
-        return 1 if package in WITHOUT_KERNELS else 2
+        return 1 if package in WITHOUT_KERNELS and item.path.name not in COMPILING else 2
 
     items.sort(key=place)

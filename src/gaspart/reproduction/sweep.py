@@ -22,7 +22,8 @@ from gaspart.errors import SceneError, SimulationError, unknown_word
 from gaspart.interruption import exit_on_signals
 from gaspart.kernels.compile.loading import load_numba
 from gaspart.reproduction.config import checked_points
-from gaspart.reproduction.jobs.replicas import replica_paths, write_replicas
+from gaspart.reproduction.jobs import simulate, simulate_until
+from gaspart.reproduction.jobs.replicas import Record, replica_paths, write_replicas
 from gaspart.reproduction.points.keys import ENGINES, EXTENTS, GAS, PREFIX
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.points.variants import task, variant, warm
@@ -39,6 +40,7 @@ EXPERIMENT = "points"
 _SAMPLES = 128
 _KEPT = ("radius", "packing_fraction", "count", "side")
 """The extents of a gas in the order in which they keep their values where others vary."""
+_RECORD: dict[str, Record] = {"simulate": simulate.record, "simulate_until": simulate_until.record}
 Progress: TypeAlias = Callable[[int, int, str], None]
 
 
@@ -245,7 +247,7 @@ def _serve() -> None:
 def _make(values: dict, overwrite: bool) -> None:
     """Make the trajectories of a point, or check that those in its folder are these. Raises SceneError."""
     point = Point.from_dict(values)
-    parameters, folder, record = point.parameters, Path(point.path), point.kind_of_job.record
+    parameters, folder, record = point.parameters, Path(point.path), _RECORD[point.job]
     try:
         if not folder.exists():
             return write_replicas(record, parameters, folder)

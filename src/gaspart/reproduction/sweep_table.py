@@ -115,7 +115,7 @@ def _mean(replicas: list[Observable], part: str) -> np.ndarray | None:
     return np.mean(values, axis=0)
 
 
-def _stacked(each: list[np.ndarray | None], axes: Mapping[str, list]) -> np.ndarray:
+def _stacked(each: Sequence[np.ndarray | None], axes: Mapping[str, list]) -> np.ndarray:
     """The arrays of all points, of which some may be shorter or missing, as one; the rest is nan."""
     known = [np.asarray(one) for one in each if one is not None]
     inner = tuple(np.max([one.shape for one in known], axis=0).astype(int))
@@ -124,5 +124,6 @@ def _stacked(each: list[np.ndarray | None], axes: Mapping[str, list]) -> np.ndar
         whole = whole.astype(float)
     for row, one in enumerate(each):
         if one is not None:
-            whole[(row, *(slice(size) for size in np.shape(one)))] = one
+            at: tuple[Any, ...] = (row, *(slice(size) for size in np.shape(one)))
+            whole[at] = one
     return whole.reshape(*(len(values) for values in axes.values()), *inner)
