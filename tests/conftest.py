@@ -30,16 +30,11 @@ settings.load_profile("fixed")
 TESTS = Path(__file__).parent
 # The files whose tests look at one run of the smoke workflow.
 OF_SMOKE_RUN = ("test_smoke.py", "test_accessibility.py", "test_planning.py")
-# Packages whose tests compile hardly any kernel, but for those of some files. They run while the smoke workflow
-# compiles those that the others share with it: two processes that need a kernel at the same time both compile it.
+# Packages whose tests compile hardly any kernel, but for those of some files. They run while the smoke
+# workflow compiles those that the others share with it: two processes that need a kernel at the same time
+# both compile it.
 WITHOUT_KERNELS = ("theory", "reproduction", "scene")
-COMPILING = (
-    "test_measure.py",
-    "test_rows.py",
-    "test_sweep.py",
-    "test_relaxation.py",
-    "test_simulate_until.py",
-)
+COMPILING = tuple(f"test_{name}.py" for name in ("measure", "rows", "sweep", "relaxation", "simulate_until"))
 
 
 class ByFile(LoadScopeScheduling):
