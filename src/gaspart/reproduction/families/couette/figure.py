@@ -121,7 +121,7 @@ def _slip(axis: Axes, flows: xr.Dataset) -> None:
     axis.axhline(VELOCITY_SLIP, color=style.GREY, lw=0.8, label="Boltzmann equation")
     axis.axhline(ELEMENTARY_SLIP, color=style.GREY, lw=0.8, ls=":", label="Maxwell's estimate")
     axis.set_xlabel(r"packing fraction $\phi$")
-    axis.set_ylabel("slip / mean free path and gradient")
+    axis.set_ylabel(r"slip over $\lambda\,\mathrm{d}u/\mathrm{d}x$")
     axis.legend(loc="upper left")
 
 

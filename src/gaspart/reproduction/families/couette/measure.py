@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -170,7 +171,7 @@ def _flow(point: Point, settings: dict) -> dict:
     blocks = _blocks(point, gap, settings["blocks"], bins)
     averages = blocks.steady, blocks.pressure, blocks.density, blocks.flow, blocks.squares
 
-    def numbers(*means: np.ndarray) -> np.ndarray:
+    def numbers(*means: Any) -> np.ndarray:
         return _numbers(setting, *means)
 
     values, errors = jackknife(numbers, *averages)
