@@ -54,6 +54,7 @@ KEYS: dict[str, Kind] = {
     ),
 }
 EXTRAS = ("record_events", "stress")
+"""Keys of what is done besides: to write down all events, and forget them; to tally the stress."""
 COUNTED = ("steps", "collisions", "wall_hits", "pair_tests", "box_visits", "crossings")
 
 
@@ -94,9 +95,8 @@ def measure_cost(
 ) -> PointData:
     """Time `repeats` times, with each of the engines, the same stretch of simulated time of the same gas.
 
-    equilibration, stretch: in the scene's time; extras: of `EXTRAS`, to write down all events, and forget
-    them, and to tally the stress; rival: a scene and engines, timed in turn with these and without extras:
-    the last partitions.
+    equilibration, stretch: in the scene's time; extras: of `EXTRAS`; rival: a scene and engines, timed in
+    turn with these and without extras: the last partitions.
     Returns a dataset over ``partition`` (the engines, in their order) and ``repeat``: ``seconds``
     (partition, repeat), processor time of the advance alone (filling the container, setting up and compiling
     are left out); over ``partition``: ``boxes`` in all, ``boxes_per_side`` (of the first axis; both 0 if the
