@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TypeAlias
@@ -19,6 +19,7 @@ from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
 from gaspart.simulation import Simulation
 from gaspart.state.insertion import per_body
+from gaspart.state.tally import Tally
 from gaspart.trajectory.pairs import PairCounter
 from gaspart.trajectory.run import open_trajectory
 from gaspart.yaml_text import dump_yaml, parse_yaml
@@ -260,10 +261,10 @@ def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
         rows.append({name: value for name, value in row.items() if value is not None})
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     columns["displacements"] = columns["displacements"] - columns["displacements"][0]
-    dims = {3: ("frame", "atom", "spatial"), 2: ("frame", "face"), 1: ("frame",)}
-    along = {name: dims[values.ndim] for name, values in columns.items()}
-    along["pair_collisions"] = ("frame", "pair")
+    sums = {field.name: field.metadata.get("along", ()) for field in fields(Tally)}
+    along = {**dict.fromkeys(("coordinates", "displacements", "velocities"), ("atom", "spatial")), **sums}
+    along["pair_collisions"] = ("pair",)
     return xr.Dataset(
-        {name: (along[name], values) for name, values in columns.items()},
+        {name: (("frame", *along.get(name, ())), values) for name, values in columns.items()},
         attrs={"scene": dump_yaml(scene.to_dict())},
     )

@@ -196,10 +196,10 @@ def _blocks(run: Run, name: str) -> tuple[np.ndarray, np.ndarray]:
     products, squares = (
         run.increments(f"{name}_{kind}_sum")[complete] / pairs for kind in ("product", "square")
     )
-    if name == "bulk":
-        d = run.dimension
-        stress = data["stress_sum"].values
-        mean = np.trace(stress[-1] - stress[0]) / (d * (run.time[-1] - run.time[0]))
-        interval = float(data["lag"][1])
-        products, squares = products - mean**2, squares - (mean * interval * lags) ** 2
+    if name == "bulk":  # of the very same pairs: the mean is much larger than what fluctuates
+        ends, change = (run.increments(f"bulk_{kind}_sum")[complete] / pairs for kind in ("ends", "change"))
+        stress, time = data["stress_sum"].values, float(data["lag"][1]) * lags
+        mean = np.trace(stress[-1] - stress[0]) / (run.dimension * (run.time[-1] - run.time[0]))
+        products = products - 2.0 * mean * ends + mean**2
+        squares = squares - 2.0 * mean * time * change + (mean * time) ** 2
     return products, squares

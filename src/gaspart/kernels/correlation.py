@@ -74,7 +74,8 @@ def flux_components(sums, dimension, components):
 
 @kernel
 def add_flux_products(earlier, now, groups, used, sums):
-    """Add J(0) J(t) and (G(t) - G(0))^2 to sums (groups, 2, S) for the first `used` of S earlier samples.
+    """Add J(0) J(t), (G(t) - G(0))^2, [J(0) + J(t)] / 2 and G(t) - G(0) to sums (groups, 4, S) for the first
+    `used` of S earlier samples.
 
     earlier: (2, K, S), fluxes J and their integrals G; now: (2, K), the present ones; groups (K,): the group
     of each component.
@@ -85,3 +86,5 @@ def add_flux_products(earlier, now, groups, used, sums):
             moved = integral - earlier[1, k, s]
             sums[group, 0, s] += earlier[0, k, s] * flux
             sums[group, 1, s] += moved * moved
+            sums[group, 2, s] += 0.5 * (earlier[0, k, s] + flux)
+            sums[group, 3, s] += moved

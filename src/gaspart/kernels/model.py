@@ -159,12 +159,20 @@ class Piston(NamedTuple):
     slowest: np.ndarray
 
 
+class Sliding(NamedTuple):
+    """Thermal faces that move along themselves. velocity (2d, d), of the container's faces; shear (2d^2, 2):
+    the momentum along each axis that particles have given to each face, see `running_sum.add`."""
+
+    velocity: np.ndarray
+    shear: np.ndarray
+
+
 class Faces(NamedTuple):
     """Faces with a kind. Of the container's faces (2d,): kind; level, the temperature, or the momentum that
     sticks; depth and width of the well, 0 if there is none. Of the particles: place (N, d), -1 or 1 in the
     well of an axis' low or high face, or stuck to it; held (N, d), the energy kept there as vibration; draws
     (N,), how often random numbers were taken for it, under `key` (2,). sticky (2d,), which faces are, motion,
-    piston: None if no face is sticky, none vibrates, and none is a piston."""
+    piston, sliding: None if no face is sticky, none vibrates, none is a piston, and none slides."""
 
     kind: np.ndarray
     level: np.ndarray
@@ -177,6 +185,7 @@ class Faces(NamedTuple):
     sticky: np.ndarray | None
     motion: Motion | None
     piston: Piston | None
+    sliding: Sliding | None
 
 
 class InteriorWalls(NamedTuple):

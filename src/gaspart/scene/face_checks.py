@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import FACES, KINDS, Piston, Sticky, Vibrating, Well, pistons
+from gaspart.scene.faces import FACES, KINDS, Piston, Sticky, Thermal, Vibrating, Well, pistons
 from gaspart.scene.limits import closest_packing
 from gaspart.scene.validation import size, vector
 
@@ -28,6 +28,8 @@ def check_faces(scene: Scene) -> None:
         axis = known.index(name) // 2
         if scene.container.periodic[axis]:
             raise SceneError(f"faces.{name}", surface.kind, "a periodic axis has no faces")
+        if isinstance(surface, Thermal) and surface.velocity is not None:
+            _check_velocity(scene, name, surface.velocity)
         if isinstance(surface, (Well, Sticky)) and scene.gravity is not None and scene.gravity[axis] != 0.0:
             raise SceneError(f"faces.{name}", surface.kind, "needs an axis without gravity")
         if isinstance(surface, Well):
@@ -41,6 +43,14 @@ def check_faces(scene: Scene) -> None:
         if isinstance(surface, Piston):
             _check_piston(scene, name, surface)
     _check_room(scene)
+
+
+def _check_velocity(scene: Scene, name: str, velocity: tuple[float, ...]) -> None:
+    """Raise SceneError for a velocity that is not along the face."""
+    vector(f"faces.{name}.velocity", velocity, scene.dimension)
+    if velocity[FACES.index(name) // 2] != 0.0:
+        rule = "must have no component across the face, which stays in its place"
+        raise SceneError(f"faces.{name}.velocity", velocity, rule)
 
 
 def _check_piston(scene: Scene, name: str, surface: Piston) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 from gaspart.errors import SceneError
 from gaspart.kinds import described
-from gaspart.scene.keys import NOT_NEGATIVE, POSITIVE, declared, schema_of, validate
+from gaspart.scene.keys import NOT_NEGATIVE, POSITIVE, VECTOR, declared, schema_of, validate
 from gaspart.scene.keys import choice as choice_of
 from gaspart.scene.validation import choice, from_mapping, size
 
@@ -62,6 +62,7 @@ class Thermal(Surface):
     The normal velocity is drawn weighted by the flux, v = sqrt(-2 kT/m ln U); with components "all" the
     tangential ones and, in a scene of rough particles, the spins are Maxwellian (a diffuse wall with full
     accommodation); with "normal" they are kept (the rule of Frederickx & Meerts 2010, section 4.4).
+    A wall with a `velocity` moves along itself, and the distribution is that about its velocity.
     """
 
     temperature: float = field(metadata=declared(POSITIVE, "temperature of the wall"))
@@ -69,8 +70,22 @@ class Thermal(Surface):
         default="all",
         metadata=declared(choice_of(*COMPONENTS), "velocity components that are drawn"),
     )
+    velocity: tuple[float, ...] | None = field(
+        default=None,
+        metadata=declared(VECTOR, "velocity of the wall, along itself; without it the wall is at rest"),
+    )
 
     kind: ClassVar[str] = "thermal"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.components == "normal" and self.slides:
+            raise SceneError("velocity", self.velocity, 'needs components "all": no other drags particles')
+
+    @property
+    def slides(self) -> bool:
+        """Whether it moves."""
+        return any(self.velocity or ())
 
     @property
     def rule(self) -> tuple[str, float]:
@@ -231,6 +246,11 @@ def faces_of(scene: Scene, kind: type[S]) -> list[tuple[int, S]]:
 def pistons(scene: Scene) -> list[tuple[int, Piston]]:
     """The faces that are pistons, one at most, with their number."""
     return faces_of(scene, Piston)
+
+
+def sliding_faces(scene: Scene) -> list[tuple[int, Thermal]]:
+    """The faces that move along themselves, with their number."""
+    return [(n, face) for n, face in faces_of(scene, Thermal) if face.slides]
 
 
 def thermal_face(scene: Scene, name: str) -> Thermal:

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import KINDS
+from gaspart.scene.faces import FACES, KINDS, sliding_faces
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -82,6 +82,11 @@ FEATURES: dict[str, Feature] = {
         lambda scene: scene.centres_to_walls or None,
     ),
     **{kind: _face(kind) for kind in KINDS},
+    "sliding": Feature(
+        "thermal faces that move along themselves",
+        "faces",
+        lambda scene: [FACES[n] for n, _ in sliding_faces(scene)] or None,
+    ),
     "vibrations": Feature(
         "particles that store energy in a vibration",
         "vibrates",

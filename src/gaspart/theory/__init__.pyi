@@ -88,6 +88,10 @@ from gaspart.theory.modes import sound_attenuation as sound_attenuation
 from gaspart.theory.modes import velocity_autocorrelation_modes as velocity_autocorrelation_modes
 from gaspart.theory.potential import excess_chemical_potential as excess_chemical_potential
 from gaspart.theory.potential import packing_fraction_at as packing_fraction_at
+from gaspart.theory.shear import VELOCITY_SLIP as VELOCITY_SLIP
+from gaspart.theory.shear import free_molecular_stress as free_molecular_stress
+from gaspart.theory.shear import slip_flow_stress as slip_flow_stress
+from gaspart.theory.shear import viscous_heating as viscous_heating
 from gaspart.theory.speeds import KURTOSIS_RELAXATION_RATE as KURTOSIS_RELAXATION_RATE
 from gaspart.theory.speeds import RELAXATION_UNCERTAINTY as RELAXATION_UNCERTAINTY
 from gaspart.theory.speeds import Relaxation as Relaxation

@@ -49,12 +49,11 @@ BOOKKEEPING = ("header_bytes", "header_crc32", "frame_bytes")
 MOST_FRAMES = 2**31 - 1
 
 
-def counters(engine: Engine, stress: bool = False) -> tuple[str, ...]:
+def counters(engine: Engine, also: Collection[str] = ()) -> tuple[str, ...]:
     """Sums since time 0 that a file of this engine has, one variable each; those of other engines alone would
-    be zero. stress: whether those that must be asked for are among them."""
+    be zero. also: what some sums belong to that are not of every run, "stress" or "sliding"."""
     absent = {name for kind in ENGINES.values() for name in kind.counters} - set(engine.counters)
-    if not stress:
-        absent |= {field.name for field in fields(Tally) if field.metadata.get("optional")}
+    absent |= {field.name for field in fields(Tally) if field.metadata.get("only") not in {None, *also}}
     return tuple(field.name for field in fields(Tally) if field.name not in {"time", *absent})
 
 
@@ -90,7 +89,11 @@ class Layout:
             "cell_angular": 3,
             "label": 5,
             "face": 2 * dimension + walls,
-            **({"axis": dimension, "direction": dimension} if "stress_sum" in counters else {}),
+            **{
+                axis: dimension
+                for axis in ("axis", "direction")
+                if any(axis in _ALONG[it] for it in counters)
+            },
             **({"lag": lags + 1} if sums else {}),
             **({"motion": 2} if "piston" in extra else {}),
             **({"pair": len(pairs)} if pairs else {}),

@@ -29,6 +29,13 @@ STRESS = {"shear": ACTION, "rotational": ACTION, "collisional": ACTION, "bulk": 
 """What is correlated of the stress tensor and the heat flux, with the units of its time integral G: means
 over the components of the symmetric part that shear, over those of the antisymmetric part, and over those
 that shear of what collisions add; a d-th of the trace; the mean over the components of the heat flux."""
+KINDS = {
+    "product": "J(0) J(t), J = dG/dt over an interval",
+    "square": "(G(t) - G(0))^2",
+    "ends": "(J(0) + J(t)) / 2, J = dG/dt over an interval",
+    "change": "G(t) - G(0)",
+}
+"""What is summed of each over pairs of samples; the last two of `bulk` only, whose mean is not zero."""
 _PREFIX = "correlator "  # of its arrays in a checkpoint
 
 
@@ -75,12 +82,14 @@ def sums_of(displacements: bool) -> list[str]:
 
 def stress_sums() -> list[str]:
     """The names of the sums of a run that correlates the stress tensor and the heat flux."""
-    return [f"{name}_{kind}_sum" for name in STRESS for kind in ("product", "square")]
+    means = [f"bulk_{kind}_sum" for kind in ("ends", "change")]
+    return [f"{name}_{kind}_sum" for name in STRESS for kind in ("product", "square")] + means
 
 
 def stress_units() -> dict[str, str]:
     """The units of these."""
     units = {f"{name}_square_sum": f"({unit})^2" for name, unit in STRESS.items()}
+    units |= {"bulk_ends_sum": f"{ACTION}/time", "bulk_change_sum": ACTION}
     return units | {f"{name}_product_sum": f"({unit})^2/time^2" for name, unit in STRESS.items()}
 
 
@@ -89,8 +98,7 @@ def meaning_of(name: str) -> str:
     if name in SUMS:
         return f"mean over moving particles of {SUMS[name]}"
     group, kind = name.split("_")[:2]
-    product = "J(0) J(t), J = dG/dt over an interval" if kind == "product" else "(G(t) - G(0))^2"
-    return f"{product}, G the time integral of the volume times the {group} flux"
+    return f"{KINDS[kind]}, G the time integral of the volume times the {group} flux"
 
 
 class _Correlator:
@@ -188,7 +196,7 @@ class StressCorrelator(_Correlator):
         self._groups = np.repeat(np.arange(len(STRESS)), number)
         self._terms = np.array(number, dtype=float)[:, None, None]
         self._dimension, self._latest, self._begun = dimension, np.zeros(len(self._groups)), False
-        super().__init__(settings, (2, len(self._groups)), (len(STRESS), 2))
+        super().__init__(settings, (2, len(self._groups)), (len(STRESS), len(KINDS)))
 
     @property
     def next(self) -> int:
@@ -212,8 +220,10 @@ class StressCorrelator(_Correlator):
 
     def sums(self) -> dict[str, np.ndarray | float]:
         """The sums of `stress_sums` so far, (lags + 1,) each, and the number of samples."""
-        named = zip(stress_sums(), self._sums.reshape(-1, self._sums.shape[-1]), strict=True)
-        return {"correlated_samples": float(self._samples), **dict(named)}
+        groups, kinds = list(STRESS), list(KINDS)
+        parts = ((name, *name.split("_")[:2]) for name in stress_sums())
+        named = {name: self._sums[groups.index(group), kinds.index(kind)] for name, group, kind in parts}
+        return {"correlated_samples": float(self._samples), **named}
 
     def checkpoint(self) -> dict[str, Any]:
         """Arrays from which `restore` continues to the same bits."""

@@ -16,7 +16,7 @@ import numpy as np
 from gaspart.engines import Engine, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.files import descriptor_path
-from gaspart.scene.faces import pistons
+from gaspart.scene.faces import pistons, sliding_faces
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of, number
 from gaspart.state.insertion import per_body
@@ -139,6 +139,12 @@ class Recipe:
         return self.correlations is not None and self.correlations.stress
 
     @property
+    def tallied(self) -> set[str]:
+        """What is tallied that is not of every run, see `amber.counters`."""
+        present = {"stress": self.stress, "sliding": bool(sliding_faces(self.scene))}
+        return {name for name, there in present.items() if there}
+
+    @property
     def layout(self) -> amber.Layout:
         """The variables of a frame."""
         scene, walls = self.scene, len(self.scene.walls)
@@ -154,7 +160,7 @@ class Recipe:
         if self.correlations:
             sums = stress_sums() if self.stress else sums_of(self.displacements)
             lags = self.correlations.lags
-        counters = amber.counters(self.engine, self.stress)
+        counters = amber.counters(self.engine, self.tallied)
         pairs = pair_names(scene) if self.pairs else []
         return amber.Layout(self.stored_count, scene.dimension, extra, walls, counters, sums, lags, pairs)
 

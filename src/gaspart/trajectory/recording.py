@@ -203,7 +203,7 @@ class Recording:
 
     def _frame(self, state: State) -> dict[str, np.ndarray | float]:
         """The present state and counters, as the variables of a frame."""
-        counted = amber.counters(self._recipe.engine, self._recipe.stress)
+        counted = amber.counters(self._recipe.engine, self._recipe.tallied)
         tally, followed = self._simulation.tally, slice(self._recipe.stored_count)
         inner: dict[str, np.ndarray] = {}
         if self._recipe.scene.rough:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.engines.dsmc.rates import accessible
-from gaspart.engines.features.faces import WALL_DRAWS, kinds_and_levels
+from gaspart.engines.features.faces import WALL_DRAWS, kinds_and_levels, sliding_velocities
 from gaspart.engines.features.masses import largest_terms
 from gaspart.errors import SceneError
 from gaspart.kernels.dsmc.model import PADDED, Faces, Grid, Law, Particles, Tools
@@ -111,9 +111,13 @@ TALLY = ("counts", "virial", "loss", "wall_hits", "wall_impulse", "wall_heat")
 """The arrays of `Tools` that count; by thread."""
 
 
-def faces_for(scene: Scene) -> Faces | None:
+def faces_for(scene: Scene, threads: int) -> Faces | None:
     """The kinds of the container's faces, if any is thermal."""
-    return Faces(*kinds_and_levels(scene)) if scene.faces else None
+    if not scene.faces:
+        return None
+    velocities = sliding_velocities(scene)
+    shear = None if velocities is None else np.zeros((threads, *velocities.shape, 2), np.int64)
+    return Faces(*kinds_and_levels(scene), velocities, shear)
 
 
 def law_for(law: ContactLaw | None) -> Law | None:

@@ -55,7 +55,7 @@ class DsmcDynamics:
         self._setting = model.Setting(space, self._tools, 0)
         self._gravity = scene.gravity
         law = contact_law(scene, state)
-        self._faces, self._law = arrays.faces_for(scene), arrays.law_for(law)
+        self._faces, self._law = arrays.faces_for(scene, engine.threads), arrays.law_for(law)
         self._dense = None
         if engine.model == "enskog":
             from gaspart.engines.dsmc.dense import dense_for
@@ -147,9 +147,15 @@ class DsmcDynamics:
             getattr(self._tools, key)[...] = 0
         if self._kicks is not None:
             self._kicks.given[:] = 0.0
-        if self._stress is not None:
-            self._stress.sums[...] = 0
+        for sums in self._optional.values():
+            sums[...] = 0
         self._since = self._steps
+
+    @property
+    def _optional(self) -> dict[str, np.ndarray]:
+        """Sums (threads, ...) of what not every scene has, by their names in a checkpoint."""
+        stress, shear = self._stress and self._stress.sums, self._faces and self._faces.shear
+        return {key: sums for key, sums in {"stress": stress, "shear": shear}.items() if sums is not None}
 
     @property
     def _heat(self) -> np.ndarray:
@@ -204,9 +210,12 @@ class DsmcDynamics:
     def tally(self) -> Tally:
         """What was counted since the last `reset_tally`."""
         tools, layout = self._tools, self._layout
-        fluxes: dict[str, Any] = {}
+        more: dict[str, Any] = {}
         if self._stress is not None:
-            fluxes = tallied_fluxes(self.flux_sums, self._scene.dimension)
+            more = tallied_fluxes(self.flux_sums, self._scene.dimension)
+        if (shear := self._optional.get("shear")) is not None:
+            parts = self._sums.whole_parts(shear.sum(axis=0), tools.scales[layout.MOMENTUM])
+            more["wall_shear"] = parts.sum(axis=-1)
         counts = tools.counts.sum(axis=0)
         impulse = self._sums.whole_parts(tools.wall_impulse.sum(axis=0), tools.scales[layout.MOMENTUM])
         virial = self._sums.whole_parts(tools.virial.sum(axis=0), tools.scales[layout.ACTION])
@@ -222,7 +231,7 @@ class DsmcDynamics:
             dissipated_energy=self._sums.net(self._loss),
             thermostat_energy=self._sums.net(self._given),
             steps=self._steps - self._since,
-            **fluxes,
+            **more,
         )
 
     def checkpoint(self) -> dict[str, np.ndarray]:
@@ -237,7 +246,7 @@ class DsmcDynamics:
             "slots": self._slots.copy(),
             **{key: getattr(self._tools, key).sum(axis=0) for key in self._arrays.TALLY},
             **{key: array.copy() for key, array in arrays_of(self._parts).items()},
-            **({} if self._stress is None else {"stress": self._stress.sums.sum(axis=0)}),
+            **{key: sums.sum(axis=0) for key, sums in self._optional.items()},
         }
 
     def restore(self, parts: dict[str, np.ndarray]) -> None:
@@ -249,8 +258,8 @@ class DsmcDynamics:
             array[0] = parts[key]
         for key, array in arrays_of(self._parts).items():
             array[...] = parts[key]
-        if self._stress is not None:
-            self._stress.sums[...] = 0
-            self._stress.sums[0] = parts["stress"]
+        for key, sums in self._optional.items():
+            sums[...] = 0
+            sums[0] = parts[key]
         self._tools.clock[0], self._since = int(parts["steps"]), int(parts["since"])
         self._lost = parts["lost"].copy()

@@ -56,7 +56,7 @@ class DSMC(Engine):
     tallies_stress: ClassVar[bool] = True
     models: ClassVar[frozenset[str]] = frozenset(
         ("gravity", "restitution", "roughness", "viscoelasticity", "thermostat")
-    ) | {"centres_to_walls", "thermal"}
+    ) | {"centres_to_walls", "thermal", "sliding"}
     counters: ClassVar[tuple[str, ...]] = ("steps",)
 
     @property

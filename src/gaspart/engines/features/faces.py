@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import math
+from typing import Any
+
 import numpy as np
 
 from gaspart.engines.features.part import Part
 from gaspart.engines.features.piston import piston_of
 from gaspart.engines.features.vibrating import motion_of
-from gaspart.kernels.model import STICKY, Faces
+from gaspart.kernels.model import STICKY, Faces, Sliding
 from gaspart.kernels.obstacles.face import RULES
-from gaspart.scene.faces import FACES
+from gaspart.kernels.physics.running_sum import values
+from gaspart.scene.faces import FACES, sliding_faces
 from gaspart.scene.scene import Scene
 from gaspart.state.random import key_of
 from gaspart.state.state import State
@@ -26,10 +30,19 @@ def kinds_and_levels(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     return np.array([RULES[name] for name in names], dtype=np.int64), np.array(levels, dtype=float)
 
 
+def sliding_velocities(scene: Scene) -> np.ndarray | None:
+    """(2d, d) the velocities of the container's faces, None if none slides."""
+    velocities = np.zeros((2 * scene.dimension, scene.dimension))
+    for n, face in sliding_faces(scene):
+        velocities[n] = face.velocity
+    return velocities if velocities.any() else None
+
+
 def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float) -> Faces:
     """The kinds of the container's faces as the kernels' `Faces`, in units of `unit_mass`."""
     kind, level = kinds_and_levels(scene)
     depths, widths = wells_of(scene)
+    velocities = sliding_velocities(scene)
     return Faces(
         kind=kind,
         level=level / unit_mass,
@@ -42,22 +55,29 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
         sticky=kind == STICKY if (kind == STICKY).any() else None,
         motion=motion_of(scene),
         piston=piston_of(scene, state, unit_mass),
+        sliding=None if velocities is None else Sliding(velocities, np.zeros((velocities.size, 2))),
     )
 
 
 def face_energy(scene: Scene) -> float:
-    """Upper estimate of the energy that a thermal face or a well gives a particle."""
+    """Upper estimate of the energy that a thermal face or a well gives a particle, at whatever speed it
+    moves."""
     hottest = max((getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()), default=0.0)
     deepest = max((getattr(face, "depth", 0.0) for face in scene.faces.values()), default=0.0)
-    return scene.dimension * hottest + 2.0 * deepest
+    fastest = max((math.hypot(*(face.velocity or ())) for _, face in sliding_faces(scene)), default=0.0)
+    heaviest = max((kind.mass for kind in scene.kinds), default=0.0) if fastest else 0.0
+    return scene.dimension * hottest + 2.0 * deepest + heaviest * fastest**2
 
 
 class FacesPart(Part):
     """Faces with a kind, in units of `unit_mass`: which particles are in a well or stuck, with what energy,
-    and how often random numbers were drawn. lightest: the least mass of a particle."""
+    how often random numbers were drawn, and what momentum sliding faces were given. lightest: the least mass
+    of a particle."""
 
     def __init__(self, scene: Scene, faces: Faces, unit_mass: float, lightest: float = np.inf) -> None:
-        super().__init__({key: getattr(faces, key) for key in ("place", "held", "draws")})
+        self._shear = faces.sliding.shear if faces.sliding else None
+        arrays = {key: getattr(faces, key) for key in ("place", "held", "draws")}
+        super().__init__(arrays if self._shear is None else {**arrays, "shear": self._shear})
         self._scene, self._unit_mass = scene, unit_mass
         self.gained = face_energy(scene) / lightest
 
@@ -66,3 +86,15 @@ class FacesPart(Part):
         state.well_energies = well_energies(self._scene, self.arrays["place"])
         if state.vibrations is not None:
             state.vibrations += self.arrays["held"].sum(axis=1) * self._unit_mass
+
+    def reset(self, clock: float) -> None:
+        """Begin to count from zero."""
+        if self._shear is not None:
+            self._shear[...] = 0.0
+
+    def counts(self, clock: float) -> dict[str, Any]:
+        """The momentum that sliding faces were given, by the field of `Tally`."""
+        if self._shear is None:
+            return {}
+        shear = values(self._shear).reshape(-1, self._scene.dimension) * self._unit_mass
+        return {"wall_shear": np.pad(shear, ((0, len(self._scene.walls)), (0, 0)))}

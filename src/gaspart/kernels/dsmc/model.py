@@ -88,10 +88,14 @@ class Tools(NamedTuple):
 
 
 class Faces(NamedTuple):
-    """Of the container's faces (2d,): kind and temperature of those that are thermal, see `kernels.model`."""
+    """Of the container's faces (2d,): kind and temperature of those that are thermal, see `kernels.model`;
+    velocity (2d, d), and by thread shear (threads, 2d, d, 2), the momentum that they were given along each
+    axis, both None if no face slides."""
 
     kind: np.ndarray
     level: np.ndarray
+    velocity: np.ndarray | None
+    shear: np.ndarray | None
 
 
 class Law(NamedTuple):

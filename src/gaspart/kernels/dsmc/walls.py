@@ -85,6 +85,27 @@ def draw_spin(i, level, inertia, key, counter, spins):
     return given
 
 
+@inner_helper
+def add_shear(face, mass, setting, shear):
+    """Add the momentum along a face of the particle in a thread's room to what the face was given. mass:
+    negative where the particle takes it."""
+    if shear is not None:
+        tools, part = setting.tools, setting.part
+        for k in range(shear.shape[2]):
+            if k != face // 2:
+                given = mass * tools.flights[part, 0].velocity[k]
+                add_whole(shear[part, face, k], given, tools.scales[MOMENTUM])
+
+
+@inner_helper
+def drag(face, mass, setting, velocity, shear):
+    """Let the particle in a thread's room, which leaves a face, share its motion."""
+    if velocity is not None:
+        for k in range(velocity.shape[1]):
+            setting.tools.flights[setting.part, 0].velocity[k] += velocity[face, k]
+        add_shear(face, -mass, setting, shear)
+
+
 @inner_kernel
 def leave_thermal(i, face, which, number, setting, faces, law):
     """Give particle i, of a kind, at a thermal face, the velocity of one that leaves it: the draw with this
@@ -100,10 +121,12 @@ def leave_thermal(i, face, which, number, setting, faces, law):
     impulse = mass * (side * flights[0].velocity[axis] + away)
     flights[0].velocity[axis] = -side * away
     if faces.kind[face] == THERMAL:
+        add_shear(face, mass, setting, faces.shear)
         one, other, block = normal_pair(key, i, number, 1)
         flights[0].velocity[(axis + 1) % d] = width * one
         if d == 3:
             flights[0].velocity[(axis + 2) % d] = width * other
+        drag(face, mass, setting, faces.velocity, faces.shear)
         if law is not None:
             if law.tangential > -1.0:
                 components = 1 if d == 2 else 3

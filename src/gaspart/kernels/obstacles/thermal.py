@@ -2,7 +2,7 @@
 
 from math import sqrt
 
-from gaspart.kernels.compile.policy import inner_kernel
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.model import THERMAL
 from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.rng import flux_speed, normal_pair
@@ -27,14 +27,36 @@ def collide_thermal(flights, i, face, model, tally, law, faces):
     flights[i].velocity[axis] = -side * away
     add(tally.wall_impulse, face, mass * (approach + away))
     if faces.kind[face] == THERMAL:
+        add_shear(flights, i, face, mass, faces.sliding)
         one, other, block = normal_pair(faces.key, i, number, 1)
         flights[i].velocity[(axis + 1) % d] = width * one
         if d == 3:
             flights[i].velocity[(axis + 2) % d] = width * other
+        drag(flights, i, face, mass, faces.sliding)
         draw_spin(i, face, (number, block), d, tally, law, faces)
     for k in range(d):
         square -= flights[i].velocity[k] * flights[i].velocity[k]
     add(tally.wall_energy, face, 0.5 * mass * square)
+
+
+@inner_helper
+def add_shear(flights, i, face, mass, sliding):
+    """Add a particle's momentum along a face to what that was given. mass: negative where the particle takes
+    it."""
+    if sliding is not None:
+        d = sliding.velocity.shape[1]
+        for k in range(d):
+            if k != face // 2:
+                add(sliding.shear, face * d + k, mass * flights[i].velocity[k])
+
+
+@inner_helper
+def drag(flights, i, face, mass, sliding):
+    """Let a particle that leaves a face share its motion."""
+    if sliding is not None:
+        for k in range(sliding.velocity.shape[1]):
+            flights[i].velocity[k] += sliding.velocity[face, k]
+        add_shear(flights, i, face, -mass, sliding)
 
 
 @inner_kernel

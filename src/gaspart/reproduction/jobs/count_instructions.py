@@ -27,7 +27,7 @@ RESULT = "the machine code of both engines for the scene, with and without the s
 KEYS: dict[str, Kind] = {}
 FEATURES = {
     "collapse", "duration", "faces", "gravity", "law", "masses", "motion", "oversized", "piston", "record",
-    "rules", "sticky", "stress", "support", "vibrations", "viscous", "walls",
+    "rules", "shear", "sliding", "sticky", "stress", "support", "velocity", "vibrations", "viscous", "walls",
 }  # fmt: skip
 """Arguments of the kernels that are None for a plain gas."""
 ENGINES = ("event", "step")

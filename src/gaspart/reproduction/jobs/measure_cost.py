@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -46,12 +46,15 @@ KEYS: dict[str, Kind] = {
     ),
     "scan_time_steps": SCAN_TIME_STEPS,
     "record_events": flag("record all events; needs an engine that has them", default=False),
+    "stress": flag("tally the stress tensor and the heat flux", default=False),
     "without": described(
         {"type": "array", "items": TEXT, "minItems": 1},
         "keys that a second scene and engine lack, which are timed in turn with the point's",
         default=None,
     ),
 }
+EXTRAS = ("record_events", "stress")
+"""Keys of what is done besides: to write down all events, and forget them; to tally the stress."""
 COUNTED = ("steps", "collisions", "wall_hits", "pair_tests", "box_visits", "crossings")
 
 
@@ -62,10 +65,12 @@ def engines(point: Point) -> list[Engine]:
 
 def parameters(point: Point) -> dict:
     """Those of `measure_cost`, in plain values. Raises SceneError."""
-    record = point.settings.get("record_events", False)
-    if record and not point.engine.records_events:
+    extras = [key for key in EXTRAS if point.settings.get(key)]
+    if "record_events" in extras and not point.engine.records_events:
         raise point.refused("record_events", "has a meaning with job: measure_cost and engine: event only")
-    return {"record": record, "rival": _rival(point), **stretches(point)}
+    if "stress" in extras:
+        point.engine.check_stress(point.scene)
+    return {"extras": extras, "rival": _rival(point), **stretches(point)}
 
 
 def _rival(point: Point) -> dict | None:
@@ -85,28 +90,28 @@ def measure_cost(
     equilibration: float,
     stretch: float,
     repeats: int,
-    record: bool = False,
+    extras: Collection[str] = (),
     rival: tuple[Scene, Sequence[Engine]] | None = None,
 ) -> PointData:
     """Time `repeats` times, with each of the engines, the same stretch of simulated time of the same gas.
 
-    equilibration, stretch: in the scene's time; record: write down all events, and forget them; rival: a
-    scene and engines, timed in turn with these and without a record: the last partitions.
+    equilibration, stretch: in the scene's time; extras: of `EXTRAS`; rival: a scene and engines, timed in
+    turn with these and without extras: the last partitions.
     Returns a dataset over ``partition`` (the engines, in their order) and ``repeat``: ``seconds``
     (partition, repeat), processor time of the advance alone (filling the container, setting up and compiling
     are left out); over ``partition``: ``boxes`` in all, ``boxes_per_side`` (of the first axis; both 0 if the
     engine chooses itself), ``duration`` (scene's time) and the counts of the tally. Attributes: count,
     dimension, radius, side (first axis), packing_fraction, engine, search (event-driven) or time_step,
-    recorded.
+    extras.
 
     Raises SceneError, and SimulationError if the counted work of a repeat differs from the first one's.
     """
     # By the shortest step: a longer one leaves overlaps, which would count against a shorter one.
     careful = min(engines, key=lambda engine: getattr(engine, "time_step", 0.0))
     runs = []
-    for made, chosen, recorded in [(scene, engines, record), *([(*rival, False)] if rival else [])]:
+    for made, chosen, also in [(scene, engines, extras), *([(*rival, ())] if rival else [])]:
         start = _start(made, careful, seed, equilibration)
-        runs += [(made, start, engine, recorded) for engine in chosen]
+        runs += [(made, start, engine, also) for engine in chosen]
     seconds = [[0.0] * repeats for _ in runs]
     counts: list[dict] = [{}] * len(runs)
     for repeat in range(repeats):
@@ -135,7 +140,7 @@ def measure_cost(
             "engine": engines[0].name,
             "search": getattr(engines[0], "search", ""),
             "time_step": getattr(engines[0], "time_step", 0.0),
-            "recorded": int(record),
+            "extras": " ".join(extras),
         },
     )
 
@@ -155,14 +160,16 @@ def _start(scene: Scene, engine: Engine, seed: tuple[int, ...], equilibration: f
     return simulation.state
 
 
-def _timed(scene: Scene, state: State, engine: Engine, record: bool, stretch: float) -> tuple[float, dict]:
+def _timed(
+    scene: Scene, state: State, engine: Engine, extras: Collection[str], stretch: float
+) -> tuple[float, dict]:
     """Processor time of one stretch, in s, and what was counted in it."""
     import numpy as np
 
     from gaspart.engines.event_log import EventLog
 
-    dynamics = engine.start(scene, state)
-    log = EventLog(scene.dimension, scene.rough) if record else None
+    dynamics = engine.start(scene, state, **({"stress": True} if "stress" in extras else {}))
+    log = EventLog(scene.dimension, scene.rough) if "record_events" in extras else None
     step = getattr(engine, "time_step", 0.0)
     # This loads the kernels, and the first step touches all memory.
     dynamics.advance(state.time + step * (1 + SLACK), log=log)
@@ -192,7 +199,7 @@ def run(parameters: dict) -> PointData:
         equilibration=parameters["equilibration"],
         stretch=parameters["stretch"],
         repeats=parameters["repeats"],
-        record=parameters["record"],
+        extras=parameters["extras"],
         rival=parameters["rival"] and _scene_and_engines(parameters["rival"]),
     )
 

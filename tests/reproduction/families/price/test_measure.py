@@ -28,7 +28,7 @@ def points(tmp_path_factory):
     common = {"scene": str(ROOT / "config/scenes/price.yaml"), "engine": "event", "duration": 2, "samples": 2}
     small = {"scene.species.0.count": 100, "scene.species.1.count": 100}
     made = []
-    features = {}, {"scene.species.1.mass": 4.0}, {"record_events": True}
+    features = {}, {"scene.species.1.mass": 4.0}, {"record_events": True}, {"stress": True}
     for k, (feature, equilibration) in enumerate(product(features, (0, 0.5))):
         varied = {**feature, "equilibration": equilibration, "without": list(feature) or ["scene.gravity"]}
         point = Point("price", str(k), "measure_cost", {**common, **small, **varied}, str(root), 3)
@@ -40,8 +40,8 @@ def points(tmp_path_factory):
 
 def test_costs_are_those_of_the_plain_scene_times_a_ratio(points):
     ds = price_of_features(points, {})
-    assert ds["feature"].values.tolist() == ["plain", "two masses", "recording"]
-    assert ds["ratio_freedom"].values.tolist() == [1.0, 1.0, 1.0]
+    assert ds["feature"].values.tolist() == ["plain", "two masses", "recording", "stress"]
+    assert ds["ratio_freedom"].values.tolist() == [1.0] * 4
     assert np.all(ds["ratio_error"] > 0.0) and np.all(ds["ratio"] > 0.0)
     assert np.all(ds["pair_tests"] > 1.0)
 
@@ -72,15 +72,15 @@ def test_scatter_between_jobs_is_the_uncertainty(tmp_path):
 
 def test_claims_can_fail(points):
     ds = price_of_features(points, {}).assign(
-        ratio=("point", [1.0, 1.1, 2.0]),
-        ratio_error=("point", [0.01, 0.02, 0.02]),
-        ratio_freedom=("point", [20.0, 20.0, 20.0]),
+        ratio=("point", [1.0, 1.1, 2.0, 1.1]),
+        ratio_error=("point", [0.01, 0.02, 0.02, 0.02]),
+        ratio_freedom=("point", [20.0] * 4),
         instructions=("kernel", [1000, 1000]),
         stripped=("kernel", [1000, 900]),
     )
     ds = ds.assign_coords(kernel=["event", "step"])
-    assert judge(claims(ds)) == ["agrees", "disagrees", "agrees", "agrees", "disagrees"]
-    assert judge(claims(ds.assign(ratio=("point", [1.2, 1.1, 1.2]))))[2] == "disagrees"
+    assert judge(claims(ds)) == ["agrees", "disagrees", "agrees", "agrees", "disagrees", "agrees"]
+    assert judge(claims(ds.assign(ratio=("point", [1.2, 1.1, 1.2, 1.1]))))[2] == "disagrees"
 
 
 def test_branches_on_absent_features_are_cut_out():

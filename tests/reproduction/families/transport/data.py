@@ -12,6 +12,7 @@ def measured(error=0.002, seed=1):
         finite = 0.99 if eta <= 0.02 else 1.0
         lags = 16 if eta < 0.45 else 31
         known = {"value": finite + error * rng.normal(), "growth": finite + error * rng.normal()}
+        known["bulk"] = 1.0 + error * rng.normal()
         known["difference"] = known["growth"] / known["value"] - 1.0
         time = 1.0 * np.arange(lags)
         rows.append(

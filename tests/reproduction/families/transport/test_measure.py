@@ -37,3 +37,6 @@ def test_coefficients_are_near_enskogs(tmp_path, monkeypatch):
         assert float(row["finite"]) == theory.transport_finite_size_factor(64, 3, name)
         assert abs(float(row["difference"])) < 4.5 * float(row["difference_error"]) + 0.02
         assert abs(float(row["time"][1]) - 1.0) < 0.02
+    bulk = transport.viscosity([one], {}).isel(point=0)
+    assert float(bulk["bulk_error"]) < 0.15
+    assert abs(float(bulk["bulk"]) - 1.0) < 4.5 * float(bulk["bulk_error"]) + 0.03

@@ -54,21 +54,22 @@ def _row(point: Point) -> dict:
     the scene without the feature, timed next to it."""
     with xr.open_dataset(point.path) as run:
         costs = per_event(run)
-        engine, recorded = run.attrs["engine"], bool(run.attrs["recorded"])
+        engine, extras = run.attrs["engine"], run.attrs["extras"].split()
         log_ratio = float(log_ratios(run, costs["events"].values)[0])
     own = costs.isel(partition=0)
     return {
         "engine": engine,
-        "feature": _feature(point.scene, recorded),
+        "feature": _feature(point.scene, extras),
         "log_ratio": log_ratio,
         **{name: float(own[name]) for name in ("seconds", *WORK)},
     }
 
 
-def _feature(scene: Scene, recorded: bool) -> str:
+def _feature(scene: Scene, extras: list[str]) -> str:
     """The feature of a scene that a plain periodic gas of equal spheres lacks."""
     has = {
-        "recording": recorded,
+        "recording": "record_events" in extras,
+        "stress": "stress" in extras,
         "gravity": scene.gravity is not None,
         "walls": "wall" in scene.container.boundary,
         "spin": scene.rough,

@@ -19,13 +19,27 @@ FEW_PER_CENT = 0.05
 
 
 def viscosity(ds: xr.Dataset) -> list[Claim]:
-    """The shear viscosity of spheres and discs."""
-    return _claims(ds, "viscosity")
+    """The shear and the bulk viscosity of spheres and discs."""
+    return _claims(ds, "viscosity") + [_bulk(row) for row in rows(ds, "point")]
 
 
 def conductivity(ds: xr.Dataset) -> list[Claim]:
     """The conductivity of heat of spheres and discs."""
     return _claims(ds, "conductivity")
+
+
+def _bulk(row: xr.Dataset) -> Claim:
+    """The bulk viscosity."""
+    eta, dimension = float(row["packing_fraction"]), int(row["dimension"])
+    return Claim.within(
+        claim=f"bulk viscosity over Enskog's, {PARTICLES[dimension]}, packing fraction {eta:.3g}, "
+        f"{int(row['count'])} particles",
+        measured=Estimate.of(row, "bulk"),
+        expected=1.0,
+        half_width=FEW_PER_CENT,
+        source="[Chapman 1970]; expansion changes what passes at contacts at once, and kinetic parts not",
+        fails_if="a pressure that is not that of the contacts",
+    )
 
 
 def _claims(ds: xr.Dataset, name: str) -> list[Claim]:

@@ -13,7 +13,8 @@ from gaspart.reproduction.families.shared.rows import estimates
 
 
 def viscosity(ds: xr.Dataset) -> Figure:
-    """The shear viscosity over Enskog's, against density, and the integral until each time."""
+    """The shear viscosity over Enskog's, and the bulk viscosity, against density, and the integral of the
+    former until each time."""
     return _figure(ds, r"$\eta/\eta_\mathrm{Enskog}$")
 
 
@@ -41,6 +42,8 @@ def _density(axis: Axes, row: xr.Dataset, dimension: int) -> None:
     shift = 0.004
     style.measured(axis, eta - shift, estimates(row, "value"), 0, label="Green-Kubo")
     style.measured(axis, eta + shift, estimates(row, "growth"), 1, hollow=True, label="Helfand")
+    if "bulk" in row:
+        style.measured(axis, eta, estimates(row, "bulk"), 2, label="bulk, Green-Kubo")
     axis.axhline(1.0, color=style.GREY, lw=0.8, label="Enskog")
     axis.set_xlim(0.0)
     axis.set_xlabel(r"packing fraction $\phi$")

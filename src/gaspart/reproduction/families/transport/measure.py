@@ -13,8 +13,9 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
+from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.run import Run
-from gaspart.analysis.statistics import means_of
+from gaspart.analysis.statistics import mean_of, means_of
 from gaspart.analysis.transport import green_kubo, helfand
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.points.point import Point
@@ -28,8 +29,9 @@ LATE = 0.5
 
 
 def viscosity(points: list[Point], settings: dict) -> xr.Dataset:
-    """Shear viscosity; see `_dataset`."""
-    return _dataset(points, "shear", theory.enskog_viscosity)
+    """Shear viscosity; see `_dataset`; and `bulk`, the bulk viscosity over Enskog's by Green and Kubo."""
+    found = _dataset(points, "shear", theory.enskog_viscosity)
+    return found.merge(from_rows("point", [entries({"bulk": _bulk(point)}) for point in points]))
 
 
 def conductivity(points: list[Point], settings: dict) -> xr.Dataset:
@@ -47,11 +49,26 @@ def _dataset(points: list[Point], flux: str, enskog: Callable[..., Any]) -> xr.D
     that lag. dimension, packing_fraction, count; `finite`, what a dilute gas of so many particles has over
     an infinite one.
     """
-    rows = [_row(point, flux, enskog) for point in points]
+    rows = [coefficient(point, flux, enskog) for point in points]
     return from_rows("point", rows, ("lag",), {"time": "collisions per particle"})
 
 
-def _row(point: Point, flux: str, enskog: Callable[..., Any]) -> dict:
+def _bulk(point: Point) -> Estimate:
+    """The bulk viscosity over Enskog's, until a part `LATE` of the longest lag. The mean of the pressure is
+    that of each run, of duration T, which takes off 2 lag / T of the value."""
+    gas, samples = plain_gas(point.scene), []
+    for path in point.replica_paths:
+        with open_trajectory(path) as trajectory:
+            run = Run(point.scene, trajectory["time"].values, trajectory)
+            lags = trajectory["lag"].values
+            last = _half(lags)
+            short = 2.0 * lags[last] / (run.time[-1] - run.time[0])
+            samples += list(green_kubo(run, "bulk")[:, last] / (1.0 - short))
+    return mean_of(samples) / float(theory.enskog_bulk_viscosity(**gas.parameters))
+
+
+def coefficient(point: Point, flux: str, enskog: Callable[..., Any]) -> dict:
+    """One point of `_dataset`, of the flux of `trajectory.correlator.STRESS` with this name."""
     gas = plain_gas(point.scene)
     exact, rate = float(enskog(**gas.parameters)), float(theory.collision_rate(**gas.parameters))
     curves, growths = [], []

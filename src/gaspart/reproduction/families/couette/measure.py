@@ -1,0 +1,247 @@
+"""The steady flow of a gas between two walls that slide past each other.
+
+The walls are the two faces of the first axis; the flow is along the second one. Positions count from the
+middle. Particles have the mass 1, and the walls one temperature.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gaspart import theory
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.run import Run
+from gaspart.analysis.statistics import fit_linear, jackknife
+from gaspart.reproduction.families.heat.gap import Gap, sums
+from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.families.shared.runs import runs
+from gaspart.reproduction.families.transport.measure import coefficient
+from gaspart.reproduction.points.point import Point
+from gaspart.scene.faces import thermal_face
+from gaspart.scene.scene import Scene
+from gaspart.theory.dsmc import cell_factor, step_factor
+
+NUMBERS = ("viscosity", "slip", "heating", "normal_x", "normal_y", "normal_z", "pressure", "reduced_rate")
+"""What is found of a flow; see `couette`."""
+
+
+def couette(points: list[Point], settings: dict) -> xr.Dataset:
+    """Flows between sliding walls, and the viscosity from equilibrium beside them.
+
+    settings: `parts`, the experiments of each part; `blocks` of each run; `bins` across the gap; `clear`.
+    Dimension point, and bin; `_error` and `_freedom`, the degrees of freedom of the error. part, engine,
+    packing_fraction (of flows that in the middle), knudsen (mean free path over gap), speed (difference of
+    the walls'); stress, over that of free flight. Of the middle, `clear` off the walls: viscosity, stress
+    over gradient, over Enskog's at its density and temperature (with the errors of cells and steps of DSMC);
+    slip, the velocity of the gas relative to the wall, extrapolated, over mean free path and gradient there;
+    heating, -dT/du^2; normal_x, _y, _z, the kinetic energy of each component over their mean, minus 1;
+    pressure on the walls over that of the equation of state; reduced_rate, stress over pressure. place,
+    flow and temperature by bin. Of equilibrium points packing_fraction and `viscosity` by Green and Kubo.
+    """
+    rows = []
+    for part, experiments in settings["parts"].items():
+        for point in (point for point in points if point.experiment in experiments):
+            row = _flow(point, settings) if part == "flows" else _equilibrium(point)
+            rows.append({"part": part, "engine": point.engine.title, **row})
+    units = {"place": "gap", "flow": "speed of the walls", "temperature": "temperature of the walls"}
+    return from_rows("point", rows, ("bin",), units)
+
+
+def _equilibrium(point: Point) -> dict:
+    """The viscosity over Enskog's, as of an infinite gas."""
+    row = coefficient(point, "shear", theory.enskog_viscosity)
+    value = Estimate(row["value"], row["value_error"], row["value_freedom"]) / row["finite"]
+    return {"packing_fraction": row["packing_fraction"], **entries({"viscosity": value})}
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What is known of a flow. gap: its size; speed, by which the velocities of the walls differ; diameter of
+    the spheres; dilute: whether they take no room, as in DSMC; coarse: the viscosity by the engine's cells
+    and steps over the exact one; place (B,), of the bins; middle (B,), which are clear of the walls."""
+
+    gap: Gap
+    speed: float
+    diameter: float
+    dilute: bool
+    coarse: float
+    place: np.ndarray
+    middle: np.ndarray
+
+    @classmethod
+    def of(cls, point: Point, settings: dict) -> Setting:
+        """That of a point."""
+        scene = point.scene
+        gap, diameter, dilute = Gap.of(scene), 2.0 * scene.smallest_radius, point.engine.name == "dsmc"
+        path = float(_path(scene.count / (gap.length * gap.area), diameter, dilute))
+        place = gap.length * ((np.arange(settings["bins"]) + 0.5) / settings["bins"] - 0.5)
+        clear = min(settings["clear"] * max(path, 0.0 if dilute else diameter), gap.length / 3.0)
+        coarse = _coarseness(point, gap, path) if dilute else 1.0
+        middle = np.abs(place) < 0.5 * gap.length - clear
+        return cls(gap, _speed(scene), diameter, dilute, coarse, place, middle)
+
+    def packing_fraction(self, density: float) -> float:
+        """That which matters for theory at a number density."""
+        return 0.0 if self.dilute else float(theory.packing_fraction(density, 3, self.diameter))
+
+
+def _speed(scene: Scene) -> float:
+    """By how much the velocities of the walls along the second axis differ."""
+    low, high = (thermal_face(scene, name).velocity or (0.0, 0.0) for name in ("x_low", "x_high"))
+    return high[1] - low[1]
+
+
+def _path(density: float, diameter: float, dilute: bool) -> float:
+    """The mean free path, of spheres that take no room if `dilute`."""
+    eta = float(theory.packing_fraction(density, 3, diameter))
+    path = float(theory.mean_free_path(eta, 3, diameter))
+    return path * float(theory.contact_value(eta, 3)) if dilute else path
+
+
+def _coarseness(point: Point, gap: Gap, path: float) -> float:
+    """The viscosity by cells and steps over the exact one; only widths across the gap matter."""
+    engine = asdict(point.engine.resolved(point.scene, point.schedule.sample_interval))
+    width = gap.length / engine["cells_per_side"][0] / path
+    step = engine["time_step"] * math.sqrt(2.0) / path
+    return float(cell_factor("viscosity", width) * step_factor("viscosity", step))
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """Averages over K blocks of time: stress (K,) on the walls and pressure (K,) on them; density (K, B) of
+    particles in bins, flow (K, B), their momentum, and squares (K, B, d) of their velocities, per volume;
+    changes (K, 2), of the momentum of all particles and of its first moment."""
+
+    stress: np.ndarray
+    pressure: np.ndarray
+    density: np.ndarray
+    flow: np.ndarray
+    squares: np.ndarray
+    changes: np.ndarray
+
+    @property
+    def steady(self) -> np.ndarray:
+        """(K,) the stress without what blocks store and give back; see `statistics.steady_mean`."""
+        scale = np.abs(self.changes).max(axis=0)
+        design = np.column_stack([np.ones(len(self.stress)), self.changes / scale])
+        return self.stress - design[:, 1:] @ fit_linear(design, self.stress).values[1:]
+
+
+def _blocks(point: Point, gap: Gap, blocks: int, bins: int) -> Blocks:
+    """Averages over the measured part of all replicas, each cut into `blocks`."""
+    found = [_blocks_of(run, gap, blocks, bins) for run in runs(point)]
+    return Blocks(*(np.concatenate([getattr(one, key) for one in found]) for key in vars(found[0])))
+
+
+def _blocks_of(run: Run, gap: Gap, blocks: int, bins: int) -> Blocks:
+    length = run.block_length(blocks)
+    used = length * blocks
+    ends = slice(None, used + 1, length)
+    time, volume = np.diff(run.time[ends])[:, None], length * gap.area * gap.length / bins
+    shear, push = (np.diff(run.data[name].values[ends], axis=0) for name in ("wall_shear", "wall_impulse"))
+    places, velocities = run.positions[:, :, 0], run.velocities
+    radius = run.scene.smallest_radius
+    along = velocities[ends, :, 1]
+    moment = (along * (places[ends] - radius - 0.5 * gap.length)).sum(axis=1)
+    bin_of = gap.bin_of(places[1 : used + 1] - radius, bins)
+
+    def total(weights: np.ndarray | None) -> np.ndarray:
+        return sums(bin_of, weights, blocks, bins) / volume
+
+    moving = velocities[1 : used + 1]
+    return Blocks(
+        stress=0.5 * (shear[:, 0, 1] - shear[:, 1, 1]) / (time[:, 0] * gap.area),
+        pressure=0.5 * push[:, :2].sum(axis=1) / (time[:, 0] * gap.area),
+        density=total(None),
+        flow=total(moving[:, :, 1]),
+        squares=np.stack([total(moving[:, :, k] ** 2) for k in range(gap.dimension)], axis=2),
+        changes=np.diff(np.column_stack([along.sum(axis=1), moment]), axis=0),
+    )
+
+
+def _flow(point: Point, settings: dict) -> dict:
+    """The numbers of one flow."""
+    setting = Setting.of(point, settings)
+    gap, bins = setting.gap, settings["bins"]
+    blocks = _blocks(point, gap, settings["blocks"], bins)
+    averages = blocks.steady, blocks.pressure, blocks.density, blocks.flow, blocks.squares
+
+    def numbers(*means: Any) -> np.ndarray:
+        return _numbers(setting, *means)
+
+    values, errors = jackknife(numbers, *averages)
+    freedom = len(blocks.stress) - 1
+    profile, spread = jackknife(lambda *means: np.stack(_profile(*means)[:2]), *averages[2:])
+    density = point.scene.count / (gap.length * gap.area)
+    free = float(theory.free_molecular_stress(density, setting.speed, gap.hot))
+    parts = zip(("stress", *NUMBERS), values / np.array([free, *[1.0] * len(NUMBERS)]), strict=True)
+    scale = np.array([[setting.speed], [gap.hot]])
+    shown = dict(zip(("flow", "temperature"), zip(profile / scale, spread / scale, strict=True), strict=True))
+    scales = {"stress": free}
+    return {
+        "packing_fraction": setting.packing_fraction(blocks.density[:, setting.middle].mean()),
+        "knudsen": _path(density, setting.diameter, setting.dilute) / gap.length,
+        "speed": setting.speed,
+        **entries({
+            name: Estimate(value, error / scales.get(name, 1.0), freedom)
+            for (name, value), error in zip(parts, errors, strict=True)
+        }),
+        "place": setting.place / gap.length,
+        **entries(shown),
+    }  # fmt: skip
+
+
+def _profile(
+    density: np.ndarray, flow: np.ndarray, squares: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(B,) the velocity of the gas, (B,) its temperature, and (B, d) that of each component."""
+    velocity = flow / density
+    energies = squares / density[:, None]
+    energies[:, 1] -= velocity**2
+    return velocity, energies.mean(axis=1), energies
+
+
+def _numbers(setting: Setting, stress: float, pressure: float, *averages: np.ndarray) -> np.ndarray:
+    """The stress and `NUMBERS`, from averages over a run.
+
+    Across the gap T + b u^2 is constant (`theory.viscous_heating`), and the viscosity grows like the root of
+    T: u = g x (1 + c x^2) with c = b g^2 / 6 T to first order in c, g the gradient in the middle.
+    """
+    density, middle = averages[0], setting.middle
+    velocity, temperature, energies = _profile(*averages)
+    weight, x = density[middle], setting.place[middle]
+    weight = weight / weight.sum()
+    u, warmth, mean = velocity[middle], temperature[middle], float(density[middle].mean())
+    within, gradient = float(weight @ temperature[middle]), _slope(x, u, weight)
+    eta = setting.packing_fraction(mean)
+    shape = 3, setting.diameter
+    enskog = float(theory.enskog_viscosity(eta, *shape, temperature=within)) * setting.coarse
+    half, width = 0.5 * setting.gap.length, float(np.abs(x).max()) + 0.5 * (x[1] - x[0])
+    heated = float(theory.viscous_heating(eta, 3)) * gradient**2
+    bend = heated / (6.0 * within)
+    centre = gradient * (1.0 - 0.6 * bend * width**2)  # that of x^3 by least squares is 3/5 width^2
+    edge, at_edge = centre * half * (1.0 + bend * half**2), centre * (1.0 + 3.0 * bend * half**2)
+    cooler = within - heated * (half**2 - width**2 / 3.0)
+    path = _path(mean * within / cooler, setting.diameter, setting.dilute)
+    parts = weight @ energies[middle] / within - 1.0
+    state = mean * within * float(theory.compressibility_factor(eta, 3))
+    return np.array([
+        stress,
+        stress / gradient / enskog,
+        (0.5 * setting.speed - edge) / (at_edge * path),
+        -_slope(u**2, warmth, weight),
+        *parts,
+        pressure / state,
+        stress / pressure,
+    ])  # fmt: skip
+
+
+def _slope(x: np.ndarray, y: np.ndarray, weight: np.ndarray) -> float:
+    """That of y over x by weighted least squares; weight: of sum 1."""
+    apart = x - weight @ x
+    return float(weight @ (apart * y) / (weight @ apart**2))

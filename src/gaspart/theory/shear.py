@@ -1,0 +1,54 @@
+"""A gas between two walls that slide past each other: slip, free flight, heating and normal stresses.
+
+The walls are diffuse with full accommodation, a distance `length` apart, and their velocities differ by
+`velocity`; k_B = 1.
+"""
+
+import numpy as np
+
+from gaspart.theory._arguments import Numbers, Values, checked
+from gaspart.theory.enskog import enskog_conductivity, enskog_viscosity
+
+VELOCITY_SLIP = 1.1113
+"""u_gas - u_wall over l_0 du/dn at a diffuse wall, hard spheres, l_0 = 1 / (sqrt 2 pi n sigma^2): 1.2540
+sqrt(pi) / 2, Ohwada, Sone and Aoki, Phys. Fluids A 1, 1588 (1989). Moments of the linearised Boltzmann
+equation, derived again, converge to it (tested)."""
+ELEMENTARY_SLIP = 0.9975
+"""`VELOCITY_SLIP` by Maxwell's elementary argument, (mu / p) sqrt(pi T / 2 m) with the viscosity mu:
+particles arrive with the distribution of the gas far from the wall. A measurement must distinguish both."""
+NORMAL_STRESSES = (-1.2, 1.6, -0.4)
+"""(P_xx / p - 1) / a^2, and those of yy and zz, of a flow u along y that changes along x; a = -P_xy / p.
+
+Moments of the steady Boltzmann equation: (p / mu) (P_ij - p delta_ij) = -dM_ij/dx, for yy less 2 P_xy du/dx,
+with the viscosity mu; the transport of P_ij along x is M = 2/5 q (3, 1, 1) for xx, yy, zz, with Fourier's
+heat flux q, and dq/dx = mu (du/dx)^2. To second order in a; exact for Maxwell molecules. For spheres the
+products of stresses are neglected, and Sonine polynomials beyond the first."""
+
+
+@checked
+def free_molecular_stress(
+    density: Numbers, velocity: Numbers, temperature: float = 1.0, mass: float = 1.0
+) -> Values:
+    """Shear stress on the walls of a gas whose particles collide with the walls only, n velocity sqrt(m T / 2
+    pi). Exact (closed form)."""
+    return density * np.asarray(velocity, dtype=float) * np.sqrt(mass * temperature / (2.0 * np.pi))
+
+
+@checked
+def slip_flow_stress(length: Numbers, density: Numbers, velocity: Numbers, diameter: float = 1.0) -> Values:
+    """Shear stress of dilute spheres of mass 1 at temperature 1, with slip at both walls: mu velocity /
+    (length + 2 `VELOCITY_SLIP` l_0), mu the viscosity. To first order in `velocity` and l_0 / length."""
+    path = 1.0 / (np.sqrt(2.0) * np.pi * np.asarray(density, dtype=float) * diameter**2)
+    return enskog_viscosity(0.0, 3, diameter) * velocity / (length + 2.0 * VELOCITY_SLIP * path)
+
+
+@checked
+def viscous_heating(packing_fraction: Numbers, dimension: int) -> Values:
+    """Viscosity over twice the conductivity, by Enskog, in units of mass / k_B: between two walls T + this
+    times u^2 is the same everywhere, u the velocity relative to the place where T is highest.
+
+    Exact where the ratio does not change: both grow with the square root of T. 2 / 15 in the first Sonine
+    approximation of dilute spheres.
+    """
+    conductivity = enskog_conductivity(packing_fraction, dimension)
+    return 0.5 * enskog_viscosity(packing_fraction, dimension) / conductivity

@@ -1,0 +1,112 @@
+"""Thermal faces that slide: the momentum, the work and the velocity that they give, by both engines."""
+
+import math
+
+import pytest
+
+import gaspart as gp
+
+ENGINES = {
+    "event": gp.EventDriven(),
+    "dsmc": gp.DSMC(time_step=0.25, cells_per_side=1),
+}
+
+
+def between(speed, radius=1e-3, count=400, **rest):
+    """A gas between two walls across x that slide along y."""
+    faces = {
+        "x_low": gp.Thermal(1.0, velocity=(0.0, -0.5 * speed, 0.0)),
+        "x_high": gp.Thermal(1.0, velocity=(0.0, 0.5 * speed, 0.0)),
+    }
+    container = gp.Container((5.0, 10.0, 10.0), ("wall", "periodic", "periodic"))
+    return gp.Scene(container, [gp.Species(count, radius, temperature=1.0)], faces=faces, **rest)
+
+
+def momentum(state):
+    """(d,) of all particles."""
+    return state.masses @ state.velocities
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_free_molecules_carry_momentum_and_heat_between_sliding_walls(engine):
+    """Each particle has the velocity of the wall that it comes from: n sqrt(T / 2 pi) U. The energy that the
+    walls give by their work they take as heat."""
+    scene = between(2.0)
+    sim = gp.Simulation(scene, ENGINES[engine], seed=3)
+    sim.advance(duration=20.0)
+    sim.reset_tally()
+    sim.advance(duration=400.0)
+    tally = sim.tally
+    stress = tally.wall_shear[:2, 1] / (100.0 * tally.time)
+    expected = gp.theory.free_molecular_stress(400 / 500.0, 2.0)
+    hits = tally.wall_hits[0]
+    assert tally.wall_shear.shape == (6, 3)
+    assert stress == pytest.approx([expected, -expected], rel=4.0 / math.sqrt(hits) + 0.002)
+    assert tally.wall_shear[:, 2] == pytest.approx(0.0, abs=5.0 * math.sqrt(2.0 * hits))
+    assert not tally.wall_shear[2:].any() and not tally.wall_shear[:, 0].any()
+    assert abs(tally.wall_energy[:2]).max() < 0.05 * expected * 2.0 * 100.0 * tally.time
+    sim.check_invariants()
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_momentum_is_conserved_with_that_of_the_walls(engine):
+    sim = gp.Simulation(between(1.0, radius=0.2), ENGINES[engine], seed=4)
+    before, energy = momentum(sim.state), sim.state.kinetic_energy
+    sim.advance(duration=5.0)
+    assert sim.tally.collisions > 100
+    lost = before - momentum(sim.state)
+    assert sim.tally.wall_shear.sum(axis=0)[1:] == pytest.approx(lost[1:], abs=1e-7)
+    assert sim.tally.wall_energy.sum() == pytest.approx(energy - sim.state.kinetic_energy, abs=1e-6)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_checkpoint_keeps_what_walls_were_given(engine):
+    sim = gp.Simulation(between(1.0, radius=0.2), ENGINES[engine], seed=4)
+    sim.advance(duration=1.0)
+    stored = sim.checkpoint()
+    again = gp.Simulation(sim.scene, ENGINES[engine], seed=4)
+    again.restore(stored)
+    for one in (sim, again):
+        one.advance(duration=1.0)
+    assert (sim.tally.wall_shear == again.tally.wall_shear).all()
+    assert (sim.state.velocities == again.state.velocities).all()
+
+
+def test_a_trajectory_has_the_shear(tmp_path):
+    path = gp.run(between(1.0, radius=0.2), ENGINES["event"], 1, 2.0, 0.5, tmp_path / "run.nc")
+    with gp.open_trajectory(path) as run:
+        assert run["wall_shear"].dims == ("frame", "face", "axis")
+        last = run["wall_shear"].values[-1]
+    sim = gp.Simulation(between(1.0, radius=0.2), ENGINES["event"], seed=1)
+    sim.advance(duration=2.0)
+    assert (last == sim.tally.wall_shear).all()
+    assert gp.analysis.profile(sim, "density", bins=4).sizes["position"] == 4
+
+
+def test_a_velocity_of_zero_changes_nothing():
+    still, free = (between(0.0, radius=0.2) for _ in range(2))
+    free = gp.Scene(free.container, free.species, faces=dict.fromkeys(("x_low", "x_high"), gp.Thermal(1.0)))
+    states = []
+    for scene in (still, free):
+        sim = gp.Simulation(scene, ENGINES["dsmc"], seed=2)
+        sim.advance(duration=1.0)
+        assert sim.tally.wall_shear is None
+        states.append(sim.state)
+    assert (states[0].velocities == states[1].velocities).all()
+
+
+@pytest.mark.parametrize(
+    ("velocity", "rule"),
+    [((1.0, 0.0, 0.0), "no component across"), ((0.0, 1.0), "3 finite numbers"), ("fast", "finite numbers")],
+)
+def test_a_velocity_lies_along_the_face(velocity, rule):
+    scene = between(1.0)
+    with pytest.raises(gp.SceneError, match=f"velocity = .*{rule}"):
+        gp.Scene(scene.container, scene.species, faces={"x_low": gp.Thermal(1.0, velocity=velocity)})
+
+
+def test_what_cannot_slide_is_refused():
+    with pytest.raises(gp.SceneError, match='velocity = .*components "all"'):
+        gp.Thermal(1.0, "normal", (0.0, 1.0, 0.0))
+    with pytest.raises(gp.SceneError, match='faces = .*"event" or "dsmc"'):
+        gp.Simulation(between(1.0), gp.TimeStepped(time_step=0.01))
