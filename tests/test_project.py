@@ -41,7 +41,8 @@ def test_every_dependency_has_a_lower_bound_that_the_locked_version_satisfies():
     lock = (ROOT / "environment.txt").read_text(encoding="utf-8")
     for requirement in requirements(*project()["optional-dependencies"]):
         assert ">=" in {bound.operator for bound in requirement.specifier}, requirement
-        locked = re.findall(rf"^{re.escape(requirement.name.lower())}==([^ ;]+)", lock, re.MULTILINE)
+        name = re.escape(requirement.name.lower())
+        locked = re.findall(rf"^{name}(?:\[[\w,]+\])?==([^ ;]+)", lock, re.MULTILINE)
         assert locked and all(requirement.specifier.contains(version) for version in locked), requirement
 
 
