@@ -31,7 +31,7 @@ PLACES = 512
 MOST_FRAMES = 2048
 """Frames, evenly spaced, in which they are tried."""
 _CELLS = 4096  # at first
-_MOST_CELLS = 16384  # after a division
+_MOST_CELLS = 25000  # after a division
 _WORTH = 0.6
 """Of the cells that a division leaves: it is the last one if it leaves more."""
 _DIVISIONS = 7  # at most: cells are then a hundredth of the first ones' side

@@ -76,4 +76,4 @@ def chemical_potential(error=0.004, seed=1):
             numbers = {"ln_q": ratio * free, "ln_q_integrated": Estimate(free, 1e-4), "ln_q_ratio": ratio}
             row.update(entries(numbers))
         rows.append(row)
-    return from_rows("point", rows)
+    return from_rows("point", rows).assign_attrs(enough=400)

@@ -58,5 +58,5 @@ def test_the_chemical_potential_and_its_chance_are_drawn():
     )
     shows(ratio, "packing", "integral", *(Points(None, p[ETA], *estimates(p, "ratio")) for _, p in parts))
     shows(chance, "packing", "chance", *(Points(n, p[ETA], *estimates(p, "probability")) for n, p in parts))
-    shows(partition, "packing", "ln Q", *(Points(n, p[ETA], *estimates(p, "ln_q")) for n, p in parts))
+    shows(partition, "packing", "ln Q", *(Points(None, p[ETA], *estimates(p, "ln_q")) for _, p in parts))
     obeys(line(upper, "discs, integral"), lambda x: theory.excess_chemical_potential(x, 2))

@@ -7,7 +7,6 @@ import xarray as xr
 
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared.claims import PARTICLES, SOURCE_C, deviations, rows
-from gaspart.reproduction.families.structure.potential import ENOUGH
 
 AGREE = 0.005
 """The largest standard error at which an agreement to 1 % means anything."""
@@ -94,19 +93,20 @@ def _curves(row: xr.Dataset) -> list[Claim]:
 
 def chemical_potential(ds: xr.Dataset) -> list[Claim]:
     """Insertion against Gibbs and Duhem where it works, what happens where it does not, and Q."""
-    claims = [_works(row) if int(row["works"]) else _fails(row) for row in rows(ds, "point")]
+    enough = int(ds.attrs["enough"])
+    claims = [_works(row) if int(row["works"]) else _fails(row, enough) for row in rows(ds, "point")]
     for dimension in (3, 2):
         part = ds.isel(point=np.flatnonzero((ds["dimension"] == dimension) & (ds["works"] == 1)))
         if part.sizes["point"] > 1:
             claims.append(
                 Claim.joint(
-                    claim=f"chemical potential of {PARTICLES[dimension]} by insertion at all packing fractions",
+                    claim=f"chemical potential by insertion of {PARTICLES[dimension]}, all packing fractions",
                     deviations=deviations(part, "inserted", "reference"),
                     source="the integral of the reference equation of state ([Kolafa 2004], [Clisby 2006])",
                     fails_if="a bias too small for one point is common to many, or the error bars are wrong",
                 )
             )
-            claims.append(_partition(part.isel(point=-1)))
+            claims += [_partition(row) for row in rows(part, "point")[-1:] if np.isfinite(row["ln_q_ratio"])]
     return claims
 
 
@@ -122,7 +122,7 @@ def _works(row: xr.Dataset) -> Claim:
     )
 
 
-def _fails(row: xr.Dataset) -> Claim:
+def _fails(row: xr.Dataset, enough: int) -> Claim:
     hits = int(row["hit_frames"])
     return Claim(
         claim=f"chance of an insertion over that of the equation of state, {_where(row)}",
@@ -130,7 +130,7 @@ def _fails(row: xr.Dataset) -> Claim:
         expected=1.0,
         required=1.0,
         source=f"as where it works; the chemical potential is {float(row['reference']):.3g} k T",
-        no_verdict=f"only {hits} of {int(row['frames'])} frames have a free place ({ENOUGH} are asked for): "
+        no_verdict=f"only {hits} of {int(row['frames'])} frames have a free place ({enough} are asked for): "
         "their number is no Gaussian one",
         fails_if="places that are not uniform, or overlaps that are missed",
     )

@@ -30,7 +30,7 @@ def structure(ds: xr.Dataset) -> Figure:
             _ratios(contact, part, kind, {"g_ratio": "$g(r)$", "rate_ratio": "rate"})
     g.set_xlabel(r"distance $r/\sigma$")
     g.set_ylabel("$g(r)$")
-    g.set_xlim(0.9, 4.0)
+    g.set_xlim(0.9)
     s.set_xlabel(r"wave number $k\sigma$")
     s.set_ylabel("$S(k)$")
     s.set_xlim(0.0)
@@ -57,7 +57,8 @@ def _curves(g: Axes, s: Axes, row: xr.Dataset, kind: int) -> None:
         places, values = row[x].values[kept], estimates(row, y)[:, kept]
         style.measured(axis, places, values, kind, hollow=True, markersize=2.0, label=label)
     if dimension == 3:
-        r, k = np.linspace(1.0, 4.0, 300), np.linspace(0.0, float(row["wave_number"].max()), 300)
+        r = np.linspace(1.0, float(row["distance"].max()), 300)
+        k = np.linspace(0.0, float(row["wave_number"].max()), 300)
         laws = {
             "Verlet–Weis": (theory.verlet_weis_rdf, theory.verlet_weis_structure_factor),
             "Percus–Yevick": (theory.percus_yevick_rdf, theory.percus_yevick_structure_factor),
@@ -139,7 +140,7 @@ def _chance(axis: Axes, part: xr.Dataset, kind: int) -> None:
 def _partition(axis: Axes, part: xr.Dataset, kind: int) -> None:
     dimension = int(part["dimension"][0])
     eta = np.linspace(0.0, float(part["packing_fraction"].max()), 200)
-    axis.plot(eta, theory.excess_free_energy(eta, dimension), color=style.COLOURS[kind])
+    label = f"{PARTICLES[dimension]}, integral"
+    axis.plot(eta, theory.excess_free_energy(eta, dimension), color=style.COLOURS[kind], label=label)
     if "ln_q" in part:
-        values = estimates(part, "ln_q")
-        style.measured(axis, part["packing_fraction"], values, kind, label=PARTICLES[dimension])
+        style.measured(axis, part["packing_fraction"], estimates(part, "ln_q"), kind)

@@ -84,9 +84,11 @@ def _row(point: Point, states: dict[int, MeasuredState], settings: dict) -> dict
     lengths = np.array(point.scene.container.lengths) / gas.diameter
     low, size = admitted(lengths, settings["small"])
     waves, shell, k = shells_of(lengths, settings["highest"], SHELLS, WAVES)
-    parts = [_blocks(run, gas, low, (waves, shell), settings) for run in runs(point)]
+    furthest = min(settings["furthest"], 0.499 * float(lengths.min()))
+    curves = waves, shell, furthest
+    parts = [_blocks(run, gas, low, curves, settings["frames"]) for run in runs(point)]
     one = Blocks(*(np.concatenate([getattr(part, key.name) for part in parts]) for key in fields(Blocks)))
-    distance = settings["furthest"] * (np.arange(BINS) + 0.5) / BINS
+    distance = furthest * (np.arange(BINS) + 0.5) / BINS
     numbers = _numbers(one, gas, size)
     numbers["state_s0"] = Estimate(1.0) / states[dimension].inverse_compressibility(eta)
     numbers["s0_ratio"] = numbers["s0"] / numbers["state_s0"]
@@ -105,15 +107,16 @@ def _row(point: Point, states: dict[int, MeasuredState], settings: dict) -> dict
     }
 
 
-def _blocks(run: Run, gas: Gas, low: np.ndarray, curve: tuple, settings: dict) -> Blocks:
-    """Those of one run. Lengths are divided by the diameter."""
+def _blocks(run: Run, gas: Gas, low: np.ndarray, curves: tuple, most: int) -> Blocks:
+    """Those of one run. Lengths are divided by the diameter; curves: wave vectors, their shells, and the
+    furthest distance, of those that are made of about `most` frames."""
     lengths = np.array(run.scene.container.lengths) / gas.diameter
     frames, length = run.positions[1:] / gas.diameter, run.block_length(BLOCKS)
-    stride = max(1, len(frames) // settings["frames"])
+    stride = max(1, len(frames) // most)
     rounding = 2.0**-18  # so that pairs in contact are not below the first bin
     near = round(1.5 / WIDTH)
     pairs = gas.count / (gas.count - 1.0)
-    waves, shell = curve
+    waves, shell, furthest = curves
     found: dict[str, list] = {key.name: [] for key in fields(Blocks)}
     series = series_of(run)
     for start in range(0, BLOCKS * length, length):
@@ -122,7 +125,6 @@ def _blocks(run: Run, gas: Gas, low: np.ndarray, curve: tuple, settings: dict) -
         g = radial_distribution(part, lengths, near, 1.5 - rounding)[1]
         found["near"].append(pairs * g[round(1.0 / WIDTH) :])
         few = part[::stride]
-        furthest = settings["furthest"]
         found["g"].append(pairs * radial_distribution(few, lengths, BINS, furthest)[1])
         found["s"].append(
             in_shells(np.mean([factors(frame, lengths, waves) for frame in few], axis=0), shell)

@@ -25,9 +25,6 @@ from gaspart.reproduction.families.structure.state import MeasuredState, measure
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import plain_gas
 
-ENOUGH = 100
-"""Frames with a free place from which on insertion is said to work: the error of their mean is then that of a
-Gaussian number, some 15 % at most."""
 _POWERS = (0, 1, 2)  # of eta, by which the measured chemical potential differs from the reference
 
 
@@ -40,7 +37,7 @@ def chemical_potential(points: list[Point], settings: dict) -> xr.Dataset:
     size subtracted), integrated, that of the measured equation of state, `ratio` of the two; each with _error
     and _freedom; reference and its _error, of the reference equation of state; successes, the free places;
     hit_frames, frames that have any; frames; places, how many random places those tried stand for;
-    resolution, the probability that one success would have been; works, 1 with ENOUGH hit frames. Over
+    resolution, the probability that one success would have been; works, 1 with `enough` hit frames. Over
     `point` too: ln_q, minus ln Q / N by insertion up to this packing fraction, ln_q_integrated, by the
     equation of state, `ln_q_ratio` of the two (NaN where insertion does not work).
     """
@@ -50,7 +47,7 @@ def chemical_potential(points: list[Point], settings: dict) -> xr.Dataset:
     rows = [_row(point, states[point.scene.dimension], settings) for point in measured]
     for dimension, state in states.items():
         _add_partition([row for row in rows if row["dimension"] == dimension and row["works"]], state)
-    return from_rows("point", rows)
+    return from_rows("point", rows).assign_attrs(enough=settings["enough"])
 
 
 def _row(point: Point, state: MeasuredState, settings: dict) -> dict:
@@ -86,7 +83,7 @@ def _row(point: Point, state: MeasuredState, settings: dict) -> dict:
         "frames": frames,
         "places": 1.0 / resolution,
         "resolution": resolution,
-        "works": int(hits >= ENOUGH),
+        "works": int(hits >= settings["enough"]),
     }  # fmt: skip
 
 
@@ -108,7 +105,7 @@ def _chance(found: Insertions) -> Estimate:
 def _add_partition(rows: list[dict], state: MeasuredState) -> None:
     """Add minus ln Q / N to the rows of one dimension at which insertion works: mu by insertion is joined to
     a curve, the reference times a polynomial in eta, whose integral over eta is divided by eta."""
-    if len(rows) <= len(_POWERS):
+    if len(rows) < len(_POWERS):
         return
     dimension = state.dimension
     eta, mu, error, reference, freedom = (
