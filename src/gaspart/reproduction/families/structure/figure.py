@@ -96,12 +96,14 @@ def chemical_potential(ds: xr.Dataset) -> Figure:
     ratio.set_ylim(0.97, 1.03)
     chance.set_yscale("log")
     chance.set_ylabel("chance of an insertion")
+    chance.set_ylim(1e-16, 3.0)  # with room for the legend
     partition.set_ylabel(r"$-\ln Q/N$")
     for axis in (ratio, chance, partition):
         axis.set_xlim(0.0)
         axis.set_xlabel(r"packing fraction $\eta$")
-    for axis in (upper, chance, partition):
+    for axis in (upper, partition):
         axis.legend()
+    chance.legend(loc="lower left")
     style.letters(*axes)
     return figure
 
