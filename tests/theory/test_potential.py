@@ -28,3 +28,32 @@ def test_it_is_the_virial_series_and_carnahan_and_starling():
     eta = 0.35
     starling = (8.0 * eta - 9.0 * eta**2 + 3.0 * eta**3) / (1.0 - eta) ** 3
     assert theory.excess_chemical_potential(eta, 3) == pytest.approx(starling, rel=4e-3)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_free_energy_is_that_of_the_chemical_potential(dimension):
+    """Its derivative, times the packing fraction, is Z - 1; its mean over smaller ones that of mu."""
+    eta, step = 0.4, 1e-3
+    high, low = (theory.excess_free_energy(eta + d, dimension) for d in (step, -step))
+    excess = theory.compressibility_factor(eta, dimension) - 1.0
+    assert eta * (high - low) / (2.0 * step) == pytest.approx(excess, rel=1e-4)
+    below = np.linspace(0.0, eta, 2001)
+    mean = np.trapezoid(theory.excess_chemical_potential(below, dimension), below) / eta
+    assert theory.excess_free_energy(eta, dimension) == pytest.approx(mean, rel=1e-5)
+
+
+def test_the_uncertainty_of_the_chemical_potential_is_that_of_z():
+    """With an uncertainty that is a constant part of Z: that part of the integral too."""
+    eta = 0.4  # where it is 2e-5 of Z, but for low densities
+    whole = theory.compressibility_factor(eta, 3) + theory.excess_free_energy(eta, 3)
+    assert theory.chemical_potential_uncertainty(eta, 3) == pytest.approx(2e-5 * whole, rel=0.4)
+
+
+def test_fewer_pairs_change_the_chance_of_an_insertion():
+    """To second order in the density: P_N = 1 - N c_1 / V + N (N - 1) c_2 / V^2 exactly."""
+    eta, count = 0.01, 50
+    _, second, third, *_ = theory.virial_coefficients(3, 4)[0]
+    c_2 = 0.5 * (2.0 * second) ** 2 - 1.5 * third
+    chances = [1.0 - 2.0 * second * eta + pairs * c_2 * eta**2 for pairs in (1.0, 1.0 - 1.0 / count)]
+    exact = np.log(chances[0] / chances[1])
+    assert theory.insertion_finite_size_correction(eta, 3, count) == pytest.approx(exact, rel=0.15)

@@ -224,3 +224,9 @@ def test_the_factor_at_constant_enthalpy_is_that_of_its_integral_over_the_volume
 
 def test_a_dilute_gas_behind_a_piston_is_ideal():
     assert theory.constant_enthalpy_factor(1e-4, 3, 100) == pytest.approx(1.01, abs=1e-5)
+
+
+def test_the_compressibility_of_a_dilute_gas():
+    assert theory.reduced_compressibility(0.0, 3) == pytest.approx(1.0, abs=1e-3)
+    series = 1.0 + 8.0 * 0.01 + 30.0 * 0.01**2
+    assert theory.reduced_compressibility(0.01, 3) == pytest.approx(1.0 / series, rel=1e-3)

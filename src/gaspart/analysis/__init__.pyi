@@ -1,3 +1,4 @@
+from gaspart.analysis.insertion import chemical_potential as chemical_potential
 from gaspart.analysis.lyapunov import lyapunov_exponent as lyapunov_exponent
 from gaspart.analysis.mixtures import contact_values as contact_values
 from gaspart.analysis.mixtures import pair_collision_rates as pair_collision_rates
@@ -5,12 +6,13 @@ from gaspart.analysis.motion import diffusion_coefficient as diffusion_coefficie
 from gaspart.analysis.motion import mean_squared_displacement as mean_squared_displacement
 from gaspart.analysis.motion import velocity_autocorrelation as velocity_autocorrelation
 from gaspart.analysis.observable import Observable as Observable
+from gaspart.analysis.pairs import rdf as rdf
+from gaspart.analysis.pairs import structure_factor as structure_factor
 from gaspart.analysis.pressure import collision_rate as collision_rate
 from gaspart.analysis.pressure import compressibility_factor as compressibility_factor
 from gaspart.analysis.pressure import wall_pressure as wall_pressure
 from gaspart.analysis.structure import order_parameter as order_parameter
 from gaspart.analysis.structure import profile as profile
-from gaspart.analysis.structure import rdf as rdf
 from gaspart.analysis.structure import speed_distribution as speed_distribution
 from gaspart.analysis.transport import bulk_viscosity as bulk_viscosity
 from gaspart.analysis.transport import pressure_tensor as pressure_tensor

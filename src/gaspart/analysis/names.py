@@ -31,6 +31,8 @@ OBSERVABLES: dict[str, tuple[str, dict[str, Any], str]] = {
     "vacf": ("velocity_autocorrelation", {}, "velocity autocorrelation"),
     "speeds": ("speed_distribution", {}, "distribution of speeds"),
     "rdf": ("rdf", {}, "radial distribution function, periodic"),
+    "structure_factor": ("structure_factor", {}, "static structure factor, periodic"),
+    "chemical_potential": ("chemical_potential", {}, "beyond the ideal gas's, by insertion, periodic"),
     "density": ("profile", {"of": "density"}, "density along the last axis"),
     "temperature": ("profile", {"of": "temperature"}, "temperature along the last axis"),
     "shear_viscosity": ("shear_viscosity", {}, "shear viscosity, of a run with --stress"),

@@ -13,19 +13,16 @@ import numpy as np
 
 from gaspart import theory
 from gaspart.analysis.observable import Observable, observable, scalar
+from gaspart.analysis.pairs import STRETCHES, chosen_frames
 from gaspart.analysis.run import Run, Source, measured, require_periodic
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
-from gaspart.scene.gas import Gas
-from gaspart.scene.validation import choice, count_of, number
+from gaspart.scene.validation import choice, count_of
 
-STRETCHES = 16
 _POINTS = 2**14
 _RATIOS = {2: 1.32471795724474602596, 3: 1.22074408460575947536}
 """Whose powers give evenly spread points: x^(d + 1) = x + 1 (Roberts 2018)."""
 _NEIGHBOURHOOD = {2: 7, 3: 13}  # a particle and those around it in a crystal
-MOST_FRAMES = 320
-"""Frames, evenly spaced, that are searched for pairs of particles."""
 _CONSTANT = 1e-5  # relative change of an energy that is attributed to rounding
 FASTEST = 4.0
 """The histogram of speeds ends at this many thermal speeds sqrt(k_B T / m)."""
@@ -67,54 +64,6 @@ def speed_distribution(source: Source, bins: int = 40, start: float | None = Non
         along = {"speed": (middle, {"units": "length / time", "long_name": "speed"})}
         about: dict[str, Any] = {"units": "time / length", "long_name": "density of speeds", **expected}
         return observable("speed_distribution", along, values, errors, **about)
-
-
-def rdf(
-    source: Source, bins: int = 100, furthest: float | None = None, start: float | None = None
-) -> Observable:
-    """Radial distribution function g(r) of all particles of a periodic scene, (distance,), dimensionless.
-
-    Pairs per those of N particles that are independent of one another, N (N - 1) / 2 pairs in the volume: 1
-    at every distance in an ideal gas of any number. Of a fluid it tends to 1 + (1 - S(0)) / N at large
-    distances, S(0) its reduced compressibility (Lebowitz and Percus, Phys. Rev. 122, 1675 (1961)). Mean
-    over up to 320 frames; furthest: the largest distance (five of the largest diameters, or just below half
-    of the shortest side). Theory: the value at contact that belongs to the pressure of N particles, at the
-    first bins beyond the diameter only. Raises SceneError for walls, fewer than two particles, too few
-    frames and too large a distance.
-    """
-    from gaspart.analysis.order import radial_distribution
-
-    bins = count_of("bins", bins, least=2)
-    with measured(source, start) as run:
-        require_periodic(run)
-        stored, lengths = run.data.sizes["atom"], run.scene.container.lengths
-        if stored < 2:
-            raise SceneError("count", stored, "a pair needs two particles")
-        diameter, half = 2.0 * run.scene.largest_radius, 0.499 * min(lengths)
-        rule = f"must be positive and below half of the shortest side, {half:.4g}"
-        end = min(5.0 * diameter, half) if furthest is None else furthest
-        end = number("furthest", end, rule, above=0.0, most=half)
-        frames = _chosen(run, run.positions)
-        found = [radial_distribution(part, lengths, bins, end) for part in np.array_split(frames, STRETCHES)]
-        values, errors = means_of(stored / (stored - 1.0) * np.array([g for _, g in found], dtype=float))
-        distance = np.asarray(found[0][0], dtype=float)
-        expected: dict[str, Any] = {}
-        if gas := run.fluid:
-            near = (distance > diameter) & (distance < diameter + 1.5 * end / bins)
-            at_contact = np.where(near, _contact_value(gas), np.nan)
-            expected = {"theory": (at_contact, np.nan), "source": "g at contact, from Z of this number"}
-        along = {"distance": (distance, {"units": "length", "long_name": "distance"})}
-        about: dict[str, Any] = {"units": "1", "long_name": "radial distribution g(r)", **expected}
-        return observable("rdf", along, values, errors, **about)
-
-
-def _contact_value(gas: Gas) -> float:
-    """g at contact of N particles of a fluid, of N (N - 1) / 2 pairs: from Z = 1 + 2^(d-1) eta g (N - 1) / N,
-    corrected to first order in 1/N."""
-    eta, d, count = gas.packing_fraction, gas.dimension, gas.count
-    excess = theory.compressibility_factor(eta, d) - 1.0
-    excess += theory.finite_size_correction(eta, d, count, "canonical")
-    return float(excess / (2.0 ** (d - 1) * eta) * count / (count - 1.0))
 
 
 def profile(
@@ -169,7 +118,7 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
         if run.count < _NEIGHBOURHOOD[run.dimension]:
             raise SceneError("count", run.count, f"needs {_NEIGHBOURHOOD[run.dimension]} particles or more")
         lengths = run.scene.container.lengths
-        frames, time = _chosen(run, run.positions), _chosen(run, run.time)
+        frames, time = chosen_frames(run, run.positions), chosen_frames(run, run.time)
         if run.dimension == 2:
             series, name = [abs(hexatic(frame, lengths).mean()) for frame in frames], "|psi_6|"
         else:
@@ -177,13 +126,6 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
         edges = np.append(time, 2.0 * time[-1] - time[-2])
         about: dict[str, Any] = {"units": "1", "long_name": f"bond order {name}"}
         return scalar("order_parameter", np.array(series, dtype=float), edges, **about)
-
-
-def _chosen(run: Run, values: np.ndarray) -> np.ndarray:
-    """The values of up to `MOST_FRAMES` frames, evenly spaced. Raises SceneError for too few."""
-    if len(run.time) < STRETCHES:
-        raise SceneError("frames", len(run.time), f"an error needs {STRETCHES} or more")
-    return values[:: -(-len(run.time) // MOST_FRAMES)]
 
 
 def _density(run: Run, axis: int, edges: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:

@@ -82,10 +82,12 @@ def _print_curve(name: str, observable: Observable) -> None:
     columns = [observable[along], observable.estimate, observable.error]
     columns += [] if observable.theory is None else [observable.theory]
     heads = [str(along), name, "error", *(["theory"] if observable.theory is not None else [])]
-    print_line("".join(f"{head:>14}" for head in heads))
+    wide = [max(14, len(head) + 2) for head in heads]
+    print_line("".join(f"{head:>{width}}" for head, width in zip(heads, wide, strict=True)))
     for row in range(0, rows, stride):
         cells = [column.values[row] for column in columns]
-        print_line("".join(f"{cell if isinstance(cell, str) else f'{cell:.5g}':>14}" for cell in cells))
+        texts = [cell if isinstance(cell, str) else f"{cell:.5g}" for cell in cells]
+        print_line("".join(f"{text:>{width}}" for text, width in zip(texts, wide, strict=True)))
     if stride > 1:
         shown = -(-rows // stride)
         print_line(f"({shown} of {rows} rows; -o {name}.csv writes all, -o {name}.png draws them)")

@@ -37,6 +37,10 @@ _ENSKOG = {
 _QUANTITIES = {
     "Z": _Quantity("compressibility_factor", (), "compressibility factor PV/(N k_B T)", _STATE),
     "contact_value": _Quantity("contact_value", (), "pair distribution at contact g(sigma)", _RATE),
+    "compressibility": _Quantity("reduced_compressibility", (), "k_B T d(rho)/dP, which is S(0)", _STATE),
+    "chemical_potential": _Quantity(
+        "excess_chemical_potential", (), "chemical potential beyond an ideal gas's over k_B T", _STATE
+    ),
     "mean_free_path": _Quantity("mean_free_path", ("diameter",), "mean free path", _RATE),
     "collision_rate": _Quantity("collision_rate", _PARTICLE, "collisions per particle and time", _RATE),
     "diffusion_coefficient": _Quantity("enskog_diffusion", _PARTICLE, "self-diffusion coefficient", _ENSKOG),

@@ -86,7 +86,10 @@ from gaspart.theory.mixtures import mixture_contact_values as mixture_contact_va
 from gaspart.theory.modes import diffusion_modes as diffusion_modes
 from gaspart.theory.modes import sound_attenuation as sound_attenuation
 from gaspart.theory.modes import velocity_autocorrelation_modes as velocity_autocorrelation_modes
+from gaspart.theory.potential import chemical_potential_uncertainty as chemical_potential_uncertainty
 from gaspart.theory.potential import excess_chemical_potential as excess_chemical_potential
+from gaspart.theory.potential import excess_free_energy as excess_free_energy
+from gaspart.theory.potential import insertion_finite_size_correction as insertion_finite_size_correction
 from gaspart.theory.potential import packing_fraction_at as packing_fraction_at
 from gaspart.theory.shear import VELOCITY_SLIP as VELOCITY_SLIP
 from gaspart.theory.shear import free_molecular_stress as free_molecular_stress
@@ -110,8 +113,13 @@ from gaspart.theory.state import compressibility_uncertainty as compressibility_
 from gaspart.theory.state import constant_enthalpy_factor as constant_enthalpy_factor
 from gaspart.theory.state import contact_value as contact_value
 from gaspart.theory.state import finite_size_correction as finite_size_correction
+from gaspart.theory.state import reduced_compressibility as reduced_compressibility
 from gaspart.theory.state import speed_of_sound as speed_of_sound
 from gaspart.theory.state import virial_with_tail as virial_with_tail
+from gaspart.theory.structure import percus_yevick_rdf as percus_yevick_rdf
+from gaspart.theory.structure import percus_yevick_structure_factor as percus_yevick_structure_factor
+from gaspart.theory.structure import verlet_weis_rdf as verlet_weis_rdf
+from gaspart.theory.structure import verlet_weis_structure_factor as verlet_weis_structure_factor
 from gaspart.theory.vibrated import bed_height as bed_height
 from gaspart.theory.vibrated import bed_loss as bed_loss
 from gaspart.theory.vibrated import sawtooth_temperature as sawtooth_temperature

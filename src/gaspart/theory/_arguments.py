@@ -28,6 +28,7 @@ _RANGES = {
     **dict.fromkeys(("temperature", "hot", "cold", "viscosity", "rate", "collision_rate"), _POSITIVE),
     **dict.fromkeys(("number_density", "density", "bulk_density", "activity"), _NOT_NEGATIVE),
     **dict.fromkeys(("time", "diffusion", "collisions", "radius", "size_ratio", "jump"), _NOT_NEGATIVE),
+    **dict.fromkeys(("distance", "wave_number"), _NOT_NEGATIVE),
     **dict.fromkeys(("speed", "depth", "weight", "force", "ratio", "x", "z"), _FINITE),
     "side_over_diameter": (1.0, math.inf, "must be finite and at least 1"),
     "count": (1.0, math.inf, "must be finite and at least 1"),

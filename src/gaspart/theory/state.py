@@ -95,6 +95,12 @@ def _slope_and_curvature(eta: np.ndarray, dimension: int) -> tuple[np.ndarray, n
     return (high - low) / (2.0 * _STEP), (high - 2.0 * mid + low) / _STEP**2
 
 
+def reduced_compressibility(packing_fraction: Numbers, dimension: int) -> Values:
+    """k_B T d rho / dP = 1 / (d(eta Z) / d eta) of the infinite fluid, the structure factor S(0) (exact)."""
+    eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
+    return 1.0 / _slope_and_curvature(eta, dimension)[0]
+
+
 def speed_of_sound(packing_fraction: Numbers, dimension: int) -> Values:
     """sqrt(d(eta Z)/d eta + 2 Z^2 / d), in sqrt(k_B T / m): adiabatic, d/2 the heat capacity (exact)."""
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])

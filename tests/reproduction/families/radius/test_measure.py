@@ -10,15 +10,9 @@ from gaspart.reproduction.families.radius.measure import (
     crossings_per_collision,
     expected_pair_tests,
     radius_grid,
-    structure_factor,
 )
 from gaspart.reproduction.points.point import Point
 from gaspart.trajectory.run import run
-
-
-def test_structure_factor_of_a_dilute_gas():
-    assert structure_factor(0.0, 3) == pytest.approx(1.0, abs=1e-3)
-    assert structure_factor(0.01, 3) == pytest.approx(1.0 / (1.0 + 8.0 * 0.01 + 30.0 * 0.01**2), rel=1e-3)
 
 
 def test_pair_tests_of_one_box_are_all_pairs():

@@ -31,8 +31,6 @@ from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.scene import Scene
 
-_STEP = 1e-4
-
 
 def radius_grid(points: list[Point], settings: dict) -> xr.Dataset:
     """Z and counted work of periodic points, of both engines.
@@ -114,15 +112,5 @@ def expected_pair_tests(count: int, per_side: int, packing_fraction: float, dime
     """Pair tests per particle and step of the time-stepped engine in a periodic container (see the
     module)."""
     share = (3.0 / per_side) ** dimension if per_side > 3 else 1.0
-    compressibility = structure_factor(packing_fraction, dimension)
+    compressibility = float(theory.reduced_compressibility(packing_fraction, dimension))
     return 0.5 * (share * count + (compressibility - 1.0) - share * compressibility)
-
-
-def structure_factor(packing_fraction: float, dimension: int) -> float:
-    """S(0) = 1 / (d(eta Z) / d eta) of the reference equation of state: the relative fluctuation of N."""
-
-    def pressure(eta: float) -> float:
-        return eta * float(theory.compressibility_factor(eta, dimension))
-
-    low, high = max(0.0, packing_fraction - _STEP), packing_fraction + _STEP
-    return (high - low) / (pressure(high) - pressure(low))

@@ -1,0 +1,126 @@
+"""Pairs of particles: the radial distribution function and the structure factor.
+
+Uncertainties are the scatter of consecutive stretches of the run.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from gaspart import theory
+from gaspart.analysis.observable import Observable, observable
+from gaspart.analysis.run import Run, Source, measured, require_periodic
+from gaspart.analysis.statistics import means_of
+from gaspart.analysis.waves import factors, in_shells, shells_of
+from gaspart.errors import SceneError
+from gaspart.scene.gas import Gas
+from gaspart.scene.validation import count_of, number
+
+STRETCHES = 16
+MOST_FRAMES = 320
+"""Frames, evenly spaced, that are searched for pairs of particles."""
+_HIGHEST = 20.0
+"""Wave number times the diameter up to which S(k) is measured: the first three maxima."""
+_WAVES = 24
+"""Wave vectors of each bin of S(k) that are used, evenly chosen among those that the container admits."""
+_WORK = 2**31
+"""Terms of all sums over particles, above which fewer frames are used."""
+
+
+def rdf(
+    source: Source, bins: int = 100, furthest: float | None = None, start: float | None = None
+) -> Observable:
+    """Radial distribution function g(r) of all particles of a periodic scene, (distance,), dimensionless.
+
+    Pairs per those of N particles that are independent of one another, N (N - 1) / 2 pairs in the volume: 1
+    at every distance in an ideal gas of any number. Of a fluid it tends to 1 + (1 - S(0)) / N at large
+    distances, S(0) its reduced compressibility (Lebowitz and Percus, Phys. Rev. 122, 1675 (1961)). Mean
+    over up to 320 frames; furthest: the largest distance (five of the largest diameters, or just below half
+    of the shortest side). Theory: the value at contact that belongs to the pressure of N particles, at the
+    first bins beyond the diameter only. Raises SceneError for walls, fewer than two particles, too few
+    frames and too large a distance.
+    """
+    from gaspart.analysis.order import radial_distribution
+
+    bins = count_of("bins", bins, least=2)
+    with measured(source, start) as run:
+        require_periodic(run)
+        stored, lengths = run.data.sizes["atom"], run.scene.container.lengths
+        if stored < 2:
+            raise SceneError("count", stored, "a pair needs two particles")
+        diameter, half = 2.0 * run.scene.largest_radius, 0.499 * min(lengths)
+        rule = f"must be positive and below half of the shortest side, {half:.4g}"
+        end = min(5.0 * diameter, half) if furthest is None else furthest
+        end = number("furthest", end, rule, above=0.0, most=half)
+        frames = chosen_frames(run, run.positions)
+        found = [radial_distribution(part, lengths, bins, end) for part in np.array_split(frames, STRETCHES)]
+        values, errors = means_of(stored / (stored - 1.0) * np.array([g for _, g in found], dtype=float))
+        distance = np.asarray(found[0][0], dtype=float)
+        expected: dict[str, Any] = {}
+        if gas := run.fluid:
+            near = (distance > diameter) & (distance < diameter + 1.5 * end / bins)
+            at_contact = np.where(near, _contact_value(gas), np.nan)
+            expected = {"theory": (at_contact, np.nan), "source": "g at contact, from Z of this number"}
+        along = {"distance": (distance, {"units": "length", "long_name": "distance"})}
+        about: dict[str, Any] = {"units": "1", "long_name": "radial distribution g(r)", **expected}
+        return observable("rdf", along, values, errors, **about)
+
+
+def structure_factor(
+    source: Source, bins: int = 60, highest: float | None = None, start: float | None = None
+) -> Observable:
+    """Static structure factor S(k) = <|sum exp(i k.r)|^2> / N of a periodic scene, (wave_number,).
+
+    Exact sums, at wave vectors that the container admits: k = 2 pi (n_x / L_x, ...), without 0, where S is
+    N, of any number. They are averaged in `bins` equal intervals of |k| up to `highest` (by default 20 over
+    the largest diameter), with up to 24 of the vectors of each; an interval without any is left out, and the
+    coordinate is their mean |k|. S(k) of a fluid tends to its reduced compressibility k_B T d rho / dP at
+    small k, and to 1 at large ones. Mean over up to 320 frames, fewer of many particles. Theory: of equal
+    spheres Verlet and Weis's, an approximation. Raises SceneError for walls, followed
+    particles, too few frames, and a wave number below that of the longest wave.
+    """
+    bins = count_of("bins", bins, least=2)
+    with measured(source, start) as run:
+        require_periodic(run)
+        stored, lengths = run.data.sizes["atom"], run.scene.container.lengths
+        if run.followed:
+            raise SceneError("follow", stored, f"needs all {run.count} particles in the file")
+        diameter, least = 2.0 * run.scene.largest_radius, 2.0 * np.pi / max(lengths)
+        rule = f"must be above that of the longest wave, {least:.4g}"
+        end = _HIGHEST / diameter if highest is None else highest
+        end = number("highest", end, rule, above=least)
+        waves, shell, k = shells_of(lengths, end, bins, _WAVES)
+        frames = chosen_frames(run, run.positions)
+        room = max(STRETCHES, _WORK // (stored * len(waves)))
+        frames = frames[:: -(-len(frames) // room)]
+        found = np.array([
+            in_shells(np.mean([factors(frame, lengths, waves) for frame in part], axis=0), shell)
+            for part in np.array_split(frames, STRETCHES)
+        ])  # fmt: skip
+        values, errors = means_of(found)
+        expected: dict[str, Any] = {}
+        gas = run.fluid
+        if gas and gas.dimension == 3:
+            law = theory.verlet_weis_structure_factor(k * gas.diameter, gas.packing_fraction)
+            expected = {"theory": (law, np.nan), "source": "Verlet and Weis"}
+        along = {"wave_number": (k, {"units": "1 / length", "long_name": "wave number"})}
+        about: dict[str, Any] = {"units": "1", "long_name": "structure factor S(k)", **expected}
+        return observable("structure_factor", along, values, errors, **about)
+
+
+def _contact_value(gas: Gas) -> float:
+    """g at contact of N particles of a fluid, of N (N - 1) / 2 pairs: from Z = 1 + 2^(d-1) eta g (N - 1) / N,
+    corrected to first order in 1/N."""
+    eta, d, count = gas.packing_fraction, gas.dimension, gas.count
+    excess = theory.compressibility_factor(eta, d) - 1.0
+    excess += theory.finite_size_correction(eta, d, count, "canonical")
+    return float(excess / (2.0 ** (d - 1) * eta) * count / (count - 1.0))
+
+
+def chosen_frames(run: Run, values: np.ndarray) -> np.ndarray:
+    """The values of up to `MOST_FRAMES` frames, evenly spaced. Raises SceneError for too few."""
+    if len(run.time) < STRETCHES:
+        raise SceneError("frames", len(run.time), f"an error needs {STRETCHES} or more")
+    return values[:: -(-len(run.time) // MOST_FRAMES)]

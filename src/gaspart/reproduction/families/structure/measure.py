@@ -1,0 +1,186 @@
+r"""Structure of spheres and discs: g(r), S(k), and three numbers that each have two or three routes.
+
+- The compressibility: S(k) extrapolated to k = 0, and :math:`1 / (d(\eta Z)/d\eta)` of the measured
+  equation of state. 1 / S(k) = 1 - rho c(k), c the direct correlation function: it hardly reaches beyond a
+  diameter, so that c(k) is an even power series which converges fast for k of a few inverse diameters. 1 / S
+  is fitted by a polynomial in :math:`k^2` of order three, at every wave vector that the container admits.
+- The contact value of the N particles: g(r) extrapolated to the diameter, the collisional virial,
+  :math:`(Z_N - 1) / (2^{d-1} \eta)`, and the rate of collisions over that of independent particles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gaspart import theory
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.order import radial_distribution
+from gaspart.analysis.run import Run
+from gaspart.analysis.statistics import fit_polynomial, jackknife, means_of
+from gaspart.analysis.waves import admitted, factors, in_shells, shells_of
+from gaspart.reproduction.families.shared.pressure import series_of
+from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.families.shared.runs import runs
+from gaspart.reproduction.families.structure.potential import chemical_potential
+from gaspart.reproduction.families.structure.state import MeasuredState, measured_states
+from gaspart.reproduction.points.point import Point
+from gaspart.scene.gas import Gas, plain_gas
+
+__all__ = ["chemical_potential", "structure"]
+
+Law = Callable[[np.ndarray, float], Any]
+
+BLOCKS = 10
+"""Stretches of each run, whose scatter makes the errors."""
+ORDERS = (0, 2, 4, 6)
+"""Powers of k of 1 / S(k)."""
+WIDTH = 0.005
+"""Of the bins of g(r) at contact, in diameters."""
+WINDOW = 0.45
+"""Range of the fit of g(r) at contact times the contact value: g falls over it by about the same part."""
+BINS, SHELLS, WAVES = 160, 80, 24
+"""Bins of g(r) and of S(k) in the figure, and wave vectors of each of the latter."""
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """Means over blocks of frames, of all runs of a point: low (B, M), S at the longest waves; near (B, n),
+    g at contact; g (B, BINS) and s (B, shells), the curves; z, rate (B,)."""
+
+    low: np.ndarray
+    near: np.ndarray
+    g: np.ndarray
+    s: np.ndarray
+    z: np.ndarray
+    rate: np.ndarray
+
+
+def structure(points: list[Point], settings: dict) -> xr.Dataset:
+    """g(r) and S(k) at each point of the experiments `measured`, and the numbers that they agree on.
+
+    settings: see `FIGURES`. Returns over `point`: dimension, packing_fraction, count; s0, S(0) extrapolated,
+    and state_s0, that of the measured equation of state, `s0_ratio` of the two; contact_g, contact_z and
+    contact_rate, the contact value times (N - 1) / N of N particles, `g_ratio` and `rate_ratio`, the first
+    and the last over contact_z; of spheres `g_gain` and `s_gain`, the root mean square distance of the
+    measured curve from Verlet and Weis's over that from Percus and Yevick's; each with _error and _freedom.
+    g over `bin` at `distance`, in diameters, s over `shell` at `wave_number` times the diameter, each with
+    _error.
+    """
+    states, _ = measured_states(points)
+    measured = [point for point in points if point.experiment in settings["measured"]]
+    rows = [_row(point, states, settings) for point in measured]
+    inner = {"g": ("bin",), "distance": ("bin",), "s": ("shell",), "wave_number": ("shell",)}
+    return from_rows("point", rows, inner)
+
+
+def _row(point: Point, states: dict[int, MeasuredState], settings: dict) -> dict:
+    gas = plain_gas(point.scene)
+    eta, dimension = gas.packing_fraction, gas.dimension
+    lengths = np.array(point.scene.container.lengths) / gas.diameter
+    low, size = admitted(lengths, settings["small"])
+    waves, shell, k = shells_of(lengths, settings["highest"], SHELLS, WAVES)
+    furthest = min(settings["furthest"], 0.499 * float(lengths.min()))
+    curves = waves, shell, furthest
+    parts = [_blocks(run, gas, low, curves, settings["frames"]) for run in runs(point)]
+    one = Blocks(*(np.concatenate([getattr(part, key.name) for part in parts]) for key in fields(Blocks)))
+    distance = furthest * (np.arange(BINS) + 0.5) / BINS
+    numbers = _numbers(one, gas, size)
+    numbers["state_s0"] = Estimate(1.0) / states[dimension].inverse_compressibility(eta)
+    numbers["s0_ratio"] = numbers["s0"] / numbers["state_s0"]
+    if dimension == 3:
+        numbers["g_gain"] = _gain(one.g, theory.verlet_weis_rdf, theory.percus_yevick_rdf, distance, eta)
+        laws = theory.verlet_weis_structure_factor, theory.percus_yevick_structure_factor
+        numbers["s_gain"] = _gain(one.s, *laws, k, eta)
+    return {
+        "dimension": dimension,
+        "packing_fraction": eta,
+        "count": gas.count,
+        **entries(numbers),
+        **entries({"g": means_of(one.g), "s": means_of(one.s)}),
+        "distance": distance,
+        "wave_number": k,
+    }
+
+
+def _blocks(run: Run, gas: Gas, low: np.ndarray, curves: tuple, most: int) -> Blocks:
+    """Those of one run. Lengths are divided by the diameter; curves: wave vectors, their shells, and the
+    furthest distance, of those that are made of about `most` frames."""
+    lengths = np.array(run.scene.container.lengths) / gas.diameter
+    frames, length = run.positions[1:] / gas.diameter, run.block_length(BLOCKS)
+    stride = max(1, len(frames) // most)
+    rounding = 2.0**-18  # so that pairs in contact are not below the first bin
+    near = round(1.5 / WIDTH)
+    pairs = gas.count / (gas.count - 1.0)
+    waves, shell, furthest = curves
+    found: dict[str, list] = {key.name: [] for key in fields(Blocks)}
+    series = series_of(run)
+    for start in range(0, BLOCKS * length, length):
+        part = frames[start : start + length]
+        found["low"].append(np.mean([factors(frame, lengths, low) for frame in part], axis=0))
+        g = radial_distribution(part, lengths, near, 1.5 - rounding)[1]
+        found["near"].append(pairs * g[round(1.0 / WIDTH) :])
+        few = part[::stride]
+        found["g"].append(pairs * radial_distribution(few, lengths, BINS, furthest)[1])
+        found["s"].append(
+            in_shells(np.mean([factors(frame, lengths, waves) for frame in few], axis=0), shell)
+        )
+        found["z"].append(series.z[start : start + length].mean())
+        found["rate"].append(series.rate[start : start + length].mean())
+    return Blocks(**{name: np.array(values, dtype=float) for name, values in found.items()})
+
+
+def _numbers(one: Blocks, gas: Gas, size: np.ndarray) -> dict[str, Estimate]:
+    """The compressibility, from S at the wave numbers size (M,), and the contact values."""
+    unit = 1.0 / (2.0 ** (gas.dimension - 1) * gas.packing_fraction)
+    per_rate = _contact_per_rate(gas)
+    contact = (one.z.mean() - 1.0) * unit
+    first = max(len(ORDERS) + 2, round(WINDOW / contact / WIDTH))
+    place = WIDTH * (np.arange(first) + 0.5)
+    pairs = np.sqrt(one.near[:, :first].mean(axis=0)) / (1.0 + place) ** (0.5 * (gas.dimension - 1))
+    k, equal, number = np.unique(size.round(9), return_inverse=True, return_counts=True)
+    low = np.array([in_shells(values, equal) for values in one.low])
+    spread = 1.0 / (low.mean(axis=0) * np.sqrt(number))  # of 1 / S, up to a factor
+
+    def at_contact(near: np.ndarray) -> float:
+        fit = fit_polynomial(place, near[:first], pairs, powers=(0, 1, 2, 3))
+        return float(fit.values[0]) * (1.0 - 1.0 / gas.count)
+
+    def at_zero(low: np.ndarray) -> float:
+        return 1.0 / float(fit_polynomial(k, 1.0 / low, spread, powers=ORDERS).values[0])
+
+    routes = {
+        "s0": jackknife(at_zero, low),
+        "contact_g": jackknife(at_contact, one.near),
+        "contact_z": jackknife(lambda z: (z - 1.0) * unit, one.z),
+        "contact_rate": jackknife(lambda rate: rate * per_rate, one.rate),
+        "g_ratio": jackknife(lambda near, z: at_contact(near) / ((z - 1.0) * unit), one.near, one.z),
+        "rate_ratio": jackknife(lambda rate, z: rate * per_rate / ((z - 1.0) * unit), one.rate, one.z),
+    }
+    return {name: Estimate(*found, len(one.z) - 1) for name, found in routes.items()}
+
+
+def _contact_per_rate(gas: Gas) -> float:
+    """Contact value times (N - 1) / N of N particles over their reduced rate of collisions (exact; the
+    reference equation of state cancels)."""
+    eta, dimension, count = gas.packing_fraction, gas.dimension, gas.count
+    excess = theory.compressibility_factor(eta, dimension) - 1.0
+    excess += theory.finite_size_correction(eta, dimension, count, "canonical")
+    rate = theory.collision_rate(eta, dimension)
+    rate *= theory.collision_rate_finite_size_factor(eta, dimension, count)
+    return float(excess / (2.0 ** (dimension - 1) * eta * rate))
+
+
+def _gain(samples: np.ndarray, better: Law, worse: Law, place: np.ndarray, eta: float) -> Estimate:
+    """The distance of the mean of samples (B, n) from one law over that from another, root mean square."""
+    laws = [law(place, eta) for law in (better, worse)]
+
+    def gain(mean: np.ndarray) -> float:
+        near, far = (float(((mean - law) ** 2).sum()) for law in laws)
+        return float(np.sqrt(near / far))
+
+    return Estimate(*jackknife(gain, samples), len(samples) - 1)

@@ -1,0 +1,126 @@
+r"""Chemical potential by insertion, against that of the measured equation of state; the partition function.
+
+Source C writes the partition function as :math:`V^N Q / (h^{dN} N!)\,(2\pi m k_B T)^{dN/2}` (Eqs. 41 to 46).
+All but the configuration integral Q is known. With N particles in place, a further one at a random place
+overlaps none with the chance :math:`Q_{N+1}/Q_N`, so that ln Q is the sum of the logarithms of these chances
+over all smaller numbers in one container: per particle, minus the mean of mu_excess / k_B T over the packing
+fractions below. By the equation of state it is minus the integral of (Z - 1) / eta.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from gaspart import theory
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.insertion import Insertions, insertions
+from gaspart.analysis.run import Run
+from gaspart.analysis.statistics import average, correlated_mean, fit_polynomial
+from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.families.shared.runs import runs
+from gaspart.reproduction.families.structure.state import MeasuredState, measured_states
+from gaspart.reproduction.points.point import Point
+from gaspart.scene.gas import plain_gas
+
+_POWERS = (0, 1, 2)  # of eta, by which the measured chemical potential differs from the reference
+
+
+def chemical_potential(points: list[Point], settings: dict) -> xr.Dataset:
+    """mu_excess / (k_B T) at each point of the experiments `measured`, by insertion and by Gibbs and Duhem.
+
+    settings: see `FIGURES`. Returns over `point`, by ascending packing fraction in each dimension: dimension,
+    packing_fraction, count; probability, that a random place is free, and expected, that of the measured
+    equation of state, for this number; inserted, the chemical potential of the infinite fluid (the finite
+    size subtracted), integrated, that of the measured equation of state, `ratio` of the two; each with _error
+    and _freedom; reference and its _error, of the reference equation of state; successes, the free places;
+    hit_frames, frames that have any; frames; places, how many random places those tried stand for;
+    resolution, the probability that one success would have been; works, 1 with `enough` hit frames. Over
+    `point` too: ln_q, minus ln Q / N by insertion up to this packing fraction, ln_q_integrated, by the
+    equation of state, `ln_q_ratio` of the two (NaN where insertion does not work).
+    """
+    states, _ = measured_states(points)
+    measured = [point for point in points if point.experiment in settings["measured"]]
+    measured.sort(key=lambda point: (point.scene.dimension, point.scene.packing_fraction))
+    rows = [_row(point, states[point.scene.dimension], settings) for point in measured]
+    for dimension, state in states.items():
+        _add_partition([row for row in rows if row["dimension"] == dimension and row["works"]], state)
+    return from_rows("point", rows).assign_attrs(enough=settings["enough"])
+
+
+def _row(point: Point, state: MeasuredState, settings: dict) -> dict:
+    gas = plain_gas(point.scene)
+    eta, dimension = gas.packing_fraction, gas.dimension
+    found = [_insertions(run, gas.diameter, settings, point.seed(k)) for k, run in enumerate(runs(point))]
+    hits = sum(int(np.count_nonzero(one.successes)) for one in found)
+    chance = average([_chance(one) for one in found])
+    finite = float(theory.insertion_finite_size_correction(eta, dimension, gas.count))
+    integrated = state.chemical_potential(eta)
+    inserted = Estimate(math.nan, math.nan)
+    if chance.value > 0.0:
+        relative = chance.error / chance.value
+        inserted = Estimate(-math.log(chance.value) - finite, relative, chance.freedom)
+    expected = math.exp(-integrated.value - finite)
+    frames = sum(len(one.share) for one in found)
+    resolution = sum(one.resolution * len(one.share) ** 2 for one in found) / frames**2
+    return {
+        "dimension": dimension,
+        "packing_fraction": eta,
+        "count": gas.count,
+        **entries({
+            "probability": chance,
+            "expected": Estimate(expected, expected * integrated.error, integrated.freedom),
+            "inserted": inserted,
+            "integrated": integrated,
+            "ratio": inserted / integrated,
+        }),
+        "reference": float(theory.excess_chemical_potential(eta, dimension)),
+        "reference_error": float(theory.chemical_potential_uncertainty(eta, dimension)),
+        "successes": sum(int(one.successes.sum()) for one in found),
+        "hit_frames": hits,
+        "frames": frames,
+        "places": 1.0 / resolution,
+        "resolution": resolution,
+        "works": int(hits >= settings["enough"]),
+    }  # fmt: skip
+
+
+def _insertions(run: Run, diameter: float, settings: dict, seed: tuple[int, ...]) -> Insertions:
+    """Those in evenly spaced frames of a run."""
+    positions = run.positions[1:]
+    stride = -(-len(positions) // settings["frames"])
+    lengths = run.scene.container.lengths
+    return insertions(positions[::stride], lengths, diameter, settings["places"], seed)
+
+
+def _chance(found: Insertions) -> Estimate:
+    """The mean over frames; without a success the error is that of one."""
+    if not found.successes.any():
+        return Estimate(0.0, found.resolution)
+    return correlated_mean(found.probability).estimate
+
+
+def _add_partition(rows: list[dict], state: MeasuredState) -> None:
+    """Add minus ln Q / N to the rows of one dimension at which insertion works: mu by insertion is joined to
+    a curve, the reference times a polynomial in eta, whose integral over eta is divided by eta."""
+    if len(rows) < len(_POWERS):
+        return
+    dimension = state.dimension
+    eta, mu, error, reference, freedom = (
+        np.array([row[name] for row in rows])
+        for name in ("packing_fraction", "inserted", "inserted_error", "reference", "inserted_freedom")
+    )
+    ratio, error = mu / reference, error / reference
+    fit = fit_polynomial(eta, ratio - 1.0, error, powers=_POWERS, freedoms=freedom)
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    for row in rows:
+        inner = 0.5 * row["packing_fraction"] * (nodes + 1.0)
+        curve = 0.5 * weights * theory.excess_chemical_potential(inner, dimension)
+        parts = np.array([curve @ inner**power for power in _POWERS])
+        error = np.sqrt(parts @ fit.covariance @ parts)
+        value = Estimate(curve.sum() + parts @ fit.values, error, fit.freedoms.min())
+        integrated = state.free_energy(row["packing_fraction"])
+        numbers = {"ln_q": value, "ln_q_integrated": integrated, "ln_q_ratio": value / integrated}
+        row.update(entries(numbers))

@@ -1,0 +1,143 @@
+"""Structure of the fluid of spheres: pair distribution and structure factor, by Percus and Yevick's equation
+and by the correction of Verlet and Weis.
+
+Lengths in diameters, wave numbers over the diameter, fluid of packing fraction eta (a number). There is no
+such closed form for discs: Percus and Yevick's equation is solved in odd dimensions only.
+"""
+
+from functools import cache
+
+import numpy as np
+
+from gaspart.theory._arguments import Numbers, Values, checked, checked_packing_fraction
+from gaspart.theory.equations import METASTABLE_SPHERES, carnahan_starling
+
+_NODES = 64  # on a circle around each zero, of `_PART` of the distance to the nearest other one
+_PART = 0.35
+_FURTHEST = 5
+"""Diameters up to which g(r) is computed: its parts grow exponentially beyond, and cancel."""
+_SMALL = 1e-3  # wave number below which a quotient of small numbers is replaced by its limit
+
+
+@checked
+def percus_yevick_structure_factor(wave_number: Numbers, packing_fraction: float) -> Values:
+    """S(k) = 1 / (1 - rho c(k)) of spheres, by Percus and Yevick's equation (same shape as `wave_number`).
+
+    The direct correlation function is -(a + b r + a eta r^3 / 2) inside of the diameter and 0 beyond, with
+    a = (1 + 2 eta)^2 / (1 - eta)^4, b = -6 eta (1 + eta / 2)^2 / (1 - eta)^4 (Wertheim, Phys. Rev. Lett. 10,
+    321 (1963); Thiele, J. Chem. Phys. 39, 474 (1963)). Its integral is by Gauss and Legendre, exact to
+    rounding up to k = 100. S(0) is that of `percus_yevick_compressibility`.
+    """
+    eta = float(checked_packing_fraction(packing_fraction, METASTABLE_SPHERES))
+    k = np.asarray(wave_number, dtype=float)
+    nodes, weights = np.polynomial.legendre.leggauss(80)
+    r = 0.5 * (nodes + 1.0)
+    a = (1.0 + 2.0 * eta) ** 2 / (1.0 - eta) ** 4
+    b = -6.0 * eta * (1.0 + 0.5 * eta) ** 2 / (1.0 - eta) ** 4
+    inside = a + b * r + 0.5 * a * eta * r**3
+    integral = np.sinc(k[..., None] * r / np.pi) @ (0.5 * weights * r**2 * inside)
+    return 1.0 / (1.0 + 24.0 * eta * integral)
+
+
+@checked
+def percus_yevick_rdf(distance: Numbers, packing_fraction: float) -> Values:
+    """g(r) of spheres, by Percus and Yevick's equation, up to 5 diameters (same shape as `distance`).
+
+    r g(r) is the inverse of Wertheim's Laplace transform (Phys. Rev. Lett. 10, 321 (1963)): with
+    L = (1 + eta / 2) t + 1 + 2 eta and S = (1 - eta)^2 t^3 + 6 eta (1 - eta) t^2 + 18 eta^2 t - 12 eta (1 + 2
+    eta), the sum over n < r of the residues of (-12 eta)^(n-1) t (L / S)^n e^{t (r - n)} at the three zeros
+    of S. They are computed together, as an integral over a circle around all three. 0 inside of the diameter.
+    Raises ValueError beyond 12 diameters.
+    """
+    eta = float(checked_packing_fraction(packing_fraction, METASTABLE_SPHERES))
+    r = np.asarray(distance, dtype=float)
+    if np.any(r > _FURTHEST):
+        raise ValueError(f"distance: {np.max(r):g} (this formula is computed up to {_FURTHEST} diameters)")
+    t, parts, ratio = _circles(eta)
+    total = np.zeros(r.shape)
+    for shell in range(1, _FURTHEST + 1):
+        beyond = r >= shell
+        if not beyond.any():
+            break
+        factor = (-12.0 * eta) ** (shell - 1) * t * parts * ratio**shell
+        total[beyond] += (np.exp(np.multiply.outer(r[beyond] - shell, t)) @ factor).real
+    return np.divide(total, r, out=np.zeros(r.shape), where=r >= 1.0)[()]
+
+
+@cache
+def _circles(eta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Nodes (n,) of circles around the zeros of S, their parts of the integrals over 2 pi i, and L / S."""
+    linear = 6.0 * eta * (1.0 - eta)
+    cubic = np.array([(1.0 - eta) ** 2, linear, 18.0 * eta**2, -12.0 * eta * (1.0 + 2.0 * eta)])
+    zeros = np.roots(cubic)
+    apart = np.abs(zeros[:, None] - zeros)[~np.eye(3, dtype=bool)].reshape(3, 2).min(axis=1)
+    steps = np.exp(2j * np.pi * (np.arange(_NODES) + 0.5) / _NODES)
+    circles = _PART * apart[:, None] * steps
+    t = (zeros[:, None] + circles).ravel()
+    return t, circles.ravel() / _NODES, ((1.0 + 0.5 * eta) * t + 1.0 + 2.0 * eta) / np.polyval(cubic, t)
+
+
+@cache
+def _verlet_weis(eta: float) -> tuple[float, float, float, float]:
+    """The packing fraction and the diameter of the fluid of Percus and Yevick, and the amplitude and the
+    inverse range of what is added to its g(r).
+
+    The latter two are those at which the contact value and the compressibility are Carnahan and Starling's:
+    1 + 24 eta times the integral of r^2 (g - 1) is S(0), in which the added part is 12 eta A / mu.
+    """
+    effective = eta - eta**2 / 16.0
+    diameter = (effective / eta) ** (1.0 / 3.0)
+    contact = (carnahan_starling(eta) - 1.0) / (4.0 * eta)
+    amplitude = float(contact - percus_yevick_rdf(1.0 / diameter, effective))
+    inverse = (1.0 + 4.0 * eta + 4.0 * eta**2 - 4.0 * eta**3 + eta**4) / (1.0 - eta) ** 4
+    lacking = 1.0 / inverse - float(percus_yevick_structure_factor(0.0, effective))
+    lacking += float(_overlapping(np.zeros(()), eta, effective, diameter))
+    return effective, diameter, amplitude, 12.0 * eta * amplitude / lacking
+
+
+def _overlapping(k: np.ndarray, eta: float, effective: float, diameter: float) -> np.ndarray:
+    """24 eta times the integral of r^2 g(r) sin(kr) / (kr) between the smaller diameter and 1."""
+    nodes, weights = np.polynomial.legendre.leggauss(12)
+    r = 0.5 * (1.0 - diameter) * (nodes + 1.0) + diameter
+    g = percus_yevick_rdf(r / diameter, effective)
+    parts = 0.5 * (1.0 - diameter) * weights * r**2 * g
+    return 24.0 * eta * np.sinc(k[..., None] * r / np.pi) @ parts
+
+
+@checked
+def verlet_weis_rdf(distance: Numbers, packing_fraction: float) -> Values:
+    """g(r) of spheres by Verlet and Weis, Phys. Rev. A 5, 939 (1972) (same shape as `distance`).
+
+    That of Percus and Yevick at the packing fraction eta - eta^2 / 16, with the smaller diameter that belongs
+    to it, and A / r exp(-mu (r - 1)) cos(mu (r - 1)) beyond contact. A and mu follow here from the conditions
+    that the contact value and the compressibility are Carnahan and Starling's (as in a public program of
+    integral equations), not from fitted formulas. At most 4.9 diameters; 0 < eta <= 0.539.
+    """
+    effective, diameter, amplitude, rate = _of(packing_fraction)
+    r = np.asarray(distance, dtype=float)
+    beyond = np.maximum(r, 1.0)
+    added = amplitude / beyond * np.exp(-rate * (beyond - 1.0)) * np.cos(rate * (beyond - 1.0))
+    return np.where(r >= 1.0, percus_yevick_rdf(r / diameter, effective) + added, 0.0)[()]
+
+
+@checked
+def verlet_weis_structure_factor(wave_number: Numbers, packing_fraction: float) -> Values:
+    """S(k) of spheres that belongs to `verlet_weis_rdf`, by its Fourier transform in closed form but for the
+    pairs nearer than a diameter that are taken away (same shape as `wave_number`)."""
+    eta = float(packing_fraction)
+    effective, diameter, amplitude, rate = _of(eta)
+    k = np.asarray(wave_number, dtype=float)
+    safe = np.maximum(k, _SMALL)
+    # the integral of e^{-mu x} cos(mu x) e^{i k x} from 0
+    wave = 0.5 / (rate * (1.0 - 1j) - 1j * safe) + 0.5 / (rate * (1.0 + 1j) - 1j * safe)
+    added = 24.0 * eta * amplitude * (np.exp(1j * safe) * wave).imag / safe
+    taken = _overlapping(k, eta, effective, diameter)
+    return percus_yevick_structure_factor(k * diameter, effective) - taken + added
+
+
+def _of(packing_fraction: float) -> tuple[float, float, float, float]:
+    """`_verlet_weis` of a packing fraction, which is checked."""
+    eta = float(checked_packing_fraction(packing_fraction, METASTABLE_SPHERES))
+    if eta <= 0.0:
+        raise ValueError(f"packing_fraction: {eta:g} (must be above 0)")
+    return _verlet_weis(eta)

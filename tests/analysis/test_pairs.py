@@ -1,0 +1,113 @@
+"""The structure factor and the insertion of particles, against exact cases and brute force."""
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+import gaspart as gp
+from gaspart import theory
+from gaspart.analysis.insertion import insertions
+from gaspart.analysis.waves import admitted, factors, shells_of
+
+A = gp.analysis
+SCENES = {
+    2: gp.Scene(gp.Container((12.0, 16.0), "periodic"), [gp.Species(75, 0.5, temperature=1.0)]),
+    3: gp.Scene(gp.Container((6.0, 7.0, 8.0), "periodic"), [gp.Species(130, 0.5, temperature=1.0)]),
+}
+
+
+@pytest.fixture(scope="module", params=SCENES)
+def fluid(request, tmp_path_factory):
+    """Fluids at packing fractions 0.31 and 0.2: 65 and 90 collisions of each particle."""
+    path = tmp_path_factory.mktemp("fluids") / "a.nc"
+    return gp.run(SCENES[request.param], gp.EventDriven(), 2, 24.0, 0.1, path)
+
+
+@pytest.mark.parametrize("lengths", [(5.0, 9.0), (4.0, 5.0, 7.0)])
+def test_one_of_each_pair_of_admitted_wave_vectors_is_found(lengths):
+    waves, size = admitted(lengths, 4.0)
+    assert size == pytest.approx(np.linalg.norm(2.0 * np.pi * waves / lengths, axis=1))
+    assert (np.diff(size) >= 0.0).all() and 0.0 < size[0] == pytest.approx(2.0 * np.pi / max(lengths))
+    both = {*map(tuple, waves), *map(tuple, -waves)}
+    around = np.stack(np.meshgrid(*[np.arange(-6, 7)] * len(lengths)), axis=-1).reshape(-1, len(lengths))
+    inside = around[np.linalg.norm(2.0 * np.pi * around / lengths, axis=1) <= 4.0]
+    assert len(both) == 2 * len(waves) == len(inside) - 1 and both < set(map(tuple, inside))
+
+
+def test_shells_of_a_large_container_are_admitted_and_few():
+    lengths = np.array([300.0, 250.0, 280.0])
+    waves, shell, k = shells_of(lengths, 20.0, 40, 8)
+    assert np.bincount(shell).tolist() == [8] * 40 == [8] * len(k)
+    assert (waves == waves.astype(int)).all() and len(set(map(tuple, waves))) == len(waves)
+    assert k == pytest.approx(0.5 * (np.arange(40) + 0.5), abs=0.25)
+
+
+@pytest.mark.parametrize("lengths", [(5.0, 9.0), (4.0, 5.0, 7.0)])
+def test_the_sums_are_those_of_the_definition(lengths):
+    positions = np.random.default_rng(1).random((40, len(lengths))) * lengths
+    waves, _ = admitted(lengths, 6.0)
+    exact = abs(np.exp(2j * np.pi * (waves / np.array(lengths)) @ positions.T).sum(axis=1)) ** 2 / 40
+    assert factors(positions, lengths, waves) == pytest.approx(exact, abs=1e-10)
+
+
+def test_the_structure_factor_is_that_of_the_distribution_and_of_theory(fluid):
+    found = A.structure_factor(fluid, bins=30, highest=15.0)
+    if found.theory is None:  # discs: the compressibility, in the longest waves
+        near = found.estimate[:2]
+        limit = theory.reduced_compressibility(SCENES[2].packing_fraction, 2)
+        assert float(near.mean()) == pytest.approx(limit, abs=4.0 * float(found.error[:2].max()) + 0.04)
+    else:
+        chi = float((((found.estimate - found.theory) / found.error) ** 2).mean())
+        assert chi < 2.0
+        assert np.isnan(found["structure_factor_theory_error"]).all()
+    assert float(found.estimate[-5:].mean()) == pytest.approx(1.0, abs=0.05)
+
+
+def test_the_chemical_potential_agrees_with_theory(fluid):
+    found = A.chemical_potential(fluid, places=256)
+    assert abs(float(found.deviation)) < 4.0
+    assert float(found.error) < 0.06 * float(found.estimate)
+    assert float(found["probability"]) == pytest.approx(np.exp(-float(found.estimate)))
+    assert float(found["resolution"]) < 1e-4 < float(found["probability"])
+    assert int(found["frames_with_success"]) <= int(found["successes"])
+    assert found.plot(theory=True).get_ylabel()
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_insertion_where_particles_may_fit_is_insertion_everywhere(dimension):
+    """One frame: the free part of the container, by 2e5 places everywhere."""
+    simulation = gp.Simulation(SCENES[dimension], gp.EventDriven(), 1)
+    simulation.advance(duration=2.0)
+    lengths, positions = np.array(SCENES[dimension].container.lengths), simulation.state.positions
+    found = insertions(positions[None], lengths, 1.0, 20_000)
+    everywhere = np.random.default_rng(5).random((200_000, dimension)) * lengths
+    nearest, _ = cKDTree(positions % lengths, boxsize=lengths).query(everywhere)
+    free = float((nearest > 1.0).mean())
+    error = np.sqrt(free / 200_000 + free * found.share[0] / 20_000)
+    assert abs(float(found.probability[0]) - free) < 4.0 * error < 0.3 * free
+    assert found.share[0] < 0.9 and found.resolution == pytest.approx(found.share[0] / 20_000)
+
+
+def test_a_crystal_has_no_room(tmp_path):
+    scene = gp.Scene(
+        gp.Container((4.7,) * 3, "periodic"), [gp.Species(108, 0.5, temperature=1.0, arrangement="lattice")]
+    )
+    path = gp.run(scene, gp.EventDriven(), 1, 1.0, 0.02, tmp_path / "a.nc")
+    with pytest.raises(gp.SceneError, match=r"packing_fraction = 0\.544.*: of 8 places in each of"):
+        A.chemical_potential(path, places=8)
+
+
+def test_what_cannot_be_measured_is_refused(tmp_path):
+    walled = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.5, temperature=1.0)])
+    path = gp.run(walled, gp.EventDriven("direct"), 1, 4.0, 0.1, tmp_path / "a.nc")
+    for function in (A.structure_factor, A.chemical_potential):
+        with pytest.raises(gp.SceneError, match="needs a periodic container"):
+            function(path)
+    periodic = gp.Scene(gp.Container((9.0, 9.0), "periodic"), walled.species)
+    path = gp.run(periodic, gp.EventDriven("direct"), 1, 4.0, 0.1, tmp_path / "b.nc", follow=5)
+    for function in (A.structure_factor, A.chemical_potential):
+        with pytest.raises(gp.SceneError, match="follow = 5"):
+            function(path)
+    path = gp.run(periodic, gp.EventDriven("direct"), 1, 4.0, 0.1, tmp_path / "c.nc")
+    with pytest.raises(gp.SceneError, match=r"highest = 0\.5: must be above that of the longest wave"):
+        A.structure_factor(path, highest=0.5)
