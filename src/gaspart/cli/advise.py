@@ -4,36 +4,48 @@ from __future__ import annotations
 
 import argparse
 import math
+import shlex
+import sys
+import warnings
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from gaspart.analysis.names import OBSERVABLES, known
 from gaspart.cli.arguments import Parser, UsageError, of_configs, print_line, real, set_command
+from gaspart.cli.engine_options import one_of, run_options, stated
 from gaspart.cli.progress import waiting
-from gaspart.engines import TimeStepped
+from gaspart.engines import TimeStepped, engine_to_dict
 from gaspart.scene.scene import Scene
 
 if TYPE_CHECKING:
     from gaspart.tradeoff.advice import Advice, Setting
+    from gaspart.tradeoff.plan import Option, Plan
+    from gaspart.trajectory.recipe import Recipe
 
 _EXAMPLES = """examples:
   gaspart advise scene.yaml --observable Z --accuracy 1e-3
   gaspart advise scene.yaml --observable D --accuracy 1e-2 --budget 60
+  gaspart advise heated.yaml --observable temperature --accuracy 3e-2
   gaspart advise --config config/config.yaml     the cost of a complete grid, in core-hours"""
 
 
 def add_advise(parser: Parser) -> None:
     """Add the arguments of the command to its parser."""
     text = (
-        "The cheapest setting for a relative accuracy (half the width of a 95 % interval) of an observable "
-        "of a gas of one species in a periodic container, from measured errors and times; or, with "
-        "--config, the cost of the simulations of a config. The speed of this machine is measured by a run "
-        "of a tenth of a second."
+        "The cheapest engine, settings and run for a relative accuracy (half the width of a 95 % interval) "
+        "of an observable, and the command that runs it; or, with --config, the cost of the simulations of "
+        "a config. For Z, D and the collision rate of one species in a periodic container errors and times "
+        "are known, and the speed of this machine is measured by a run of a tenth of a second. For all else "
+        "short pilot runs are made, which are kept and reused."
     )
     set_command(parser, _advise, text, _EXAMPLES)
     add = parser.add_argument
     add("scene", nargs="?", help="scene file (YAML)")
-    add("--observable", default="Z", metavar="NAME", help="Z (default), collision_rate or D")
+    add("--observable", default="Z", metavar="NAME", help=f"{one_of(OBSERVABLES)}; default: Z")
     add("--accuracy", type=real(above=0.0), default=1e-2, metavar="X", help="relative; default: 0.01")
     add("--budget", type=_seconds, metavar="S", help="largest processor time, in s (60 or 60s)")
+    text = "processor time of all pilot runs, in s; default: 20"
+    add("--pilot", type=_seconds, default=20.0, metavar="S", help=text)
     add("--config", metavar="FILE", help="a config instead of a scene")
 
 
@@ -49,16 +61,28 @@ def _advise(given: argparse.Namespace) -> None:
             lines = of_configs("advise")(given.config)
         print_line("\n".join(lines))
         return
-    from gaspart.tradeoff.advice import advise
+    from gaspart.tradeoff.advice import advise, is_tabulated
 
     scene = Scene.from_file(given.scene)
-    with waiting("measuring the speed of this machine; the first time, compiling kernels"):
-        found = advise(scene, given.observable, given.accuracy, given.budget)
-    print_line("\n".join(_lines(found)))
+    if is_tabulated(scene, known(given.observable)):
+        with waiting("measuring the speed of this machine; the first time, compiling kernels"):
+            advice = advise(scene, given.observable, given.accuracy, given.budget)
+        print_line("\n".join(_lines(advice, given.scene)))
+        return
+    from gaspart.tradeoff.plan import plan
+
+    def announce(text: str) -> None:
+        if sys.stderr.isatty():
+            print(f"gaspart: {text}", file=sys.stderr)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of coarse settings, whose error is stated in the table
+        made = plan(scene, given.observable, given.accuracy, given.budget, given.pilot, announce)
+    print_line("\n".join(plan_lines(made, given.scene)))
 
 
-def _lines(advice: Advice) -> list[str]:
-    """The advice as text."""
+def _lines(advice: Advice, file: str) -> list[str]:
+    """The advice as text. file: of the scene, for the command."""
     from gaspart.tradeoff.advice import EQUILIBRATION
 
     best, gas = advice.setting, advice.gas
@@ -78,11 +102,71 @@ def _lines(advice: Advice) -> list[str]:
         lines.append(f"drawn velocities  {text}: exact_temperature: true removes it")
     if not advice.within_budget:
         lines.append(f"the budget does not suffice for {advice.accuracy:g}")
+    each = "" if advice.replicas == 1 else ", and the same with other seeds and files"
+    lines.append(f"command           {_command(advice.recipe, file)}{each}")
     for other in advice.others:
         lines.append(f"why: {_name(other)} takes {other.seconds:.3g} s")
     if len({other.engine.name for other in advice.others} | {best.engine.name}) == 1:
         lines.append("why: no time step is known to be as accurate at this density")
     return lines
+
+
+def _command(recipe: Recipe, file: str) -> str:
+    """The command that makes a run."""
+    return shlex.join(["gaspart", "run", file, *run_options(Path("run.nc"), recipe)])
+
+
+def plan_lines(plan: Plan, file: str) -> list[str]:
+    """The advice of pilot runs as text. file: of the scene, for the command."""
+    best = plan.best
+    lines = [f"engine            {_settings(best)}"]
+    if math.isfinite(best.seconds):
+        lines += [
+            f"command           {_command(plan.recipe, file)}",
+            f"predicted cost    {best.seconds:.3g} s of processor time, duration {best.duration:.4g}",
+            f"95 % half-width   {best.half_width:.2g} of {plan.observable} (about {plan.value:.4g}): "
+            f"{_components(best)}",
+        ]
+    if not plan.affordable:
+        lines.append(_shortfall(plan))
+    for pilot in plan.flown:
+        cost = f"{pilot.seconds:.2g} s" if pilot.seconds else "kept from before"
+        shown = f"{pilot.value:.4g} to {100.0 * pilot.accuracy:.2g} %" if pilot.measured else pilot.rule
+        lines.append(f"pilot             {pilot.engine.title}, {cost}: {shown}")
+    for other in plan.options[1:]:
+        cost = f"{other.seconds:.3g} s" if math.isfinite(other.seconds) else "not as accurate"
+        without = f"gives up {other.candidate.gives_up}"
+        lines.append(f"why not           {_settings(other)}: {cost}; {_components(other)}; {without}")
+    lines += [f"why not           {name}: {rule}" for name, rule in plan.refused.items()]
+    return lines
+
+
+def _components(option: Option) -> str:
+    """What makes the error of an option."""
+    noise = option.half_width - option.bias
+    of = option.candidate
+    parts = {"noise": noise, "model": of.model, "steps and cells": of.discretisation}
+    parts["difference of the pilots"] = option.bias if option.bias > of.bias else 0.0
+    shown = [f"{name} {value:.1g}" for name, value in parts.items() if 0.0 < value < math.inf]
+    return ", ".join(shown) or "no systematic error"
+
+
+def _settings(option: Option) -> str:
+    """An engine with its settings, as options."""
+    given = stated(engine_to_dict(option.candidate.engine))
+    return " ".join([option.candidate.engine.name, *given])
+
+
+def _shortfall(plan: Plan) -> str:
+    """What would reach an accuracy that the budget does not, or that no engine does."""
+    best = plan.best
+    if not math.isfinite(best.half_width):
+        return f"no engine is known to be as accurate as {plan.accuracy:g}"
+    room = plan.accuracy - best.bias
+    if room <= 0.0:
+        return f"the budget does not suffice for {plan.accuracy:g}, and this engine does not reach it"
+    needed = best.seconds * ((best.half_width - best.bias) / room) ** 2
+    return f"the budget does not suffice for {plan.accuracy:g}, which takes {needed:.3g} s"
 
 
 def _name(setting: Setting) -> str:

@@ -26,6 +26,7 @@ def add_info(parser: Parser) -> None:
 
 
 def _info(given: argparse.Namespace) -> None:
+    from gaspart.cli.engine_options import run_options
     from gaspart.inspection.certificate import certificate
     from gaspart.trajectory.recipe import PARTIAL, check_frames, opened, read_recipe
     from gaspart.trajectory.run import partial_path
@@ -46,7 +47,7 @@ def _info(given: argparse.Namespace) -> None:
     versions = [f"{key.removesuffix('_version')} {stored[key]}" for key in stored if key.endswith("_version")]
     remake = [
         f"gaspart info --scene {shlex.quote(str(stored_at))} > scene.yaml",
-        "gaspart run scene.yaml " + shlex.join(_run_options(path, recipe, stored)),
+        "gaspart run scene.yaml " + shlex.join(run_options(path, recipe)),
     ]
     print_line(f"{stored_at}: {stored['title']}, {of_all}, {state}")
     for line in _request(recipe, stored_at, frames):
@@ -74,32 +75,3 @@ def _request(recipe: Recipe, path: Path, frames: int) -> list[str]:
     return [f"runs until {asked} (relative standard errors){longest}"] + (
         accuracy_lines(path) if frames else []
     )
-
-
-def _run_options(path: Path, recipe: Recipe, stored: dict) -> list[str]:
-    """The options of `gaspart run` for a recipe."""
-    from gaspart.cli.engine_options import joined, stated
-    from gaspart.engines import engine_to_dict
-
-    settings = engine_to_dict(recipe.engine)
-    options = ["-o", str(path), "--engine", settings["name"], "--seed", joined(recipe.seed)]
-    if recipe.until is None:
-        options += ["--duration", repr(recipe.duration)]
-    else:
-        asked = recipe.until.accuracies
-        options += ["--until", ",".join(f"{one.name}={one.accuracy!r}" for one in asked)]
-        options += [] if asked[0].start is None else ["--start", repr(asked[0].start)]
-        options += [] if recipe.until.at_most is None else ["--at-most", repr(recipe.until.at_most)]
-    options += ["--sample-interval", repr(recipe.sample_interval)]
-    options += stated(settings)
-    if recipe.displacements:
-        options.append("--displacements")
-    if recipe.pairs:
-        options.append("--pairs")
-    if recipe.follow is not None:
-        options += ["--follow", str(recipe.follow)]
-    if recipe.correlations is not None:
-        asked = recipe.correlations
-        options += ["--correlations", f"{asked.interval!r},{asked.lags},{asked.start!r}"]
-        options += ["--stress"] if asked.stress else []
-    return options

@@ -21,12 +21,14 @@ from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
 from gaspart.tradeoff import speed, table
 from gaspart.tradeoff.table import EQUILIBRATION, LEAST, QUANTILE
+from gaspart.trajectory.recipe import Recipe
 
 ACCURACIES = 1e-8, 1.0
 """The best relative accuracy that float64 sums and the table support, and the worst."""
 SpeedOf: TypeAlias = Callable[[int, str, str, int], float]
 """A function as `gaspart.tradeoff.speed.factor`."""
 _PER_EQUILIBRATION = 10.0  # smallest ratio of a replica's length to its equilibration
+_FRAMES = 1000
 _BULK = 4.0  # the finite size of a gas should cost no more than this part of the accuracy
 
 
@@ -53,6 +55,7 @@ class Advice:
     collision rate from run to run, if velocities are drawn from a temperature and have it only on average.
     """
 
+    scene: Scene
     gas: Gas
     observable: str
     accuracy: float
@@ -68,6 +71,17 @@ class Advice:
     def duration(self) -> float:
         """Measured length of each replica, in the scene's time."""
         return self.collisions_per_body / float(theory.collision_rate(**self.gas.parameters))
+
+    @property
+    def recipe(self) -> Recipe:
+        """One replica, equilibration included, with a frame for each collision of a particle or fewer."""
+        interval = self.duration / self.collisions_per_body * max(1.0, self.collisions_per_body / _FRAMES)
+        quantum = self.setting.engine.quantum
+        interval = (
+            float(f"{interval:.2g}") if quantum is None else max(1, round(interval / quantum)) * quantum
+        )
+        part = self.duration * (1.0 + EQUILIBRATION / self.collisions_per_body) / interval
+        return Recipe(self.scene, self.setting.engine, 1, math.ceil(part) * interval, interval)
 
     @property
     def within_budget(self) -> bool:
@@ -108,6 +122,15 @@ def fluid_of(scene: Scene) -> Gas:
         rule = f"advice is for fluids, up to {highest:g}"
         raise SceneError("packing_fraction", gas.packing_fraction, rule)
     return gas
+
+
+def is_tabulated(scene: Scene, observable: str) -> bool:
+    """Whether errors and costs of an observable of a scene are in the table."""
+    try:
+        fluid_of(scene)
+    except SceneError:
+        return False
+    return observable in table.OBSERVABLES
 
 
 def advise(
@@ -158,6 +181,7 @@ def advise(
     finite_size = _finite_size(gas, observable)
     drawn = any(kind.temperature is not None and not kind.exact_temperature for kind in scene.species)
     return Advice(
+        scene,
         gas,
         observable,
         accuracy,

@@ -77,7 +77,7 @@ class Reached:
     @property
     def bound(self) -> float:
         """The upper bound of `accuracy`, which the true one exceeds with probability 10 % by itself."""
-        return self.accuracy * _bound(self.freedom)
+        return self.accuracy * bound(self.freedom)
 
     @property
     def interval(self) -> tuple[float, float]:
@@ -107,8 +107,9 @@ def _student(freedom: float) -> float:
     return float(ndtri(beyond) if math.isinf(freedom) else stdtrit(freedom, beyond))
 
 
-def _bound(freedom: float) -> float:
-    """The upper bound of an error over the error, from the quantile of chi-square."""
+def bound(freedom: float) -> float:
+    """The upper bound of an error with so many degrees of freedom, over the error: from the quantile of
+    chi-square."""
     from scipy.special import chdtri
 
     return 1.0 if math.isinf(freedom) else math.sqrt(freedom / float(chdtri(freedom, 1.0 - _DOUBT)))

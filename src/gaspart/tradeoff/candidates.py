@@ -1,0 +1,145 @@
+"""The engines that could run a scene, each with bounds on its errors from theory.
+
+A bound is relative and names what makes the error: the model (pairs drawn in cells instead of pairs that
+touch) or the discretisation (time step, cells).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from gaspart import theory
+from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
+from gaspart.engines.dsmc.rates import contact_values, rates
+from gaspart.engines.step.limits import missed_contacts
+from gaspart.errors import SceneError
+from gaspart.scene.scene import Scene
+from gaspart.state.initial import initial_state
+
+STRUCTURE = ("rdf", "order")
+"""Observables of the positions of particles relative to each other, which DSMC does not have."""
+TRANSPORT = ("D", "msd", "vacf", "shear_viscosity", "bulk_viscosity", "thermal_conductivity")
+"""Observables that depend on the memory of collisions, of which the Enskog model has none."""
+_STATIC = 3e-3
+"""Bound on the error of the Enskog model in Z, the collision rate and pressures (figure
+`dsmc_convergence`)."""
+_DENSEST = 0.4
+"""Packing fraction up to which that is known."""
+_SHARE = 0.125
+"""Part of an accuracy that the contacts which time steps miss may take."""
+_SAFE = 2.0
+"""Error of a pressure or a rate over the part of contacts that are missed, at most."""
+_LONGEST_STEP = 0.2
+"""Of the mean time between a particle's collisions."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An engine with its settings for a scene. model, discretisation: bounds on its relative errors;
+    gives_up: what it does not have, in words."""
+
+    engine: Engine
+    model: float = 0.0
+    discretisation: float = 0.0
+    gives_up: str = "nothing"
+
+    @property
+    def bias(self) -> float:
+        """The bound on its systematic error."""
+        return self.model + self.discretisation
+
+
+def candidates(scene: Scene, observable: str, accuracy: float) -> tuple[list[Candidate], dict[str, str]]:
+    """The engines that model a scene, the event-driven one first, and why each other does not. accuracy: of
+    the observable, for which time steps are chosen."""
+    makers = {"event": _event, "step": _step, "dsmc": _boltzmann, "dsmc enskog": _enskog}
+    made, refused = [], {}
+    for name, maker in makers.items():
+        try:
+            one = maker(scene, observable, accuracy)
+            one.engine.check_features(scene)
+            if observable in TRANSPORT[3:]:
+                one.engine.check_stress(scene)
+            made.append(one)
+        except SceneError as error:
+            refused[name] = f"{error.key}: {error.rule}"
+    return made, refused
+
+
+def _event(scene: Scene, observable: str, accuracy: float) -> Candidate:
+    return Candidate(EventDriven())
+
+
+def _step(scene: Scene, observable: str, accuracy: float) -> Candidate:
+    TimeStepped(1.0).check_features(scene)
+    missed = missed_contacts(1.0, True, initial_state(scene, seed=0))
+    met = rates(scene, dense=True).frequency
+    if not missed > 0.0 or not met > 0.0:
+        raise SceneError("time_step", None, "follows from contacts, which particles at rest do not have")
+    longest = min(math.sqrt(_SHARE * accuracy / (_SAFE * missed)), _LONGEST_STEP / met)
+    step = float(f"{longest:.1g}")
+    step = step if step <= longest else float(f"{0.9 * longest:.1g}")
+    return Candidate(TimeStepped(step), discretisation=_SAFE * missed * step**2, gives_up="exact contacts")
+
+
+def _boltzmann(scene: Scene, observable: str, accuracy: float) -> Candidate:
+    """Pairs in a cell collide as if they were points: without the excluded volume."""
+    _require_no_structure(observable)
+    engine, (excess, virial) = DSMC(), _excess(scene)
+    model = max(excess, virial / (1.0 + virial))
+    gives_up = "excluded volume, positions of pairs"
+    return Candidate(engine, model, _discretisation(engine, scene, observable), gives_up)
+
+
+def _enskog(scene: Scene, observable: str, accuracy: float) -> Candidate:
+    """Pairs collide a diameter apart, with the contact value of their density."""
+    _require_no_structure(observable)
+    filled = scene.packing_fraction
+    if filled > _DENSEST:
+        rule = f"the Enskog model is known up to {_DENSEST:g}"
+        raise SceneError("packing_fraction", round(filled, 4), rule)
+    engine, model = DSMC(model="enskog"), _STATIC
+    if observable in TRANSPORT or _driven(scene):
+        model += _memory(filled, scene.dimension)
+    gives_up = "correlated collisions, positions of pairs"
+    return Candidate(engine, model, _discretisation(engine, scene, observable), gives_up)
+
+
+def _require_no_structure(observable: str) -> None:
+    if observable in STRUCTURE:
+        raise SceneError("observable", observable, "is of the positions of pairs, which DSMC does not have")
+
+
+def _driven(scene: Scene) -> bool:
+    """Whether something drives a flow of heat or of momentum, which transport coefficients govern."""
+    hot = {getattr(face, "temperature", None) for face in scene.faces.values()} - {None}
+    lost = scene.restitution is not None and scene.restitution.dissipative
+    return len(hot) > 1 or lost
+
+
+def _discretisation(engine: DSMC, scene: Scene, observable: str) -> float:
+    """The error of cells and steps: in the viscosity, and in what depends on it. Rates and pressures of an
+    even gas have none."""
+    if observable not in TRANSPORT and not _driven(scene):
+        return 0.0
+    return engine.predictions(scene)["viscosity_error"]
+
+
+def _excess(scene: Scene) -> tuple[float, float]:
+    """(chi - 1, Z - 1) of a gas that fills the container evenly, chi the largest contact value."""
+    import numpy as np
+
+    kinds = [kind for kind in scene.kinds if kind.count]
+    radius = np.array([kind.radius for kind in kinds])
+    number = np.array([float(kind.count) for kind in kinds]) / scene.container.volume
+    chi = float(contact_values(number, radius, scene.dimension).max())
+    return chi - 1.0, 2.0 ** (scene.dimension - 1) * scene.packing_fraction * chi
+
+
+def _memory(packing_fraction: float, dimension: int) -> float:
+    """|D / Enskog's - 1| of spheres, by which correlated collisions change transport; of discs, whose
+    coefficients grow with the size of the system, the same at this packing fraction, an estimate."""
+    if packing_fraction <= 0.0:
+        return 0.0
+    return abs(float(theory.erpenbeck_wood_ratio(packing_fraction)) - 1.0)

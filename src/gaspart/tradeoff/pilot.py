@@ -1,0 +1,183 @@
+"""A short run of a scene, from which its cost and the noise of an observable are extrapolated.
+
+A pilot is kept in the folder `pilots` of the cache, and reused where the same is asked again.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaspart.analysis.names import measure
+from gaspart.analysis.run import EQUILIBRATION
+from gaspart.engines import Engine, engine_to_dict
+from gaspart.errors import SceneError, SimulationError
+from gaspart.kernels.compile.cache import cache_directory
+from gaspart.kernels.compile.policy import source_digest
+from gaspart.scene.scene import Scene
+from gaspart.simulation import Simulation
+from gaspart.trajectory.correlator import Correlations
+from gaspart.trajectory.run import open_trajectory, run
+
+if TYPE_CHECKING:
+    from gaspart.analysis.observable import Observable
+
+FLUXES = ("shear_viscosity", "bulk_viscosity", "thermal_conductivity")
+"""Observables of the correlations of the stress tensor and of the heat flux."""
+SEED = 0
+_PROBE = 0.15
+"""Processor seconds that the speed is measured for, at least."""
+_FRAMES = 48, 512
+_HELD = 20_000_000
+"""Numbers that the frames of a pilot hold, at most, unless there are only few frames."""
+_LAGS = 100
+_SAMPLED = 0.1
+"""Time between two samples of a correlation, in collisions of a particle."""
+_FREEDOM = 15.0
+"""Degrees of freedom of an error, where an observable states none."""
+
+
+@dataclass(frozen=True)
+class Pilot:
+    """What a short run of an engine has shown.
+
+    speed: processor seconds per unit of time; measured: the time that the observable is of, 0 where it could
+    not be measured, for the reason in `rule`; value: the largest component; accuracy: the relative standard
+    error, of a curve the root of the mean square over that of its values, of several components the worst;
+    freedom: its degrees of freedom; seconds: that the pilot took, 0 if it was kept from before.
+    """
+
+    engine: Engine
+    speed: float
+    seconds: float = 0.0
+    measured: float = 0.0
+    value: float = math.nan
+    accuracy: float = math.inf
+    freedom: float = _FREEDOM
+    rule: str = ""
+
+    @property
+    def noise(self) -> float:
+        """The square of the relative standard error, times the time that was measured."""
+        return self.accuracy**2 * self.measured if self.measured else math.inf
+
+
+def speed_of(scene: Scene, engine: Engine) -> float:
+    """Processor seconds per unit of a scene's time, from a run of a fraction of a second after its kernels
+    were compiled. Raises SceneError for a scene that the engine does not model."""
+    simulation = Simulation(scene, engine, SEED)
+    quantum = simulation.engine.quantum
+    stretch = quantum or 1e-3 * _crossing(scene)
+    simulation.advance(duration=4.0 * stretch)  # compiles
+    while True:
+        before, start = simulation.time, time.process_time()
+        simulation.advance(duration=stretch * 1.0000001)
+        took = time.process_time() - start
+        if took >= _PROBE:
+            return took / (simulation.time - before)
+        stretch *= min(16.0, max(2.0, 1.2 * _PROBE / max(took, 1e-6)))
+
+
+def _crossing(scene: Scene) -> float:
+    """The time in which a particle crosses the shortest side of the container."""
+    squares = [
+        kind.temperature / kind.mass if kind.temperature else (kind.speed or 0.0) ** 2
+        for kind in scene.species
+    ]
+    squares += [sum(v * v for v in body.velocity) for body in scene.bodies]
+    squares += [getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()]
+    if scene.gravity:
+        squares.append(max(map(abs, scene.gravity)) * min(scene.container.lengths))
+    fastest = math.sqrt(max(squares))
+    if not fastest > 0.0:
+        raise SceneError("temperature", 0.0, "advice is for moving particles")
+    return min(scene.container.lengths) / fastest
+
+
+def fly(scene: Scene, engine: Engine, observable: str, seconds: float, speed: float) -> Pilot:
+    """A run of about so many processor seconds, measured; speed: as from `speed_of`. An observable that it is
+    too short for is not measured. Raises SceneError for one that the scene does not have."""
+    duration, interval, correlations = schedule(scene, engine, observable, seconds / speed)
+    folder = cache_directory() / "pilots" / _digest(scene, engine, correlations is not None, seconds)
+    folder.mkdir(parents=True, exist_ok=True)
+    took, path = 0.0, folder / "run.nc"
+    if not path.exists():
+        start = time.process_time()
+        try:
+            run(
+                scene, engine, SEED, duration, interval, path,
+                displacements=True, correlations=correlations, overwrite=True,
+            )  # fmt: skip
+        except SimulationError as error:
+            return Pilot(engine, speed, rule=str(error))
+        took = time.process_time() - start
+    with open_trajectory(path) as trajectory:
+        last = float(trajectory["time"][-1])
+        try:
+            result = measure(observable, trajectory)
+        except SceneError as error:
+            return Pilot(engine, speed, took, rule=f"{error.key}: {error.rule}")
+    value, accuracy, freedom = _worst(result)
+    return Pilot(engine, speed, took, (1.0 - EQUILIBRATION) * last, value, accuracy, freedom)
+
+
+def schedule(
+    scene: Scene, engine: Engine, observable: str, length: float
+) -> tuple[float, float, Correlations | None]:
+    """Duration, time between frames and correlations of a run of about a length."""
+    least, most = _FRAMES
+    frames = int(np.clip(_HELD // max(1, 3 * scene.count * scene.dimension), least, most))
+    if observable in FLUXES:
+        return _of_fluxes(scene, engine, length)
+    interval = length / frames
+    if quantum := engine.resolved(scene).quantum:
+        interval = max(1, round(interval / quantum)) * quantum
+    return frames * interval, interval, None
+
+
+def _of_fluxes(scene: Scene, engine: Engine, length: float) -> tuple[float, float, Correlations]:
+    """The same with correlations of the fluxes. Raises SceneError for no plain gas, whose collisions give the
+    time between samples."""
+    from gaspart.engines.dsmc.rates import rates
+
+    found = rates(scene, dense=True).frequency
+    if not found > 0.0:
+        raise SceneError("observable", "shear_viscosity", "needs particles that collide")
+    sample = float(f"{_SAMPLED / found:.1g}")
+    if quantum := engine.resolved(scene, sample).quantum:
+        sample = max(1, round(sample / quantum)) * quantum
+    per_frame = max(_LAGS, round(length / sample / _FRAMES[0]))
+    frames = max(4, round(length / (per_frame * sample)))
+    interval = per_frame * sample
+    return frames * interval, interval, Correlations(interval=sample, lags=_LAGS, stress=True)
+
+
+def _worst(result: Observable) -> tuple[float, float, float]:
+    """Value, relative error and degrees of freedom of an observable; of faces or axes those of the worst,
+    of a curve the norms of its values and errors."""
+    value, error = np.asarray(result.estimate, dtype=float), np.asarray(result.error, dtype=float)
+    freedom = float(result.attrs.get("freedom", _FREEDOM))
+    if not value.ndim:
+        relative = float(error / abs(value)) if value else math.inf
+        return float(value), relative, freedom
+    places = result[result.estimate.dims[-1]]
+    if places.dtype.kind in "US":
+        relative = np.where(value != 0.0, error / np.abs(value), np.inf)
+        worst = int(np.argmax(relative))
+        return float(value.flat[worst]), float(relative.flat[worst]), freedom
+    known = np.isfinite(value) & np.isfinite(error)
+    norm = float(np.sqrt(np.mean(value[known] ** 2))) if known.any() else 0.0
+    if not norm > 0.0:
+        return 0.0, math.inf, freedom
+    return norm, float(np.sqrt(np.mean(error[known] ** 2))) / norm, freedom
+
+
+def _digest(scene: Scene, engine: Engine, correlated: bool, seconds: float) -> str:
+    content = [scene.to_dict(), engine_to_dict(engine), correlated, seconds, source_digest()]
+    return hashlib.sha256(json.dumps(content).encode()).hexdigest()[:24]

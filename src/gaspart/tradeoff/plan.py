@@ -1,0 +1,203 @@
+"""The cheapest engine and run for an accuracy of any observable of any steady scene, from pilot runs.
+
+A run of a measured time t is off by at most |bias| + 1.96 sqrt(noise / t) in 95 % of all runs, relatively.
+The noise and the processor time of a unit of time come from pilots; the bias is bounded by theory
+(`gaspart.tradeoff.candidates`), and raised where two engines' pilots differ by more.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from gaspart.analysis.names import known
+from gaspart.analysis.run import EQUILIBRATION
+from gaspart.errors import SceneError
+from gaspart.scene.scene import Scene
+from gaspart.scene.validation import number
+from gaspart.tradeoff import pilot as pilots
+from gaspart.tradeoff.advice import ACCURACIES
+from gaspart.tradeoff.candidates import Candidate, candidates
+from gaspart.tradeoff.pilot import FLUXES, Pilot
+from gaspart.tradeoff.reached import bound
+from gaspart.tradeoff.table import QUANTILE
+from gaspart.trajectory.recipe import Recipe
+from gaspart.trajectory.until import OBSERVABLES, Accuracy, Until
+
+PILOT_SECONDS = 20.0
+"""Processor time of all pilots of an advice, by default."""
+_WORTH = 3.0
+"""How many times as cheap as the first engine one must be to have a pilot of its own."""
+_DIFFERS = 2.5
+"""Standard errors by which two pilots differ if one is biased more than theory says."""
+_FRAMES = 256
+_LONGEST = 4.0
+"""The longest duration of a run with `--until`, over the predicted one."""
+Announce: TypeAlias = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Option:
+    """What a candidate needs. bias: the bound on its systematic error, by pilots too; duration: of the run,
+    with its equilibration; seconds: of processor time; half_width: of the 95 % interval that this reaches,
+    relative. Duration and seconds are infinite for an accuracy that it cannot reach."""
+
+    candidate: Candidate
+    speed: float
+    bias: float
+    duration: float
+    seconds: float
+    half_width: float
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The advice for a scene. options: of each engine, the best first; refused: why others cannot run it;
+    value: of the observable by the pilots; flown: the pilots; affordable: whether the best reaches the
+    accuracy within the budget."""
+
+    scene: Scene
+    observable: str
+    accuracy: float
+    options: tuple[Option, ...]
+    refused: dict[str, str]
+    value: float
+    flown: tuple[Pilot, ...]
+    affordable: bool
+
+    @property
+    def best(self) -> Option:
+        """The option to take."""
+        return self.options[0]
+
+    @property
+    def recipe(self) -> Recipe:
+        """The run to make: until it is accurate where that can be asked, else of a fixed duration."""
+        best = self.best
+        scene, engine, correlations = self.scene, best.candidate.engine, None
+        duration, interval = best.duration, float(f"{best.duration / _FRAMES:.2g}")
+        if self.observable in FLUXES:
+            duration, interval, correlations = pilots.schedule(scene, engine, self.observable, duration)
+        elif quantum := engine.resolved(scene).quantum:
+            engine = engine.resolved(scene)
+            interval = max(1, round(interval / quantum)) * quantum
+        until = None
+        if self.observable in OBSERVABLES and self.affordable:
+            relative = (self.accuracy - best.bias) / QUANTILE
+            asked = Accuracy(self.observable, float(f"{0.99 * relative:.2g}"))
+            until = Until((asked,), at_most=float(f"{_LONGEST * duration:.2g}"))
+        fixed = None if until else max(1, round(duration / interval)) * interval
+        return Recipe(scene, engine, 1, fixed, interval, False, None, correlations, until)
+
+
+def plan(
+    scene: Scene,
+    observable: str,
+    accuracy: float,
+    budget: float | None = None,
+    pilot_seconds: float = PILOT_SECONDS,
+    announce: Announce = lambda text: None,
+) -> Plan:
+    """The cheapest run for a relative accuracy, half of a 95 % interval, of an observable of `gaspart
+    measure`.
+
+    budget: processor time in seconds of the run; if it does not suffice, the most accurate run within it is
+    advised. pilot_seconds: of all pilots together. announce(text): is told of each pilot.
+
+    Raises SceneError for a scene without a steady state, and for an observable that it does not have, or of
+    which the pilots are too short to say anything.
+    """
+    low, high = ACCURACIES
+    known(observable)
+    accuracy = number("accuracy", accuracy, f"must be from {low:g} to {high:g}", least=low, most=high)
+    if budget is not None:
+        budget = number("budget", budget, "must be positive", above=0.0)
+    pilot_seconds = number("pilot", pilot_seconds, "must be positive", above=0.0)
+    _require_steady(scene)
+    able, refused = candidates(scene, observable, accuracy)
+    if not able:
+        rule = f"no engine runs this scene: {'; '.join(refused.values())}"
+        raise SceneError("engine", ", ".join(refused), rule)
+    speeds = []
+    for one in able:
+        announce(f"timing the {one.engine.title} engine")
+        speeds.append(pilots.speed_of(scene, one.engine))
+    flown = _fly(scene, observable, list(zip(able, speeds, strict=True)), pilot_seconds, announce)
+    biases = {one.engine: one.bias for one in able}
+    measured = [one for one in flown if 0.0 < one.accuracy < math.inf]
+    faithful = [one for one in measured if biases[one.engine] < accuracy] or measured
+    if not faithful:
+        rule = f"{flown[0].rule or 'does not change in the pilot run'}; allow longer pilots"
+        raise SceneError("observable", observable, rule)
+    longest = max(faithful, key=lambda one: one.measured)
+    options = [
+        _option(one, speed, _bias(one, measured), longest, accuracy, budget)
+        for one, speed in zip(able, speeds, strict=True)
+    ]
+    options.sort(key=lambda one: (max(one.half_width, accuracy * (1.0 + 1e-9)), one.seconds))
+    reached = options[0].half_width <= accuracy * (1.0 + 1e-6)
+    return Plan(scene, observable, accuracy, tuple(options), refused, longest.value, tuple(flown), reached)
+
+
+def _require_steady(scene: Scene) -> None:
+    """Refuse an empty scene, and one that cools: its observables depend on when they are measured."""
+    if not scene.count:
+        raise SceneError("count", 0, "advice is for a gas: the scene is empty")
+    law = scene.restitution
+    driven = scene.thermostat is not None or any(
+        face.moves or getattr(face, "temperature", None) for face in scene.faces.values()
+    )
+    if law is not None and law.dissipative and not driven:
+        rule = "loses energy that nothing returns: there is no steady state to measure; give a duration"
+        raise SceneError("restitution.normal", law.normal, rule)
+
+
+def _fly(
+    scene: Scene,
+    observable: str,
+    timed: list[tuple[Candidate, float]],
+    seconds: float,
+    announce: Announce,
+) -> list[Pilot]:
+    """A pilot of the first engine, and of the cheapest one if that is much cheaper."""
+    chosen = timed[:1]
+    cheapest = min(timed, key=lambda one: one[1])
+    if cheapest[1] * _WORTH < timed[0][1]:
+        chosen.append(cheapest)
+    flown = []
+    for one, speed in chosen:
+        announce(f"a pilot run, {one.engine.title} engine, {seconds / len(chosen):.2g} s")
+        flown.append(pilots.fly(scene, one.engine, observable, seconds / len(chosen), speed))
+    return flown
+
+
+def _bias(candidate: Candidate, measured: list[Pilot]) -> float:
+    """The bound on a candidate's bias: that of theory, or what its pilot differs by from the exact
+    engine's."""
+    own = [one for one in measured if one.engine == candidate.engine]
+    exact = [one for one in measured if one.engine.name == "event"]
+    if candidate.engine.name == "event" or not own or not exact:
+        return candidate.bias
+    difference = abs(own[0].value / exact[0].value - 1.0)
+    error = math.hypot(own[0].accuracy, exact[0].accuracy)
+    if difference <= candidate.bias + _DIFFERS * error:
+        return candidate.bias
+    return difference + QUANTILE * error
+
+
+def _option(
+    candidate: Candidate, speed: float, bias: float, pilot: Pilot, accuracy: float, budget: float | None
+) -> Option:
+    """What a candidate needs for an accuracy, with the noise of a pilot, or reaches within a budget."""
+    noise = pilot.noise * bound(pilot.freedom) ** 2
+    room = (accuracy - bias) / QUANTILE
+    measured = noise / room**2 if room > 0.0 else math.inf
+    most = math.inf if budget is None else budget / speed * (1.0 - EQUILIBRATION)
+    measured = min(measured, most)
+    if not math.isfinite(measured):
+        return Option(candidate, speed, bias, math.inf, math.inf, math.inf)
+    duration = measured / (1.0 - EQUILIBRATION)
+    half_width = bias + QUANTILE * math.sqrt(noise / measured)
+    return Option(candidate, speed, bias, duration, duration * speed, half_width)

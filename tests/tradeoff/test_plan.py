@@ -1,0 +1,118 @@
+"""Advice from pilot runs, for scenes that the table does not cover."""
+
+import math
+
+import pytest
+
+import gaspart as gp
+from gaspart.cli import main
+from gaspart.engines import EventDriven
+from gaspart.tradeoff import pilot, plan
+from gaspart.tradeoff.candidates import Candidate, candidates
+from gaspart.tradeoff.pilot import Pilot
+
+BOX = gp.Scene(gp.Container((12.0, 12.0)), [gp.Species(40, 0.5, temperature=1.0)])
+DILUTE = gp.Scene(
+    gp.Container((100.0, 100.0, 100.0), boundary="periodic"), [gp.Species(500, 0.5, temperature=1.0)]
+)
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path, monkeypatch):
+    """Pilots are kept in a folder of the test; kernels in that of all tests."""
+    monkeypatch.setattr(pilot, "cache_directory", lambda: tmp_path / "cache")
+
+
+def test_the_advised_run_reaches_the_accuracy(tmp_path):
+    made = plan.plan(BOX, "pressure", 0.05, pilot_seconds=0.4)
+    assert made.affordable and made.best.half_width == pytest.approx(0.05)
+    path = gp.run(
+        BOX, made.recipe.engine, 3, sample_interval=made.recipe.sample_interval,
+        until=made.recipe.until.accuracies, at_most=made.recipe.until.at_most, path=tmp_path / "run.nc",
+    )  # fmt: skip
+    (reached,) = gp.reached_accuracy(path)
+    assert reached.met and 1.96 * reached.accuracy <= 0.05
+    assert plan.plan(BOX, "pressure", 0.05, pilot_seconds=0.4).flown[0].seconds == 0.0  # kept from before
+
+
+def test_dilute_gases_are_advised_to_draw_partners():
+    made = plan.plan(DILUTE, "collision_rate", 0.02, pilot_seconds=0.4)
+    assert made.best.candidate.engine.name == "dsmc"
+    by_name = {option.candidate.engine.name: option for option in made.options}
+    assert by_name["event"].seconds > 5.0 * made.best.seconds
+    exact = gp.theory.collision_rate(DILUTE.packing_fraction, 3)
+    assert made.value == pytest.approx(float(exact), rel=0.2)
+
+
+def test_bounds_come_from_theory():
+    """Boltzmann's equation lacks the excluded volume; the Enskog model is known up to a density."""
+    able, refused = candidates(BOX, "pressure", 0.01)
+    engines = {f"{one.engine.name} {getattr(one.engine, 'model', '')}".strip(): one for one in able}
+    contact = gp.theory.contact_value(BOX.packing_fraction, 2)
+    assert engines["dsmc boltzmann"].model == pytest.approx(float(contact) - 1.0, rel=0.05)
+    assert engines["event"].bias == 0.0 and 0.0 < engines["step"].bias <= 0.01 / 8.0
+    assert refused == {}
+    dense = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(43, 0.5, temperature=1.0)])
+    _, refused = candidates(dense, "pressure", 0.01)
+    assert list(refused) == ["dsmc enskog"] and "known up to 0.4" in refused["dsmc enskog"]
+    able, refused = candidates(DILUTE, "rdf", 0.01)
+    assert {one.engine.name for one in able} == {"event", "step"} and len(refused) == 2
+    walled = gp.Scene(BOX.container, BOX.species, walls=[gp.Wall((4.0, 4.0), (6.0, 6.0))])
+    able, refused = candidates(walled, "pressure", 0.01)
+    assert [one.engine.name for one in able] == ["event"] and len(refused) == 3
+
+
+def test_pilots_that_differ_raise_the_bound():
+    event, other = EventDriven(), gp.DSMC(model="enskog")
+    exact = Pilot(event, 1.0, measured=1.0, value=2.0, accuracy=0.01)
+    alike = Pilot(other, 1.0, measured=1.0, value=2.03, accuracy=0.01)
+    apart = Pilot(other, 1.0, measured=1.0, value=2.2, accuracy=0.01)
+    candidate = Candidate(other, model=0.003)
+    assert plan._bias(candidate, [exact, alike]) == 0.003
+    assert plan._bias(candidate, [exact, apart]) == pytest.approx(0.1 + 1.96 * math.hypot(0.01, 0.01))
+
+
+def test_cost_follows_from_noise_and_bias():
+    """Of an accuracy a and a bias b: noise / ((a - b) / 1.96)^2, and its equilibration."""
+    pilot_run = Pilot(EventDriven(), 2.0, measured=9.0, value=1.0, accuracy=0.1, freedom=math.inf)
+    option = plan._option(Candidate(EventDriven()), 2.0, 0.01, pilot_run, 0.03, None)
+    measured = 0.09 * (1.96 / 0.02) ** 2
+    assert option.duration == pytest.approx(measured / 0.75)
+    assert option.seconds == pytest.approx(2.0 * option.duration)
+    assert plan._option(Candidate(EventDriven()), 2.0, 0.05, pilot_run, 0.03, None).seconds == math.inf
+    less = plan._option(Candidate(EventDriven()), 2.0, 0.01, pilot_run, 0.03, option.seconds / 4.0)
+    assert less.half_width == pytest.approx(0.01 + 2.0 * 0.02)
+
+
+@pytest.mark.parametrize(
+    ("scene", "observable", "line"),
+    [
+        (
+            gp.Scene(BOX.container, BOX.species, restitution=gp.Restitution(normal=0.9)),
+            "pressure",
+            "restitution.normal = 0.9: loses energy that nothing returns",
+        ),
+        (gp.Scene(BOX.container, [gp.Species(40, 0.5)]), "pressure", "moving particles"),
+        (gp.Scene(BOX.container), "pressure", "count = 0"),
+        (BOX, "Z", "observable = 'Z': container.boundary"),
+        (BOX, "Q", "observable = 'Q': unknown observable"),
+    ],
+)
+def test_what_has_no_advice_is_refused_in_one_line(scene, observable, line):
+    with pytest.raises(gp.SceneError, match=line):
+        plan.plan(scene, observable, 0.1, pilot_seconds=0.1)
+
+
+def test_the_command_line_prints_the_command(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    BOX.to_file("box.yaml")
+    words = ["advise", "box.yaml", "--observable", "pressure", "--accuracy", "0.1", "--pilot", "0.4"]
+    assert main(words) == 0
+    output = capsys.readouterr().out
+    for part in ("engine  ", "command  ", "predicted cost ", "95 % half-width ", "pilot  ", "why not  "):
+        assert part in output
+    (command,) = [line for line in output.splitlines() if line.startswith("command")]
+    assert main(command.split()[2:]) == 0
+    assert "pressure" in capsys.readouterr().out
+    assert main([*words, "--budget", "1e-6"]) == 0
+    assert "the budget does not suffice for 0.1, which takes" in capsys.readouterr().out
