@@ -123,7 +123,7 @@ def plan(
     speeds = []
     for one in able:
         announce(f"timing the {one.engine.title} engine")
-        speeds.append(pilots.speed_of(scene, one.engine))
+        speeds.append(pilots.speed_of(scene, one.engine, observable))
     flown = _fly(scene, observable, list(zip(able, speeds, strict=True)), pilot_seconds, announce)
     biases = {one.engine: one.bias for one in able}
     measured = [one for one in flown if 0.0 < one.accuracy < math.inf]
