@@ -42,6 +42,10 @@ OBSERVABLES: dict[str, tuple[str, dict[str, Any], str]] = {
     "order": ("order_parameter", {}, "global bond order, periodic"),
 }
 """Name -> function of `gaspart.analysis`, its arguments, meaning."""
+PAIRS = ("pair_rates", "contact_values")
+"""Those that need a run which counts the collisions of each pair of species."""
+FLUXES = ("shear_viscosity", "bulk_viscosity", "thermal_conductivity", "pressure_tensor")
+"""Those that need a run which correlates the stress tensor and the heat flux."""
 
 
 def known(name: object) -> str:

@@ -159,14 +159,16 @@ def _settings(option: Option) -> str:
 
 def _shortfall(plan: Plan) -> str:
     """What would reach an accuracy that the budget does not, or that no engine does."""
-    best = plan.best
-    if not math.isfinite(best.half_width):
+    costs = {
+        one.seconds * ((one.half_width - one.bias) / (plan.accuracy - one.bias)) ** 2: one
+        for one in plan.options
+        if one.bias < plan.accuracy
+    }
+    if not costs:
         return f"no engine is known to be as accurate as {plan.accuracy:g}"
-    room = plan.accuracy - best.bias
-    if room <= 0.0:
-        return f"the budget does not suffice for {plan.accuracy:g}, and this engine does not reach it"
-    needed = best.seconds * ((best.half_width - best.bias) / room) ** 2
-    return f"the budget does not suffice for {plan.accuracy:g}, which takes {needed:.3g} s"
+    least = min(costs)
+    engine = costs[least].candidate.engine.title
+    return f"the budget does not suffice for {plan.accuracy:g}, which takes {least:.3g} s, {engine} engine"
 
 
 def _name(setting: Setting) -> str:

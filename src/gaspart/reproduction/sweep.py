@@ -16,7 +16,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from gaspart.analysis.names import known
+from gaspart.analysis.names import PAIRS, known
 from gaspart.engines import Engine, EventDriven, engine_to_dict
 from gaspart.errors import SceneError, SimulationError, unknown_word
 from gaspart.interruption import exit_on_signals
@@ -97,6 +97,8 @@ def sweep(
     length = _length(duration, until, at_most, samples, equilibration)
     point = {**length, **_settings(scene, axes, engine, Path(folder))}
     point["replicas"] = count_of("replicas", replicas, least=1)
+    if any(name in PAIRS for name in names):
+        point["pairs"] = True
     job = "simulate" if until is None else "simulate_until"
     grid = {key if key in point_keys(engine) else PREFIX + key: values for key, values in axes.items()}
     planned = _planned({"job": job, "point": point, "grid": grid}, str(folder), count_of("seed", seed))

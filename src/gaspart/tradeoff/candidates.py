@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 
 from gaspart import theory
+from gaspart.analysis.names import FLUXES, PAIRS
 from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
 from gaspart.engines.dsmc.rates import contact_values, rates
 from gaspart.engines.step.limits import missed_contacts
@@ -19,7 +20,7 @@ from gaspart.state.initial import initial_state
 
 STRUCTURE = ("rdf", "order")
 """Observables of the positions of particles relative to each other, which DSMC does not have."""
-TRANSPORT = ("D", "msd", "vacf", "shear_viscosity", "bulk_viscosity", "thermal_conductivity")
+TRANSPORT = ("D", "msd", "vacf", *FLUXES[:3])
 """Observables that depend on the memory of collisions, of which the Enskog model has none."""
 _STATIC = 3e-3
 """Bound on the error of the Enskog model in Z, the collision rate and pressures (figure
@@ -59,8 +60,10 @@ def candidates(scene: Scene, observable: str, accuracy: float) -> tuple[list[Can
         try:
             one = maker(scene, observable, accuracy)
             one.engine.check_features(scene)
-            if observable in TRANSPORT[3:]:
+            if observable in FLUXES:
                 one.engine.check_stress(scene)
+            if observable in PAIRS and not one.engine.records_events:
+                raise SceneError("observable", observable, "needs an engine that records events")
             made.append(one)
         except SceneError as error:
             refused[name] = f"{error.key}: {error.rule}"

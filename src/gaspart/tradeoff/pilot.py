@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.analysis.names import measure
+from gaspart.analysis.names import FLUXES, PAIRS, measure
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine, engine_to_dict
 from gaspart.errors import SceneError, SimulationError
@@ -29,8 +29,6 @@ from gaspart.trajectory.run import open_trajectory, run
 if TYPE_CHECKING:
     from gaspart.analysis.observable import Observable
 
-FLUXES = ("shear_viscosity", "bulk_viscosity", "thermal_conductivity")
-"""Observables of the correlations of the stress tensor and of the heat flux."""
 SEED = 0
 _PROBE = 0.15
 """Processor seconds that the speed is measured for, at least."""
@@ -119,7 +117,8 @@ def fly(scene: Scene, engine: Engine, observable: str, seconds: float, speed: fl
     """A run of about so many processor seconds, measured; speed: as from `speed_of`. An observable that it is
     too short for is not measured. Raises SceneError for one that the scene does not have."""
     duration, interval, correlations = schedule(scene, engine, observable, seconds / speed)
-    folder = cache_directory() / "pilots" / _digest(scene, engine, correlations is not None, seconds)
+    kind = "fluxes" if observable in FLUXES else "pairs" if observable in PAIRS else ""
+    folder = cache_directory() / "pilots" / _digest(scene, engine, kind, seconds)
     folder.mkdir(parents=True, exist_ok=True)
     took, path = 0.0, folder / "run.nc"
     if not path.exists():
@@ -127,7 +126,7 @@ def fly(scene: Scene, engine: Engine, observable: str, seconds: float, speed: fl
         try:
             run(
                 scene, engine, SEED, duration, interval, path,
-                displacements=True, correlations=correlations, overwrite=True,
+                displacements=True, correlations=correlations, pairs=observable in PAIRS, overwrite=True,
             )  # fmt: skip
         except SimulationError as error:
             return Pilot(engine, speed, rule=str(error))
@@ -193,6 +192,6 @@ def _worst(result: Observable) -> tuple[float, float, float]:
     return norm, float(np.sqrt(np.mean(error[known] ** 2))) / norm, freedom
 
 
-def _digest(scene: Scene, engine: Engine, correlated: bool, seconds: float) -> str:
-    content = [scene.to_dict(), engine_to_dict(engine), correlated, seconds, source_digest()]
+def _digest(scene: Scene, engine: Engine, kind: str, seconds: float) -> str:
+    content = [scene.to_dict(), engine_to_dict(engine), kind, seconds, source_digest()]
     return hashlib.sha256(json.dumps(content).encode()).hexdigest()[:24]

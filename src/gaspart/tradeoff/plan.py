@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from gaspart.analysis.names import known
+from gaspart.analysis.names import FLUXES, PAIRS, known
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
@@ -20,7 +20,7 @@ from gaspart.scene.validation import number
 from gaspart.tradeoff import pilot as pilots
 from gaspart.tradeoff.advice import ACCURACIES
 from gaspart.tradeoff.candidates import Candidate, candidates
-from gaspart.tradeoff.pilot import FLUXES, Pilot
+from gaspart.tradeoff.pilot import Pilot
 from gaspart.tradeoff.reached import bound
 from gaspart.tradeoff.table import QUANTILE
 from gaspart.trajectory.recipe import Recipe
@@ -89,7 +89,8 @@ class Plan:
             asked = Accuracy(self.observable, float(f"{0.99 * relative:.2g}"))
             until = Until((asked,), at_most=float(f"{_LONGEST * duration:.2g}"))
         fixed = None if until else max(1, round(duration / interval)) * interval
-        return Recipe(scene, engine, 1, fixed, interval, False, None, correlations, until)
+        pairs = self.observable in PAIRS
+        return Recipe(scene, engine, 1, fixed, interval, correlations=correlations, until=until, pairs=pairs)
 
 
 def plan(
