@@ -69,7 +69,7 @@ LINES = (
     ["export", "run.nc", "-o", "state.data", "--frame", "-1"],
     ["theory", "Z", "--eta", "0.1,0.2", "--dimension", "2"],
     ["theory", "viscosity", "--eta", "0.3", "--diameter", "2", "--temperature", "0.5", "--mass", "3"],
-    ["advise", "scene.yaml", "--observable", "Z", "--accuracy", "0.01", "--budget", "60s"],
+    ["advise", "scene.yaml", "--observable", "Z", "--accuracy", "0.01", "--budget", "60s", "--pilot", "0.1"],
     ["advise", "--config", "config.yaml"],
     [
         "check",

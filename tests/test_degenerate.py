@@ -69,7 +69,7 @@ def test_other_commands_take_a_degenerate_scene(kind, tmp_path, capsys):
         ("render", path, "-o", tmp_path / "a.png"),
         ("view", path, "-o", tmp_path / "a.html"),
         ("measure", path, "temperature", "--start", 0.0, "-o", tmp_path / "a.csv"),
-        ("advise", written, "--observable", "Z", "--accuracy", 0.1),
+        ("advise", written, "--observable", "Z", "--accuracy", 0.1, "--pilot", 0.05),
     ):
         printed(capsys, *words)
 

@@ -87,7 +87,7 @@ def test_drawn_velocities_add_a_scatter_that_is_stated(exact, scatter):
     particles = replace(scene.species[0], exact_temperature=exact)
     found = advise(replace(scene, species=(particles,)), "D", 1e-2, None, speed.as_measured)
     assert found.scatter == pytest.approx(scatter)
-    assert any("exact_temperature: true" in line for line in _lines(found)) != exact
+    assert any("exact_temperature: true" in line for line in _lines(found, "gas.yaml")) != exact
 
 
 @pytest.mark.parametrize(

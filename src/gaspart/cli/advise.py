@@ -7,6 +7,7 @@ import math
 import shlex
 import sys
 import warnings
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,7 @@ from gaspart.analysis.names import OBSERVABLES, known
 from gaspart.cli.arguments import Parser, UsageError, of_configs, print_line, real, set_command
 from gaspart.cli.engine_options import one_of, run_options, stated
 from gaspart.cli.progress import waiting
-from gaspart.engines import TimeStepped, engine_to_dict
+from gaspart.engines import TimeStepped
 from gaspart.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -97,9 +98,8 @@ def _lines(advice: Advice, file: str) -> list[str]:
         f"predicted cost    {best.seconds:.3g} s of processor time",
         f"95 % half-width   {best.half_width:.2g} of {advice.observable} (steps: at most {best.bias:.1g})",
     ]
-    if advice.observable in ("D", "collision_rate") and advice.scatter:
-        text = f"{advice.scatter:.2g} of {advice.observable} from run to run, beyond this"
-        lines.append(f"drawn velocities  {text}: exact_temperature: true removes it")
+    if advice.observable in ("D", "collision_rate"):
+        lines += _drawn(advice.observable, advice.scatter)
     if not advice.within_budget:
         lines.append(f"the budget does not suffice for {advice.accuracy:g}")
     each = "" if advice.replicas == 1 else ", and the same with other seeds and files"
@@ -109,6 +109,14 @@ def _lines(advice: Advice, file: str) -> list[str]:
     if len({other.engine.name for other in advice.others} | {best.engine.name}) == 1:
         lines.append("why: no time step is known to be as accurate at this density")
     return lines
+
+
+def _drawn(observable: str, scatter: float) -> list[str]:
+    """What velocities that are drawn add to the error."""
+    if not scatter:
+        return []
+    text = f"{scatter:.2g} of {observable} from run to run, beyond this"
+    return [f"drawn velocities  {text}: exact_temperature: true removes it"]
 
 
 def _command(recipe: Recipe, file: str) -> str:
@@ -127,6 +135,7 @@ def plan_lines(plan: Plan, file: str) -> list[str]:
             f"95 % half-width   {best.half_width:.2g} of {plan.observable} (about {plan.value:.4g}): "
             f"{_components(best)}",
         ]
+    lines += _drawn(plan.observable, plan.scatter)
     if not plan.affordable:
         lines.append(_shortfall(plan))
     for pilot in plan.flown:
@@ -147,14 +156,23 @@ def _components(option: Option) -> str:
     of = option.candidate
     parts = {"noise": noise, "model": of.model, "steps and cells": of.discretisation}
     parts["difference of the pilots"] = option.bias if option.bias > of.bias else 0.0
-    shown = [f"{name} {value:.1g}" for name, value in parts.items() if 0.0 < value < math.inf]
+    shown = [
+        f"{name} {f'{value:.1g}' if value < 1.0 else 'above 1'}"
+        for name, value in parts.items()
+        if 0.0 < value < math.inf
+    ]
     return ", ".join(shown) or "no systematic error"
 
 
 def _settings(option: Option) -> str:
     """An engine with its settings, as options."""
-    given = stated(engine_to_dict(option.candidate.engine))
-    return " ".join([option.candidate.engine.name, *given])
+    engine = option.candidate.engine
+    changed = {
+        item.name: getattr(engine, item.name)
+        for item in fields(engine)
+        if getattr(engine, item.name) != item.default
+    }
+    return " ".join([engine.name, *stated(changed)])
 
 
 def _shortfall(plan: Plan) -> str:

@@ -124,6 +124,19 @@ def fluid_of(scene: Scene) -> Gas:
     return gas
 
 
+def temperature_scatter(scene: Scene) -> float:
+    """Relative standard deviation, from run to run, of the temperature of a scene whose energy is conserved:
+    velocities that are drawn have that of their species only on average."""
+    drawn = any(kind.temperature is not None and not kind.exact_temperature for kind in scene.species)
+    law, faces = scene.restitution, scene.faces.values()
+    heated = scene.thermostat is not None or any(
+        face.moves or getattr(face, "temperature", None) for face in faces
+    )
+    if not drawn or heated or (law is not None and law.dissipative):
+        return 0.0
+    return math.sqrt(2.0 / (scene.dimension * scene.count))
+
+
 def is_tabulated(scene: Scene, observable: str) -> bool:
     """Whether errors and costs of an observable of a scene are in the table."""
     try:
@@ -179,7 +192,6 @@ def advise(
     per_body = 2.0 * best.contacts / gas.count
     replicas = max(1, min(os.cpu_count() or 1, int(per_body / (_PER_EQUILIBRATION * EQUILIBRATION))))
     finite_size = _finite_size(gas, observable)
-    drawn = any(kind.temperature is not None and not kind.exact_temperature for kind in scene.species)
     return Advice(
         scene,
         gas,
@@ -191,7 +203,7 @@ def advise(
         per_body / replicas,
         finite_size,
         gas.count * (abs(finite_size) * _BULK / accuracy) ** (gas.dimension if observable == "D" else 1),
-        0.5 * math.sqrt(2.0 / (gas.dimension * gas.count)) if drawn else 0.0,
+        0.5 * temperature_scatter(scene),
     )
 
 

@@ -18,7 +18,7 @@ from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.state.initial import initial_state
 
-STRUCTURE = ("rdf", "order")
+STRUCTURE = ("rdf", "order", "structure_factor", "chemical_potential")
 """Observables of the positions of particles relative to each other, which DSMC does not have."""
 TRANSPORT = ("D", "msd", "vacf", *FLUXES[:3])
 """Observables that depend on the memory of collisions, of which the Enskog model has none."""

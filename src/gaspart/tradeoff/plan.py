@@ -18,7 +18,7 @@ from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
 from gaspart.tradeoff import pilot as pilots
-from gaspart.tradeoff.advice import ACCURACIES
+from gaspart.tradeoff.advice import ACCURACIES, temperature_scatter
 from gaspart.tradeoff.candidates import Candidate, candidates
 from gaspart.tradeoff.pilot import Pilot
 from gaspart.tradeoff.reached import bound
@@ -35,6 +35,12 @@ _DIFFERS = 2.5
 _FRAMES = 256
 _LONGEST = 4.0
 """The longest duration of a run with `--until`, over the predicted one."""
+_POWERS = {
+    **dict.fromkeys(("pressure", "temperature", "pressure_tensor", "vacf"), 1.0),
+    **dict.fromkeys(("collision_rate", "pair_rates", "D", "msd", "speeds"), 0.5),
+    **dict.fromkeys(("shear_viscosity", "bulk_viscosity", "thermal_conductivity"), 0.5),
+}
+"""The power of the temperature that observables grow with."""
 Announce: TypeAlias = Callable[[str], None]
 
 
@@ -71,6 +77,12 @@ class Plan:
     def best(self) -> Option:
         """The option to take."""
         return self.options[0]
+
+    @property
+    def scatter(self) -> float:
+        """Relative standard deviation of the observable from run to run by that of the energy, beyond the
+        interval."""
+        return _POWERS.get(self.observable, 0.0) * temperature_scatter(self.scene)
 
     @property
     def recipe(self) -> Recipe:
