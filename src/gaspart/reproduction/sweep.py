@@ -89,16 +89,12 @@ def sweep(
     Raises SceneError for settings that contradict each other, a folder that holds a trajectory of another
     sweep, and what cannot be measured; SimulationError as `gaspart.run`.
     """
-    names = list(observables)
-    for name in names:
-        known(name)
+    names = [known(name) for name in observables]
     axes = {key: list(values) for key, values in over.items()}
     engine = EventDriven() if engine is None else engine
     length = _length(duration, until, at_most, samples, equilibration)
     point = {**length, **_settings(scene, axes, engine, Path(folder))}
-    point["replicas"] = count_of("replicas", replicas, least=1)
-    if any(name in PAIRS for name in names):
-        point["pairs"] = True
+    point |= {"replicas": count_of("replicas", replicas, least=1), "pairs": bool({*names} & {*PAIRS})}
     job = "simulate" if until is None else "simulate_until"
     grid = {key if key in point_keys(engine) else PREFIX + key: values for key, values in axes.items()}
     planned = _planned({"job": job, "point": point, "grid": grid}, str(folder), count_of("seed", seed))
