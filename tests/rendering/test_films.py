@@ -40,6 +40,16 @@ def test_a_film_has_a_picture_for_every_frame(runs, suffix):
     assert not list(runs.glob("*.partial"))
 
 
+def test_a_film_of_a_part_has_its_frames(runs):
+    with gp.open_trajectory(runs / "discs.nc") as data:
+        times = data["time"].values
+        part = gp.film(data, runs / "part.gif", size=(64, 48), start=times[1], stop=times[4], every=2)
+        chosen = gp.film(data.isel(frame=[1, 3]), runs / "chosen.gif", size=(64, 48))
+        with pytest.raises(gp.SceneError, match="start = 1000000000.0: there is no frame"):
+            gp.film(data, runs / "none.gif", start=1e9)
+    assert part.read_bytes() == chosen.read_bytes()
+
+
 def test_what_a_signal_removes_is_not_made_again(runs, tmp_path, monkeypatch):
     """The thread of signals removes the scratch file while ffmpeg has not yet opened it."""
     pictures = films._pictures

@@ -6,6 +6,7 @@ Uncertainties are the scatter of groups of particles, which are taken as indepen
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +15,7 @@ import numpy as np
 from gaspart import theory
 from gaspart.analysis.correlations import autocorrelation, correlate
 from gaspart.analysis.observable import Observable, observable
-from gaspart.analysis.run import Run, Source, measured
+from gaspart.analysis.run import Run, Source, measured, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.scene.validation import count_of
@@ -40,18 +41,25 @@ class _Groups:
 
 
 def mean_squared_displacement(
-    source: Source, lags: int | None = None, start: float | None = None
+    source: Source,
+    lags: int | None = None,
+    start: float | None = None,
+    species: int | None = None,
+    particles: Sequence[int] | None = None,
 ) -> Observable:
     """<|r(t) - r(0)|^2> over moving particles and time origins, (lag,), in length^2.
 
     source: a trajectory, by its path or open, or a simulation; lags: their number (by default half of the
     frames); start: the time from which frames count (by default a quarter of the run). Of N particles whose
-    total momentum is zero along an axis it is multiplied there by N / (N - 1). Theory: that of Enskog's
-    diffusion coefficient and an exponential velocity correlation. Raises SceneError for fewer than 16 moving
-    particles, frames at uneven times, and frames too far apart to follow particles across periodic faces.
+    total momentum is zero along an axis it is multiplied there by N / (N - 1). species, particles: of one
+    species, by its number in the scene (single particles have the number after the last), or of these
+    particles only; of fewer than 16 the error is the scatter of as many stretches of the run. Theory: that
+    of Enskog's diffusion coefficient and an exponential velocity correlation. Raises SceneError for fewer
+    than 16 moving particles, unless they are selected, frames at uneven times, and frames too far apart to
+    follow particles across periodic faces.
     """
     with measured(source, start) as run:
-        groups = _groups(run)
+        groups = _groups(run, chosen=_chosen(run, species, particles))
         number = _lags(groups, lags)
         found = np.array(
             [
@@ -70,7 +78,11 @@ def mean_squared_displacement(
 
 
 def velocity_autocorrelation(
-    source: Source, lags: int | None = None, start: float | None = None
+    source: Source,
+    lags: int | None = None,
+    start: float | None = None,
+    species: int | None = None,
+    particles: Sequence[int] | None = None,
 ) -> Observable:
     """<v(0) . v(t)> / d over moving particles and time origins, (lag,), in length^2 / time^2.
 
@@ -79,7 +91,7 @@ def velocity_autocorrelation(
     and frames at uneven times.
     """
     with measured(source, start) as run:
-        groups = _groups(run, paths=False)
+        groups = _groups(run, paths=False, chosen=_chosen(run, species, particles))
         number = _lags(groups, lags)
         found = np.array([autocorrelation(velocity, number) for velocity in groups.velocities])
         time = groups.interval * np.arange(number)
@@ -97,13 +109,16 @@ def velocity_autocorrelation(
         return observable("velocity_autocorrelation", _lag(time), values, errors, **about)
 
 
-def diffusion_coefficient(source: Source, start: float | None = None) -> Observable:
+def diffusion_coefficient(
+    source: Source, start: float | None = None, species: int | None = None
+) -> Observable:
     """D in length^2 / time, by the rise of the mean-squared displacement from 12 to 24 collisions a particle.
 
     Of a periodic container the mean over axes, a scalar; of one with walls that along each periodic axis,
     (axis,): across walls displacements are bounded, and there is none. Arguments and condition of zero
-    momentum as in `mean_squared_displacement`. Theory: of spheres in a periodic cube, Erpenbeck and Wood's
-    with the shift of Yeh and Hummer, half of which is its uncertainty.
+    momentum as in `mean_squared_displacement`; a species needs 16 particles that move. Theory: of spheres
+    in a periodic cube, Erpenbeck and Wood's with the shift of Yeh and Hummer, half of which is its
+    uncertainty.
 
     Raises SceneError without a periodic axis; for discs whose momentum lasts longer than these collisions, so
     that their squared displacement grows like t ln t; where the slope from 6 to 12 collisions is another one,
@@ -118,7 +133,10 @@ def diffusion_coefficient(source: Source, start: float | None = None) -> Observa
         lags = _lags_of_slopes(run)
         lasting = _lasting_momentum(run, lags[1] * _stride(run))
         _require_spheres(run, lasting)
-        slopes = _slopes(_groups(run, about=lasting), lags)[..., run.periodic]
+        chosen = _chosen(run, species, None)
+        if len(chosen) < GROUPS:
+            raise SceneError("species", species, f"an error needs {GROUPS} moving particles or more")
+        slopes = _slopes(_groups(run, about=lasting, chosen=chosen), lags)[..., run.periodic]
         names = np.array(list("xyz"[: run.dimension]))[run.periodic]
         along: dict[str, Any] = {"axis": (names, {"long_name": "axis"})}
         if run.periodic.all():
@@ -131,6 +149,13 @@ def diffusion_coefficient(source: Source, start: float | None = None) -> Observa
             **_theory_of_d(run),
         }
         return observable("diffusion_coefficient", along, values, errors, **about)
+
+
+def _chosen(run: Run, species: int | None, particles: Sequence[int] | None) -> np.ndarray:
+    """`selected`; of all particles 16 or more must move."""
+    if species is None and particles is None:
+        _require_groups(run)
+    return selected(run, species, particles)
 
 
 def _require_groups(run: Run) -> None:
@@ -227,25 +252,37 @@ def _lags(groups: _Groups, lags: int | None) -> int:
     return number
 
 
-def _groups(run: Run, paths: bool = True, about: np.ndarray | None = None) -> _Groups:
-    """The moving particles in groups, about the centre of mass along the axes `about` (d,), by default those
-    along which its velocity is conserved.
+def _groups(
+    run: Run, paths: bool = True, about: np.ndarray | None = None, chosen: np.ndarray | None = None
+) -> _Groups:
+    """The chosen ones of the moving particles in groups, or, of fewer than `GROUPS`, as many stretches of the
+    run, about the centre of mass along the axes `about` (d,), by default those along which its velocity is
+    conserved.
 
     There its square for a particle of mass m is 1 - m / M of that without this condition, M the mass of all.
     """
     moving, stride = run.moving, _stride(run)
-    _require_groups(run)
     steps = np.diff(run.time)
     if np.ptp(steps) > 1e-6 * steps.mean():
         raise SceneError("time", "frames at uneven times", "a correlation needs even ones")
     about = run.conserved if about is None else about
     masses = run.masses[moving]
-    free = np.where(about, np.sqrt(masses.sum() / (masses.sum() - masses))[:, None], 1.0)
+    chosen = np.arange(len(masses)) if chosen is None else chosen
+    others = masses.sum() - masses[chosen]
+    if about.any() and not (others > 0.0).all():
+        raise SceneError("count", len(masses), "a single particle keeps its velocity")
+    free = np.where(about, np.sqrt(masses.sum() / np.where(others > 0.0, others, 1.0))[:, None], 1.0)
 
     def parts(values: np.ndarray) -> list[np.ndarray]:
         centre = np.einsum("tnd,n->td", values, masses) / masses.sum()
-        motion = free * (values - np.where(about, centre, 0.0)[:, None])
-        return [motion[:, part] for part in np.array_split(np.arange(len(masses)), GROUPS)]
+        motion = free * (values[:, chosen] - np.where(about, centre, 0.0)[:, None])
+        if len(chosen) >= GROUPS:
+            return [motion[:, part] for part in np.array_split(np.arange(len(chosen)), GROUPS)]
+        length = len(motion) // GROUPS
+        if length < 4:
+            rule = f"an error of fewer than {GROUPS} particles needs {4 * GROUPS} frames or more"
+            raise SceneError("frames", len(motion), rule)
+        return [motion[first : first + length] for first in range(0, GROUPS * length, length)]
 
     return _Groups(
         paths=parts(_unwrapped(run)[::stride, moving]) if paths else [],

@@ -47,6 +47,9 @@ PAIRS = ("pair_rates", "contact_values")
 FLUXES = ("shear_viscosity", "bulk_viscosity", "thermal_conductivity", "pressure_tensor")
 """Those that need a run which correlates the stress tensor and the heat flux."""
 
+SELECTIONS = {"species": ("msd", "vacf", "D"), "particles": ("msd", "vacf")}
+"""Those that can be of one species, or of some particles."""
+
 
 def known(name: object) -> str:
     """The name of an observable. Raises SceneError for any other value."""
@@ -55,8 +58,14 @@ def known(name: object) -> str:
     return str(name)
 
 
-def measure(name: str, trajectory: xr.Dataset, start: float | None = None) -> Observable:
-    """An observable of a trajectory; start: as of the functions of `gaspart.analysis`. Raises SceneError for
-    an unknown name, and as that function does."""
+def measure(name: str, trajectory: xr.Dataset, start: float | None = None, **selection: Any) -> Observable:
+    """An observable of a trajectory; start, and what `selection` states (see SELECTIONS): as of the functions
+    of `gaspart.analysis`. Raises SceneError for an unknown name, a selection that the observable does not
+    have, and as that function does."""
     function, arguments, _ = OBSERVABLES[known(name)]
-    return getattr(import_module("gaspart.analysis"), function)(trajectory, start=start, **arguments)
+    for key, value in selection.items():
+        if name not in SELECTIONS[key]:
+            rule = f"{name} is of all particles; a part have {', '.join(SELECTIONS[key])}"
+            raise SceneError(key, value, rule)
+    of = getattr(import_module("gaspart.analysis"), function)
+    return of(trajectory, start=start, **arguments, **selection)

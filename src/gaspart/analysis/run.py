@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
@@ -16,7 +16,7 @@ from gaspart import theory
 from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas, Mixture
 from gaspart.scene.scene import Scene
-from gaspart.scene.validation import number
+from gaspart.scene.validation import count_of, number
 from gaspart.simulation import Simulation
 from gaspart.state.insertion import per_body
 from gaspart.state.tally import Tally
@@ -104,6 +104,12 @@ class Run:
         return per_body(self.scene, "radius").astype(float)
 
     @cached_property
+    def species(self) -> np.ndarray:
+        """(N,) numbers of species, as in the scene; single particles have the number after the last."""
+        counts = [len(self.scene.bodies), *(kind.count for kind in self.scene.species)]
+        return np.repeat([len(self.scene.species), *range(len(self.scene.species))], counts)
+
+    @cached_property
     def moving(self) -> np.ndarray:
         """(N,) which particles are not fixed. Raises SceneError if the file lacks some particles."""
         stored = self.data.sizes["atom"]
@@ -184,6 +190,31 @@ class Run:
         """The `fluid` at the temperature of the run, None if it is at rest. Raises SceneError as `moving`."""
         gas = self.fluid
         return replace(gas, temperature=self.temperature) if gas and self.temperature > 0.0 else None
+
+
+def selected(run: Run, species: int | None, particles: Sequence[int] | None) -> np.ndarray:
+    """Which of the moving particles (M,) an observable is of: indices into these, by default all.
+
+    species: its number, as in `Run.species`; particles: numbers of particles, as in the file. Raises
+    SceneError for both, numbers that do not exist, and no moving particle.
+    """
+    moving = np.flatnonzero(run.moving)
+    if species is not None and particles is not None:
+        raise SceneError("species", species, "excludes particles")
+    chosen = np.arange(len(moving))
+    if species is not None:
+        kinds = len(run.scene.species) + bool(run.scene.bodies)
+        if count_of("species", species) >= kinds:
+            raise SceneError("species", species, f"there are {kinds}, numbered from 0")
+        chosen = np.flatnonzero(run.species[moving] == species)
+    if particles is not None:
+        wanted = [count_of("particles", one) for one in particles]
+        if any(one >= run.count for one in wanted):
+            raise SceneError("particles", max(wanted), f"there are {run.count}, numbered from 0")
+        chosen = np.flatnonzero(np.isin(moving, wanted))
+    if not chosen.size:
+        raise SceneError("species" if particles is None else "particles", species, "none of them moves")
+    return chosen
 
 
 def require_elastic(run: Run) -> None:

@@ -10,8 +10,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gaspart.analysis.names import OBSERVABLES, measure
-from gaspart.cli.arguments import Parser, UsageError, add_trajectory, print_line, real, set_command
+from gaspart.analysis.names import OBSERVABLES, SELECTIONS, measure
+from gaspart.cli.arguments import (
+    Parser,
+    UsageError,
+    add_trajectory,
+    print_line,
+    real,
+    set_command,
+    several,
+)
 from gaspart.cli.progress import waiting
 from gaspart.errors import SceneError
 from gaspart.files import Kind, begins_with, output_path, writing
@@ -38,6 +46,11 @@ def add_measure(parser: Parser) -> None:
     add("observables", nargs="+", choices=tuple(OBSERVABLES), metavar="NAME", help=", ".join(OBSERVABLES))
     text = "time from which frames count; default: a quarter of the run"
     add("--start", type=real(least=0.0), metavar="T", help=text)
+    text = "of one species only, by its number in the scene, from 0 (single particles: after the last): "
+    add("--species", type=int, metavar="N", help=text + ", ".join(SELECTIONS["species"]))
+    text = "of these particles only, by their numbers in the file, from 0: "
+    names = ", ".join(SELECTIONS["particles"])
+    add("--particles", type=several(int), metavar="N[,N...]", help=text + names)
     add("-o", "--output", metavar="FILE", help="all rows of one observable as .csv, or a plot as .png")
     add("--force", action="store_true", help="replace a table or a picture")
 
@@ -46,10 +59,12 @@ def _measure(given: argparse.Namespace) -> None:
     from gaspart.trajectory.run import open_trajectory
 
     write = _writer(given)
+    asked = {key: getattr(given, key) for key in SELECTIONS}
+    selection = {key: value for key, value in asked.items() if value is not None}
     with open_trajectory(given.trajectory) as trajectory:
         for name in given.observables:
             with waiting(f"measuring {name}"):
-                observable = measure(name, trajectory, given.start)
+                observable = measure(name, trajectory, given.start, **selection)
             if observable.estimate.ndim:
                 _print_curve(name, observable)
             else:

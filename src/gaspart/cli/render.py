@@ -22,11 +22,13 @@ from gaspart.errors import SceneError
 from gaspart.files import output_path, writing
 
 PICTURES = (".png",)
+_OF_FILMS = ("frames_per_second", "start", "stop", "every", "trail")
 
 
 _EXAMPLES = """examples:
   gaspart render run.nc -o run.png
   gaspart render run.nc -o run.mp4 --frames-per-second 30 --colour species
+  gaspart render run.nc -o part.mp4 --start 10 --stop 20 --every 2
   gaspart render run.nc -o top.png --camera 0,90 --clock"""
 
 
@@ -49,6 +51,9 @@ def add_render(parser: Parser) -> None:
     add("--size", type=_size, metavar="WxH", help="in pixels; default: 1000x750")
     add("--colour", metavar="NAME", help="speed (default) or species")
     add("--frames-per-second", type=real(above=0.0), metavar="X", help="film; default: 25")
+    add("--start", type=real(), metavar="T", help="film: from this time on; default: the first frame")
+    add("--stop", type=real(), metavar="T", help="film: until this time; default: the last frame")
+    add("--every", type=integer(least=1), metavar="N", help="film: one of so many frames; default: 1")
     add(
         "--trail",
         type=integer(least=0),
@@ -71,10 +76,10 @@ def _size(text: str) -> tuple[int, int]:
 
 def _render(given: argparse.Namespace) -> None:
     output = output_path(given.output)
-    named = ("size", "colour", "frame", "frames_per_second", "trail", "clock", "camera")
+    named = ("size", "colour", "frame", *_OF_FILMS, "clock", "camera")
     options = {key: getattr(given, key) for key in named if getattr(given, key) is not None}
     if output.suffix in PICTURES:
-        for key in ("frames_per_second", "trail"):
+        for key in _OF_FILMS:
             if key in options:
                 raise SceneError(key, options[key], "has no meaning for a picture")
         _picture(given.trajectory, output, options, given.force)

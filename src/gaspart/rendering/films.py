@@ -42,16 +42,20 @@ def film(
     size: tuple[int, int] = SIZE,
     colour: str | np.ndarray = "speed",
     frames_per_second: float = 25.0,
+    start: float | None = None,
+    stop: float | None = None,
+    every: int = 1,
     trail: int | None = None,
     clock: bool = False,
     camera: tuple[float, float] | None = None,
     overwrite: bool = False,
     progress: Callable[[int, int], None] | None = None,
 ) -> Path:
-    """Write all frames of a trajectory (a path, or an open one) as a film, .mp4 or .gif; returns its path.
+    """Write the frames of a trajectory (a path, or an open one) as a film, .mp4 or .gif; returns its path.
 
     An .mp4 needs the extra `film`, and its size is rounded down to even numbers. size, colour, clock and
-    camera as in `render`; all frames have one scale of speeds. trail: the index of a disc whose path is drawn
+    camera as in `render`; all frames have one scale of speeds. start, stop: times between which frames are
+    shown, by default all; every: one of so many of them. trail: the index of a disc whose path is drawn
     (interrupted where it crosses a periodic face). A film at `path` is replaced only with `overwrite`, any
     other file never. progress: is called with the number of pictures so far and of all.
 
@@ -74,6 +78,7 @@ def film(
             raise SceneError(
                 "trajectory", source, "must be a path or an open trajectory: a film needs frames"
             )
+        source = _part(source, start, stop, every)
         direction = _checked(source, colour, trail, camera)
         shown = _pictures(source, size, colour, trail, clock, direction)
         if progress is not None:
@@ -105,6 +110,18 @@ def _reported(
     for done, image in enumerate(shown, start=1):
         yield image
         progress(done, total)
+
+
+def _part(source: xr.Dataset, start: float | None, stop: float | None, every: int) -> xr.Dataset:
+    """The frames between two times, one of so many. Raises SceneError if there is none."""
+    time = source["time"].values
+    first = -np.inf if start is None else number("start", start, "must be a finite number")
+    last = np.inf if stop is None else number("stop", stop, "must be a finite number")
+    slack = 1e-9 * abs(float(time[-1]))
+    shown = np.flatnonzero((time >= first - slack) & (time <= last + slack))
+    if not shown.size:
+        raise SceneError("start", start, f"there is no frame from it until {last:g}")
+    return source.isel(frame=shown[:: count_of("every", every, least=1)])
 
 
 def _checked(
