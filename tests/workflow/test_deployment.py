@@ -1,10 +1,12 @@
 """The workflow as a module of another one, in a folder that has nothing but a config and a Snakefile."""
 
+import re
+
 import pytest
 from workspace import ROOT, Workspace
 
 from gaspart.reproduction.points.overlay import laid_over
-from gaspart.yaml_text import write_yaml
+from gaspart.yaml_text import parse_yaml, write_yaml
 
 pytestmark = pytest.mark.workflow
 
@@ -18,6 +20,11 @@ module gaspart:
 use rule * from gaspart
 """
 FIGURE = "wall_pressure"
+OWN = re.search(
+    r"^```yaml\n(# my_gas\.yaml\n.*?)^```$",
+    (ROOT / "docs/adding-a-figure.md").read_text(encoding="utf-8"),
+    re.MULTILINE | re.DOTALL,
+)
 
 
 def test_another_workflow_uses_it_as_a_module(tmp_path):
@@ -42,3 +49,25 @@ def test_another_workflow_uses_it_as_a_module(tmp_path):
     ]
     report = here.snakemake("--dry-run", "--cores", "1", "report", source=ROOT)
     assert report.returncode == 0, report.stdout[-2000:]
+
+
+STAGES = {"warm": 1, "simulate": 3, "measure": 1, "judge": 1, "draw": 1}
+
+
+def test_a_module_may_have_figures_of_its_own_only(tmp_path):
+    """The config of docs/adding-a-figure.md, with what a whole one needs."""
+    assert OWN
+    config = {"title": "my gas", "seed": 1, "points": "results/points", **parse_yaml(OWN[1])}
+    write_yaml(tmp_path / "settings.yaml", config)
+    (tmp_path / "Snakefile").write_text(SNAKEFILE)
+    here = Workspace(tmp_path)
+    assert here.plan("all", source=ROOT) == {**STAGES, "claims": 1, "report": 1, "all": 1}
+    write_yaml(tmp_path / "settings.yaml", config | {"figures": {}})
+    assert here.plan("points", source=ROOT) == {"warm": 1, "simulate": 3, "points": 1}
+
+
+def test_a_figure_of_ones_own_is_laid_over_the_config(fresh, tmp_path):
+    own = tmp_path / "my_gas.yaml"
+    own.write_text(OWN[1])
+    targets = ["results/figures/my_gas.png", "results/claims/my_gas.csv"]
+    assert fresh.plan(*targets, "--configfile", str(own)) == STAGES

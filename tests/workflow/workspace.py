@@ -38,9 +38,9 @@ class Workspace:
             text=True,
         )
 
-    def plan(self, *arguments):
+    def plan(self, *arguments, source=None):
         """The jobs that a dry run would start: {rule: number}."""
-        result = self.snakemake("--dry-run", "--cores", "2", *arguments)
+        result = self.snakemake("--dry-run", "--cores", "2", *arguments, source=source)
         assert result.returncode == 0, result.stdout
         table = re.search(r"^Job stats:\n(.*?)^total", result.stdout, re.MULTILINE | re.DOTALL)
         if table is None:

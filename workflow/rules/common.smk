@@ -22,7 +22,8 @@ if " " in sys.executable:
 from gaspart.reproduction.claims.captions import filled
 from gaspart.reproduction.claims.table import summary
 from gaspart.reproduction.config import check, explained, read_numbers
-from gaspart.reproduction.families.registry import families, of_claims, titles
+from gaspart.reproduction.families.registry import functions, of_claims, titles
+from gaspart.reproduction.families.own import caption
 from gaspart.reproduction.points.modules import digest, kernel_digest
 from gaspart.reproduction.points.point import TRAJECTORIES
 from gaspart.reproduction.points.points import all_points
@@ -50,7 +51,8 @@ else:
     read_numbers(config, files)
     POINTS = all_points(config)
 
-FIGURES = list(config["figures"])
+FIGURES = {name: functions(name, block)[0] for name, block in config["figures"].items()}  # family of each
+OWN_CAPTIONS = {name: caption(block) for name, block in config["figures"].items() if "kind" in block}
 ANIMATIONS = [name for name, block in config.get("animations", {}).items() if block]
 FILMS = {name: config["animations"][name].get("figure", "") for name in ANIMATIONS}  # beside which figure
 
@@ -90,7 +92,23 @@ def settings_of_animation(wildcards):
 
 
 def family(wildcards):
-    return families()[wildcards.figure]
+    return FIGURES[wildcards.figure]
+
+
+def function_of(wildcards):
+    return functions(wildcards.figure, config["figures"][wildcards.figure])[1]
+
+
+def settings_of(wildcards):
+    """What the measurement of a figure depends on, without what its other stages read."""
+    block = config["figures"][wildcards.figure]
+    return {key: value for key, value in block.items() if key not in ("claims", "caption")}
+
+
+def stated_of(wildcards):
+    """[the claims that the config states], of a figure of a name of its own; [] for others."""
+    block = config["figures"][wildcards.figure]
+    return [block.get("claims", [])] if "kind" in block else []
 
 
 def other_claims(wildcards):
@@ -114,7 +132,9 @@ def memory_of(wildcards):
 
 def caption_of(wildcards):
     """The caption as it is known before anything is measured."""
-    text = (ROOT / f"workflow/report/{wildcards.figure}.rst").read_text(encoding="utf-8")
+    text = OWN_CAPTIONS.get(wildcards.figure)
+    if text is None:
+        text = (ROOT / f"workflow/report/{wildcards.figure}.rst").read_text(encoding="utf-8")
     return filled(text, [], "(see the claims)")
 
 
@@ -170,7 +190,7 @@ def task_of(wildcards):
 wildcard_constraints:
     experiment="[a-z][a-z0-9_]*",
     point="[^/]+",
-    figure="|".join(FIGURES),
+    figure="|".join(FIGURES) or "(?!)",
     animation="|".join(ANIMATIONS) or "(?!)",
     digest="[0-9a-f]+",
     variant="[^/]+",

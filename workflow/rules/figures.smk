@@ -23,6 +23,7 @@ rule draw:
     params:
         modules=lambda wildcards: digest(*sources("draw", family(wildcards))),
         family=family,
+        function=function_of,
         caption=caption_of,
     script:
         "../scripts/draw.py"
@@ -34,7 +35,9 @@ rule report:
         vectors=expand("results/figures/{figure}.svg", figure=FIGURES),
         columns=expand("results/figures/journal/{figure}.png", figure=FIGURES),
         datasets=expand("results/measurements/{figure}.nc", figure=FIGURES),
-        captions=expand(str(FOLDER / "workflow/report/{figure}.rst"), figure=FIGURES),
+        captions=[
+            str(FOLDER / f"workflow/report/{figure}.rst") for figure in FIGURES if figure not in OWN_CAPTIONS
+        ],
         claims="results/tables/claims.csv",
         films=expand("results/animations/{animation}.mp4", animation=ANIMATIONS),
         posters=expand("results/animations/{animation}.jpg", animation=ANIMATIONS),
@@ -58,6 +61,7 @@ rule report:
     params:
         modules=digest(*sources("report"), *FAMILIES),
         figures=FIGURES,
+        own_captions=OWN_CAPTIONS,
         films=FILMS,
         title=lambda wildcards: config["title"],
         one_file=False,
@@ -76,6 +80,7 @@ use rule report as report_in_one_file with:
     params:
         modules=digest(*sources("report"), *FAMILIES),
         figures=FIGURES,
+        own_captions=OWN_CAPTIONS,
         films=FILMS,
         title=lambda wildcards: config["title"],
         one_file=True,

@@ -21,8 +21,9 @@ rule measure:
     params:
         modules=lambda wildcards: digest(*sources("measure", family(wildcards))),
         family=family,
+        function=function_of,
         points=lambda wildcards: [point.to_dict() for point in figure_points(wildcards)],
-        settings=lambda wildcards: config["figures"][wildcards.figure],
+        settings=settings_of,
         title=lambda wildcards: config["title"],
     script:
         "../scripts/measure.py"
@@ -46,6 +47,8 @@ rule judge:
     params:
         modules=lambda wildcards: digest(*sources("judge", family(wildcards))),
         family=family,
+        function=function_of,
+        stated=stated_of,
     script:
         "../scripts/judge.py"
 

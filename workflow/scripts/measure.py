@@ -14,9 +14,8 @@ with job(snakemake):
     tables = list(snakemake.input.tables)
     points = tables or [Point.from_dict(values) for values in snakemake.params.points]
     settings = {key: value for key, value in snakemake.params.settings.items() if key != "experiments"}
-    dataset = function(f"gaspart.reproduction.families.{snakemake.params.family}.measure", figure)(
-        points, settings
-    )
+    module = f"gaspart.reproduction.families.{snakemake.params.family}.measure"
+    dataset = function(module, snakemake.params.function)(points, settings)
     dataset.attrs.update(
         figure=figure,
         config=snakemake.params.title,

@@ -42,6 +42,7 @@ with job(snakemake):
     from gaspart import __version__
     from gaspart.files import whole_file
     from gaspart.reproduction.claims import table
+    from gaspart.reproduction.claims.captions import literal_copies
     from gaspart.reproduction.report import explore, page, references
     from gaspart.trajectory import provenance
     from gaspart.yaml_text import read_yaml
@@ -49,18 +50,19 @@ with job(snakemake):
     params, given = snakemake.params, snakemake.input
     claims = [row | {"id": f"claim-{n}"} for n, row in enumerate(table.read(given.claims), 1)]
     of_figure = {figure: [row for row in claims if row["figure"] == figure] for figure in params.figures}
+    captions = {Path(path).stem: Path(path).read_text(encoding="utf-8") for path in given.captions}
+    captions |= params.own_captions
     pictures, sections = {}, []
-    for figure, picture, dataset, caption in zip(
-        params.figures, given.pictures, given.datasets, given.captions, strict=True
-    ):
+    for figure, picture, dataset in zip(params.figures, given.pictures, given.datasets, strict=True):
         made, rows = attributes(dataset), of_figure[figure]
-        for copy in page.copies(Path(caption), rows):
+        for copy in literal_copies(captions[figure], rows):
             print(f"{figure}: a measured number in the caption, {copy}")
         pictures[figure] = page.picture(Path(picture), params.one_file)
         sections.append(
             page.Section(
                 name=figure,
-                caption=page.captioned(Path(caption), rows),
+                family_name=params.figures[figure],
+                caption=page.captioned(captions[figure], rows),
                 claims=rows,
                 films=[film for film, beside in params.films.items() if beside == figure],
                 settings=json.dumps(json.loads(made["settings"]), indent=1),

@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from gaspart.errors import SceneError, unknown_word
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from gaspart.analysis.observable import Observable
 
 OBSERVABLES: dict[str, tuple[str, dict[str, Any], str]] = {
     "Z": ("compressibility_factor", {}, "compressibility factor PV/(N k_B T), periodic"),
@@ -46,7 +40,8 @@ PAIRS = ("pair_rates", "contact_values")
 """Those that need a run which counts the collisions of each pair of species."""
 FLUXES = ("shear_viscosity", "bulk_viscosity", "thermal_conductivity", "pressure_tensor")
 """Those that need a run which correlates the stress tensor and the heat flux."""
-
+CURVES = ("msd", "vacf", "speeds", "rdf", "structure_factor", "density", "temperature")
+"""Those that are a curve; others are a number, or one for each face, pair or component."""
 SELECTIONS = {"species": ("msd", "vacf", "D"), "particles": ("msd", "vacf")}
 """Those that can be of one species, or of some particles."""
 
@@ -56,16 +51,3 @@ def known(name: object) -> str:
     if name not in OBSERVABLES:
         raise SceneError("observable", name, unknown_word(name, OBSERVABLES, "observable"))
     return str(name)
-
-
-def measure(name: str, trajectory: xr.Dataset, start: float | None = None, **selection: Any) -> Observable:
-    """An observable of a trajectory; start, and what `selection` states (see SELECTIONS): as of the functions
-    of `gaspart.analysis`. Raises SceneError for an unknown name, a selection that the observable does not
-    have, and as that function does."""
-    function, arguments, _ = OBSERVABLES[known(name)]
-    for key, value in selection.items():
-        if name not in SELECTIONS[key]:
-            rule = f"{name} is of all particles; a part have {', '.join(SELECTIONS[key])}"
-            raise SceneError(key, value, rule)
-    of = getattr(import_module("gaspart.analysis"), function)
-    return of(trajectory, start=start, **arguments, **selection)

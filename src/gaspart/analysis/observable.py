@@ -75,7 +75,7 @@ class Observable(xr.Dataset):
             _plot_scalar(self, axis, known)
         if theory and not known:
             axis.plot([], [], " ", label="no theory for this scene")
-        axis.set_ylabel(_label(self.estimate))
+        axis.set_ylabel(label_of(self.estimate))
         axis.legend(frameon=False)
         return axis
 
@@ -87,7 +87,7 @@ def _plot_scalar(found: Observable, axis: Axes, theory: bool) -> None:
     if theory:
         assert found.theory is not None
         axis.axhline(float(found.theory), color="black", label=f"theory, {float(found.theory):.5g}")
-    axis.set_xlabel(_label(found["time"]))
+    axis.set_xlabel(label_of(found["time"]))
 
 
 def _plot_curve(found: Observable, axis: Axes, theory: bool) -> None:
@@ -105,10 +105,11 @@ def _plot_curve(found: Observable, axis: Axes, theory: bool) -> None:
         places = np.arange(x.size) if x.dtype.kind in "US" else x
         marker = "" if found.theory.notnull().sum() > 2 else "x"  # of few values, as at contact
         axis.plot(places, found.theory, color="black", marker=marker, zorder=3, label="theory")
-    axis.set_xlabel(_label(x))
+    axis.set_xlabel(label_of(x))
 
 
-def _label(values: xr.DataArray) -> str:
+def label_of(values: xr.DataArray) -> str:
+    """The label of an axis: the meaning of a variable, with its unit, if it has one."""
     text = values.attrs.get("long_name", str(values.name))
     units = values.attrs.get("units", "1")
     between = "\n" if len(text) + len(units) > _LONG else " "

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gaspart.analysis.names import OBSERVABLES, SELECTIONS, measure
+from gaspart.analysis.measuring import measure
+from gaspart.analysis.names import OBSERVABLES, SELECTIONS
 from gaspart.cli.arguments import (
     Parser,
     UsageError,

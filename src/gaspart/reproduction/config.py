@@ -11,6 +11,8 @@ from typing import Any
 
 from gaspart.errors import SceneError, unknown_word
 from gaspart.kinds import Kind
+from gaspart.reproduction.families import registry
+from gaspart.reproduction.families.own.rules import validate
 from gaspart.reproduction.points import jobs, keys
 from gaspart.reproduction.points.config_keys import POINT
 from gaspart.reproduction.points.overlay import laid_over
@@ -43,10 +45,13 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str,
     contents = [(str(file), read_yaml(file)) for file in files]
     try:
         _check_values(config)
+        _check_names(config)
         _against(schema(), config, "")
         planned = {experiment: checked_points(config, experiment) for experiment in config["experiments"]}
-        for figure in config["figures"]:
-            figure_points(config, figure, planned)
+        for figure, block in config["figures"].items():
+            shown = figure_points(config, figure, planned)
+            if "kind" in block:
+                validate(figure, block, shown)
         for animation, block in config.get("animations", {}).items():
             _animation(config, animation, block)
         return planned
@@ -102,6 +107,20 @@ def _check_values(config: object) -> None:
         elif value is not None and not isinstance(value, str | bool):
             raise SceneError(where, value, "must be text, a number, a list or a mapping: quotes make it text")
     raise SceneError("config", len(stack), f"there may be {MOST_VALUES} values")
+
+
+def _check_names(config: object) -> None:
+    """Refuse a figure that has neither the name of one of the package nor a kind, or both."""
+    figures = config.get("figures") if isinstance(config, dict) else None
+    for figure, block in figures.items() if isinstance(figures, dict) else ():
+        if not isinstance(block, dict):
+            continue  # which the schema refuses
+        if "kind" in block and figure in registry.families():
+            rule = "is a figure of gaspart, which has no kind: a figure of one's own needs another name"
+            raise SceneError(f"figures.{figure}", block["kind"], rule)
+        if "kind" not in block and figure not in registry.families():
+            rule = unknown_word(figure, registry.families())
+            raise SceneError(f"figures.{figure}", block, f"{rule} (one's own has a kind: observable)")
 
 
 def _animation(config: dict, animation: str, block: dict | None) -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from gaspart.engines import ENGINES
-from gaspart.kinds import Kind, names, record
+from gaspart.kinds import Kind, choice, names, record
 from gaspart.reproduction.families import registry
 from gaspart.reproduction.points import config_keys, keys
 from gaspart.scene.features import EXCLUDED, FEATURES
@@ -39,7 +39,9 @@ def schema() -> Kind:
         figure: record({"experiments": _EXPERIMENTS, **settings})
         for figure, settings in registry.settings().items()
     }
-    return {"$schema": _DRAFT, **record(config_keys.config(figures))}
+    ((kind, settings),) = registry.kinds().items()
+    own = record({"kind": choice("the kind of a figure with a name of one's own", kind), **settings})
+    return {"$schema": _DRAFT, **record(config_keys.config(figures, own))}
 
 
 def scene_schema() -> Kind:
@@ -79,6 +81,10 @@ def reference() -> str:
     for figure, settings in registry.settings().items():
         if settings:
             parts += [f"### `{figure}`\n", _table(settings)]
+    for kind, settings in registry.kinds().items():
+        claims = settings["claims"]["items"]["properties"]
+        parts += [f"### A figure of one's own, `kind: {kind}`\n", _table(_outline(settings))]
+        parts += ["#### Its claims\n", _table(claims)]
     parts += ["## Scene file\n", _table(scene["properties"])]
     for name, part in _parts(scene):
         parts += [f"### {name}\n\n{part['description']}\n", _table(part["properties"])]

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.names import measure
+from gaspart.analysis.measuring import measure
 from gaspart.analysis.observable import Observable
 from gaspart.engines import Engine, engine_to_dict
 from gaspart.errors import SceneError
@@ -32,7 +32,7 @@ class Measured:
 
 def measured(point: Point, names: Sequence[str], part: bool) -> Measured:
     """Observables of a point, by name, of its frames after the equilibration, or, with `part`, after the
-    first quarter of each run. Raises SceneError as `gaspart.analysis.names.measure`."""
+    first quarter of each run. Raises SceneError as `gaspart.analysis.measuring.measure`."""
     start = None if part else point.schedule.equilibration
     found: dict[str, list[Observable]] = {name: [] for name in names}
     durations = []
@@ -85,7 +85,7 @@ def _variables(
     dims = (*axes, *(f"{name}_{dim}" for dim in along))
     found = {}
     for part in _PARTS:
-        each = [_mean(replicas, part) for replicas in points]
+        each = [mean_of(replicas, part) for replicas in points]
         if part == "_theory" and all(one is None for one in each):
             continue
         about = dict(first.estimate.attrs)
@@ -101,11 +101,12 @@ def _variables(
     return found
 
 
-def _mean(replicas: list[Observable], part: str) -> np.ndarray | None:
-    """The mean of independent runs, or its standard uncertainty; None where there is no theory. Runs that end
-    when they are accurate may have curves of different lengths, of which the common part is taken."""
+def mean_of(replicas: list[Observable], part: str) -> np.ndarray | None:
+    """The mean of independent runs, or another part: its standard uncertainty (_error), theory (_theory) and
+    the uncertainty of that (_theory_error), None where there is no theory. Runs that end when they are
+    accurate may have curves of different lengths, of which the common part is taken."""
     quantity = replicas[0].attrs["quantity"]
-    if part == "_theory" and any(one.theory is None for one in replicas):
+    if part.startswith("_theory") and any(one.theory is None for one in replicas):
         return None
     values = [one[quantity + part].values for one in replicas]
     shape = np.min([value.shape for value in values], axis=0).astype(int)

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.analysis.names import FLUXES, PAIRS, measure
+from gaspart.analysis.measuring import measure
+from gaspart.analysis.names import FLUXES, PAIRS
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine, engine_to_dict
 from gaspart.errors import SceneError, SimulationError

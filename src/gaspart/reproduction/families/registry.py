@@ -7,15 +7,18 @@ which imports nothing heavy, and holds a function of the name of each figure in 
 A family may also state `OF_CLAIMS`, that its figures are made of the claims of all others instead of points;
 and what readers may vary on the page of the report (`report.explore`): `SERIES`, figures of an equation of
 state with the dimension and the largest packing fraction to choose; `COSTS`, figures of the cost of an
-accuracy.
+accuracy. `KINDS` are kinds of figures, with their settings, to which a config gives names of its own: the
+entry of such a figure has `kind`, the name of the functions.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from gaspart.kinds import Kind
 
@@ -43,6 +46,18 @@ def families() -> dict[str, str]:
     return {figure: name for name, package in _packages().items() for figure in package.FIGURES}
 
 
+@cache
+def _kinds() -> dict[str, str]:
+    """The family of each kind of figures."""
+    return {kind: name for name, package in _packages().items() for kind in getattr(package, "KINDS", {})}
+
+
+def functions(figure: str, entry: Mapping[str, Any]) -> tuple[str, str]:
+    """The family of a figure of a config and the name of its functions there. entry: that of the config."""
+    kind = entry.get("kind")
+    return (families()[figure], figure) if kind is None else (_kinds()[kind], kind)
+
+
 def of_claims() -> frozenset[str]:
     """The figures that are made of the claims of all others."""
     stated = (package for package in _packages().values() if getattr(package, "OF_CLAIMS", False))
@@ -63,3 +78,9 @@ def costs() -> list[str]:
 def settings() -> dict[str, dict[str, Kind]]:
     """The settings of each figure's measurement."""
     return {figure: keys for package in _packages().values() for figure, keys in package.FIGURES.items()}
+
+
+def kinds() -> dict[str, dict[str, Kind]]:
+    """The settings of each kind of figures to which a config gives a name."""
+    parts = (getattr(package, "KINDS", {}) for package in _packages().values())
+    return {kind: keys for part in parts for kind, keys in part.items()}

@@ -97,8 +97,8 @@ ANIMATION: dict[str, Kind] = {
 }
 
 
-def config(figures: dict[str, Kind]) -> dict[str, Kind]:
-    """The top level of a config, given the entries of its figures."""
+def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
+    """The top level of a config, given the entries of its figures, by name, and of those with other names."""
     named = {"type": "object", "propertyNames": _NAME}
     return {
         "title": described({**TEXT, "minLength": 1}, "stands in the report and in each figure's data"),
@@ -113,11 +113,11 @@ def config(figures: dict[str, Kind]) -> dict[str, Kind]:
             {**named, "minProperties": 1, "additionalProperties": record(EXPERIMENT)}, "what is simulated"
         ),
         "figures": {
-            "type": "object",
-            "minProperties": 1,
-            "additionalProperties": False,
+            **named,
             "properties": figures,
-            "description": "what is drawn, and the settings of its measurement",
+            "additionalProperties": own,
+            "description": "what is drawn, and the settings of its measurement; a figure with another "
+            "name has a `kind`",
         },
         "animations": described(
             {**named, "additionalProperties": nullable(record(ANIMATION))},

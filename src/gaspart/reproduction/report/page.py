@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from gaspart.reproduction.claims import counts
-from gaspart.reproduction.claims.captions import filled, literal_copies
-from gaspart.reproduction.families.registry import chapters, families
+from gaspart.reproduction.claims.captions import filled
+from gaspart.reproduction.families.registry import chapters
 from gaspart.reproduction.report.caption import Caption, divided, html_of
 from gaspart.reproduction.report.strip import dots
 
@@ -26,6 +26,7 @@ CHAPTERS = (
     "Granular matter",
     "Speed and accuracy",
     "Pictures and checks",
+    "Own figures",
 )
 """In the order of the page."""
 _THUMBNAIL, _SHARPNESS = 360, 1.6
@@ -36,10 +37,11 @@ HEADLINE = ("test", "identity", "reproduction")
 
 @dataclass(frozen=True)
 class Section:
-    """A figure on the page. claims: its rows of the claims table; films: their names; settings: of its
-    measurement, as text; points: the files of its simulations."""
+    """A figure on the page. family_name: the folder of its functions; claims: its rows of the claims table;
+    films: their names; settings: of its measurement, as text; points: the files of its simulations."""
 
     name: str
+    family_name: str
     caption: Caption
     claims: list[dict[str, Any]]
     films: list[str]
@@ -67,7 +69,7 @@ def by_chapter(sections: Iterable[Section]) -> dict[str, list[Section]]:
     of_family = chapters()
     of_chapter: dict[str, list[Section]] = {chapter: [] for chapter in CHAPTERS}
     for section in sections:
-        of_chapter[of_family[families()[section.name]]].append(section)
+        of_chapter[of_family[section.family_name]].append(section)
     return {chapter: members for chapter, members in of_chapter.items() if members}
 
 
@@ -168,11 +170,6 @@ def _webp(path: Path, width: int) -> str:
     return _data("image/webp", content.getvalue())
 
 
-def copies(caption: Path, rows: list[dict[str, Any]]) -> list[str]:
-    """Measured numbers that a caption states itself."""
-    return literal_copies(caption.read_text(encoding="utf-8"), rows)
-
-
-def captioned(path: Path, rows: list[dict[str, Any]]) -> Caption:
+def captioned(text: str, rows: list[dict[str, Any]]) -> Caption:
     """The caption of a figure with its measured numbers."""
-    return divided(filled(path.read_text(encoding="utf-8"), rows))
+    return divided(filled(text, rows))

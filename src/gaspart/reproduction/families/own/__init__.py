@@ -1,0 +1,72 @@
+"""Figures that a config states by itself: an observable against what varies in a grid."""
+
+from gaspart.analysis.names import OBSERVABLES
+from gaspart.kinds import TEXT, Kind, choice, described, flag, listed, names, positive, record
+
+TITLE = "Own figures"
+CHAPTER = "Own figures"
+FIGURES: dict[str, dict[str, Kind]] = {}
+
+_NUMBER: Kind = {"type": "number"}
+_CLAIM = record(
+    {
+        "that": choice(
+            "what is stated, at every point or, `exponent`, of all points together: the value of theory, a "
+            "bound, a value, or the exponent of a power law",
+            *("theory", "at_least", "at_most", "value", "exponent"),
+        ),
+        "value": described(_NUMBER, "the bound, value or exponent", default=None),
+        "tolerance": positive(
+            "half of the width of the band in which a value or an exponent lies; with `theory`, if it is an "
+            "approximation, the same over theory's value",
+            default=None,
+        ),
+        "required": positive(
+            "largest standard uncertainty of the measurement at which the claim is conclusive, with `theory` "
+            "over theory's value; of a value and an exponent by default half of the tolerance",
+            default=None,
+        ),
+        "between": listed(
+            _NUMBER,
+            "lowest and highest value of `against` of the points that it is about",
+            2,
+            2,
+            default=None,
+        ),
+        "source": described(
+            {**TEXT, "minLength": 1}, "of the expected value; that of a theory is known", default=None
+        ),
+        "fails_if": described({**TEXT, "minLength": 1}, "what would make it fail"),
+    }
+)
+KINDS: dict[str, dict[str, Kind]] = {
+    "observable": {
+        "observable": choice("what is measured, as by `gaspart measure`", *OBSERVABLES),
+        "against": described(
+            {**TEXT, "minLength": 1},
+            "the key of the grid, of numbers, that is the horizontal axis; of an observable that is a curve "
+            "there is one curve for each of its values",
+        ),
+        "experiments": names("experiments that make trajectories, whose points are measured"),
+        "place": described(
+            _NUMBER, "of a curve: the place, or the nearest one, whose value is taken instead", default=None
+        ),
+        "theory": flag("draw theory, where there is one for the scene", default=True),
+        "logarithmic": choice("axes with a logarithmic scale", "none", "x", "y", "both", default="none"),
+        "caption": described(
+            TEXT, "reStructuredText for the report, whose first words in bold are the finding", default=""
+        ),
+        "claims": listed(_CLAIM, "what is expected of the measurement", 0, default=[]),
+    }
+}
+"""The settings of each kind of figure, to which a config gives a name of its own."""
+
+
+def caption(settings: dict) -> str:
+    """The caption of a figure, as the config states it, with a title if it begins with none."""
+    text = settings.get("caption", "").strip()
+    if text.startswith("**"):
+        return text
+    meaning = OBSERVABLES[settings["observable"]][2].partition(",")[0]
+    against = settings["against"].removeprefix("scene.").replace("_", " ")
+    return f"**{meaning[0].upper()}{meaning[1:]}, against {against}.** {text}".rstrip()

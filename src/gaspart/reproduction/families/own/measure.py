@@ -1,0 +1,84 @@
+"""An observable at each point of some experiments, as the config names it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.names import OBSERVABLES
+from gaspart.analysis.observable import Observable
+from gaspart.reproduction.families.shared.rows import from_rows
+from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.sweep_table import mean_of, measured
+
+_PARTS = {"value": "", "value_error": "_error", "theory": "_theory", "theory_error": "_theory_error"}
+
+
+def observable(points: list[Point], settings: dict) -> xr.Dataset:
+    """An observable of each point, the mean of its replicas.
+
+    settings: `observable`; `against`, the key of the points that is the horizontal axis; `place`, of a curve
+    the place whose value is taken; see `families.own`. Dimension point, in the order of series and against:
+    `against`; `series`, what else varies, as text; value, theory (NaN where there is none), each with its
+    `_error`, in the units of the observable, and value_freedom, the degrees of freedom of the error. An
+    observable with a number for each of some names, such as faces, has a series for each. Of a curve all
+    these also have the dimension `along`, and `along_places` are its places. Raises SceneError for what can
+    not be measured.
+    """
+    name = settings["observable"]
+    rows, source = [], ""
+    for point in points:
+        (replicas,) = measured(point, [name], part=False).observables.values()
+        if settings.get("place") is not None:
+            (dim,) = replicas[0].estimate.dims
+            replicas = [one.sel({dim: settings["place"]}, method="nearest") for one in replicas]
+        source = source or replicas[0].attrs.get("source", "")
+        shared = {"against": float(point.settings[settings["against"]])}
+        for label, parts in _by_name(replicas).items():
+            series = ", ".join(filter(None, (_other(point, points, settings["against"]), label)))
+            rows.append({**shared, "series": series, **_numbers(parts)})
+    rows.sort(key=lambda row: (row["series"], row["against"]))
+    first = replicas[0].estimate
+    dataset = from_rows("point", rows, inner=("along",))
+    for key in ("value", "value_error", "theory", "theory_error"):
+        dataset[key].attrs["units"] = first.attrs.get("units", "1")
+    dataset["value"].attrs["long_name"] = first.attrs.get("long_name", OBSERVABLES[name][2])
+    if "along_places" in dataset:
+        dataset["along_places"].attrs.update(replicas[0][first.dims[0]].attrs)
+    return dataset.assign_attrs(against=settings["against"], observable=name, source=source)
+
+
+def _by_name(replicas: list[Observable]) -> dict[str, list[Observable]]:
+    """The numbers of an observable that has one for each of some names; else the observable itself."""
+    first = replicas[0].estimate
+    if not first.dims or first[first.dims[0]].dtype.kind not in "UO":
+        return {"": replicas}
+    (dim,) = first.dims
+    return {str(text): [one.sel({dim: text}) for one in replicas] for text in first[dim].values}
+
+
+def _other(point: Point, points: list[Point], against: str) -> str:
+    """What distinguishes a point from others at the same place: the experiment, if there are several, and the
+    other values of its grid."""
+    several = len({one.experiment for one in points}) > 1
+    varied = [part for part in point.name.split(",") if not part.startswith(f"{against}=")]
+    return ", ".join([point.experiment] * several + [part for part in varied if part != "single"])
+
+
+def _numbers(replicas: list[Observable]) -> dict[str, Any]:
+    """The entries of a row for the mean of independent runs."""
+    row: dict[str, Any] = {}
+    for name, part in _PARTS.items():
+        values = mean_of(replicas, part)
+        row[name] = np.full_like(row["value"], np.nan) if values is None else values
+    if row["value"].ndim:
+        (dim,) = replicas[0].estimate.dims
+        shortest = min((one[dim].values for one in replicas), key=len)
+        return {**row, "along_places": shortest, "value_freedom": np.inf}
+    total = Estimate(0.0)
+    for one in replicas:
+        total += Estimate(one.estimate, one.error, one.attrs.get("freedom", np.inf))
+    return {**row, "value_freedom": total.freedom}

@@ -1,0 +1,59 @@
+"""Rules for a figure that a config states by itself, which are checked before any job starts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from gaspart.analysis.names import CURVES
+from gaspart.errors import SceneError
+from gaspart.reproduction.points.point import TRAJECTORIES, Point
+
+NEEDED = {
+    "theory": ("required",),
+    "at_least": ("value", "required", "source"),
+    "at_most": ("value", "required", "source"),
+    "value": ("value", "tolerance", "source"),
+    "exponent": ("value", "tolerance", "source"),
+}
+"""What a claim of each kind must state."""
+_UNUSED = {
+    "theory": ("value", "source"),
+    "at_least": ("tolerance",),
+    "at_most": ("tolerance",),
+    "value": (),
+    "exponent": (),
+}
+
+
+def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) -> None:
+    """Raise SceneError for experiments without trajectories, points that have no number to be drawn against,
+    and claims whose keys do not belong together."""
+    where = f"figures.{figure}"
+    against = settings["against"]
+    for point in points:
+        if point.job not in TRAJECTORIES:
+            rule = f"must make trajectories (job: {' or '.join(TRAJECTORIES)})"
+            raise SceneError(f"{where}.experiments", point.experiment, rule)
+        value = point.settings.get(against)
+        if not isinstance(value, int | float) or isinstance(value, bool):
+            rule = f"must be a key whose value is a number at every point, but at {point.path} it is {value}"
+            raise SceneError(f"{where}.against", against, rule)
+    curve = settings["observable"] in CURVES
+    place = settings.get("place")
+    if place is not None and not curve:
+        raise SceneError(f"{where}.place", place, "has a meaning for a curve only")
+    for number, claim in enumerate(settings.get("claims", ())):
+        _claim(f"{where}.claims.{number}", claim, curve and place is None)
+
+
+def _claim(where: str, claim: Mapping[str, Any], curve: bool) -> None:
+    that = claim["that"]
+    if curve:
+        raise SceneError(where, that, "of a curve needs the place whose value is meant: place")
+    for key in NEEDED[that]:
+        if claim.get(key) is None:
+            raise SceneError(f"{where}.{key}", None, f"is required with that: {that}")
+    for key in _UNUSED[that]:
+        if claim.get(key) is not None:
+            raise SceneError(f"{where}.{key}", claim[key], f"has no meaning with that: {that}")
