@@ -1,7 +1,7 @@
 # make            set up, reproduce every figure, write results/report.html, print the verdicts
 # make test       set up, run all tests (among them the whole workflow, small); OPTIONS=... are options of pytest
 # make check-all  the linters, the tests, 2500 new random scenes for each property of the engines, and the slow tests
-# make smoke      all figures, small
+# make smoke      all figures, small: results/smoke/report.html
 # make docs       the documentation site, with executed notebooks: results/docs/html/index.html; after a complete
 #                 reproduction also docs/gallery.png, the picture of the README
 # make benchmark  the speed of the engines on this machine, which should run nothing else: results/tables/performance.csv
@@ -21,7 +21,7 @@ CORES ?= all
 PIP = .venv/bin/python -m pip --quiet --disable-pip-version-check
 SNAKEMAKE = .venv/bin/python -m snakemake --cores $(CORES)
 # Printed after Snakemake has ended, also if there was nothing to do.
-VERDICTS = @.venv/bin/python -c 'from gaspart.reproduction.claims import summary; print(summary("results/tables/claims.csv"))'
+VERDICTS = @.venv/bin/python -c 'import sys; from gaspart.reproduction.claims import summary; print(summary(sys.argv[1]))'
 
 # A .venv that somebody else has made may hold what exists nowhere else.
 OWN_VENV = @test ! -e .venv -o -e .venv/made_by_make -o -e .venv/environment.stamp || { echo \
@@ -29,7 +29,7 @@ OWN_VENV = @test ! -e .venv -o -e .venv/made_by_make -o -e .venv/environment.sta
 
 all: setup
 	$(SNAKEMAKE) --quiet rules
-	$(VERDICTS)
+	$(VERDICTS) results/tables/claims.csv
 	@echo "report: results/report.html"
 
 setup: .venv/gaspart.stamp
@@ -60,7 +60,8 @@ check-all: lint test
 
 smoke: setup
 	$(SNAKEMAKE) --quiet rules --configfile config/smoke.yaml
-	$(VERDICTS)
+	$(VERDICTS) results/smoke/tables/claims.csv
+	@echo "report: results/smoke/report.html"
 
 benchmark: setup
 	mkdir -p results/benchmarks

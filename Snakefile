@@ -8,11 +8,11 @@
 #   snakemake --cores all report                               results/report.html
 #   snakemake --cores all animations                           results/animations/*.mp4
 #   snakemake --cores all points                               every simulation, without the measurements
-#   snakemake --cores all --configfile config/smoke.yaml       everything, small
+#   snakemake --cores all --configfile config/smoke.yaml       everything, small, in results/smoke
 
 from snakemake.utils import min_version
 
-min_version("9.0")
+min_version("9.19")
 
 
 configfile: "config/config.yaml"
@@ -40,7 +40,7 @@ onstart:
 # a run that finds nothing to do.
 onsuccess:
     if "MAKELEVEL" not in os.environ and any(job.rule.name == "claims" for job in workflow.dag.jobs):
-        print(summary("results/tables/claims.csv"))
+        print(summary(f"{RESULTS}/tables/claims.csv"))
 
 
 localrules:
@@ -52,12 +52,12 @@ localrules:
 
 rule animations:
     input:
-        expand("results/animations/{animation}.mp4", animation=ANIMATIONS),
+        expand("<results>/animations/{animation}.mp4", animation=ANIMATIONS),
 
 
 rule journal:
     input:
-        expand("results/figures/journal/{figure}.{kind}", figure=FIGURES, kind=["pdf", "png"]),
+        expand("<results>/figures/journal/{figure}.{kind}", figure=FIGURES, kind=["pdf", "png"]),
 
 
 rule points:
@@ -68,8 +68,8 @@ rule points:
 rule all:
     default_target: True
     input:
-        expand("results/figures/{figure}.{kind}", figure=FIGURES, kind=["png", "svg"]),
-        "results/tables/claims.csv",
-        "results/report.html",
+        expand("<results>/figures/{figure}.{kind}", figure=FIGURES, kind=["png", "svg"]),
+        "<results>/tables/claims.csv",
+        "<results>/report.html",
         rules.animations.input,
         rules.journal.input,

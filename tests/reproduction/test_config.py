@@ -68,6 +68,8 @@ DENSE = "experiments.gas[packing_fraction=0.95]"
         (("seed",), -1, "seed", "must be at least 0"),
         (("points",), "/tmp/elsewhere", "points", "must match"),
         (("points",), "results/../elsewhere", "points", "must match"),
+        (("run",), "figures", "run", "must match"),
+        (("run",), "../mine", "run", "must match"),
         (("experiments",), {}, "experiments", "entries at least"),
         (("experiments", "gas", "gird"), {}, "experiments.gas.gird", "unknown key"),
         ((*POINT, "maas"), 1.0, "experiments.gas.point.maas", "unknown key"),
@@ -288,6 +290,7 @@ def test_the_projects_configs_are_valid_and_smoke_has_no_experiment_of_its_own()
     check(full)
     assert set(smoke["experiments"]) <= set(full["experiments"])
     assert smoke["points"] != full["points"]
+    assert smoke["run"] == "smoke" and "run" not in full
 
 
 def test_a_film_is_of_trajectories():

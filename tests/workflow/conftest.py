@@ -14,6 +14,6 @@ def fresh(tmp_path_factory):
 def smoke(tmp_path_factory):
     """A copy in which the smoke workflow has run to its end, and has made the report in one file too."""
     workspace = copy_of_project(tmp_path_factory.mktemp("a smoke clone"))
-    result = workspace.snakemake("--cores", "2", *SMOKE, "--", "all", "results/report-in-one-file.html")
+    result = workspace.snakemake("--cores", "2", *SMOKE, "--", "all", "results/smoke/report-in-one-file.html")
     assert result.returncode == 0, result.stdout[-20_000:]
     return workspace

@@ -25,6 +25,6 @@ return {
 @pytest.mark.parametrize(("width", "dark"), [(1400, False), (390, True)])
 def test_axe_finds_no_serious_problem(smoke, tmp_path, width, dark):
     script = AXE.replace("</script", "<\\/script") + RUN
-    found = found_by(script, smoke.path / "results/report.html", tmp_path, width, dark)
+    found = found_by(script, smoke.path / "results/smoke/report.html", tmp_path, width, dark)
     assert found["dark"] == dark and found["rules"] > 15
     assert found["violations"] == []

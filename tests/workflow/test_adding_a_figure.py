@@ -36,7 +36,7 @@ def workspace(tmp_path_factory):
 
 
 def test_the_new_figure_is_drawn_and_its_claims_evaluated(workspace):
-    targets = ["results/figures/free_path.png", "results/claims/free_path.csv"]
+    targets = ["results/smoke/figures/free_path.png", "results/smoke/claims/free_path.csv"]
     result = workspace.snakemake("--cores", "2", *targets, *SMOKE)
     assert result.returncode == 0, result.stdout[-20_000:]
     assert (workspace.path / targets[0]).read_bytes().startswith(b"\x89PNG")

@@ -31,6 +31,7 @@ def test_another_workflow_uses_it_as_a_module(tmp_path):
     config, _ = laid_over(ROOT / "config/smoke.yaml")
     experiments = config["figures"][FIGURE]["experiments"]
     config |= {
+        "run": None,
         "experiments": {name: config["experiments"][name] for name in experiments},
         "figures": {FIGURE: config["figures"][FIGURE]},
         "animations": {},
@@ -66,8 +67,8 @@ def test_a_module_may_have_figures_of_its_own_only(tmp_path):
     assert here.plan("points", source=ROOT) == {"warm": 1, "simulate": 3, "points": 1}
 
 
-def test_a_figure_of_ones_own_is_laid_over_the_config(fresh, tmp_path):
+def test_a_figure_of_ones_own_is_laid_over_the_config_in_a_run_with_a_name(fresh, tmp_path):
     own = tmp_path / "my_gas.yaml"
-    own.write_text(OWN[1])
-    targets = ["results/figures/my_gas.png", "results/claims/my_gas.csv"]
+    own.write_text("run: mine\n" + OWN[1])
+    targets = ["results/mine/figures/my_gas.png", "results/mine/claims/my_gas.csv"]
     assert fresh.plan(*targets, "--configfile", str(own)) == STAGES

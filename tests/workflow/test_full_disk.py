@@ -17,7 +17,7 @@ pytestmark = [
     pytest.mark.skipif(why_not(OWN_DISKS) is not None, reason=str(why_not(OWN_DISKS))),
 ]
 KNOWN = json.loads((Path(__file__).parent / "digests.json").read_text())
-TARGET = "results/figures/virial_discs.png"
+TARGET = "results/smoke/figures/virial_discs.png"
 # A small disk, full but for some kilobytes; then the same command again when there is room.
 TWICE = """
 set -e
@@ -71,7 +71,7 @@ def test_the_workflow_says_so_and_goes_on_to_the_same_bits(tmp_path):
     lines = [line for line in full.splitlines() if line.startswith("gaspart: simulate")]
     assert lines and all("No space left on device" in line for line in lines)
     assert "Traceback" not in full
-    assert not (tmp_path / "out/left/figures").exists()
+    assert not (tmp_path / "out/left/smoke/figures").exists()
     assert empty.endswith("exit code 0\n"), empty[-5000:]
     made = digests(tmp_path / "out/made/smoke/points")
     assert made and made == {name: KNOWN[name] for name in made}

@@ -15,7 +15,7 @@ from workspace import SMOKE, copy_of_project
 
 pytestmark = [pytest.mark.workflow, pytest.mark.thorough]
 KNOWN = json.loads((Path(__file__).parent / "digests.json").read_text())
-TARGET = "results/figures/virial_discs.png"
+TARGET = "results/smoke/figures/virial_discs.png"
 
 
 def test_a_workflow_that_is_killed_goes_on_to_the_same_bits(tmp_path):
@@ -52,7 +52,7 @@ def test_a_point_that_fails_is_named_at_the_end_with_its_log_and_the_rest_is_fin
     assert done.returncode != 0
     end = done.stdout[-3000:]
     assert re.search(r"virial_discs/packing_fraction=0\.6", end)
-    assert "results/logs/simulate/virial_discs/packing_fraction=0.6.log" in end
+    assert "results/smoke/logs/simulate/virial_discs/packing_fraction=0.6.log" in end
     assert "does not fit by random insertion" in done.stdout
     points = workspace.path / "results/smoke/points/virial_discs"
     whole = [path.name for path in points.iterdir() if path.suffix != ".partial"]

@@ -40,7 +40,7 @@ def test_a_mistake_that_only_a_job_can_find_is_one_line_in_its_log(fresh, tmp_pa
     target = "results/smoke/points/virial_discs/packing_fraction=0.6"
     result = fresh.snakemake("--cores", "1", *SMOKE, str(bad), "--", target)
     assert result.returncode != 0
-    log = (fresh.path / "results/logs/simulate/virial_discs/packing_fraction=0.6.log").read_text()
+    log = (fresh.path / "results/smoke/logs/simulate/virial_discs/packing_fraction=0.6.log").read_text()
     assert log.splitlines()[-1].startswith("gaspart: simulate")
     assert "does not fit by random insertion" in log
     assert "Traceback" not in log

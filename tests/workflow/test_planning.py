@@ -41,7 +41,9 @@ def test_ten_thousand_points_are_planned_in_less_than_thirty_seconds(fresh, tmp_
     big.write_text(dump_yaml({"experiments": {"virial_discs": {"grid": varied}}}))
 
     def plan():
-        assert fresh.plan(*SMOKE, str(big), "--", "results/figures/virial_discs.png")["simulate"] == 10_000
+        assert (
+            fresh.plan(*SMOKE, str(big), "--", "results/smoke/figures/virial_discs.png")["simulate"] == 10_000
+        )
 
     assert processor_time(plan) < 30.0
 
@@ -152,7 +154,7 @@ def test_warming_again_reruns_nothing_else(smoke):
 
 
 def test_one_figure_and_the_named_targets_can_be_requested(fresh):
-    plan = fresh.plan(*SMOKE, "--", "results/figures/virial_discs.png")
+    plan = fresh.plan(*SMOKE, "--", "results/smoke/figures/virial_discs.png")
     assert plan["draw"] == plan["measure"] == 1
     assert "judge" not in plan
     assert "draw" not in fresh.plan(*SMOKE, "--", "claims")

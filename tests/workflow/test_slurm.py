@@ -40,7 +40,7 @@ def test_a_grid_through_slurm_ends_in_the_same_bits_though_its_node_is_lost(fres
     with cluster(tmp_path) as node:
         thief = threading.Thread(target=lose_the_node_once, args=(node, lost, over))
         thief.start()
-        done = fresh.snakemake(*PROFILE, *SMOKE, "--", f"results/figures/{EXPERIMENT}.png")
+        done = fresh.snakemake(*PROFILE, *SMOKE, "--", f"results/smoke/figures/{EXPERIMENT}.png")
         over.set()
         thief.join()
     assert done.returncode == 0, done.stdout[-5000:]

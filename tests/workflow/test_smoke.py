@@ -25,7 +25,7 @@ def test_every_figure_of_the_table_is_in_the_config():
 
 @pytest.mark.parametrize("figure", FIGURES)
 def test_every_figure_is_drawn_twice_and_has_a_claim_with_a_verdict(smoke, figure):
-    results = smoke.path / "results"
+    results = smoke.path / "results/smoke"
     png = (results / f"figures/{figure}.png").read_bytes()
     assert png.startswith(b"\x89PNG")
     assert len(png) > 5_000
@@ -41,7 +41,7 @@ def test_every_figure_is_drawn_twice_and_has_a_claim_with_a_verdict(smoke, figur
 
 
 def test_every_figure_is_drawn_for_a_column_of_a_journal_and_is_legible(smoke):
-    results = smoke.path / "results"
+    results = smoke.path / "results/smoke"
     for figure in FIGURES:
         assert (results / f"figures/journal/{figure}.pdf").read_bytes().startswith(b"%PDF")
         assert (results / f"figures/journal/{figure}.png").stat().st_size > 5_000
@@ -51,7 +51,7 @@ def test_every_figure_is_drawn_for_a_column_of_a_journal_and_is_legible(smoke):
 
 
 def test_the_report_holds_every_figure_and_its_pictures_lie_beside_it(smoke):
-    path = smoke.path / "results/report.html"
+    path = smoke.path / "results/smoke/report.html"
     page = path.read_text()
     for figure in FIGURES:
         assert f'<section class="figure" id="{figure}"' in page
@@ -64,7 +64,7 @@ def test_the_report_holds_every_figure_and_its_pictures_lie_beside_it(smoke):
 
 
 def test_the_report_in_one_file_needs_no_other(smoke):
-    path = smoke.path / "results/report-in-one-file.html"
+    path = smoke.path / "results/smoke/report-in-one-file.html"
     addresses = re.findall(r'(?:src|srcset|poster)="([^"]+)"', path.read_text())
     assert len(addresses) > 2 * len(FIGURES) and all(one.startswith("data:") for one in addresses)
     assert path.stat().st_size < 10e6
@@ -112,8 +112,8 @@ return {
 @pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium here to click through the report with")
 @pytest.mark.parametrize("width", [390, 1400])
 def test_the_report_reads_and_clicks_on_a_phone_and_on_a_desk(smoke, tmp_path, width):
-    found = found_by(CLICKS, smoke.path / "results/report.html", tmp_path, width)
-    with (smoke.path / "results/tables/claims.csv").open(newline="") as file:
+    found = found_by(CLICKS, smoke.path / "results/smoke/report.html", tmp_path, width)
+    with (smoke.path / "results/smoke/tables/claims.csv").open(newline="") as file:
         claims = list(csv.DictReader(file))
     assert found["before"] == found["after"] == len(claims)
     assert found["up"] == sorted(found["up"]) and found["down"] == sorted(found["up"], reverse=True)
@@ -122,13 +122,13 @@ def test_the_report_reads_and_clicks_on_a_phone_and_on_a_desk(smoke, tmp_path, w
     assert found["verdicts"] and found["folded"] and found["unfolded"]
     assert found["dots"] == sum(row["kind"] != "family" for row in claims)
     assert len(found["images"]) >= 2 * len(FIGURES) and min(found["images"]) > 0
-    assert found["films"] == len(list((smoke.path / "results/animations").glob("*.mp4")))
+    assert found["films"] == len(list((smoke.path / "results/smoke/animations").glob("*.mp4")))
     assert found["width"] <= width and found["font"] >= 12.0
     assert found["broken"] == 0 and found["references"] >= 30 and found["posters"]
 
 
 def test_films_are_made(smoke):
-    poster, film = sorted((smoke.path / "results/animations").iterdir())
+    poster, film = sorted((smoke.path / "results/smoke/animations").iterdir())
     assert (poster.name, film.name) == ("relaxation.jpg", "relaxation.mp4")
     assert min(film.stat().st_size, poster.stat().st_size) > 5_000
 

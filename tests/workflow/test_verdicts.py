@@ -41,7 +41,9 @@ def test_make_prints_the_verdicts_with_or_without_work(judged):
     table = judged.path / "results/tables/claims.csv"
     table.parent.mkdir()
     claims.collect([judged.path / "results/claims/virial_discs.csv"]).to_csv(table, index=False)
-    (judged.path / "Makefile").write_text((ROOT / "Makefile").read_text() + "\nverdicts:\n\t$(VERDICTS)\n")
+    (judged.path / "Makefile").write_text(
+        (ROOT / "Makefile").read_text() + "\nverdicts:\n\t$(VERDICTS) results/tables/claims.csv\n"
+    )
     (judged.path / ".venv").symlink_to(ROOT / ".venv")
     command = ["make", "--no-print-directory", "verdicts"]
     done = subprocess.run(command, cwd=judged.path, capture_output=True, text=True)

@@ -75,4 +75,4 @@ def leave_one_figure(path, figure, **point):
     for kind in ("experiments", "figures"):
         config[kind] = {figure: config[kind][figure]}
     config["experiments"][figure]["point"].update(point)
-    write_yaml(path / "config/config.yaml", config | {"animations": {}})
+    write_yaml(path / "config/config.yaml", config | {"animations": {}, "run": None})

@@ -5,12 +5,12 @@ rule animate:
     input:
         trajectories=lambda wildcards: animated(wildcards).path,
     output:
-        film="results/animations/{animation}.mp4",
-        poster="results/animations/{animation}.jpg",
+        film="<results>/animations/{animation}.mp4",
+        poster="<results>/animations/{animation}.jpg",
     log:
-        "results/logs/animate/{animation}.log",
+        "<results>/logs/animate/{animation}.log",
     benchmark:
-        "results/benchmarks/animate/{animation}.tsv"
+        "<results>/benchmarks/animate/{animation}.tsv"
     conda:
         "../envs/gaspart.yaml"
     threads: 1

@@ -53,6 +53,14 @@ else:
 
 FIGURES = {name: functions(name, block)[0] for name, block in config["figures"].items()}  # family of each
 OWN_CAPTIONS = {name: caption(block) for name, block in config["figures"].items() if "kind" in block}
+# Where figures, claims, tables, logs and the report of this run lie.
+RESULTS = f"results/{config['run']}" if config.get("run") else "results"
+
+
+pathvars:
+    results=RESULTS,
+
+
 ANIMATIONS = [name for name, block in config.get("animations", {}).items() if block]
 FILMS = {name: config["animations"][name].get("figure", "") for name in ANIMATIONS}  # beside which figure
 
@@ -115,7 +123,7 @@ def other_claims(wildcards):
     """The claims tables of all other figures, for the figure that is made of them; none for others."""
     if wildcards.figure not in of_claims():
         return []
-    return expand("results/claims/{figure}.csv", figure=[name for name in FIGURES if name not in of_claims()])
+    return [f"{RESULTS}/claims/{figure}.csv" for figure in FIGURES if figure not in of_claims()]
 
 
 def cores_of(wildcards):

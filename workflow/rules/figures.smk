@@ -3,17 +3,17 @@
 
 rule draw:
     input:
-        dataset="results/measurements/{figure}.nc",
+        dataset="<results>/measurements/{figure}.nc",
     output:
-        png=flagged("results/figures/{figure}.png", "png"),
-        svg=flagged("results/figures/{figure}.svg", "svg"),
+        png=flagged("<results>/figures/{figure}.png", "png"),
+        svg=flagged("<results>/figures/{figure}.svg", "svg"),
         # The same for a column of a journal. The report shows these pictures on narrow screens.
-        journal_png="results/figures/journal/{figure}.png",
-        journal_pdf="results/figures/journal/{figure}.pdf",
+        journal_png="<results>/figures/journal/{figure}.png",
+        journal_pdf="<results>/figures/journal/{figure}.pdf",
     log:
-        "results/logs/draw/{figure}.log",
+        "<results>/logs/draw/{figure}.log",
     benchmark:
-        "results/benchmarks/draw/{figure}.tsv"
+        "<results>/benchmarks/draw/{figure}.tsv"
     conda:
         "../envs/gaspart.yaml"
     threads: 1
@@ -31,27 +31,27 @@ rule draw:
 
 rule report:
     input:
-        pictures=expand("results/figures/{figure}.png", figure=FIGURES),
-        vectors=expand("results/figures/{figure}.svg", figure=FIGURES),
-        columns=expand("results/figures/journal/{figure}.png", figure=FIGURES),
-        datasets=expand("results/measurements/{figure}.nc", figure=FIGURES),
+        pictures=expand("<results>/figures/{figure}.png", figure=FIGURES),
+        vectors=expand("<results>/figures/{figure}.svg", figure=FIGURES),
+        columns=expand("<results>/figures/journal/{figure}.png", figure=FIGURES),
+        datasets=expand("<results>/measurements/{figure}.nc", figure=FIGURES),
         captions=[
             str(FOLDER / f"workflow/report/{figure}.rst") for figure in FIGURES if figure not in OWN_CAPTIONS
         ],
-        claims="results/tables/claims.csv",
-        films=expand("results/animations/{animation}.mp4", animation=ANIMATIONS),
-        posters=expand("results/animations/{animation}.jpg", animation=ANIMATIONS),
+        claims="<results>/tables/claims.csv",
+        films=expand("<results>/animations/{animation}.mp4", animation=ANIMATIONS),
+        posters=expand("<results>/animations/{animation}.jpg", animation=ANIMATIONS),
         template=str(FOLDER / "workflow/report/report.html.j2"),
         style=str(FOLDER / "workflow/report/page.css"),
         behaviour=[str(FOLDER / "workflow/report" / name) for name in ("page.js", "explore.js")],
         findings=str(FOLDER / "workflow/report/findings.yaml"),
         references=str(FOLDER / "workflow/report/references.yaml"),
     output:
-        "results/report.html",
+        "<results>/report.html",
     log:
-        "results/logs/report.log",
+        "<results>/logs/report.log",
     benchmark:
-        "results/benchmarks/report.tsv"
+        "<results>/benchmarks/report.tsv"
     conda:
         "../envs/gaspart.yaml"
     threads: 1
@@ -72,11 +72,11 @@ rule report:
 # The same page with its pictures and films in it, to be sent or kept as one file.
 use rule report as report_in_one_file with:
     output:
-        "results/report-in-one-file.html",
+        "<results>/report-in-one-file.html",
     log:
-        "results/logs/report_in_one_file.log",
+        "<results>/logs/report_in_one_file.log",
     benchmark:
-        "results/benchmarks/report_in_one_file.tsv"
+        "<results>/benchmarks/report_in_one_file.tsv"
     params:
         modules=digest(*sources("report"), *FAMILIES),
         figures=FIGURES,

@@ -6,11 +6,11 @@ rule measure:
         points=lambda wildcards: [point.path for point in figure_points(wildcards)],
         tables=other_claims,
     output:
-        "results/measurements/{figure}.nc",
+        "<results>/measurements/{figure}.nc",
     log:
-        "results/logs/measure/{figure}.log",
+        "<results>/logs/measure/{figure}.log",
     benchmark:
-        "results/benchmarks/measure/{figure}.tsv"
+        "<results>/benchmarks/measure/{figure}.tsv"
     priority: 1  # as points have: the longest takes half a minute, beside which timings would have to wait
     conda:
         "../envs/gaspart.yaml"
@@ -31,13 +31,13 @@ rule measure:
 
 rule judge:
     input:
-        dataset="results/measurements/{figure}.nc",
+        dataset="<results>/measurements/{figure}.nc",
     output:
-        "results/claims/{figure}.csv",
+        "<results>/claims/{figure}.csv",
     log:
-        "results/logs/judge/{figure}.log",
+        "<results>/logs/judge/{figure}.log",
     benchmark:
-        "results/benchmarks/judge/{figure}.tsv"
+        "<results>/benchmarks/judge/{figure}.tsv"
     conda:
         "../envs/gaspart.yaml"
     threads: 1
@@ -55,18 +55,18 @@ rule judge:
 
 rule claims:
     input:
-        tables=expand("results/claims/{figure}.csv", figure=FIGURES),
+        tables=expand("<results>/claims/{figure}.csv", figure=FIGURES),
     output:
         report(
-            "results/tables/claims.csv",
+            "<results>/tables/claims.csv",
             caption="../report/claims.rst",
             category="Claims",
             labels={"figure": "all", "type": "table"},
         ),
     log:
-        "results/logs/claims.log",
+        "<results>/logs/claims.log",
     benchmark:
-        "results/benchmarks/claims.tsv"
+        "<results>/benchmarks/claims.tsv"
     conda:
         "../envs/gaspart.yaml"
     threads: 1

@@ -9,9 +9,9 @@ rule simulate:
     output:
         directory(f"{config['points']}/{{experiment}}/{{point}}"),
     log:
-        "results/logs/simulate/{experiment}/{point}.log",
+        "<results>/logs/simulate/{experiment}/{point}.log",
     benchmark:
-        "results/benchmarks/simulate/{experiment}/{point}.tsv"
+        "<results>/benchmarks/simulate/{experiment}/{point}.tsv"
     wildcard_constraints:
         experiment=pattern(trajectories=True),
     priority: 1
@@ -36,9 +36,9 @@ rule compute:
     output:
         f"{config['points']}/{{experiment}}/{{point}}.nc",
     log:
-        "results/logs/compute/{experiment}/{point}.log",
+        "<results>/logs/compute/{experiment}/{point}.log",
     benchmark:
-        "results/benchmarks/compute/{experiment}/{point}.tsv"
+        "<results>/benchmarks/compute/{experiment}/{point}.tsv"
     wildcard_constraints:
         experiment=pattern(trajectories=False),
     priority: 1

@@ -10,9 +10,9 @@ rule warm:
     output:
         touch("results/kernels/{digest}/{variant}.stamp"),
     log:
-        "results/logs/warm/{digest}/{variant}.log",
+        "<results>/logs/warm/{digest}/{variant}.log",
     benchmark:
-        "results/benchmarks/warm/{digest}/{variant}.tsv"
+        "<results>/benchmarks/warm/{digest}/{variant}.tsv"
     priority: 2
     conda:
         "../envs/gaspart.yaml"

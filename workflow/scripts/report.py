@@ -48,6 +48,7 @@ with job(snakemake):
     from gaspart.yaml_text import read_yaml
 
     params, given = snakemake.params, snakemake.input
+    folder = Path(snakemake.output[0]).parent  # of this run
     claims = [row | {"id": f"claim-{n}"} for n, row in enumerate(table.read(given.claims), 1)]
     of_figure = {figure: [row for row in claims if row["figure"] == figure] for figure in params.figures}
     captions = {Path(path).stem: Path(path).read_text(encoding="utf-8") for path in given.captions}
@@ -83,6 +84,7 @@ with job(snakemake):
     text = environment.get_template(Path(given.template).name).render(
         title=params.title,
         one_file=params.one_file,
+        folder=folder,
         sections=[section for own in of_chapter.values() for section in own],
         chapters=of_chapter,
         pictures=pictures,
@@ -98,7 +100,7 @@ with job(snakemake):
         references=sources,
         words=table.COUNTED,
         kinds=table.PLURALS,
-        times=run_times("results/benchmarks"),
+        times=run_times(folder / "benchmarks"),
         versions={"gaspart": __version__, "python": platform.python_version()}
         | {name: version(name) for name in TOOLS},
         machine=f"{platform.machine()}, {os.cpu_count()} processors, {platform.system()}",

@@ -21,6 +21,12 @@ from gaspart.reproduction.points.keys import (
 
 _NAME = {"pattern": r"^[a-z][a-z0-9_]*$(?!\n)", "maxLength": 100}  # $ matches before a final line break too
 
+_TAKEN = (
+    *("animations", "benchmarks", "claims", "coverage", "docs", "figures", "kernels", "logs"),
+    *("measurements", "points", "tables"),
+)
+"""Folders of `results`, which are no names of a run."""
+
 
 def _of_any_engine() -> dict[str, Kind]:
     """The keys of all engines; what one means is stated for each engine that has another meaning of it."""
@@ -107,7 +113,15 @@ def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
         ),
         "points": described(
             {**TEXT, "pattern": r"^results(/[A-Za-z0-9_.-]*[A-Za-z0-9_-])+$(?!\n)", "maxLength": 200},
-            "the folder of the simulations; figures, claims and report always lie in `results`",
+            "the folder of the simulations, which several runs may share",
+        ),
+        "run": nullable(
+            described(
+                {**TEXT, "pattern": rf"^(?!({'|'.join(_TAKEN)})$){_NAME['pattern'][1:]}", "maxLength": 100},
+                "a name: figures, claims, tables, logs and report are then in `results/<run>`, instead of "
+                "`results`, where they replace those of no other run",
+                default=None,
+            )
         ),
         "experiments": described(
             {**named, "minProperties": 1, "additionalProperties": record(EXPERIMENT)}, "what is simulated"
