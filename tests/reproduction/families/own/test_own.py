@@ -9,6 +9,8 @@ import pytest
 from reproduction.families.drawn import Points, draw, line, lines, shows
 
 import gaspart as gp
+from gaspart.analysis import measuring
+from gaspart.analysis.names import CURVES, OBSERVABLES
 from gaspart.analysis.observable import observable as made
 from gaspart.errors import SceneError
 from gaspart.reproduction import sweep_table
@@ -151,6 +153,20 @@ def test_a_curve_is_drawn_for_each_point_and_may_be_taken_at_one_place(simulated
     contact = measured(simulated, observable="rdf", place=1.0)
     nearest = np.nanargmin(np.abs(dataset["along_places"].values - 1.0), axis=1)
     assert np.allclose(contact["value"], dataset["value"].values[[0, 1], nearest])
+
+
+def test_the_names_of_the_curves_are_known(simulated):
+    (path, *_) = simulated[0].replica_paths
+    curves = set()
+    with gp.open_trajectory(path) as trajectory:
+        for name in OBSERVABLES:
+            try:
+                found = measuring.measure(name, trajectory)
+            except SceneError:  # needs another run
+                continue
+            if any(found[dim].dtype.kind in "fiu" for dim in found.estimate.dims):
+                curves.add(name)
+    assert {"rdf", "speeds"} <= curves <= set(CURVES) <= set(OBSERVABLES)
 
 
 def test_an_observable_with_names_has_a_series_for_each(simulated, monkeypatch):
