@@ -19,10 +19,8 @@ from gaspart.reproduction.points.keys import (
     SCENE_FILE,
 )
 
-_NAME: Kind = {
-    "pattern": r"^[a-z][a-z0-9_]*$(?!\n)",
-    "maxLength": 100,
-}  # $ matches before a final line break too
+# $ matches before a final line break too
+_NAME: Kind = {"pattern": r"^[a-z][a-z0-9_]*$(?!\n)", "maxLength": 100}
 
 _TAKEN = (
     *("animations", "benchmarks", "claims", "coverage", "docs", "figures", "kernels", "logs"),
