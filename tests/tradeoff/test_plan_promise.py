@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.analysis.names import measure
+from gaspart.analysis.measuring import measure
 from gaspart.errors import SceneError
 from gaspart.tradeoff import pilot, plan
 from gaspart.tradeoff.pilot import speed_of
