@@ -20,9 +20,9 @@ def test_the_first_and_the_last_packing_are_drawn_with_their_packing_fractions(m
     titles = [axis.get_title() for axis in axes]
     assert "periodic" in titles[0] and "0.3760(10)" in titles[0]
     assert "jammed" in titles[1] and "0.6410(10)" in titles[1]
-    for k, (axis, bodies) in enumerate(zip(axes, drawn[-2:], strict=True)):
+    for k, (axis, bodies) in enumerate(zip(axes, drawn, strict=True)):
         one = ds.isel(packing=k)
-        assert np.all(axis.images[0].get_array() == k + 3)
+        assert np.all(axis.images[0].get_array() == k + 1)
         assert np.array_equal(bodies.positions, one["position"])
         assert np.all(bodies.radii == float(one["radius"]))
         assert np.array_equal(bodies.lengths, one["length"])

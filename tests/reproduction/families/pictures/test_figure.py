@@ -41,7 +41,7 @@ def test_the_particles_of_the_data_set_are_drawn(monkeypatch, dataset, function,
     monkeypatch.setattr(pictures, "colours_of", lambda bodies, by: coloured.append(by))
     figure = draw(function, dataset)
     bodies = drawn[-1]
-    assert coloured == 2 * [colour]
+    assert coloured == [colour]
     columns = {"positions": "position", "radii": "radius", "species": "species", "speeds": "speed"}
     for name, column in {**columns, "lengths": "length"}.items():
         assert np.array_equal(getattr(bodies, name), dataset[column])
