@@ -59,6 +59,7 @@ WITH = {
     "polydispersity": {"species": [gp.Species(3, 0.5, temperature=1.0, polydispersity=0.1)]},
     "centres_to_walls": {"centres_to_walls": True},
     "thermal": {"faces": {"x_low": gp.Thermal(1.0)}},
+    "sliding": {"faces": {"x_low": gp.Thermal(1.0, velocity=(0.0, 1.0))}},
     "well": {"faces": {"x_low": gp.Well(1.0, 0.5)}},
     "sticky": {"faces": {"x_low": gp.Sticky(1.0)}},
     "vibrating": {"faces": {"x_low": gp.Vibrating(0.1, 1.0)}},
