@@ -136,6 +136,7 @@ def _normal(axis: Axes, flows: xr.Dataset) -> None:
         axis.plot(fine, slope * fine, color=style.COLOURS[kind], lw=0.8)
     axis.set_xlim(0.0, fine[-1])
     axis.set_ylim(*(1.6 * fine[-1] * slope for slope in (-1.2, 2.0)))
+    axis.locator_params(axis="x", nbins=5)
     axis.set_xlabel("squared stress over pressure $a^2$")
     axis.set_ylabel("normal stress / mean $-$ 1")
     axis.legend(loc="upper left")
