@@ -206,7 +206,7 @@ JOB = """
     recipe |= {"sample_interval": 1e6, "displacements": False, "follow": None, "correlations": None}
     snakemake = SimpleNamespace(
         rule="simulate", wildcards=["gas"], log=[str(folder / "log")], output=[str(folder / "point")],
-        params=SimpleNamespace(parameters=recipe),
+        params=SimpleNamespace(parameters=recipe, job="simulate"),
     )
     sys.path.insert(0, str(Path(script).parent))
     exec(Path(script).read_text())

@@ -135,7 +135,7 @@ def test_a_checkpoint_that_lacks_anything_is_refused(engine):
 def test_the_names_of_engines_are_not_engines():
     for wrong in ("event", gp.EventDriven, None):
         with pytest.raises(
-            gp.SceneError, match=r"engine = .*must be an engine: EventDriven\(\) or TimeStepped"
+            gp.SceneError, match=r"engine = .*must be an engine: EventDriven\(\), TimeStepped"
         ):
             gp.Simulation(DISCS, wrong)
     with pytest.raises(gp.SceneError, match="scene = 'gas.yaml': must be a Scene"):
