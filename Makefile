@@ -34,6 +34,10 @@ all: setup
 
 setup: .venv/gaspart.stamp
 
+# Packages are installed without bytecode (see below). Where this is set, each of some hundred processes would compile
+# anew what it imports, which takes two seconds.
+unexport PYTHONDONTWRITEBYTECODE
+
 # All packages are listed with their dependencies. If pip looked for these again, it would refuse a release newer than
 # the one listed.
 # Nothing is compiled to bytecode, which takes a minute: Python does so with what it imports, a small part of all.
