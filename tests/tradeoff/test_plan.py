@@ -32,7 +32,7 @@ def test_the_advised_run_reaches_the_accuracy(tmp_path):
     )  # fmt: skip
     (reached,) = gp.reached_accuracy(path)
     assert reached.met and 1.96 * reached.accuracy <= 0.05
-    assert plan.plan(BOX, "pressure", 0.05, pilot_seconds=0.4).flown[0].seconds == 0.0  # kept from before
+    assert plan.plan(BOX, "pressure", 0.05, pilot_seconds=0.4).pilots[0].seconds == 0.0  # kept from before
 
 
 def test_dilute_gases_are_advised_to_draw_partners():

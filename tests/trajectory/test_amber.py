@@ -154,7 +154,7 @@ def test_a_file_states_its_recipe(tmp_path):
 @pytest.mark.parametrize("length", range(1000, 9000, 500))
 def test_frames_begin_where_the_header_ends(tmp_path, length):
     """Whatever its length: the library returns memory by the page, with more than the header."""
-    layout = amber.Layout(3, 2, [], 0, amber.counters(gp.EventDriven()), [], 0)
+    layout = amber.Layout(3, 2, [], 0, amber.counters(gp.EventDriven()), [], {})
     header = layout.header({"note": "x" * length}, np.ones(3), np.zeros(3, int))
     frame = np.zeros(1, layout.frame)
     frame["time"] = 7.0

@@ -129,13 +129,12 @@ def diffusion_coefficient(
             rule = "has no periodic axis: displacements between walls are bounded, and there is no D"
             raise SceneError("container.boundary", run.scene.container.boundary, rule)
         _require_spheres(run, run.conserved)
-        _require_groups(run)
-        lags = _lags_of_slopes(run)
-        lasting = _lasting_momentum(run, lags[1] * _stride(run))
-        _require_spheres(run, lasting)
         chosen = _chosen(run, species, None)
         if len(chosen) < GROUPS:
             raise SceneError("species", species, f"an error needs {GROUPS} moving particles or more")
+        lags = _lags_of_slopes(run)
+        lasting = _lasting_momentum(run, lags[1] * _stride(run))
+        _require_spheres(run, lasting)
         slopes = _slopes(_groups(run, about=lasting, chosen=chosen), lags)[..., run.periodic]
         names = np.array(list("xyz"[: run.dimension]))[run.periodic]
         along: dict[str, Any] = {"axis": (names, {"long_name": "axis"})}

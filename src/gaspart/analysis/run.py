@@ -213,7 +213,8 @@ def selected(run: Run, species: int | None, particles: Sequence[int] | None) -> 
             raise SceneError("particles", max(wanted), f"there are {run.count}, numbered from 0")
         chosen = np.flatnonzero(np.isin(moving, wanted))
     if not chosen.size:
-        raise SceneError("species" if particles is None else "particles", species, "none of them moves")
+        key, value = ("species", species) if particles is None else ("particles", list(particles))
+        raise SceneError(key, value, "none of them moves")
     return chosen
 
 

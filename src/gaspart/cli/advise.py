@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING
 
 from gaspart.analysis.names import OBSERVABLES, known
 from gaspart.cli.arguments import Parser, UsageError, of_configs, print_line, real, set_command
-from gaspart.cli.engine_options import one_of, run_options, stated
+from gaspart.cli.engine_options import one_of, stated
 from gaspart.cli.progress import waiting
+from gaspart.cli.run import run_options
 from gaspart.engines import TimeStepped
 from gaspart.scene.scene import Scene
+from gaspart.tradeoff import PILOT_SECONDS
 
 if TYPE_CHECKING:
     from gaspart.tradeoff.advice import Advice, Setting
@@ -45,8 +47,8 @@ def add_advise(parser: Parser) -> None:
     add("--observable", default="Z", metavar="NAME", help=f"{one_of(OBSERVABLES)}; default: Z")
     add("--accuracy", type=real(above=0.0), default=1e-2, metavar="X", help="relative; default: 0.01")
     add("--budget", type=_seconds, metavar="S", help="largest processor time, in s (60 or 60s)")
-    text = "processor time of all pilot runs, in s; default: 20"
-    add("--pilot", type=_seconds, default=20.0, metavar="S", help=text)
+    text = f"processor time of all pilot runs, in s; default: {PILOT_SECONDS:g}"
+    add("--pilot", type=_seconds, default=PILOT_SECONDS, metavar="S", help=text)
     add("--config", metavar="FILE", help="a config instead of a scene")
 
 
@@ -79,7 +81,7 @@ def _advise(given: argparse.Namespace) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of coarse settings, whose error is stated in the table
         made = plan(scene, given.observable, given.accuracy, given.budget, given.pilot, announce)
-    print_line("\n".join(plan_lines(made, given.scene)))
+    print_line("\n".join(_plan_lines(made, given.scene)))
 
 
 def _lines(advice: Advice, file: str) -> list[str]:
@@ -124,7 +126,7 @@ def _command(recipe: Recipe, file: str) -> str:
     return shlex.join(["gaspart", "run", file, *run_options(Path("run.nc"), recipe)])
 
 
-def plan_lines(plan: Plan, file: str) -> list[str]:
+def _plan_lines(plan: Plan, file: str) -> list[str]:
     """The advice of pilot runs as text. file: of the scene, for the command."""
     best = plan.best
     lines = [f"engine            {_settings(best)}"]
@@ -138,7 +140,7 @@ def plan_lines(plan: Plan, file: str) -> list[str]:
     lines += _drawn(plan.observable, plan.scatter)
     if not plan.affordable:
         lines.append(_shortfall(plan))
-    for pilot in plan.flown:
+    for pilot in plan.pilots:
         cost = f"{pilot.seconds:.2g} s" if pilot.seconds else "kept from before"
         shown = f"{pilot.value:.4g} to {100.0 * pilot.accuracy:.2g} %" if pilot.measured else pilot.rule
         lines.append(f"pilot             {pilot.engine.title}, {cost}: {shown}")

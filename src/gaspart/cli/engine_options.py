@@ -4,18 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from gaspart.cli.arguments import Parser, alone, several
-from gaspart.engines import ENGINES, engine_to_dict
+from gaspart.engines import ENGINES
 from gaspart.errors import SceneError, shown
 from gaspart.kinds import Kind
 from gaspart.scene.keys import schema_of
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from gaspart.trajectory.recipe import Recipe
 
 
 @cache
@@ -86,29 +81,3 @@ def stated(settings: dict) -> list[str]:
 def joined(numbers: float | tuple[int, ...] | list[int]) -> str:
     """Numbers as an option takes them."""
     return ",".join(map(repr, numbers)) if isinstance(numbers, tuple | list) else repr(numbers)
-
-
-def run_options(path: Path, recipe: Recipe) -> list[str]:
-    """The options of `gaspart run` for a recipe."""
-    settings = engine_to_dict(recipe.engine)
-    options = ["-o", str(path), "--engine", settings["name"], "--seed", joined(recipe.seed)]
-    if recipe.until is None:
-        options += ["--duration", repr(recipe.duration)]
-    else:
-        asked = recipe.until.accuracies
-        options += ["--until", ",".join(f"{one.name}={one.accuracy!r}" for one in asked)]
-        options += [] if asked[0].start is None else ["--start", repr(asked[0].start)]
-        options += [] if recipe.until.at_most is None else ["--at-most", repr(recipe.until.at_most)]
-    options += ["--sample-interval", repr(recipe.sample_interval)]
-    options += stated(settings)
-    if recipe.displacements:
-        options.append("--displacements")
-    if recipe.pairs:
-        options.append("--pairs")
-    if recipe.follow is not None:
-        options += ["--follow", str(recipe.follow)]
-    if recipe.correlations is not None:
-        asked = recipe.correlations
-        options += ["--correlations", f"{asked.interval!r},{asked.lags},{asked.start!r}"]
-        options += ["--stress"] if asked.stress else []
-    return options

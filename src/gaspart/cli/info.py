@@ -26,7 +26,7 @@ def add_info(parser: Parser) -> None:
 
 
 def _info(given: argparse.Namespace) -> None:
-    from gaspart.cli.engine_options import run_options
+    from gaspart.cli.run import run_options
     from gaspart.inspection.certificate import certificate
     from gaspart.trajectory.recipe import PARTIAL, check_frames, opened, read_recipe
     from gaspart.trajectory.run import partial_path

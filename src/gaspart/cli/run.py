@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaspart.cli.arguments import Parser, UsageError, alone, print_line, set_command, several
-from gaspart.cli.engine_options import add_setting, as_option, engine_settings, one_of
+from gaspart.cli.engine_options import add_setting, as_option, engine_settings, joined, one_of, stated
 from gaspart.cli.progress import clear_line, progress, waiting
-from gaspart.engines import ENGINES, engine_from_dict
+from gaspart.engines import ENGINES, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.interruption import set_note
 from gaspart.kernels.compile.loading import load_numba
@@ -22,6 +22,7 @@ from gaspart.trajectory.until import OBSERVABLES, Accuracy
 if TYPE_CHECKING:
     from gaspart.tradeoff.reached import Reached
     from gaspart.trajectory.correlator import Correlations
+    from gaspart.trajectory.recipe import Recipe
 
 _PREPARING = "placing particles, compiling kernels (once for each kind of scene)"
 
@@ -238,3 +239,29 @@ def accuracy_lines(path: Path) -> list[str]:
     if path.suffix != PARTIAL and not all(one.met for one in reached):
         lines.append("the longest duration (--at-most) ended the run before all were reached")
     return lines
+
+
+def run_options(path: Path, recipe: Recipe) -> list[str]:
+    """The options with which `gaspart run` has a recipe."""
+    settings = engine_to_dict(recipe.engine)
+    options = ["-o", str(path), "--engine", settings["name"], "--seed", joined(recipe.seed)]
+    if recipe.until is None:
+        options += ["--duration", repr(recipe.duration)]
+    else:
+        asked = recipe.until.accuracies
+        options += ["--until", ",".join(f"{one.name}={one.accuracy!r}" for one in asked)]
+        options += [] if asked[0].start is None else ["--start", repr(asked[0].start)]
+        options += [] if recipe.until.at_most is None else ["--at-most", repr(recipe.until.at_most)]
+    options += ["--sample-interval", repr(recipe.sample_interval)]
+    options += stated(settings)
+    if recipe.displacements:
+        options.append("--displacements")
+    if recipe.pairs:
+        options.append("--pairs")
+    if recipe.follow is not None:
+        options += ["--follow", str(recipe.follow)]
+    if recipe.correlations is not None:
+        asked = recipe.correlations
+        options += ["--correlations", f"{asked.interval!r},{asked.lags},{asked.start!r}"]
+        options += ["--stress"] if asked.stress else []
+    return options

@@ -124,15 +124,20 @@ def fluid_of(scene: Scene) -> Gas:
     return gas
 
 
+def is_driven(scene: Scene) -> bool:
+    """Whether a thermostat, or a face that is at a temperature or moves, exchanges energy with the
+    particles."""
+    return scene.thermostat is not None or any(
+        face.moves or getattr(face, "temperature", None) for face in scene.faces.values()
+    )
+
+
 def temperature_scatter(scene: Scene) -> float:
     """Relative standard deviation, from run to run, of the temperature of a scene whose energy is conserved:
     velocities that are drawn have that of their species only on average."""
     drawn = any(kind.temperature is not None and not kind.exact_temperature for kind in scene.species)
-    law, faces = scene.restitution, scene.faces.values()
-    heated = scene.thermostat is not None or any(
-        face.moves or getattr(face, "temperature", None) for face in faces
-    )
-    if not drawn or heated or (law is not None and law.dissipative):
+    law = scene.restitution
+    if not drawn or is_driven(scene) or (law is not None and law.dissipative):
         return 0.0
     return math.sqrt(2.0 / (scene.dimension * scene.count))
 

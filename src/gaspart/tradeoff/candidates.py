@@ -15,6 +15,7 @@ from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
 from gaspart.engines.dsmc.rates import contact_values, rates
 from gaspart.engines.step.limits import missed_contacts
 from gaspart.errors import SceneError
+from gaspart.scene.faces import sliding_faces
 from gaspart.scene.scene import Scene
 from gaspart.state.initial import initial_state
 
@@ -81,8 +82,7 @@ def _step(scene: Scene, observable: str, accuracy: float) -> Candidate:
     if not missed > 0.0 or not met > 0.0:
         raise SceneError("time_step", None, "follows from contacts, which particles at rest do not have")
     longest = min(math.sqrt(_SHARE * accuracy / (_SAFE * missed)), _LONGEST_STEP / met)
-    step = float(f"{longest:.1g}")
-    step = step if step <= longest else float(f"{0.9 * longest:.1g}")
+    step = float(f"{0.95 * longest:.2g}")  # not above the longest, however it is rounded
     return Candidate(TimeStepped(step), discretisation=_SAFE * missed * step**2, gives_up="exact contacts")
 
 
@@ -103,7 +103,7 @@ def _enskog(scene: Scene, observable: str, accuracy: float) -> Candidate:
         rule = f"the Enskog model is known up to {_DENSEST:g}"
         raise SceneError("packing_fraction", round(filled, 4), rule)
     engine, model = DSMC(model="enskog"), _STATIC
-    if observable in TRANSPORT or _driven(scene):
+    if observable in TRANSPORT or _flows(scene):
         model += _memory(filled, scene.dimension)
     gives_up = "correlated collisions, positions of pairs"
     return Candidate(engine, model, _discretisation(engine, scene, observable), gives_up)
@@ -114,17 +114,17 @@ def _require_no_structure(observable: str) -> None:
         raise SceneError("observable", observable, "is of the positions of pairs, which DSMC does not have")
 
 
-def _driven(scene: Scene) -> bool:
+def _flows(scene: Scene) -> bool:
     """Whether something drives a flow of heat or of momentum, which transport coefficients govern."""
     hot = {getattr(face, "temperature", None) for face in scene.faces.values()} - {None}
     lost = scene.restitution is not None and scene.restitution.dissipative
-    return len(hot) > 1 or lost
+    return len(hot) > 1 or lost or bool(sliding_faces(scene))
 
 
 def _discretisation(engine: DSMC, scene: Scene, observable: str) -> float:
     """The error of cells and steps: in the viscosity, and in what depends on it. Rates and pressures of an
     even gas have none."""
-    if observable not in TRANSPORT and not _driven(scene):
+    if observable not in TRANSPORT and not _flows(scene):
         return 0.0
     return engine.predictions(scene)["viscosity_error"]
 

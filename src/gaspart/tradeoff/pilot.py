@@ -114,7 +114,7 @@ def _crossing(scene: Scene) -> float:
     return min(scene.container.lengths) / fastest
 
 
-def fly(scene: Scene, engine: Engine, observable: str, seconds: float, speed: float) -> Pilot:
+def run_pilot(scene: Scene, engine: Engine, observable: str, seconds: float, speed: float) -> Pilot:
     """A run of about so many processor seconds, measured; speed: as from `speed_of`. An observable that it is
     too short for is not measured. Raises SceneError for one that the scene does not have."""
     duration, interval, correlations = schedule(scene, engine, observable, seconds / speed)

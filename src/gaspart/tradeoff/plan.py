@@ -17,17 +17,15 @@ from gaspart.analysis.run import EQUILIBRATION
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
-from gaspart.tradeoff import pilot as pilots
-from gaspart.tradeoff.advice import ACCURACIES, temperature_scatter
+from gaspart.tradeoff import PILOT_SECONDS
+from gaspart.tradeoff.advice import ACCURACIES, is_driven, temperature_scatter
 from gaspart.tradeoff.candidates import Candidate, candidates
-from gaspart.tradeoff.pilot import Pilot
+from gaspart.tradeoff.pilot import Pilot, run_pilot, schedule, speed_of
 from gaspart.tradeoff.reached import bound
 from gaspart.tradeoff.table import QUANTILE
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.until import OBSERVABLES, Accuracy, Until
 
-PILOT_SECONDS = 20.0
-"""Processor time of all pilots of an advice, by default."""
 _WORTH = 3.0
 """How many times as cheap as the first engine one must be to have a pilot of its own."""
 _DIFFERS = 2.5
@@ -61,7 +59,7 @@ class Option:
 @dataclass(frozen=True)
 class Plan:
     """The advice for a scene. options: of each engine, the best first; refused: why others cannot run it;
-    value: of the observable by the pilots; flown: the pilots; affordable: whether the best reaches the
+    value: of the observable by the pilots; pilots: their results; affordable: whether the best reaches the
     accuracy within the budget."""
 
     scene: Scene
@@ -70,7 +68,7 @@ class Plan:
     options: tuple[Option, ...]
     refused: dict[str, str]
     value: float
-    flown: tuple[Pilot, ...]
+    pilots: tuple[Pilot, ...]
     affordable: bool
 
     @property
@@ -91,14 +89,14 @@ class Plan:
         scene, engine, correlations = self.scene, best.candidate.engine, None
         duration, interval = best.duration, float(f"{best.duration / _FRAMES:.2g}")
         if self.observable in FLUXES:
-            duration, interval, correlations = pilots.schedule(scene, engine, self.observable, duration)
+            duration, interval, correlations = schedule(scene, engine, self.observable, duration)
         elif quantum := engine.resolved(scene).quantum:
             engine = engine.resolved(scene)
             interval = max(1, round(interval / quantum)) * quantum
         until = None
         if self.observable in OBSERVABLES and self.affordable:
             relative = (self.accuracy - best.bias) / QUANTILE
-            asked = Accuracy(self.observable, float(f"{0.99 * relative:.2g}"))
+            asked = Accuracy(self.observable, float(f"{0.99 * relative:.3g}"))
             until = Until((asked,), at_most=float(f"{_LONGEST * duration:.2g}"))
         fixed = None if until else max(1, round(duration / interval)) * interval
         pairs = self.observable in PAIRS
@@ -117,7 +115,7 @@ def plan(
     measure`.
 
     budget: processor time in seconds of the run; if it does not suffice, the most accurate run within it is
-    advised. pilot_seconds: of all pilots together. announce(text): is told of each pilot.
+    advised. pilot_seconds: of all pilots together. announce(text): is called before each pilot.
 
     Raises SceneError for a scene without a steady state, and for an observable that it does not have, or of
     which the pilots are too short to say anything.
@@ -136,13 +134,13 @@ def plan(
     speeds = []
     for one in able:
         announce(f"timing the {one.engine.title} engine")
-        speeds.append(pilots.speed_of(scene, one.engine, observable))
-    flown = _fly(scene, observable, list(zip(able, speeds, strict=True)), pilot_seconds, announce)
+        speeds.append(speed_of(scene, one.engine, observable))
+    pilots = _run_pilots(scene, observable, list(zip(able, speeds, strict=True)), pilot_seconds, announce)
     biases = {one.engine: one.bias for one in able}
-    measured = [one for one in flown if 0.0 < one.accuracy < math.inf]
+    measured = [one for one in pilots if 0.0 < one.accuracy < math.inf]
     faithful = [one for one in measured if biases[one.engine] < accuracy] or measured
     if not faithful:
-        rule = f"{flown[0].rule or 'does not change in the pilot run'}; allow longer pilots"
+        rule = f"{pilots[0].rule or 'does not change in the pilot run'}; allow longer pilots"
         raise SceneError("observable", observable, rule)
     longest = max(faithful, key=lambda one: one.measured)
     options = [
@@ -151,7 +149,7 @@ def plan(
     ]
     options.sort(key=lambda one: (max(one.half_width, accuracy * (1.0 + 1e-9)), one.seconds))
     reached = options[0].half_width <= accuracy * (1.0 + 1e-6)
-    return Plan(scene, observable, accuracy, tuple(options), refused, longest.value, tuple(flown), reached)
+    return Plan(scene, observable, accuracy, tuple(options), refused, longest.value, tuple(pilots), reached)
 
 
 def _require_steady(scene: Scene) -> None:
@@ -159,15 +157,12 @@ def _require_steady(scene: Scene) -> None:
     if not scene.count:
         raise SceneError("count", 0, "advice is for a gas: the scene is empty")
     law = scene.restitution
-    driven = scene.thermostat is not None or any(
-        face.moves or getattr(face, "temperature", None) for face in scene.faces.values()
-    )
-    if law is not None and law.dissipative and not driven:
+    if law is not None and law.dissipative and not is_driven(scene):
         rule = "loses energy that nothing returns: there is no steady state to measure; give a duration"
         raise SceneError("restitution.normal", law.normal, rule)
 
 
-def _fly(
+def _run_pilots(
     scene: Scene,
     observable: str,
     timed: list[tuple[Candidate, float]],
@@ -179,11 +174,11 @@ def _fly(
     cheapest = min(timed, key=lambda one: one[1])
     if cheapest[1] * _WORTH < timed[0][1]:
         chosen.append(cheapest)
-    flown = []
+    pilots = []
     for one, speed in chosen:
         announce(f"a pilot run, {one.engine.title} engine, {seconds / len(chosen):.2g} s")
-        flown.append(pilots.fly(scene, one.engine, observable, seconds / len(chosen), speed))
-    return flown
+        pilots.append(run_pilot(scene, one.engine, observable, seconds / len(chosen), speed))
+    return pilots
 
 
 def _bias(candidate: Candidate, measured: list[Pilot]) -> float:

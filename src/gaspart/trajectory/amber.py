@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import struct
 import zlib
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import fields
 from typing import BinaryIO
 
@@ -67,8 +67,8 @@ class Layout:
     """The variables of one frame, in their order in the file: name -> (type, dimensions, attributes).
 
     count: particles in the file; extra: which variables of `_EXTRA` the file has; walls: the number of
-    interior walls; counters: names of those that the file has; sums: of the correlations, from lag 0 to
-    `lags`; pairs: names of those of species whose collisions are counted.
+    interior walls; counters: names of those that the file has; sums: of the correlations; axes: the lengths
+    of the axes that not every file has, `lag` and `pair`.
     """
 
     def __init__(
@@ -79,8 +79,7 @@ class Layout:
         walls: int,
         counters: Collection[str],
         sums: Collection[str],
-        lags: int,
-        pairs: Collection[str] = (),
+        axes: Mapping[str, int],
     ) -> None:
         self.sizes = {
             "spatial": 3,
@@ -94,9 +93,8 @@ class Layout:
                 for axis in ("axis", "direction")
                 if any(axis in _ALONG[it] for it in counters)
             },
-            **({"lag": lags + 1} if sums else {}),
+            **axes,
             **({"motion": 2} if "piston" in extra else {}),
-            **({"pair": len(pairs)} if pairs else {}),
         }
         faces = {"faces": ", ".join(face_names(dimension, walls))}
         self.variables = {

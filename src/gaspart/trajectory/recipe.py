@@ -156,13 +156,14 @@ class Recipe:
             "pair_collisions": self.pairs,
         }
         extra = [name for name, present in names.items() if present]
-        sums, lags = [], 0
+        sums, axes = [], {}
         if self.correlations:
             sums = stress_sums() if self.stress else sums_of(self.displacements)
-            lags = self.correlations.lags
+            axes["lag"] = self.correlations.lags + 1
+        if self.pairs:
+            axes["pair"] = len(pair_names(scene))
         counters = amber.counters(self.engine, self.tallied)
-        pairs = pair_names(scene) if self.pairs else []
-        return amber.Layout(self.stored_count, scene.dimension, extra, walls, counters, sums, lags, pairs)
+        return amber.Layout(self.stored_count, scene.dimension, extra, walls, counters, sums, axes)
 
     def attributes(self) -> dict:
         """The recipe as the file's attributes, from which `read_recipe` restores it."""
