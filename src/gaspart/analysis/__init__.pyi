@@ -5,6 +5,7 @@ from gaspart.analysis.mixtures import pair_collision_rates as pair_collision_rat
 from gaspart.analysis.motion import diffusion_coefficient as diffusion_coefficient
 from gaspart.analysis.motion import mean_squared_displacement as mean_squared_displacement
 from gaspart.analysis.motion import velocity_autocorrelation as velocity_autocorrelation
+from gaspart.analysis.mutual import mutual_diffusion as mutual_diffusion
 from gaspart.analysis.observable import Observable as Observable
 from gaspart.analysis.pairs import rdf as rdf
 from gaspart.analysis.pairs import structure_factor as structure_factor

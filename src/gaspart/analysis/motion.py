@@ -128,13 +128,14 @@ def diffusion_coefficient(
         if not run.periodic.any():
             rule = "has no periodic axis: displacements between walls are bounded, and there is no D"
             raise SceneError("container.boundary", run.scene.container.boundary, rule)
-        _require_spheres(run, run.conserved)
+        require_spheres(run, run.conserved)
         chosen = _chosen(run, species, None)
         if len(chosen) < GROUPS:
             raise SceneError("species", species, f"an error needs {GROUPS} moving particles or more")
-        lags = _lags_of_slopes(run)
-        lasting = _lasting_momentum(run, lags[1] * _stride(run))
-        _require_spheres(run, lasting)
+        stride = _stride(run)
+        lags = lags_of_slopes(run, stride)
+        lasting = _lasting_momentum(run, lags[1] * stride)
+        require_spheres(run, lasting)
         slopes = _slopes(_groups(run, about=lasting, chosen=chosen), lags)[..., run.periodic]
         names = np.array(list("xyz"[: run.dimension]))[run.periodic]
         along: dict[str, Any] = {"axis": (names, {"long_name": "axis"})}
@@ -164,7 +165,7 @@ def _require_groups(run: Run) -> None:
         raise SceneError("count", count, f"an error needs {GROUPS} moving particles or more")
 
 
-def _require_spheres(run: Run, lasting: np.ndarray) -> None:
+def require_spheres(run: Run, lasting: np.ndarray) -> None:
     """Raise SceneError for discs whose total momentum lasts along an axis."""
     if run.dimension == 2 and lasting.any():
         rule = "discs have no diffusion coefficient: their squared displacement grows like t ln t"
@@ -178,9 +179,9 @@ def linear_lags(rate: float, interval: float) -> tuple[int, int, int]:
     return first, middle, last
 
 
-def _lags_of_slopes(run: Run) -> tuple[int, int, int]:
-    """The `linear_lags` of a run, no two of them equal. Raises SceneError for too few frames."""
-    stride = _stride(run)
+def lags_of_slopes(run: Run, stride: int = 1) -> tuple[int, int, int]:
+    """The `linear_lags` of a run, of which every so many frames are taken, no two of them equal. Raises
+    SceneError for too few frames."""
     interval = float(np.diff(run.time).mean()) * stride
     collisions = float(run.increments("collisions").sum())
     duration = float(run.time[-1] - run.time[0])
@@ -284,7 +285,7 @@ def _groups(
         return [motion[first : first + length] for first in range(0, GROUPS * length, length)]
 
     return _Groups(
-        paths=parts(_unwrapped(run)[::stride, moving]) if paths else [],
+        paths=parts(unwrapped(run)[::stride, moving]) if paths else [],
         velocities=parts(run.velocities[::stride, moving]),
         interval=float(steps.mean()) * stride,
     )
@@ -295,7 +296,7 @@ def _stride(run: Run) -> int:
     return -(-len(run.time) // MOST_FRAMES)
 
 
-def _unwrapped(run: Run) -> np.ndarray:
+def unwrapped(run: Run) -> np.ndarray:
     """(T, N, d) positions continued across periodic faces: those of the file, or by the nearest image."""
     if "displacements" in run.data:
         return run.data["displacements"].values

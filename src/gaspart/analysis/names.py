@@ -22,6 +22,7 @@ OBSERVABLES: dict[str, tuple[str, dict[str, Any], str]] = {
     ),
     "msd": ("mean_squared_displacement", {}, "mean-squared displacement"),
     "D": ("diffusion_coefficient", {}, "diffusion coefficient"),
+    "mutual_diffusion": ("mutual_diffusion", {}, "mutual diffusion of two species, periodic"),
     "vacf": ("velocity_autocorrelation", {}, "velocity autocorrelation"),
     "speeds": ("speed_distribution", {}, "distribution of speeds"),
     "rdf": ("rdf", {}, "radial distribution function, periodic"),

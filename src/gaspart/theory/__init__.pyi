@@ -80,6 +80,7 @@ from gaspart.theory.insertion import failures_per_body as failures_per_body
 from gaspart.theory.insertion import insertion_saturation as insertion_saturation
 from gaspart.theory.insertion import insertion_saturation_uncertainty as insertion_saturation_uncertainty
 from gaspart.theory.mixtures import MIXTURE_THEORIES as MIXTURE_THEORIES
+from gaspart.theory.mixtures import enskog_mutual_diffusion as enskog_mutual_diffusion
 from gaspart.theory.mixtures import mixture_collision_rates as mixture_collision_rates
 from gaspart.theory.mixtures import mixture_compressibility_factor as mixture_compressibility_factor
 from gaspart.theory.mixtures import mixture_contact_values as mixture_contact_values

@@ -152,3 +152,33 @@ def mixture_collision_rates(
     speeds = np.sqrt(temperature * np.add.outer(inverse, inverse) / (2.0 * math.pi))
     between = 0.5 * np.add.outer(sizes, sizes)
     return unit_sphere_surface(dimension) * densities * between ** (dimension - 1) * speeds * contact
+
+
+@checked
+def enskog_mutual_diffusion(
+    packing_fraction: float,
+    dimension: int,
+    diameters: Sizes,
+    fractions: Sizes | None = None,
+    theory: str = "santos",
+    temperature: float = 1.0,
+    masses: Numbers | Sizes = 1.0,
+) -> float:
+    """Coefficient of mutual diffusion of two species by Maxwell and Stefan, in length^2 / time: Enskog's in
+    the first approximation of Sonine polynomials,
+
+        D_12 = d k_B T x_2 / (4 mu_12 nu_12),
+
+    nu_12 of `mixture_collision_rates`; for spheres 3 / (8 n sigma_12^2 g_12) sqrt(k_B T / (2 pi mu_12))
+    (Chapman and Cowling 1970, 9.81 and 16.9; without the thermodynamic factor). Arguments as there; the unit
+    of length is that of the diameters. Higher approximations add 2 % for equal masses, up to 13 % for a few
+    light particles among heavy ones. Raises SceneError as that, and for other numbers of species than two.
+    """
+    rates = mixture_collision_rates(
+        packing_fraction, dimension, diameters, fractions, theory, temperature, masses
+    )
+    if len(rates) != 2:
+        raise SceneError("diameters", len(rates), "mutual diffusion is that of two species")
+    _, _, parts = _checked(theory, packing_fraction, dimension, diameters, fractions)
+    inverse = np.broadcast_to(1.0 / _numbers("masses", np.atleast_1d(masses)), parts.shape).sum()
+    return float(0.25 * dimension * temperature * inverse * parts[1] / rates[0, 1])

@@ -35,7 +35,7 @@ _LONGEST = 4.0
 """The longest duration of a run with `--until`, over the predicted one."""
 _POWERS = {
     **dict.fromkeys(("pressure", "temperature", "pressure_tensor", "vacf"), 1.0),
-    **dict.fromkeys(("collision_rate", "pair_rates", "D", "msd", "speeds"), 0.5),
+    **dict.fromkeys(("collision_rate", "pair_rates", "D", "mutual_diffusion", "msd", "speeds"), 0.5),
     **dict.fromkeys(("shear_viscosity", "bulk_viscosity", "thermal_conductivity"), 0.5),
 }
 """The power of the temperature that observables grow with."""

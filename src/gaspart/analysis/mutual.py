@@ -1,0 +1,80 @@
+"""Mutual diffusion: how two species pass through one another."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from gaspart import theory
+from gaspart.analysis.motion import lags_of_slopes, require_spheres, unwrapped
+from gaspart.analysis.observable import Observable, scalar
+from gaspart.analysis.run import Run, Source, measured, require_elastic, require_periodic
+from gaspart.errors import SceneError
+
+
+def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
+    """The coefficient of mutual diffusion of two species by Maxwell and Stefan, in length^2 / time.
+
+    With X_1 and X_2 the mean displacements of the species, x_1 and x_2 their fractions of N particles, it is
+
+        D_12 = x_1 x_2 N / (2 d) d/dt <|X_1(t) - X_2(t)|^2>,
+
+    by the rise from 12 to 24 collisions a particle (Helfand, Phys. Rev. 119, 1 (1960); Krishna and van Baten,
+    Ind. Eng. Chem. Res. 44, 6939 (2005)). That of Fick is D_12 times the thermodynamic factor, which is 1 for
+    species of one size. Of species that differ in nothing but their numbers D_12 is the D of a single
+    particle, exactly.
+
+    source: a trajectory, by its path or open, or a simulation; start: the time from which frames count (by
+    default a quarter of the run). X_1 - X_2 is one vector, however many particles there are: only longer runs
+    are more accurate. Theory: Enskog's in the first approximation.
+
+    Raises SceneError for other numbers of species, fixed particles, walls, contacts that lose energy, discs,
+    which have no such coefficient, frames too far apart, and runs that are too short.
+    """
+    with measured(source, start) as run:
+        kinds = run.scene.species
+        if len(kinds) != 2 or run.scene.bodies:
+            raise SceneError("species", len(run.scene.kinds), "mutual diffusion is that of two species")
+        if not run.moving.all():
+            raise SceneError("species", "fixed", "mutual diffusion is that of two species that move")
+        require_periodic(run)
+        require_elastic(run)
+        require_spheres(run, run.conserved)
+        _, early, late = lags_of_slopes(run)
+        apart = _separation(run)
+        rise = _squares(apart, late) - _squares(apart, early)[: len(apart) - late]
+        lag = run.interval * (late - early)
+        first, second = (kind.count / run.count for kind in kinds)
+        series = first * second * run.count / (2.0 * run.dimension * lag) * rise
+        edges = run.time[: len(series) + 1]
+        about: dict[str, Any] = {"units": "length^2 / time", "long_name": "mutual diffusion coefficient"}
+        return scalar("mutual_diffusion", series, edges, **about, **_theory(run))
+
+
+def _separation(run: Run) -> np.ndarray:
+    """(T, d) X_1 - X_2."""
+    paths = unwrapped(run)
+    return np.subtract(*(paths[:, run.species == kind].mean(axis=1) for kind in (0, 1)))
+
+
+def _squares(path: np.ndarray, lag: int) -> np.ndarray:
+    """(T - lag,) the squared change over a lag, from each time on."""
+    return ((path[lag:] - path[:-lag]) ** 2).sum(axis=1)
+
+
+def _theory(run: Run) -> dict[str, Any]:
+    """Enskog's value, where the equation of state of mixtures is known."""
+    kinds, eta, d = run.scene.species, run.scene.packing_fraction, run.dimension
+    if not all(kind.alike for kind in kinds) or eta > theory.HIGHEST_PACKING_FRACTION[d]:
+        return {}
+    value = theory.enskog_mutual_diffusion(
+        eta,
+        d,
+        [2.0 * kind.radius for kind in kinds],
+        [kind.count for kind in kinds],
+        temperature=run.temperature,
+        masses=[kind.mass for kind in kinds],
+    )
+    return {"theory": (value, math.nan), "source": "Enskog, first approximation"}
