@@ -1,3 +1,4 @@
+from gaspart.analysis.fields import field as field
 from gaspart.analysis.insertion import chemical_potential as chemical_potential
 from gaspart.analysis.lyapunov import lyapunov_exponent as lyapunov_exponent
 from gaspart.analysis.mixtures import contact_values as contact_values

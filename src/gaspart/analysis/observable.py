@@ -62,13 +62,18 @@ class Observable(xr.Dataset):
     def plot(self, theory: bool = False, axis: Axes | None = None) -> Axes:  # type: ignore[override]
         """Draw the values with bars of one standard deviation, a scalar as the means of consecutive stretches
         of the run; with `theory`, the curve of theory too, or a line of the legend that there is none for
-        this scene. axis: an Axes of matplotlib; by default a new one. Returns the Axes.
+        this scene; a field as a map of colours, or as arrows. axis: an Axes of matplotlib; by default a new
+        one. Returns the Axes. Raises SceneError for a field along three axes.
         """
         import matplotlib.pyplot as plt
 
         if axis is None:
             axis = plt.figure(layout="constrained").add_subplot()
         known = theory and self.theory is not None
+        cells = [name for name in self.estimate.dims if name in ("x", "y", "z")]
+        if len(cells) > 1:
+            _plot_field(self, axis, cells)
+            return axis
         if self.estimate.ndim:
             _plot_curve(self, axis, known)
         else:
@@ -93,19 +98,35 @@ def _plot_scalar(found: Observable, axis: Axes, theory: bool) -> None:
 def _plot_curve(found: Observable, axis: Axes, theory: bool) -> None:
     name = found.estimate.dims[-1]
     x = found[name]
-    for part in found.estimate.transpose(..., name).values.reshape(-1, x.size):
-        error = found.error.values.reshape(-1, x.size)[0]
+    names = found["component"].values if found.estimate.ndim > 1 else ["measured"]
+    parts, errors = (one.values.reshape(-1, x.size) for one in (found.estimate, found.error))
+    for part, error, label in zip(parts, errors, names, strict=True):
         if x.dtype.kind in "US":  # names, such as those of faces
-            axis.errorbar(np.arange(x.size), part, error, fmt="o", capsize=2, label="measured")
+            axis.errorbar(np.arange(x.size), part, error, fmt="o", capsize=2, label=label)
             axis.set_xticks(np.arange(x.size), [str(text) for text in x.values])
         else:
-            axis.errorbar(x, part, error, fmt="o", markersize=3, label="measured")
+            axis.errorbar(x, part, error, fmt="o", markersize=3, label=label)
     if theory:
         assert found.theory is not None
         places = np.arange(x.size) if x.dtype.kind in "US" else x
         marker = "" if found.theory.notnull().sum() > 2 else "x"  # of few values, as at contact
         axis.plot(places, found.theory, color="black", marker=marker, zorder=3, label="theory")
     axis.set_xlabel(label_of(x))
+
+
+def _plot_field(found: Observable, axis: Axes, cells: list[str]) -> None:
+    """A scalar field as a map of colours; of a flow the components along both axes, as arrows."""
+    if len(cells) > 2:
+        raise SceneError("axes", "".join(cells), "a plot has two; choose a layer: .isel(z=0)")
+    x, y = (found[name] for name in cells)
+    if "component" in found.estimate.dims:
+        u, v = (found.estimate.sel(component=name).transpose(*reversed(cells)) for name in cells)
+        axis.quiver(x, y, u, v, np.hypot(u, v), pivot="mid")
+    else:
+        axis.pcolormesh(x, y, found.estimate.transpose(*reversed(cells)), shading="nearest")
+    text = "speed of the flow (length / time)" if "component" in found.dims else label_of(found.estimate)
+    axis.figure.colorbar(axis.collections[-1], ax=axis, label=text)
+    axis.set(aspect="equal", xlabel=label_of(x), ylabel=label_of(y))
 
 
 def label_of(values: xr.DataArray) -> str:
