@@ -14,10 +14,11 @@ author = "The gaspart developers"
 copyright = "The gaspart developers, BSD 3-Clause licence"
 language = "en"
 
-extensions = ["sphinx.ext.autodoc", "sphinx.ext.viewcode", "myst_nb", "sphinx_copybutton", "pages"]
+extensions = ["sphinx.ext.autodoc", "sphinx.ext.viewcode", "myst_nb", "sphinx_copybutton", "pages", "mathml"]
 exclude_patterns = ["README.md"]
 default_role = "py:obj"  # `name` in a docstring is a link where there is one
 
+html_math_renderer = "mathml"
 myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 3
 

@@ -50,17 +50,18 @@ def parts(page):
             yield statement, stated and ast.literal_eval(stated[1])
 
 
-def test_the_examples_give_what_they_state(tmp_path, monkeypatch):
+@pytest.mark.parametrize(("page", "least"), [("examples", 100), ("units", 10)])
+def test_the_examples_give_what_they_state(page, least, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     names, compared = {}, 0
-    for statement, stated in parts("examples"):
+    for statement, stated in parts(page):
         if stated is None:
-            exec(compile(ast.Module([statement], []), "examples", "exec"), names)
+            exec(compile(ast.Module([statement], []), page, "exec"), names)
             continue
-        value = eval(compile(ast.Expression(statement.value), "examples", "eval"), names)
+        value = eval(compile(ast.Expression(statement.value), page, "eval"), names)
         assert np.allclose(np.asarray(value, float), stated, rtol=1e-4, atol=0.0), ast.unparse(statement)
         compared += 1
-    assert compared > 100
+    assert compared >= least
 
 
 def test_every_public_name_has_an_example():
@@ -117,6 +118,14 @@ def test_files_and_functions_that_a_page_names_exist(page):
         code = (SOURCE / file).read_text(encoding="utf-8")
         for name in filter(None, names):
             assert re.search(rf"^(?:def |class )?(?:\w+, )*{name}\b.*[:=(]", code, re.MULTILINE), (name, file)
+
+
+def test_lines_that_the_page_on_troubles_explains_exist():
+    source = "".join(path.read_text(encoding="utf-8") for path in SOURCE.rglob("*.py"))
+    rows = re.findall(r"^\| (`.+?) \|", (DOCS / "troubleshooting.md").read_text(encoding="utf-8"), re.M)
+    lines = [line for row in rows for line in re.findall(r"`([^`]+)`", row)]
+    assert len(lines) > 12
+    assert not [line for line in lines if line not in source]
 
 
 def test_links_between_pages_lead_somewhere():
