@@ -16,7 +16,7 @@ from gaspart.cli import main
 from gaspart.cli.new import templates
 
 WIDTH, HEIGHT = 640, 480  # pixels
-COLOUR = {"separation": "species", "brownian": "species", "hourglass": "species", "shaken": "species"}
+COLOUR = dict.fromkeys(("separation", "brownian", "hourglass", "shaken", "slit", "packing"), "species")
 PALETTE = 128  # colours of a PNG file
 
 
