@@ -48,6 +48,24 @@ def test_the_collision_rate_is_boltzmanns(dimension, species):
     assert sim.tally.virial_sum == 0.0
 
 
+@pytest.mark.thorough
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_rate_with_default_settings_is_right_to_half_a_thousandth(dimension):
+    """4e7 collisions: a standard error of 1.6e-4."""
+    eta, n, ratios = 1e-3, 50_000, []
+    side = (n * theory.body_volume(dimension) / eta) ** (1.0 / dimension)
+    gas = gp.Species(n, 0.5, temperature=1.0, exact_temperature=True)
+    scene = gp.Scene(gp.Container((side,) * dimension, "periodic"), [gas])
+    rate = float(theory.collision_rate(eta, dimension) / theory.contact_value(eta, dimension))
+    for seed in range(4):
+        sim = gp.Simulation(scene, gp.DSMC(), seed=seed)
+        sim.advance(duration=5.0 / rate)  # speeds become Maxwell's
+        collisions, time = sim.tally.collisions, sim.time
+        sim.advance(duration=400.0 / rate)
+        ratios.append(2.0 * (sim.tally.collisions - collisions) / (n * (sim.time - time) * rate))
+    assert np.mean(ratios) == pytest.approx(1.0, abs=5e-4)
+
+
 @pytest.mark.parametrize(("dimension", "rate"), [(2, 64.0 / 225.0), (3, 8.0 / 35.0)])
 def test_speeds_that_are_alike_spread_at_the_rate_of_the_boltzmann_equation(dimension, rate):
     """d kurtosis / d (collisions of a particle) at the start, from the collision integral of particles of
