@@ -8,7 +8,7 @@ import gaspart as gp
 from gaspart.cli import main
 from gaspart.engines import EventDriven
 from gaspart.tradeoff import pilot, plan
-from gaspart.tradeoff.candidates import Candidate, candidates
+from gaspart.tradeoff.candidates import CELL_LOSS, Candidate, candidates, cell_loss
 from gaspart.tradeoff.pilot import Pilot
 
 BOX = gp.Scene(gp.Container((12.0, 12.0)), [gp.Species(40, 0.5, temperature=1.0)])
@@ -54,6 +54,9 @@ def test_bounds_come_from_theory():
     assert refused == {}
     dense = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(43, 0.5, temperature=1.0)])
     _, refused = candidates(dense, "pressure", 0.01)
+    lost = cell_loss(gp.DSMC(model="enskog", cells_per_side=2), BOX)
+    assert lost == pytest.approx(CELL_LOSS * 4 / BOX.count)
+    assert cell_loss(gp.DSMC(model="enskog", cells_per_side=1), BOX) == 0.0
     assert list(refused) == ["dsmc enskog"] and "known up to 0.4" in refused["dsmc enskog"]
     able, refused = candidates(DILUTE, "rdf", 0.01)
     assert {one.engine.name for one in able} == {"event", "step"} and len(refused) == 2

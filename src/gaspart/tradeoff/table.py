@@ -15,6 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
+from gaspart import theory
+
 COLUMNS = ("dimension", "packing_fraction", "engine", "precision", "time_step", "quantity", "value", "error")
 OBSERVABLES = ("Z", "collision_rate", "D")
 PATH = Path(__file__).parent / "data" / "tradeoff.csv"
@@ -44,8 +46,9 @@ def read() -> tuple[dict, ...]:
 
 
 def lowest(dimension: int) -> float:
-    """The lowest packing fraction at which costs were measured, less what the table may be exceeded by."""
-    eta, _, _ = _curve(dimension, "event", "float64", 0.0, "seconds")
+    """The lowest packing fraction at which both engines of the table were measured, less what it may be
+    exceeded by. In more dilute gases DSMC, which it does not have, is much cheaper than either."""
+    eta, _, _ = _curve(dimension, "step", "float64", STEP, "seconds")
     return float(eta[0] / _BEYOND)
 
 
@@ -80,14 +83,24 @@ def seconds(
 
 
 def noise(dimension: int, fraction: float, observable: str) -> float:
-    """Relative variance of an observable, times the contacts that it is made of; inf if there is none."""
+    """Relative variance of an observable, times the contacts that it is made of; inf if there is none.
+
+    In a gas more dilute than those of the table that of Z falls with the square of (Z - 1) / Z, since Z - 1
+    is in proportion to the contacts, and the others are those of the most dilute one.
+    """
     eta, value, _ = _curve(dimension, "event", "float64", 0.0, f"noise_{observable}")
     if not eta.size:
         return np.inf
     # A line through the logarithms: single values come from few blocks.
     order = min(2, eta.size - 1)
     fit = np.polyfit(np.log(eta), np.log(value), order)
-    return float(np.exp(np.polyval(fit, np.log(np.clip(fraction, eta[0], eta[-1])))))
+    found = float(np.exp(np.polyval(fit, np.log(np.clip(fraction, eta[0], eta[-1])))))
+    if observable == "Z" and fraction < eta[0]:
+        virial = [
+            1.0 - 1.0 / float(theory.compressibility_factor(at, dimension)) for at in (fraction, eta[0])
+        ]
+        found *= (virial[0] / virial[1]) ** 2
+    return found
 
 
 @cache

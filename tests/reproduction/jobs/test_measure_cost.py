@@ -3,10 +3,11 @@
 import pytest
 import xarray as xr
 
-from gaspart.engines import EventDriven, TimeStepped
+from gaspart.engines import DSMC, EventDriven, TimeStepped
 from gaspart.errors import SceneError, SimulationError
 from gaspart.reproduction.jobs import measure_cost as cost
 from gaspart.reproduction.jobs.measure_cost import measure_cost
+from gaspart.reproduction.points.point import Point
 from gaspart.scene.container import Container
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
@@ -96,3 +97,25 @@ def test_work_that_differs_between_repeats_is_an_error(monkeypatch):
     monkeypatch.setattr(cost, "_timed", lambda *given: (timed(*given)[0], next(counts)))
     with pytest.raises(SimulationError, match="twice"):
         measured([TimeStepped(0.01, boxes_per_side=4)])
+
+
+def test_parts_of_the_step_that_the_scene_gives():
+    """Half the step, twice as many; an engine that has no step of its own takes the scene's."""
+    gas = {"dimension": 3, "count": 200, "radius": 0.5, "packing_fraction": 0.01, "boundary": "periodic"}
+    run = {"temperature": 1.0, "engine": "dsmc", "collisions_per_body": 20, "equilibration": 1, "samples": 2}
+    scanned = Point("gas", "a", "measure_cost", gas | run | {"scan_step_parts": [1, 0.5]}, ".", 1)
+    whole, half = (engine.time_step for engine in scanned.engines)
+    assert whole == DSMC().resolved(scanned.scene).time_step == 2.0 * half
+    found = cost.run(scanned.parameters)
+    steps = found.variables["steps"][1]
+    assert steps[1] == pytest.approx(2 * steps[0], abs=2)
+    assert found.attributes["engine"] == "dsmc" and found.attributes["model"] == "boltzmann"
+    alone = cost.run(Point("gas", "a", "measure_cost", gas | run, ".", 1).parameters)
+    assert alone.variables["steps"][1] == steps[:1]
+
+
+def test_parts_of_a_step_need_an_engine_with_steps():
+    gas = {"dimension": 3, "count": 20, "radius": 0.5, "packing_fraction": 0.01, "boundary": "periodic"}
+    run = {"temperature": 1.0, "engine": "event", "collisions_per_body": 2, "scan_step_parts": [1]}
+    with pytest.raises(SceneError, match="has no meaning with engine: event"):
+        _ = Point("gas", "a", "measure_cost", gas | run, ".", 1).engines

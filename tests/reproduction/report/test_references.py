@@ -31,7 +31,7 @@ def strings(path):
 
 
 TEXTS = {path.name: [path.read_text(encoding="utf-8")] for path in CAPTIONS}
-TEXTS |= {path.parent.name: list(strings(path)) for path in CLAIMS}
+TEXTS |= {f"{path.parent.name}/{path.stem}": list(strings(path)) for path in CLAIMS}
 
 
 @pytest.mark.parametrize(

@@ -45,6 +45,11 @@ KEYS: dict[str, Kind] = {
         POSITIVE, "numbers of boxes per particle that one job times in turn", default=None
     ),
     "scan_time_steps": SCAN_TIME_STEPS,
+    "scan_step_parts": listed(
+        POSITIVE,
+        "time steps that one job runs in turn, as parts of the engine's own in the scene",
+        default=None,
+    ),
     "record_events": flag("record all events; needs an engine that has them", default=False),
     "stress": flag("tally the stress tensor and the heat flux", default=False),
     "without": described(
@@ -97,21 +102,22 @@ def measure_cost(
 
     equilibration, stretch: in the scene's time; extras: of `EXTRAS`; rival: a scene and engines, timed in
     turn with these and without extras: the last partitions.
+    Engines without a step of their own take that of the scene.
     Returns a dataset over ``partition`` (the engines, in their order) and ``repeat``: ``seconds``
     (partition, repeat), processor time of the advance alone (filling the container, setting up and compiling
     are left out); over ``partition``: ``boxes`` in all, ``boxes_per_side`` (of the first axis; both 0 if the
     engine chooses itself), ``duration`` (scene's time) and the counts of the tally. Attributes: count,
-    dimension, radius, side (first axis), packing_fraction, engine, search (event-driven) or time_step,
-    extras.
+    dimension, radius, side (first axis), packing_fraction, engine, search (event-driven), model (DSMC) or
+    time_step, extras.
 
     Raises SceneError, and SimulationError if the counted work of a repeat differs from the first one's.
     """
     # By the shortest step: a longer one leaves overlaps, which would count against a shorter one.
-    careful = min(engines, key=lambda engine: getattr(engine, "time_step", 0.0))
+    careful = min(engines, key=lambda engine: engine.quantum or 0.0)
     runs = []
     for made, chosen, also in [(scene, engines, extras), *([(*rival, ())] if rival else [])]:
         start = _start(made, careful, seed, equilibration)
-        runs += [(made, start, engine, also) for engine in chosen]
+        runs += [(made, start, engine.resolved(made), also) for engine in chosen]
     seconds = [[0.0] * repeats for _ in runs]
     counts: list[dict] = [{}] * len(runs)
     for repeat in range(repeats):
@@ -131,18 +137,23 @@ def measure_cost(
             "boxes_per_side": ("partition", [side[0] for side in sides]),
             **columns,
         },
-        attributes={
-            "count": scene.count,
-            "dimension": scene.dimension,
-            "radius": scene.largest_radius,
-            "side": scene.container.lengths[0],
-            "packing_fraction": scene.packing_fraction,
-            "engine": engines[0].name,
-            "search": getattr(engines[0], "search", ""),
-            "time_step": getattr(engines[0], "time_step", 0.0),
-            "extras": " ".join(extras),
-        },
+        attributes={**_attributes(scene, engines[0]), "extras": " ".join(extras)},
     )
+
+
+def _attributes(scene: Scene, engine: Engine) -> dict:
+    """Those of a dataset: the gas, and the first engine."""
+    return {
+        "count": scene.count,
+        "dimension": scene.dimension,
+        "radius": scene.largest_radius,
+        "side": scene.container.lengths[0],
+        "packing_fraction": scene.packing_fraction,
+        "engine": engine.name,
+        "search": getattr(engine, "search", ""),
+        "model": getattr(engine, "model", ""),
+        "time_step": engine.resolved(scene).quantum or 0.0,
+    }
 
 
 def _start(scene: Scene, engine: Engine, seed: tuple[int, ...], equilibration: float) -> State:
@@ -170,7 +181,7 @@ def _timed(
 
     dynamics = engine.start(scene, state, **({"stress": True} if "stress" in extras else {}))
     log = EventLog(scene.dimension, scene.rough) if "record_events" in extras else None
-    step = getattr(engine, "time_step", 0.0)
+    step = engine.quantum or 0.0
     # This loads the kernels, and the first step touches all memory.
     dynamics.advance(state.time + step * (1 + SLACK), log=log)
     dynamics.reset_tally()

@@ -23,7 +23,7 @@ def engine(point: Point) -> Engine:
 
 def scanned(point: Point) -> list[Engine]:
     """The engine of a point, or, with a scan, one for each of its time steps or partitions; equal partitions
-    are taken once. Raises SceneError."""
+    are taken once. Parts of a step are of the one that the engine has in the scene. Raises SceneError."""
     settings = point.settings
     scans = [key for key in SCANS if key in settings]
     if not scans:
@@ -34,6 +34,11 @@ def scanned(point: Point) -> list[Engine]:
         if single.quantum is None:
             raise point.refused(scan, f"has no meaning with engine: {single.name}")
         return [replace(single, time_step=step) for step in values]
+    if scans == ["scan_step_parts"]:
+        whole: Any = point.engine.resolved(point.scene)
+        if whole.quantum is None:
+            raise point.refused(scan, f"has no meaning with engine: {whole.name}")
+        return [replace(whole, time_step=part * whole.time_step) for part in values]
     if len(scans) > 1 or "boxes_per_side" in settings or "boxes_per_body" in settings:
         raise point.refused(scan, "a scan excludes every other choice of boxes")
     if not values:

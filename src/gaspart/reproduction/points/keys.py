@@ -130,5 +130,5 @@ LENGTHS: dict[str, Kind] = {
 }
 """Exactly one of them is given."""
 
-SCANS = ("scan_boxes_per_side", "scan_boxes_per_body", "scan_time_steps")
+SCANS = ("scan_boxes_per_side", "scan_boxes_per_body", "scan_time_steps", "scan_step_parts")
 """Keys of the jobs that run several engines in turn."""

@@ -1,13 +1,18 @@
-"""Made-up comparisons and timings of both engines, with known orders of convergence and costs."""
+"""Made-up comparisons and timings of the engines, with known orders of convergence and costs."""
 
 import numpy as np
 import xarray as xr
 
+from gaspart import theory
+from gaspart.reproduction.families.tradeoff import flows, relaxation
 from gaspart.reproduction.families.tradeoff import measure as tradeoff
+from gaspart.reproduction.families.tradeoff.choices import ENGINES, PARTS
+from gaspart.reproduction.families.tradeoff.maps import QUANTITIES
 from gaspart.reproduction.points.point import Point
 
 STEPS = np.array([0.32, 0.16, 0.08, 0.04])
-SETTINGS = {"order_up_to": 0.2, "accuracies": [0.01, 0.001, 0.0001]}
+SETTINGS = {"order_up_to": 0.2, "accuracies": [0.01, 0.001, 0.0001], "cells": []}
+FRACTIONS = (0.0001, 0.001, 0.01, 0.1, 0.3)
 SNAPSHOTS, CONTACTS, Z, SECONDS = 6, 1e5, 1.5, 1e-6
 
 
@@ -60,14 +65,20 @@ def timing(engine, seconds, **attributes):
 
 
 def speed_accuracy_measurement(folder):
-    """What `measure.speed_accuracy` makes of two settings of a dilute gas."""
+    """What `measure.speed_accuracy` makes of two settings of a dilute gas, and of both models of DSMC."""
     made = [
         ("compare", {"passes": 4}, comparison(2.0, 3.0, 0)),
         ("compare", {"passes": 1, "rewind": False}, comparison(1.0, 1.0, 1, rewind=0, passes=1)),
         ("measure_cost", {"passes": 4}, timing("step", 2.0 * SECONDS * CONTACTS * (1.0 + 0.01 / STEPS))),
         ("measure_cost", {"engine": "event"}, timing("event", [SECONDS * CONTACTS])),
     ]
-    return tradeoff.speed_accuracy(written(folder, made), SETTINGS)
+    return tradeoff.speed_accuracy(written(folder, made), SETTINGS).assign(
+        dsmc_model=("dsmc", ["boltzmann", "enskog"]),
+        dsmc_packing_fraction=("dsmc", [0.01, 0.01]),
+        dsmc_seconds=("dsmc", [1e-7, 9e-7]),
+        dsmc_seconds_error=("dsmc", [1e-9, 1e-8]),
+        dsmc_bias=("dsmc", [0.04, 0.002]),
+    )
 
 
 def written(folder, made):
@@ -104,5 +115,57 @@ def time_to_accuracy_measurement(more_expensive=1.0):
             "count": [1000, 10000],
             "accuracy": accuracy,
             "engine": ["event", "step"],
+        },
+    ).merge(map_measurement(accuracy))
+
+
+def map_measurement(accuracy):
+    """What `maps.maps` gives of engines whose errors are those of theory, or half of their bounds."""
+    each = {
+        "event": [2e-5, 5e-6, 1.3e-6, 5e-7, 3e-7],
+        "step": [4e-5, 1e-5, 2e-6, 7e-7, 4e-7],
+        "boltzmann": [2e-7, 1.5e-7, 1e-7, 1e-7, 1e-7],
+        "enskog": [1e-6] * 5,
+    }
+    bias = np.array([[0.0] * 5, [1e-4] * 5, [3e-4, 3e-3, 3e-2, 0.3, 1.0], [2e-3, 2e-3, 2e-3, 0.05, 0.25]])
+    seconds = np.array([each[name] for name in ENGINES])
+    room = accuracy[:, None] - bias.T[:, None, :]  # fraction, accuracy, solver
+    with np.errstate(divide="ignore"):
+        cost = np.where(room > 0.0, seconds.T[:, None, :] * (1.0 / room**2 + 1e4), np.inf)
+    error = np.stack(
+        [np.broadcast_to(bias.T[:, None, :], cost.shape), *[np.full(cost.shape, 1e-4)] * 4], axis=-1
+    )
+    every = np.ones((5, 1, 1, 1))
+    bound = np.full((2, 5, 4), np.nan)
+    bound[:, :, 1:] = np.array([0.03, 0.04, 0.05])
+    slow = [relaxation.relaxation_time(float(theory.contact_value(eta, 3))) for eta in FRACTIONS]
+    relaxing = np.full((5, 4), relaxation.relaxation_time(1.0))
+    relaxing[:, 2] = slow
+    bound[1, :, 2] = 0.5
+    flow = np.stack([np.full((5, 4), 2.0) * np.array([1.0, 0.99, 1.02, 1.03]), relaxing])
+    axes = ("quantity", "fraction", "accuracy", "solver")
+    flow_axes = ("flow_quantity", "fraction", "solver")
+    return xr.Dataset(
+        {
+            "cost": (axes, every * cost),
+            "cost_error": (axes, 0.01 * every * cost),
+            "error": ((*axes, "part"), every[..., None] * error),
+            "flow": (flow_axes, flow),
+            "flow_error": (flow_axes, 0.003 * flow),
+            "flow_freedom": (flow_axes, np.full((2, 5, 4), 20.0)),
+            "flow_bound": (flow_axes, bound),
+            "each": (("fraction", "solver"), seconds.T),
+            "each_error": (("fraction", "solver"), 0.01 * seconds.T),
+            "cells": ("fraction", [1.0, 1.0, 1.0, 0.999, 0.997]),
+            "cells_error": ("fraction", np.full(5, 4e-4)),
+            "cells_freedom": ("fraction", np.full(5, 99.0)),
+            "cells_bound": ("fraction", np.full(5, 0.004)),
+        },
+        coords={
+            "quantity": list(QUANTITIES),
+            "fraction": list(FRACTIONS),
+            "solver": list(ENGINES),
+            "part": list(PARTS),
+            "flow_quantity": list(flows.FLOWS),
         },
     )

@@ -4,6 +4,7 @@ from reproduction.families.tradeoff.data import speed_accuracy_measurement, time
 
 from gaspart.reproduction.claims import judge
 from gaspart.reproduction.families.tradeoff import claims as tradeoff
+from gaspart.reproduction.families.tradeoff import map_claims
 
 
 def verdicts(dataset):
@@ -46,7 +47,7 @@ def test_the_cost_is_compared_with_that_of_the_finest_accuracy_that_steps_reach(
 
 
 def choice(dataset):
-    claims = tradeoff.time_to_accuracy(dataset)
+    claims = tradeoff.time_to_accuracy(dataset)[-3:]
     return dict(zip(("event", "step", "choice"), judge(claims), strict=True))
 
 
@@ -54,3 +55,36 @@ def test_a_model_that_predicts_the_costs_agrees_and_one_that_does_not_is_noticed
     assert choice(time_to_accuracy_measurement()) == dict.fromkeys(("event", "step", "choice"), "agrees")
     wrong = choice(time_to_accuracy_measurement(more_expensive=4.0))
     assert wrong == {"event": "agrees", "step": "disagrees", "choice": "disagrees"}
+
+
+def of_map(dataset):
+    return judged(map_claims.of_map(dataset))
+
+
+def test_a_map_as_theory_has_it_agrees():
+    found = of_map(time_to_accuracy_measurement())
+    assert set(found.values()) == {"agrees"}
+    for part in ("time of DSMC", "Enskog model in D", "heat flux", "relaxation time", "default cells"):
+        assert any(part in claim for claim in found), part
+
+
+def changed(name, factor, **at):
+    """The measurement with one variable changed by a factor in one place."""
+    dataset = time_to_accuracy_measurement()
+    dataset[name].loc[at] *= factor
+    return dataset
+
+
+def test_costs_and_errors_that_theory_does_not_have_are_noticed():
+    cases = {
+        "time of DSMC over": changed("cost", 5.0, solver="boltzmann", fraction=0.001),
+        "at packing fraction 0.0001 over 0.01": changed("each", 5.0, solver="boltzmann", fraction=0.0001),
+        "time of a collision by the Enskog": changed("each", 0.2, solver="enskog", fraction=0.3),
+        "error of the Enskog model in D": changed("error", 0.0, solver="enskog", fraction=0.3, part="model"),
+        "heat flux between plates by time steps": changed("flow", 1.06, solver="step", fraction=0.1),
+        "model over that by the Enskog": changed("flow", 1.04, solver="boltzmann", fraction=0.3),
+        "default cells": changed("cells", 0.99, fraction=0.1),
+    }
+    for part, dataset in cases.items():
+        wrong = [claim for claim, verdict in of_map(dataset).items() if verdict == "disagrees"]
+        assert any(part in claim for claim in wrong), part

@@ -1,5 +1,6 @@
 import numpy as np
-from reproduction.families.drawn import Points, draw, follows, lines, shows, varied
+import pytest
+from reproduction.families.drawn import Points, draw, shows, varied
 from reproduction.families.tradeoff.data import (
     SECONDS,
     speed_accuracy_measurement,
@@ -7,6 +8,7 @@ from reproduction.families.tradeoff.data import (
 )
 
 from gaspart.reproduction.families.tradeoff import figure as tradeoff
+from gaspart.reproduction.families.tradeoff import panels
 
 
 def errors(row, observable):
@@ -23,12 +25,14 @@ def errors(row, observable):
 
 
 def test_errors_are_drawn_against_the_step_and_costs_against_errors(tmp_path):
-    ds = varied(speed_accuracy_measurement(tmp_path), "packing_fraction", "event_seconds")
-    *panels, cost = draw(tradeoff.speed_accuracy, ds).axes
+    ds = varied(
+        speed_accuracy_measurement(tmp_path), "packing_fraction", "event_seconds", "dsmc_packing_fraction"
+    )
+    *steps, cost = draw(tradeoff.speed_accuracy, ds).axes
     rows = {row["setting"].item(): row for row in (ds.isel(row=n) for n in range(ds.sizes["row"]))}
     assert set(rows) == set(tradeoff.SHOWN)
     for axis, (observable, label) in zip(
-        panels, {"collision_rate": "collision rate", "Z": "$Z$", "D": "$D$"}.items(), strict=True
+        steps, {"collision_rate": "collision rate", "Z": "$Z$", "D": "$D$"}.items(), strict=True
     ):
         series = [one for name in tradeoff.SHOWN for one in errors(rows[name], observable)]
         shows(axis, "time step", label, *series)
@@ -37,27 +41,66 @@ def test_errors_are_drawn_against_the_step_and_costs_against_errors(tmp_path):
     error = 100.0 * np.maximum(np.abs(at["bias"]), 2.0 * at["bias_error"]).values
     timed = np.isfinite(row["seconds"].values) & np.isfinite(error)
     seconds, bars = (1e6 * row[name].values[timed] for name in ("seconds", "seconds_error"))
-    shows(cost, "error of $Z$", "time per collision", Points("0.01", error[timed], seconds, bars))
+    models = [ds.isel(dsmc=n) for n in range(ds.sizes["dsmc"])]
+    shows(
+        cost, "error of $Z$", "time per collision", Points(None, error[timed], seconds, bars),
+        *(
+            Points(None, [100.0 * of.dsmc_bias], [1e6 * of.dsmc_seconds], [1e6 * of.dsmc_seconds_error])
+            for of in models
+        ),
+    )  # fmt: skip
+    legends = [text.get_text() for axis in (steps[0], cost) for text in axis.get_legend().get_texts()]
+    assert "no error seen: bound" in legends and "DSMC, Boltzmann" in legends
     assert [1e6 * SECONDS] * 2 in [list(one.get_ydata()) for one in cost.lines]
 
 
-def test_costs_are_drawn_against_the_accuracy_for_each_gas():
-    ds = varied(time_to_accuracy_measurement(), "gas_packing_fraction")
-    axes = np.reshape(draw(tradeoff.time_to_accuracy, ds).axes, (2, 2))
-    titles = [axis.get_title(loc="left") for axis in axes[:, 0]]
-    assert titles == [r"(a) spheres, $\eta = 0.05$", r"(b) spheres, $\eta = 0.2$"]
-    percent = 100.0 * ds["accuracy"]
-    names = {"event": "event-driven", "step": "time-stepped"}
-    for g, column in enumerate(axes):
-        gas = ds.isel(gas=g)
-        for axis, observable in zip(column, ("Z", "D"), strict=True):
-            each = [
-                (f"{name}, $N = {count}$", gas.sel(observable=observable, engine=engine, count=count))
-                for engine, name in names.items()
-                for count in (1000, 10000)
-            ]
-            x_label = "accuracy" if observable == "D" else ""
-            series = (Points(label, percent, at["measured"]) for label, at in each)
-            shows(axis, x_label, f"time for ${observable}$", *series)
-            for one, (_, at) in zip(lines(axis), each, strict=True):
-                follows(one, percent, at["model"])
+def test_the_map_has_the_cheapest_engine_of_each_field():
+    ds = time_to_accuracy_measurement().sortby("accuracy", ascending=False)
+    figure = draw(tradeoff.time_to_accuracy, ds)
+    *fields, errors = figure.axes
+    titles = [axis.get_title(loc="left") for axis in fields]
+    assert titles == [
+        f"({letter}) {title}" for letter, title in zip("abcde", panels.TITLES.values(), strict=True)
+    ]
+    legend = {text.get_text() for text in figure.legends[0].get_texts()}
+    assert legend == {"event-driven", "time-stepped", "DSMC, Boltzmann", "DSMC, Enskog"}
+    for axis, quantity in zip(fields, panels.TITLES, strict=True):
+        at = ds.sel(quantity=quantity)
+        colours = axis.collections[0].get_array()
+        texts = iter(axis.texts)
+        for f, _ in enumerate(ds.fraction):
+            for a, _ in enumerate(ds.accuracy):
+                costs = at.cost.isel(fraction=f, accuracy=a)
+                best = costs.solver.values[int(np.argmin(costs.values))]
+                assert tuple(colours[a, f]) == pytest.approx(panels.tint(best))
+                assert next(texts).get_text() == panels.duration(float(costs.min()))
+    assert errors.get_xlabel() == "error / required accuracy"
+    parts = [text.get_text() for text in errors.get_legend().get_texts()]
+    assert parts == [*panels.PART_NAMES, "required"]
+
+
+def test_bars_are_the_parts_of_the_error():
+    ds = time_to_accuracy_measurement()
+    errors = draw(tradeoff.time_to_accuracy, ds).axes[-1]
+    at = ds.error.sel(quantity="D", fraction=0.01, accuracy=0.01, solver="enskog").values / 0.01
+    rows = [bar for bar in errors.patches if bar.get_y() == pytest.approx(-4.4)]
+    assert [bar.get_width() for bar in rows] == pytest.approx(list(at))
+    assert [text.get_text() for text in errors.texts] == [
+        r"$D$ to 1 % at $\eta=0.01$", "3", r"$D$ to 1 % at $\eta=0.3$", "100", "25",
+    ]  # fmt: skip
+
+
+def test_a_gas_in_which_no_engine_is_accurate_enough_is_left_white():
+    ds = time_to_accuracy_measurement()
+    ds["cost"] = ds.cost.where(ds.fraction != 0.1, np.inf)
+    assert {engine for f, _, engine, _ in panels.cheapest_engine(ds.sel(quantity="Z")) if f == 3} == {""}
+    assert "–" in [text.get_text() for text in draw(tradeoff.time_to_accuracy, ds).axes[1].texts]
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [(4e-4, "0.4 ms"), (0.0123, "12 ms"), (0.553, "550 ms"), (3.2, "3 s"), (59.0, "59 s"), (150.0, "2 min"),
+     (4000.0, "1 h"), (2e5, "2 d"), (4e8, "13 y")],
+)  # fmt: skip
+def test_durations(seconds, text):
+    assert panels.duration(seconds) == text

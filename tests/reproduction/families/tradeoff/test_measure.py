@@ -12,12 +12,9 @@ from reproduction.families.tradeoff.data import (
     written,
 )
 
-from gaspart.reproduction.families.tradeoff.measure import (
-    OBSERVABLES,
-    _orders,
-    frontier,
-    time_to_accuracy,
-)
+from gaspart.reproduction.families.tradeoff.frontier import frontier
+from gaspart.reproduction.families.tradeoff.measure import _orders, time_to_accuracy
+from gaspart.reproduction.families.tradeoff.uniform import OBSERVABLES
 
 
 @pytest.fixture(scope="module")
@@ -76,13 +73,18 @@ def test_time_to_accuracy_of_the_reference_gas(tmp_path):
             ("measure_cost", {"engine": "event"}, timing("event", [SECONDS * CONTACTS], **gas)),
         ],
     )
-    dataset = time_to_accuracy(points, {"counts": [100], "accuracies": [0.01, 0.0001]}).squeeze()
+    settings = {"counts": [100], "accuracies": [0.01, 0.0001], "elsewhere": ["gas"], "blocks": 8}
+    settings |= {name: [] for name in ("cells", "plates", "plates_cost", "relaxation")}
+    dataset = time_to_accuracy(points, settings).squeeze()
     event = dataset.sel(engine="event", observable="Z")
     assert event.measured.values == pytest.approx(event.model.values, rel=1e-6)  # timed by itself
     assert float(event.measured[1] / event.measured[0]) == pytest.approx(1e4, rel=0.35)  # but for settling
     steps = dataset.sel(engine="step", observable="Z", accuracy=0.01)
     assert float(steps.measured) > 2.0 * float(event.measured[0])
     assert (dataset.regret.sel(observable="Z") == 1.0).all()
+    mapped = dataset.cost.sel(quantity="Z", solver="event").values
+    assert mapped == pytest.approx(event.measured.values, rel=1e-6)
+    assert np.isnan(dataset.cost.sel(quantity="heat_flux")).all()
 
 
 def with_long_runs(dataset, build_up, setting="4 passes"):

@@ -1,4 +1,4 @@
-"""Errors of time-stepped settings, and their costs, from `compare` and `measure_cost` jobs."""
+"""Errors of time-stepped settings, and costs of all engines, from `compare` and `measure_cost` jobs."""
 
 from __future__ import annotations
 
@@ -62,14 +62,19 @@ def _difference(run: xr.Dataset, name: str, least: np.ndarray) -> np.ndarray:
 
 
 def costs(point: Point) -> dict:
-    """The costs of a `measure_cost` point, per time simulated."""
+    """The costs of a `measure_cost` point, per time simulated. setting: "event", that of the time-stepped
+    engine, or the model of the DSMC engine."""
     run = xr.load_dataset(point.path)
     seconds, error = median(run.seconds.values)
     own = point.settings
-    name = setting_name(own.get("rewind", True), own.get("passes", 4), own.get("precision", "float64"))
+    name = run.attrs["engine"]
+    if name == "step":
+        name = setting_name(own.get("rewind", True), own.get("passes", 4), own.get("precision", "float64"))
+    elif name == "dsmc":
+        name = own.get("model", "boltzmann")
     return {
         "gas": (run.attrs["dimension"], round(run.attrs["packing_fraction"], 12)),
-        "setting": name if run.attrs["engine"] == "step" else "event",
+        "setting": name,
         "time_step": (run.duration / np.maximum(run.steps, 1)).values,
         "seconds": seconds / run.duration.values,
         "error": error / run.duration.values,

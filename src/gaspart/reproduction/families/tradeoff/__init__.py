@@ -1,6 +1,6 @@
 """Speed against accuracy."""
 
-from gaspart.kinds import COUNT, POSITIVE, listed, positive
+from gaspart.kinds import COUNT, POSITIVE, count, listed, names, positive
 
 TITLE = "Speed against accuracy"
 CHAPTER = "Speed and accuracy"
@@ -10,6 +10,16 @@ FIGURES = {
     "speed_accuracy": {
         "order_up_to": positive("largest relative error that the fits of the order use"),
         "accuracies": _ACCURACIES,
+        "cells": names("experiments of the Enskog model in its default cells"),
     },
-    "time_to_accuracy": {"counts": listed(COUNT, "numbers of particles"), "accuracies": _ACCURACIES},
+    "time_to_accuracy": {
+        "counts": listed(COUNT, "numbers of particles; the first is that of the map"),
+        "accuracies": _ACCURACIES,
+        "elsewhere": names("experiments of gases that the model of costs was not fitted to"),
+        "cells": names("experiments of the Enskog model in its default cells"),
+        "plates": names("experiments between a hot and a cold plate"),
+        "plates_cost": names("timings of the experiments between plates"),
+        "relaxation": names("experiments whose speeds are equal at first"),
+        "blocks": count("stretches of each run between plates"),
+    },
 }

@@ -7,6 +7,7 @@ import xarray as xr
 
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared.claims import PARTICLES, rows
+from gaspart.reproduction.families.tradeoff.map_claims import of_map
 
 MISSED = {2: 1.0 / 4.0, 3: 2.0 / 3.0}
 """The part of all contacts of a dilute gas that touch and part within a step, over (v_th dt / sigma)^2."""
@@ -145,8 +146,9 @@ def _steady(at: xr.Dataset) -> Claim:
 
 
 def time_to_accuracy(ds: xr.Dataset) -> list[Claim]:
-    """The model predicts the cost of both engines, and chooses the setting measured to be the best."""
-    claims = []
+    """The model predicts the cost of two engines, and chooses the setting measured to be the best; and what
+    makes the map of the cheapest engine."""
+    claims = of_map(ds)
     for engine in ds.engine.values:
         at = ds.sel(engine=engine, accuracy=ds.accuracy[ds.accuracy >= FLOOR])
         ratio = np.log(at.model / at.measured).values

@@ -7,27 +7,32 @@ forgets its velocity, taken from the memory after about one collision per partic
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
-from gaspart.reproduction.families.shared.accuracy import (
-    add_costs,
-    costs,
-    errors,
-    setting_name,
-)
+from gaspart.engines.dsmc.settings import MODELS
+from gaspart.reproduction.families.shared.accuracy import costs, setting_name
 from gaspart.reproduction.families.shared.pressure import pressure
 from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.families.tradeoff.frontier import SEEN, frontier
+from gaspart.reproduction.families.tradeoff.maps import maps
+from gaspart.reproduction.families.tradeoff.uniform import (
+    OBSERVABLES,
+    Cells,
+    cells_by_fraction,
+    compared,
+    each_of,
+    model_error,
+)
 from gaspart.reproduction.points.point import Point
 from gaspart.tradeoff import table
 from gaspart.tradeoff.table import EQUILIBRATION, LEAST, PRECISIONS, QUANTILE, REFERENCE, STEP
 
-OBSERVABLES = ("collision_rate", "Z", "D")
-SEEN = 3.5
-"""An error counts as seen, in fits of its order, if it is so many standard errors from 0."""
 FITTED = 3
 """Errors that a fit of their order needs at least: two have an order whatever their law, also where an error
 changes its sign."""
@@ -50,13 +55,13 @@ def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     Over (``gas``, ``observable``, ``accuracy``): see `frontier`. Over ``steady``: gas and setting of long
     runs, and ``build_up`` with error, the relative error of their Z minus that of the paired runs. Over
     ``timed``, all gases in which the event-driven engine was timed: ``timed_dimension``,
-    ``timed_packing_fraction``, ``timed_seconds`` (per collision) with its error.
+    ``timed_packing_fraction``, ``timed_seconds`` (per collision) with its error. Over ``dsmc``, the models of
+    the DSMC engine in spheres of the rows' densities: ``dsmc_model``, ``dsmc_packing_fraction``,
+    ``dsmc_seconds`` per exact collision with its error, and ``dsmc_bias`` of Z, a bound.
     """
-    rows = [errors(point) for point in points if point.job == "compare"]
-    rows = sorted(rows, key=lambda row: (-row["dimension"], row["packing_fraction"]))
     timed = [costs(point) for point in points if point.job == "measure_cost"]
-    for row in rows:
-        add_costs(row, timed)
+    rows = compared(points, timed)
+    rows = sorted(rows, key=lambda row: (-row["dimension"], row["packing_fraction"]))
     inner = {name: ("observable", "step")[2 - np.ndim(value) :] for name, value in rows[0].items()}
     dataset = from_rows("row", rows, inner).assign_coords(
         observable=list(OBSERVABLES), accuracy=settings["accuracies"]
@@ -64,70 +69,31 @@ def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     orders = np.array([_orders(row, settings["order_up_to"]) for row in rows])
     dataset["order"] = (("row", "observable"), orders[..., 0])
     dataset["order_error"] = (("row", "observable"), orders[..., 1])
-    steady = [_steady(point, rows) for point in points if point.job == "simulate"]
+    long = (point for point in points if point.job == "simulate")
+    steady = [_steady(point, rows) for point in long if point.experiment not in settings["cells"]]
     dataset = dataset.assign(from_rows("steady", steady)).merge(frontier(dataset))
-    return dataset.assign(from_rows("timed", [_timed(one) for one in timed if one["setting"] == "event"]))
-
-
-def frontier(dataset: xr.Dataset) -> xr.Dataset:
-    """The cheapest time-stepped setting whose error, with two standard errors of it, is within each accuracy;
-    and with what is known to build up over many steps.
-
-    Over ``gas``: ``gas_dimension``, ``gas_packing_fraction``. Over (``gas``, ``observable``, ``accuracy``):
-    ``best_seconds`` per exact collision (NaN if none is known to reach it), ``best_ratio`` of it to the
-    event-driven engine's with ``best_ratio_error``, ``best_step``, ``best_setting``.
-    """
-    gases = list(dict.fromkeys(zip(dataset.dimension.values, dataset.packing_fraction.values, strict=True)))
-    shape = (len(gases), dataset.sizes["observable"], dataset.sizes["accuracy"])
-    found = {name: np.full(shape, np.nan) for name in ("seconds", "ratio", "ratio_error", "step")}
-    chosen = np.full(shape, "none", dtype=object)
-    for g, (dimension, fraction) in enumerate(gases):
-        of = dataset.isel(
-            row=np.flatnonzero((dataset.dimension == dimension) & (dataset.packing_fraction == fraction))
-        )
-        within = (np.abs(of.bias) + 2.0 * of.bias_error).values
-        built_up = [_built_up(dataset, of.isel(row=k)) for k in range(of.sizes["row"])]
-        within[:, OBSERVABLES.index("Z")] += np.array(built_up)[:, None]
-        cost = of.seconds.values
-        for o in range(shape[1]):
-            for a, accuracy in enumerate(dataset.accuracy.values):
-                fit = np.where((within[:, o] <= accuracy) & np.isfinite(cost), cost, np.inf)
-                best = np.unravel_index(np.argmin(fit), fit.shape)
-                if not np.isfinite(fit[best]):
-                    continue
-                event, event_error = (float(of[name][best[0]]) for name in ("event_seconds", "event_error"))
-                ratio = cost[best] / event
-                spread = np.hypot(float(of.seconds_error.values[best]) / cost[best], event_error / event)
-                values = (cost[best], ratio, ratio * spread, float(of.time_step.values[best]))
-                for name, value in zip(found, values, strict=True):
-                    found[name][g, o, a] = value
-                chosen[g, o, a] = str(of.setting.values[best[0]])
-    axes = ("gas", "observable", "accuracy")
-    return xr.Dataset(
-        {f"best_{name}": (axes, values) for name, values in found.items()}
-        | {
-            "best_setting": (axes, chosen.astype(str)),
-            "gas_dimension": ("gas", [int(dimension) for dimension, _ in gases]),
-            "gas_packing_fraction": ("gas", [float(fraction) for _, fraction in gases]),
-        }
-    )
+    dataset = dataset.assign(from_rows("timed", [_timed(one) for one in timed if one["setting"] == "event"]))
+    cells = cells_by_fraction(points, settings["cells"])
+    return dataset.assign(from_rows("dsmc", list(_models(timed, cells))))
 
 
 def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
-    """The cost of a required accuracy in gases that the model was not fitted to, measured and by the model.
+    """The cost of a required accuracy: by engine in all gases, see `maps`; and in gases that the model was
+    not fitted to, measured and by the model.
 
-    points: as for `speed_accuracy`, of gases that are not in the model's table; and timings of its reference
-    gas, which scale the table's times to this machine. settings: ``counts`` of particles, ``accuracies``.
+    points: as for `speed_accuracy`, those of gases that are not in the model's table being the experiments
+    ``elsewhere`` in settings; timings of its reference gas, which scale the table's times to this machine.
+    settings: ``counts`` of particles, ``accuracies``, and those of `maps`.
 
     Over (``gas``, ``observable``, ``count``, ``accuracy``, ``engine``): ``measured`` and ``model``, processor
     time in s of the cheapest setting (see `gaspart.tradeoff.advice`), NaN where there is none. Without
     ``engine``: ``regret``, measured cost of the setting that the model picks over that of the measured best,
     with ``regret_error`` from the timings.
     """
-    timed = [costs(point) for point in points if point.job == "measure_cost"]
-    rows = [errors(point) for point in points if point.job == "compare"]
-    for row in rows:
-        add_costs(row, timed)
+    uniform = (point for point in points if point.experiment not in settings["plates_cost"])
+    timed = [costs(point) for point in uniform if point.job == "measure_cost"]
+    every = compared(points, timed)
+    rows = compared([point for point in points if point.experiment in settings["elsewhere"]], timed)
     speeds = _speeds(timed)
     gases = sorted({(row["dimension"], row["packing_fraction"]) for row in rows})
     shape = (len(gases), len(OBSERVABLES), len(settings["counts"]), len(settings["accuracies"]))
@@ -166,7 +132,7 @@ def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
             "accuracy": settings["accuracies"],
             "engine": ["event", "step"],
         },
-    )
+    ).merge(maps(points, settings, timed, every))
 
 
 def _speeds(timed: list[dict]) -> dict[tuple[str, str], float]:
@@ -228,17 +194,22 @@ def _orders(row: dict, largest: float) -> list[tuple[float, float]]:
     return found
 
 
-def _built_up(dataset: xr.Dataset, at: xr.Dataset) -> float:
-    """The largest error of Z of a gas and setting that builds up over many steps, 0 if none is seen."""
-    if "steady" not in dataset.dims:
-        return 0.0
-    same = (
-        (dataset.steady_dimension == at.dimension)
-        & (dataset.steady_packing_fraction == at.packing_fraction)
-        & (dataset.steady_setting == at.setting)
-        & (np.abs(dataset.build_up) > SEEN * dataset.build_up_error)
-    )
-    return float(np.abs(dataset.build_up).where(same, 0.0).max())
+def _models(timed: list[dict], cells: dict[float, Cells]) -> Iterator[dict]:
+    """The costs and the errors of Z of the models of the DSMC engine, with the cheapest step, on which Z does
+    not depend, in the gases whose error by cells was measured and the event-driven engine timed."""
+    for event in (one for one in timed if one["setting"] == "event"):
+        dimension, fraction = event["gas"]
+        for one in timed:
+            model = one["setting"]
+            if dimension == 3 and fraction in cells and one["gas"] == event["gas"] and model in MODELS:
+                each = min(each_of(one, float(event["collisions"][0])), key=lambda each: each.value)
+                bias = model_error(fraction, model, "Z")
+                yield {
+                    "dsmc_model": model,
+                    "dsmc_packing_fraction": fraction,
+                    **entries({"dsmc_seconds": (each.value, each.error)}),
+                    "dsmc_bias": bias + (cells[fraction].error if model == "enskog" else 0.0),
+                }
 
 
 def _timed(run: dict) -> dict:

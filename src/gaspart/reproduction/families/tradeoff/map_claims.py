@@ -1,0 +1,166 @@
+"""Claims about what makes the map of the cheapest engine: what collisions cost, and what engines err by."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from gaspart import theory
+from gaspart.reproduction.claims import Claim, Estimate
+from gaspart.reproduction.families.shared.claims import rows
+from gaspart.reproduction.families.tradeoff.relaxation import relaxation_time
+
+THIN, THICK = 0.0011, 0.29
+"""Packing fractions: up to which a gas is called dilute here, and from which dense."""
+KNOWN = 0.4
+"""Packing fraction up to which the loss of collisions in cells is known (docs/dsmc.md)."""
+TESTED = 0.02
+"""The smallest bound that runs of a few seconds can test."""
+FLOW_NAMES = {"heat_flux": "heat flux between plates", "relaxation": "relaxation time of speeds"}
+SOLVERS = {"step": "time steps", "boltzmann": "the Boltzmann model", "enskog": "the Enskog model"}
+
+
+def of_map(ds: xr.Dataset) -> list[Claim]:
+    """Of dilute and dense gases, of both flows, and of the cells of the Enskog model."""
+    return [*_dilute(ds), *_dense(ds), *_flows(ds), *_relaxation(ds), *_cells(ds)]
+
+
+def _dilute(ds: xr.Dataset) -> list[Claim]:
+    """In a dilute gas DSMC is much cheaper, the more so the more dilute."""
+    claims = []
+    rate = ds.sel(quantity="collision_rate")
+    for at in rows(rate.isel(fraction=(rate.fraction <= THIN).values), "fraction"):
+        for wanted in rows(at.isel(accuracy=np.isclose(at.accuracy, 0.01)), "accuracy"):
+            if not np.isfinite(wanted.cost.sel(solver="event")):
+                continue
+            boltzmann, event = (
+                Estimate.of(wanted.sel(solver=name), "cost") for name in ("boltzmann", "event")
+            )
+            claims.append(
+                Claim.at_most(
+                    claim="time of DSMC over that of events for 1 % of the collision rate, packing fraction "
+                    f"{float(at.fraction):g}",
+                    measured=boltzmann / event,
+                    bound=0.1,
+                    required=0.03,
+                    source="between two collisions a particle crosses many boxes by events, and none by DSMC",
+                    fails_if="a collision of DSMC costs as much as tens of box crossings",
+                )
+            )
+    thin, other = (ds.isel(fraction=np.isclose(ds.fraction, eta)) for eta in (1e-4, 1e-2))
+    if thin.sizes["fraction"] and other.sizes["fraction"]:
+        ratio = [
+            Estimate.of(at.isel(fraction=0).sel(solver="event"), "each")
+            / Estimate.of(at.isel(fraction=0).sel(solver="boltzmann"), "each")
+            for at in (thin, other)
+        ]
+        claims.append(
+            Claim.at_least(
+                claim="time of a collision by events over that by DSMC, at packing fraction 0.0001 over 0.01",
+                measured=ratio[0] / ratio[1],
+                bound=3.0,
+                required=1.0,
+                source="box crossings in a free path grow as the packing fraction to the power -2/3, by 22",
+                fails_if="a particle's flight is followed through few boxes",
+            )
+        )
+    return claims
+
+
+def _dense(ds: xr.Dataset) -> list[Claim]:
+    """In a dense gas the Enskog model costs more than events, and has another D."""
+    claims = []
+    for at in rows(ds.isel(fraction=(ds.fraction >= THICK).values), "fraction"):
+        where = f"packing fraction {float(at.fraction):g}"
+        event, enskog = (Estimate.of(at.sel(solver=name), "each") for name in ("event", "enskog"))
+        claims.append(
+            Claim.at_least(
+                claim=f"time of a collision by the Enskog model over that by events, {where}",
+                measured=enskog / event,
+                bound=1.0,
+                required=0.2,
+                source="the model tries several pairs for one that collides; by events few are tested",
+                fails_if="a search for contacts costs more than random trials",
+            )
+        )
+        if float(at.fraction) > 0.35:  # beyond, D / Enskog's falls again and passes through 1
+            continue
+        model = float(at.error.sel(quantity="D", solver="enskog", part="model").isel(accuracy=0))
+        claims.append(
+            Claim.at_least(
+                claim=f"error of the Enskog model in D, {where}",
+                measured=Estimate(model, 0.0),
+                bound=0.01,
+                required=0.001,
+                source="[Erpenbeck 1991]",
+                kind="identity",
+                fails_if="the map offers the model for 1 % of D",
+            )
+        )
+    return claims
+
+
+def _flows(ds: xr.Dataset) -> list[Claim]:
+    """Fluxes and relaxation are within the bounds by which `gaspart advise` chooses."""
+    claims = []
+    for quantity in ds.flow_quantity.values:
+        for at in rows(ds.sel(flow_quantity=quantity), "fraction"):
+            event = Estimate.of(at.sel(solver="event"), "flow")
+            for solver in ("step", "boltzmann", "enskog"):
+                of = at.sel(solver=solver)
+                bound = float(of.flow_bound)
+                if not TESTED <= bound < 1.0:
+                    continue
+                claims.append(
+                    Claim.within(
+                        claim=f"{FLOW_NAMES[quantity]} by {SOLVERS[solver]} over that by events, packing "
+                        f"fraction {float(at.fraction):g}",
+                        measured=Estimate.of(of, "flow") / event,
+                        expected=1.0,
+                        half_width=bound,
+                        source="gaspart.tradeoff.candidates: excluded volume, memory, cells, steps",
+                        fails_if="a bound leaves out what makes an error",
+                    )
+                )
+    return claims
+
+
+def _relaxation(ds: xr.Dataset) -> list[Claim]:
+    """Speeds relax by both models as by one, on clocks that differ by the contact value."""
+    claims = []
+    for at in rows(ds.sel(flow_quantity="relaxation"), "fraction"):
+        boltzmann, enskog = (Estimate.of(at.sel(solver=name), "flow") for name in ("boltzmann", "enskog"))
+        eta = float(at.fraction)
+        if eta < 0.05 or not np.isfinite(boltzmann.value + enskog.value):
+            continue
+        exact, later = (relaxation_time(factor) for factor in (1.0, float(theory.contact_value(eta, 3))))
+        claims.append(
+            Claim(
+                claim="relaxation time of speeds by the Boltzmann model over that by the Enskog model, "
+                f"packing fraction {eta:g}",
+                measured=boltzmann / enskog,
+                expected=later / exact,
+                required=0.01,
+                source="Enskog's equation of a uniform gas is Boltzmann's with the contact value as a factor",
+                alternative=1.0,
+                fails_if="few in a cell meet again and again; a wrong contact value",
+            )
+        )
+    return claims
+
+
+def _cells(ds: xr.Dataset) -> list[Claim]:
+    """The Enskog model loses no more collisions to its cells than `gaspart advise` allows for."""
+    return [
+        Claim.within(
+            claim="collision rate of the Enskog model in default cells over that of its equation, packing "
+            f"fraction {float(at.fraction):g}",
+            measured=Estimate.of(at, "cells"),
+            expected=1.0,
+            half_width=float(at.cells_bound),
+            source="docs/dsmc.md: at most 0.5 over the particles in a cell",
+            fails_if="pairs that approach become rarer in a cell than they are",
+        )
+        for at in rows(ds.isel(fraction=(ds.fraction <= KNOWN).values), "fraction")
+        if np.isfinite(at.cells) and at.cells_bound > 0.0  # a single cell loses nothing
+    ]

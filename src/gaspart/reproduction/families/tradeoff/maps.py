@@ -1,0 +1,163 @@
+"""The cheapest engine for each observable, density and accuracy, with what makes the error of every one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from gaspart.analysis.estimate import Estimate
+from gaspart.reproduction.families.shared.accuracy import costs
+from gaspart.reproduction.families.shared.rows import entries
+from gaspart.reproduction.families.tradeoff import flows, uniform
+from gaspart.reproduction.families.tradeoff.choices import ENGINES, PARTS, Choice, cheapest
+from gaspart.reproduction.points.point import Point
+from gaspart.tradeoff.table import PRECISIONS
+
+QUANTITIES = (*uniform.OBSERVABLES, *flows.FLOWS)
+
+
+def maps(points: Sequence[Point], settings: dict, timed: list[dict], compared: list[dict]) -> xr.Dataset:
+    """Costs of all engines in spheres of every density that they were timed at.
+
+    points: of the experiments `cells`, `plates`, `plates_cost` and `relaxation` in settings, beside others;
+    timed, compared: see `uniform`. settings also: ``counts`` of particles, of which the first is the map's,
+    ``accuracies``, ``blocks`` of each run between plates.
+
+    Over (``quantity``, ``fraction``, ``accuracy``, ``solver``): ``cost`` in s of the cheapest setting, with
+    its uncertainty from the timings, infinite if none is known to be as accurate and NaN where the engine was
+    not run. Over these and ``part``: ``error``, relative, of `PARTS`: ``model`` and ``discretisation`` bounds
+    from theory, or from runs where theory has none, ``finite_size`` what theory's correction leaves,
+    ``equilibration`` a bound on the trace of the initial state, ``noise`` 1.96 standard errors.
+
+    Over (``flow_quantity``, ``fraction``, ``solver``): ``flow``, the heat flux, or the relaxation time over
+    the mean free time, with its error, and ``flow_bound`` of theory on its relative difference from that of
+    hard spheres. Over (``fraction``, ``solver``): ``each``, processor time in s per contact of the exact gas,
+    with the cheapest step, and its error. Over ``fraction``: ``cells``, the collision rate of the Enskog
+    model in its default cells over that of its equation, with its error and ``cells_bound`` on the
+    difference.
+    """
+    fractions = sorted({one["gas"][1] for one in timed if one["gas"][0] == 3})
+    cells = uniform.cells_by_fraction(points, settings["cells"])
+    measured, between = _flows(points, settings), _speeds_between(points, settings["plates_cost"])
+    count, accuracies = settings["counts"][0], settings["accuracies"]
+    shape = (len(QUANTITIES), len(fractions), len(accuracies), len(ENGINES))
+    found = np.full((*shape, 2), np.nan), np.full((*shape, len(PARTS)), np.nan)
+    for q, f in np.ndindex(shape[:2]):
+        eta = fractions[f]
+        if QUANTITIES[q] in uniform.OBSERVABLES:
+            gas = uniform.Uniform(eta, count)
+            made = list(uniform.choices(gas, QUANTITIES[q], timed, compared, cells.get(eta)))
+        else:
+            of = [one for one in measured if (one.observable, one.packing_fraction) == (QUANTITIES[q], eta)]
+            speeds = between.get(eta, {}) if QUANTITIES[q] == "heat_flux" else _speeds_of(timed, of)
+            made = list(flows.choices(of, count, speeds)) if of else []
+        _enter(found[0][q, f], found[1][q, f], made, accuracies)
+    axes = ("quantity", "fraction", "accuracy", "solver")
+    dataset = xr.Dataset(
+        {
+            "cost": (axes, found[0][..., 0], {"units": "s"}),
+            "cost_error": (axes, found[0][..., 1], {"units": "s"}),
+            "error": ((*axes, "part"), found[1], {"units": "1"}),
+        },
+        coords={
+            "quantity": list(QUANTITIES),
+            "fraction": fractions,
+            "accuracy": accuracies,
+            "solver": list(ENGINES),
+            "part": list(PARTS),
+        },
+    )
+    return dataset.merge(_compared(measured, fractions)).merge(_speeds(timed, cells, fractions))
+
+
+def _enter(costs: np.ndarray, parts: np.ndarray, made: list[Choice], accuracies: Sequence[float]) -> None:
+    """Put the cheapest choice of each engine into the arrays of one quantity and density: costs (A, E, 2)
+    with errors, parts (A, E, `PARTS`)."""
+    for e, engine in enumerate(ENGINES):
+        of = [one for one in made if one.engine == engine]
+        for a, accuracy in enumerate(accuracies if of else ()):
+            best = cheapest(of, accuracy)
+            costs[a, e] = best.cost(accuracy) * np.array([1.0, best.uncertainty])
+            parts[a, e] = list(best.parts(accuracy).values())
+
+
+def _flows(points: Sequence[Point], settings: dict) -> list[flows.Flow]:
+    """All flows that were measured."""
+    plates = [point for point in points if point.experiment in settings["plates"]]
+    relaxing = [point for point in points if point.experiment in settings["relaxation"]]
+    return [
+        *(flows.flux_of(point, settings["blocks"]) for point in plates),
+        *(flows.relaxation_of(point) for point in relaxing),
+    ]
+
+
+def _speeds_between(points: Sequence[Point], experiments: Sequence[str]) -> dict[float, dict[str, Estimate]]:
+    """Processor time per time of simulation between plates, by packing fraction and engine."""
+    found: dict[float, dict[str, Estimate]] = {}
+    for point in points:
+        if point.experiment in experiments:
+            (seconds,) = uniform.each_of(costs(point), 1.0)
+            found.setdefault(flows.fraction_of(point), {})[flows.engine_of(point)] = seconds
+    return found
+
+
+def _speeds_of(timed: list[dict], of: list[flows.Flow]) -> dict[str, Estimate]:
+    """The same of some flows in a uniform gas, as if their particles were those of the timings, with the step
+    nearest to theirs."""
+    if not of:
+        return {}
+    same = {_solver(one["setting"]): one for one in timed if one["gas"] == (3, of[0].packing_fraction)}
+    rate = float(same["event"]["collisions"][0])
+    contacts = next(one.contacts for one in of if one.engine == "event")
+    found = {}
+    for one in of:
+        if one.engine in same:
+            steps = same[one.engine]["time_step"]
+            at = int(np.argmin(np.abs(np.log(steps / one.time_step)))) if one.time_step else 0
+            found[one.engine] = uniform.each_of(same[one.engine], rate)[at] * contacts
+    return found
+
+
+def _solver(setting: str) -> str:
+    """The engine of a timed setting; other settings of the time-stepped engine than the default keep their
+    names."""
+    return "step" if PRECISIONS.get(setting) == "float64" else setting
+
+
+def _compared(measured: list[flows.Flow], fractions: list[float]) -> xr.Dataset:
+    """What each engine has measured, and theory's bounds on its error."""
+    names = ("flow", "flow_error", "flow_freedom", "flow_bound")
+    found = np.full((len(names), len(flows.FLOWS), len(fractions), len(ENGINES)), np.nan)
+    for one in measured:
+        at = flows.FLOWS.index(one.observable), fractions.index(one.packing_fraction)
+        numbers = one.value.value, one.value.error, one.value.freedom, sum(one.bounds)
+        found[:, *at, ENGINES.index(one.engine)] = numbers
+    axes = ("flow_quantity", "fraction", "solver")
+    columns = {name: (axes, values, {"units": "1"}) for name, values in zip(names, found, strict=True)}
+    return xr.Dataset(columns, coords={"flow_quantity": list(flows.FLOWS)})
+
+
+def _speeds(timed: list[dict], cells: dict[float, uniform.Cells], fractions: list[float]) -> xr.Dataset:
+    """Processor time per contact, and the collision rate in cells."""
+    each = np.full((2, len(fractions), len(ENGINES)), np.nan)
+    found = [cells.get(eta) for eta in fractions]
+    rates = [one.rate if one else Estimate(np.nan, np.nan, np.nan) for one in found]
+    for f, eta in enumerate(fractions):
+        same = {_solver(one["setting"]): one for one in timed if one["gas"] == (3, eta)}
+        rate = float(same["event"]["collisions"][0])
+        for e, engine in enumerate(ENGINES):
+            if engine in same:
+                best = min(uniform.each_of(same[engine], rate), key=lambda one: one.value)
+                each[:, f, e] = best.value, best.error
+    columns = entries({"cells": tuple(np.array([(one.value, one.error) for one in rates]).T)})
+    columns["cells_freedom"] = np.array([one.freedom for one in rates])
+    columns["cells_bound"] = np.array([one.bound if one else np.nan for one in found])
+    return xr.Dataset(
+        {name: ("fraction", values, {"units": "1"}) for name, values in columns.items()}
+        | {
+            name: (("fraction", "solver"), values, {"units": "s"})
+            for name, values in zip(("each", "each_error"), each, strict=True)
+        }
+    )

@@ -1,0 +1,140 @@
+"""Panels of the map of the cheapest engine: one for each observable, and what makes errors at two places."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
+from matplotlib.patches import Patch
+
+from gaspart.rendering import style
+from gaspart.reproduction.families.tradeoff.choices import ENGINES
+
+TITLES = {
+    "collision_rate": "collision rate",
+    "Z": "compressibility factor $Z$",
+    "D": "diffusion coefficient $D$",
+    "heat_flux": "heat flux between plates",
+    "relaxation": "relaxation of speeds",
+}
+NAMES = dict(zip(ENGINES, ("event-driven", "time-stepped", "DSMC, Boltzmann", "DSMC, Enskog"), strict=True))
+TINTS = {"event": (0, 0.65), "step": (1, 0.5), "boltzmann": (2, 0.6), "enskog": (2, 0.25)}
+"""Colour of each engine, and the part of white in it: figures are read on it."""
+PART_NAMES = ("model", "step, cells", "finite size", "equilibration", "noise")
+PLACES = (("D", 0.01, 0.01), ("D", 0.3, 0.01))
+"""Observable, packing fraction and accuracy of the errors that are shown."""
+HIGHEST = 1.6
+"""Of the accuracy: up to which errors are drawn."""
+_SMALL = 5.6
+
+
+def tint(engine: str) -> tuple[float, float, float]:
+    """The colour of an engine."""
+    kind, white = TINTS[engine]
+    red, green, blue = (white + (1.0 - white) * part for part in to_rgb(style.COLOURS[kind]))
+    return red, green, blue
+
+
+def keys() -> list[Patch]:
+    """What a legend shows of the colours."""
+    return [Patch(facecolor=tint(engine), label=name) for engine, name in NAMES.items()]
+
+
+def duration(seconds: float) -> str:
+    """A time to one or two digits, in a unit that makes its number short."""
+    steps = (("ms", 1.0), ("s", 1e3), ("min", 6e4), ("h", 3.6e6), ("d", 8.64e7), ("y", 3.156e10))
+    milliseconds = 1e3 * seconds
+    unit, size = max(
+        (one for one in steps if one[1] <= max(milliseconds, 1.0) * 1.0001), key=lambda one: one[1]
+    )
+    value = milliseconds / size
+    return f"{float(f'{value:.{1 if value < 9.5 else 2}g}'):g} {unit}"
+
+
+def cheapest_engine(ds: xr.Dataset) -> Iterator[tuple[int, int, str, float]]:
+    """(fraction, accuracy, engine, cost), the first two by position, of one quantity where any engine was
+    measured; engine "" and cost infinite where none reaches the accuracy."""
+    for f in range(ds.sizes["fraction"]):
+        for a in range(ds.sizes["accuracy"]):
+            costs = ds["cost"].isel(fraction=f, accuracy=a).values
+            if np.isnan(costs).all():
+                continue
+            best = int(np.nanargmin(costs))
+            yield f, a, ENGINES[best] if np.isfinite(costs[best]) else "", float(costs[best])
+
+
+def map_of(axis: Axes, ds: xr.Dataset) -> None:
+    """One quantity: a field for each density and accuracy, in the colour of the cheapest engine, with its
+    cost."""
+    fields = list(cheapest_engine(ds))
+    columns = sorted({f for f, *_ in fields})
+    colours = np.ones((ds.sizes["accuracy"], max(1, len(columns)), 3))
+    for f, a, engine, seconds in fields:
+        x, y = columns.index(f), a
+        colours[y, x] = tint(engine) if engine else (1.0, 1.0, 1.0)
+        text = duration(seconds) if engine else "–"
+        axis.text(x + 0.5, y + 0.5, text, ha="center", va="center", fontsize=_SMALL)
+    axis.pcolormesh(
+        *map(np.arange, np.add(colours.shape[1::-1], 1)), colours, edgecolor="white", linewidth=0.5
+    )
+    axis.set_xticks(np.arange(len(columns)) + 0.5, [_fraction(ds.fraction.values[f]) for f in columns])
+    percent = [f"{100.0 * value:g}" for value in ds.accuracy.values]
+    axis.set_yticks(np.arange(len(percent)) + 0.5, percent)
+    axis.tick_params(length=0)
+    axis.set_xlabel(r"packing fraction $\eta$")
+    axis.set_ylabel("accuracy (%)")
+
+
+def _fraction(value: float) -> str:
+    """A packing fraction, a small one as a power of ten."""
+    return rf"$10^{{{round(math.log10(value))}}}$" if value < 0.005 else f"{value:g}"
+
+
+def places(ds: xr.Dataset) -> list[xr.Dataset]:
+    """The `PLACES` that were measured."""
+    found = []
+    for quantity, fraction, accuracy in PLACES:
+        near = np.isclose(ds.fraction, fraction)
+        if near.any():
+            of = ds.sel(quantity=quantity).isel(fraction=int(np.argmax(near)))
+            found.append(of.isel(accuracy=int(np.argmin(np.abs(ds.accuracy.values - accuracy)))))
+    return found
+
+
+def breakdown(axis: Axes, ds: xr.Dataset) -> None:
+    """Errors over the required accuracy of every engine at the `PLACES`, by what makes them."""
+    rows: list[tuple[float, str]] = []
+    for p, at in enumerate(places(ds)):
+        top = -(len(ENGINES) + 1.5) * p
+        title = rf"${at.quantity.item()}$ to {100 * float(at.accuracy):g} % at $\eta={float(at.fraction):g}$"
+        axis.text(0.03, top, title, va="center")
+        for e, engine in enumerate(ENGINES):
+            y = top - 1.0 - e
+            rows.append((y, NAMES[engine]))
+            _stack(axis, y, list(at.sel(solver=engine)["error"].values / float(at.accuracy)))
+    line = axis.axvline(1.0, color="black", linewidth=0.8, label="required")
+    parts = [Patch(facecolor=style.COLOURS[kind], label=name) for kind, name in enumerate(PART_NAMES)]
+    axis.legend(handles=[*parts, line], loc="center right", fontsize=7)
+    axis.set_yticks(*zip(*rows, strict=True) if rows else ([], []))
+    axis.set_ylim(rows[-1][0] - 0.7 if rows else -1.0, 0.7)
+    axis.set_xticks([0.0, 0.5, 1.0, 1.5])
+    axis.set_xlim(0.0, 2.4 * HIGHEST)  # with room for the legend
+    axis.tick_params(axis="y", length=0)
+    axis.set_xlabel("error / required accuracy")
+
+
+def _stack(axis: Axes, y: float, parts: list[float]) -> None:
+    """One bar of parts after each other, cut off at `HIGHEST`, with its length where it is cut off."""
+    low = 0.0
+    for kind, part in enumerate(parts):
+        if math.isfinite(part) and low < HIGHEST:
+            end = min(low + part, HIGHEST)
+            axis.barh(y, end - low, left=low, color=style.COLOURS[kind], height=0.8)
+            low = end
+    total = float(np.nansum(parts))
+    if total > HIGHEST:
+        axis.text(HIGHEST + 0.04, y, f"{float(f'{total:.2g}'):g}", ha="left", va="center", fontsize=6.5)

@@ -1,0 +1,217 @@
+"""Choices for a gas in equilibrium: its collision rate, its compressibility factor Z and its D.
+
+The event-driven engine has no error but that of noise. Errors of time steps are measured, see `errors` in
+`shared.accuracy`. Those of the DSMC engine follow from theory: its model lacks the contact value, the virial
+or the memory of collisions, and its steps change D by a law that `dsmc_convergence` confirms; only what the
+few particles of a cell do to the collisions of the Enskog model is measured.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from gaspart import theory
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.statistics import mean_of
+from gaspart.engines import DSMC
+from gaspart.reproduction.families.shared.accuracy import add_costs, errors
+from gaspart.reproduction.families.shared.pressure import series_of
+from gaspart.reproduction.families.shared.runs import runs
+from gaspart.reproduction.families.tradeoff.choices import Choice
+from gaspart.reproduction.points.point import Point
+from gaspart.theory.dsmc import step_factor
+from gaspart.tradeoff import table
+from gaspart.tradeoff.candidates import cell_loss
+from gaspart.tradeoff.table import EQUILIBRATION, LEAST, PRECISIONS
+
+OBSERVABLES = ("collision_rate", "Z", "D")
+BOUND = 2.0
+"""Standard errors that are added to a measured error, so that it is a bound."""
+_VISCOSITY_UNCERTAINTY = 0.05
+"""Of Enskog's viscosity, with which D is corrected for the size of the container [Yeh 2004]."""
+
+
+@dataclass(frozen=True)
+class Uniform:
+    """Spheres of a packing fraction in a periodic cube, `count` of them."""
+
+    packing_fraction: float
+    count: int
+
+    def finite_size(self, observable: str) -> float:
+        """What theory's correction leaves, relatively: the square of a correction of first order in 1/N; of D
+        the uncertainty of the viscosity, and the next order of hydrodynamics, see `displacement`."""
+        eta, count = self.packing_fraction, self.count
+        if observable == "collision_rate":
+            return float(theory.collision_rate_finite_size_factor(eta, 3, count) - 1.0) ** 2
+        if observable == "Z":
+            shift = theory.finite_size_correction(eta, 3, count, ensemble="canonical")
+            return float(shift / theory.compressibility_factor(eta, 3)) ** 2
+        order = (2.0 * math.pi * float(theory.mean_free_path(eta, 3)) / self._side) ** 2
+        return self._lost * min(1.0, math.hypot(_VISCOSITY_UNCERTAINTY, order))
+
+    def decay(self, observable: str) -> tuple[float, float]:
+        """Collisions per particle in which the slowest trace of the initial state falls to 1/e, and how much
+        of the observable it is at first, at most: that of the speeds, all of it; but of D that of the longest
+        shear wave, which carries what D lacks in a finite container."""
+        speeds = 1.0 / theory.KURTOSIS_RELAXATION_RATE[3]
+        wave = (self._side / (2.0 * math.pi)) ** 2 / self._spreading
+        wave *= float(theory.collision_rate(self.packing_fraction, 3))
+        return (wave, self._lost) if observable == "D" and wave > speeds else (speeds, 1.0)
+
+    def choice(
+        self, engine: str, observable: str, errors: tuple[float, float], each: Estimate, noise: float
+    ) -> Choice:
+        """That of an engine. errors: of model and discretisation; each: processor time per contact; noise:
+        relative variance times contacts."""
+        body = 0.5 * self.count * each.value  # per collision of every particle
+        decay, trace = self.decay(observable)
+        return Choice(
+            engine=engine,
+            model=errors[0],
+            discretisation=errors[1],
+            finite_size=self.finite_size(observable),
+            unit=noise * each.value,
+            least=LEAST * body,
+            equilibration=EQUILIBRATION * body,
+            decay=decay * body,
+            trace=trace,
+            uncertainty=each.error / each.value,
+        )
+
+    @property
+    def _lost(self) -> float:
+        """The part of D that the container takes by its size, without correction [Yeh 2004]."""
+        diffusion = float(theory.enskog_diffusion(self.packing_fraction, 3))
+        return float(theory.yeh_hummer(self._side, self._spreading * self._density)) / diffusion
+
+    @property
+    def _density(self) -> float:
+        return float(theory.number_density(self.packing_fraction, 3))
+
+    @property
+    def _side(self) -> float:
+        return (self.count / self._density) ** (1.0 / 3.0)
+
+    @property
+    def _spreading(self) -> float:
+        """By which shear waves decay, a particle's own diffusion included."""
+        viscosity = float(theory.enskog_viscosity(self.packing_fraction, 3))
+        return viscosity / self._density + float(theory.enskog_diffusion(self.packing_fraction, 3))
+
+
+def model_error(packing_fraction: float, model: str, observable: str) -> float:
+    """|error| of an observable by the Boltzmann or the Enskog equation, relative to hard spheres.
+
+    The Boltzmann equation has a contact value of 1, and no virial. The Enskog model is given the contact
+    value of Carnahan and Starling. D of neither has the memory of correlated collisions [Erpenbeck
+    1991], whose uncertainty is added.
+    """
+    eta, contact = packing_fraction, float(theory.contact_value(packing_fraction, 3))
+    z = float(theory.compressibility_factor(eta, 3))
+    given = 1.0 if model == "boltzmann" else (float(theory.carnahan_starling(eta)) - 1.0) / (4.0 * eta)
+    if observable == "collision_rate":
+        return abs(given / contact - 1.0)
+    if observable == "Z":
+        virial = 0.0 if model == "boltzmann" else 4.0 * eta * given
+        return abs((1.0 + virial) / z - 1.0)
+    ratio = float(theory.erpenbeck_wood_ratio(eta))
+    known = theory.ERPENBECK_WOOD_UNCERTAINTY if eta > 0.01 else 0.0
+    return abs(contact / (given * ratio) - 1.0) + known
+
+
+@dataclass(frozen=True)
+class Cells:
+    """What the cells of the Enskog model do at one packing fraction. rate: the collision rate over that of
+    its equation; bound: on the part of the collisions that is lost, from docs/dsmc.md; noise: relative
+    variance times contacts, by observable."""
+
+    rate: Estimate
+    bound: float
+    noise: dict[str, float]
+
+    @property
+    def error(self) -> float:
+        """A bound on the relative error of the collision rate, and of all that follows from it."""
+        return abs(self.rate.value - 1.0) + BOUND * self.rate.error
+
+
+def cells_of(point: Point) -> Cells:
+    """Those of a run of the Enskog model in its default cells, beside what its equation states."""
+    (found,) = (series_of(run) for run in runs(point))
+    fraction, count = point.scene.packing_fraction, point.scene.count
+    contact = (float(theory.carnahan_starling(fraction)) - 1.0) / (4.0 * fraction)
+    expected = float(theory.collision_rate(fraction, 3) / theory.contact_value(fraction, 3)) * contact
+    expected *= 1.0 - 1.0 / count
+    contacts = 0.5 * count * expected * found.interval
+    variances = {
+        name: float(series.var(ddof=1) / series.mean() ** 2) * contacts
+        for name, series in (("collision_rate", found.rate), ("Z", found.z))
+    }
+    engine = point.engine
+    assert isinstance(engine, DSMC)
+    return Cells(mean_of(found.rate) / expected, cell_loss(engine, point.scene), variances)
+
+
+def cells_by_fraction(points: Iterable[Point], experiments: Sequence[str]) -> dict[float, Cells]:
+    """Those of the points of some experiments, by the packing fraction of their settings."""
+    of = (point for point in points if point.experiment in experiments)
+    return {float(point.settings["packing_fraction"]): cells_of(point) for point in of}
+
+
+def choices(
+    gas: Uniform, observable: str, timed: list[dict], compared: list[dict], cells: Cells | None
+) -> Iterator[Choice]:
+    """All settings of all engines that were timed in a gas; cells: of the Enskog model, None if unknown."""
+    same = [one for one in timed if one["gas"] == (3, gas.packing_fraction)]
+    event = next(one for one in same if one["setting"] == "event")
+    rate = float(event["collisions"][0])
+    variance = table.noise(3, gas.packing_fraction, observable)
+    yield gas.choice("event", observable, (0.0, 0.0), each_of(event, rate)[0], variance)
+    at = OBSERVABLES.index(observable)
+    for row in compared:
+        if (row["dimension"], row["packing_fraction"]) != (3, gas.packing_fraction):
+            continue
+        if row["setting"] not in PRECISIONS:
+            continue
+        bound = np.abs(row["bias"][at]) + BOUND * row["bias_error"][at]
+        for error, *each in zip(bound, row["seconds"], row["seconds_error"], strict=True):
+            if np.isfinite(error) and np.isfinite(each[0]):
+                yield gas.choice("step", observable, (0.0, float(error)), Estimate(*each), variance)
+    for one in same:
+        model = one["setting"]
+        if model not in ("boltzmann", "enskog") or (model == "enskog" and cells is None):
+            continue
+        for step, each in zip(one["time_step"], each_of(one, rate), strict=True):
+            error = step_error(gas, step) if observable == "D" else 0.0
+            of_cells = cells.error if cells and model == "enskog" else 0.0
+            own = cells.noise.get(observable, variance) if cells and model == "enskog" else variance
+            if model == "boltzmann" and observable == "Z":
+                own = 0.0  # it is 1, whatever happens
+            both = model_error(gas.packing_fraction, model, observable), error + of_cells
+            yield gas.choice(model, observable, both, each, own)
+
+
+def each_of(timed: dict, rate: float) -> list[Estimate]:
+    """Processor time per contact with each time step of a timing; rate: contacts per time."""
+    pairs = zip(timed["seconds"], timed["error"], strict=True)
+    return [Estimate(float(seconds), float(error)) / rate for seconds, error in pairs]
+
+
+def step_error(gas: Uniform, step: float) -> float:
+    """By how much steps of the DSMC engine make D too high. The law is stated for a dilute gas; a dense one
+    collides more often by the contact value, as if its free path were shorter by that."""
+    path = float(theory.mean_free_path(gas.packing_fraction, 3))
+    return float(step_factor("diffusion", step * math.sqrt(2.0) / path)) - 1.0
+
+
+def compared(points: list[Point], timed: list[dict]) -> list[dict]:
+    """Errors of time steps with their costs, see `shared.accuracy`."""
+    rows = [errors(point) for point in points if point.job == "compare"]
+    for row in rows:
+        add_costs(row, timed)
+    return rows
