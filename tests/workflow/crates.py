@@ -31,8 +31,8 @@ def write_cache(path):
 
 
 def faults(crate, folder):
-    """{message: severity} of what a crate lacks of all that the profile Workflow Run Crate, and those on which it
-    is built, require and recommend. folder: for the cache."""
+    """{message: severity} of what a crate lacks of all that the profile Workflow Run Crate requires and
+    recommends, and those on which it is built. folder: for the cache."""
     write_cache(folder / "cache")
     settings = ValidationSettings(
         rocrate_uri=str(crate),
