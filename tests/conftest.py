@@ -34,7 +34,9 @@ OF_SMOKE_RUN = ("test_smoke.py", "test_accessibility.py", "test_planning.py", "t
 # workflow compiles those that the others share with it: two processes that need a kernel at the same time
 # both compile it.
 WITHOUT_KERNELS = ("theory", "reproduction", "scene")
-COMPILING = tuple(f"test_{name}.py" for name in ("measure", "rows", "sweep", "relaxation", "simulate_until"))
+COMPILING = tuple(
+    f"test_{name}.py" for name in ("measure", "digests", "rows", "sweep", "relaxation", "simulate_until")
+)
 
 
 class ByFile(LoadScopeScheduling):

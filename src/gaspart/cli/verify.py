@@ -20,7 +20,7 @@ def add_verify(parser: Parser) -> None:
     text = (
         "Recompute the digests of an archive of `gaspart archive`: of its files, and of the data that its "
         "claims are made of. With --rerun points drawn at random are simulated again, and compared bit for "
-        "bit. No file outside of a temporary folder is written."
+        "bit. Nothing is written but to a temporary folder and the cache of kernels."
     )
     set_command(parser, _verify, text, _EXAMPLES)
     parser.add_argument(

@@ -1,5 +1,6 @@
 """What is no archive, and what cannot be one, is refused in one line."""
 
+import hashlib
 import zipfile
 
 import pytest
@@ -30,6 +31,27 @@ def test_a_manifest_that_cannot_be_read_is_refused(tmp_path, capsys):
     assert f"has a {MANIFEST} that cannot be read" in refused(capsys, "verify", tmp_path)
     (tmp_path / MANIFEST).write_bytes(b"\xff\xfe")
     assert f"has a damaged {MANIFEST}" in refused(capsys, "verify", tmp_path)
+
+
+def test_tables_that_are_missing_or_have_other_columns_are_refused(tmp_path, capsys):
+    (tmp_path / MANIFEST).write_text("")
+    assert "has tables that cannot be read, though they have" in refused(capsys, "verify", tmp_path)
+    (tmp_path / "provenance").mkdir()
+    (tmp_path / "provenance/run.json").write_text("{}")
+    digest = hashlib.sha256(b"{}").hexdigest()
+    (tmp_path / MANIFEST).write_text(f"{digest}  provenance/run.json\n")
+    assert "has tables that cannot be read, though they have" in refused(capsys, "verify", tmp_path)
+
+
+def test_an_encrypted_archive_is_damaged(tmp_path, capsys):
+    path = tmp_path / "encrypted.zip"
+    with zipfile.ZipFile(path, "w") as file:
+        file.writestr(MANIFEST, "")
+    data = bytearray(path.read_bytes())
+    for signature, flags in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
+        data[data.index(signature) + flags] |= 1
+    path.write_bytes(data)
+    assert f"has a damaged {MANIFEST}" in refused(capsys, "verify", path)
 
 
 def test_an_archive_replaces_no_other_file(tmp_path, capsys):

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from gaspart.engines import engine_from_dict
 from gaspart.errors import SceneError
 from gaspart.reproduction.config import check
 from gaspart.reproduction.points.overlay import laid_over
@@ -145,13 +146,14 @@ def _others(count: int) -> str:
 
 
 def _check_settings(run: Finished) -> None:
-    """Raise SceneError for a trajectory of another scene or seed, or other times, than the config's."""
+    """Raise SceneError for a trajectory whose scene, engine, seed or times are not those of the config."""
     for point, replica, path in run.trajectories():
         recipe, wanted = read_recipe(run.root / path), point.parameters
+        finest = recipe.correlations.interval if recipe.correlations else recipe.sample_interval
         same = (
             recipe.scene == point.scene
             and recipe.seed == tuple(wanted["seeds"][replica])
-            and recipe.engine.name == wanted["engine"]["name"]
+            and recipe.engine == engine_from_dict(wanted["engine"]).resolved(recipe.scene, finest)
             and recipe.sample_interval == wanted["sample_interval"]
             and recipe.duration == wanted.get("duration")
         )

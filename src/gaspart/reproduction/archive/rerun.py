@@ -6,7 +6,7 @@ import random
 from pathlib import Path, PurePosixPath
 
 from gaspart.errors import SceneError
-from gaspart.inspection.checks import Check
+from gaspart.inspection.verdict import Check
 from gaspart.kernels.compile.loading import load_numba
 from gaspart.reproduction.archive import tables
 from gaspart.reproduction.archive.digests import digest_of_numbers

@@ -16,7 +16,7 @@ from gaspart.reproduction.archive.digests import digest
 from gaspart.reproduction.archive.tables import RUN, rows_of
 from gaspart.reproduction.archive.writing import MANIFEST
 
-DAMAGE = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, UnicodeDecodeError)
+DAMAGE = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, UnicodeDecodeError)
 """What reading a damaged file of an archive may raise."""
 
 

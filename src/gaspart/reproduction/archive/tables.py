@@ -144,7 +144,7 @@ def rows_of(text: str) -> list[dict[str, str]]:
 def machine() -> dict[str, Any]:
     """Processor, memory and system of this machine, and the installed packages."""
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    packages = {one.metadata["Name"]: one.version for one in distributions()}
+    packages = {one.name: one.version for one in distributions() if one.name}
     return {
         "processor": _processor(),
         "architecture": platform.machine(),

@@ -6,7 +6,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from gaspart.inspection.checks import Check
+from gaspart.errors import SceneError
+from gaspart.inspection.verdict import Check
 from gaspart.reproduction.archive import tables
 from gaspart.reproduction.archive.digests import joint_digest
 from gaspart.reproduction.archive.rerun import chosen, rerun
@@ -32,9 +33,7 @@ def verify(path: str | Path, points: int = 0) -> Iterator[Check]:
         yield files
         if not files.passed:
             return
-        yield _stated(stored)
-        yield _claims(stored, stated)
-        yield from _trajectories(stored)
+        yield from _tables(stored, stated)
         if points:
             with TemporaryDirectory(prefix="gaspart-") as folder:
                 for point in chosen(stored, Path(folder), points):
@@ -54,6 +53,20 @@ def _files(stored: Stored, stated: Mapping[str, str]) -> Check:
 def _shown(names: list[str]) -> str:
     more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
     return ", ".join(names[:_NAMED]) + more
+
+
+def _tables(stored: Stored, stated: Mapping[str, str]) -> Iterator[Check]:
+    """The checks of what the tables state. Raises SceneError for tables that `gaspart archive` cannot have
+    written, though they have their digests."""
+    try:
+        yield _stated(stored)
+        yield _claims(stored, stated)
+        yield _points(stored)
+    except (KeyError, ValueError, OSError) as error:
+        if isinstance(error, SceneError):
+            raise
+        rule = f"has tables that cannot be read, though they have their digests: {error}"
+        raise SceneError("archive", str(stored.path), rule) from None
 
 
 def _stated(stored: Stored) -> Check:
@@ -90,9 +103,9 @@ def _inputs(stored: Stored, name: str) -> list[str]:
         return tables.inputs_of(copy)
 
 
-def _trajectories(stored: Stored) -> Iterator[Check]:
+def _points(stored: Stored) -> Check:
     """Whether the points in the archive have the digests that its table states."""
     rows = [row for row in stored.rows(tables.POINTS) if row["path"] in stored.names]
     wrong = [row["path"] for row in rows if stored.digest(row["path"]) != row["sha256"]]
     text = f"other digests than in {tables.POINTS}: {_shown(wrong)}" if wrong else f"{len(rows)} files"
-    yield Check("points", not wrong, text)
+    return Check("points", not wrong, text)
