@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import warnings
 from pathlib import Path, PurePosixPath
 
 from gaspart.errors import SceneError
@@ -64,7 +65,9 @@ def rerun(stored: Stored, point: Point, folder: Path) -> Check:
     other = []
     for replica, path in enumerate(point.replica_paths):
         made = folder / "again.nc"
-        _RECORD[point.job](point.parameters, point.seed(replica), made, True)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of coarse settings, which the config has on purpose
+            _RECORD[point.job](point.parameters, point.seed(replica), made, True)
         if digest_of_numbers(made) != known.get(path):
             other.append(str(replica))
         made.unlink()
