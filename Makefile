@@ -4,6 +4,7 @@
 # make smoke      all figures, small: results/smoke/report.html
 # make docs       the documentation site, with executed notebooks: results/docs/html/index.html; after a complete
 #                 reproduction also docs/gallery.png, the picture of the README
+# make archive    all figures, and archive.zip, the file to deposit
 # make benchmark  the speed of the engines on this machine, which should run nothing else: results/tables/performance.csv
 # make coverage   which lines of src/gaspart the tests run (at least 95 %); compiles all kernels anew
 # make lint | report | clean | distclean
@@ -14,7 +15,7 @@
 SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := all
-.PHONY: all setup test check-all smoke benchmark coverage lint report docs clean distclean
+.PHONY: all setup test check-all smoke archive benchmark coverage lint report docs clean distclean
 
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 CORES ?= all
@@ -66,6 +67,9 @@ smoke: setup
 	$(SNAKEMAKE) --quiet rules --configfile config/smoke.yaml
 	$(VERDICTS) results/smoke/tables/claims.csv
 	@echo "report: results/smoke/report.html"
+
+archive: all
+	.venv/bin/python -m gaspart archive results -o archive.zip --force
 
 benchmark: setup
 	mkdir -p results/benchmarks

@@ -29,12 +29,14 @@ settings.load_profile("fixed")
 
 TESTS = Path(__file__).parent
 # The files whose tests look at one run of the smoke workflow.
-OF_SMOKE_RUN = ("test_smoke.py", "test_accessibility.py", "test_planning.py")
+OF_SMOKE_RUN = ("test_smoke.py", "test_accessibility.py", "test_planning.py", "test_archive.py")
 # Packages whose tests compile hardly any kernel, but for those of some files. They run while the smoke
 # workflow compiles those that the others share with it: two processes that need a kernel at the same time
 # both compile it.
 WITHOUT_KERNELS = ("theory", "reproduction", "scene")
-COMPILING = tuple(f"test_{name}.py" for name in ("measure", "rows", "sweep", "relaxation", "simulate_until"))
+COMPILING = tuple(
+    f"test_{name}.py" for name in ("measure", "digests", "rows", "sweep", "relaxation", "simulate_until")
+)
 
 
 class ByFile(LoadScopeScheduling):

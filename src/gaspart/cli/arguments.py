@@ -93,8 +93,8 @@ def add_trajectory(parser: argparse.ArgumentParser) -> None:
 
 
 def of_configs(command: str) -> Callable:
-    """What a command does with a config of the workflow: an entry point, since the library does not import
-    the reproduction."""
+    """What a command does with a config of the workflow, or its results: an entry point, since the library
+    does not import the reproduction."""
     from importlib.metadata import entry_points  # 0.02 s
 
     (entry_point,) = entry_points(group="gaspart.configs", name=command)

@@ -9,13 +9,14 @@ from gaspart.errors import SceneError
 from gaspart.yaml_text import read_yaml
 
 
-def laid_over(path: Path) -> tuple[dict[str, Any], list[Path]]:
-    """A config merged over the `config.yaml` beside it, as the workflow does, and the files it consists of.
+def laid_over(path: Path, base: Path | None = None) -> tuple[dict[str, Any], list[Path]]:
+    """A config merged over another, as the workflow does, and the files it consists of.
 
-    Raises SceneError for a file that cannot be read.
+    base: the other one, by default the `config.yaml` beside it. Raises SceneError for a file that cannot be
+    read.
     """
     path = path.resolve()
-    base = path.parent / "config.yaml"
+    base = path.parent / "config.yaml" if base is None else base.resolve()
     files = [base, path] if base.exists() and base != path else [path]
     merged: dict[str, Any] = {}
     for file in files:

@@ -1,0 +1,162 @@
+"""A finished run of the workflow: its folder, its config, and the results that it must have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import chdir
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from gaspart.engines import engine_from_dict
+from gaspart.errors import SceneError
+from gaspart.reproduction.config import check
+from gaspart.reproduction.points.overlay import laid_over
+from gaspart.reproduction.points.point import TRAJECTORIES, Point
+from gaspart.reproduction.points.points import figure_points
+from gaspart.trajectory.recipe import read_recipe
+from gaspart.yaml_text import read_yaml
+
+_BASE = Path("config/config.yaml")
+
+
+@dataclass(frozen=True)
+class Finished:
+    """A finished run. Paths in it are relative to `root`, the folder in which the workflow ran."""
+
+    root: Path
+    results: str
+    """`results`, or `results/<run>`."""
+    config: dict[str, Any]
+    """The merged config."""
+    points: list[Point]
+    """Those of which figures and films are made."""
+
+    @property
+    def figures(self) -> list[str]:
+        """The names of the figures."""
+        return list(self.config["figures"])
+
+    @property
+    def report(self) -> str:
+        """The path of the report."""
+        return f"{self.results}/report.html"
+
+    def outputs(self) -> Iterator[str]:
+        """The results that go into every archive as they are: figures, tables, measurements, films.
+
+        Figures for a column of a journal as .pdf only: as .png they are a third of all.
+        """
+        folder = self.results
+        yield f"{folder}/tables/claims.csv"
+        for figure in self.figures:
+            yield from (f"{folder}/figures/{figure}.{kind}" for kind in ("png", "svg"))
+            yield f"{folder}/figures/journal/{figure}.pdf"
+            yield from (f"{folder}/claims/{figure}.csv", f"{folder}/measurements/{figure}.nc")
+        for film, block in self.config.get("animations", {}).items():
+            if block:
+                yield from (f"{folder}/animations/{film}.{kind}" for kind in ("mp4", "jpg"))
+        yield from (point.path for point in self.points if point.job not in TRAJECTORIES)
+
+    def trajectories(self) -> Iterator[tuple[Point, int, str]]:
+        """Point, replica and path of each trajectory."""
+        for point in self.points:
+            if point.job in TRAJECTORIES:
+                yield from ((point, k, path) for k, path in enumerate(point.replica_paths))
+
+
+def find_finished(results: str | Path, config: str | Path | None = None) -> Finished:
+    """The run whose results are in a folder, `results` or `results/<run>`.
+
+    config: its config; by default the only one in the folders `config` and above with the name of this run.
+    Raises SceneError for a folder without results, results that are not complete, and trajectories that
+    were made with other settings than those of the config.
+    """
+    folder = Path(results).resolve()
+    if not (folder / "tables/claims.csv").is_file():
+        rule = "holds no results of a finished run: tables/claims.csv is missing"
+        raise SceneError("results", str(results), rule)
+    named = folder.name != "results"
+    root = folder.parents[1] if named else folder.parent
+    if (named and folder.parent.name != "results") or not (root / _BASE).is_file():
+        rule = "must be the folder results of a project, or that of a run in it, results/<run>"
+        raise SceneError("results", str(results), rule)
+    name = folder.name if named else None
+    file = _config_of(root, name) if config is None else Path(config)
+    merged, files = laid_over(file, root / _BASE)
+    if merged.get("run") != name:
+        raise SceneError("run", merged.get("run"), f"must be {name or 'absent'}, as {results} is", str(file))
+    with chdir(root):
+        planned = check(merged, files)
+    found = Finished(root, str(folder.relative_to(root)), merged, _used(merged, planned))
+    _check_places(found, file)
+    _check_complete(found, results)
+    _check_settings(found)
+    return found
+
+
+def _used(config: dict, planned: dict[str, dict[str, Point]]) -> list[Point]:
+    """The points of which figures and films are made, each once: no rule of `all` makes the others."""
+    points = [point for figure in config["figures"] for point in figure_points(config, figure, planned)]
+    films = [block for block in config.get("animations", {}).values() if block]
+    points += [next(iter(planned[block["experiment"]].values())) for block in films]
+    return list({point.path: point for point in points}.values())
+
+
+def _config_of(root: Path, name: str | None) -> Path:
+    """The config of a run of this name, None for that without a name. Raises SceneError unless it is one."""
+    if name is None:
+        return root / _BASE
+    files = [*sorted((root / "config").glob("*.y*ml")), *sorted(root.glob("*.y*ml"))]
+    having = [file for file in files if _run_of(file) == name]
+    if len(having) != 1:
+        rule = f"is the run of {len(having)} configs in {root / 'config'} and {root}: name its config"
+        raise SceneError("run", name, f"{rule} (--config FILE)")
+    return having[0]
+
+
+def _run_of(file: Path) -> object:
+    """The key `run` of a YAML file, if it is a config."""
+    try:
+        content = read_yaml(file)
+    except SceneError:
+        return None
+    return content.get("run") if isinstance(content, dict) else None
+
+
+def _check_places(run: Finished, file: Path) -> None:
+    """Refuse points that lie outside of the project's folder: their paths would have no place in an archive.
+    Raises SceneError."""
+    place = Path(run.config.get("points", "results/points"))
+    if place.is_absolute() or ".." in place.parts:
+        raise SceneError("points", str(place), "must be in the project's folder for an archive", str(file))
+
+
+def _check_complete(run: Finished, results: str | Path) -> None:
+    """Raise SceneError if a result is missing."""
+    needed = [run.report, *run.outputs(), *(path for _, _, path in run.trajectories())]
+    missing = [path for path in needed if not (run.root / path).is_file()]
+    if missing:
+        rule = f"is not complete: {missing[0]}{_others(len(missing))}; run the workflow to its end"
+        raise SceneError("results", str(results), rule)
+
+
+def _others(count: int) -> str:
+    return " is missing" if count == 1 else f" and {count - 1} other files are missing"
+
+
+def _check_settings(run: Finished) -> None:
+    """Raise SceneError for a trajectory whose scene, engine, seed or times are not those of the config."""
+    for point, replica, path in run.trajectories():
+        recipe, wanted = read_recipe(run.root / path), point.parameters
+        finest = recipe.correlations.interval if recipe.correlations else recipe.sample_interval
+        same = (
+            recipe.scene == point.scene
+            and recipe.seed == tuple(wanted["seeds"][replica])
+            and recipe.engine == engine_from_dict(wanted["engine"]).resolved(recipe.scene, finest)
+            and recipe.sample_interval == wanted["sample_interval"]
+            and recipe.duration == wanted.get("duration")
+        )
+        if not same:
+            rule = "was made with other settings than those of the config; run the workflow again"
+            raise SceneError("trajectory", path, rule)

@@ -1,0 +1,236 @@
+"""`ro-crate-metadata.json`: a run of the workflow by the profile Workflow Run Crate 0.5 (RO-Crate 1.1).
+
+https://www.researchobject.org/workflow-run-crate/profiles/workflow_run_crate/
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING, Any
+
+from gaspart.errors import optional
+from gaspart.reproduction.archive import contents, tables
+from gaspart.reproduction.archive.citation import Citation
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rocrate.model.contextentity import ContextEntity
+    from rocrate.rocrate import ROCrate
+
+METADATA = "ro-crate-metadata.json"
+_PROFILES = {
+    "https://w3id.org/ro/wfrun/process/0.5": ("Process Run Crate", "0.5"),
+    "https://w3id.org/ro/wfrun/workflow/0.5": ("Workflow Run Crate", "0.5"),
+    "https://w3id.org/workflowhub/workflow-ro-crate/1.0": ("Workflow RO-Crate", "1.0"),
+}
+_TERMS = "https://w3id.org/ro/terms/workflow-run/context"
+"""The context that defines `sha256`."""
+_COMPUTATIONAL = "https://bioschemas.org/profiles/ComputationalWorkflow/1.0-RELEASE"
+_PARAMETER = "https://bioschemas.org/profiles/FormalParameter/1.0-RELEASE"
+_ENCODINGS = {  # of other files: text/plain
+    ".cff": "application/yaml",
+    ".csv": "text/csv",
+    ".html": "text/html",
+    ".jpg": "image/jpeg",
+    ".json": "application/json",
+    ".md": "text/markdown",
+    ".mp4": "video/mp4",
+    ".nc": "application/x-netcdf",
+    ".pdf": "application/pdf",
+    ".png": "image/png",
+    ".rst": "text/x-rst",
+    ".svg": "image/svg+xml",
+    ".toml": "application/toml",
+    ".yaml": "application/yaml",
+}
+_MEANINGS = {
+    tables.CONFIG: "the config of this run, merged: what was simulated, measured and drawn",
+    tables.POINTS: "the files of all points with the digests of each",
+    tables.CLAIMS: "the claims with the digests of the data that each is made of",
+    tables.JOBS: "time and memory of each job",
+    tables.RUN: "versions, git revisions and the machine",
+    contents.LOCKED: "the locked environment",
+}
+
+
+@dataclass(frozen=True)
+class Described:
+    """What the metadata are made of.
+
+    files: (size, digest) of each file of the archive, by path; summary: as in `run.json`; jobs: as in
+    `jobs.csv`; captions: by path; claims: their number.
+    """
+
+    files: Mapping[str, tuple[int, str]]
+    summary: Mapping[str, Any]
+    jobs: Sequence[tables.JobTime]
+    captions: Mapping[str, str]
+    claims: int
+
+
+def metadata(described: Described, citation: Citation) -> str:
+    """The text of the file. Raises SceneError if the package rocrate is missing."""
+    rocrate = optional("rocrate.rocrate", "archive", "archives")
+    crate = rocrate.ROCrate(version="1.1")
+    crate.metadata.extra_contexts.append(_TERMS)
+    creators = _add_creators(crate, citation)
+    _describe_root(crate, described, citation, creators)
+    files = {path: _add_file(crate, path, described) for path in described.files if _is_listed(path)}
+    folders = [_add_folder(crate, folder) for folder in contents.FOLDERS]
+    workflow = _add_workflow(crate, described, citation, creators)
+    made = [file for path, file in files.items() if path.startswith(f"{described.summary['results']}/")]
+    used = [files[tables.CONFIG], files[contents.LOCKED], *folders]
+    _add_parameters(crate, workflow, described, files)
+    _add_run(crate, workflow, described, creators, (used, made))
+    return json.dumps(crate.metadata.generate(), indent=1, ensure_ascii=False) + "\n"
+
+
+def _is_listed(path: str) -> bool:
+    """Whether a file is described by itself: those in folders of sources are described by their folder."""
+    return path.partition("/")[0] not in contents.FOLDERS and path != contents.WORKFLOW
+
+
+def _entity(crate: ROCrate, identity: str, **properties: Any) -> ContextEntity:
+    """Add a contextual entity; `type` stands for @type."""
+    from rocrate.model.contextentity import ContextEntity
+
+    kind = properties.pop("type")
+    return crate.add(ContextEntity(crate, identity, properties={"@type": kind, **properties}))
+
+
+def _single(entities: list[Any]) -> Any:
+    """One entity by itself, as RO-Crate recommends, or several as they are."""
+    return entities[0] if len(entities) == 1 else entities
+
+
+def _add_creators(crate: ROCrate, citation: Citation) -> list[ContextEntity]:
+    added = []
+    for n, creator in enumerate(citation.creators, 1):
+        more = {"affiliation": creator.affiliation} if creator.affiliation else {}
+        kind = "Person" if creator.is_person else "Organization"
+        added.append(
+            _entity(crate, creator.identity or f"#creator-{n}", type=kind, name=creator.name, **more)
+        )
+    return added
+
+
+def _describe_root(
+    crate: ROCrate, described: Described, citation: Citation, creators: list[ContextEntity]
+) -> None:
+    """Title, creators, licence and profiles of the archive."""
+    summary = described.summary
+    crate.name = f"{citation.title}: {summary['title']}"
+    crate.description = (
+        f"A run of gaspart's workflow: {summary['figures']} figures, {described.claims} claims with their "
+        "verdicts, and the data that they are made of. `gaspart verify` recomputes the digests, and "
+        "simulates points again."
+    )
+    crate.datePublished = datetime.fromisoformat(summary["archived"])
+    crate.creator, crate.keywords = _single(creators), citation.keywords
+    crate.root_dataset["author"] = _single(creators)
+    licence = f"https://spdx.org/licenses/{citation.licence}"
+    crate.license = _entity(crate, licence, type="CreativeWork", name=citation.licence, url=licence)
+    crate.root_dataset["conformsTo"] = [
+        _entity(crate, address, type="CreativeWork", name=name, version=version)
+        for address, (name, version) in _PROFILES.items()
+    ]
+
+
+def _add_file(crate: ROCrate, path: str, described: Described) -> Any:
+    size, digest = described.files[path]
+    place = PurePosixPath(path)
+    properties = {"name": place.name, "contentSize": str(size), "sha256": digest}
+    properties["encodingFormat"] = _ENCODINGS.get(place.suffix, "text/plain")
+    caption = f"{described.summary['results']}/captions/{place.stem}.rst"
+    if path in _MEANINGS:
+        properties["description"] = _MEANINGS[path]
+    elif "figures" in place.parts and caption in described.captions:
+        properties["description"] = described.captions[caption]
+    file = crate.add_file(dest_path=path, properties=properties)
+    if path == contents.README:
+        file["about"] = crate.root_dataset
+    return file
+
+
+def _add_folder(crate: ROCrate, folder: str) -> Any:
+    properties = {"name": folder, "description": contents.FOLDER_TITLES[folder]}
+    return crate.add_dataset(dest_path=f"{folder}/", properties=properties)
+
+
+def _add_workflow(
+    crate: ROCrate, described: Described, citation: Citation, creators: list[ContextEntity]
+) -> Any:
+    """The main entity: the Snakefile."""
+    size, digest = described.files[contents.WORKFLOW]
+    workflow = crate.add_workflow(
+        dest_path=contents.WORKFLOW,
+        main=True,
+        lang="snakemake",
+        lang_version=described.summary["machine"]["packages"].get("snakemake"),
+    )
+    workflow["name"], workflow["version"] = citation.title, _version(described)
+    workflow["contentSize"], workflow["sha256"] = str(size), digest
+    workflow["encodingFormat"] = "text/plain"
+    if citation.url:
+        workflow["url"] = citation.url
+    workflow["creator"], workflow["license"] = _single(creators), crate.license
+    workflow["conformsTo"] = _entity(
+        crate, _COMPUTATIONAL, type="CreativeWork", name="ComputationalWorkflow", version="1.0-RELEASE"
+    )
+    return workflow
+
+
+def _version(described: Described) -> str:
+    """The version of gaspart, with the git revision that was run."""
+    summary = described.summary
+    return f"{summary['gaspart']} ({summary['revision']})" if summary["revision"] else summary["gaspart"]
+
+
+def _add_parameters(crate: ROCrate, workflow: Any, described: Described, files: Mapping[str, Any]) -> None:
+    """Input and output of the workflow, with the files that they are in this run."""
+    results = described.summary["results"]
+    profile = _entity(crate, _PARAMETER, type="CreativeWork", name="FormalParameter", version="1.0-RELEASE")
+    named = {
+        "input": {"config": tables.CONFIG},
+        "output": {"claims": f"{results}/tables/claims.csv", "report": f"{results}/report.html"},
+    }
+    for role, parameters in named.items():
+        added = []
+        for name, path in parameters.items():
+            parameter = _entity(crate, f"#{name}", type="FormalParameter", additionalType="File", name=name)
+            parameter["conformsTo"], parameter["workExample"] = profile, files[path]
+            files[path]["exampleOfWork"] = parameter
+            added.append(parameter)
+        workflow[role] = _single(added)
+
+
+def _add_run(
+    crate: ROCrate,
+    workflow: Any,
+    described: Described,
+    creators: list[ContextEntity],
+    files: tuple[list[Any], list[Any]],
+) -> None:
+    """The run: from its first job to the end of its last. files: those that it used, and those it made."""
+    ends = [
+        (datetime.fromisoformat(job.ended), timedelta(seconds=float(job.seconds))) for job in described.jobs
+    ]
+    machine = described.summary["machine"]
+    run = _entity(
+        crate,
+        "#run",
+        type="CreateAction",
+        name=f"Run of the workflow: {described.summary['title']}",
+        description=f"{len(described.jobs)} jobs; archived on {machine['processor']}, "
+        f"{machine['processors']} processors, {machine['system']}",
+        startTime=min(end - took for end, took in ends).isoformat(timespec="milliseconds"),
+        endTime=max(end for end, _ in ends).isoformat(timespec="milliseconds"),
+    )
+    run["instrument"], run["agent"] = workflow, _single(creators)
+    run["object"], run["result"] = files
+    crate.root_dataset["mentions"] = run

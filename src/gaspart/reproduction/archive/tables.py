@@ -1,0 +1,183 @@
+"""Where the numbers of an archive come from: tables of points, claims and jobs, and the machine."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import platform
+from collections.abc import Iterable, Mapping
+from datetime import UTC, datetime
+from importlib.metadata import distributions
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from gaspart.reproduction.archive.digests import digest_of_file, digest_of_numbers, joint_digest
+from gaspart.reproduction.archive.finished import Finished
+from gaspart.reproduction.claims import table
+from gaspart.reproduction.points.point import TRAJECTORIES
+from gaspart.trajectory import provenance
+from gaspart.trajectory.recipe import stored_revision
+
+FOLDER = "provenance"
+POINTS = f"{FOLDER}/points.csv"
+CLAIMS = f"{FOLDER}/claims.csv"
+JOBS = f"{FOLDER}/jobs.csv"
+CONFIG = f"{FOLDER}/config.yaml"
+RUN = f"{FOLDER}/run.json"
+
+
+class PointFile(NamedTuple):
+    """A row of `points.csv`: a file that a point consists of.
+
+    replica: "" for a point without trajectories, as then are numbers_sha256, the digest of the numbers in a
+    trajectory without its attributes, and revision, the git revision at which it was begun.
+    """
+
+    experiment: str
+    point: str
+    job: str
+    replica: str
+    path: str
+    bytes: str
+    sha256: str
+    numbers_sha256: str
+    revision: str
+
+
+class ClaimData(NamedTuple):
+    """A row of `claims.csv`: a claim and the digests of what it is made of.
+
+    data: the measurement from which it is judged. inputs_sha256: the joint digest of the files from which
+    that was measured, the points of the figure or the claims of other figures (see `joint_digest`).
+    """
+
+    figure: str
+    claim: str
+    verdict: str
+    data: str
+    data_sha256: str
+    inputs_sha256: str
+
+
+class JobTime(NamedTuple):
+    """A row of `jobs.csv`: a job of the workflow, in s and MB; when it ended, in UTC."""
+
+    rule: str
+    job: str
+    seconds: str
+    cpu_seconds: str
+    largest_memory: str
+    ended: str
+
+
+def point_files(run: Finished) -> list[PointFile]:
+    """The files of all points, with their digests; reads all of them."""
+    rows = []
+    for point in run.points:
+        named = point.experiment, point.name, point.job
+        paths = point.replica_paths if point.job in TRAJECTORIES else [point.path]
+        for replica, path in enumerate(paths):
+            file = run.root / path
+            size, content = str(file.stat().st_size), digest_of_file(file)
+            if point.job in TRAJECTORIES:
+                own = str(replica), path, size, content, digest_of_numbers(file), stored_revision(file)
+            else:
+                own = "", path, size, content, "", ""
+            rows.append(PointFile(*named, *own))
+    return rows
+
+
+def inputs_of(measurement: Path) -> list[str]:
+    """The points, or tables of claims, that a measurement states it is made of."""
+    from netCDF4 import Dataset
+
+    with Dataset(measurement) as file:
+        return str(file.getncattr("points")).splitlines()
+
+
+def claim_rows(run: Finished, files: Iterable[PointFile]) -> list[ClaimData]:
+    """All claims with the digests of their data."""
+    known = {file.path: file.sha256 for file in files}
+    for figure in run.figures:
+        path = f"{run.results}/claims/{figure}.csv"
+        known[path] = digest_of_file(run.root / path)
+    data: dict[str, tuple[str, str, str]] = {}
+    for figure in run.figures:
+        path = f"{run.results}/measurements/{figure}.nc"
+        joint = joint_digest(inputs_of(run.root / path), known)
+        data[figure] = (path, digest_of_file(run.root / path), joint)
+    rows = table.read(run.root / run.results / "tables/claims.csv")
+    return [ClaimData(row["figure"], row["claim"], row["verdict"], *data[row["figure"]]) for row in rows]
+
+
+def job_times(run: Finished) -> list[JobTime]:
+    """The time of each job of the run, from Snakemake's benchmarks; those of points that the config no longer
+    has are left out."""
+    folder, kept = run.root / run.results / "benchmarks", {(one.experiment, one.name) for one in run.points}
+    rows = []
+    for path in sorted(folder.rglob("*.tsv")):
+        rule, *names = path.relative_to(folder).with_suffix("").parts
+        if rule in ("simulate", "compute") and tuple(names) not in kept:
+            continue
+        with path.open(newline="", encoding="utf-8") as file:
+            used = next(csv.DictReader(file, delimiter="\t"))
+        ended = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
+        rows.append(JobTime(rule, "/".join(names), used["s"], used["cpu_time"], used["max_rss"], ended))
+    return rows
+
+
+def text_of(rows: Iterable[tuple], columns: tuple[str, ...]) -> str:
+    """Rows as CSV."""
+    text = io.StringIO()
+    written = csv.writer(text, lineterminator="\n")
+    written.writerow(columns)
+    written.writerows(rows)
+    return text.getvalue()
+
+
+def rows_of(text: str) -> list[dict[str, str]]:
+    """The inverse of `text_of`."""
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+def machine() -> dict[str, Any]:
+    """Processor, memory and system of this machine, and the installed packages."""
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    packages = {one.name: one.version for one in distributions() if one.name}
+    return {
+        "processor": _processor(),
+        "architecture": platform.machine(),
+        "processors": os.cpu_count(),
+        "memory_bytes": memory,
+        "system": platform.platform(),
+        "python": platform.python_version(),
+        "packages": dict(sorted(packages.items(), key=lambda one: one[0].lower())),
+    }
+
+
+def _processor() -> str:
+    """The model of the processor, as Linux names it."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.processor()
+    models = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return models[0] if models else platform.processor()
+
+
+def summary_of(run: Finished, files: Iterable[PointFile], trajectories: bool) -> Mapping[str, Any]:
+    """What `run.json` states: which run this is, at which revisions it was made, and on which machine the
+    archive was."""
+    revisions = {file.revision for file in files if file.revision}
+    return {
+        "title": run.config["title"],
+        "results": run.results,
+        "figures": len(run.figures),
+        "trajectories_included": trajectories,
+        "gaspart": provenance.versions()["gaspart_version"],
+        "revision": provenance.git_revision(),
+        "revisions_of_trajectories": sorted(revisions),
+        "archived": datetime.now(UTC).isoformat(timespec="seconds"),
+        "machine": machine(),
+    }

@@ -1,0 +1,51 @@
+"""Title, creators and licence of an archive."""
+
+import pytest
+
+from gaspart.errors import SceneError
+from gaspart.reproduction.archive.citation import Creator, read_citation
+
+TEXT = """
+title: a gas
+version: 1.2
+license: BSD-3-Clause
+repository-code: https://example.org/gas
+authors:
+  - {given-names: Ludwig, family-names: Boltzmann, orcid: "https://orcid.org/0000", affiliation: Wien}
+  - {name: the others, website: https://example.org}
+"""
+
+
+def test_persons_and_organisations_are_read(tmp_path):
+    (tmp_path / "CITATION.cff").write_text(TEXT)
+    found = read_citation(tmp_path / "CITATION.cff")
+    assert found.creators == [
+        Creator("Ludwig Boltzmann", True, "https://orcid.org/0000", "Wien"),
+        Creator("the others", False, "https://example.org", ""),
+    ]
+    assert found[0] == "a gas" and found.licence == "BSD-3-Clause" and found.version == "1.2"
+    assert found.url == "https://example.org/gas" and found.keywords == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ("title: a gas", "", "CITATION.cff: title = None: is required for an archive"),
+        ("license: BSD-3-Clause", "", "CITATION.cff: license = None: is required for an archive"),
+        (
+            TEXT[TEXT.index("authors") :],
+            "authors: Boltzmann",
+            "CITATION.cff: authors = 'Boltzmann': must be a list",
+        ),
+        (
+            "name: the others, ",
+            "",
+            "CITATION.cff: authors[1] = {'website': 'https://example.org'}: must have a name",
+        ),
+    ],
+)
+def test_what_is_missing_is_named(tmp_path, old, new, line):
+    (tmp_path / "CITATION.cff").write_text(TEXT.replace(old, new))
+    with pytest.raises(SceneError) as error:
+        read_citation(tmp_path / "CITATION.cff")
+    assert line in str(error.value)
