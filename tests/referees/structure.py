@@ -61,7 +61,7 @@ def msd(folder, theirs):
     """The largest relative difference from gaspart's mean-squared displacement, over all lags but 0."""
     ours = np.load(folder / "gas.npz")
     number, lags = ours["positions"].shape[1], ours["msd"].size
-    theirs = theirs[:lags] * number / (number - 1.0)  # which gaspart applies, as the total momentum is zero
+    theirs = theirs[:lags] * number / (number - 1.0)  # which gaspart applies about the centre of mass
     difference = np.abs(theirs[1:] / ours["msd"][1:] - 1.0).max()
     last = f"{{:.4f}} after {ours['times'][lags - 1]:g}"
     return Finding(last.format(ours["msd"][-1]), last.format(theirs[-1]), float(difference), OF_MSD, PART)
@@ -69,15 +69,22 @@ def msd(folder, theirs):
 
 def mdanalysis_msd(folder):
     made = universe(folder)
-    made.trajectory.add_transformations(NoJump(check_continuity=False))
+    made.trajectory.add_transformations(NoJump(check_continuity=False), about_centre)
     return msd(folder, EinsteinMSD(made, select="all", fft=False).run().results.timeseries)
 
 
+def about_centre(frame):
+    """A transformation of MDAnalysis: positions about the centre of mass, of equal particles."""
+    frame.positions -= frame.positions.mean(axis=0)
+    return frame
+
+
 def freud_msd(folder):
-    """From wrapped positions and images that are counted here, by the shortest way from frame to frame."""
+    """From positions about the centre of mass, continued here by the shortest way from frame to frame."""
     with mdtraj.formats.NetCDFTrajectoryFile(str(folder / "gas.nc")) as file:
         positions, _, lengths, _ = file.read()
-    images = np.zeros(positions.shape, dtype=int)
-    images[1:] = -np.cumsum(np.round(np.diff(positions.astype(float), axis=0) / lengths[0]), axis=0)
-    box = freud.box.Box(*map(float, lengths[0]))
-    return msd(folder, freud.msd.MSD(box, mode="window").compute(positions, images).msd)
+    steps = np.diff(positions.astype(float), axis=0)
+    steps -= lengths[0] * np.round(steps / lengths[0])
+    paths = np.concatenate([np.zeros((1, *steps.shape[1:])), np.cumsum(steps, axis=0)])
+    paths -= paths.mean(axis=1, keepdims=True)
+    return msd(folder, freud.msd.MSD(mode="window").compute(paths).msd)
