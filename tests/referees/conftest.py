@@ -17,7 +17,7 @@ FOUND = pytest.StashKey()
 
 def pytest_configure(config):
     config.stash[FOUND] = {}
-    if not (FOLDER / "published.json").exists():
+    if not (FOLDER / "published.json").exists():  # the last file that runs.py writes
         raise pytest.UsageError(f"{FOLDER}: no complete runs (make referees makes them)")
 
 
@@ -44,14 +44,20 @@ def keep(request, referee):
 
 
 def pytest_sessionfinish(session):
-    """Write the table, if every referee has judged both."""
+    """Renew the lines of the table whose referees have judged both; those of others stay."""
     found = session.config.stash[FOUND]
-    referees = [*REFEREES, *of_numbers(FOLDER)]
-    if len(found) == 2 * len(referees):
-        with TABLE.open("w", newline="", encoding="utf-8") as file:
-            table = csv.DictWriter(file, (*COLUMNS, "in_ours", "in_theirs"), lineterminator="\n")
-            table.writeheader()
-            table.writerows(row(referee, found) for referee in referees)
+    referees = {(one.package, one.what): one for one in [*REFEREES, *of_numbers(FOLDER)]}
+    known = {}
+    if TABLE.exists():
+        with TABLE.open(newline="", encoding="utf-8") as file:
+            known = {(line["package"], line["what"]): line for line in csv.DictReader(file)}
+    for key, referee in referees.items():
+        if (*key, False) in found and (*key, True) in found:
+            known[key] = row(referee, found)
+    with TABLE.open("w", newline="", encoding="utf-8") as file:
+        table = csv.DictWriter(file, (*COLUMNS, "in_ours", "in_theirs"), lineterminator="\n")
+        table.writeheader()
+        table.writerows(known[key] for key in referees if key in known)
 
 
 def row(referee, found):

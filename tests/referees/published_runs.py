@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 import gaspart as gp
 from gaspart import theory
+from gaspart.theory.virial import linear_tail, linear_tail_uncertainty
 
 
 @dataclass(frozen=True)
@@ -81,9 +82,9 @@ def fifth_coefficient(z, error, eta, dimension):
     coefficients, uncertainties = theory.virial_coefficients(dimension)
     scale = coefficients[1] ** 4
     per_z = 1.0 / (scale * eta**4)
-    others = float(theory.partial_sum(eta, 10, dimension) + theory.linear_tail(eta, dimension))
+    others = float(theory.partial_sum(eta, 10, dimension) + linear_tail(eta, dimension))
     others -= float(coefficients[4]) * eta**4
     of_others = math.hypot(*(u * eta**n for n, u in enumerate(uncertainties) if n != 4))
-    spread = math.hypot(error, of_others, float(theory.linear_tail_uncertainty(eta, dimension)))
+    spread = math.hypot(error, of_others, float(linear_tail_uncertainty(eta, dimension)))
     ours = (z - others) * per_z, spread * per_z, z * per_z
     return ours, (float(coefficients[4] / scale), float(uncertainties[4] / scale))
