@@ -169,9 +169,9 @@ def claims_of(path):
 REFEREES = """\
 Runs of gaspart are judged by programs that others have written. gaspart writes the files; the referees
 read them in an environment of their own, where gaspart is not installed. ``make referees`` makes the
-runs, anew and with fixed seeds, and renews this page's table, ``docs/referees.csv``; so does a job of the
-repository every week. Each referee also judges a copy of the files with an error of 3 %, which it must
-find.
+runs, anew and with fixed seeds, and renews the table of this page, ``docs/referees.csv``; a job of the
+repository repeats it every week. Each referee also judges a copy of the files with an error of 3 %, which it
+must find.
 
 *Distance* is between what gaspart and the referee say, with the largest one that is *allowed*: three
 standard errors (p-values as the Gaussian deviation of the same chance, after Bonferroni's correction
