@@ -6,27 +6,30 @@
 #                 reproduction also docs/gallery.png, the picture of the README
 # make archive    all figures, and archive.zip, the file to deposit
 # make benchmark  the speed of the engines on this machine, which should run nothing else: results/tables/performance.csv
+# make referees   gaspart's runs judged by programs of others, which have an environment of their own, .venv-referees:
+#                 docs/referees.csv, a page of the site; 15 minutes on two cores
 # make coverage   which lines of src/gaspart the tests run (at least 95 %); compiles all kernels anew
 # make lint | report | clean | distclean
 #
-# Needs Python 3.11 or later with venv and pip, and make. Everything else is installed into .venv, which make replaces
-# or removes only if it has made it.
+# Needs Python 3.11 or later with venv and pip, and make. Everything else is installed into .venv and
+# .venv-referees, which make replaces or removes only if it has made them.
 
 SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := all
-.PHONY: all setup test check-all smoke archive benchmark coverage lint report docs clean distclean
+.PHONY: all setup test check-all smoke archive benchmark referees coverage lint report docs clean distclean
 
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 CORES ?= all
-PIP = .venv/bin/python -m pip --quiet --disable-pip-version-check
+QUIETLY = -m pip --quiet --disable-pip-version-check
+PIP = .venv/bin/python $(QUIETLY)
 SNAKEMAKE = .venv/bin/python -m snakemake --cores $(CORES)
 # Printed after Snakemake has ended, also if there was nothing to do.
 VERDICTS = @.venv/bin/python -c 'import sys; from gaspart.reproduction.claims import summary; print(summary(sys.argv[1]))'
 
-# A .venv that somebody else has made may hold what exists nowhere else.
-OWN_VENV = @test ! -e .venv -o -e .venv/made_by_make -o -e .venv/environment.stamp || { echo \
-	"make: .venv exists and was not made by make, which would replace it; move it away" >&2; exit 2; }
+# An environment that somebody else has made may hold what exists nowhere else.
+own = @test ! -e $(1) -o -e $(1)/made_by_make -o -e $(1)/environment.stamp || { echo \
+	"make: $(1) exists and was not made by make, which would replace it; move it away" >&2; exit 2; }
 
 all: setup
 	$(SNAKEMAKE) --quiet rules
@@ -45,7 +48,7 @@ unexport PYTHONDONTWRITEBYTECODE
 .venv/environment.stamp: environment.txt
 	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
 		|| { echo "gaspart needs Python 3.11 or later: make PYTHON=/path/to/python3.11" >&2; exit 2; }
-	$(OWN_VENV)
+	$(call own,.venv)
 	"$(PYTHON)" -m venv --clear .venv
 	@touch .venv/made_by_make
 	$(PIP) install --no-deps --no-compile --require-hashes --requirement environment.txt
@@ -77,6 +80,18 @@ benchmark: setup
 	.venv/bin/python benchmarks/table.py results/benchmarks/performance.json \
 		results/tables/performance.csv results/figures/performance.png
 
+# The referees have packages of their own, and what they judge are files: gaspart is not installed there.
+.venv-referees/environment.stamp: tests/referees/environment.txt
+	$(call own,.venv-referees)
+	"$(PYTHON)" -m venv --clear .venv-referees
+	@touch .venv-referees/made_by_make
+	.venv-referees/bin/python $(QUIETLY) install --no-deps --no-compile --require-hashes --requirement $<
+	@touch $@
+
+referees: setup .venv-referees/environment.stamp
+	.venv/bin/python tests/referees/runs.py results/referees
+	.venv-referees/bin/python -m pytest -c tests/referees/pytest.ini tests/referees $(OPTIONS)
+
 # Without the tests of the workflow: they run copies of the project, and the functions they call have their own tests.
 coverage: export GASPART_CACHE = $(CURDIR)/results/coverage/kernels
 coverage: export COVERAGE_FILE = $(CURDIR)/results/coverage/data
@@ -104,5 +119,6 @@ clean:
 	rm -rf .snakemake $(filter-out results/README.md,$(wildcard results/*))
 
 distclean: clean
-	$(OWN_VENV)
-	rm -rf .venv .pytest_cache .ruff_cache .mypy_cache .hypothesis src/*.egg-info
+	$(call own,.venv)
+	$(call own,.venv-referees)
+	rm -rf .venv .venv-referees .pytest_cache .ruff_cache .mypy_cache .hypothesis src/*.egg-info

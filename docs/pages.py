@@ -1,7 +1,7 @@
 """The pages of the site that follow from the code, written into docs/generated: a Sphinx extension.
 
-The public names, the commands, the gallery of scenes, and a page for each family of figures, with its
-captions and, if the workflow has run, its figures and claims.
+The public names, the commands, the gallery of scenes, the referees, and a page for each family of figures,
+with its captions and, if the workflow has run, its figures and claims.
 """
 
 import argparse
@@ -166,11 +166,68 @@ def claims_of(path):
     return text + "\n"
 
 
+REFEREES = """\
+Runs of gaspart are judged by programs that others have written. gaspart writes the files; the referees
+read them in an environment of their own, where gaspart is not installed. ``make referees`` makes the
+runs, anew and with fixed seeds, and renews the table of this page, ``docs/referees.csv``; a job of the
+repository repeats it every week. Each referee also judges a copy of the files with an error of 3 %, which it
+must find.
+
+*Distance* is between what gaspart and the referee say, with the largest one that is *allowed*: three
+standard errors (p-values as the Gaussian deviation of the same chance, after Bonferroni's correction
+where there are several), or a difference that single precision explains. *Planted* is the same distance
+with the error in the files.
+
+"""
+PUBLISHED = """\
+Numbers that are known more precisely than a run of some minutes measures them: our deviation in our own
+standard uncertainty and in the published one. The discs are in a periodic square, as the published ones;
+the figure :ref:`freezing_discs <figure-freezing_discs>` compares others in a rectangle. :math:`Z` is
+corrected to first order in :math:`1/N`. :math:`B_5` follows from :math:`Z` at one density with the other
+coefficients, and the linear tail beyond :math:`B_{10}`, as published or extrapolated. The planted error
+is one of 3 % in the measured pressure.
+
+"""
+NOT_JUDGED = """\
+gaspart writes no XYZ files; LAMMPS data files of style *sphere* are read by MDAnalysis and OVITO, of
+which ASE accepts no such lines. freud is no referee of :math:`g(r)`, which gaspart computes by freud.
+Granular contacts of LAMMPS are soft springs, which tend to gaspart's hard ones only for stiffness without
+bound: no such comparison is made. Nor is one with SPARTA as a peer of the DSMC engine.
+"""
+
+
+def referees():
+    """The page of the referees, from the table that `make referees` writes."""
+    with (ROOT / "docs/referees.csv").open(newline="", encoding="utf-8") as file:
+        found = list(csv.DictReader(file))
+    judged = {
+        "referee": "{package} {version}", "judges": "{what}", "gaspart": "{ours}",
+        "referee's": "{theirs}", "distance": "{distance}", "allowed": "{allowed} ({scale})",
+        "error of 3 %": "{error}", "planted": "{planted}",
+    }  # fmt: skip
+    compared = {
+        "number": "{what}", "gaspart": "{ours}", "published": "{theirs}", "in our σ": "{in_ours}",
+        "in their σ": "{in_theirs}", "distance": "{distance}", "planted": "{planted}", "source": "{package}",
+    }  # fmt: skip
+    text = heading("Referees") + REFEREES + table(judged, [row for row in found if row["version"]])
+    text += heading("Published numbers", "-") + PUBLISHED
+    text += table(compared, [row for row in found if not row["version"]])
+    return {"referees.rst": text + heading("What is not judged", "-") + NOT_JUDGED}
+
+
+def table(columns, rows):
+    """A table of rows: title of a column -> pattern of its cells."""
+    text = ".. list-table::\n   :header-rows: 1\n\n"
+    for cells in (list(columns), *([form.format(**row) for form in columns.values()] for row in rows)):
+        text += f"   * - {cells[0]}\n" + "".join(f"     - {cell}\n" for cell in cells[1:])
+    return text + "\n"
+
+
 def write(folder):
     """Write all pages; those that are up to date are not touched, so that Sphinx reads only what is new."""
     for part in ("api", "figures"):
         (folder / part).mkdir(parents=True, exist_ok=True)
-    for path, text in {**api(), **command_line(), **gallery(folder), **figures(folder)}.items():
+    for path, text in {**api(), **command_line(), **gallery(folder), **figures(folder), **referees()}.items():
         target = folder / path
         if not target.exists() or target.read_text(encoding="utf-8") != text:
             target.write_text(text, encoding="utf-8")

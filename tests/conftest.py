@@ -28,6 +28,8 @@ settings.load_profile("fixed")
 
 
 TESTS = Path(__file__).parent
+# These have an environment of their own: make referees.
+collect_ignore = ["referees"]
 # The files whose tests look at one run of the smoke workflow.
 OF_SMOKE_RUN = ("test_smoke.py", "test_accessibility.py", "test_planning.py", "test_archive.py")
 # Packages whose tests compile hardly any kernel, but for those of some files. They run while the smoke

@@ -1,5 +1,6 @@
 """The project's files agree: one version, and dependencies that are locked within their bounds."""
 
+import csv
 import os
 import re
 import shutil
@@ -58,11 +59,40 @@ def test_what_a_message_says_to_install_is_an_extra():
         assert names == {provided[module]}, (module, extra)
 
 
+def targets():
+    """The targets of the Makefile."""
+    return set(re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE))
+
+
+def workflow(name):
+    """The jobs of a workflow of CI."""
+    return yaml.safe_load((ROOT / f".github/workflows/{name}.yml").read_text(encoding="utf-8"))["jobs"]
+
+
 def test_ci_runs_targets_that_the_makefile_has():
-    workflow = yaml.safe_load((ROOT / ".github/workflows/ci.yml").read_text(encoding="utf-8"))
-    targets = workflow["jobs"]["make"]["strategy"]["matrix"]["target"]
-    rules = re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
-    assert {"lint", "test", "smoke", "docs"} == set(targets) <= set(rules)
+    matrix = workflow("ci")["make"]["strategy"]["matrix"]["target"]
+    assert {"lint", "test", "smoke", "docs"} == set(matrix) <= targets()
+    weekly = [step["run"] for step in workflow("referees")["referees"]["steps"] if "run" in step]
+    assert "make referees" in weekly and "referees" in targets()
+
+
+def test_the_packages_of_the_referees_are_locked():
+    folder = ROOT / "tests/referees"
+    lines = (folder / "environment.in").read_text(encoding="utf-8").splitlines()
+    wanted = [Requirement(line) for line in lines if not line.startswith("#")]
+    lock = (folder / "environment.txt").read_text(encoding="utf-8")
+    for requirement in wanted:
+        name = re.escape(requirement.name.lower())
+        locked = re.findall(rf"^{name}==([^ ;]+)", lock, re.MULTILINE)
+        assert locked and all(requirement.specifier.contains(version) for version in locked), requirement
+
+
+def test_every_referee_has_found_the_runs_right_and_the_planted_error():
+    with (ROOT / "docs/referees.csv").open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert rows
+    for row in rows:
+        assert float(row["distance"]) <= float(row["allowed"]) < float(row["planted"]), row
 
 
 def test_the_conda_environment_has_every_dependency_at_its_locked_version():
@@ -76,26 +106,35 @@ def test_the_conda_environment_has_every_dependency_at_its_locked_version():
         assert locked.startswith(versions[names.get(name, name)]), name
 
 
-@pytest.mark.parametrize("target", ["setup", "distclean"])
+CASES = [
+    ("setup", ".venv"),
+    ("distclean", ".venv"),
+    ("referees", ".venv-referees"),
+    ("distclean", ".venv-referees"),
+]
+
+
+@pytest.mark.parametrize(("target", "environment"), CASES)
 @pytest.mark.parametrize("made", [None, "made_by_make", "environment.stamp"])
-def test_make_removes_no_environment_but_its_own(tmp_path, target, made):
-    """`venv --clear` and `rm -rf` would delete what a user keeps in a .venv of the same name."""
-    for name in ("Makefile", "environment.txt", "pyproject.toml"):
-        shutil.copy(ROOT / name, tmp_path)
-    kept = tmp_path / ".venv/thesis.csv"
+def test_make_removes_no_environment_but_its_own(tmp_path, target, environment, made):
+    """`venv --clear` and `rm -rf` would delete what a user keeps in an environment of the same name."""
+    for name in ("Makefile", "environment.txt", "pyproject.toml", "tests/referees/environment.txt"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, tmp_path / name)
+    kept = tmp_path / environment / "thesis.csv"
     kept.parent.mkdir()
     kept.write_text("data")
     if made:
         (kept.parent / made).touch()
         os.utime(kept.parent / made, (0.0, 0.0))  # older than environment.txt
     stub = tmp_path / "python"  # makes no environment, but clears the folder as venv does
-    stub.write_text('#!/bin/sh\ntest "$2" != venv || rm -rf .venv\ntest "$2" != venv\n')
+    stub.write_text('#!/bin/sh\ntest "$2" != venv || rm -rf "$4"\ntest "$2" != venv\n')
     stub.chmod(0o755)
-    command = ["make", target, f"PYTHON={stub}"]
+    goal = ".venv-referees/environment.stamp" if target == "referees" else target
+    command = ["make", goal, f"PYTHON={stub}"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert kept.exists() == (made is None), done.stdout + done.stderr
     if made is None:
         assert done.returncode == 2
-        assert (
-            "make: .venv exists and was not made by make, which would replace it; move it away" in done.stderr
-        )
+        text = "exists and was not made by make, which would replace it; move it away"
+        assert f"make: {environment} {text}" in done.stderr

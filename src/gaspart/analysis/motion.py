@@ -50,13 +50,13 @@ def mean_squared_displacement(
     """<|r(t) - r(0)|^2> over moving particles and time origins, (lag,), in length^2.
 
     source: a trajectory, by its path or open, or a simulation; lags: their number (by default half of the
-    frames); start: the time from which frames count (by default a quarter of the run). Of N particles whose
-    total momentum is zero along an axis it is multiplied there by N / (N - 1). species, particles: of one
-    species, by its number in the scene (single particles have the number after the last), or of these
-    particles only; of fewer than 16 the error is the scatter of as many stretches of the run. Theory: that
-    of Enskog's diffusion coefficient and an exponential velocity correlation. Raises SceneError for fewer
-    than 16 moving particles, unless they are selected, frames at uneven times, and frames too far apart to
-    follow particles across periodic faces.
+    frames); start: the time from which frames count (by default a quarter of the run). Along axes on which
+    the total momentum is conserved it is that about the centre of mass, times N / (N - 1). species,
+    particles: of one species, by its number in the scene (single particles have the number after the last),
+    or of these particles only; of fewer than 16 the error is the scatter of as many stretches of the run.
+    Theory: that of Enskog's diffusion coefficient and an exponential velocity correlation. Raises SceneError
+    for fewer than 16 moving particles, unless they are selected, frames at uneven times, and frames too far
+    apart to follow particles across periodic faces.
     """
     with measured(source, start) as run:
         groups = _groups(run, chosen=_chosen(run, species, particles))

@@ -41,7 +41,7 @@ from gaspart.theory.freezing import COEXISTENCE_DENSITY as COEXISTENCE_DENSITY
 from gaspart.theory.freezing import COEXISTENCE_PRESSURE as COEXISTENCE_PRESSURE
 from gaspart.theory.freezing import CRYSTAL_OF_1024_DISCS as CRYSTAL_OF_1024_DISCS
 from gaspart.theory.freezing import LIQUID_DISCS as LIQUID_DISCS
-from gaspart.theory.freezing import LIQUID_OF_1024_DISCS as LIQUID_OF_1024_DISCS
+from gaspart.theory.freezing import LIQUID_OF_870_DISCS as LIQUID_OF_870_DISCS
 from gaspart.theory.freezing import LOWEST_CRYSTAL as LOWEST_CRYSTAL
 from gaspart.theory.freezing import alder_hoover_young_crystal as alder_hoover_young_crystal
 from gaspart.theory.freezing import coexistence_packing_fractions as coexistence_packing_fractions

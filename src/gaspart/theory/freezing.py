@@ -14,7 +14,7 @@ COEXISTENCE_PRESSURE = {2: 9.185, 3: 11.5727}
 
 Discs (liquid and hexatic): Bernard and Krauth, Phys. Rev. Lett. 107, 155704 (2011); Engel and others, Phys.
 Rev. E 87, 042134 (2013); there written beta P (2 sigma)^2 with sigma the radius. The equal-area
-construction of their pressures of 1024^2 discs, which are in the repository of LIQUID_OF_1024_DISCS, gives
+construction of their pressures of 1024^2 discs, which are in the repository of LIQUID_OF_870_DISCS, gives
 9.1850. Spheres (fluid and face-centred cubic): 11.5727(10), Fernandez and others, Phys. Rev. Lett. 108,
 165701 (2012), abstract.
 """
@@ -23,11 +23,11 @@ COEXISTENCE_DENSITY = {2: (0.700 * 4.0 / np.pi, 0.716 * 4.0 / np.pi), 3: (0.939,
 LIQUID_DISCS = (0.698, 9.1708)
 """Packing fraction and pressure of the disc liquid just before freezing, at 65 536 discs: 9.17080(25),
 Bernard and Krauth (2011), and 9.17078(5), Engel and others (2013), in jellyfysh/HistoricDisks."""
-LIQUID_OF_1024_DISCS = (0.68, 8.5144, 0.0006)
-"""Packing fraction, pressure and its uncertainty of 1024 discs in the liquid: 8.51325(4) for 870 discs and
-8.49105(19) for 224, Li and others, J. Chem. Phys. 157, 234111 (2022), in their repository
-jellyfysh/HistoricDisks, continued to 1024 as 1/N; the uncertainty is half of that step. The virial series
-with its tail is 2.7 % higher there."""
+LIQUID_OF_870_DISCS = {0.68: (8.513233, 0.000037), 0.70: (9.12956, 0.00017)}
+"""Pressure of 870 discs and its uncertainty by packing fraction, in a periodic container of sides 29 to
+30 sqrt(3) / 2: event-chain programs of Li and others, J. Chem. Phys. 157, 234111 (2022), in their repository
+jellyfysh/HistoricDisks (DigitizedData/ThisWork.csv). In a square they find 8.513249(37) and 9.12966(15). At
+0.68 the virial series with its tail is 2.7 % higher."""
 CRYSTAL_OF_1024_DISCS = (0.725, 9.382, 0.024)
 """Packing fraction, pressure and its uncertainty of 1024 discs in a crystal, in a periodic container of
 sides 1 to sqrt(3) / 2: P V_0 / N k_B T = 8.125(21), Zollweg and Chester, Phys. Rev. B 46, 11186 (1992),

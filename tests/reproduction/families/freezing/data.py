@@ -6,7 +6,7 @@ import xarray as xr
 from gaspart import theory
 from gaspart.reproduction.families.freezing.measure import STARTS, _disagreement
 
-DISCS = np.array([theory.LIQUID_OF_1024_DISCS[0], 0.69, 0.70, 0.71, 0.72, theory.CRYSTAL_OF_1024_DISCS[0]])
+DISCS = np.array([0.68, 0.69, 0.70, 0.71, 0.72, theory.CRYSTAL_OF_1024_DISCS[0]])
 SPHERES = np.array([0.4, 0.45, 0.5, 0.56, 0.6])
 
 
@@ -37,8 +37,8 @@ def _table(eta, pressure, order, error, seed):
 def discs(error=0.005, seed=1):
     """A loop about 9.1 with both branches as the literature has them."""
     area = np.pi / 4.0
-    liquid, crystal = theory.LIQUID_OF_1024_DISCS[1], theory.CRYSTAL_OF_1024_DISCS[1]
-    pressure = np.array([liquid, 8.98, 9.13, 9.06, 9.1, crystal])
+    crystal = theory.CRYSTAL_OF_1024_DISCS[1]
+    pressure = np.array([8.514, 8.98, 9.13, 9.06, 9.1, crystal])
     dataset = _table(DISCS, pressure, np.array([0.08, 0.2, 0.4, 0.65, 0.76, 0.8]), error, seed)
     dataset["density"] = "packing_fraction", DISCS / area
     for name, value in (
@@ -63,7 +63,17 @@ def discs(error=0.005, seed=1):
         },
         coords={"shown": DISCS[[0, 2, 5]], "distance": np.linspace(0.2, 8.0, 20)},
     )
-    return dataset.assign(disagreement=_disagreement(dataset)).merge(pictures)
+    return dataset.assign(disagreement=_disagreement(dataset)).merge(pictures).merge(_compared(seed))
+
+
+def _compared(seed):
+    """The pressures of 870 discs, as published."""
+    known = theory.LIQUID_OF_870_DISCS
+    eta, pressure = np.array(list(known)), np.array([value for value, _ in known.values()])
+    dataset = _table(eta, pressure, np.full(eta.size, 0.1), 0.0015, seed + 1)
+    names = [f"pressure{name}" for name in ("", "_error", "_drift", "_drift_error")]
+    renamed = {name: f"compared_{name}" for name in (*names, "packing_fraction")}
+    return dataset[names].rename(renamed)
 
 
 def spheres(error=0.005, seed=1):

@@ -11,16 +11,31 @@ def verdict(found, text):
 
 def test_discs_as_the_literature_has_them_agree():
     found = judged(freezing.freezing_discs(discs()))
-    assert len(found) == 8
+    assert len(found) == 9
     plateaus = [found.pop(text) for text in list(found) if text.startswith("plateau pressure of discs in")]
     assert plateaus == ["no verdict"] * 2  # of 1024 discs, beside the literature's 10^6
     assert set(found.values()) == {"agrees"}
 
 
-def test_both_branches_of_discs_are_compared_in_a_system_of_the_same_size():
+def test_the_crystal_of_discs_is_compared_in_a_system_of_the_same_size():
     data = discs()
     data["count"] = data["count"] * 4
     assert not any("1024" in text for text in judged(freezing.freezing_discs(data)))
+
+
+def test_the_liquid_of_discs_is_compared_where_it_is_published():
+    data = discs()
+    elsewhere = data.assign_coords(compared_packing_fraction=data["compared_packing_fraction"] + 0.001)
+    without = data.drop_dims("compared_packing_fraction")
+    for changed in (elsewhere, without):
+        assert not any("870" in text for text in judged(freezing.freezing_discs(changed)))
+
+
+def test_the_liquid_of_discs_must_be_known_well():
+    data = discs()
+    data["compared_pressure_error"] = data["compared_pressure_error"] * 4
+    found = judged(freezing.freezing_discs(data))
+    assert {verdict(found, f"870 discs at packing fraction {eta}") for eta in (0.68, 0.7)} == {"inconclusive"}
 
 
 def test_spheres_as_the_literature_has_them_agree():
@@ -49,8 +64,14 @@ def changed(dataset, name, value, **where):
     ("name", "value", "where", "text"),
     [
         ("plateau", 9.35, {"start": "fluid"}, "from the crystal minus"),
-        ("pressure", 8.6, {"packing_fraction": 0.68, "start": "crystal"}, "liquid of 1024"),
-        ("pressure", 8.6, {"packing_fraction": 0.68, "start": "fluid"}, "liquid of 1024"),
+        (
+            "compared_pressure",
+            8.53,
+            {"compared_packing_fraction": 0.68, "start": "crystal"},
+            "870 discs at p",
+        ),
+        ("compared_pressure", 8.53, {"compared_packing_fraction": 0.68, "start": "fluid"}, "870 discs at p"),
+        ("compared_pressure", 9.15, {"compared_packing_fraction": 0.7, "start": "fluid"}, "fraction 0.7,"),
         ("pressure", 9.6, {"packing_fraction": 0.725, "start": "crystal"}, "crystal of 1024"),
         ("order", 0.6, {"packing_fraction": 0.68, "start": "crystal"}, "most ordered"),
         ("order", 0.3, {"packing_fraction": 0.725, "start": "fluid"}, "least ordered"),

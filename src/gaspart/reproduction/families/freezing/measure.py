@@ -23,6 +23,8 @@ STARTS = {"lattice": "crystal", "compressed": "fluid"}
 CRYSTAL_ORDER = 0.3
 """Global Q_6 above which a run of spheres is taken for a crystal: 0.45 and more near melting, 0.03 in the
 fluid."""
+COMPARED = 870
+"""Number of discs whose pressure is published: points of so many are compared with it, and not drawn."""
 LOCAL_CRYSTAL = 0.32
 """Averaged local q_6 half-way between the crystal's 0.48 and the fluid's 0.16."""
 
@@ -42,19 +44,24 @@ def freezing_discs(points: list[Point], settings: dict) -> xr.Dataset:
     settings: `shown`, packing fractions whose structure is kept; `furthest` and `bins` of g(r), in diameters;
     `highest` wave number of S(k), times the diameter.
 
-    Returns over `start` and `packing_fraction`: see `_states`, the order being |mean psi_6|. Over `start`:
-    plateau, plateau_error, and plateau_low, plateau_high, the packing fractions at its ends (see
-    `plateau`). Over `shown` (of the last start): g(distance), S(wave_x, wave_y), and of the
-    last frame x, y and angle, the argument of psi_6, over `body`; positions in units of the diameter.
+    Returns over `start` and `packing_fraction`: see `_states`, the order being |mean psi_6|. Over `start` and
+    `compared_packing_fraction`: compared_pressure, its _error, _drift and _drift_error, of the points of
+    COMPARED discs, if there are any. Over `start`: plateau, plateau_error, and plateau_low, plateau_high, the
+    packing fractions at its ends (see `plateau`). Over `shown` (of the last start): g(distance), S(wave_x,
+    wave_y), and of the last frame x, y and angle, the argument of psi_6, over `body`; positions in units of
+    the diameter.
     """
-    dataset = _states(points, lambda frame, lengths: abs(structure.hexatic(frame, lengths).mean()))
+    compared = [point for point in points if point.scene.count == COMPARED]
+    points = [point for point in points if point not in compared]
+    dataset = _states(points, _hexatic)
     unlike = dataset["pressure"].max("start") - dataset["pressure"].min("start")
     sides = [_plateau(dataset.isel(start=k), unlike) for k in range(dataset.sizes["start"])]
     for k, name in enumerate(("plateau", "plateau_error", "plateau_low", "plateau_high")):
         dataset[name] = ("start", np.array([side[k] for side in sides]))
     chosen = {start: _of_start(points, start) for start in dataset["start"].values}
     last = chosen[dataset["start"].values[-1]]
-    return dataset.merge(_pictures(last, settings), combine_attrs="no_conflicts")
+    dataset = dataset.merge(_pictures(last, settings), combine_attrs="no_conflicts")
+    return dataset.merge(_compared(compared)) if compared else dataset
 
 
 def freezing_spheres(points: list[Point], settings: dict) -> xr.Dataset:
@@ -90,6 +97,11 @@ def _read(run: Run, order: Callable[[np.ndarray, Sequence[float]], float]) -> Se
     density = scene.number_density * (2.0 * scene.largest_radius) ** scene.dimension
     measured = np.array([order(frame, scene.container.lengths) for frame in frames])
     return Series(density * series_of(run).z, measured, density)
+
+
+def _hexatic(frame: np.ndarray, lengths: Sequence[float]) -> float:
+    """|mean psi_6| of a frame."""
+    return abs(structure.hexatic(frame, lengths).mean())
 
 
 def _halves(series: np.ndarray) -> tuple[float, float, float, float]:
@@ -143,6 +155,13 @@ def _disagreement(dataset: xr.Dataset) -> xr.DataArray:
         if dataset.sizes["start"] == 2:
             worst.append(abs(value.diff("start")).isel(start=0) / np.sqrt((error**2).sum("start")))
     return xr.concat(worst, "what").max("what")
+
+
+def _compared(points: list[Point]) -> xr.Dataset:
+    """The pressures of points that are compared with published ones."""
+    names = [f"pressure{name}" for name in ("", "_error", "_drift", "_drift_error")]
+    new = {name: f"compared_{name}" for name in (*names, "packing_fraction")}
+    return _states(points, _hexatic)[names].rename(new)
 
 
 def _plateau(side: xr.Dataset, unlike: xr.DataArray) -> tuple[float, float, float, float]:

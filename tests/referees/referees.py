@@ -1,0 +1,124 @@
+"""All referees: what each judges, and the error of 3 % that it must find."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import ensembles
+import planted
+import published
+import readers
+import series
+import structure
+from finding import Finding
+
+FLIGHT = planted.more_energy()
+LIGHT = planted.more_energy(slice(80, 160))
+SPIN = planted.more_energy(variable="spins")
+PISTON = planted.scaled("piston", 1.0 + planted.ERROR, 0)
+
+
+@dataclass(frozen=True)
+class Referee:
+    """package: that judges; what: it judges; judge(folder): its finding; error: that is planted in words;
+    plant(folder, to): makes the folder `to` with that error."""
+
+    package: str
+    what: str
+    judge: Callable[[Path], Finding]
+    error: str
+    plant: Callable[[Path, Path], Path]
+
+
+def _netcdf(name, change):
+    return planted.netcdf(name, change)
+
+
+REFEREES = [
+    Referee(
+        "physical-validation", "distribution of the kinetic energy, a mixture between thermal faces",
+        ensembles.kinetic_energy, "kinetic energy of flight", _netcdf("thermal.nc", FLIGHT),
+    ),
+    Referee(
+        "physical-validation", "the same of each of the two species",
+        ensembles.species, "kinetic energy of the light species", _netcdf("thermal.nc", LIGHT),
+    ),
+    Referee(
+        "physical-validation", "equipartition of flight and spin, perfectly rough spheres",
+        ensembles.rough, "energy of spin", _netcdf("rough.nc", SPIN),
+    ),
+    Referee(
+        "physical-validation", "volumes under two pressures of a piston",
+        ensembles.piston, "volume under the higher pressure", _netcdf("piston_high.nc", PISTON),
+    ),
+    Referee(
+        "pymbar", "standard error of the mean of a correlated series (timeseries)",
+        series.pymbar, "fluctuations", planted.fluctuating,
+    ),
+    Referee(
+        "emcee", "the same (autocorr)",
+        series.of_emcee, "fluctuations", planted.fluctuating,
+    ),
+    Referee(
+        "MDAnalysis", "g(r) (InterRDF)",
+        structure.mdanalysis_rdf, "particles at random places", _netcdf("gas.nc", planted.misplaced),
+    ),
+    Referee(
+        "mdtraj", "g(r) (compute_rdf)",
+        structure.mdtraj_rdf, "particles at random places", _netcdf("gas.nc", planted.misplaced),
+    ),
+    Referee(
+        "MDAnalysis", "mean-squared displacement (EinsteinMSD)",
+        structure.mdanalysis_msd, "mean-squared displacement", _netcdf("gas.nc", planted.farther),
+    ),
+    Referee(
+        "freud-analysis", "mean-squared displacement (msd.MSD)",
+        structure.freud_msd, "mean-squared displacement", _netcdf("gas.nc", planted.farther),
+    ),
+    Referee(
+        "ase", "positions, container, times of .nc",
+        readers.ase_netcdf, "times", _netcdf("gas.nc", planted.longer_steps),
+    ),
+    Referee(
+        "MDAnalysis", "positions, container, times of .nc",
+        readers.mdanalysis_netcdf, "place of one particle", _netcdf("gas.nc", planted.one_astray),
+    ),
+    Referee(
+        "mdtraj", "positions, container, times of .nc",
+        readers.mdtraj_netcdf, "container", _netcdf("gas.nc", planted.wider),
+    ),
+    Referee(
+        "ovito", "positions, container, times of .nc",
+        partial(readers.ovito, suffix=".nc"), "times", _netcdf("gas.nc", planted.longer_steps),
+    ),
+    Referee(
+        "MDAnalysis", "positions, container of .gsd",
+        readers.mdanalysis_gsd, "container", planted.gsd_box,
+    ),
+    Referee(
+        "mdtraj", "positions, container of .gsd",
+        readers.mdtraj_gsd, "container", planted.gsd_box,
+    ),
+    Referee(
+        "ovito", "positions, container of .gsd",
+        partial(readers.ovito, suffix=".gsd"), "container", planted.gsd_box,
+    ),
+    Referee(
+        "MDAnalysis", "positions, container of .data",
+        readers.mdanalysis_data, "container", planted.data_box,
+    ),
+    Referee(
+        "ovito", "positions, container of .data",
+        partial(readers.ovito, suffix=".data"), "container", planted.data_box,
+    ),
+]  # fmt: skip
+
+
+def of_numbers(folder):
+    """A referee for each published number."""
+    found = []
+    for which, row in enumerate(published.rows(folder)):
+        judge, plant = partial(published.compared, which=which), planted.number(which)
+        found.append(Referee(row["source"], row["what"], judge, "pressure", plant))
+    return found
