@@ -80,19 +80,27 @@ def add_run(parser: Parser) -> None:
     for name, kind in engine_settings().items():
         add_setting(parser, name, kind)
     add("--force", action="store_true", help="replace a trajectory of another run")
-    _add_progress(parser)
+    _add_checkpoints(parser)
 
 
 def add_resume(parser: Parser) -> None:
     """Add the arguments of the command to its parser."""
-    text = "Finish a run that was cut short, from FILE.partial and FILE.checkpoint.npz."
-    examples = "example:\n  gaspart resume run.nc"
+    text = (
+        "Finish a run that was cut short, from FILE.partial and FILE.checkpoint.npz. With --duration, "
+        "continue a complete run to that time: from the state at its end if it was kept (--keep-checkpoint), "
+        "otherwise from its start. The file has then the bytes of one run of this duration."
+    )
+    examples = "examples:\n  gaspart resume run.nc\n  gaspart resume run.nc --duration 200"
     set_command(parser, _resume, text, examples)
     parser.add_argument("trajectory", metavar="FILE", help="trajectory of the run")
-    _add_progress(parser)
+    text = "longer duration of a complete run, from its time 0 on"
+    parser.add_argument("--duration", type=float, metavar="T", help=text)
+    _add_checkpoints(parser)
 
 
-def _add_progress(parser: argparse.ArgumentParser) -> None:
+def _add_checkpoints(parser: argparse.ArgumentParser) -> None:
+    text = "leave the state at the end in FILE.checkpoint.npz, for `gaspart resume --duration`"
+    parser.add_argument("--keep-checkpoint", action="store_true", help=text)
     text = "seconds between checkpoints, the most that is lost if the run is killed; default: 30"
     parser.add_argument("--checkpoint-seconds", type=float, default=30.0, metavar="S", help=text)
     parser.add_argument("--quiet", action="store_true", help="show no progress")
@@ -129,6 +137,7 @@ def _run(given: argparse.Namespace) -> None:
             progress=progress(given.quiet, started, status.remark),
             examined=status.update,
             overwrite=given.force,
+            keep_checkpoint=given.keep_checkpoint,
         )
     _report(path)
 
@@ -207,7 +216,8 @@ def _resume(given: argparse.Namespace) -> None:
     with waiting(_PREPARING, given.quiet) as started:
         load_numba(ours=True)
         show = progress(given.quiet, started, status.remark)
-        path = resume(given.trajectory, given.checkpoint_seconds, show, status.update)
+        lasts = {"duration": given.duration, "keep_checkpoint": given.keep_checkpoint}
+        path = resume(given.trajectory, given.checkpoint_seconds, show, status.update, **lasts)
     _report(path)
 
 

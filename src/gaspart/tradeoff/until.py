@@ -37,6 +37,7 @@ def run(
     progress: Progress | None = None,
     examined: Callable[[list[Reached]], None] | None = None,
     overwrite: bool = False,
+    keep_checkpoint: bool = False,
 ) -> Path:
     """Run a scene and write its trajectory to `path`; returns `path`.
 
@@ -48,7 +49,9 @@ def run(
     `Correlations(stress=True)` those of the stress tensor and the heat flux instead. With `pairs` each frame
     counts the collisions of each pair of species so far (event-driven engine). A run of the same recipe
     and program that was cut short is continued, a complete one is not changed. Another trajectory at `path`,
-    or unfinished next to it, is replaced only with `overwrite`; a file of another kind never.
+    or unfinished next to it, is replaced only with `overwrite`; a file of another kind never. With
+    `keep_checkpoint` the float64 state at the end stays beside it, in `path.checkpoint.npz`: `resume` with a
+    longer duration then goes on from it.
 
     With `until` the run ends when standard error / |value| of all these observables is as small as required,
     which is examined at 64, 96, 128, 192 ... frames, or at_most after so long; see `gaspart.tradeoff.reached`
@@ -71,7 +74,9 @@ def run(
     recipe = Recipe(
         scene, engine, seed, duration, sample_interval, displacements, follow, correlations, wanted, pairs
     )
-    return trajectory.record(recipe, path, checkpoint_seconds, progress, overwrite, Examiner(examined))
+    examiner = Examiner(examined)
+    manner = trajectory.Manner(checkpoint_seconds, progress, overwrite, examiner, keep_checkpoint)
+    return trajectory.record(recipe, path, manner)
 
 
 def _request(
@@ -100,13 +105,26 @@ def resume(
     checkpoint_seconds: float = 30.0,
     progress: Progress | None = None,
     examined: Callable[[list[Reached]], None] | None = None,
+    *,
+    duration: float | None = None,
+    keep_checkpoint: bool = False,
 ) -> Path:
     """Finish the run that left `path.partial`, from its files only; returns `path`.
 
-    `progress` and `examined` as of `run`. Raises SceneError if there is nothing to resume, if another version
-    of the program began it, and for a file at `path` that is no complete trajectory of gaspart.
+    With a `duration`, the complete run at `path` goes on to that time, and its file is then the one of a run
+    of this duration in one go, to the same bytes. It continues from the state at its end if the run had
+    `keep_checkpoint`, which the extended one then has too; otherwise it is run again from its start. The
+    file is replaced when the longer run is complete; one that was cut short is finished by either form.
+
+    The other arguments as of `run`. Raises SceneError if there is nothing to resume or to extend, if another
+    version of the program began it, for a duration that is not longer, and for a file at `path` that is no
+    complete trajectory of gaspart.
     """
-    return trajectory.resume(path, checkpoint_seconds, progress, Examiner(examined))
+    examiner = Examiner(examined)
+    manner = trajectory.Manner(checkpoint_seconds, progress, False, examiner, keep_checkpoint)
+    if duration is None:
+        return trajectory.resume(path, manner)
+    return trajectory.extend(path, duration, manner)
 
 
 def require_measurable(

@@ -213,7 +213,7 @@ class Recipe:
 
 
 @contextmanager
-def _checked(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
+def checked(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
     """A trajectory of gaspart: the file, its header and its number of frames, which are checked against it.
 
     Raises SceneError for a file of another kind, truncated, or damaged in its header.
@@ -253,7 +253,7 @@ def open_netcdf(path: Path) -> netCDF4.Dataset:
 def open_checked(path: Path) -> tuple[netCDF4.Dataset, CheckedFrames]:
     """A trajectory as `open_netcdf` opens it, and the record of which of its frames were checked; the caller
     closes both."""
-    with _checked(path) as (file, header, frames):
+    with checked(path) as (file, header, frames):
         return open_descriptor(file), CheckedFrames(file, header, frames)
 
 
@@ -273,7 +273,7 @@ def opened(path: Path) -> Iterator[netCDF4.Dataset]:
 
 def check_frames(path: Path, numbers: range | None = None) -> None:
     """Read some frames of a trajectory, or all. SceneError if one is damaged."""
-    with _checked(path) as (file, header, frames):
+    with checked(path) as (file, header, frames):
         wanted = range(frames) if numbers is None else range(numbers.start, min(numbers.stop, frames))
         damaged = damaged_frame(file.fileno(), header, wanted)
         if damaged is not None:
