@@ -11,9 +11,11 @@ from pathlib import Path
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
+from gaspart.state.state import State
 from gaspart.tradeoff.reached import Examiner, Reached
 from gaspart.trajectory import run as trajectory
 from gaspart.trajectory.correlator import Correlations
+from gaspart.trajectory.last_state import last_state
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.recording import Progress
 from gaspart.trajectory.until import Accuracy, Until
@@ -33,6 +35,7 @@ def run(
     follow: int | None = None,
     correlations: Correlations | None = None,
     pairs: bool = False,
+    initial: State | str | Path | None = None,
     checkpoint_seconds: float = 30.0,
     progress: Progress | None = None,
     examined: Callable[[list[Reached]], None] | None = None,
@@ -53,6 +56,10 @@ def run(
     `keep_checkpoint` the float64 state at the end stays beside it, in `path.checkpoint.npz`: `resume` with a
     longer duration then goes on from it.
 
+    With `initial`, a `State` or a trajectory whose `last_state` is meant, the run starts from its positions,
+    velocities and spins. Particles and the size of the container must be the scene's; the rest may differ.
+    Defaults of engines follow from the scene's `speed` or `temperature` all the same.
+
     With `until` the run ends when standard error / |value| of all these observables is as small as required,
     which is examined at 64, 96, 128, 192 ... frames, or at_most after so long; see `gaspart.tradeoff.reached`
     and `gaspart.reached_accuracy`. The sample_interval is then by default the mean time between collisions.
@@ -64,19 +71,22 @@ def run(
     Raises SceneError for invalid settings, a file that cannot be written, and what this run cannot measure;
     SimulationError if it breaks an invariant, with its state kept in `path.failed.npz`.
     """
-    if path is None:
-        raise SceneError("path", None, "must be given: the file of the trajectory")
     wanted = _request(duration, sample_interval, until, at_most)
     for asked in wanted.accuracies if wanted else ():
         require_measurable(asked, scene, follow, correlations)
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
-    recipe = Recipe(
-        scene, engine, seed, duration, sample_interval, displacements, follow, correlations, wanted, pairs
-    )
-    examiner = Examiner(examined)
-    manner = trajectory.Manner(checkpoint_seconds, progress, overwrite, examiner, keep_checkpoint)
-    return trajectory.record(recipe, path, manner)
+    start = last_state(initial) if isinstance(initial, str | Path) else initial
+    settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations
+    recipe = Recipe(*settings, until=wanted, pairs=pairs, initial=start)
+    how = checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint
+    return trajectory.record(recipe, _required(path), trajectory.Manner(*how))
+
+
+def _required(path: str | Path | None) -> str | Path:
+    if path is None:
+        raise SceneError("path", None, "must be given: the file of the trajectory")
+    return path
 
 
 def _request(

@@ -54,8 +54,9 @@ _REDUCED = {
     "angstrom/picosecond": "length/time",
     "1/picosecond": "1/time",
 }
-_UNUSED = ["spatial", "cell_spatial", "cell_angular", "checksum"]
-"""Variables of a file that `open_trajectory` does not read: names of axes, and what detects damage."""
+_UNUSED = ["spatial", "cell_spatial", "cell_angular", "checksum", *amber.INITIAL]
+"""Variables of a file that `open_trajectory` does not read: names of axes, what detects damage, and what
+belongs to its recipe."""
 _UNITS = {field.name: field.metadata["units"] for field in fields(Tally) if "units" in field.metadata} | {
     "kinetic_energy": ENERGY,
     "vibrations": ENERGY,
@@ -252,6 +253,11 @@ def extend(path: str | Path, duration: float, manner: Manner) -> Path:
     return _carry_out(wanted, path, replace(manner, keep_checkpoint=kept))
 
 
+def simulation_of(recipe: Recipe) -> Simulation:
+    """The simulation of a recipe, at its start."""
+    return Simulation(recipe.scene, recipe.engine, recipe.seed, recipe.stress, recipe.initial)
+
+
 def _carry_out(wanted: Recipe, path: Path, manner: Manner) -> Path:
     """Finish a trajectory from its present state."""
     partial, checkpoint = partial_path(path), checkpoint_path(path)
@@ -262,7 +268,7 @@ def _carry_out(wanted: Recipe, path: Path, manner: Manner) -> Path:
             if not partial.exists() and not manner.keep_checkpoint:
                 remove_checkpoint(checkpoint)
             return path
-        simulation = Simulation(wanted.scene, wanted.engine, wanted.seed, wanted.stress)
+        simulation = simulation_of(wanted)
         with _locked(partial) as file:
             # again: another process may have finished or begun a run before the lock
             if not _is_finished(wanted, path, manner):
