@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import math
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, cast
@@ -13,7 +14,7 @@ from gaspart.engines import Engine
 from gaspart.engines.belonging import belonging, check_belonging
 from gaspart.engines.event_log import EventLog
 from gaspart.errors import SceneError, SimulationError
-from gaspart.scene.scene import Scene
+from gaspart.scene.scene import DRAWN, THUMBNAIL, Scene
 from gaspart.scene.species import Body, Species
 from gaspart.scene.validation import count_of, number
 from gaspart.scene.walls import Plate, Wall, box_of_walls
@@ -80,6 +81,12 @@ class Simulation:
         kind = "discs" if self.scene.dimension == 2 else "spheres"
         reached = f"time {self.time:g}, {self._dynamics.tally.collisions} collisions"
         return f"<Simulation of {self.scene.count} {kind}, {self.engine.name} engine: {reached}>"
+
+    def _repr_html_(self) -> str:
+        """A picture of the present state, with `repr` below it."""
+        if self.scene.count > DRAWN:
+            return html.escape(repr(self))
+        return gaspart.render(self, size=THUMBNAIL).figure(repr(self))
 
     def _set_up(self) -> None:
         self.engine = self._asked.resolved(self.scene)
