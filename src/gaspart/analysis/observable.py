@@ -139,7 +139,8 @@ def _plotted(found: Observable) -> str:
 
 def _plot_scalar(found: Observable, axis: Axes, theory: bool) -> None:
     value, error = float(found.estimate), float(found.error)
-    axis.plot(found["time"], found["stretches"], "o", markersize=3, label="stretches of the run")
+    label = found["stretches"].attrs.get("long_name", "stretches of the run")
+    axis.plot(found["time"], found["stretches"], "o", markersize=3, label=label)
     axis.axhspan(value - error, value + error, alpha=0.3, label=f"measured, {value:.5g} ± {error:.1g}")
     if theory:
         assert found.theory is not None
