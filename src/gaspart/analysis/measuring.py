@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
 
 def measure(name: str, trajectory: Source, start: float | None = None, **selection: Any) -> Observable:
-    """An observable of a trajectory or a simulation; start, and what `selection` states (see SELECTIONS): as of the functions
-    of `gaspart.analysis`. Raises SceneError for an unknown name, a selection that the observable does not
-    have, and as that function does."""
+    """An observable of a trajectory or a simulation; start, and what `selection` states (see SELECTIONS): as
+    of the functions of `gaspart.analysis`. Raises SceneError for an unknown name, a selection that the
+    observable does not have, and as that function does."""
     function, arguments, _ = OBSERVABLES[known(name)]
     for key, value in selection.items():
         if name not in SELECTIONS[key]:
