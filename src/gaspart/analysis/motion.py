@@ -122,8 +122,8 @@ def diffusion_coefficient(
     Of a periodic container the mean over axes, a scalar; of one with walls, or `per_axis`, that along each
     periodic axis, (axis,): across walls displacements are bounded, and there is none. Arguments and
     condition of zero momentum as in `mean_squared_displacement`; a species needs 16 particles that move.
-    Theory: of spheres in a periodic cube, Erpenbeck and Wood's with the shift of Yeh and Hummer, half of which is its
-    uncertainty.
+    Theory: of spheres in a periodic cube, Erpenbeck and Wood's with the shift of Yeh and Hummer, half of
+    which is its uncertainty.
 
     Raises SceneError without a periodic axis; for discs whose momentum lasts longer than these collisions, so
     that their squared displacement grows like t ln t; where the slope from 6 to 12 collisions is another one,
