@@ -164,6 +164,10 @@ def test_only_a_run_being_extended_gives_way_to_a_longer_one(tmp_path):
         gp.run(*recipe, 4.0, 0.5, path)
     short = read_recipe(path)
     assert extension.is_beginning(path, replace(short, duration=4.0))
+    other = replace(short, duration=4.2, sample_interval=0.3)  # which the file's own recipe cannot have
+    assert not extension.is_beginning(path, other)
+    gp.run(*recipe, 4.2, 0.3, path, overwrite=True)
+    gp.run(*recipe, 2.0, 0.5, path, overwrite=True)
     for change in (
         {"duration": 2.0},
         {"duration": 4.0, "seed": 2},

@@ -45,9 +45,9 @@ def is_beginning(path: Path, wanted: Recipe) -> bool:
         recipe, revision = read_recipe(path), stored_revision(path)
         with checked(path) as (_, _, frames):
             shorter = frames < wanted.frames
-    except SceneError:
+        same = replace(recipe, duration=wanted.duration, until=wanted.until)
+    except SceneError:  # as for a duration that is no multiple of its interval
         return False
-    same = replace(recipe, duration=wanted.duration, until=wanted.until)
     return shorter and begun_as(path, recipe) and same.header(revision) == wanted.header(revision)
 
 
