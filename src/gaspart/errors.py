@@ -11,7 +11,15 @@ _LONGEST = {"value": 120, "key": 200, "rule": 2000, "file": 1000}
 _ITEMS, _DEPTH, _BITS = 12, 4, 256  # shown of a collection; of nested ones; of an integer
 
 
-class SceneError(ValueError):
+class _OneLine(Exception):
+    """An error whose message says all that its user needs."""
+
+    def _render_traceback_(self) -> list[str]:
+        """The lines that IPython and notebooks print instead of a traceback."""
+        return [f"{type(self).__name__}: {self}"]
+
+
+class SceneError(_OneLine, ValueError):
     """An input that cannot be used: one line that names the key, the value and the rule it breaks.
 
     The line is printable and of bounded length, whatever the value is.
@@ -55,7 +63,7 @@ def optional(module: str, extra: str, purpose: str) -> ModuleType:
         raise SceneError("package", module.partition(".")[0], rule) from None
 
 
-class SimulationError(RuntimeError):
+class SimulationError(_OneLine, RuntimeError):
     """A run broke one of its invariants, or cannot continue; the last good state is kept by the caller."""
 
 

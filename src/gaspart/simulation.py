@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import math
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, cast
@@ -13,10 +14,11 @@ from gaspart.engines import Engine
 from gaspart.engines.belonging import belonging, check_belonging
 from gaspart.engines.event_log import EventLog
 from gaspart.errors import SceneError, SimulationError
-from gaspart.scene.scene import Scene
+from gaspart.scene.scene import DRAWN, THUMBNAIL, Scene
 from gaspart.scene.species import Body, Species
 from gaspart.scene.validation import count_of, number
 from gaspart.scene.walls import Plate, Wall, box_of_walls
+from gaspart.state.given import check_apart, taken_state
 from gaspart.state.initial import initial_state
 from gaspart.state.state import State
 from gaspart.state.tally import Tally
@@ -48,13 +50,20 @@ PROPERTIES = (
 class Simulation:
     """One run. `seed`: a whole number, or a tuple of them, that fixes the initial state and the random
     numbers of thermal walls. stress: whether `tally` has the stress tensor and the heat flux, of a periodic
-    scene without gravity.
+    scene without gravity. initial: a state whose positions, velocities and spins are those at time 0, instead
+    of what the scene states; its particles and the size of its container must be the scene's.
 
-    Raises SceneError if the scene cannot be set up, or the engine cannot model it.
+    Raises SceneError if the scene cannot be set up, the engine cannot model it, or particles of `initial`
+    overlap or are not inside the container.
     """
 
     def __init__(
-        self, scene: Scene, engine: Engine, seed: int | tuple[int, ...] = 0, stress: bool = False
+        self,
+        scene: Scene,
+        engine: Engine,
+        seed: int | tuple[int, ...] = 0,
+        stress: bool = False,
+        initial: State | None = None,
     ) -> None:
         if not isinstance(scene, Scene):
             raise SceneError("scene", scene, "must be a Scene, such as Scene.from_file(path)")
@@ -63,7 +72,7 @@ class Simulation:
                 "engine", engine, "must be an engine: EventDriven(), TimeStepped(time_step) or DSMC()"
             )
         self.scene, self.engine, self.seed = scene, engine, seed
-        self._asked, self._stress = engine, stress
+        self._asked, self._stress, self._given = engine, stress, initial
         self._log: EventLog | None = None
         self._advanced = False
         self._set_up()
@@ -73,9 +82,20 @@ class Simulation:
         reached = f"time {self.time:g}, {self._dynamics.tally.collisions} collisions"
         return f"<Simulation of {self.scene.count} {kind}, {self.engine.name} engine: {reached}>"
 
+    def _repr_html_(self) -> str:
+        """A picture of the present state, with `repr` below it."""
+        if self.scene.count > DRAWN:
+            return html.escape(repr(self))
+        return gaspart.render(self, size=THUMBNAIL).figure(repr(self))
+
     def _set_up(self) -> None:
         self.engine = self._asked.resolved(self.scene)
-        self._initial = initial_state(self.scene, self.seed)
+        if self._given is None:
+            self._initial = initial_state(self.scene, self.seed)
+        else:
+            self._initial = taken_state(self.scene, self._given)
+            if self.engine.keeps_apart:
+                check_apart(self.scene, self._initial)
         self._energy = self._initial.energy
         self._moving = self._initial.kinetic_energy + self._initial.vibrational_energy
         if self._stress:
@@ -221,6 +241,10 @@ class Simulation:
             raise SceneError("events", None, "set record_events to True before advancing")
         return self._log.events
 
+    def again(self) -> Simulation:
+        """The same simulation at its start."""
+        return Simulation(self.scene, self.engine, self.seed, self._stress, self._given)
+
     def replay(self, by: str = "time", interval: float | None = None) -> Iterator[State]:
         """The states from the start to the present time, by running it again: at every `interval`
         (by="time"), or after every event (by="event", event-driven engine only)."""
@@ -229,7 +253,7 @@ class Simulation:
             count = math.floor(self.time / step * (1 + 1e-12)) + 1
             yield from self._states_at(min(n * step, self.time) for n in range(count))
         elif by == "event":
-            again = Simulation(self.scene, self.engine, self.seed, self._stress)
+            again = self.again()
             yield again.state
             while True:
                 again.advance(until=self.time, max_events=1)
@@ -242,7 +266,7 @@ class Simulation:
 
     def _states_at(self, times: Iterable[float]) -> Iterator[State]:
         """The states at rising times, by running it again."""
-        again = Simulation(self.scene, self.engine, self.seed, self._stress)
+        again = self.again()
         for time in times:
             again.advance(until=time)
             yield again.state
@@ -298,8 +322,11 @@ class Simulation:
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         """Arrays from which `restore` continues to the same bits, and what they belong to: scene, seed,
-        engine and version."""
-        return {**self._dynamics.checkpoint(), **belonging(self.scene, self.engine, self.seed)}
+        engine, version and the initial state, if it was given."""
+        return {**self._dynamics.checkpoint(), **self._belonging()}
+
+    def _belonging(self) -> dict[str, np.ndarray]:
+        return belonging(self.scene, self.engine, self.seed, None if self._given is None else self._initial)
 
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
         """Continue from a checkpoint of a simulation of the same scene and seed, with the same engine, to the
@@ -307,6 +334,6 @@ class Simulation:
 
         Raises SceneError, with nothing changed, for any other checkpoint, and for one with missing arrays.
         """
-        check_belonging(checkpoint, belonging(self.scene, self.engine, self.seed))
+        check_belonging(checkpoint, self._belonging())
         self._advanced = True
         self._dynamics.restore(checkpoint)

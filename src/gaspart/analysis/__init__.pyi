@@ -1,4 +1,6 @@
+from gaspart.analysis.combination import replicas as replicas
 from gaspart.analysis.fields import field as field
+from gaspart.analysis.free_flights import free_flight_times as free_flight_times
 from gaspart.analysis.insertion import chemical_potential as chemical_potential
 from gaspart.analysis.lyapunov import lyapunov_exponent as lyapunov_exponent
 from gaspart.analysis.mixtures import contact_values as contact_values

@@ -71,7 +71,7 @@ def collision_data(
         simulation.record_events = True  # a new, empty list
         events = min(_CHUNK, max(collisions - found, 1))
         simulation.advance(max_events=events)
-        part, last = _pairs(simulation.events, last, scene)
+        part, last = pair_rows(simulation.events, last, scene)
         parts.append(part)
         found += part.sizes["collision"]
         alone = 0 if part.sizes["collision"] else alone + events
@@ -154,9 +154,9 @@ def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
     return mean_of(rate / (surface * scene.number_density * diameter ** (scene.dimension - 1) * spread))
 
 
-def _pairs(events: dict, last: tuple, scene: Scene) -> tuple[xr.Dataset, tuple]:
-    """The collisions of two particles among `events`, and each particle's time and velocity after its last
-    one."""
+def pair_rows(events: dict, last: tuple, scene: Scene) -> tuple[xr.Dataset, tuple]:
+    """The collisions of two particles among `events`, as rows of `collision_data`, and each particle's time
+    and velocity after its last one; `last`: those before them."""
     bodies, times, after = events["bodies"], events["time"], events["velocities"]
     number_of_particles = len(last[0])
     # each particle's history in order: its state before, then its part in every event

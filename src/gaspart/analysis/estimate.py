@@ -60,6 +60,9 @@ class Estimate:
         beyond = max(float(stdtr(self.freedom, -abs(t))), 1e-300)
         return math.copysign(-float(ndtri(beyond)), t)
 
+    def __str__(self) -> str:
+        return concise(self.value, self.error)
+
     def __neg__(self) -> Estimate:
         return Estimate(-self.value, self.error, self.freedom)
 
@@ -80,6 +83,20 @@ class Estimate:
         value = self.value / other.value
         mine, its = self.error / abs(other.value), abs(value) * other.error / abs(other.value)
         return _sum(value, (mine, self.freedom), (its, other.freedom))
+
+
+def concise(value: float, error: float) -> str:
+    """A number with its uncertainty in the last two digits, as 1.242(20); without one, to six digits."""
+    if not (0.0 < error < math.inf and math.isfinite(value)):
+        return f"{value:.6g}"
+    largest = max(abs(value), error)
+    if not 1e-4 <= largest < 1e7:
+        power = math.floor(math.log10(largest))
+        return f"{concise(value / 10.0**power, error / 10.0**power)}e{power}"
+    decimals = 1 - int(f"{error:.1e}".partition("e")[2])
+    if decimals > 0:
+        return f"{value:.{decimals}f}({round(error * 10**decimals)})"
+    return f"{round(value, decimals):.0f}({round(error, decimals):.0f})"
 
 
 def _sum(value: float, *parts: tuple[float, float]) -> Estimate:

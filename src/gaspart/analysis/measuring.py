@@ -9,15 +9,14 @@ from gaspart.analysis.names import OBSERVABLES, SELECTIONS, known
 from gaspart.errors import SceneError
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from gaspart.analysis.observable import Observable
+    from gaspart.analysis.run import Source
 
 
-def measure(name: str, trajectory: xr.Dataset, start: float | None = None, **selection: Any) -> Observable:
-    """An observable of a trajectory; start, and what `selection` states (see SELECTIONS): as of the functions
-    of `gaspart.analysis`. Raises SceneError for an unknown name, a selection that the observable does not
-    have, and as that function does."""
+def measure(name: str, trajectory: Source, start: float | None = None, **selection: Any) -> Observable:
+    """An observable of a trajectory or a simulation; start, and what `selection` states (see SELECTIONS): as
+    of the functions of `gaspart.analysis`. Raises SceneError for an unknown name, a selection that the
+    observable does not have, and as that function does."""
     function, arguments, _ = OBSERVABLES[known(name)]
     for key, value in selection.items():
         if name not in SELECTIONS[key]:

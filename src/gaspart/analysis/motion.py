@@ -46,6 +46,7 @@ def mean_squared_displacement(
     start: float | None = None,
     species: int | None = None,
     particles: Sequence[int] | None = None,
+    per_axis: bool = False,
 ) -> Observable:
     """<|r(t) - r(0)|^2> over moving particles and time origins, (lag,), in length^2.
 
@@ -54,27 +55,31 @@ def mean_squared_displacement(
     the total momentum is conserved it is that about the centre of mass, times N / (N - 1). species,
     particles: of one species, by its number in the scene (single particles have the number after the last),
     or of these particles only; of fewer than 16 the error is the scatter of as many stretches of the run.
-    Theory: that of Enskog's diffusion coefficient and an exponential velocity correlation. Raises SceneError
-    for fewer than 16 moving particles, unless they are selected, frames at uneven times, and frames too far
-    apart to follow particles across periodic faces.
+    per_axis: that along each axis instead of their sum, (axis, lag). Theory: that of Enskog's diffusion
+    coefficient and an exponential velocity correlation. Raises SceneError for fewer than 16 moving particles,
+    unless they are selected, frames at uneven times, and frames too far apart to follow particles across
+    periodic faces.
     """
     with measured(source, start) as run:
         groups = _groups(run, chosen=_chosen(run, species, particles))
         number = _lags(groups, lags)
+        axes = [slice(k, k + 1) for k in range(run.dimension)] if per_axis else [slice(None)]
         found = np.array(
             [
-                correlate(path, velocity, groups.interval, number).msd
+                [correlate(path[..., k], velocity[..., k], groups.interval, number).msd for k in axes]
                 for path, velocity in zip(groups.paths, groups.velocities, strict=True)
             ]
         )
         time = groups.interval * np.arange(number)
-        values, errors = means_of(found)
+        values, errors = means_of(found if per_axis else found[:, 0])
         expected: dict[str, Any] = {}
         if gas := run.moving_fluid:
             curve = theory.enskog_mean_squared_displacement(time, **gas.parameters)
+            curve = curve / run.dimension if per_axis else curve
             expected = {"theory": (curve, math.nan), "source": "Enskog, exponential velocity correlation"}
         about: dict[str, Any] = {"units": "length^2", "long_name": "mean-squared displacement", **expected}
-        return observable("mean_squared_displacement", _lag(time), values, errors, **about)
+        along = {**(_axes(run) if per_axis else {}), **_lag(time)}
+        return observable("mean_squared_displacement", along, values, errors, **about)
 
 
 def velocity_autocorrelation(
@@ -110,15 +115,15 @@ def velocity_autocorrelation(
 
 
 def diffusion_coefficient(
-    source: Source, start: float | None = None, species: int | None = None
+    source: Source, start: float | None = None, species: int | None = None, per_axis: bool = False
 ) -> Observable:
     """D in length^2 / time, by the rise of the mean-squared displacement from 12 to 24 collisions a particle.
 
-    Of a periodic container the mean over axes, a scalar; of one with walls that along each periodic axis,
-    (axis,): across walls displacements are bounded, and there is none. Arguments and condition of zero
-    momentum as in `mean_squared_displacement`; a species needs 16 particles that move. Theory: of spheres
-    in a periodic cube, Erpenbeck and Wood's with the shift of Yeh and Hummer, half of which is its
-    uncertainty.
+    Of a periodic container the mean over axes, a scalar; of one with walls, or `per_axis`, that along each
+    periodic axis, (axis,): across walls displacements are bounded, and there is none. Arguments and
+    condition of zero momentum as in `mean_squared_displacement`; a species needs 16 particles that move.
+    Theory: of spheres in a periodic cube, Erpenbeck and Wood's with the shift of Yeh and Hummer, half of
+    which is its uncertainty.
 
     Raises SceneError without a periodic axis; for discs whose momentum lasts longer than these collisions, so
     that their squared displacement grows like t ln t; where the slope from 6 to 12 collisions is another one,
@@ -137,9 +142,8 @@ def diffusion_coefficient(
         lasting = _lasting_momentum(run, lags[1] * stride)
         require_spheres(run, lasting)
         slopes = _slopes(_groups(run, about=lasting, chosen=chosen), lags)[..., run.periodic]
-        names = np.array(list("xyz"[: run.dimension]))[run.periodic]
-        along: dict[str, Any] = {"axis": (names, {"long_name": "axis"})}
-        if run.periodic.all():
+        along = _axes(run, run.periodic)
+        if run.periodic.all() and not per_axis:
             slopes, along = slopes.mean(axis=2), {}
         _require_constant(slopes)
         values, errors = means_of(slopes[:, 1])
@@ -238,6 +242,10 @@ def _theory_of_d(run: Run) -> dict[str, Any]:
         return {}
     expected = theory.diffusion_in_cube(gas.packing_fraction, sides[0], **gas.particle)
     return {"theory": expected, "source": "Erpenbeck and Wood, Yeh and Hummer"}
+
+
+def _axes(run: Run, chosen: np.ndarray | slice = slice(None)) -> dict[str, Any]:
+    return {"axis": (np.array(list("xyz"[: run.dimension]))[chosen], {"long_name": "axis"})}
 
 
 def _lag(time: np.ndarray) -> dict[str, Any]:

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import base64
+import html
+import io
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.estimate import concise
+from gaspart.analysis.names import OBSERVABLES
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
 
@@ -18,6 +23,8 @@ LEAST_INTERVALS = 16
 _ROUNDING = 1e-12
 """Relative scatter of a series that does not change."""
 _LONG = 32  # characters of a label, from which on it has two lines
+_FEW = 12
+"""Values up to which all are written out."""
 STRETCHES = 20
 """Number of stretches of a run, whose means a plot of a scalar shows."""
 
@@ -59,6 +66,27 @@ class Observable(xr.Dataset):
         scale = (self.error**2 + unsure**2) ** 0.5
         return (self.estimate - self.theory) / scale.where(scale > 0.0)
 
+    @property
+    def summary(self) -> str:
+        """A number as `Z = 1.242(20), theory 1.227`, by its short name if it has one; of several values,
+        each; of a curve, how many values along what."""
+        quantity, estimate = self.attrs["quantity"], self.estimate
+        name = next((key for key, (one, _, _) in OBSERVABLES.items() if one == quantity), quantity)
+        if estimate.size > _FEW:
+            axis = estimate.dims[-1]
+            along = label_of(self[axis]) if axis in self.coords else str(axis)
+            return f"{name}: {estimate.size} values along {along}"
+        return "\n".join(_values(self, str(name)))
+
+    def __repr__(self) -> str:
+        return self.summary if self.estimate.size <= _FEW else f"{self.summary}\n{super().__repr__()}"
+
+    def _repr_html_(self) -> str:
+        """The `summary`, a plot of a curve, and the data set, folded."""
+        text = html.escape(self.summary).replace("\n", "<br>")
+        drawn = f'<br><img src="{_plotted(self)}" alt="{text}">' if self.estimate.size > _FEW else ""
+        return f"<b>{text}</b>{drawn}<details><summary>data set</summary>{super()._repr_html_()}</details>"
+
     def plot(self, theory: bool = False, axis: Axes | None = None) -> Axes:  # type: ignore[override]
         """Draw the values with bars of one standard deviation, a scalar as the means of consecutive stretches
         of the run; with `theory`, the curve of theory too, or a line of the legend that there is none for
@@ -85,9 +113,34 @@ class Observable(xr.Dataset):
         return axis
 
 
+def _values(found: Observable, name: str) -> list[str]:
+    """Each value with its uncertainty and, where it is known, theory."""
+    estimate, lines = found.estimate, []
+    errors = np.broadcast_to(found.error.values, estimate.shape)
+    theory = np.full(estimate.shape, np.nan) if found.theory is None else found.theory.values
+    for index in np.ndindex(estimate.shape):
+        places = zip(estimate.dims, index, strict=True)
+        words = [name, *(str(found[dim].values[n]) for dim, n in places if dim in found.coords)]
+        expected = f", theory {theory[index]:.4g}" if np.isfinite(theory[index]) else ""
+        value = concise(float(estimate.values[index]), float(errors[index]))
+        lines.append(f"{', '.join(words)} = {value}{expected}")
+    return lines
+
+
+def _plotted(found: Observable) -> str:
+    """A plot of a curve as the address of a picture that contains it."""
+    from matplotlib.figure import Figure
+
+    figure, content = Figure(figsize=(4.8, 3.0), layout="constrained"), io.BytesIO()
+    found.plot(found.theory is not None, figure.add_subplot())
+    figure.savefig(content, format="png", dpi=100)
+    return f"data:image/png;base64,{base64.b64encode(content.getvalue()).decode()}"
+
+
 def _plot_scalar(found: Observable, axis: Axes, theory: bool) -> None:
     value, error = float(found.estimate), float(found.error)
-    axis.plot(found["time"], found["stretches"], "o", markersize=3, label="stretches of the run")
+    label = found["stretches"].attrs.get("long_name", "stretches of the run")
+    axis.plot(found["time"], found["stretches"], "o", markersize=3, label=label)
     axis.axhspan(value - error, value + error, alpha=0.3, label=f"measured, {value:.5g} ± {error:.1g}")
     if theory:
         assert found.theory is not None

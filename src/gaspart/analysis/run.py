@@ -279,7 +279,7 @@ def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
         steps = max(1, round(simulation.time / step) // (frames - 1))
         times = np.append(0.0, (steps * np.arange(1, frames) + 0.5) * step)
         times = times[times < simulation.time + step]
-    again, rows = Simulation(scene, engine, simulation.seed), []
+    again, rows = simulation.again(), []
     counter = PairCounter(again) if pairs else None
     for time in times:
         again.advance(until=time)

@@ -60,6 +60,8 @@ def _info(given: argparse.Namespace) -> None:
     print_line(f"written by {', '.join(versions)}; revision {stored.get('git_revision', 'none')}")
     print_line("reproduced, to the same bits, by")
     print_line("\n".join(f"    {line}" for line in remake))
+    if recipe.initial is not None:
+        print_line("where OTHER.nc is the run whose last state this one was started from; this file holds it")
     print_line("scene:")
     print_line("\n".join(f"    {line}" for line in stored["scene"].splitlines()))
 

@@ -42,10 +42,24 @@ def add_run(parser: Parser) -> None:
         "as small as required, which is examined at 64, 96, 128, 192 ... frames."
     )
     set_command(parser, _run, text, _EXAMPLES)
-    add, integers = parser.add_argument, several(int)
+    add = parser.add_argument
     add("scene", help="scene file (YAML)")
     add("-o", "--output", required=True, metavar="FILE", help="trajectory (AMBER NetCDF)")
     add("--engine", default="event", metavar="NAME", help=f"{one_of(ENGINES)}; default: event")
+    add("--seed", type=several(int), default=(0,), metavar="N[,N...]", help="default: 0")
+    text = "start from the last state of this run, of the same particles in a container of the same size"
+    add("--from", dest="initial", metavar="FILE", help=text)
+    _add_ends(parser)
+    _add_contents(parser)
+    for name, kind in engine_settings().items():
+        add_setting(parser, name, kind)
+    add("--force", action="store_true", help="replace a trajectory of another run")
+    _add_checkpoints(parser)
+
+
+def _add_ends(parser: argparse.ArgumentParser) -> None:
+    """What ends a run."""
+    add = parser.add_argument
     add("--duration", type=float, metavar="T", help="duration of the run, in the scene's unit")
     text = (
         "time between frames, of which the duration is a multiple; default with --until, for plain gases: "
@@ -60,7 +74,11 @@ def add_run(parser: Parser) -> None:
     add("--at-most", type=float, metavar="T", help="longest duration of a run with --until")
     text = "time from which frames count for --until; default: a quarter of the run"
     add("--start", type=float, metavar="T", help=text)
-    add("--seed", type=integers, default=(0,), metavar="N[,N...]", help="default: 0")
+
+
+def _add_contents(parser: argparse.ArgumentParser) -> None:
+    """What is in the file."""
+    add = parser.add_argument
     add(
         "--displacements",
         action="store_true",
@@ -77,22 +95,26 @@ def add_run(parser: Parser) -> None:
     add("--stress", action="store_true", help=text)
     text = "count the collisions of each pair of species, for `gaspart measure FILE contact_values`"
     add("--pairs", action="store_true", help=text)
-    for name, kind in engine_settings().items():
-        add_setting(parser, name, kind)
-    add("--force", action="store_true", help="replace a trajectory of another run")
-    _add_progress(parser)
 
 
 def add_resume(parser: Parser) -> None:
     """Add the arguments of the command to its parser."""
-    text = "Finish a run that was cut short, from FILE.partial and FILE.checkpoint.npz."
-    examples = "example:\n  gaspart resume run.nc"
+    text = (
+        "Finish a run that was cut short, from FILE.partial and FILE.checkpoint.npz. With --duration, "
+        "continue a complete run to that time: from the state at its end if it was kept (--keep-checkpoint), "
+        "otherwise from its start. The file has then the bytes of one run of this duration."
+    )
+    examples = "examples:\n  gaspart resume run.nc\n  gaspart resume run.nc --duration 200"
     set_command(parser, _resume, text, examples)
     parser.add_argument("trajectory", metavar="FILE", help="trajectory of the run")
-    _add_progress(parser)
+    text = "longer duration of a complete run, from its time 0 on"
+    parser.add_argument("--duration", type=float, metavar="T", help=text)
+    _add_checkpoints(parser)
 
 
-def _add_progress(parser: argparse.ArgumentParser) -> None:
+def _add_checkpoints(parser: argparse.ArgumentParser) -> None:
+    text = "leave the state at the end in FILE.checkpoint.npz, for `gaspart resume --duration`"
+    parser.add_argument("--keep-checkpoint", action="store_true", help=text)
     text = "seconds between checkpoints, the most that is lost if the run is killed; default: 30"
     parser.add_argument("--checkpoint-seconds", type=float, default=30.0, metavar="S", help=text)
     parser.add_argument("--quiet", action="store_true", help="show no progress")
@@ -125,10 +147,12 @@ def _run(given: argparse.Namespace) -> None:
             follow=given.follow,
             correlations=correlations,
             pairs=given.pairs,
+            initial=given.initial,
             checkpoint_seconds=given.checkpoint_seconds,
             progress=progress(given.quiet, started, status.remark),
             examined=status.update,
             overwrite=given.force,
+            keep_checkpoint=given.keep_checkpoint,
         )
     _report(path)
 
@@ -207,7 +231,8 @@ def _resume(given: argparse.Namespace) -> None:
     with waiting(_PREPARING, given.quiet) as started:
         load_numba(ours=True)
         show = progress(given.quiet, started, status.remark)
-        path = resume(given.trajectory, given.checkpoint_seconds, show, status.update)
+        lasts = {"duration": given.duration, "keep_checkpoint": given.keep_checkpoint}
+        path = resume(given.trajectory, given.checkpoint_seconds, show, status.update, **lasts)
     _report(path)
 
 
@@ -254,6 +279,8 @@ def run_options(path: Path, recipe: Recipe) -> list[str]:
         options += [] if recipe.until.at_most is None else ["--at-most", repr(recipe.until.at_most)]
     options += ["--sample-interval", repr(recipe.sample_interval)]
     options += stated(settings)
+    if recipe.initial is not None:
+        options += ["--from", "OTHER.nc"]  # whose last state the file holds
     if recipe.displacements:
         options.append("--displacements")
     if recipe.pairs:

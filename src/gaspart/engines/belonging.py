@@ -13,18 +13,30 @@ from gaspart import __version__
 from gaspart.engines.engine import Engine, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
+from gaspart.state.state import State
 
 
-def belonging(scene: Scene, engine: Engine, seed: int | tuple[int, ...]) -> dict[str, np.ndarray]:
-    """What the results of a simulation depend on, as texts, by the keys of a checkpoint."""
+def belonging(
+    scene: Scene, engine: Engine, seed: int | tuple[int, ...], initial: State | None = None
+) -> dict[str, np.ndarray]:
+    """What the results of a simulation depend on, as texts, by the keys of a checkpoint. initial: the state
+    at time 0, if it does not follow from the scene and the seed."""
     settings = {key: x for key, x in engine_to_dict(engine).items() if key not in engine.same_bits}
     texts = {
         "version": __version__,
         "scene": hashlib.sha256(_text(scene.to_dict()).encode()).hexdigest(),
         "engine": _text(settings),
         "seed": _text(seed),
+        "initial state": _digest(initial),
     }
     return {f"of_{key}": np.array(text) for key, text in texts.items()}
+
+
+def _digest(state: State | None) -> str:
+    if state is None:
+        return "of the seed"
+    parts = state.positions, state.velocities, state.spins
+    return hashlib.sha256(b"".join(np.ascontiguousarray(part).tobytes() for part in parts)).hexdigest()
 
 
 def _text(value: object) -> str:

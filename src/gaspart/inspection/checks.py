@@ -14,10 +14,10 @@ from gaspart.inspection.conserved import judge_conserved
 from gaspart.inspection.contact_value import FIT_ERROR, WIDTH, contact_values
 from gaspart.inspection.diffusion import diffusion, expected_diffusion, groups_of, why_not
 from gaspart.inspection.frames import Frames
-from gaspart.inspection.overlaps import deepest_overlap
 from gaspart.inspection.samples import UNEVEN, apart, moved, path, unevenness
 from gaspart.inspection.speeds import judge_speeds, why_not_speeds
 from gaspart.inspection.verdict import Check, compared
+from gaspart.state.overlaps import deepest_overlap
 
 __all__ = ["Check", "judge", "judge_places"]
 

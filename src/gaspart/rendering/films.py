@@ -18,6 +18,8 @@ from gaspart.rendering.frames import opened, particles_of
 from gaspart.rendering.labels import Labels, time_format
 from gaspart.rendering.particles import FASTEST, colours_of, legend_of
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
+from gaspart.rendering.shown import Film
+from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of, number
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
@@ -50,8 +52,9 @@ def film(
     camera: tuple[float, float] | None = None,
     overwrite: bool = False,
     progress: Callable[[int, int], None] | None = None,
-) -> Path:
-    """Write the frames of a trajectory (a path, or an open one) as a film, .mp4 or .gif; returns its path.
+) -> Film:
+    """Write the frames of a trajectory (a path, or an open one) as a film, .mp4 or .gif; returns its path,
+    which shows the film in a notebook.
 
     An .mp4 needs the extra `film`, and its size is rounded down to even numbers. size, colour, clock and
     camera as in `render`; all frames have one scale of speeds. start, stop: times between which frames are
@@ -74,7 +77,7 @@ def film(
         _ffmpeg()  # before a picture is drawn
     to = _gif if path.suffix == ".gif" else _mp4
     with opened(trajectory) as source:
-        if isinstance(source, Simulation | State):
+        if isinstance(source, Simulation | State | Scene):
             raise SceneError(
                 "trajectory", source, "must be a path or an open trajectory: a film needs frames"
             )
@@ -85,7 +88,7 @@ def film(
             shown = _reported(shown, source.sizes["frame"], progress)
         with writing(path, KINDS[path.suffix], overwrite) as scratch:
             to(scratch, shown, size, rate)
-    return path
+    return Film(path)
 
 
 def poster(source: str | Path, path: str | Path) -> None:

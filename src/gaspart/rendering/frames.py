@@ -16,11 +16,13 @@ from gaspart.errors import SceneError
 from gaspart.rendering.labels import Labels
 from gaspart.rendering.particles import DrawnParticles, colours_of, legend_of
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
+from gaspart.rendering.shown import Picture
 from gaspart.scene.faces import Piston, Vibrating, pistons
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of
 from gaspart.scene.walls import Wall
 from gaspart.simulation import Simulation
+from gaspart.state.initial import initial_state
 from gaspart.state.insertion import per_body
 from gaspart.state.state import State
 from gaspart.trajectory.run import open_trajectory
@@ -29,8 +31,8 @@ from gaspart.yaml_text import parse_yaml
 if TYPE_CHECKING:
     import xarray as xr
 
-Source: TypeAlias = "str | Path | xr.Dataset | Simulation | State"
-"""What pictures are made of: a trajectory, by its path or open, a simulation or a state."""
+Source: TypeAlias = "str | Path | xr.Dataset | Simulation | State | Scene"
+"""What pictures are made of: a trajectory, by its path or open, a simulation, a state or a scene."""
 _CORNERS = {2: ((0,), (1,)), 3: ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))}
 """Corners of a face, along its outline, in a container whose sides are 1."""
 
@@ -43,9 +45,9 @@ def render(
     fastest: float | None = None,
     clock: bool = False,
     camera: tuple[float, float] | None = None,
-) -> np.ndarray:
-    """A picture of a frame of a trajectory (a path or an open one; the last frame), of a `Simulation` or of a
-    `State`: uint8, (H, W, 3).
+) -> Picture:
+    """A picture of a frame of a trajectory (a path or an open one; the last frame), of a `Simulation`, of a
+    `State`, or of a `Scene` at time 0 (seed 0): uint8, (H, W, 3), an array that notebooks show as a picture.
 
     Spheres are drawn in perspective, with light and shadow, over the container's floor (z = 0); discs from
     above, with their periodic images at periodic faces. Interior walls of a state are not drawn.
@@ -55,7 +57,8 @@ def render(
     the time and a bar of a round length (of spheres: in the middle of the container) below. camera: azimuth
     and elevation in degrees from which spheres are seen, (298, 24). The same particles give the same pixels.
 
-    Raises SceneError for a missing frame, an impossible size or camera, or an unknown colouring.
+    Raises SceneError for a missing frame, an impossible size or camera, an unknown colouring, or a scene
+    whose particles do not fit.
     """
     size = checked_size(size)
     with opened(source) as open_source:
@@ -64,14 +67,15 @@ def render(
     direction = checked_camera(camera, particles.dimension)
     colours = colours_of(particles, colour, fastest)
     if not clock:
-        return picture(particles, size, colours, direction=direction)
+        return picture(particles, size, colours, direction=direction).view(Picture)
     labels = Labels(size, particles.parameters, legend_of(particles, colour, fastest))
     image = picture(particles, labels.inner, colours, direction=direction)
-    return labels.around(image, f"{time:.4g}", pixels_per_length(particles, labels.inner, direction))
+    scale = pixels_per_length(particles, labels.inner, direction)
+    return labels.around(image, f"{time:.4g}", scale).view(Picture)
 
 
 @contextmanager
-def opened(source: Source) -> Iterator[xr.Dataset | Simulation | State]:
+def opened(source: Source) -> Iterator[xr.Dataset | Simulation | State | Scene]:
     """A source whose trajectory is open; one that was given as a path is closed at the end."""
     if isinstance(source, str | Path):
         with open_trajectory(source) as trajectory:
@@ -80,9 +84,9 @@ def opened(source: Source) -> Iterator[xr.Dataset | Simulation | State]:
         yield source
 
 
-def particles_of(source: State | Simulation | xr.Dataset, frame: int = -1) -> DrawnParticles:
-    """The particles of a simulation or a `State` now, or of a frame (counted from the end if negative) of an
-    open trajectory.
+def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -1) -> DrawnParticles:
+    """The particles of a simulation or a `State` now, of a scene at time 0, or of a frame (counted from the
+    end if negative) of an open trajectory.
 
     Raises SceneError for a missing frame. A state has no interior walls and no periodic axes.
     """
@@ -90,6 +94,8 @@ def particles_of(source: State | Simulation | xr.Dataset, frame: int = -1) -> Dr
         return _of_state(source.state, source.scene)
     if isinstance(source, State):
         return _of_state(source, None)
+    if isinstance(source, Scene):
+        return _of_state(initial_state(source, 0), source)
     frames = source.sizes["frame"]
     if not -frames <= count_of("frame", frame, least=-frames) < frames:
         raise SceneError("frame", frame, f"the trajectory has {frames}, counted from 0")
@@ -135,7 +141,9 @@ def parameters_of(scene: Scene) -> tuple[str, ...]:
     return tuple(texts)
 
 
-def _time_of(source: State | Simulation | xr.Dataset, frame: int) -> float:
+def _time_of(source: State | Simulation | Scene | xr.Dataset, frame: int) -> float:
+    if isinstance(source, Scene):
+        return 0.0
     return float(source.time if isinstance(source, State | Simulation) else source["time"].values[frame])
 
 

@@ -19,6 +19,7 @@ from gaspart.rendering.camera import edges_of
 from gaspart.rendering.frames import opened, particles_of
 from gaspart.rendering.particles import FASTEST, DrawnParticles
 from gaspart.rendering.style import COLOURS
+from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
@@ -44,6 +45,10 @@ class View:
     """A page that shows the particles of a run. In a notebook it shows itself."""
 
     page: str
+
+    def __repr__(self) -> str:
+        size = len(self.page.encode()) / 1e6
+        return f"<View: a page of {size:.2g} MB, which shows itself in a notebook; save(path) writes it>"
 
     def save(self, path: str | Path, overwrite: bool = False) -> Path:
         """Write the page, .html; returns its path. A page of this kind is replaced only with `overwrite`, any
@@ -71,8 +76,12 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
     """
     count_of("frames", frames, least=1)
     with opened(source) as found:
-        if isinstance(found, State):
-            raise SceneError("source", "a State", "must be a trajectory or a simulation: a view needs frames")
+        if isinstance(found, State | Scene):
+            raise SceneError(
+                "source",
+                f"a {type(found).__name__}",
+                "must be a trajectory or a simulation: a view needs frames",
+            )
         data = _with_names(found) if isinstance(found, Simulation) else found
         last = data.sizes["frame"] - 1
         if last < 0:

@@ -6,6 +6,7 @@ units; masses are relative to the reference species; k_B = 1.
 
 from __future__ import annotations
 
+import html
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, is_dataclass, replace
@@ -13,12 +14,13 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
+import gaspart
 from gaspart.errors import SceneError
 from gaspart.scene.container import Container
 from gaspart.scene.face_checks import check_faces
 from gaspart.scene.faces import SCHEMA as FACES_SCHEMA
 from gaspart.scene.faces import Sticky, Surface, surface_from_dict, surface_to_dict
-from gaspart.scene.features import check_features, features
+from gaspart.scene.features import FEATURES, check_features, features
 from gaspart.scene.gas import Gas, Mixture, mixture_of
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.keys import FLAG, VECTOR, checked_by_class, declared, instance_of, list_of, validate
@@ -31,6 +33,10 @@ from gaspart.scene.walls import WALL_RULE, Plate, Wall, check_walls, wall_kind
 from gaspart.yaml_text import read_yaml, write_yaml
 
 _CONTACT = 0.01  # of sqrt(d/g): the default duration of a contact
+THUMBNAIL = (480, 360)
+"""Pixels of a picture that a notebook shows for a scene."""
+DRAWN = 20_000
+"""The most particles that such a picture has: those of a scene must be placed before."""
 _ABSENT = ("fixed", "exact_temperature", "walls", "faces")  # not written into a file unless there
 
 
@@ -280,6 +286,24 @@ class Scene:
     def with_walls(self, *walls: Wall | Plate) -> Scene:
         """A new scene with these walls added."""
         return replace(self, walls=(*self.walls, *walls))
+
+    @property
+    def summary(self) -> str:
+        """The scene in one line: how many particles, how dense, in what container, and its features."""
+        kind = {2: "disc", 3: "sphere"}[self.dimension] + ("s" if self.count != 1 else "")
+        sides = " x ".join(f"{length:g}" for length in self.container.lengths)
+        text = f"{self.count} {kind} in {sides}, packing fraction {self.packing_fraction:.3g}"
+        present = sorted(features(self))
+        return text + (f"; {', '.join(FEATURES[name].meaning for name in present)}" if present else "")
+
+    def _repr_html_(self) -> str:
+        """A picture of the scene at time 0, with its `summary` below it."""
+        if self.count > DRAWN:
+            return html.escape(self.summary)
+        try:
+            return gaspart.render(self, size=THUMBNAIL).figure(self.summary)
+        except SceneError as error:  # its particles do not fit
+            return html.escape(f"{self.summary}. {error}")
 
     def to_dict(self) -> dict:
         """Plain lists and mappings, as in a scene file."""

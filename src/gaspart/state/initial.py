@@ -26,14 +26,6 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
     Raises SceneError if the particles cannot be placed.
     """
     explicit = len(scene.bodies)
-    counts = [explicit, *(kind.count for kind in scene.species)]
-    groups = [len(scene.species), *range(len(scene.species))]
-
-    radii, masses = per_body(scene, "radius").astype(float), per_body(scene, "mass").astype(float)
-    shape = 1 / 2 if scene.dimension == 2 else 2 / 5  # of a uniform disc or sphere
-    inertia = per_body(scene, "moment_of_inertia").astype(float)  # None becomes nan
-    inertia = np.where(np.isnan(inertia), shape * masses * radii**2, inertia)
-    fixed = per_body(scene, "fixed").astype(bool)
     spins = np.zeros((scene.count, 3))
     if explicit:
         spins[:explicit] = [body.spin_vector for body in scene.bodies]
@@ -50,21 +42,44 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
         except SceneError as error:
             rule = f"{error.rule}; {_instead_of_random(scene, seed)}"
             raise SceneError(error.key, error.value, rule) from None
+    return replace(
+        assembled(
+            scene,
+            positions,
+            _velocities(scene, stream(seed, _VELOCITIES)),
+            spins[:, 2] if scene.dimension == 2 else spins,
+        ),
+        vibrations=_vibrations(scene, stream(seed, _VIBRATIONS)) if scene.vibrates else None,
+        piston=_piston(scene),
+    )
+
+
+def masses_of(scene: Scene) -> np.ndarray:
+    """(N,) masses of all particles, infinite if fixed."""
+    return np.where(per_body(scene, "fixed").astype(bool), np.inf, per_body(scene, "mass").astype(float))
+
+
+def assembled(scene: Scene, positions: np.ndarray, velocities: np.ndarray, spins: np.ndarray) -> State:
+    """The state at time 0 with these positions and velocities (N, d), and spins (N,) or (N, 3)."""
+    radii, masses = per_body(scene, "radius").astype(float), per_body(scene, "mass").astype(float)
+    shape = 1 / 2 if scene.dimension == 2 else 2 / 5  # of a uniform disc or sphere
+    inertia = per_body(scene, "moment_of_inertia").astype(float)  # None becomes nan
+    inertia = np.where(np.isnan(inertia), shape * masses * radii**2, inertia)
+    groups = [len(scene.species), *range(len(scene.species))]
+    counts = [len(scene.bodies), *(kind.count for kind in scene.species)]
     return State(
         time=0.0,
         positions=positions,
-        velocities=_velocities(scene, stream(seed, _VELOCITIES)),
+        velocities=velocities,
         images=np.zeros((scene.count, scene.dimension), dtype=np.int64),
         radii=radii,
-        masses=np.where(fixed, np.inf, masses),
+        masses=masses_of(scene),
         species=np.repeat(groups, counts).astype(np.int64),
         lengths=np.array(scene.container.lengths),
-        spins=spins[:, 2] if scene.dimension == 2 else spins,
-        moments_of_inertia=np.where(fixed, np.inf, inertia),
+        spins=spins,
+        moments_of_inertia=np.where(per_body(scene, "fixed").astype(bool), np.inf, inertia),
         gravity=None if scene.gravity is None else np.array(scene.gravity),
         well_energies=well_energies(scene, places_in_wells(scene, positions, radii)) if scene.faces else None,
-        vibrations=_vibrations(scene, stream(seed, _VIBRATIONS)) if scene.vibrates else None,
-        piston=_piston(scene),
     )
 
 

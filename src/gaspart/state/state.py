@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 
-@dataclass
+@dataclass(repr=False)
 class State:
     """All particles at one time.
 
@@ -35,6 +35,10 @@ class State:
     well_energies: np.ndarray | None = None
     vibrations: np.ndarray | None = None
     piston: np.ndarray | None = None
+
+    def __repr__(self) -> str:
+        kind = "discs" if self.dimension == 2 else "spheres"
+        return f"<State of {self.count} {kind} at time {self.time:g}>"
 
     @property
     def count(self) -> int:

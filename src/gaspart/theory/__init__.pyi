@@ -37,6 +37,8 @@ from gaspart.theory.equations import scaled_particle as scaled_particle
 from gaspart.theory.equations import van_der_waals as van_der_waals
 from gaspart.theory.film import white_bear_pressure as white_bear_pressure
 from gaspart.theory.film import white_bear_slit as white_bear_slit
+from gaspart.theory.free_flights import collision_rate_at_speed as collision_rate_at_speed
+from gaspart.theory.free_flights import free_time_pdf as free_time_pdf
 from gaspart.theory.freezing import COEXISTENCE_DENSITY as COEXISTENCE_DENSITY
 from gaspart.theory.freezing import COEXISTENCE_PRESSURE as COEXISTENCE_PRESSURE
 from gaspart.theory.freezing import CRYSTAL_OF_1024_DISCS as CRYSTAL_OF_1024_DISCS

@@ -11,9 +11,11 @@ from pathlib import Path
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
+from gaspart.state.state import State
 from gaspart.tradeoff.reached import Examiner, Reached
 from gaspart.trajectory import run as trajectory
 from gaspart.trajectory.correlator import Correlations
+from gaspart.trajectory.last_state import last_state
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.recording import Progress
 from gaspart.trajectory.until import Accuracy, Until
@@ -33,10 +35,12 @@ def run(
     follow: int | None = None,
     correlations: Correlations | None = None,
     pairs: bool = False,
+    initial: State | str | Path | None = None,
     checkpoint_seconds: float = 30.0,
     progress: Progress | None = None,
     examined: Callable[[list[Reached]], None] | None = None,
     overwrite: bool = False,
+    keep_checkpoint: bool = False,
 ) -> Path:
     """Run a scene and write its trajectory to `path`; returns `path`.
 
@@ -48,7 +52,13 @@ def run(
     `Correlations(stress=True)` those of the stress tensor and the heat flux instead. With `pairs` each frame
     counts the collisions of each pair of species so far (event-driven engine). A run of the same recipe
     and program that was cut short is continued, a complete one is not changed. Another trajectory at `path`,
-    or unfinished next to it, is replaced only with `overwrite`; a file of another kind never.
+    or unfinished next to it, is replaced only with `overwrite`; a file of another kind never. With
+    `keep_checkpoint` the float64 state at the end stays beside it, in `path.checkpoint.npz`: `resume` with a
+    longer duration then goes on from it.
+
+    With `initial`, a `State` or a trajectory whose `last_state` is meant, the run starts from its positions,
+    velocities and spins. Particles and the size of the container must be the scene's; the rest may differ.
+    Defaults of engines follow from the scene's `speed` or `temperature` all the same.
 
     With `until` the run ends when standard error / |value| of all these observables is as small as required,
     which is examined at 64, 96, 128, 192 ... frames, or at_most after so long; see `gaspart.tradeoff.reached`
@@ -61,17 +71,22 @@ def run(
     Raises SceneError for invalid settings, a file that cannot be written, and what this run cannot measure;
     SimulationError if it breaks an invariant, with its state kept in `path.failed.npz`.
     """
-    if path is None:
-        raise SceneError("path", None, "must be given: the file of the trajectory")
     wanted = _request(duration, sample_interval, until, at_most)
     for asked in wanted.accuracies if wanted else ():
         require_measurable(asked, scene, follow, correlations)
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
-    recipe = Recipe(
-        scene, engine, seed, duration, sample_interval, displacements, follow, correlations, wanted, pairs
-    )
-    return trajectory.record(recipe, path, checkpoint_seconds, progress, overwrite, Examiner(examined))
+    start = last_state(initial) if isinstance(initial, str | Path) else initial
+    settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations
+    recipe = Recipe(*settings, until=wanted, pairs=pairs, initial=start)
+    how = checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint
+    return trajectory.record(recipe, _required(path), trajectory.Manner(*how))
+
+
+def _required(path: str | Path | None) -> str | Path:
+    if path is None:
+        raise SceneError("path", None, "must be given: the file of the trajectory")
+    return path
 
 
 def _request(
@@ -100,13 +115,26 @@ def resume(
     checkpoint_seconds: float = 30.0,
     progress: Progress | None = None,
     examined: Callable[[list[Reached]], None] | None = None,
+    *,
+    duration: float | None = None,
+    keep_checkpoint: bool = False,
 ) -> Path:
     """Finish the run that left `path.partial`, from its files only; returns `path`.
 
-    `progress` and `examined` as of `run`. Raises SceneError if there is nothing to resume, if another version
-    of the program began it, and for a file at `path` that is no complete trajectory of gaspart.
+    With a `duration`, the complete run at `path` goes on to that time, and its file is then the one of a run
+    of this duration in one go, to the same bytes. It continues from the state at its end if the run had
+    `keep_checkpoint`, which the extended one then has too; otherwise it is run again from its start. The
+    file is replaced when the longer run is complete; one that was cut short is finished by either form.
+
+    The other arguments as of `run`. Raises SceneError if there is nothing to resume or to extend, if another
+    version of the program began it, for a duration that is not longer, and for a file at `path` that is no
+    complete trajectory of gaspart.
     """
-    return trajectory.resume(path, checkpoint_seconds, progress, Examiner(examined))
+    examiner = Examiner(examined)
+    manner = trajectory.Manner(checkpoint_seconds, progress, False, examiner, keep_checkpoint)
+    if duration is None:
+        return trajectory.resume(path, manner)
+    return trajectory.extend(path, duration, manner)
 
 
 def require_measurable(

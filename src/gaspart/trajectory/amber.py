@@ -44,6 +44,9 @@ _EXTRA: dict[str, tuple[str, tuple[str, ...], dict[str, str]]] = {
     "piston": (">f8", ("motion",), {"long_name": "place along its axis, and velocity, of the piston"}),
 }
 """The variables that only some files have, as in `Layout`, in their order."""
+INITIAL: tuple[str, ...] = ("initial_positions", "initial_velocities", "initial_spins")
+"""The variables of a run whose initial state was given, of all particles of the scene."""
+_OF_INITIAL = ("particle", "component")
 BOOKKEEPING = ("header_bytes", "header_crc32", "frame_bytes")
 """Attributes by which a file is checked: sizes of the header and of a frame, and the header's checksum."""
 MOST_FRAMES = 2**31 - 1
@@ -127,18 +130,27 @@ class Layout:
         """One frame as it is in the file; every variable fills complete words, so there is no padding."""
         return np.dtype([(name, kind, self.shape(name)) for name, (kind, _, _) in self.variables.items()])
 
-    def header(self, attributes: dict, radii: np.ndarray, types: np.ndarray) -> bytes:
-        """A file of no frames. Its first attributes are those of `BOOKKEEPING`."""
+    def header(
+        self,
+        attributes: dict,
+        radii: np.ndarray,
+        types: np.ndarray,
+        initial: Mapping[str, np.ndarray] | None = None,
+    ) -> bytes:
+        """A file of no frames. Its first attributes are those of `BOOKKEEPING`. initial: what the particles
+        were given at time 0, in double precision."""
         bookkeeping = dict(
             zip(BOOKKEEPING, (np.int32(0), np.int32(0), np.float64(self.frame.itemsize)), strict=True)
         )
-        header = bytearray(self._header({**bookkeeping, **attributes}, radii, types))
+        header = bytearray(self._header({**bookkeeping, **attributes}, radii, types, initial or {}))
         for name, value in (("header_bytes", len), ("header_crc32", zlib.crc32)):
             at = _value_at(header, name)
             header[at : at + WORD] = struct.pack(">I", value(header))
         return bytes(header)
 
-    def _header(self, attributes: dict, radii: np.ndarray, types: np.ndarray) -> bytes:
+    def _header(
+        self, attributes: dict, radii: np.ndarray, types: np.ndarray, initial: Mapping[str, np.ndarray]
+    ) -> bytes:
         import netCDF4
 
         file = netCDF4.Dataset("header", "w", format="NETCDF3_64BIT_OFFSET", memory=1)
@@ -152,7 +164,11 @@ class Layout:
             "cell_angular": ("S1", ("cell_angular", "label"), [list("alpha"), list("beta "), list("gamma")]),
             "radius": ("f8", ("atom",), radii),
             "type": ("i4", ("atom",), types),
+            **{name: ("f8", _OF_INITIAL[: values.ndim], values) for name, values in initial.items()},
         }
+        if initial:
+            for name, size in zip(_OF_INITIAL, initial[INITIAL[0]].shape, strict=True):
+                file.createDimension(name, size)
         for name, (kind, dimensions, _) in fixed.items():
             file.createVariable(name, kind, dimensions)  # filled, so that the padding is defined
         file["radius"].units = "angstrom"

@@ -11,6 +11,7 @@ import os
 import struct
 import weakref
 import zlib
+from collections.abc import Iterator
 from typing import BinaryIO
 
 import numpy as np
@@ -47,6 +48,13 @@ def damaged_frame(file: int, header: bytes, numbers: range) -> int | None:
             if len(frame) < size or frame[-WORD:] != _frame_checksum(frame, first + n, header_checksum):
                 return first + n
     return None
+
+
+def frames_of(file: BinaryIO, header: bytes, count: int) -> Iterator[memoryview]:
+    """The first frames of an open file, as they are in it."""
+    size = frame_bytes(header)
+    for n in range(count):
+        yield memoryview(bytearray(os.pread(file.fileno(), size, len(header) + n * size)))
 
 
 class CheckedFrames:
@@ -105,7 +113,10 @@ class Frames:
             there = self._frame[name]
             components = there[..., : given.shape[-1]] if given.ndim else there  # 2D leaves z = 0
             components[...] = given
-        data = self._frame.reshape(1).view(np.uint8).data
+        self.append_bytes(self._frame.reshape(1).view(np.uint8).data)
+
+    def append_bytes(self, data: memoryview) -> None:
+        """Write one frame as it is in a file, with the checksum that belongs to its header and place."""
         data[-WORD:] = _frame_checksum(data, self.count, self._header_checksum)
         self._write(data)
         self.count += 1

@@ -7,7 +7,7 @@ import os
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
@@ -19,8 +19,10 @@ from gaspart.files import descriptor_path
 from gaspart.scene.faces import pistons, sliding_faces
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of, number
+from gaspart.state.given import given_state, taken_state
 from gaspart.state.insertion import per_body
 from gaspart.state.random import stream
+from gaspart.state.state import State
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.correlator import Correlations, stress_sums, sums_of
 from gaspart.trajectory.frames import CheckedFrames, damaged_frame, frame_count
@@ -53,7 +55,7 @@ class Recipe:
     and that, for the time-stepped engine, of time_step. follow: how many particles, from the first on, are in
     the file; None: all. correlations: sample_interval is an integer multiple of their interval. until: what
     ends the run in place of a duration, which is then None. pairs: count the collisions of each pair of
-    species.
+    species. initial: the state at time 0, if it is not that of the scene and the seed; the file holds it.
     """
 
     scene: Scene
@@ -66,6 +68,7 @@ class Recipe:
     correlations: Correlations | None = None
     until: Until | None = None
     pairs: bool = False
+    initial: State | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         stream(self.seed)  # raises SceneError for an invalid seed
@@ -84,6 +87,8 @@ class Recipe:
         if self.frames > amber.MOST_FRAMES:
             rule = "makes more frames than a file can hold"
             raise SceneError("sample_interval", self.sample_interval, rule)
+        if self.initial is not None:
+            object.__setattr__(self, "initial", taken_state(self.scene, self.initial))
         if self.correlations:
             self._check_correlations(self.correlations)
         if self.pairs:
@@ -188,6 +193,14 @@ class Recipe:
         longest = self.until.at_most
         return {"until": self.until.to_json()} | ({} if longest is None else {"at_most": longest})
 
+    def _initial(self) -> dict[str, np.ndarray]:
+        """The variables of the given initial state, if there is one."""
+        state = self.initial
+        if state is None:
+            return {}
+        parts = [state.positions, state.velocities, *([state.spins] if self.scene.rough else [])]
+        return dict(zip(amber.INITIAL, parts, strict=False))
+
     def header(self, revision: str) -> bytes:
         """The file before its first frame, as made by the present program at a git revision ("": none)."""
         from gaspart.kernels.compile.policy import source_digest
@@ -209,11 +222,11 @@ class Recipe:
             "kernels": source_digest(),
             **({"git_revision": revision} if revision else {}),
         }
-        return self.layout.header(attributes, radii, types)
+        return self.layout.header(attributes, radii, types, self._initial())
 
 
 @contextmanager
-def _checked(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
+def checked(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
     """A trajectory of gaspart: the file, its header and its number of frames, which are checked against it.
 
     Raises SceneError for a file of another kind, truncated, or damaged in its header.
@@ -253,7 +266,7 @@ def open_netcdf(path: Path) -> netCDF4.Dataset:
 def open_checked(path: Path) -> tuple[netCDF4.Dataset, CheckedFrames]:
     """A trajectory as `open_netcdf` opens it, and the record of which of its frames were checked; the caller
     closes both."""
-    with _checked(path) as (file, header, frames):
+    with checked(path) as (file, header, frames):
         return open_descriptor(file), CheckedFrames(file, header, frames)
 
 
@@ -273,7 +286,7 @@ def opened(path: Path) -> Iterator[netCDF4.Dataset]:
 
 def check_frames(path: Path, numbers: range | None = None) -> None:
     """Read some frames of a trajectory, or all. SceneError if one is damaged."""
-    with _checked(path) as (file, header, frames):
+    with checked(path) as (file, header, frames):
         wanted = range(frames) if numbers is None else range(numbers.start, min(numbers.stop, frames))
         damaged = damaged_frame(file.fileno(), header, wanted)
         if damaged is not None:
@@ -309,11 +322,20 @@ def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
             correlations=Correlations.from_json(stored["correlations"]) if "correlations" in stored else None,
             until=Until.from_json(stored["until"], stored.get("at_most")) if "until" in stored else None,
             pairs=bool(stored.get("pairs", False)),
+            initial=_stored_initial(file, scene),
         )
     except SceneError:
         raise
     except (KeyError, TypeError, ValueError) as error:  # of a header that was forged
         raise SceneError("file", str(path), f"has an attribute that cannot be used: {error}") from None
+
+
+def _stored_initial(file: netCDF4.Dataset, scene: Scene) -> State | None:
+    """The initial state of an open trajectory to which it was given."""
+    if amber.INITIAL[0] not in file.variables:
+        return None
+    parts = (np.array(file[name][:].data) for name in amber.INITIAL if name in file.variables)
+    return given_state(scene, *parts)
 
 
 def stored_revision(path: Path) -> str:

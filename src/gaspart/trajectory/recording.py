@@ -75,8 +75,9 @@ class Recording:
         if self._simulation.time > 0.0:
             self._note()
 
-    def finish(self) -> None:
-        """Write all frames that are missing. Raises SimulationError if an invariant breaks, and OSError.
+    def finish(self, keep: bool = False) -> None:
+        """Write all frames that are missing, and then, to `keep`, a checkpoint. Raises SimulationError if an
+        invariant breaks, and OSError.
 
         In the first case the state is kept next to the trajectory, in `.failed.npz`. A signal takes effect
         after a checkpoint was written.
@@ -86,6 +87,8 @@ class Recording:
                 self._estimate_again()
                 while not self._is_complete():
                     self._finish_frame(signals)
+                if keep:
+                    self._save()
         except SimulationError as error:
             failed = self._path.with_name(self._path.name + ".failed.npz")
             write_checkpoint(failed, self._frames.header, self._frames.count, self._arrays())

@@ -2,6 +2,7 @@
 
 A run writes `path.partial`, and regularly `path.checkpoint.npz`, from which it can continue to the same bits.
 When it is complete, the file is renamed to `path`. Nothing in it depends on when or where it was made.
+A checkpoint that is kept is then the state at the end, from which a longer run continues (`extension`).
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import fcntl
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, TypeAlias
 
@@ -26,6 +27,7 @@ from gaspart.state.tally import ENERGY, Tally
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.checkpoint import checkpoint_path, read_checkpoint, remove_checkpoint
 from gaspart.trajectory.correlator import Correlations, stress_units
+from gaspart.trajectory.extension import is_beginning, longer, take_over
 from gaspart.trajectory.frames import Frames, frame_count
 from gaspart.trajectory.pairs import pair_names
 from gaspart.trajectory.recipe import (
@@ -52,8 +54,9 @@ _REDUCED = {
     "angstrom/picosecond": "length/time",
     "1/picosecond": "1/time",
 }
-_UNUSED = ["spatial", "cell_spatial", "cell_angular", "checksum"]
-"""Variables of a file that `open_trajectory` does not read: names of axes, and what detects damage."""
+_UNUSED = ["spatial", "cell_spatial", "cell_angular", "checksum", *amber.INITIAL]
+"""Variables of a file that `open_trajectory` does not read: names of axes, what detects damage, and what
+belongs to its recipe."""
 _UNITS = {field.name: field.metadata["units"] for field in fields(Tally) if "units" in field.metadata} | {
     "kinetic_energy": ENERGY,
     "vibrations": ENERGY,
@@ -165,36 +168,41 @@ def run(
     wanted = Recipe(
         scene, engine, seed, duration, sample_interval, displacements, follow, correlations, pairs=pairs
     )
-    return record(wanted, path, checkpoint_seconds, progress, overwrite)
+    return record(wanted, path, Manner(checkpoint_seconds, progress, overwrite))
 
 
-def record(
-    wanted: Recipe,
-    path: str | Path,
-    checkpoint_seconds: float = 30.0,
-    progress: Progress | None = None,
-    overwrite: bool = False,
-    examiner: Examiner | None = None,
-) -> Path:
-    """Make the trajectory of a recipe at `path`; returns `path`. As `run`; examiner: for a recipe that ends
-    when it is accurate."""
+@dataclass(frozen=True)
+class Manner:
+    """How a trajectory is made, which changes nothing in it.
+
+    checkpoint_seconds: between checkpoints; overwrite: whether another run's file may be replaced; examiner:
+    for a recipe that ends when it is accurate; keep_checkpoint: whether the last one stays beside the file.
+    Raises SceneError for a negative time.
+    """
+
+    checkpoint_seconds: float = 30.0
+    progress: Progress | None = None
+    overwrite: bool = False
+    examiner: Examiner | None = None
+    keep_checkpoint: bool = False
+
+    def __post_init__(self) -> None:
+        number("checkpoint_seconds", self.checkpoint_seconds, "must not be negative", least=0.0)
+
+
+def record(wanted: Recipe, path: str | Path, manner: Manner) -> Path:
+    """Make the trajectory of a recipe at `path`; returns `path`. As `run`."""
     path = output_path(path)
     if path.suffix != ".nc" and not path.is_dir():  # `gaspart check` knows the format by it
         raise SceneError("path", str(path), "must end in .nc: a trajectory is a netCDF file")
-    return _carry_out(wanted, path, checkpoint_seconds, progress, overwrite, examiner)
+    return _carry_out(wanted, path, manner)
 
 
-def resume(
-    path: str | Path,
-    checkpoint_seconds: float = 30.0,
-    progress: Progress | None = None,
-    examiner: Examiner | None = None,
-) -> Path:
+def resume(path: str | Path, manner: Manner) -> Path:
     """Finish the run that left `path.partial`, from its files only; returns `path`.
 
-    examiner: for a run that ends when it is accurate. Raises SceneError if there is nothing to resume, if
-    another version of the program began it, and for a file at `path` that is no complete trajectory of
-    gaspart.
+    Raises SceneError if there is nothing to resume, if another version of the program began it, and for a
+    file at `path` that is no complete trajectory of gaspart.
     """
     path = Path(path)
     partial = partial_path(path)
@@ -215,49 +223,84 @@ def resume(
             with path.open("rb") as file:
                 frames = frame_count(file)
             missing = f"has {frames} of {'more' if wanted.until else wanted.frames} frames, and {rule}"
-            rule = "is already complete" if _is_all(path, wanted, frames, examiner) else missing
+            rule = "is already complete" if _is_all(path, wanted, frames, manner.examiner) else missing
         raise SceneError("path", str(path), rule) from None
-    return _carry_out(wanted, path, checkpoint_seconds, progress, False, examiner)
+    return _carry_out(wanted, path, manner)
 
 
-def _carry_out(
-    wanted: Recipe,
-    path: Path,
-    every: float,
-    progress: Progress | None,
-    overwrite: bool,
-    examiner: Examiner | None,
-) -> Path:
+def extend(path: str | Path, duration: float, manner: Manner) -> Path:
+    """Continue the complete run at `path` to a longer duration; returns `path`.
+
+    The file has then the bytes of a run of that duration in one go. Without the checkpoint of its end, which
+    `keep_checkpoint` leaves beside it, it is run again from its start; one that had it keeps the next one.
+    An extension that was cut short is continued, by this or by `resume`. Raises SceneError as `longer`, and
+    for another run that is unfinished beside the file.
+    """
+    path = Path(path)
+    partial, checkpoint = partial_path(path), checkpoint_path(path)
+    if not path.exists() and partial.exists():
+        rule = f"is unfinished: resume it without a duration, which {partial.name} has, before it is extended"
+        raise SceneError("path", str(path), rule)
+    wanted = longer(path, duration)
+    with _writing(path):
+        kept = manner.keep_checkpoint or checkpoint.exists()
+        with _locked(partial) as file:
+            if amber.is_blank(file):  # this file states what is under way, whenever it is cut short
+                Frames(file, wanted.layout, wanted.header(stored_revision(path)))
+            elif not begun_as(partial, wanted):
+                rule = "is of another unfinished run, or to another duration; resume it or move it away"
+                raise SceneError("path", str(partial), rule)
+    return _carry_out(wanted, path, replace(manner, keep_checkpoint=kept))
+
+
+def simulation_of(recipe: Recipe) -> Simulation:
+    """The simulation of a recipe, at its start."""
+    return Simulation(recipe.scene, recipe.engine, recipe.seed, recipe.stress, recipe.initial)
+
+
+def _carry_out(wanted: Recipe, path: Path, manner: Manner) -> Path:
     """Finish a trajectory from its present state."""
-    number("checkpoint_seconds", every, "must not be negative", least=0.0)
     partial, checkpoint = partial_path(path), checkpoint_path(path)
     with _writing(path):
         if path.is_dir() or not os.access(path.parent, os.W_OK | os.X_OK):
             raise SceneError("path", str(path), "must be a file in an existing folder that can be written to")
-        if _is_finished(wanted, path, overwrite, examiner):
-            if not partial.exists():
+        if _is_finished(wanted, path, manner):
+            if not partial.exists() and not manner.keep_checkpoint:
                 remove_checkpoint(checkpoint)
             return path
-        simulation = Simulation(wanted.scene, wanted.engine, wanted.seed, wanted.stress)
+        simulation = simulation_of(wanted)
         with _locked(partial) as file:
             # again: another process may have finished or begun a run before the lock
-            if not _is_finished(wanted, path, overwrite, examiner):
-                _record(wanted, simulation, file, path, every, progress, overwrite, examiner)
-                place(partial, path, TRAJECTORY, overwrite)
-                remove_checkpoint(checkpoint)
+            if not _is_finished(wanted, path, manner):
+                _record(wanted, simulation, file, path, manner)
+                place(partial, path, TRAJECTORY, manner.overwrite or is_beginning(path, wanted))
+                if not manner.keep_checkpoint:
+                    remove_checkpoint(checkpoint)
     return path
 
 
-def _is_finished(wanted: Recipe, path: Path, overwrite: bool, examiner: Examiner | None) -> bool:
+def _is_finished(wanted: Recipe, path: Path, manner: Manner) -> bool:
     """Whether this run is complete at `path`. Raises SceneError if it may not be begun or continued."""
     partial = partial_path(path)
     exists = may_replace(path, TRAJECTORY, overwrite=True)
-    if exists and _holds(path, wanted, examiner):
+    if exists and _holds(path, wanted, manner.examiner):
         return True
-    if (exists or not _can_continue(partial, wanted)) and not overwrite:
+    if exists and _extends(partial, path, wanted):
+        return False
+    if (exists or not _can_continue(partial, wanted)) and not manner.overwrite:
         rule = f"exists, of another run or version, or damaged; move it away, or {OVERWRITE}"
         raise SceneError("path", str(path if exists else partial), rule)
     return False
+
+
+def _extends(partial: Path, path: Path, wanted: Recipe) -> bool:
+    """Whether the run at `path` is being extended to this one."""
+    return (
+        partial.exists()
+        and not _is_blank(partial)
+        and begun_as(partial, wanted)
+        and is_beginning(path, wanted)
+    )
 
 
 def _can_continue(partial: Path, wanted: Recipe) -> bool:
@@ -326,10 +369,7 @@ def _record(
     simulation: Simulation,
     file: BinaryIO,
     path: Path,
-    every: float,
-    progress: Progress | None,
-    overwrite: bool,
-    examiner: Examiner | None,
+    manner: Manner,
 ) -> None:
     """Write all missing frames to the open partial file."""
     partial = partial_path(path)
@@ -337,15 +377,18 @@ def _record(
     header = wanted.header(stored_revision(partial) if continued else provenance.git_revision())
     checkpoint = read_checkpoint(checkpoint_path(path), header) if continued else None
     if checkpoint and (
-        checkpoint.frames > frame_count(file) or not _can_keep(partial, checkpoint.frames, overwrite)
+        checkpoint.frames > frame_count(file) or not _can_keep(partial, checkpoint.frames, manner.overwrite)
     ):
         checkpoint = None
     frames = Frames(file, wanted.layout, header, kept=checkpoint.frames if checkpoint else 0)
-    examine = _examination(wanted, partial, examiner)
-    recording = Recording(wanted, simulation, frames, path, every, progress, examine)
+    checkpoint = checkpoint or take_over(path, wanted, frames)
+    examine = _examination(wanted, partial, manner.examiner)
+    recording = Recording(
+        wanted, simulation, frames, path, manner.checkpoint_seconds, manner.progress, examine
+    )
     if checkpoint:
         recording.restore(checkpoint.arrays)
-    recording.finish()
+    recording.finish(manner.keep_checkpoint)
 
 
 @contextmanager

@@ -1,0 +1,65 @@
+"""Observables of several runs: their mean, with the scatter of the runs."""
+
+import numpy as np
+import pytest
+from scenes import gas
+
+import gaspart as gp
+
+GAS = gas(3, 64, 0.2, exact_temperature=True)
+
+
+@pytest.fixture(scope="module")
+def paths(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("runs")
+    return [gp.run(GAS, gp.EventDriven(), seed, 20.0, 0.25, folder / f"{seed}.nc") for seed in range(12)]
+
+
+def test_a_scalar_is_the_mean_of_the_runs_with_their_scatter(paths):
+    found = gp.analysis.replicas("Z", paths)
+    each = np.array([float(gp.analysis.compressibility_factor(path).estimate) for path in paths])
+    assert np.array_equal(found["compressibility_factor_replicas"], each)
+    assert float(found.estimate) == pytest.approx(each.mean())
+    assert float(found.error) == pytest.approx(each.std(ddof=1) / np.sqrt(12))
+    assert found.attrs["freedom"] == 11
+    assert abs(float(found.deviation)) < 4.0
+    assert found.summary.startswith("Z = ") and "theory" in found.summary
+    legend = found.plot(theory=True).get_legend()
+    assert legend.get_texts()[0].get_text() == "replicas"
+
+
+def test_the_scatter_agrees_with_the_uncertainty_of_single_runs(paths):
+    """Both estimate the same thing: their ratio is within the scatter of 11 degrees of freedom."""
+    found = gp.analysis.replicas("Z", paths)
+    single = np.mean([float(gp.analysis.compressibility_factor(path).error) ** 2 for path in paths]) ** 0.5
+    assert 0.45 < float(found.error) * np.sqrt(12) / single < 1.75
+
+
+def test_curves_have_their_places_and_may_be_of_simulations_and_open_files(paths):
+    found = gp.analysis.replicas("rdf", paths[:3])
+    assert found["rdf_replicas"].dims == ("replica", "distance")
+    assert np.allclose(found["rdf_replicas"].mean("replica"), found.estimate)
+    with gp.open_trajectory(paths[0]) as first, gp.open_trajectory(paths[1]) as second:
+        two = gp.analysis.replicas("rdf", [first, second])
+    assert np.array_equal(two["rdf_replicas"], found["rdf_replicas"][:2])
+    simulations = [gp.Simulation(GAS, gp.EventDriven(), seed) for seed in (1, 2)]
+    for sim in simulations:
+        sim.advance(duration=5.0)
+    assert gp.analysis.replicas("collision_rate", simulations).attrs["freedom"] == 1
+
+
+def test_what_are_no_replicas_is_refused(paths, tmp_path):
+    def refused(rule, *sources, name="Z"):
+        with pytest.raises(gp.SceneError, match=rule):
+            gp.analysis.replicas(name, list(sources))
+
+    refused("must be a list of two runs or more", paths[0])
+    with pytest.raises(gp.SceneError, match="must be a list of two runs or more"):
+        gp.analysis.replicas("Z", str(paths[0]))
+    refused("is that of two runs, which are the same", paths[0], paths[1], paths[0])
+    other = gp.run(gas(3, 64, 0.1), gp.EventDriven(), 1, 20.0, 0.25, tmp_path / "other.nc")
+    refused("different scenes or engines", paths[0], other)
+    shorter = gp.run(GAS, gp.EventDriven(), 99, 15.0, 0.25, tmp_path / "shorter.nc")
+    refused("have their values at different places", paths[0], shorter, name="msd")
+    refused("unknown observable", *paths[:2], name="ZZ")
+    refused("must be trajectories, their paths or simulations", paths[0], 3)
