@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from gaspart.engines.features.part import Part
 from gaspart.engines.features.jams import slowest_that_moves
+from gaspart.engines.features.part import Part
 from gaspart.kernels.model import NONE, ContactDuration, ContactLaw, Gravity
 from gaspart.kernels.physics import running_sum
 from gaspart.scene.scene import Scene

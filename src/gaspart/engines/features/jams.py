@@ -1,8 +1,8 @@
-"""Jams of a scene under gravity: which particles are held until a contact moves them, see `kernels.event.jams`.
+"""Jams of a scene under gravity: particles that are held until a contact moves them (`kernels.event.jams`).
 
-All follows from what is taken for rest: a movement of less than 2^-8 of the smallest diameter d. Particles
-that neither gravity moves as far in the time of a fall sqrt(d/g), if it is tilted by an angle of tangent
-2^-2, nor then any contact that gives less than a speed v, which lifts by v^2/2g on so steep a slope.
+All follows from what is taken for rest: a movement of less than 2^-8 of the smallest diameter d. Gravity g,
+tilted by an angle a of tangent 2^-2, moves no particle of a jam as far in the time sqrt(d/g) of a fall, nor
+does a contact that gives it less than a speed v: up a slope of this angle it comes v^2/(2 g sin a) far.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.kernels.model import NONE, no_support
+from gaspart.kernels.model import no_support
 from gaspart.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 FURTHEST = 2.0**-8  # of the smallest diameter: what moves less rests
 _TILT = 2.0**-2
-_MANY = 1536  # contacts of a particle in the duration of one
-_PLANES = 24  # that a particle may touch; if it touches more, the rest supports it less
+_NEIGHBOURS = 12  # that equal spheres may touch: if gravity alone presses all, they meet no more often
+_PLANES = 24  # that a particle touches, of which more are not regarded
 
 
 def slowest_that_moves(scene: Scene) -> float:
@@ -36,52 +36,56 @@ def _tilted(gravity: tuple[float, ...]) -> np.ndarray:
     """(2, 3) or (4, 3) accelerations, tilted to all sides; whatever supports all of them supports gravity."""
     whole = np.zeros(3)
     whole[: len(gravity)] = gravity
-    if len(gravity) == 2:
-        across = [np.array([-whole[1], whole[0], 0.0])]
-    else:
+    across = [np.array([-whole[1], whole[0], 0.0])]
+    if len(gravity) == 3:
         one = np.cross(whole, np.eye(3)[np.argmin(np.abs(whole))])
-        other = np.cross(whole, one)
-        across = [vector * math.hypot(*whole) / math.hypot(*vector) for vector in (one, other)]
-    return np.array([whole + sign * _TILT * vector for vector in across for sign in (-1.0, 1.0)])
+        across = [one, np.cross(whole, one)]
+    sides = [_TILT * math.hypot(*whole) / math.hypot(*vector) * vector for vector in across]
+    return np.array([whole + sign * side for side in sides for sign in (-1.0, 1.0)])
 
 
 class Jams:
-    """Looks for jams in a scene. axis: of its gravity, not periodic; reach: the largest gap of particles that
-    touch."""
+    """Looks for jams in a scene after every `window` of time. axis: of its gravity, not periodic; reach: the
+    largest gap of particles that touch."""
 
-    def __init__(self, scene: Scene, axis: int, reach: float) -> None:
+    def __init__(self, scene: Scene, axis: int, reach: float, window: float) -> None:
+        from gaspart.kernels.event.jams import Limits
+        from gaspart.kernels.physics.contact_duration import SHORTEST
+
         gravity = scene.gravity or ()
-        self._axis, self._pulls = axis, _tilted(gravity)
-        self._most = reach, 2.0 * FURTHEST * math.hypot(*gravity)
-        single = no_support(1, 0.0)
-        self._support = single._replace(normal=np.zeros((1, _PLANES, 3)))
+        self._axis, self._most = axis, _NEIGHBOURS * window / (SHORTEST * scene.contact_duration)
+        support = no_support(1, 0.0)._replace(normal=np.zeros((1, _PLANES, 3)))
+        least = 2.0 * FURTHEST * math.hypot(*gravity)
+        self._limits = Limits(_tilted(gravity), least, reach, support)
 
     def hold(
-        self, particles: Particles, places: np.ndarray, rests: np.ndarray, model: Model, tally: Tally,
-        time: float, window: float,
-    ) -> bool:  # fmt: skip
-        """Hold those of the particles at these places (N, d) that rest (N,) and have been pressed for a
-        `window` of time until now, with all of those that rest beside them and are supported. Returns whether
-        there are any new ones."""
+        self,
+        particles: Particles,
+        places: np.ndarray,
+        rests: np.ndarray,
+        model: Model,
+        tally: Tally,
+        time: float,
+    ) -> bool:
+        """Hold those of the particles at these places (N, d) that rest (N,) in a jam at this time. Returns
+        whether events must be predicted anew."""
         from gaspart.kernels.event.islands import join
-        from gaspart.kernels.event.jams import HOLDS, PRESSED, STAYS, free_unstable, jam, keep_stable
+        from gaspart.kernels.event.jams import HELD, PRESSED, STAYS, Line, free_unstable, jam, keep_stable
 
         law, flights = model.law, particles.flights
         assert law is not None and law.duration is not None  # as `rest.rest_watch` requires
         duration, moves = law.duration, law.duration.inverse_mass > 0.0
-        jammed = duration.island >= len(flights)
         marks = np.empty((3, len(flights)), dtype=bool)
-        marks[HOLDS], marks[STAYS] = rests & moves, rests | ~moves
-        marks[PRESSED] = duration.contacts * duration.length > _MANY * window
+        marks[HELD], marks[STAYS] = rests & moves, rests | ~moves
+        marks[PRESSED] = duration.contacts > self._most
         duration.contacts[:] = 0
-        if not (marks[HOLDS] & (marks[PRESSED] | jammed)).any():
+        if not (marks[HELD] & marks[PRESSED]).any() and duration.island.max() < len(flights):
             return False
         order = np.flatnonzero(marks[STAYS])
         order = order[np.argsort(places[order, self._axis], kind="stable")]
-        scene = flights, order, places, self._axis
-        keep_stable(*scene, self._most, self._pulls, model, marks, self._support)
-        order = order[marks[HOLDS][order]]
-        parent = np.empty(len(flights), dtype=np.int64)
-        join(flights, order, places, self._axis, self._most[0], model.space, parent)
+        keep_stable(flights, Line(order, places, self._axis), self._limits, model, marks)
         freed = free_unstable(flights, time, marks, model)
+        order = order[marks[HELD][order]]
+        parent = np.empty(len(flights), dtype=np.int64)
+        join(flights, order, places, self._axis, self._limits.reach, model.space, parent)
         return jam(flights, order, time, marks, parent, model, tally) or freed

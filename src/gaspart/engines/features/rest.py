@@ -23,6 +23,7 @@ from gaspart.state.state import State
 if TYPE_CHECKING:
     from gaspart.kernels.model import Model, Particles, Tally
 
+
 class RestWatch(Part):
     """Looks at regular times, which do not depend on where a run is split, whether all particles rest: their
     places (N, d) at the last look, the time of the next one on the clocks of the epoch, and whether they do.
@@ -33,7 +34,7 @@ class RestWatch(Part):
         self._window = math.sqrt(diameter / math.hypot(*gravity))
         self._most = FURTHEST * diameter
         self._axis = int(np.argmax(np.abs(gravity)))
-        self._jams = Jams(scene, self._axis, self._most)
+        self._jams = Jams(scene, self._axis, self._most, self._window)
         self._before = state.positions.copy()
         self._next = np.array([self._window])
         self._rests = np.zeros(1, dtype=bool)
@@ -63,13 +64,11 @@ class RestWatch(Part):
             stop_all(flights, time, model, tally)
             self._rests[0] = True
             return False
-        rests, length = marks[RESTS].copy(), self._window
+        rests = marks[RESTS].copy()
         found = self._hold(particles, marks, model, tally, time)
-        return self._jams.hold(particles, places, rests, model, tally, time, length) or found
+        return self._jams.hold(particles, places, rests, model, tally, time) or found
 
-    def _hold(
-        self, particles: Particles, marks: np.ndarray, model: Model, tally: Tally, time: float
-    ) -> bool:
+    def _hold(self, particles: Particles, marks: np.ndarray, model: Model, tally: Tally, time: float) -> bool:
         """Hold islands. Returns whether there are any new ones."""
         from gaspart.kernels.event.islands import hold, join
         from gaspart.kernels.event.scene_at_rest import RESTS, TOUCHES
