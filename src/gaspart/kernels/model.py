@@ -126,8 +126,8 @@ class ContactDuration(NamedTuple):
 class ContactLaw(NamedTuple):
     """normal, tangential: restitution; viscous: None, or of viscoelastic particles the damping over the fifth
     root of speed, radius and squared inverse mass (`viscoelastic.normal_restitution`); inverse_mass (N,), 0
-    if fixed or in a jam, inverse_inertia (N,), 0 if fixed; spins (N, 3); vibrations (N,), energies of modes, -1
-    where there is none, or None if no particle has one; duration, None if every contact dissipates."""
+    if fixed or in a jam, inverse_inertia (N,), 0 if fixed; spins (N, 3); vibrations (N,), energies of modes,
+    -1 where there is none, or None if no particle has one; duration, None if every contact dissipates."""
 
     normal: float
     tangential: float
