@@ -2,7 +2,9 @@
 
 All follows from what is taken for rest: a movement of less than 2^-8 of the smallest diameter d. Gravity g,
 tilted by an angle a of tangent 2^-2, moves no particle of a jam as far in the time sqrt(d/g) of a fall, nor
-does a contact that gives it less than a speed v: up a slope of this angle it comes v^2/(2 g sin a) far.
+does a contact that gives it less than a speed v: up a slope of this angle it comes v^2/(2 g sin a) far. A jam
+is what has one particle at least that is pressed: its contacts follow one another faster, in the mean of a
+fall, than those of two particles that gravity alone presses together.
 """
 
 from __future__ import annotations
@@ -20,7 +22,6 @@ if TYPE_CHECKING:
 
 FURTHEST = 2.0**-8  # of the smallest diameter: what moves less rests
 _TILT = 2.0**-2
-_NEIGHBOURS = 12  # that equal spheres may touch: if gravity alone presses all, they meet no more often
 _PLANES = 24  # that a particle touches, of which more are not regarded
 
 
@@ -53,7 +54,7 @@ class Jams:
         from gaspart.kernels.physics.contact_duration import SHORTEST
 
         gravity = scene.gravity or ()
-        self._axis, self._most = axis, _NEIGHBOURS * window / (SHORTEST * scene.contact_duration)
+        self._axis, self._most = axis, window / (SHORTEST * scene.contact_duration)
         support = no_support(1, 0.0)._replace(normal=np.zeros((1, _PLANES, 3)))
         least = 2.0 * FURTHEST * math.hypot(*gravity)
         self._limits = Limits(_tilted(gravity), least, reach, support)
