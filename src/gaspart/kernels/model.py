@@ -106,23 +106,28 @@ class Gravity(NamedTuple):
 
 class ContactDuration(NamedTuple):
     """Contacts less than `length` after an earlier one are elastic. Of the particles: latest (N,), the time
-    of the latest contact; met (N,), that with another particle; island (N,), see `event.islands`, or NONE.
-    elastic (1,): the number of such contacts; kept (1, 2): the energy that they have not dissipated, see
+    of the latest contact; met (N,), that with another particle; island (N,), see `event.islands`, or NONE;
+    contacts (N,), their number since the last look at what rests; inverse_mass (N,), those that the law has
+    of them when no jam holds them. moving: the speed that frees a particle from a jam (`event.jams`). elastic
+    (1,): the number of contacts that last; kept (1, 2): the energy that they have not dissipated, see
     `running_sum.add`."""
 
     length: float
     latest: np.ndarray
     met: np.ndarray
     island: np.ndarray
+    contacts: np.ndarray
+    inverse_mass: np.ndarray
+    moving: float
     elastic: np.ndarray
     kept: np.ndarray
 
 
 class ContactLaw(NamedTuple):
     """normal, tangential: restitution; viscous: None, or of viscoelastic particles the damping over the fifth
-    root of speed, radius and squared inverse mass (`viscoelastic.normal_restitution`); inverse_mass,
-    inverse_inertia (N,), 0 if fixed; spins (N, 3); vibrations (N,), energies of modes, -1 where there is
-    none, or None if no particle has one; duration, None if every contact dissipates."""
+    root of speed, radius and squared inverse mass (`viscoelastic.normal_restitution`); inverse_mass (N,), 0
+    if fixed or in a jam, inverse_inertia (N,), 0 if fixed; spins (N, 3); vibrations (N,), energies of modes,
+    -1 where there is none, or None if no particle has one; duration, None if every contact dissipates."""
 
     normal: float
     tangential: float

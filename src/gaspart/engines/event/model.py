@@ -42,7 +42,7 @@ def event_model(
 ) -> tuple[Model, float]:
     """The model of a scene, and its unit of mass. largest: the largest radius of the particles in boxes."""
     law = contact_law(scene, state)
-    law = law._replace(duration=contact_duration(scene)) if law else None
+    law = law._replace(duration=contact_duration(scene, law)) if law else None
     unit_mass, masses = (1.0, None) if law else scaled_masses(state.masses)
     oversized = np.flatnonzero(state.radii > largest)
     model = Model(
@@ -68,7 +68,7 @@ def event_parts(
         VibratingPart(scene, faces.motion) if faces and faces.motion else None,
         PistonPart(faces.piston, scene) if faces and faces.piston else None,
         LawPart(law) if law else None,
-        DurationPart(law.duration, gravity) if law and law.duration else None,
+        DurationPart(law, law.duration, gravity) if law and law.duration else None,
         kicks(scene, seed, unit_mass),
         rest_watch(scene, state),
     )

@@ -15,14 +15,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaspart.engines.features.jams import FURTHEST, Jams
 from gaspart.engines.features.part import Part
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
 if TYPE_CHECKING:
     from gaspart.kernels.model import Model, Particles, Tally
-
-_FURTHEST = 2.0**-8  # of the smallest diameter
 
 
 class RestWatch(Part):
@@ -33,8 +32,9 @@ class RestWatch(Part):
     def __init__(self, scene: Scene, state: State) -> None:
         diameter, gravity = 2.0 * scene.smallest_radius, scene.gravity or ()
         self._window = math.sqrt(diameter / math.hypot(*gravity))
-        self._most = _FURTHEST * diameter
+        self._most = FURTHEST * diameter
         self._axis = int(np.argmax(np.abs(gravity)))
+        self._jams = Jams(scene, self._axis, self._most, self._window)
         self._before = state.positions.copy()
         self._next = np.array([self._window])
         self._rests = np.zeros(1, dtype=bool)
@@ -54,9 +54,7 @@ class RestWatch(Part):
     def happen(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
         """Look which particles rest, and stop them. Returns whether events must be predicted anew: not if all
         rest."""
-        from gaspart.kernels.event.islands import hold, join
-        from gaspart.kernels.event.scene_at_rest import RESTS, TOUCHES, find_resting, stop_all
-        from gaspart.kernels.model import NONE
+        from gaspart.kernels.event.scene_at_rest import RESTS, find_resting, stop_all
 
         flights, places, time = particles.flights, self._before, self.next
         self._next += self._window
@@ -66,7 +64,17 @@ class RestWatch(Part):
             stop_all(flights, time, model, tally)
             self._rests[0] = True
             return False
-        law = model.law
+        rests = marks[RESTS].copy()
+        found = self._hold(particles, marks, model, tally, time)
+        return self._jams.hold(particles, places, rests, model, tally, time) or found
+
+    def _hold(self, particles: Particles, marks: np.ndarray, model: Model, tally: Tally, time: float) -> bool:
+        """Hold islands. Returns whether there are any new ones."""
+        from gaspart.kernels.event.islands import hold, join
+        from gaspart.kernels.event.scene_at_rest import RESTS, TOUCHES
+        from gaspart.kernels.model import NONE
+
+        flights, places, law = particles.flights, self._before, model.law
         assert law is not None and law.duration is not None  # as `rest_watch` requires
         awake = (law.duration.island == NONE) & (law.inverse_mass > 0.0)
         if not (marks[RESTS] & marks[TOUCHES] & awake).any():

@@ -13,7 +13,7 @@ from gaspart.kernels.physics.periodic import nearest
 
 
 @inner_helper
-def _root(parent, i):
+def root_of(parent, i):
     """The root of a particle's tree, with shorter ways to it for the next search."""
     while parent[i] != i:
         parent[i] = parent[parent[i]]
@@ -22,7 +22,7 @@ def _root(parent, i):
 
 
 @inner_kernel
-def _gap(flights, places, i, j, space):
+def gap_between(flights, places, i, j, space):
     """Between the surfaces of two particles at their places (N, d)."""
     square = 0.0
     for k in range(len(space.lengths)):
@@ -46,8 +46,8 @@ def join(flights, order, places, axis, reach, space, parent):
             j = order[second]
             if places[j, axis] > furthest:
                 break
-            if _gap(flights, places, i, j, space) <= reach:
-                parent[_root(parent, j)] = _root(parent, i)
+            if gap_between(flights, places, i, j, space) <= reach:
+                parent[root_of(parent, j)] = root_of(parent, i)
 
 
 @kernel
@@ -58,11 +58,11 @@ def hold(flights, order, time, marks, parent, model, tally):
     touches, rests = marks[TOUCHES], marks[RESTS]
     island, found = model.law.duration.island, False
     for i in order:
-        root = _root(parent, i)
+        root = root_of(parent, i)
         touches[root] |= touches[i]
         rests[root] &= rests[i]
     for i in order:
-        root = _root(parent, i)
+        root = root_of(parent, i)
         if rests[root] and touches[root]:
             stop(flights, i, time, model, tally)
             island[i] = root
@@ -72,11 +72,12 @@ def hold(flights, order, time, marks, parent, model, tally):
 
 
 @inner_kernel
-def wake_island(flights, number, time, boxes, model, gravity, island):
-    """Let gravity act again on the particles of an island."""
+def wake_island(flights, number, time, boxes, model, gravity, law):
+    """Let gravity act again on the particles of an island, and contacts move them."""
     if gravity is not None:
         for i in range(len(flights)):
-            if island[i] == number:
+            if law.duration.island[i] == number:
                 gravity.fixed[i] = False
+                law.inverse_mass[i] = law.duration.inverse_mass[i]
                 flights[i].clock = time
                 mark_resting(flights, i, model.space, gravity, boxes.resting)

@@ -64,7 +64,8 @@ def meet_obstacle(particles, i, face, time, model, tally):
 
 @inner_helper
 def wake(particles, pair, queue, boxes, model, tally, event, law):
-    """Let gravity act again on the islands of two particles (2,) that have met. event: time and number."""
+    """Let gravity act again on the islands of two particles (2,) that have met, unless they are held in a
+    jam. event: time and number."""
     if law is not None:
         _wake(particles, pair, queue, boxes, model, tally, event, law.duration)
 
@@ -74,8 +75,8 @@ def _wake(particles, pair, queue, boxes, model, tally, event, duration):
     if duration is not None:
         for particle in pair:
             number = duration.island[particle]
-            if number != NONE:
-                wake_island(particles.flights, number, event[0], boxes, model, model.gravity, duration.island)
+            if number != NONE and model.law.inverse_mass[particle] > 0.0:
+                wake_island(particles.flights, number, event[0], boxes, model, model.gravity, model.law)
                 free = without_contacts(model)
                 predict_island(particles, number, queue, boxes, free, tally, event, duration.island)
 

@@ -1,6 +1,7 @@
 """The contact of two particles in the event-driven engine."""
 
 from gaspart.kernels.compile.policy import inner_helper
+from gaspart.kernels.event.jams import free_if_moved, join_jam, squeezed
 from gaspart.kernels.event.pressed_contact import least_parting, part, release_pair
 from gaspart.kernels.event.stress import add_contact, note_pair
 from gaspart.kernels.model import COLLISIONS, VIRIAL
@@ -21,11 +22,14 @@ def collide(flights, i, j, time, model, tally):
         gap = gap_along(flights, i, j, k, space)
         rr += gap * gap
         rv += gap * (flights[j].velocity[k] - flights[i].velocity[k])
+    free_if_moved(i, j, rr, rv, model.gravity, model.law)
+    joins = squeezed(flights, i, j, model.law)
     note_pair(flights, i, j, space, model.masses, model.law, tally.stress)
     least = least_parting(flights, i, j, space, model.gravity, model.law)
     add(tally.sums, VIRIAL, exchange_momentum(flights, i, j, rr, rv, model, tally, model.law))
     part(flights, i, j, least, model, tally, model.law)
     release_pair(flights, i, j, model, tally, model.gravity, model.law)
+    join_jam(flights, joins, i + j - joins, model, tally, model.gravity, model.law)
     add_contact(flights, i, j, time, space, model.masses, model.law, tally.stress)
     sigma = flights[i].radius + flights[j].radius
     tally.worst[0] = max(tally.worst[0], abs(rr / (sigma * sigma) - 1.0))

@@ -66,11 +66,9 @@ def within(support, i, planes, vector, dimension):
 
 
 @inner_kernel
-def find_pull(gravity, i, dimension):
-    """Determine the acceleration that the planes of a particle leave of gravity: the largest projection on
-    one or two of them that leads into none; zero if there is none. Remove planes that it leads away from."""
-    support = gravity.support
-    whole = pull_along(gravity, 0), pull_along(gravity, 1), pull_along(gravity, 2)
+def leave_of(whole, support, i, dimension):
+    """Determine the acceleration that the planes of a particle leave of a `whole` one (3,): the largest
+    projection on one or two of them that leads into none; zero if there is none. Returns its square."""
     least = _INTO * sqrt(dot(whole, whole))
     best, pull = 0.0, support.pull[i]
     pull[:] = 0.0
@@ -83,7 +81,17 @@ def find_pull(gravity, i, dimension):
                 leads_into |= dot(support.normal[i, n], part) < -least
             if square > best and not leads_into:
                 best, pull[0], pull[1], pull[2] = square, part[0], part[1], part[2]
-    kept = 0
+    return best
+
+
+@inner_kernel
+def find_pull(gravity, i, dimension):
+    """Determine the acceleration that the planes of a particle leave of gravity. Remove planes that it leads
+    away from."""
+    support = gravity.support
+    whole = pull_along(gravity, 0), pull_along(gravity, 1), pull_along(gravity, 2)
+    leave_of(whole, support, i, dimension)
+    least, pull, kept = _INTO * sqrt(dot(whole, whole)), support.pull[i], 0
     for n in range(support.number[i]):
         if dot(support.normal[i, n], pull) <= least:
             for k in range(3):

@@ -31,13 +31,15 @@ def restitution_of_pair(flights, i, j, normal, law, duration):
     """
     if duration is not None:
         time = flights[i].clock
-        lasts = False
+        lasts = jammed = False
         for particle in (i, j):
-            if law.inverse_mass[particle] > 0.0:
+            if duration.inverse_mass[particle] > 0.0:
+                jammed |= law.inverse_mass[particle] == 0.0
                 lasts |= time - duration.latest[particle] < duration.length
                 duration.latest[particle] = time
             duration.met[particle] = time
-        if lasts:
+            duration.contacts[particle] += 1
+        if lasts and not jammed:
             return _elastic(duration)
     return normal, law.tangential
 
@@ -49,6 +51,7 @@ def restitution_at_wall(flights, i, normal, law, duration):
         time = flights[i].clock
         lasts = time - duration.latest[i] < duration.length
         duration.latest[i] = time
+        duration.contacts[i] += 1
         if lasts:
             return _elastic(duration)
     return normal, law.tangential

@@ -1,0 +1,246 @@
+"""Jams: particles pressed together between supports, as a row that exactly fills the room between two walls.
+
+The room x that a force F leaves to a row with a kinetic energy E along it is 2 E/F. So the less energy it has
+the more often its particles meet: at a rate that grows as E^(-1/2), or as E^(-3/2) where gravity presses the
+row straight, so that F grows as x^(-1/2). In the TC model these contacts keep their energy; the rate grows
+without end while particles that move beside the row keep it from being an island at rest.
+
+The particles of a jam are fixed. None of them has left its place, nor would it if gravity were tilted: what
+it touches, and stays, holds it (`keep_stable`). So a slow contact could not move it far either. A contact
+with a particle that moves always dissipates, and
+
+- frees the particle of the jam, if it can give it more than a speed `ContactDuration.moving`;
+- frees the whole jam, as an island, if it can give it `_FAR` times as much;
+- makes the other one belong to the jam, if the two meet so often that it is squeezed.
+"""
+
+from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
+from gaspart.kernels.event.islands import gap_between, root_of
+from gaspart.kernels.event.scene_at_rest import stop
+from gaspart.kernels.model import NONE, Support
+from gaspart.kernels.obstacles.distance import to_wall
+from gaspart.kernels.obstacles.support import leave_of
+from gaspart.kernels.physics.contact_duration import SHORTEST
+from gaspart.kernels.physics.periodic import nearest
+
+STAYS, HELD, PRESSED = range(3)  # marks (3, N): has not moved or is fixed; may be held; has many contacts
+_FAR = 8.0  # the speed of a contact that frees a jam, over that which frees a particle; heights are 64 times
+_OFTEN = 2.0**-3 * SHORTEST  # contact durations: a particle squeezed by a jam meets it sooner again
+
+
+class Line(NamedTuple):
+    """Particles in a line: their numbers `order` (M,), by their coordinate along an `axis` that is not
+    periodic, at the places (N, d)."""
+
+    order: np.ndarray
+    places: np.ndarray
+    axis: int
+
+
+class Limits(NamedTuple):
+    """What a stable particle withstands: accelerations `pulls` (P, 3), of which less than `least` may remain.
+    reach: the largest gap of particles that touch; support: of one particle, to work with."""
+
+    pulls: np.ndarray
+    least: float
+    reach: float
+    support: Support
+
+
+@inner_helper
+def is_jammed(duration, i):
+    """Whether a particle belongs to a jam, which is an island with a number from N on."""
+    return duration.island[i] >= len(duration.island)
+
+
+@inner_helper
+def free(i, gravity, law):
+    """Let a particle belong to no jam any more."""
+    law.inverse_mass[i] = law.duration.inverse_mass[i]
+    gravity.fixed[i] = False
+    law.duration.island[i] = NONE
+
+
+@inner_helper
+def free_if_moved(i, j, rr, rv, gravity, law):
+    """Free those of two particles that a jam holds, if their contact can move them. rr, rv: the products of
+    their separation and relative velocity."""
+    if gravity is not None:
+        if law is not None:
+            _free_if_moved(i, j, rr, rv, gravity, law, law.duration)
+
+
+@inner_kernel
+def _free_if_moved(i, j, rr, rv, gravity, law, duration):
+    if duration is None:
+        return
+    least = duration.moving * (duration.inverse_mass[i] + duration.inverse_mass[j]) * sqrt(rr)
+    for particle in (i, j):
+        if is_jammed(duration, particle):
+            given = 2.0 * abs(rv) * duration.inverse_mass[particle]
+            if given > _FAR * least:
+                law.inverse_mass[particle] = duration.inverse_mass[particle]  # so that `loop.wake` frees all
+            elif given > least:
+                free(particle, gravity, law)
+
+
+@inner_helper
+def squeezed(flights, i, j, law):
+    """That of two particles, advanced to their contact, which a jam squeezes to which the other one belongs;
+    NONE if there is none."""
+    if law is not None:
+        return _squeezed(flights, i, j, law, law.duration)
+    return NONE
+
+
+@inner_helper
+def _squeezed(flights, i, j, law, duration):
+    if duration is not None:
+        late = flights[i].clock - min(duration.latest[i], duration.latest[j])
+        if late < _OFTEN * duration.length:
+            if is_jammed(duration, i) and law.inverse_mass[j] > 0.0:
+                return j
+            if is_jammed(duration, j) and law.inverse_mass[i] > 0.0:
+                return i
+    return NONE
+
+
+@inner_helper
+def join_jam(flights, i, j, model, tally, gravity, law):
+    """Let particle i, if it is not NONE, belong to the jam of particle j, with which it has collided."""
+    if gravity is not None:
+        if law is not None:
+            _join_jam(flights, i, j, model, tally, gravity, law, law.duration)
+
+
+@inner_helper
+def _join_jam(flights, i, j, model, tally, gravity, law, duration):
+    if duration is not None:
+        if i != NONE:
+            stop(flights, i, flights[i].clock, model, tally)
+            _fix(i, duration.island[j], gravity, law)
+
+
+@inner_helper
+def _fix(i, number, gravity, law):
+    """Let a particle at rest belong to the jam with this number."""
+    law.inverse_mass[i] = 0.0
+    gravity.fixed[i] = True
+    law.duration.island[i] = number
+
+
+@inner_helper
+def _add(support, x, y, z):
+    """Add a plane with this unit vector towards the particle; what is too many is left out."""
+    n = support.number[0]
+    if n < support.normal.shape[1]:
+        support.normal[0, n, 0], support.normal[0, n, 1], support.normal[0, n, 2] = x, y, z
+        support.number[0] = n + 1
+
+
+@inner_helper
+def _add_particle(flights, places, i, j, space, limits):
+    """Add the particle j to what particle i touches, if it does."""
+    if gap_between(flights, places, i, j, space) <= limits.reach:
+        x = y = z = 0.0
+        for k in range(len(space.lengths)):
+            part = nearest(places[i, k] - places[j, k], space.lengths[k], space.periodic[k])
+            x, y, z = part if k == 0 else x, part if k == 1 else y, part if k == 2 else z
+        distance = sqrt(x * x + y * y + z * z)
+        _add(limits.support, x / distance, y / distance, z / distance)
+
+
+@inner_helper
+def _add_faces(flights, places, i, space, limits):
+    """Add the container's faces that it touches."""
+    near = space.margin * flights[i].radius + limits.reach
+    for k in range(len(space.lengths)):
+        x, y, z = 1.0 if k == 0 else 0.0, 1.0 if k == 1 else 0.0, 1.0 if k == 2 else 0.0
+        if not space.periodic[k] and places[i, k] <= near:
+            _add(limits.support, x, y, z)
+        if not space.periodic[k] and space.lengths[k] - places[i, k] <= near:
+            _add(limits.support, -x, -y, -z)
+
+
+@inner_helper
+def _add_walls(flights, places, i, space, limits, walls):
+    """Add the interior walls that it touches."""
+    if walls is not None:
+        for m in range(len(walls.rows)):
+            x, y, z = to_wall(walls.rows, m, places[i], space.lengths)
+            distance = sqrt(x * x + y * y + z * z)
+            if 0.0 < distance <= flights[i].radius + limits.reach:
+                _add(limits.support, -x / distance, -y / distance, -z / distance)
+
+
+@inner_kernel
+def _is_stable(flights, n, largest, line, limits, model, stays):
+    """Whether what the n-th particle of a line touches, and stays, leaves little of every pull. largest: the
+    largest radius."""
+    order, places, axis = line
+    i, support = order[n], limits.support
+    support.number[0] = 0
+    _add_faces(flights, places, i, model.space, limits)
+    _add_walls(flights, places, i, model.space, limits, model.walls)
+    far = flights[i].radius + largest + limits.reach
+    for step in (-1, 1):
+        other = n + step
+        while 0 <= other < len(order) and abs(places[order[other], axis] - places[i, axis]) <= far:
+            if stays[order[other]]:
+                _add_particle(flights, places, i, order[other], model.space, limits)
+            other += step
+    for m in range(len(limits.pulls)):
+        pull = limits.pulls[m, 0], limits.pulls[m, 1], limits.pulls[m, 2]
+        if leave_of(pull, support, 0, len(model.space.lengths)) > limits.least * limits.least:
+            return False
+    return True
+
+
+@kernel
+def keep_stable(flights, line, limits, model, marks):
+    """Take from the particles of a line that may be held, marks[HELD], those which the others, fixed ones and
+    walls do not hold in their places."""
+    stays, held, largest, changed = marks[STAYS], marks[HELD], 0.0, True
+    for i in line.order:
+        largest = max(largest, flights[i].radius)
+    while changed:
+        changed = False
+        for n in range(len(line.order)):
+            i = line.order[n]
+            if held[i] and not _is_stable(flights, n, largest, line, limits, model, stays):
+                stays[i] = held[i] = False
+                changed = True
+
+
+@kernel
+def free_unstable(flights, time, marks, model):
+    """Free the particles of jams that are held in their places no more. Returns whether there are any."""
+    found = False
+    for i in range(len(flights)):
+        if is_jammed(model.law.duration, i) and not marks[HELD, i]:
+            flights[i].clock = time
+            free(i, model.gravity, model.law)
+            found = True
+    return found
+
+
+@kernel
+def jam(flights, order, time, marks, parent, model, tally):
+    """Hold those of these particles (M,) that belong to a tree with one that is pressed or has been held.
+    Returns whether there are any new ones."""
+    pressed, duration, found = marks[PRESSED], model.law.duration, False
+    for i in order:
+        pressed[root_of(parent, i)] |= pressed[i] or is_jammed(duration, i)
+    for i in order:
+        root = root_of(parent, i)
+        if pressed[root]:
+            if not is_jammed(duration, i):
+                stop(flights, i, time, model, tally)
+                found = True
+            _fix(i, len(flights) + root, model.gravity, model.law)
+    return found
