@@ -58,18 +58,19 @@ class Jams:
         support = no_support(1, 0.0)._replace(normal=np.zeros((1, _PLANES, 3)))
         least = 2.0 * FURTHEST * math.hypot(*gravity)
         self._limits = Limits(_tilted(gravity), least, reach, support)
+        self._plain = self._limits._replace(pulls=self._limits.pulls[:2].mean(axis=0, keepdims=True))
 
     def hold(
         self,
         particles: Particles,
         places: np.ndarray,
-        rests: np.ndarray,
+        stays: np.ndarray,
         model: Model,
         tally: Tally,
         time: float,
     ) -> bool:
-        """Hold those of the particles at these places (N, d) that rest (N,) in a jam at this time. Returns
-        whether events must be predicted anew."""
+        """Hold those of the particles at these places (N, d) that belong to a jam at this time. stays (N,):
+        which have not left their places. Returns whether events must be predicted anew."""
         from gaspart.kernels.event.islands import join
         from gaspart.kernels.event.jams import HELD, PRESSED, STAYS, Line, free_unstable, jam, keep_stable
 
@@ -77,14 +78,19 @@ class Jams:
         assert law is not None and law.duration is not None  # as `rest.rest_watch` requires
         duration, moves = law.duration, law.duration.inverse_mass > 0.0
         marks = np.empty((3, len(flights)), dtype=bool)
-        marks[HELD], marks[STAYS] = rests & moves, rests | ~moves
+        marks[HELD], marks[STAYS] = stays & moves, stays | ~moves
         marks[PRESSED] = duration.contacts > self._most
         duration.contacts[:] = 0
         if not (marks[HELD] & marks[PRESSED]).any() and duration.island.max() < len(flights):
             return False
         order = np.flatnonzero(marks[STAYS])
         order = order[np.argsort(places[order, self._axis], kind="stable")]
-        keep_stable(flights, Line(order, places, self._axis), self._limits, model, marks)
+        line = Line(order, places, self._axis)
+        keep_stable(flights, line, self._limits, model, marks)
+        kept = marks[:2] | (stays & (duration.island >= len(flights)))
+        if (kept != marks[:2]).any():  # what a jam has held before remains unless gravity itself moves it
+            marks[:2] = kept
+            keep_stable(flights, line, self._plain, model, marks)
         freed = free_unstable(flights, time, marks, model)
         order = order[marks[HELD][order]]
         parent = np.empty(len(flights), dtype=np.int64)

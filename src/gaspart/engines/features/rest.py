@@ -54,7 +54,7 @@ class RestWatch(Part):
     def happen(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
         """Look which particles rest, and stop them. Returns whether events must be predicted anew: not if all
         rest."""
-        from gaspart.kernels.event.scene_at_rest import RESTS, find_resting, stop_all
+        from gaspart.kernels.event.scene_at_rest import MOVES, RESTS, find_resting, stop_all
 
         flights, places, time = particles.flights, self._before, self.next
         self._next += self._window
@@ -64,9 +64,8 @@ class RestWatch(Part):
             stop_all(flights, time, model, tally)
             self._rests[0] = True
             return False
-        rests = marks[RESTS].copy()
         found = self._hold(particles, marks, model, tally, time)
-        return self._jams.hold(particles, places, rests, model, tally, time) or found
+        return self._jams.hold(particles, places, ~marks[MOVES], model, tally, time) or found
 
     def _hold(self, particles: Particles, marks: np.ndarray, model: Model, tally: Tally, time: float) -> bool:
         """Hold islands. Returns whether there are any new ones."""
