@@ -36,7 +36,7 @@ from gaspart.tradeoff.until import run as run
 from gaspart.trajectory.correlator import Correlations as Correlations
 from gaspart.trajectory.export import export as export
 from gaspart.trajectory.last_state import last_state as last_state
-from gaspart.trajectory.run import open_trajectory as open_trajectory
+from gaspart.trajectory.reading import open_trajectory as open_trajectory
 from gaspart.trajectory.until import Accuracy as Accuracy
 
 __version__: str

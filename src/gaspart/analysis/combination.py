@@ -16,7 +16,7 @@ from gaspart.analysis.run import Source
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.simulation import Simulation
-from gaspart.trajectory.run import open_trajectory
+from gaspart.trajectory.reading import open_trajectory
 from gaspart.yaml_text import dump_yaml
 
 

@@ -21,7 +21,7 @@ from gaspart.simulation import Simulation
 from gaspart.state.insertion import per_body
 from gaspart.state.tally import Tally
 from gaspart.trajectory.pairs import PairCounter
-from gaspart.trajectory.run import open_trajectory
+from gaspart.trajectory.reading import open_trajectory
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 Source: TypeAlias = str | Path | xr.Dataset | Simulation

@@ -57,7 +57,7 @@ def add_measure(parser: Parser) -> None:
 
 
 def _measure(given: argparse.Namespace) -> None:
-    from gaspart.trajectory.run import open_trajectory
+    from gaspart.trajectory.reading import open_trajectory
 
     write = _writer(given)
     asked = {key: getattr(given, key) for key in SELECTIONS}

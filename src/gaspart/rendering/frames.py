@@ -25,7 +25,7 @@ from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state
 from gaspart.state.insertion import per_body
 from gaspart.state.state import State
-from gaspart.trajectory.run import open_trajectory
+from gaspart.trajectory.reading import open_trajectory
 from gaspart.yaml_text import parse_yaml
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from gaspart.engines import Engine, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.scene import Scene
-from gaspart.trajectory.run import open_trajectory
+from gaspart.trajectory.reading import open_trajectory
 from gaspart.yaml_text import dump_yaml
 
 _PARTS = ("", "_error", "_theory")

@@ -25,7 +25,8 @@ from gaspart.kernels.compile.policy import source_digest
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.trajectory.correlator import Correlations
-from gaspart.trajectory.run import open_trajectory, run
+from gaspart.trajectory.reading import open_trajectory
+from gaspart.trajectory.run import run
 
 if TYPE_CHECKING:
     from gaspart.analysis.observable import Observable

@@ -25,8 +25,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
+from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import read_recipe
-from gaspart.trajectory.run import open_trajectory
 from gaspart.trajectory.until import Accuracy, examined_before
 
 if TYPE_CHECKING:

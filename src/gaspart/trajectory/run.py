@@ -11,11 +11,9 @@ import fcntl
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, TypeAlias
-
-import numpy as np
 
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
@@ -23,48 +21,27 @@ from gaspart.files import OVERWRITE, Kind, may_replace, output_path, place
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
 from gaspart.simulation import Simulation
-from gaspart.state.tally import ENERGY, Tally
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.checkpoint import checkpoint_path, read_checkpoint, remove_checkpoint
-from gaspart.trajectory.correlator import Correlations, stress_units
+from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.extension import is_beginning, longer, take_over
 from gaspart.trajectory.frames import Frames, frame_count
-from gaspart.trajectory.pairs import pair_names
 from gaspart.trajectory.recipe import (
     PARTIAL,
     Recipe,
     begun_as,
     check_frames,
-    open_checked,
     read_recipe,
-    stored_recipe,
     stored_revision,
 )
 from gaspart.trajectory.recording import Examine, Progress, Recording
 from gaspart.trajectory.until import Accuracy, is_examined
 
 if TYPE_CHECKING:
-    import xarray as xr
+    pass
 
 Examiner: TypeAlias = Callable[[Path, tuple[Accuracy, ...], int], float]
 """What examines the first frames of a file: the largest error over the required one, inf if unknown."""
-_REDUCED = {
-    "angstrom": "length",
-    "picosecond": "time",
-    "angstrom/picosecond": "length/time",
-    "1/picosecond": "1/time",
-}
-_UNUSED = ["spatial", "cell_spatial", "cell_angular", "checksum", *amber.INITIAL]
-"""Variables of a file that `open_trajectory` does not read: names of axes, what detects damage, and what
-belongs to its recipe."""
-_UNITS = {field.name: field.metadata["units"] for field in fields(Tally) if "units" in field.metadata} | {
-    "kinetic_energy": ENERGY,
-    "vibrations": ENERGY,
-    "velocity_product_sum": "length^2/time^2",
-    "squared_displacement_sum": "length^2",
-    "displacement_velocity_sum": "length^2/time",
-    **stress_units(),
-}
 
 
 def partial_path(path: Path) -> Path:
@@ -72,77 +49,6 @@ def partial_path(path: Path) -> Path:
     if not path.name:
         raise SceneError("path", str(path), "must be the name of a file")
     return path.with_name(path.name + PARTIAL)
-
-
-def open_trajectory(path: str | Path) -> xr.Dataset:
-    """A trajectory, or the finished part of a `.partial` one, as an xarray.Dataset, read as it is used.
-
-    Dimensions frame, atom, spatial (d) and face (2d); time (frame), radius and type (atom) are coordinates,
-    and plots over frames have the time as their axis. A run with correlations has the dimension lag.
-    Of discs that spin, `spins` is (frame, atom); of spheres (frame, atom, spatial).
-    Lengths and times are in the scene's units, counters cumulative since time 0. Attributes state the scene
-    (YAML), engine and seed (JSON), and what follows from the scene: count, dimension, packing_fraction,
-    number_density. Close it, or use it in a `with` statement.
-
-    Raises SceneError for a file that is unreadable, truncated, damaged in its header, or not written by
-    gaspart; and, when values of a frame are read for the first time, if that frame is damaged: its checksum
-    covers all of its variables, so that the frame is read as a whole. Opening a file reads no frames but
-    their times.
-    """
-    import xarray as xr
-
-    from gaspart.trajectory.checked_store import CheckedStore
-
-    path = Path(path)
-    file, checked = open_checked(path)
-    try:
-        recipe = stored_recipe(file, path)
-        store = CheckedStore(file, path, checked, recipe.sample_interval)
-    except SceneError:
-        file.close()
-        checked.close()
-        raise
-    scene = recipe.scene
-    data = opened = xr.open_dataset(store, decode_times=False, drop_variables=_UNUSED)
-    attributes = {**data.attrs, "count": scene.count, "dimension": scene.dimension}
-    attributes |= {"packing_fraction": scene.packing_fraction, "number_density": scene.number_density}
-    if "spins" in data and scene.dimension == 2:
-        data["spins"] = data["spins"].isel(spatial=2)
-    data = data.isel(spatial=slice(scene.dimension)).set_coords(["time", "radius", "type"])
-    faces = amber.face_names(scene.dimension, len(scene.walls))
-    if "piston" in data:
-        data = _with_piston(data)
-    coordinates: dict = {"spatial": list("xyz"[: scene.dimension]), "face": faces}
-    if recipe.pairs:
-        coordinates["pair"] = ("pair", pair_names(scene), {"long_name": "numbers of two species, from 0"})
-    if recipe.correlations:
-        lags = recipe.correlations.interval * np.arange(data.sizes["lag"])
-        coordinates["lag"] = ("lag", lags, {"units": "time"})
-    coordinates["frame"] = ("frame", data["time"].values, {"long_name": "time", "units": "time"})
-    data = data.assign_coords(coordinates)  # at once: each call copies everything
-    for key, variable in data.variables.items():
-        name = str(key)
-        unit = variable.attrs.get("units", "1")
-        if variable.dtype.kind in "fi":  # what is no length, time or energy is a number of things, or a ratio
-            variable.attrs["units"] = _UNITS.get(name, _REDUCED.get(unit, unit))
-    data.attrs = {key: value for key, value in attributes.items() if key not in amber.BOOKKEEPING}
-
-    def close() -> None:
-        opened.close()
-        checked.close()
-
-    data.set_close(close)
-    return data
-
-
-def _with_piston(data: xr.Dataset) -> xr.Dataset:
-    """The motion of a piston as two variables with units."""
-    place, velocity = (data["piston"].isel(motion=n, drop=True) for n in (0, 1))
-    place.attrs, velocity.attrs = (
-        {"units": unit, "long_name": f"{name} of the piston along its axis"}
-        for unit, name in (("length", "place"), ("length/time", "velocity"))
-    )
-    return data.drop_vars("piston").assign(piston_position=place, piston_velocity=velocity)
 
 
 def run(

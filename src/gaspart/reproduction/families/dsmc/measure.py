@@ -27,7 +27,7 @@ from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import plain_gas
 from gaspart.theory.heat import free_molecular_flux
-from gaspart.trajectory.run import open_trajectory
+from gaspart.trajectory.reading import open_trajectory
 
 SHORT, NARROW = 1.0, 0.6
 """Of steps and widths: up to which the transfer at collisions is fitted."""

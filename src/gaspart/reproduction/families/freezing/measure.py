@@ -16,7 +16,7 @@ from gaspart.analysis.statistics import correlated_mean, mean_of
 from gaspart.reproduction.families.shared.pressure import series_of
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
-from gaspart.trajectory.run import open_trajectory
+from gaspart.trajectory.reading import open_trajectory
 
 STARTS = {"lattice": "crystal", "compressed": "fluid"}
 """What a run starts from, by its arrangement: a perfect lattice, or a disordered fluid."""

@@ -19,7 +19,7 @@ from gaspart.reproduction.families.granular.runs import inertia, law, read
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
-from gaspart.trajectory.run import open_trajectory
+from gaspart.trajectory.reading import open_trajectory
 
 RELAXED = 3.0
 """Collisions per particle after which an inelastic gas has relaxed from Maxwell's distribution to its own."""

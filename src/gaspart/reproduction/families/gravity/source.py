@@ -10,7 +10,7 @@ from scipy.optimize import curve_fit
 
 from gaspart.reproduction.families.shared.columns import field, stretches
 from gaspart.reproduction.points.point import Point
-from gaspart.trajectory.run import open_trajectory
+from gaspart.trajectory.reading import open_trajectory
 
 _FALL = 0.3
 """Part of the time before the sample in which the oscillation is large, and not yet harmonic."""

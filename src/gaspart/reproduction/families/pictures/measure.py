@@ -10,7 +10,7 @@ import xarray as xr
 from scipy.spatial import cKDTree
 
 from gaspart.reproduction.points.point import Point
-from gaspart.trajectory.run import open_trajectory
+from gaspart.trajectory.reading import open_trajectory
 
 ROUNDING = 1e-5
 """Depth, in diameters, up to which an overlap is put down to the single precision of frames."""

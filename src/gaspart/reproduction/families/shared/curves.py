@@ -10,7 +10,7 @@ from gaspart.analysis.correlations import Curves, accumulated
 from gaspart.errors import SceneError
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import plain_gas
-from gaspart.trajectory.run import open_trajectory
+from gaspart.trajectory.reading import open_trajectory
 
 
 def reduced_curves(point: Point, path: str, longest: float) -> Curves:

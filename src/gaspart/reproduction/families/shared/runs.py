@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from gaspart.analysis.run import Run
 from gaspart.reproduction.points.point import Point
-from gaspart.trajectory.run import open_trajectory
+from gaspart.trajectory.reading import open_trajectory
 
 
 def runs(point: Point, first: int | None = None) -> Iterator[Run]:

@@ -20,7 +20,7 @@ from gaspart.analysis.transport import green_kubo, helfand
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import plain_gas
-from gaspart.trajectory.run import open_trajectory
+from gaspart.trajectory.reading import open_trajectory
 
 QUANTITIES = {"shear": "viscosity", "heat": "conductivity"}
 """What the correlation of each flux makes."""
