@@ -5,7 +5,6 @@ from __future__ import annotations
 from itertools import chain, combinations_with_replacement
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 
 def deepest_overlap(
@@ -17,6 +16,8 @@ def deepest_overlap(
     periodic side overlaps its own image. Particles are sorted into classes of sizes within a factor of two,
     with a tree each: so a search reaches no farther than its pair of classes may touch.
     """
+    from scipy.spatial import cKDTree  # which few runs need
+
     sides = np.where(periodic, lengths, 0.0)
     on_itself = 1.0 - np.where(periodic, lengths, np.inf) / (2.0 * radii.max())
     deepest = max(0.0, float(on_itself.max()))
