@@ -269,7 +269,8 @@ def test_all_that_gaspart_imports_and_reads_comes_with_it():
             elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
                 needed.add(node.module.split(".")[0])
     extras = project["project"]["optional-dependencies"]
-    required = sum((extras[name] for name in ("film", "order", "gsd", "archive")), project["project"]["dependencies"])
+    single = [extras[name] for name in ("film", "order", "gsd", "archive")]
+    required = sum(single, project["project"]["dependencies"])
     names = {re.split("[<>=]", name)[0].lower() for name in required}
     for module in needed - own - {"coverage", "cycler", "PIL"}:  # the last two come with matplotlib
         assert {name.lower() for name in distributions[module]} & names, module
