@@ -49,6 +49,14 @@ def folder(tmp_path):
             "diffusion_error": ("point", [0.005]),
         }
     ).to_netcdf(tmp_path / "msd_spheres.nc")
+    xr.Dataset(
+        {
+            "engine": ("point", ["event", "event", "step"]),
+            "feature": ("point", ["plain", "two masses", "gravity"]),
+            "ratio": ("point", [1.0, 1.02, 1.1]),
+            "ratio_error": ("point", [0.01, 0.01, 0.02]),
+        }
+    ).to_netcdf(tmp_path / "price_of_features.nc")
     return tmp_path
 
 
@@ -62,10 +70,11 @@ def test_the_table_holds_what_was_measured(folder, capsys):
     times = {row["packing_fraction"]: float(row["value"]) for row in events}
     assert times == {"0.1": 4e-7, "0.45": 3e-7}
     found = {(row["engine"], row["time_step"], row["quantity"], row["dimension"]): row for row in rows}
-    assert len(found) + 1 == len(rows) == 2 + 3 + 2 + 4 + 1
+    assert len(found) + 1 == len(rows) == 2 + 3 + 2 + 4 + 1 + 2
     assert float(found["step", "0.02", "seconds", "3"]["value"]) == 4e-6
     assert float(found["step", "0.02", "bias_Z", "3"]["error"]) == 0.001
     assert ("step", "0.02", "bias_collision_rate", "3") not in found
+    assert float(found["event", "0", "price_two_masses", "3"]["value"]) == 1.02
     # (0.01 / 2)^2 of 1e6 contacts; D: (0.01)^2 of 100 / 2 particles x 4 replicas, each of 2 x 10 x 2
     # collisions
     assert float(found["event", "0", "noise_Z", "2"]["value"]) == pytest.approx(25.0)

@@ -10,6 +10,7 @@ from gaspart.tradeoff import speed, table
 
 def test_every_row_is_a_number_with_an_error_of_a_known_quantity():
     known = {"seconds", *(f"{kind}_{name}" for kind in ("bias", "noise") for name in table.OBSERVABLES)}
+    known |= {f"price_{name}" for name in ("walls", "gravity", "spin", "two_masses", "recording", "stress")}
     assert {row["quantity"] for row in table.read()} == known
     assert all(np.isfinite((row["value"], row["error"])).all() for row in table.read())
     assert {row["dimension"] for row in table.read()} == {2, 3}

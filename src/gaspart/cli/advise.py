@@ -16,7 +16,7 @@ from gaspart.cli.arguments import Parser, UsageError, of_configs, print_line, re
 from gaspart.cli.engine_options import one_of, stated
 from gaspart.cli.progress import waiting
 from gaspart.cli.run import run_options
-from gaspart.engines import TimeStepped
+from gaspart.engines import Engine, TimeStepped
 from gaspart.scene.scene import Scene
 from gaspart.tradeoff import PILOT_SECONDS
 
@@ -102,6 +102,7 @@ def _lines(advice: Advice, file: str) -> list[str]:
     ]
     if advice.observable in ("D", "collision_rate"):
         lines += _drawn(advice.observable, advice.scatter)
+    lines.append(_pays(advice.scene, best.engine, advice.observable))
     if not advice.within_budget:
         lines.append(f"the budget does not suffice for {advice.accuracy:g}")
     each = "" if advice.replicas == 1 else ", and the same with other seeds and files"
@@ -121,6 +122,18 @@ def _drawn(observable: str, scatter: float) -> list[str]:
     return [f"drawn velocities  {text}: exact_temperature: true removes it"]
 
 
+def _pays(scene: Scene, engine: Engine, observable: str) -> str:
+    """What a run pays for beside the collisions of a plain gas."""
+    from gaspart.tradeoff.price import price_of
+
+    price = price_of(scene, engine, observable)
+    measured = ", ".join(f"{name} {ratio:.2f}" for name, ratio in price.ratios.items())
+    parts = [f"{measured} times the time per event"] if measured else []
+    parts += [f"not measured: {', '.join(price.unknown)}"] if price.unknown else []
+    parts += [f"float32 takes {price.single:.2f} of the time of float64"] if price.single else []
+    return f"pays for          {'; '.join(parts) or 'its collisions alone'}"
+
+
 def _command(recipe: Recipe, file: str) -> str:
     """The command that makes a run."""
     return shlex.join(["gaspart", "run", file, *run_options(Path("run.nc"), recipe)])
@@ -138,6 +151,7 @@ def _plan_lines(plan: Plan, file: str) -> list[str]:
             f"{_components(best)}",
         ]
     lines += _drawn(plan.observable, plan.scatter)
+    lines.append(_pays(plan.scene, best.candidate.engine, plan.observable))
     if not plan.affordable:
         lines.append(_shortfall(plan))
     for pilot in plan.pilots:

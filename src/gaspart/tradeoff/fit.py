@@ -3,7 +3,7 @@
     python -m gaspart.tradeoff.fit results/measurements > src/gaspart/tradeoff/data/tradeoff.csv
 
 takes speed_accuracy.nc (errors and times of both engines), virial_spheres.nc and virial_discs.nc (noise of Z
-and of the collision rate) and msd_spheres.nc (noise of D) from the folder it is given.
+and of the collision rate), msd_spheres.nc (noise of D) and price_of_features.nc from the folder it is given.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ def rows(folder: Path) -> list[dict]:
         *_noise(xr.load_dataset(folder / "virial_spheres.nc"), 3),
         *_noise(xr.load_dataset(folder / "virial_discs.nc"), 2),
         *_diffusion(xr.load_dataset(folder / "msd_spheres.nc")),
+        *_prices(xr.load_dataset(folder / "price_of_features.nc")),
     ]
     return [{**row, "value": f"{row['value']:.4g}", "error": f"{row['error']:.2g}"} for row in found]
 
@@ -94,6 +95,14 @@ def _diffusion(msd: xr.Dataset) -> Iterator[dict]:
     yield _row(
         3, 0.1, "event", "float64", 0.0, "noise_D", np.median(values), values.std() / len(values) ** 0.5
     )
+
+
+def _prices(price: xr.Dataset) -> Iterator[dict]:
+    """The cost of each feature, of 4000 spheres at a packing fraction of 0.2."""
+    for n in np.flatnonzero(price.feature.values != "plain"):
+        at = price.isel(point=n)
+        name = f"price_{str(at.feature.values).replace(' ', '_')}"
+        yield _row(3, 0.2, str(at.engine.values), "float64", 0.0, name, at.ratio, at.ratio_error)
 
 
 def main(folder: str) -> None:

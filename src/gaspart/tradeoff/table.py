@@ -4,7 +4,8 @@ Columns: ``dimension``, ``packing_fraction``; ``engine`` (event or step, the lat
 passes and rewinding), ``precision``, ``time_step`` in diameters over the thermal speed (kT / m)^(1/2);
 ``quantity``, its ``value`` and standard ``error``. Quantities: ``seconds`` of processor time for one exact
 contact of two particles; ``bias_<observable>``, relative error; ``noise_<observable>``, the relative variance
-of an estimate times the contacts that it is made of. Observables: Z, collision_rate, D.
+of an estimate times the contacts that it is made of; ``price_<feature>``, the time per event with a feature
+over that without it. Observables: Z, collision_rate, D.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ LEAST = 20.0
 """Collisions per particle that are measured at least: a shorter run is no average over time."""
 REFERENCE, STEP = 0.1, 0.08
 """Packing fraction of the gas by which times are carried over, and the time step with which it is timed."""
+_PRICE = "price_"
 _SAFE = 2.0  # standard errors added to a bias
 _BEYOND = 1.05  # a packing fraction may exceed those of the table by this factor
 
@@ -101,6 +103,12 @@ def noise(dimension: int, fraction: float, observable: str) -> float:
         ]
         found *= (virial[0] / virial[1]) ** 2
     return found
+
+
+def prices(engine: str) -> dict[str, float]:
+    """The time per event with each feature that was measured over that without it (`price_of_features`)."""
+    rows = (row for row in read() if row["engine"] == engine and row["quantity"].startswith(_PRICE))
+    return {row["quantity"].removeprefix(_PRICE): row["value"] for row in rows}
 
 
 @cache
