@@ -46,10 +46,8 @@ def test_single_precision_saves_some_time():
     assert 0.5 < price_of(GAS, gp.TimeStepped(0.01), "Z").single < 1.0
 
 
-@pytest.mark.parametrize(
-    ("observable", "line"), [("Z", "its collisions alone"), ("D", "its collisions alone")]
-)
-def test_the_advice_states_it(observable, line, tmp_path, capsys):
+@pytest.mark.parametrize("observable", ["Z", "D"])
+def test_the_advice_states_it(observable, tmp_path, capsys):
     GAS.to_file(tmp_path / "gas.yaml")
     assert main(["advise", str(tmp_path / "gas.yaml"), "--observable", observable]) == 0
-    assert f"pays for          {line}" in capsys.readouterr().out
+    assert "pays for          its collisions alone\n" in capsys.readouterr().out

@@ -55,8 +55,9 @@ def lowest(dimension: int) -> float:
 
 
 def steps(dimension: int) -> list[tuple[str, float]]:
-    """(precision, time_step) of all measured settings of the time-stepped engine."""
-    found = (row for row in read() if row["engine"] == "step" and row["dimension"] == dimension)
+    """(precision, time_step) of all timed settings of the time-stepped engine."""
+    timed = (row for row in read() if row["engine"] == "step" and row["quantity"] == "seconds")
+    found = (row for row in timed if row["dimension"] == dimension)
     return list(dict.fromkeys((row["precision"], row["time_step"]) for row in found))
 
 

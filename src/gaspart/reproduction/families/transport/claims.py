@@ -39,9 +39,7 @@ def _bulk(row: xr.Dataset) -> Claim:
         expected=1.0,
         half_width=FEW_PER_CENT,
         source="[Chapman 1970]; expansion changes what passes at contacts at once, and kinetic parts not",
-        no_verdict=""
-        if eta <= known
-        else "what correlated collisions do near freezing is not known",
+        no_verdict="" if eta <= known else "what correlated collisions do near freezing is not known",
         fails_if="a pressure that is not that of the contacts",
     )
 
