@@ -31,8 +31,10 @@ _WORTH = 3.0
 _DIFFERS = 2.5
 """Standard errors by which two pilots differ if one is biased more than theory says."""
 _FRAMES = 256
-_LONGEST = 4.0
-"""The longest duration of a run with `--until`, over the predicted one."""
+_LONGEST = 16.0
+"""The longest duration of a run with `--until`, over the predicted one. The error of a short run may be
+overstated: where impulses on a wall are anticorrelated, by a factor of two, which takes four times as
+long."""
 _POWERS = {
     **dict.fromkeys(("pressure", "temperature", "pressure_tensor", "vacf"), 1.0),
     **dict.fromkeys(("collision_rate", "pair_rates", "D", "mutual_diffusion", "msd", "speeds"), 0.5),
