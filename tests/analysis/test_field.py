@@ -63,6 +63,10 @@ def test_species_apart_and_three_axes():
     with pytest.raises(SceneError, match="choose a layer"):
         whole.plot()
     assert whole.isel(z=0).plot().collections
+    cells = gp.analysis.field(simulation, axes="xyz", cells=3)  # more than are written out
+    assert (
+        "<img" not in cells._repr_html_() and "<img" in gp.analysis.field(simulation, cells=4)._repr_html_()
+    )
 
 
 def test_empty_cells_have_no_temperature():

@@ -25,6 +25,8 @@ _ROUNDING = 1e-12
 _LONG = 32  # characters of a label, from which on it has two lines
 _FEW = 12
 """Values up to which all are written out."""
+_PLANE = 2
+"""Axes of a field that a plot has."""
 STRETCHES = 20
 """Number of stretches of a run, whose means a plot of a scalar shows."""
 
@@ -84,7 +86,8 @@ class Observable(xr.Dataset):
     def _repr_html_(self) -> str:
         """The `summary`, a plot of a curve, and the data set, folded."""
         text = html.escape(self.summary).replace("\n", "<br>")
-        drawn = f'<br><img src="{_plotted(self)}" alt="{text}">' if self.estimate.size > _FEW else ""
+        shown = self.estimate.size > _FEW and len(_cells(self)) <= _PLANE
+        drawn = f'<br><img src="{_plotted(self)}" alt="{text}">' if shown else ""
         return f"<b>{text}</b>{drawn}<details><summary>data set</summary>{super()._repr_html_()}</details>"
 
     def plot(self, theory: bool = False, axis: Axes | None = None) -> Axes:  # type: ignore[override]
@@ -98,7 +101,7 @@ class Observable(xr.Dataset):
         if axis is None:
             axis = plt.figure(layout="constrained").add_subplot()
         known = theory and self.theory is not None
-        cells = [name for name in self.estimate.dims if name in ("x", "y", "z")]
+        cells = _cells(self)
         if len(cells) > 1:
             _plot_field(self, axis, cells)
             return axis
@@ -151,7 +154,7 @@ def _plot_scalar(found: Observable, axis: Axes, theory: bool) -> None:
 def _plot_curve(found: Observable, axis: Axes, theory: bool) -> None:
     name = found.estimate.dims[-1]
     x = found[name]
-    names = found["component"].values if found.estimate.ndim > 1 else ["measured"]
+    names = found[found.estimate.dims[0]].values if found.estimate.ndim > 1 else ["measured"]
     parts, errors = (one.values.reshape(-1, x.size) for one in (found.estimate, found.error))
     for part, error, label in zip(parts, errors, names, strict=True):
         if x.dtype.kind in "US":  # names, such as those of faces
@@ -163,13 +166,20 @@ def _plot_curve(found: Observable, axis: Axes, theory: bool) -> None:
         assert found.theory is not None
         places = np.arange(x.size) if x.dtype.kind in "US" else x
         marker = "" if found.theory.notnull().sum() > 2 else "x"  # of few values, as at contact
-        axis.plot(places, found.theory, color="black", marker=marker, zorder=3, label="theory")
+        curves = np.unique(found.theory.values.reshape(-1, x.size), axis=0).T  # one, where all have the same
+        lines = axis.plot(places, curves, color="black", marker=marker, zorder=3)
+        lines[0].set_label("theory")
     axis.set_xlabel(label_of(x))
+
+
+def _cells(found: Observable) -> list[str]:
+    """The axes of a field."""
+    return [name for name in found.estimate.dims if name in ("x", "y", "z")]
 
 
 def _plot_field(found: Observable, axis: Axes, cells: list[str]) -> None:
     """A scalar field as a map of colours; of a flow the components along both axes, as arrows."""
-    if len(cells) > 2:
+    if len(cells) > _PLANE:
         raise SceneError("axes", "".join(cells), "a plot has two; choose a layer: .isel(z=0)")
     x, y = (found[name] for name in cells)
     if "component" in found.estimate.dims:

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO, TypeAlias
+from typing import BinaryIO, TypeAlias
 
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
@@ -36,9 +36,6 @@ from gaspart.trajectory.recipe import (
 )
 from gaspart.trajectory.recording import Examine, Progress, Recording
 from gaspart.trajectory.until import Accuracy, is_examined
-
-if TYPE_CHECKING:
-    pass
 
 Examiner: TypeAlias = Callable[[Path, tuple[Accuracy, ...], int], float]
 """What examines the first frames of a file: the largest error over the required one, inf if unknown."""
