@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import gaspart as gp
 
 SMALL = 64
-"""Bodies of a case when only its code is to be tried."""
+"""Particles of a case when only its code is to be tried."""
 
 SMALLENBURG = {  # million collisions a second, by number of spheres and packing fraction
     10**3: {0.05: 0.87, 0.2: 0.95, 0.3: 0.92, 0.49: 1.61},
@@ -29,7 +29,7 @@ SPENCER = {  # the same, of discs between walls
     10**5: {0.05: 0.05, 0.2: 0.08, 0.4: 0.09, 0.6: 0.11},
 }
 FREDERICKX = {10**4: 113.0, 10**5: 146.0, 1_200_000: 339.0}
-"""ns for a body and a step: spheres of radius 0.1 in 50^3, steps of 0.01."""
+"""ns for a particle and a step: spheres of radius 0.1 in 50^3, steps of 0.01."""
 
 
 @dataclass(frozen=True)
@@ -50,10 +50,10 @@ class Case:
 
     @property
     def unit(self) -> str:
-        return "collisions/s" if self.engine == "event" else "ns per body and step"
+        return "collisions/s" if self.engine == "event" else "ns per particle and step"
 
     def small(self) -> Case:
-        """The same with a few bodies, to try the code."""
+        """The same with a few particles, to try the code."""
         return Case(self.engine, self.dimension, SMALL, self.packing_fraction, self.feature)
 
 

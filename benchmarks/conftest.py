@@ -9,7 +9,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 
 def pytest_addoption(parser):
-    parser.addoption("--small", action="store_true", help="a few bodies each, one round: to try the code")
+    parser.addoption("--small", action="store_true", help="a few particles each, one round: to try the code")
 
 
 @pytest.fixture

@@ -18,7 +18,7 @@ DENSE = 0.05
 """The packing fraction from which spheres count as dense in the picture."""
 COLUMNS = (
     "engine", "dimension", "count", "packing_fraction", "feature", "value", "spread", "unit", "rounds",
-    "peer", "peer_value", "ratio", "plain_ratio", "bytes_per_body", "tests_per_contact",
+    "peer", "peer_value", "ratio", "plain_ratio", "bytes_per_particle", "tests_per_contact",
     "crossings_per_contact", "value_in_random_reads", "copy_bandwidth_GB_s", "read_latency_ns",
 )  # fmt: skip
 
@@ -61,7 +61,7 @@ def _row(one: dict, machine: dict) -> dict:
 
 
 def draw(frame: pd.DataFrame):
-    """Collisions a second against the packing fraction, with the peers'; and what a step costs a body."""
+    """Collisions a second against the packing fraction, with the peers'; and what a step costs a particle."""
     figure, axes = style.new((2.4,), (2.2,), (2.2,))
     plain = frame[(frame["engine"] == "event") & (frame["feature"] == "plain")]
     _events(axes[0], plain[plain["dimension"] == 3], "spheres (dashed: Smallenburg, C)")
@@ -95,7 +95,7 @@ def _steps(axis, frame: pd.DataFrame) -> None:
     if len(frame):
         axis.set_xscale("log")
     axis.set_xlabel("number of spheres $N$")
-    axis.set_ylabel("ns / (body step)")
+    axis.set_ylabel("ns / (particle step)")
 
 
 def _finish(axis, frame: pd.DataFrame, title: str) -> None:

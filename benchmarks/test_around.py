@@ -46,13 +46,13 @@ def test_random_insertion(benchmark, small):
 
 
 def test_a_trajectory_is_written(benchmark, small, tmp_path):
-    """The share of a run's time that writing takes, at a frame for every 10 collisions of a body."""
+    """The share of a run's time that writing takes, at a frame for every 10 collisions of a particle."""
     case = cases.Case("event", 3, cases.SMALL if small else 10_000, 0.3)
     scene = cases.scene(case)
     sim = gp.Simulation(scene, gp.EventDriven(), seed=1)
     sim.advance(max_events=10 * case.count)
     frames = 2 if small else 20
-    interval = sim.time * 0.5  # 10 collisions of each body are 5 of each pair's two
+    interval = sim.time * 0.5  # 10 collisions of each particle are 5 of each pair's two
     shares = []
 
     def both():

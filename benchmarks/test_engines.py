@@ -37,7 +37,7 @@ def record(benchmark, case, sim, seconds, stretches):
         engine=case.engine, dimension=case.dimension, count=case.count, feature=case.feature,
         packing_fraction=case.packing_fraction, unit=case.unit, peer=case.peer, peer_value=case.peer_value,
         stretches=stretches, seconds=seconds,
-        bytes_per_body=bytes_of(arrays) / case.count,
+        bytes_per_particle=bytes_of(arrays) / case.count,
     )  # fmt: skip
 
 

@@ -23,5 +23,5 @@ def degenerate(dimension, count, motion, boundary, fixed):
     velocity = ((1.0, 0.5, 0.25) if motion == "parallel" else (0.0, 0.0, 0.0))[:dimension]
     sites = list(product((1.0, 3.0, 5.0, 7.0), repeat=dimension))
     sites += [tuple(x + 1.0 for x in site) for site in sites if max(site) < 7.0]
-    bodies = [gp.Body(site, velocity, 0.5, fixed=fixed) for site in sites[:count]]
-    return gp.Scene(container, bodies=bodies)
+    particles = [gp.Particle(site, velocity, 0.5, fixed=fixed) for site in sites[:count]]
+    return gp.Scene(container, particles=particles)

@@ -26,7 +26,7 @@ SCENES = [
     {
         "container": {"lengths": [10.0, 12.0], "boundary": ["wall", "periodic"]},
         "species": [{"count": 5, "radius": 0.5, "speed": 1.0, "moment_of_inertia": 0.1, "mass": 2.0}],
-        "bodies": [{"position": [5.0, 5.0], "velocity": [1.0, 0.0], "radius": 0.3, "spin": 0.5}],
+        "particles": [{"position": [5.0, 5.0], "velocity": [1.0, 0.0], "radius": 0.3, "spin": 0.5}],
         "walls": [{"start": [1.0, 1.0], "end": [1.0, 3.0]}],
         "gravity": [-1.0, 0.0],
         "restitution": {"normal": 0.9, "tangential": 0.5},
@@ -58,14 +58,14 @@ SCENES = [
     {
         "container": {"lengths": [8.0, 9.0, 10.0], "boundary": "periodic"},
         "species": [{"count": 2, "radius": 0.2, "fixed": True, "vibration": 0.1}],
-        "bodies": [{"position": [4, 4, 4], "velocity": [0, 0, 1], "radius": 0.3, "spin": [0, 0, 1]}],
+        "particles": [{"position": [4, 4, 4], "velocity": [0, 0, 1], "radius": 0.3, "spin": [0, 0, 1]}],
         "walls": [{"corner": [1, 1, 1], "edges": [[2, 0, 0], [0, 2, 0]]}],
     },
 ]  # fmt: skip
 
 NASTY_TEXT = ["", " ", "\0", "\n", "wall\n", "periodic", "random", "all", "thermal", "1e3", "..", "/"]
 NASTY_TEXT += ["\ud800", "\x1b[31m", "é", "results/x\n", "2001-02-30", "0x_", "x_low", "a" * 10_000]
-NASTY_TEXT += ["scene.species.0.count", "scene.bodies.0.mass", "scene.", "auto", "step", "compressed"]
+NASTY_TEXT += ["scene.species.0.count", "scene.particles.0.mass", "scene.", "auto", "step", "compressed"]
 NASTY = [None, True, False, [], {}, [[]], [{}], {"": 1}, {"kind": []}, {"a": {"b": {"c": [1]}}}]
 NASTY += [[[1, 1]], [1, "a"], 0, 1, -1, 2, 3, 2.5, 0.1, -0.5, 2**31, 2**63, 10**30, 10**400]
 NASTY += [1e20, 1e300, -1e300, 1e-300, 5e-324, 1e-61, float("nan"), float("inf"), float("-inf")]
@@ -203,7 +203,7 @@ def planned_configs(draw):
     }
     engine = draw(st.sampled_from(["event", "step", "auto"]))
     length = draw(
-        st.sampled_from(["collisions_per_body", "duration", *(["steps"] if engine == "step" else [])])
+        st.sampled_from(["collisions_per_particle", "duration", *(["steps"] if engine == "step" else [])])
     )
     point |= {"engine": engine, length: draw(whole if length == "steps" else size)}
     point[draw(st.sampled_from(["temperature", "speed"]))] = draw(size)
@@ -215,7 +215,7 @@ def planned_configs(draw):
             "observable": draw(st.sampled_from(["Z", "collision_rate", "D"])),
         }
     elif draw(st.booleans()):
-        point[draw(st.sampled_from(["boxes_per_side", "boxes_per_body"]))] = draw(whole)
+        point[draw(st.sampled_from(["boxes_per_side", "boxes_per_particle"]))] = draw(whole)
     others = {
         "mass": size,
         "equilibration": size,

@@ -11,7 +11,7 @@ import gaspart as gp
 
 
 def gas(dimension, count, packing_fraction, boundary="periodic", **properties):
-    """A gas of bodies of diameter 1 at temperature 1 in a cube or square of the right size."""
+    """A gas of particles of diameter 1 at temperature 1 in a cube or square of the right size."""
     properties = {"radius": 0.5, "temperature": 1.0} | properties
     unit = math.pi if dimension == 2 else 4 / 3 * math.pi
     side = (count * unit * properties["radius"] ** dimension / packing_fraction) ** (1 / dimension)
@@ -19,9 +19,9 @@ def gas(dimension, count, packing_fraction, boundary="periodic", **properties):
 
 
 def sent(position, velocity, walls, radius=0.5, boxes_per_side=None, side=12.0, boundary="wall", **rest):
-    """One body among walls."""
-    body = gp.Body(position, velocity, radius)
-    scene = gp.Scene(gp.Container((side, side), boundary), bodies=[body], walls=walls, **rest)
+    """One particle among walls."""
+    particle = gp.Particle(position, velocity, radius)
+    scene = gp.Scene(gp.Container((side, side), boundary), particles=[particle], walls=walls, **rest)
     return gp.Simulation(scene, gp.EventDriven(boxes_per_side=boxes_per_side))
 
 
@@ -62,7 +62,7 @@ def falling(draw, most=12):
 
 @st.composite
 def granular(draw, most=12):
-    """The same with restitution, moments of inertia, fixed bodies and perhaps gravity."""
+    """The same with restitution, moments of inertia, fixed particles and perhaps gravity."""
     scene = draw(st.one_of(mixtures(most), falling(most)))
     law = gp.Restitution(
         draw(st.sampled_from([1.0, 0.95, 0.7])), draw(st.sampled_from([-1.0, 1.0, 0.4, -0.5]))
@@ -121,7 +121,7 @@ def surfaced(draw, most=12):
                 faces[f"{'xyz'[axis]}_{side}"] = draw(kinds[kind])
     count, radius = st.integers(1, most // 2), st.floats(0.1, 0.4)
     species = [gp.Species(draw(count), draw(radius), mass, temperature=1.0) for mass in (1.0, 2.0)]
-    elastic = any(isinstance(face, gp.Sticky) for face in faces.values())  # stuck bodies vibrate
+    elastic = any(isinstance(face, gp.Sticky) for face in faces.values())  # stuck particles vibrate
     law = gp.Restitution(1.0 if elastic else draw(st.sampled_from([1.0, 0.9])), 0.5)
     discs = {"gravity": (0.0, -0.5), "restitution": law}
     container = gp.Container(lengths, boundary)
@@ -138,16 +138,18 @@ def metals(draw, most=12):
         gp.Species(draw(st.integers(1, most // 2)), 0.3, fixed=True, temperature=draw(st.floats(0.1, 3.0))),
         gp.Species(draw(st.integers(0, 2)), 0.2, fixed=True),
     ]
-    bodies = [gp.Body((0.5, 0.5), (0.0, 0.0), 0.25, fixed=True, vibration=draw(st.sampled_from([0.0, 2.0])))]
+    particles = [
+        gp.Particle((0.5, 0.5), (0.0, 0.0), 0.25, fixed=True, vibration=draw(st.sampled_from([0.0, 2.0])))
+    ]
     faces = {"x_low": gp.Thermal(draw(st.floats(0.5, 4.0))), "x_high": gp.Thermal(1.0)}
     law = gp.Restitution(1.0, draw(st.sampled_from([-1.0, 0.5])))
-    return gp.Scene(gp.Container(lengths, boundary), species, bodies, restitution=law, faces=faces)
+    return gp.Scene(gp.Container(lengths, boundary), species, particles, restitution=law, faces=faces)
 
 
 @st.composite
 def uneven(draw, most=16):
-    """Small bodies among one to three large ones: alone in 3D; in 2D rough, falling, with a wall inside, the
-    large ones perhaps fixed (two kinds of scene, so that few kernels are compiled)."""
+    """Small particles among one to three large ones: alone in 3D; in 2D rough, falling, with a wall inside,
+    the large ones perhaps fixed (two kinds of scene, so that few kernels are compiled)."""
     dimension = draw(st.sampled_from([2, 3]))
     boundary = draw(st.lists(st.sampled_from(["wall", "periodic"]), min_size=dimension, max_size=dimension))
     lengths = draw(st.lists(st.floats(5.0, 8.0), min_size=dimension, max_size=dimension))

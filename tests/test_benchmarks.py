@@ -1,4 +1,4 @@
-"""The benchmarks' code, with a few bodies: it runs, and makes its table and figure. No timing is judged."""
+"""The benchmarks' code, with a few particles: it runs, and makes table and figure. No timing is judged."""
 
 import csv
 import os
@@ -23,7 +23,7 @@ def test_a_small_run_makes_the_table_and_the_figure(tmp_path):
     assert set(rows) == {"event", "start of a job", "random insertion"}
     event = rows["event"]
     assert float(event["value"]) > 0.0
-    assert 100.0 < float(event["bytes_per_body"]) < 1e5
+    assert 100.0 < float(event["bytes_per_particle"]) < 1e5
     assert float(event["tests_per_contact"]) > 1.0
     assert float(event["copy_bandwidth_GB_s"]) > 0.1
     assert figure.stat().st_size > 1000

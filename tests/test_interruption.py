@@ -68,8 +68,8 @@ def ended(process, number):
 
 def test_a_run_with_crossings_only_ends_with_a_checkpoint(tmp_path):
     """Two discs that cross a thin periodic axis, and never meet: there is no event of the model."""
-    discs = [gp.Body((0.5, height), (1.0, 0.0), 0.05) for height in (1e9, 9e9)]
-    gp.Scene(gp.Container((1.0, 1e10), "periodic"), bodies=discs).to_file(tmp_path / "scene.yaml")
+    discs = [gp.Particle((0.5, height), (1.0, 0.0), 0.05) for height in (1e9, 9e9)]
+    gp.Scene(gp.Container((1.0, 1e10), "periodic"), particles=discs).to_file(tmp_path / "scene.yaml")
     long = ["--duration", "1e12", "--sample-interval", "1e12", "--checkpoint-seconds", "1", "--quiet"]
     process = start("run", "scene.yaml", "-o", "run.nc", *long, folder=tmp_path)
     wait_for(checkpoint_path(tmp_path / "run.nc").exists)

@@ -19,7 +19,7 @@ from gaspart.yaml_text import dump_yaml
 VALID = {
     gp.Container: {"lengths": (8.0, 9.0), "boundary": "wall"},
     gp.Species: {"count": 3, "radius": 0.5, "speed": 1.0},
-    gp.Body: {"position": (4.0, 4.0), "velocity": (1.0, 0.0), "radius": 0.5, "spin": 0.1},
+    gp.Particle: {"position": (4.0, 4.0), "velocity": (1.0, 0.0), "radius": 0.5, "spin": 0.1},
     gp.Restitution: {"normal": 0.9, "tangential": 0.5},
     gp.Wall: {"start": (1.0, 1.0), "end": (2.0, 1.0)},
     Plate: {"corner": (1.0, 1.0, 1.0), "edges": ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))},
@@ -71,7 +71,7 @@ def test_valid_ones_are_accepted():
         (Well, {"width": 1e-300}, "width = 1e-300: must be from 1e-60"),
         (gp.Scene, {"container": None}, "container = None: must be a Container"),
         (gp.Scene, {"species": None}, "species = None: must be a Species"),
-        (gp.Scene, {"bodies": [gp.Container((1.0, 1.0))]}, "bodies[0] = Container"),
+        (gp.Scene, {"particles": [gp.Container((1.0, 1.0))]}, "particles[0] = Container"),
         (gp.Scene, {"gravity": (0.0, 1e300)}, "gravity = (0.0, 1e+300): must be 0 or of a size"),
         (gp.Container, {"lengths": range(10**9)}, "must be a list of 2 or 3 finite numbers"),
     ],
@@ -89,7 +89,7 @@ def test_the_kind_of_a_face_and_of_an_engine_is_text():
         engine_from_dict({"name": []})
 
 
-def test_a_scene_of_more_bodies_than_can_be_numbered_is_refused():
+def test_a_scene_of_more_particles_than_can_be_numbered_is_refused():
     kinds = [gp.Species(2**31 - 1, 1e-6), gp.Species(1, 1e-6)]
     with pytest.raises(SceneError, match="count = 2147483648: there may be 2147483647 particles"):
         gp.Scene(gp.Container((1e5, 1e5)), kinds)

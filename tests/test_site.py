@@ -79,7 +79,7 @@ def test_links_lead_somewhere(site):
 def test_classes_are_linked_where_signatures_and_docstrings_name_them(site):
     text = (site / "generated/api/simulations.html").read_text(encoding="utf-8")
     assert 'href="scenes.html#gaspart.Scene"' in text
-    assert 'href="scenes.html#gaspart.Body"' in text
+    assert 'href="scenes.html#gaspart.Particle"' in text
 
 
 @needs_chromium

@@ -21,7 +21,7 @@ from gaspart.scene.faces import Vibrating as Vibrating
 from gaspart.scene.faces import Well as Well
 from gaspart.scene.restitution import Restitution as Restitution
 from gaspart.scene.scene import Scene as Scene
-from gaspart.scene.species import Body as Body
+from gaspart.scene.species import Particle as Particle
 from gaspart.scene.species import Species as Species
 from gaspart.scene.thermostat import Thermostat as Thermostat
 from gaspart.scene.walls import Plate as Plate

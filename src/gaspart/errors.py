@@ -41,10 +41,13 @@ class SceneError(_OneLine, ValueError):
 
 
 def unknown_word(word: object, known: Iterable[str], what: str = "key") -> str:
-    """The rule for a word that is none of `known`: the most similar one, or all of them."""
+    """The rule for a word that is none of `known`: its new name, the most similar one, or all of them."""
     from difflib import get_close_matches
 
     words = list(known)
+    renamed = str(word).replace("bodies", "particles").replace("body", "particle")  # names of version 0.2
+    if renamed != word and renamed in words:
+        return f"is called {renamed} now"
     near = get_close_matches(str(word), words, n=1)
     return f"unknown {what}; " + (f"did you mean {near[0]}?" if near else f"known are {', '.join(words)}")
 

@@ -15,7 +15,7 @@ from gaspart.engines.belonging import belonging, check_belonging
 from gaspart.engines.event_log import EventLog
 from gaspart.errors import SceneError, SimulationError
 from gaspart.scene.scene import DRAWN, THUMBNAIL, Scene
-from gaspart.scene.species import Body, Species
+from gaspart.scene.species import Particle, Species
 from gaspart.scene.validation import count_of, number
 from gaspart.scene.walls import Plate, Wall, box_of_walls
 from gaspart.state.given import check_apart, taken_state
@@ -111,10 +111,10 @@ class Simulation:
         mass: float = 1.0,
         **properties: Any,
     ) -> None:
-        """Add one particle (properties as in `Body`): `scene` becomes a new, validated scene. Refused once
-        the simulation has advanced."""
+        """Add one particle (properties as in `Particle`): `scene` becomes a new, validated scene. Refused
+        once the simulation has advanced."""
         self._change(
-            self.scene.with_bodies(Body(tuple(position), tuple(velocity), radius, mass, **properties))
+            self.scene.with_particles(Particle(tuple(position), tuple(velocity), radius, mass, **properties))
         )
 
     def add_random(self, count: int, radius: float, **properties: Any) -> None:
@@ -231,10 +231,10 @@ class Simulation:
 
     @property
     def events(self) -> dict[str, np.ndarray]:
-        """The events recorded: time (M,), bodies (M, 2), positions and velocities (M, 2, d) just after; with
-        rough contacts also spins, (M, 2) in 2D and (M, 2, 3) in 3D.
+        """The events recorded: time (M,), particles (M, 2), positions and velocities (M, 2, d) just after;
+        with rough contacts also spins, (M, 2) in 2D and (M, 2, 3) in 3D.
 
-        The second of `bodies` is -1 - face for a hit at a face of the container or the edge of its well,
+        The second of `particles` is -1 - face for a hit at a face of the container or the edge of its well,
         -1 - 2d - n for one at interior wall n.
         """
         if self._log is None:

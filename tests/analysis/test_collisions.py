@@ -24,15 +24,15 @@ def test_rows_agree_with_the_events(boundary):
     sim = gp.Simulation(scene, gp.EventDriven(), seed=3)
     sim.record_events = True
     sim.advance(until=float(data["time"][-1]))
-    times, bodies = sim.events["time"], sim.events["bodies"]
+    times, particles = sim.events["time"], sim.events["particles"]
     last = dict.fromkeys(range(20), np.nan)
     expected = []
-    for time, pair in zip(times, bodies, strict=True):
+    for time, pair in zip(times, particles, strict=True):
         if pair[1] >= 0:
-            expected.append([time - last[body] for body in pair])
-        last.update({body: time for body in pair if body >= 0})
+            expected.append([time - last[particle] for particle in pair])
+        last.update({particle: time for particle in pair if particle >= 0})
     assert np.array_equal(data["free_time"], np.array(expected), equal_nan=True)
-    assert np.array_equal(data["bodies"], bodies[bodies[:, 1] >= 0])
+    assert np.array_equal(data["particles"], particles[particles[:, 1] >= 0])
 
 
 @pytest.fixture(scope="module", params=[2, 3])

@@ -35,10 +35,10 @@ def test_it_exists_along_periodic_axes(tmp_path, boundary, axes):
 
 def test_one_obstacle_does_not_give_discs_a_coefficient(tmp_path):
     container = gp.Container((30.0, 30.0), "periodic")
-    post = gp.Body((15.0, 15.0), (0.0, 0.0), 0.5, fixed=True)
-    for bodies in ([], [post]):
-        (tmp_path / str(len(bodies))).mkdir()
-        path = run(tmp_path / str(len(bodies)), gp.Scene(container, DISCS, bodies), 150.0, 0.5)
+    post = gp.Particle((15.0, 15.0), (0.0, 0.0), 0.5, fixed=True)
+    for particles in ([], [post]):
+        (tmp_path / str(len(particles))).mkdir()
+        path = run(tmp_path / str(len(particles)), gp.Scene(container, DISCS, particles), 150.0, 0.5)
         with pytest.raises(gp.SceneError, match="discs have no diffusion coefficient"):
             A.diffusion_coefficient(path)
 

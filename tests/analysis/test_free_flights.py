@@ -22,12 +22,12 @@ def test_flights_are_those_counted_by_hand():
     sim = recorded(gas(2, 20, 0.2), 80)
     found = gp.analysis.free_flight_times(sim, bins=10)
     events, last, flights = sim.events, {}, []
-    for time, pair, velocities in zip(events["time"], events["bodies"], events["velocities"], strict=True):
-        for body, velocity in zip(pair.tolist(), velocities, strict=True):
-            if body in last:
-                begun, speed = last[body]
-                flights.append((begun, body % 16, time - begun, speed * (time - begun)))
-            last[body] = time, np.linalg.norm(velocity)
+    for time, pair, velocities in zip(events["time"], events["particles"], events["velocities"], strict=True):
+        for particle, velocity in zip(pair.tolist(), velocities, strict=True):
+            if particle in last:
+                begun, speed = last[particle]
+                flights.append((begun, particle % 16, time - begun, speed * (time - begun)))
+            last[particle] = time, np.linalg.norm(velocity)
     mean = (sim.time - events["time"][0]) * 20 / (2 * len(events["time"]))
     flights = np.array([flight for flight in flights if flight[0] < sim.time - COMPLETE * mean])
     groups = [flights[flights[:, 1] == n] for n in range(16)]

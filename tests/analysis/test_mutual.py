@@ -12,7 +12,7 @@ from gaspart.errors import SceneError
 
 def _scene(eta, *kinds, dimension=3, boundary="periodic"):
     volume = sum(
-        kind.count * theory.body_volume(dimension) * (2.0 * kind.radius) ** dimension for kind in kinds
+        kind.count * theory.particle_volume(dimension) * (2.0 * kind.radius) ** dimension for kind in kinds
     )
     return gp.Scene(gp.Container(((volume / eta) ** (1.0 / dimension),) * dimension, boundary), kinds)
 

@@ -15,7 +15,7 @@ A = gp.analysis
 )
 def test_an_obstacle_is_not_counted_and_takes_its_volume(side, dimension, count, reach):
     place = (3.0, 10.0, 5.0)[:dimension]  # across a periodic face
-    post = gp.Body(place, (0.0,) * dimension, reach - 0.05, fixed=True)
+    post = gp.Particle(place, (0.0,) * dimension, reach - 0.05, fixed=True)
     gas = gp.Species(count, 0.05, temperature=1.0)
     scene = gp.Scene(gp.Container((side,) * dimension, "periodic"), [gas], [post])
     simulation = gp.Simulation(scene, gp.EventDriven(), seed=1)
@@ -29,7 +29,7 @@ def test_an_obstacle_is_not_counted_and_takes_its_volume(side, dimension, count,
 
 def test_bins_inside_an_obstacle_are_empty_of_room():
     species = [gp.Species(20, 0.5, temperature=1.0), gp.Species(10, 1.0, temperature=1.0)]
-    lid = gp.Body((15.0, 15.0), (0.0, 0.0), 9.0, fixed=True)
+    lid = gp.Particle((15.0, 15.0), (0.0, 0.0), 9.0, fixed=True)
     scene = gp.Scene(gp.Container((18.0, 30.0), ("periodic", "wall")), species, [lid])
     simulation = gp.Simulation(scene, gp.EventDriven(), seed=1)
     simulation.advance(duration=10.0)

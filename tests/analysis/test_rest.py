@@ -56,8 +56,8 @@ def test_without_rest_the_impulses_balance_gravity(engine):
 
 
 def test_rest_among_obstacles_is_refused(tmp_path):
-    post = gp.Body((10.0, 3.0), (0.0, 0.0), 1.0, fixed=True)
-    path = gp.run(pile(10, bodies=[post]), gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "a.nc")
+    post = gp.Particle((10.0, 3.0), (0.0, 0.0), 1.0, fixed=True)
+    path = gp.run(pile(10, particles=[post]), gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "a.nc")
     with pytest.raises(gp.SceneError, match="particles at rest = .*obstacles may carry"):
         A.wall_pressure(path)
 

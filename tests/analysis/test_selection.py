@@ -17,7 +17,7 @@ def path(tmp_path_factory):
         gp.Species(60, 0.5, temperature=1.0),
         gp.Species(60, 0.5, mass=4.0, temperature=1.0),
     ]
-    alone = gp.Body((4.5, 4.5, 4.5), (0.1, 0.0, 0.0), 0.5, mass=20.0)
+    alone = gp.Particle((4.5, 4.5, 4.5), (0.1, 0.0, 0.0), 0.5, mass=20.0)
     scene = gp.Scene(gp.Container((SIDE,) * 3, "periodic"), kinds, [alone])
     folder = tmp_path_factory.mktemp("selected")
     return gp.run(scene, gp.EventDriven(), 1, 100.0, 0.25, folder / "run.nc", displacements=True)

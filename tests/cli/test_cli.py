@@ -92,20 +92,22 @@ def test_resume_and_info_of_an_unfinished_run(folder, capsys):
         pytest.param(GAS.replace("temp", "mass: -1.0, temp"), [], "mass = -1.0: must be positive", id="mass"),
         pytest.param(GAS.replace("0.5", ".nan"), [], "radius = nan: must be positive", id="NaN"),
         pytest.param(
-            "container: {lengths: [9, 9]}\nbodies:\n"
+            "container: {lengths: [9, 9]}\nparticles:\n"
             "- {position: [3, 3], velocity: [0, 0], radius: 1}\n"
             "- {position: [4, 3], velocity: [0, 0], radius: 1}\n",
             [],
-            r"bodies\[1\]\.position = .*: overlaps bodies\[0\]",
-            id="overlapping bodies",
+            r"particles\[1\]\.position = .*: overlaps particles\[0\]",
+            id="overlapping particles",
         ),
-        pytest.param(GAS.replace("0.5", "7.0"), [], "radius = 7.0: a particle must fit", id="body too large"),
+        pytest.param(
+            GAS.replace("0.5", "7.0"), [], "radius = 7.0: a particle must fit", id="particle too large"
+        ),
         pytest.param(
             GAS, ["--boxes-per-side", "13"], "boxes_per_side = 13: boxes must not", id="narrow boxes"
         ),
         pytest.param(GAS.replace("20", "110"), [], "count = 110: does not fit by random", id="saturation"),
         pytest.param(
-            "container: {lengths: [9, 9]}\n", [], "a run needs at least one particle", id="no bodies"
+            "container: {lengths: [9, 9]}\n", [], "a run needs at least one particle", id="no particles"
         ),
         pytest.param("", [], "scene = None: must be a mapping", id="empty file"),
         pytest.param("a: [1\n", [], "line 2, column 1 = 'the end': is not valid YAML", id="not YAML"),

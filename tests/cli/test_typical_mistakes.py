@@ -16,7 +16,7 @@ seed: 1
 points: results/a
 experiments:
   gas:
-    point: {dimension: 2, count: 50, packing_fraction: 0.1, boundary: periodic, collisions_per_body: 5}
+    point: {dimension: 2, count: 50, packing_fraction: 0.1, boundary: periodic, collisions_per_particle: 5}
 figures: {wall_pressure: {experiments: [gas]}}
 """
 RUN = ["run", "scene.yaml", "-o", "run.nc", "--duration", "1", "--sample-interval", "0.5"]
@@ -107,6 +107,7 @@ MISTAKES = {
     "key twice": (added("gravity: [0, -1]\ngravity: [0, -2]"), "gravity"),
     "misspelt key": (scene("temperature", "temprature"), "unknown key; did you mean temperature?"),
     "misspelt top key": (added("gravitiy: [0.0, -1.0]"), "unknown key; did you mean gravity?"),
+    "older name": (added("bodies: []"), "bodies = []: is called particles now"),
     "plural": (scene("radius", "radii"), "unknown key; did you mean radius?"),
     "no container": (scene("container", "box"), "container = None: is required"),
     "no radius": (scene("radius: 0.5, ", ""), "species[0].radius = None: is required"),
@@ -139,6 +140,10 @@ MISTAKES = {
     # configs
     "misspelt key of a point": (config("count", "cuont"), "unknown key; did you mean count?"),
     "misspelt key of a config": (config("title", "titel"), "unknown key; did you mean title?"),
+    "older key of a point": (
+        config("dimension: 2, ", "dimension: 2, boxes_per_body: 1, "),
+        "boxes_per_particle now",
+    ),
     "missing key of a point": (config("dimension: 2, ", ""), "dimension"),
     "unknown figure": (config("wall_pressure", "wall_presure"), "did you mean wall_pressure?"),
 }

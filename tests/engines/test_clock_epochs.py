@@ -9,9 +9,9 @@ from gaspart.engines.event.clock_epochs import QUIET, Epochs
 
 
 def alone(side, restitution=None, radius=0.5, velocity=(1.0, 0.3), boundary="wall"):
-    particle = gp.Body((0.4 * side, 0.5 * side), velocity, radius)
+    particle = gp.Particle((0.4 * side, 0.5 * side), velocity, radius)
     law = None if restitution is None else gp.Restitution(restitution)
-    return gp.Scene(gp.Container((side, side), boundary), bodies=[particle], restitution=law)
+    return gp.Scene(gp.Container((side, side), boundary), particles=[particle], restitution=law)
 
 
 def test_a_disc_that_has_slowed_down_still_hits_walls():
@@ -45,8 +45,8 @@ def test_splits_and_checkpoints_change_no_bit_of_a_long_flight():
 
 
 def test_a_run_without_possible_events_is_stopped():
-    bodies = [gp.Body((x, 5.0), (1.0, 0.0), 0.5) for x in (2.0, 6.0)]
-    scene = gp.Scene(gp.Container((10.0, 10.0), "periodic"), bodies=bodies)
+    particles = [gp.Particle((x, 5.0), (1.0, 0.0), 0.5) for x in (2.0, 6.0)]
+    scene = gp.Scene(gp.Container((10.0, 10.0), "periodic"), particles=particles)
     sim = gp.Simulation(scene, gp.EventDriven(), seed=1)
     with pytest.raises(gp.SimulationError, match="particles miss one another"):
         sim.advance(max_events=1)
@@ -54,8 +54,8 @@ def test_a_run_without_possible_events_is_stopped():
 
 def together(slower):
     """Two discs that fly almost evenly round a periodic container, 4 apart, and meet after 4 / `slower`."""
-    bodies = [gp.Body((2.0, 5.0), (1.0, 0.0), 0.5), gp.Body((7.0, 5.0), (1.0 - slower, 0.0), 0.5)]
-    return gp.Scene(gp.Container((100.0, 10.0), "periodic"), bodies=bodies)
+    particles = [gp.Particle((2.0, 5.0), (1.0, 0.0), 0.5), gp.Particle((7.0, 5.0), (1.0 - slower, 0.0), 0.5)]
+    return gp.Scene(gp.Container((100.0, 10.0), "periodic"), particles=particles)
 
 
 def test_particles_that_move_together_do_not_miss_one_another():

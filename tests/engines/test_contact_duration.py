@@ -20,17 +20,17 @@ def pile(count=20, side=8.0, normal=0.9, tangential=-1.0, duration=None, **rest)
     return gp.Scene(gp.Container((side, side)), species, gravity=(0.0, -1.0), restitution=law, **rest)
 
 
-def sent(lengths, bodies, law, **rest):
+def sent(lengths, particles, law, **rest):
     """Single discs in a box."""
-    scene = gp.Scene(gp.Container(lengths), bodies=bodies, restitution=law, **rest)
+    scene = gp.Scene(gp.Container(lengths), particles=particles, restitution=law, **rest)
     return gp.Simulation(scene, gp.EventDriven())
 
 
 def test_a_second_contact_within_the_duration_is_elastic():
     """One disc hits two at rest, 0.01 apart: the second contact comes 0.01/0.75 later."""
-    bodies = [gp.Body((x, 5.0), (v, 0.0), 0.5) for x, v in ((20.0, 1.0), (22.0, 0.0), (23.01, 0.0))]
+    particles = [gp.Particle((x, 5.0), (v, 0.0), 0.5) for x, v in ((20.0, 1.0), (22.0, 0.0), (23.01, 0.0))]
     for duration, second in ((0.02, 1.0), (0.01, 0.5), (0.0, 0.5)):
-        sim = sent((60.0, 10.0), bodies, gp.Restitution(0.5, -1.0, duration))
+        sim = sent((60.0, 10.0), particles, gp.Restitution(0.5, -1.0, duration))
         sim.advance(max_events=2, duration=10.0)
         speed = 0.5 * (1.0 + 0.5)  # of the middle disc after the first contact
         expected = [0.25, 0.5 * (1.0 - second) * speed, 0.5 * (1.0 + second) * speed]
@@ -46,9 +46,9 @@ def test_a_second_contact_within_the_duration_is_elastic():
 
 def test_contacts_with_walls_count():
     """A disc hits the floor, and within the duration one at rest above it."""
-    bodies = [gp.Body((5.0, 0.52), (0.0, -1.0), 0.5), gp.Body((5.0, 1.54), (0.0, 0.0), 0.5)]
+    particles = [gp.Particle((5.0, 0.52), (0.0, -1.0), 0.5), gp.Particle((5.0, 1.54), (0.0, 0.0), 0.5)]
     for duration, restitution in ((0.1, 1.0), (0.01, 0.5)):
-        sim = sent((10.0, 10.0), bodies, gp.Restitution(0.5, -1.0, duration))
+        sim = sent((10.0, 10.0), particles, gp.Restitution(0.5, -1.0, duration))
         sim.advance(max_events=2, duration=1.0)
         assert sim.state.velocities[1, 1] == pytest.approx(0.25 * (1.0 + restitution), abs=1e-14)
 
@@ -56,13 +56,13 @@ def test_contacts_with_walls_count():
 def test_an_elastic_contact_has_no_friction():
     """Not even of perfectly rough discs. What friction would have taken is retained."""
     for tangential in (0.5, 1.0):
-        bodies = [
-            gp.Body((20.0, 5.0), (1.0, 0.0), 0.5, spin=3.0),
-            gp.Body((22.0, 5.0), (0.0, 0.0), 0.5),
-            gp.Body((23.01, 5.0), (0.0, 0.0), 0.5),
+        particles = [
+            gp.Particle((20.0, 5.0), (1.0, 0.0), 0.5, spin=3.0),
+            gp.Particle((22.0, 5.0), (0.0, 0.0), 0.5),
+            gp.Particle((23.01, 5.0), (0.0, 0.0), 0.5),
         ]
         law = gp.Restitution(0.5, tangential, 1.0)
-        sim = sent((60.0, 10.0), bodies, law)
+        sim = sent((60.0, 10.0), particles, law)
         sim.advance(max_events=2, duration=10.0)
         assert sim.state.spins[2] == 0.0
         assert sim.tally.elastic_contacts == 1
@@ -131,10 +131,10 @@ def test_without_it_a_collapse_is_reported():
 def test_a_stack_at_rest_stays_at_rest(dimension):
     """Ten particles, each exactly on the one below."""
     place = (2.0,) * (dimension - 1)
-    bodies = [gp.Body((*place, 0.5 + n), (0.0,) * dimension, 0.5) for n in range(10)]
+    particles = [gp.Particle((*place, 0.5 + n), (0.0,) * dimension, 0.5) for n in range(10)]
     gravity = (0.0,) * (dimension - 1) + (-1.0,)
     container = gp.Container((4.0,) * (dimension - 1) + (12.0,))
-    scene = gp.Scene(container, bodies=bodies, gravity=gravity, restitution=gp.Restitution(0.9))
+    scene = gp.Scene(container, particles=particles, gravity=gravity, restitution=gp.Restitution(0.9))
     sim = gp.Simulation(scene, gp.EventDriven())
     sim.record_events = True  # with the kernels of the searches' comparison
     sim.advance(duration=100.0)
@@ -148,8 +148,8 @@ def test_a_stack_at_rest_stays_at_rest(dimension):
 def test_a_disc_that_falls_or_slides_does_not_rest():
     """Only what has contacts, or lies on a wall without a velocity, is at rest."""
     law = gp.Restitution(0.9)
-    bodies = [gp.Body((5.0, 0.5), (1e-4, 0.0), 0.5), gp.Body((8.0, 500.0), (0.0, 0.0), 0.5)]
-    scene = gp.Scene(gp.Container((10.0, 600.0)), bodies=bodies, gravity=(0.0, -1.0), restitution=law)
+    particles = [gp.Particle((5.0, 0.5), (1e-4, 0.0), 0.5), gp.Particle((8.0, 500.0), (0.0, 0.0), 0.5)]
+    scene = gp.Scene(gp.Container((10.0, 600.0)), particles=particles, gravity=(0.0, -1.0), restitution=law)
     sim = gp.Simulation(scene, gp.EventDriven())
     sim.advance(duration=20.0)
     assert sim.state.positions[0, 0] == pytest.approx(5.002, abs=1e-9)
@@ -178,10 +178,10 @@ def test_a_pile_comes_to_rest(seed):
 def test_a_disc_rests_in_a_wedge_of_a_face_and_a_wall():
     """Gravity leads it away from the wall, but along the face into it."""
     wall = gp.Wall((4.530214891767726, 7.530962588563303), (0.30510500663674056, 10.32522599640507))
-    body = gp.Body((0.6, 8.0), (0.0, 0.0), 0.437162361784311)
+    particle = gp.Particle((0.6, 8.0), (0.0, 0.0), 0.437162361784311)
     gravity = (-0.0886183538201192, 0.04633343680553132)
     for law in (gp.Restitution(0.0, 0.9), gp.Restitution(0.5, -1.0, 0.0)):
-        sim = sent((10.0, 13.0), [body], law, gravity=gravity, walls=[wall])
+        sim = sent((10.0, 13.0), [particle], law, gravity=gravity, walls=[wall])
         sim.record_events = True  # with the kernels of the searches' comparison
         sim.advance(duration=1000.0)
         sim.check_invariants()

@@ -63,38 +63,38 @@ def test_compressibility_factor(dimension, eta):
 
 
 def test_a_head_on_collision_is_exact():
-    bodies = [gp.Body((2.0, 5.0), (1.0, 0.0), 0.5), gp.Body((6.0, 5.0), (0.0, 0.0), 0.5)]
-    sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), bodies=bodies), gp.EventDriven())
+    particles = [gp.Particle((2.0, 5.0), (1.0, 0.0), 0.5), gp.Particle((6.0, 5.0), (0.0, 0.0), 0.5)]
+    sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), particles=particles), gp.EventDriven())
     sim.record_events = True
     sim.advance(duration=4.0)
     assert sim.events["time"].tolist() == [3.0]
-    assert sim.events["bodies"].tolist() == [[0, 1]]
+    assert sim.events["particles"].tolist() == [[0, 1]]
     assert sim.state.positions.tolist() == [[5.0, 5.0], [7.0, 5.0]]
     assert sim.state.velocities.tolist() == [[0.0, 0.0], [1.0, 0.0]]
 
 
 def test_a_wall_hit_gives_its_momentum_to_that_face():
-    bodies = [gp.Body((2.0, 5.0), (-1.0, 0.0), 0.5, mass=3.0)]
-    sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), bodies=bodies), gp.EventDriven())
+    particles = [gp.Particle((2.0, 5.0), (-1.0, 0.0), 0.5, mass=3.0)]
+    sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), particles=particles), gp.EventDriven())
     sim.record_events = True
     sim.advance(duration=2.0)
     assert sim.tally.wall_hits.tolist() == [1, 0, 0, 0]
     assert sim.tally.wall_impulse.tolist() == [6.0, 0.0, 0.0, 0.0]
-    assert sim.events["bodies"].tolist() == [[0, -1]]
+    assert sim.events["particles"].tolist() == [[0, -1]]
     assert sim.state.positions.tolist() == [[1.0, 5.0]]
 
 
 def test_centres_reach_the_walls_where_the_scene_says_so():
-    body = gp.Body((2.0, 5.0), (-1.0, 0.0), 0.5)
-    scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=[body], centres_to_walls=True)
+    particle = gp.Particle((2.0, 5.0), (-1.0, 0.0), 0.5)
+    scene = gp.Scene(gp.Container((10.0, 10.0)), particles=[particle], centres_to_walls=True)
     sim = gp.Simulation(scene, gp.EventDriven())
     sim.advance(duration=3.0)
     assert sim.state.positions.tolist() == [[1.0, 5.0]]
 
 
 def test_newtons_cradle_passes_the_momentum_through_touching_discs():
-    row = [gp.Body((4.0 + n, 5.0), (0.0, 0.0), 0.5) for n in range(4)]
-    scene = gp.Scene(gp.Container((20.0, 10.0)), bodies=[gp.Body((1.0, 5.0), (1.0, 0.0), 0.5), *row])
+    row = [gp.Particle((4.0 + n, 5.0), (0.0, 0.0), 0.5) for n in range(4)]
+    scene = gp.Scene(gp.Container((20.0, 10.0)), particles=[gp.Particle((1.0, 5.0), (1.0, 0.0), 0.5), *row])
     sim = gp.Simulation(scene, gp.EventDriven())
     sim.advance(duration=3.0)
     assert sim.state.velocities[:, 0].tolist() == [0.0, 0.0, 0.0, 0.0, 1.0]
@@ -107,8 +107,11 @@ def test_newtons_cradle_passes_the_momentum_through_touching_discs():
 )
 def test_pi_by_billiards(ratio, count):
     """A heavy ball, a light one at rest, a wall: ceil(pi/arctan sqrt(m/M)) - 1 hits (Galperin 2003)."""
-    bodies = [gp.Body((2.0, 1.0), (0.0, 0.0), 0.5), gp.Body((4.0, 1.0), (-1.0, 0.0), 0.5, mass=ratio)]
-    sim = gp.Simulation(gp.Scene(gp.Container((1e3, 2.0)), bodies=bodies), gp.EventDriven())
+    particles = [
+        gp.Particle((2.0, 1.0), (0.0, 0.0), 0.5),
+        gp.Particle((4.0, 1.0), (-1.0, 0.0), 0.5, mass=ratio),
+    ]
+    sim = gp.Simulation(gp.Scene(gp.Container((1e3, 2.0)), particles=particles), gp.EventDriven())
     sim.advance(duration=500.0)
     assert sim.tally.collisions + sim.tally.wall_hits[0] == count
     assert sim.tally.wall_hits[1] == 0
@@ -117,9 +120,9 @@ def test_pi_by_billiards(ratio, count):
 
 def test_two_balls_into_a_cradle_and_two_leave_it():
     """A chain of simultaneous contacts: those that touch are a pair themselves."""
-    row = [gp.Body((x, 5.0), (1.0 if x < 4.0 else 0.0, 0.0), 0.5) for x in (1.0, 2.0, 5.0, 6.0, 7.0)]
+    row = [gp.Particle((x, 5.0), (1.0 if x < 4.0 else 0.0, 0.0), 0.5) for x in (1.0, 2.0, 5.0, 6.0, 7.0)]
     for search in ("boxes", "pairs"):
-        sim = gp.Simulation(gp.Scene(gp.Container((20.0, 10.0)), bodies=row), gp.EventDriven(search))
+        sim = gp.Simulation(gp.Scene(gp.Container((20.0, 10.0)), particles=row), gp.EventDriven(search))
         sim.advance(duration=4.0)
         assert sim.state.velocities[:, 0].tolist() == [0.0, 0.0, 0.0, 1.0, 1.0]
         assert sim.state.positions[:, 0].tolist() == [3.0, 4.0, 5.0, 8.0, 9.0]
@@ -127,16 +130,16 @@ def test_two_balls_into_a_cradle_and_two_leave_it():
 
 
 def test_a_corner_of_three_faces_is_met_at_once():
-    body = gp.Body((5.0,) * 3, (1.0,) * 3, 0.5)
-    sim = gp.Simulation(gp.Scene(gp.Container((10.0,) * 3), bodies=[body]), gp.EventDriven())
+    particle = gp.Particle((5.0,) * 3, (1.0,) * 3, 0.5)
+    sim = gp.Simulation(gp.Scene(gp.Container((10.0,) * 3), particles=[particle]), gp.EventDriven())
     sim.advance(duration=5.5)
     assert sim.tally.wall_hits.tolist() == [0, 1, 0, 1, 0, 1]
     assert sim.state.positions.tolist() == [[8.5] * 3]
 
 
 def test_a_corner_is_two_walls_at_once():
-    body = gp.Body((5.0, 5.0), (1.0, 1.0), 0.5)
-    sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), bodies=[body]), gp.EventDriven())
+    particle = gp.Particle((5.0, 5.0), (1.0, 1.0), 0.5)
+    sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), particles=[particle]), gp.EventDriven())
     sim.advance(duration=5.5)
     assert sim.tally.wall_hits.tolist() == [0, 1, 0, 1]
     assert sim.state.velocities.tolist() == [[-1.0, -1.0]]
@@ -144,18 +147,18 @@ def test_a_corner_is_two_walls_at_once():
 
 
 def test_simultaneous_contacts_come_in_the_order_of_their_indices():
-    # two pairs touch at one instant, and a lone body meets a wall: the wall, then (0, 3), then (1, 2)
-    bodies = [
-        gp.Body((2.0, 2.0), (1.0, 0.0), 0.5),
-        gp.Body((2.0, 6.0), (1.0, 0.0), 0.5),
-        gp.Body((6.0, 6.0), (-1.0, 0.0), 0.5),
-        gp.Body((6.0, 2.0), (-1.0, 0.0), 0.5),
-        gp.Body((8.0, 4.0), (1.0, 0.0), 0.5),
+    # two pairs touch at one instant, and a lone particle meets a wall: the wall, then (0, 3), then (1, 2)
+    particles = [
+        gp.Particle((2.0, 2.0), (1.0, 0.0), 0.5),
+        gp.Particle((2.0, 6.0), (1.0, 0.0), 0.5),
+        gp.Particle((6.0, 6.0), (-1.0, 0.0), 0.5),
+        gp.Particle((6.0, 2.0), (-1.0, 0.0), 0.5),
+        gp.Particle((8.0, 4.0), (1.0, 0.0), 0.5),
     ]
     for search in ("boxes", "direct", "pairs"):
-        sim = events_of(gp.Scene(gp.Container((10.0, 10.0)), bodies=bodies), search, 3)
+        sim = events_of(gp.Scene(gp.Container((10.0, 10.0)), particles=particles), search, 3)
         assert sim.events["time"].tolist() == [1.5, 1.5, 1.5]
-        assert sim.events["bodies"].tolist() == [[4, -2], [0, 3], [1, 2]]
+        assert sim.events["particles"].tolist() == [[4, -2], [0, 3], [1, 2]]
 
 
 @pytest.mark.parametrize("search", ["boxes", "pairs"])
@@ -231,12 +234,12 @@ def test_other_units_give_the_same_bits(what, power):
 
 
 def _given(scene, start, masses, length, time, mass):
-    bodies = [
-        gp.Body(tuple(r * length), tuple(v * (length / time)), 0.5 * length, m * mass)
+    particles = [
+        gp.Particle(tuple(r * length), tuple(v * (length / time)), 0.5 * length, m * mass)
         for r, v, m in zip(start.positions, start.velocities, masses, strict=True)
     ]
     container = replace(scene.container, lengths=tuple(np.array(scene.container.lengths) * length))
-    return gp.Simulation(gp.Scene(container, bodies=bodies), gp.EventDriven())
+    return gp.Simulation(gp.Scene(container, particles=particles), gp.EventDriven())
 
 
 def test_a_mirrored_scene_runs_mirrored_until_chaos_takes_over():
@@ -267,7 +270,7 @@ def test_turned_velocities_run_back_until_chaos_takes_over():
     assert np.allclose(back.state.positions, sim.initial_state.positions, atol=1e-6)
 
 
-def test_bodies_at_rest_stay_there():
+def test_particles_at_rest_stay_there():
     sim = gp.Simulation(gas(3, 20, 0.1, temperature=None), gp.EventDriven(), seed=1)
     sim.advance(duration=1e6)
     assert np.array_equal(sim.state.positions, sim.initial_state.positions)

@@ -129,10 +129,10 @@ def test_two_thousand_random_granular_scenes(first):
 def test_a_row_that_is_pressed_along_a_floor_does_not_meet_ever_more_often():
     """Six discs at rest on a floor, which gravity presses slightly against a wall, and one that bounces off
     the row. They had 3e5 collisions before the time 0.125, ever slower ones in ever smaller gaps."""
-    row = [gp.Body((0.5 + n * (1.0 + 1e-13), 0.5), (0.0, 0.0), 0.5) for n in range(6)]
+    row = [gp.Particle((0.5 + n * (1.0 + 1e-13), 0.5), (0.0, 0.0), 0.5) for n in range(6)]
     scene = gp.Scene(
         gp.Container((12.0, 5.0)),
-        bodies=[*row, gp.Body((8.0, 0.5), (-1.0, 0.0), 0.5)],
+        particles=[*row, gp.Particle((8.0, 0.5), (-1.0, 0.0), 0.5)],
         gravity=(-0.1, -5.0),
         restitution=gp.Restitution(0.95, contact_duration=0.0036),
     )
@@ -146,10 +146,10 @@ def test_a_row_that_is_pressed_along_a_floor_does_not_meet_ever_more_often():
 
 def test_a_stack_stays_at_rest_on_an_interior_wall():
     """Ten discs, each exactly on the one below."""
-    bodies = [gp.Body((5.0, math.pi + 0.5 + n), (0.0, 0.0), 0.5) for n in range(10)]
+    particles = [gp.Particle((5.0, math.pi + 0.5 + n), (0.0, 0.0), 0.5) for n in range(10)]
     scene = gp.Scene(
         gp.Container((10.0, 16.0)),
-        bodies=bodies,
+        particles=particles,
         gravity=(0.0, -1.0),
         restitution=gp.Restitution(0.8, 0.5, contact_duration=0.1),
         walls=[gp.Wall((2.0, math.pi), (8.0, math.pi))],

@@ -17,7 +17,7 @@ def thrown(
     position, velocity, gravity=(0.0, -1.0), lengths=(10.0, 10.0), radius=0.5, boundary="wall", search="boxes"
 ):
     scene = gp.Scene(
-        gp.Container(lengths, boundary), bodies=[gp.Body(position, velocity, radius)], gravity=gravity
+        gp.Container(lengths, boundary), particles=[gp.Particle(position, velocity, radius)], gravity=gravity
     )
     boxes = 8 if search == "boxes" else None
     return gp.Simulation(scene, gp.EventDriven(search, boxes_per_side=boxes))
@@ -65,7 +65,7 @@ def test_bounce_times_of_a_ball_let_go(search):
     sim.advance(duration=40.5)
     fall = math.sqrt(2 * 4.5 / 9.0)
     assert sim.events["time"] == pytest.approx(fall * np.arange(1, 41, 2), rel=1e-14)
-    assert (sim.events["bodies"] == [0, -3]).all()
+    assert (sim.events["particles"] == [0, -3]).all()
     assert sim.events["velocities"][:, 0, 1] == pytest.approx(9.0, rel=1e-14)
 
 
@@ -84,15 +84,15 @@ def test_a_ball_hits_the_ceiling_on_its_way_up():
     sim.record_events = True
     sim.advance(max_events=2)
     up = 5 - math.sqrt(25 - 9)
-    assert sim.events["bodies"][:, 1].tolist() == [-4, -3]
+    assert sim.events["particles"][:, 1].tolist() == [-4, -3]
     down = -4 + math.sqrt(16 + 2 * 9)
     assert sim.events["time"] == pytest.approx([up, up + down], rel=1e-14)
 
 
 def test_two_that_fall_together_meet_as_if_they_did_not():
-    bodies = [gp.Body((2.0, 60.0), (1.0, 0.0), 0.5), gp.Body((6.0, 60.0), (0.0, 0.0), 0.5)]
+    particles = [gp.Particle((2.0, 60.0), (1.0, 0.0), 0.5), gp.Particle((6.0, 60.0), (0.0, 0.0), 0.5)]
     sim = gp.Simulation(
-        gp.Scene(gp.Container((10.0, 100.0)), bodies=bodies, gravity=(0.0, -1.0)), gp.EventDriven()
+        gp.Scene(gp.Container((10.0, 100.0)), particles=particles, gravity=(0.0, -1.0)), gp.EventDriven()
     )
     sim.advance(duration=4.0)
     assert sim.tally.collisions == 1
@@ -100,7 +100,7 @@ def test_two_that_fall_together_meet_as_if_they_did_not():
 
 
 @pytest.mark.parametrize("gravity", [(0.0, -1.0), (0.0, -1e9), (0.0, -1e-60), (0.0, 1e6), (-1.0, -1.0)])
-def test_a_body_at_rest_on_a_floor_stays_there(gravity):
+def test_a_particle_at_rest_on_a_floor_stays_there(gravity):
     place = tuple(0.5 if g <= 0 else 9.5 for g in gravity)
     sim = thrown(place, (0.0, 0.0), gravity=gravity)
     sim.advance(duration=100.0)
@@ -108,12 +108,12 @@ def test_a_body_at_rest_on_a_floor_stays_there(gravity):
     assert sim.tally.wall_hits.sum() == 0
 
 
-def test_a_body_slides_on_a_floor_and_is_pushed_off_it():
-    bodies = [gp.Body((2.0, 0.5), (1.0, 0.0), 0.5), gp.Body((6.0, 1.0), (0.0, 0.0), 1.0)]
-    scene = gp.Scene(gp.Container((40.0, 10.0)), bodies=bodies, gravity=(0.0, -1.0))
+def test_a_particle_slides_on_a_floor_and_is_pushed_off_it():
+    particles = [gp.Particle((2.0, 0.5), (1.0, 0.0), 0.5), gp.Particle((6.0, 1.0), (0.0, 0.0), 1.0)]
+    scene = gp.Scene(gp.Container((40.0, 10.0)), particles=particles, gravity=(0.0, -1.0))
     for search in ("boxes", "direct", "pairs"):
         sim = gp.Simulation(scene, gp.EventDriven(search))
-        meet = 4.0 - math.sqrt(1.5**2 - 0.5**2)  # the large body's centre is higher by a half
+        meet = 4.0 - math.sqrt(1.5**2 - 0.5**2)  # the large particle's centre is higher by a half
         sim.advance(duration=meet - 1e-9)
         assert sim.state.positions[0] == pytest.approx([2 + meet, 0.5], abs=1e-8)
         assert sim.tally.collisions == 0
@@ -123,14 +123,14 @@ def test_a_body_slides_on_a_floor_and_is_pushed_off_it():
         sim.check_invariants()
 
 
-def test_a_falling_body_meets_one_that_lies():
-    bodies = [gp.Body((5.0, 0.5), (0.0, 0.0), 0.5), gp.Body((5.0, 5.5), (0.0, 0.0), 0.5)]
-    scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=bodies, gravity=(0.0, -2.0))
+def test_a_falling_particle_meets_one_that_lies():
+    particles = [gp.Particle((5.0, 0.5), (0.0, 0.0), 0.5), gp.Particle((5.0, 5.5), (0.0, 0.0), 0.5)]
+    scene = gp.Scene(gp.Container((10.0, 10.0)), particles=particles, gravity=(0.0, -2.0))
     sim = gp.Simulation(scene, gp.EventDriven())
     sim.record_events = True
     sim.advance(max_events=2)
     assert sim.events["time"] == pytest.approx([2.0, 2.0])
-    assert sim.events["bodies"].tolist() == [[0, 1], [0, -3]]
+    assert sim.events["particles"].tolist() == [[0, 1], [0, -3]]
 
 
 @pytest.mark.parametrize("speed", [1e-3, 1e-6, 1e-12, 1e-59])
@@ -178,14 +178,14 @@ def test_zero_gravity_is_none_from_the_start(zero):
         replace(scene, gravity=(0.0, 0.0, 0.0))
 
 
-def given_bodies(scene, start, length, time, mass, gravity):
-    bodies = [
-        gp.Body(tuple(r * length), tuple(v * (length / time)), 0.5 * length, m * mass)
+def given_particles(scene, start, length, time, mass, gravity):
+    particles = [
+        gp.Particle(tuple(r * length), tuple(v * (length / time)), 0.5 * length, m * mass)
         for r, v, m in zip(start.positions, start.velocities, start.masses, strict=True)
     ]
     container = replace(scene.container, lengths=tuple(np.array(scene.container.lengths) * length))
     gravity = tuple(g * (length / (time * time)) for g in gravity)
-    return gp.Simulation(gp.Scene(container, bodies=bodies, gravity=gravity), gp.EventDriven())
+    return gp.Simulation(gp.Scene(container, particles=particles, gravity=gravity), gp.EventDriven())
 
 
 @pytest.mark.parametrize("power", [-7, 5])
@@ -195,8 +195,8 @@ def test_other_units_give_the_same_bits(what, power):
     length, time, mass = (factor if what == unit else 1.0 for unit in ("length", "time", "mass"))
     scene, gravity = gas(2, 50, 0.2, "wall"), (0.3, -1.0)
     start = gp.Simulation(scene, gp.EventDriven(), seed=9).initial_state
-    one = given_bodies(scene, start, 1.0, 1.0, 1.0, gravity)
-    other = given_bodies(scene, start, length, time, mass, gravity)
+    one = given_particles(scene, start, 1.0, 1.0, 1.0, gravity)
+    other = given_particles(scene, start, length, time, mass, gravity)
     one.advance(until=20.0)
     other.advance(until=20.0 * time)
     assert np.array_equal(one.state.positions * length, other.state.positions)
@@ -210,7 +210,7 @@ def test_turned_velocities_run_back_until_chaos_takes_over():
     sim.advance(duration=3.0)
     assert sim.tally.collisions > 20
     turned = replace(sim.state, velocities=-sim.state.velocities)
-    back = given_bodies(scene, turned, 1.0, 1.0, 1.0, gravity)
+    back = given_particles(scene, turned, 1.0, 1.0, 1.0, gravity)
     back.record_events = True
     back.advance(duration=3.0)
     assert np.allclose(back.state.positions, sim.initial_state.positions, atol=1e-5)

@@ -15,11 +15,11 @@ COUNT = 4  # of discs in a row
 def row_and_disc(mass, width=float(COUNT)):
     """A row that fills the width of the container with a little energy, and a disc that falls on its second
     one at a time of 3."""
-    row = [gp.Body((0.5 + n, 0.5 + 1e-4 * (n % 2)), (0.01 * (-1) ** n, 0.0), 0.5) for n in range(COUNT)]
-    disc = gp.Body((1.5, 1.5 + 4.5), (0.0, 0.0), 0.5, mass)
+    row = [gp.Particle((0.5 + n, 0.5 + 1e-4 * (n % 2)), (0.01 * (-1) ** n, 0.0), 0.5) for n in range(COUNT)]
+    disc = gp.Particle((1.5, 1.5 + 4.5), (0.0, 0.0), 0.5, mass)
     container = gp.Container((width, 12.0))
     law = gp.Restitution(0.8, 0.3)
-    return gp.Scene(container, bodies=[*row, disc], gravity=(0.0, -1.0), restitution=law)
+    return gp.Scene(container, particles=[*row, disc], gravity=(0.0, -1.0), restitution=law)
 
 
 def in_jam(sim):
@@ -49,7 +49,7 @@ def test_a_row_between_walls_is_held():
     sim.check_invariants()
 
 
-def test_a_light_disc_bounces_off_a_jam_as_off_a_fixed_body():
+def test_a_light_disc_bounces_off_a_jam_as_off_a_fixed_particle():
     sim, speed = before_and_after(1e-3)
     assert np.array_equal(in_jam(sim), [True] * COUNT + [False])
     assert not np.any(sim.state.velocities[:COUNT])

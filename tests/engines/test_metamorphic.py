@@ -1,7 +1,7 @@
-"""What must not matter: units, mirrors, names of axes and of bodies; and how long a run remembers its start.
+"""What must not matter: units, mirrors, names of axes and particles; and how long a run remembers its start.
 
 One scene of two dimensions with all that a contact may have: gravity, restitution, spins, unlike masses
-and moments of inertia, a fixed body, and an interior wall with its ends.
+and moments of inertia, a fixed particle, and an interior wall with its ends.
 """
 
 import math
@@ -19,7 +19,7 @@ ENDS = np.array([[3.0, 2.0], [6.5, 5.0]])
 
 
 def start():
-    """Positions, velocities, spins, masses, radii, moments of inertia and fixity of 24 bodies."""
+    """Positions, velocities, spins, masses, radii, moments of inertia and fixity of 24 particles."""
     kinds = [gp.Species(14, 0.4, 1.0, temperature=1.0), gp.Species(9, 0.25, 3.0, temperature=1.0)]
     kinds += [gp.Species(1, 0.5, fixed=True)]
     scene = gp.Scene(gp.Container(tuple(LENGTHS)), kinds, walls=[gp.Wall(*map(tuple, ENDS))])
@@ -32,13 +32,13 @@ def everything(state, spins, length=1.0, time=1.0, mass=1.0, turn=lambda v: v, p
     """The scene in other units, its vectors turned by `turn`, its places by `place`; hand: -1 if mirrored."""
     place = place or turn
     speed = length / time
-    bodies = []
+    particles = []
     for n in range(state.count):
         fixed = bool(np.isinf(state.masses[n]))
         still = {"fixed": True} if fixed else {"spin": float(hand * spins[n] / time)}
         m = 1.0 if fixed else state.masses[n]
-        bodies.append(
-            gp.Body(
+        particles.append(
+            gp.Particle(
                 tuple(place(state.positions[n]) * length),
                 tuple(turn(state.velocities[n]) * speed),
                 state.radii[n] * length,
@@ -49,7 +49,7 @@ def everything(state, spins, length=1.0, time=1.0, mass=1.0, turn=lambda v: v, p
         )
     scene = gp.Scene(
         gp.Container(tuple(np.abs(turn(LENGTHS)) * length)),
-        bodies=bodies,
+        particles=particles,
         gravity=tuple(turn(GRAVITY) * (speed / time)),
         restitution=gp.Restitution(0.95, 0.4),
         walls=[gp.Wall(*(tuple(place(end) * length) for end in ENDS))],
@@ -74,7 +74,7 @@ def test_units_of_powers_of_two_change_no_bit(what, power):
     energy = mass * (length / time) ** 2
     assert one.tally.dissipated_energy * energy == other.tally.dissipated_energy
     assert np.array_equal(one.tally.wall_impulse * (mass * length / time), other.tally.wall_impulse)
-    assert np.array_equal(one.events["bodies"], other.events["bodies"])
+    assert np.array_equal(one.events["particles"], other.events["particles"])
 
 
 @pytest.mark.parametrize(
@@ -93,7 +93,7 @@ def test_a_mirrored_scene_runs_mirrored_until_chaos_takes_over(turn, place):
     mirror = np.array([(place or turn)(r) for r in one.state.positions])
     assert np.allclose(other.state.positions, mirror, atol=1e-6)
     assert np.allclose(other.state.spins, -one.state.spins, atol=1e-5)
-    assert np.array_equal(other.events["bodies"][:, 0], one.events["bodies"][:, 0])
+    assert np.array_equal(other.events["particles"][:, 0], one.events["particles"][:, 0])
     assert other.tally.dissipated_energy == pytest.approx(one.tally.dissipated_energy, rel=1e-6)
 
 
@@ -110,23 +110,24 @@ def test_other_labels_make_the_same_motion_until_chaos_takes_over():
     assert other.tally.collisions == one.tally.collisions
 
 
-def echo(seed, per_body, count=100):
-    """The rms distance from its start of a gas that ran `per_body` collisions per body, and back."""
+def echo(seed, per_particle, count=100):
+    """The rms distance from its start of a gas that ran `per_particle` collisions per particle, and back."""
     scene = gas(2, count, 0.1, "wall")
     there = gp.Simulation(scene, gp.EventDriven(), seed=seed)
-    while 2 * there.tally.collisions < per_body * count:
+    while 2 * there.tally.collisions < per_particle * count:
         there.advance(duration=0.1)
     turned = there.state
-    bodies = [
-        gp.Body(tuple(r), tuple(-v), 0.5) for r, v in zip(turned.positions, turned.velocities, strict=True)
+    particles = [
+        gp.Particle(tuple(r), tuple(-v), 0.5)
+        for r, v in zip(turned.positions, turned.velocities, strict=True)
     ]
-    back = gp.Simulation(gp.Scene(scene.container, bodies=bodies), gp.EventDriven())
+    back = gp.Simulation(gp.Scene(scene.container, particles=particles), gp.EventDriven())
     back.advance(duration=there.time)
     return math.sqrt(((back.state.positions - there.initial_state.positions) ** 2).sum(axis=1).mean())
 
 
 def test_a_loschmidt_echo_fades_at_the_rate_of_chaos():
-    """Turned round, a gas comes back, but for rounding that grows as e^(lambda s), s collisions per body;
+    """Turned round, a gas comes back, but for rounding that grows as e^(lambda s), s collisions per particle;
     lambda = 2.76 +- 0.01 for discs at a packing fraction of 0.1 between walls (tangent space; cf. van Zon,
     van Beijeren & Dellago, Phys. Rev. Lett. 80, 2035 (1998)). An engine that never forgets is replaying."""
     short, long = (np.log([echo(seed, s) for seed in range(8)]) for s in (3.0, 8.0))

@@ -17,9 +17,9 @@ _PARTED = 1e-9  # time after a contact from which the next one is looked for
 
 def ball(piston, x, velocity, face="y_high", masses=1.0):
     """One ball between a piston and a wall, and a species of no particle."""
-    body = gp.Body((2.0, x), (0.0, velocity), RADIUS, mass=masses)
+    particle = gp.Particle((2.0, x), (0.0, velocity), RADIUS, mass=masses)
     container = gp.Container((4.0, SIDE), ("periodic", "wall"))
-    return gp.Scene(container, bodies=[body], faces={face: piston})
+    return gp.Scene(container, particles=[particle], faces={face: piston})
 
 
 def roots(*coefficients):
@@ -70,7 +70,7 @@ def test_a_ball_and_a_piston_meet_as_computed_otherwise(face, mass, pressure, he
     sim.record_events = True
     sim.advance(max_events=60)
     number = 2 if face == "y_low" else 3
-    hits = sim.events["bodies"][:, 1] == -1 - number
+    hits = sim.events["particles"][:, 1] == -1 - number
     places = sim.events["positions"][hits, 0, 1]
     heights = places - RADIUS if face == "y_low" else SIDE - RADIUS - places
     after = inwards * sim.events["velocities"][hits, 0, 1]

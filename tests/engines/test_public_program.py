@@ -10,7 +10,7 @@ import gaspart as gp
 
 @pytest.mark.parametrize("boxes_per_side", [1, 2, 3, 4, 7, 11])
 def test_interior_walls_are_there_in_any_number_of_sectors(boxes_per_side):
-    """There, bodies pass through them from 3 x 3 sectors up."""
+    """There, particles pass through them from 3 x 3 sectors up."""
     wall = gp.Wall((6.0, 0.0), (6.0, 12.0))
     for x, v in ((2.0, 1.0), (10.0, -1.0)):  # from both sides
         sim = sent((x, 6.1), (v, 0.0), [wall], boxes_per_side=boxes_per_side)
@@ -24,14 +24,14 @@ def test_interior_walls_are_there_in_any_number_of_sectors(boxes_per_side):
 @pytest.mark.parametrize("degrees", [0, 10, 45, 80])
 @pytest.mark.parametrize("boxes_per_side", [1, 5])
 def test_the_ends_of_walls_are_solid(degrees, boxes_per_side):
-    """There, bodies pass through them. A body that comes along y at an impact parameter b = R sin(a) from
-    the end leaves at the angle 2a."""
+    """There, particles pass through them. A particle that comes along y at an impact parameter b = R sin(a)
+    from the end leaves at the angle 2a."""
     a = math.radians(degrees)
     wall = gp.Wall((6.0, 6.0), (6.0, 11.0))  # its lower end is in the way
     sim = sent((6.0 + 0.5 * math.sin(a), 2.0), (0.0, 1.0), [wall], boxes_per_side=boxes_per_side)
     sim.record_events = True
     sim.advance(max_events=1)
-    assert sim.events["bodies"].tolist() == [[0, -5]]
+    assert sim.events["particles"].tolist() == [[0, -5]]
     assert sim.events["time"] == pytest.approx([4.0 - 0.5 * math.cos(a)], rel=1e-14)
     expected = [math.sin(2 * a), -math.cos(2 * a)]
     assert sim.state.velocities[0] == pytest.approx(expected, abs=1e-14)
@@ -51,7 +51,7 @@ def test_a_run_stops_exactly_when_it_should():
 @pytest.mark.parametrize(
     ("position", "problem"),
     [
-        ((6.0, 6.4), "overlaps bodies"),
+        ((6.0, 6.4), "overlaps particles"),
         ((0.4, 6.0), "completely inside the container"),
         ((9.0, 2.3), "overlaps walls"),
     ],

@@ -11,17 +11,17 @@ GAP = 1e-6  # below each disc of a column
 
 def column(x, count):
     """Discs one upon the other."""
-    return [gp.Body((x, (0.5 + GAP) + (1.0 + GAP) * n), (0.0, 0.0), 0.5) for n in range(count)]
+    return [gp.Particle((x, (0.5 + GAP) + (1.0 + GAP) * n), (0.0, 0.0), 0.5) for n in range(count)]
 
 
 def slider(x, speed):
     """A disc that slides on the floor."""
-    return gp.Body((x, 0.5), (speed, 0.0), 0.5)
+    return gp.Particle((x, 0.5), (speed, 0.0), 0.5)
 
 
-def falling(bodies, boundary="wall"):
+def falling(particles, boundary="wall"):
     container = gp.Container((10.0, 6.0), (boundary, "wall"))
-    return gp.Scene(container, bodies=bodies, gravity=(0.0, -1.0), restitution=gp.Restitution(0.5))
+    return gp.Scene(container, particles=particles, gravity=(0.0, -1.0), restitution=gp.Restitution(0.5))
 
 
 def column_and_slider():
@@ -87,8 +87,8 @@ def test_splits_and_checkpoints_change_no_bit():
 
 def test_columns_that_touch_rest_and_wake_together():
     """Two touch through a periodic face, a third stands alone, and is hit."""
-    bodies = [*column(0.5, 2), *column(9.5, 2), *column(4.0, 2), slider(6.0, -0.5)]
-    sim = gp.Simulation(falling(bodies, "periodic"), gp.EventDriven())
+    particles = [*column(0.5, 2), *column(9.5, 2), *column(4.0, 2), slider(6.0, -0.5)]
+    sim = gp.Simulation(falling(particles, "periodic"), gp.EventDriven())
     sim.advance(until=1.5)
     island = sim.checkpoint()["contact_island"]
     assert len(set(island[:4])) == 1 and island[4] == island[5] != island[0]

@@ -1,4 +1,4 @@
-"""Inelastic and rough contacts, spins and fixed bodies, against closed formulae and conservation laws."""
+"""Inelastic and rough contacts, spins and fixed particles, against closed formulae and conservation laws."""
 
 import math
 from dataclasses import replace
@@ -46,12 +46,15 @@ def test_smooth_and_elastic_is_the_plain_engine():
         sim.advance(duration=20.0)
         ends.append(sim.state.positions)
     assert np.array_equal(*ends)
-    # and the law's own code, brought in by a fixed body out of reach, agrees with it to rounding
-    body = gp.Body((2.0, 5.0), (1.0, 0.2), 0.5, mass=2.0)
-    other, far = gp.Body((6.0, 5.1), (0.0, 0.0), 0.5), gp.Body((1.0, 1.0), (0.0, 0.0), 0.2, fixed=True)
+    # and the law's own code, brought in by a fixed particle out of reach, agrees with it to rounding
+    particle = gp.Particle((2.0, 5.0), (1.0, 0.2), 0.5, mass=2.0)
+    other, far = (
+        gp.Particle((6.0, 5.1), (0.0, 0.0), 0.5),
+        gp.Particle((1.0, 1.0), (0.0, 0.0), 0.2, fixed=True),
+    )
     ends = []
-    for bodies in ([body, other], [body, other, far]):
-        sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), bodies=bodies), gp.EventDriven())
+    for particles in ([particle, other], [particle, other, far]):
+        sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), particles=particles), gp.EventDriven())
         sim.advance(duration=7.0)
         assert sim.tally.collisions == 1
         ends.append(sim.state.positions[:2])
@@ -59,8 +62,8 @@ def test_smooth_and_elastic_is_the_plain_engine():
 
 
 def collided(law, one, other, side=40.0):
-    """The state just after two bodies, placed by hand, have met."""
-    scene = gp.Scene(gp.Container((side,) * len(one.position)), bodies=[one, other], restitution=law)
+    """The state just after two particles, placed by hand, have met."""
+    scene = gp.Scene(gp.Container((side,) * len(one.position)), particles=[one, other], restitution=law)
     sim = gp.Simulation(scene, gp.EventDriven())
     sim.advance(max_events=1)
     assert sim.tally.collisions == 1
@@ -78,8 +81,8 @@ def test_a_rough_contact_follows_the_closed_formulae(dimension, law):
         if dimension == 2
         else [tuple(s) for s in rng.normal(size=(2, 3))]
     )
-    one = gp.Body((20.0,) * dimension, (1.0, 0.3, -0.2)[:dimension], 1.5, 2.0, turn[0], 0.7)
-    other = gp.Body((24.0, 20.5, 21.0)[:dimension], (-1.0, 0.1, -0.6)[:dimension], 0.6, 5.0, turn[1], 1.9)
+    one = gp.Particle((20.0,) * dimension, (1.0, 0.3, -0.2)[:dimension], 1.5, 2.0, turn[0], 0.7)
+    other = gp.Particle((24.0, 20.5, 21.0)[:dimension], (-1.0, 0.1, -0.6)[:dimension], 0.6, 5.0, turn[1], 1.9)
     sim = collided(law, one, other)
     before, after = sim.initial_state, sim.state
 
@@ -119,8 +122,8 @@ def test_a_rough_contact_follows_the_closed_formulae(dimension, law):
 
 def test_equal_rough_discs_exchange_their_surface_velocities():
     """Equal masses, all of it in the rim (I = m R^2), perfectly rough: a grazing pair swaps v and R w."""
-    one = gp.Body((5.0, 5.0), (1.0, 0.0), 0.5, 1.0, 0.0, 0.25)
-    other = gp.Body((8.0, 5.0), (0.0, 0.0), 0.5, 1.0, 2.0, 0.25)
+    one = gp.Particle((5.0, 5.0), (1.0, 0.0), 0.5, 1.0, 0.0, 0.25)
+    other = gp.Particle((8.0, 5.0), (0.0, 0.0), 0.5, 1.0, 2.0, 0.25)
     sim = collided(gp.Restitution(1.0, 1.0), one, other)
     # surfaces slide at R w = 1; the impulse is -2/(2 + 2) of that
     assert sim.state.velocities == pytest.approx(np.array([[0.0, -0.5], [1.0, 0.5]]), abs=1e-14)
@@ -131,9 +134,9 @@ def test_equal_rough_discs_exchange_their_surface_velocities():
 def test_a_wall_hit_follows_its_formula(law):
     """Spencer 2022, Eq. 40, at the upper y wall."""
     law, m, radius, inertia, spin = gp.Restitution(*law), 3.0, 0.5, 0.2, 1.7
-    body = gp.Body((5.0, 5.0), (1.0, 2.0), radius, m, spin, inertia)
+    particle = gp.Particle((5.0, 5.0), (1.0, 2.0), radius, m, spin, inertia)
     sim = gp.Simulation(
-        gp.Scene(gp.Container((10.0, 10.0)), bodies=[body], restitution=law), gp.EventDriven()
+        gp.Scene(gp.Container((10.0, 10.0)), particles=[particle], restitution=law), gp.EventDriven()
     )
     sim.advance(max_events=1)
     slide = 1.0 - radius * spin  # v + R w x n, n = y
@@ -153,9 +156,9 @@ def test_a_superball_between_floor_and_ceiling_comes_back():
     of floor, table and floor nearly turn its way round, where a smooth ball would go on."""
     way = {}
     for tangential in (-1.0, 1.0):
-        ball = gp.Body((50.0, 1.0, 50.0), (1.0, -2.0, 0.0), 0.5)
+        ball = gp.Particle((50.0, 1.0, 50.0), (1.0, -2.0, 0.0), 0.5)
         scene = gp.Scene(
-            gp.Container((100.0, 3.0, 100.0)), bodies=[ball], restitution=gp.Restitution(1.0, tangential)
+            gp.Container((100.0, 3.0, 100.0)), particles=[ball], restitution=gp.Restitution(1.0, tangential)
         )
         sim = gp.Simulation(scene, gp.EventDriven())
         sim.advance(max_events=3)
@@ -164,12 +167,14 @@ def test_a_superball_between_floor_and_ceiling_comes_back():
     assert way[1.0] < -0.3
 
 
-def test_a_fixed_body_is_a_wall():
+def test_a_fixed_particle_is_a_wall():
     for dimension in (2, 3):
-        post = gp.Body((5.0,) * dimension, (0.0,) * dimension, 1.0, fixed=True)
-        ball = gp.Body((2.0,) + (5.0,) * (dimension - 1), (1.0,) + (0.0,) * (dimension - 1), 0.5, mass=7.0)
+        post = gp.Particle((5.0,) * dimension, (0.0,) * dimension, 1.0, fixed=True)
+        ball = gp.Particle(
+            (2.0,) + (5.0,) * (dimension - 1), (1.0,) + (0.0,) * (dimension - 1), 0.5, mass=7.0
+        )
         sim = gp.Simulation(
-            gp.Scene(gp.Container((10.0,) * dimension), bodies=[post, ball]), gp.EventDriven()
+            gp.Scene(gp.Container((10.0,) * dimension), particles=[post, ball]), gp.EventDriven()
         )
         sim.advance(duration=2.5)
         assert sim.tally.collisions == 1
@@ -181,9 +186,9 @@ def test_a_fixed_body_is_a_wall():
 
 def test_a_ball_falls_on_a_fixed_one_and_bounces_back():
     """Dropped just off the top: |r(t)| = sigma decides when, and the rebound is about that normal."""
-    post = gp.Body((5.0, 2.0), (0.0, 0.0), 1.0, fixed=True)
-    ball = gp.Body((5.3, 8.0), (0.0, 0.0), 0.5)
-    scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=[post, ball], gravity=(0.0, -2.0))
+    post = gp.Particle((5.0, 2.0), (0.0, 0.0), 1.0, fixed=True)
+    ball = gp.Particle((5.3, 8.0), (0.0, 0.0), 0.5)
+    scene = gp.Scene(gp.Container((10.0, 10.0)), particles=[post, ball], gravity=(0.0, -2.0))
     for search in ("boxes", "direct", "pairs"):
         sim = gp.Simulation(scene, gp.EventDriven(search))
         sim.record_events = True
@@ -200,9 +205,9 @@ def test_a_ball_falls_on_a_fixed_one_and_bounces_back():
 @pytest.mark.parametrize("normal", [0.0, 0.5, 0.9])
 def test_a_ball_on_a_floor_comes_to_rest(normal):
     """Bounce times are a geometric series, with an end: t = sqrt(2h/g) (1 + e)/(1 - e). Then it lies."""
-    body = gp.Body((5.0, 2.5), (0.25, 0.0), 0.5)
+    particle = gp.Particle((5.0, 2.5), (0.25, 0.0), 0.5)
     law = gp.Restitution(normal, contact_duration=0.0)
-    scene = gp.Scene(gp.Container((400.0, 10.0)), bodies=[body], gravity=(0.0, -1.0), restitution=law)
+    scene = gp.Scene(gp.Container((400.0, 10.0)), particles=[particle], gravity=(0.0, -1.0), restitution=law)
     end = 2.0 * (1 + normal) / (1 - normal)
     sim = gp.Simulation(scene, gp.EventDriven())
     sim.record_events = True
@@ -219,8 +224,8 @@ def test_a_ball_on_a_floor_comes_to_rest(normal):
 def test_collapse_is_reported_with_the_state_kept(middle, normal):
     """Three on a line with e < 7 - 4 sqrt 3 = 0.0718 meet infinitely often (McNamara & Young, Phys. Fluids
     A 4, 496 (1992))."""
-    bodies = [gp.Body((x, 1.0), (v, 0.0), 0.5) for x, v in ((2.5, 1.0), (5.0, middle), (7.0, -1.0))]
-    scene = gp.Scene(gp.Container((10.0, 2.0)), bodies=bodies, restitution=gp.Restitution(normal))
+    particles = [gp.Particle((x, 1.0), (v, 0.0), 0.5) for x, v in ((2.5, 1.0), (5.0, middle), (7.0, -1.0))]
+    scene = gp.Scene(gp.Container((10.0, 2.0)), particles=particles, restitution=gp.Restitution(normal))
     for search in ("boxes", "pairs"):
         sim = gp.Simulation(scene, gp.EventDriven(search))
         with pytest.raises(gp.SimulationError, match="collapse"):
@@ -234,8 +239,8 @@ def test_collapse_is_reported_with_the_state_kept(middle, normal):
 
 def test_a_collapse_comes_at_the_same_event_however_often_the_run_is_resumed():
     """The watch's counts are in the checkpoint; without them a run resumed in time would never collapse."""
-    bodies = [gp.Body((x, 1.0), (v, 0.0), 0.5) for x, v in ((2.5, 1.0), (5.0, 0.0), (7.0, -1.0))]
-    scene = gp.Scene(gp.Container((10.0, 2.0)), bodies=bodies, restitution=gp.Restitution(0.05))
+    particles = [gp.Particle((x, 1.0), (v, 0.0), 0.5) for x, v in ((2.5, 1.0), (5.0, 0.0), (7.0, -1.0))]
+    scene = gp.Scene(gp.Container((10.0, 2.0)), particles=particles, restitution=gp.Restitution(0.05))
     whole, resumed = (gp.Simulation(scene, gp.EventDriven()) for _ in range(2))
     with pytest.raises(gp.SimulationError, match="collapse"):
         whole.advance(duration=10.0)
@@ -250,32 +255,34 @@ def test_a_collapse_comes_at_the_same_event_however_often_the_run_is_resumed():
 def test_events_tell_spins(dimension):
     scene = replace(gas(dimension, 20, 0.1, "wall"), restitution=gp.Restitution(0.9, 0.5))
     sim = events_of(scene, "boxes", 100)
-    spins, bodies = sim.events["spins"], sim.events["bodies"]
+    spins, particles = sim.events["spins"], sim.events["particles"]
     assert spins.shape == (100, 2) + (3,) * (dimension == 3)
-    assert np.array_equal(np.isnan(spins[:, 1]).reshape(100, -1).any(axis=1), bodies[:, 1] < 0)
+    assert np.array_equal(np.isnan(spins[:, 1]).reshape(100, -1).any(axis=1), particles[:, 1] < 0)
     last = {
-        body: spin
-        for pair, of in zip(bodies, spins, strict=True)
-        for body, spin in zip(pair, of, strict=True)
+        particle: spin
+        for pair, of in zip(particles, spins, strict=True)
+        for particle, spin in zip(pair, of, strict=True)
     }
-    for body in range(20):
-        assert np.array_equal(sim.state.spins[body], last.get(body, 0 * sim.state.spins[body]))
+    for particle in range(20):
+        assert np.array_equal(sim.state.spins[particle], last.get(particle, 0 * sim.state.spins[particle]))
     smooth = events_of(replace(scene, restitution=gp.Restitution(0.9)), "boxes", 10)
     assert "spins" not in smooth.events
 
 
 def test_a_stack_at_rest_is_reported_not_looped_over():
-    bodies = [gp.Body((5.0, 0.5), (0.0, 0.0), 0.5), gp.Body((5.0, 1.5), (0.0, 0.0), 0.5)]
-    scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=bodies, gravity=(0.0, -1.0))
+    particles = [gp.Particle((5.0, 0.5), (0.0, 0.0), 0.5), gp.Particle((5.0, 1.5), (0.0, 0.0), 0.5)]
+    scene = gp.Scene(gp.Container((10.0, 10.0)), particles=particles, gravity=(0.0, -1.0))
     sim = gp.Simulation(scene, gp.EventDriven())
     with pytest.raises(gp.SimulationError, match=": a stack at rest; the state"):
         sim.advance(duration=1.0)
 
 
-def test_bodies_that_stick_fly_on_together():
+def test_particles_that_stick_fly_on_together():
     """e = 0, head on: they stay together and never meet again for rounding's sake."""
     sim = collided(
-        gp.Restitution(0.0), gp.Body((5.0, 5.3), (1.0, 0.1), 0.5), gp.Body((9.0, 5.3), (0.3, 0.1), 0.5)
+        gp.Restitution(0.0),
+        gp.Particle((5.0, 5.3), (1.0, 0.1), 0.5),
+        gp.Particle((9.0, 5.3), (0.3, 0.1), 0.5),
     )
     assert sim.state.velocities == pytest.approx(np.array([[0.65, 0.1], [0.65, 0.1]]), rel=1e-13)
     sim.advance(duration=20.0)
@@ -283,7 +290,7 @@ def test_bodies_that_stick_fly_on_together():
 
 
 def test_haffs_law():
-    """While the gas is uniform, T(s) = T0 exp(-(1 - e^2) s / d) by collisions per body, and by the time
+    """While the gas is uniform, T(s) = T0 exp(-(1 - e^2) s / d) by collisions per particle, and by the time
     T(t) = T0 / (1 + t/tau)^2 with tau = 2 d / ((1 - e^2) times the collision rate at the start); Haff, J.
     Fluid Mech. 134, 401 (1983)."""
     count, e, eta = 1000, 0.9, 0.05
@@ -292,9 +299,9 @@ def test_haffs_law():
     tau = 2 * 2 / ((1 - e**2) * float(theory.collision_rate(eta, 2)))
     for _ in range(4):
         sim.advance(max_events=count * 10 // 4)
-        per_body = 2 * sim.tally.collisions / count
+        per_particle = 2 * sim.tally.collisions / count
         ratio = sim.state.kinetic_energy / sim.initial_state.kinetic_energy
-        rate = -math.log(ratio) / (per_body * (1 - e**2) / 2)
+        rate = -math.log(ratio) / (per_particle * (1 - e**2) / 2)
         assert rate == pytest.approx(1.0, abs=0.03)
         assert (ratio**-0.5 - 1.0) * tau / sim.time == pytest.approx(1.0, abs=0.05)
 
@@ -338,12 +345,12 @@ def test_checkpoints_keep_spins_and_losses():
         ({"species": [{"count": 1, "radius": 0.5, "fixed": True, "speed": 1.0}]}, "species[0].speed"),
         ({"species": [{"count": 1, "radius": 0.5, "fixed": 1}]}, "species[0].fixed"),
         (
-            {"bodies": [{"position": [5, 5], "velocity": [1, 0], "radius": 1, "fixed": True}]},
-            "bodies[0].velocity",
+            {"particles": [{"position": [5, 5], "velocity": [1, 0], "radius": 1, "fixed": True}]},
+            "particles[0].velocity",
         ),
         (
-            {"bodies": [{"position": [5, 5], "velocity": [1, 0], "radius": 1, "spin": [1, 0, 0]}]},
-            "bodies[0].spin",
+            {"particles": [{"position": [5, 5], "velocity": [1, 0], "radius": 1, "spin": [1, 0, 0]}]},
+            "particles[0].spin",
         ),
     ],
 )
@@ -357,7 +364,7 @@ def test_files_and_the_other_engine():
     scene = gp.Scene(
         gp.Container((10.0, 10.0)),
         [gp.Species(1, 0.5, fixed=True)],
-        [gp.Body((5.0, 5.0), (0.0, 0.0), 0.5, spin=2.0, moment_of_inertia=0.1)],
+        [gp.Particle((5.0, 5.0), (0.0, 0.0), 0.5, spin=2.0, moment_of_inertia=0.1)],
         restitution=gp.Restitution(0.5, 0.5),
     )
     assert gp.Scene.from_dict(scene.to_dict()) == scene
@@ -375,9 +382,9 @@ def test_elastic_particles_do_not_collapse(radius):
     """A small disc flies exactly between two fixed discs that touch. The circles on which its centre may be
     meet at an angle 2 a, sin(a) = sqrt((R + r)^2 - R^2)/(R + r): unfolded, its path crosses pi/(2 a) walls at
     one time, and it returns as it came."""
-    bodies = [gp.Body((6.0, y), (0.0, 0.0), 1.0, fixed=True) for y in (5.0, 7.0)]
-    bodies.append(gp.Body((2.0, 6.0), (1.0, 0.0), radius))
-    sim = gp.Simulation(gp.Scene(gp.Container((12.0, 12.0)), bodies=bodies), gp.EventDriven())
+    particles = [gp.Particle((6.0, y), (0.0, 0.0), 1.0, fixed=True) for y in (5.0, 7.0)]
+    particles.append(gp.Particle((2.0, 6.0), (1.0, 0.0), radius))
+    sim = gp.Simulation(gp.Scene(gp.Container((12.0, 12.0)), particles=particles), gp.EventDriven())
     sim.advance(until=4.5)
     angle = math.asin(math.sqrt(radius * (2.0 + radius)) / (1.0 + radius))
     assert sim.tally.collisions == math.floor(0.5 * math.pi / angle + 0.5)

@@ -8,7 +8,7 @@ import gaspart as gp
 from gaspart import theory
 
 
-def measured(eta, time_step, body_steps, **settings):
+def measured(eta, time_step, particle_steps, **settings):
     """Relative errors of Z and of the collision rate of spheres, each with its standard error."""
     count, blocks = 4000, 16
     scene = gas(3, count, eta, arrangement="lattice")
@@ -20,7 +20,7 @@ def measured(eta, time_step, body_steps, **settings):
     found = []
     for _ in range(blocks):
         sim.reset_tally()
-        sim.advance(duration=body_steps / count / blocks * time_step)
+        sim.advance(duration=particle_steps / count / blocks * time_step)
         tally = sim.tally
         z = 1 + tally.virial_sum / (twice_energy * tally.time)
         rate = 2 * tally.collisions / count / tally.time
@@ -30,10 +30,10 @@ def measured(eta, time_step, body_steps, **settings):
 
 @pytest.mark.thorough
 @pytest.mark.parametrize(
-    ("eta", "time_step", "body_steps"), [(0.01, 0.03, 2e8), (0.1, 0.01, 8e7), (0.3, 0.008, 6e7)]
+    ("eta", "time_step", "particle_steps"), [(0.01, 0.03, 2e8), (0.1, 0.01, 8e7), (0.3, 0.008, 6e7)]
 )
-def test_small_steps_agree_with_theory(eta, time_step, body_steps):
-    error, sigma = measured(eta, time_step, body_steps)
+def test_small_steps_agree_with_theory(eta, time_step, particle_steps):
+    error, sigma = measured(eta, time_step, particle_steps)
     assert (sigma < 2e-3).all()
     assert (abs(error) < 3 * sigma).all()
 

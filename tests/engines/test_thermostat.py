@@ -60,9 +60,12 @@ def test_kicks_give_the_power_and_keep_the_momentum(dimension):
 
 
 def test_a_fixed_particle_is_not_kicked():
-    bodies = [gp.Body((2.0, 2.0), (0.0, 0.0), 0.5, fixed=True), gp.Body((5.0, 5.0), (0.0, 0.0), 0.5)]
-    bodies.append(gp.Body((8.0, 2.0), (0.0, 0.0), 0.5))
-    scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=bodies, thermostat=gp.Thermostat(1.0, 0.1))
+    particles = [
+        gp.Particle((2.0, 2.0), (0.0, 0.0), 0.5, fixed=True),
+        gp.Particle((5.0, 5.0), (0.0, 0.0), 0.5),
+    ]
+    particles.append(gp.Particle((8.0, 2.0), (0.0, 0.0), 0.5))
+    scene = gp.Scene(gp.Container((10.0, 10.0)), particles=particles, thermostat=gp.Thermostat(1.0, 0.1))
     sim = gp.Simulation(scene, gp.EventDriven(), seed=1)
     sim.advance(duration=0.15)
     velocities = sim.state.velocities

@@ -82,9 +82,12 @@ def test_energy_is_kept_to_rounding(precision, rounding):
 
 
 def test_a_rewound_collision_is_exact():
-    """Wherever in the step the contact falls, the bodies go on as if it had been met exactly."""
-    bodies = [gp.Body((2.0, 5.0), (1.0, 0.1), 0.5), gp.Body((6.0, 5.4), (-0.5, 0.0), 0.5, mass=3.0)]
-    scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=bodies)
+    """Wherever in the step the contact falls, the particles go on as if it had been met exactly."""
+    particles = [
+        gp.Particle((2.0, 5.0), (1.0, 0.1), 0.5),
+        gp.Particle((6.0, 5.4), (-0.5, 0.0), 0.5, mass=3.0),
+    ]
+    scene = gp.Scene(gp.Container((10.0, 10.0)), particles=particles)
     exact = gp.Simulation(scene, gp.EventDriven())
     exact.advance(duration=3.0)
     for time_step in (0.25, 0.03, 0.001):
@@ -96,7 +99,7 @@ def test_a_rewound_collision_is_exact():
 
 
 @pytest.mark.parametrize("boundary", ["wall", "periodic"])
-def test_few_bodies_follow_the_event_driven_engine(boundary):
+def test_few_particles_follow_the_event_driven_engine(boundary):
     scene = gas(2, 6, 0.1, boundary)
     exact = gp.Simulation(scene, gp.EventDriven(), seed=7)
     exact.advance(duration=5.0)
@@ -138,8 +141,8 @@ def test_compressibility_factor_at_a_small_step():
 
 
 def test_walls_reflect_exactly():
-    body = gp.Body((2.0, 5.0), (-1.0, 0.5), 0.5, mass=3.0)
-    sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), bodies=[body]), gp.TimeStepped(0.25))
+    particle = gp.Particle((2.0, 5.0), (-1.0, 0.5), 0.5, mass=3.0)
+    sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), particles=[particle]), gp.TimeStepped(0.25))
     sim.advance(duration=4.0)
     assert sim.state.positions.tolist() == [[3.0, 7.0]]
     assert sim.tally.wall_hits.tolist() == [1, 0, 0, 0]
@@ -148,8 +151,10 @@ def test_walls_reflect_exactly():
 
 @pytest.mark.parametrize("boundary", ["wall", "periodic"])
 def test_a_step_longer_than_the_container_leaves_no_particle_outside(boundary):
-    body = gp.Body((2.0, 5.0), (130.0, 0.0), 0.5)
-    sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0), boundary), bodies=[body]), gp.TimeStepped(1.0))
+    particle = gp.Particle((2.0, 5.0), (130.0, 0.0), 0.5)
+    sim = gp.Simulation(
+        gp.Scene(gp.Container((10.0, 10.0), boundary), particles=[particle]), gp.TimeStepped(1.0)
+    )
     for _ in range(20):
         sim.advance(duration=1.0)
         assert 0 <= sim.state.positions[0, 0] <= 10
@@ -157,9 +162,12 @@ def test_a_step_longer_than_the_container_leaves_no_particle_outside(boundary):
 
 @pytest.mark.parametrize("normal", [0.0, 0.5, 0.9])
 def test_inelastic_contacts_follow_the_event_driven_engine(normal):
-    """Two bodies among walls: what each contact and each wall takes, and where the bodies are then."""
-    bodies = [gp.Body((2.0, 5.0), (1.0, 0.1), 0.5), gp.Body((6.0, 5.4), (-0.5, 0.0), 0.5, mass=3.0)]
-    scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=bodies, restitution=gp.Restitution(normal))
+    """Two particles among walls: what each contact and each wall takes, and where the particles are then."""
+    particles = [
+        gp.Particle((2.0, 5.0), (1.0, 0.1), 0.5),
+        gp.Particle((6.0, 5.4), (-0.5, 0.0), 0.5, mass=3.0),
+    ]
+    scene = gp.Scene(gp.Container((10.0, 10.0)), particles=particles, restitution=gp.Restitution(normal))
     exact, sim = gp.Simulation(scene, gp.EventDriven()), gp.Simulation(scene, gp.TimeStepped(0.02))
     for each in (exact, sim):
         each.advance(duration=20.0)
@@ -233,15 +241,15 @@ def test_what_it_cannot_do_it_refuses():
         sim.record_events = True
 
 
-def test_more_bodies_than_a_list_can_tell_are_refused():
+def test_more_particles_than_a_list_can_tell_are_refused():
     with pytest.raises(gp.SceneError, match="at most"):
         check_scene(gas(3, 8, 0.1), SimpleNamespace(count=2**28), None)
 
 
 def test_a_bouncing_ball_follows_its_parabolas():
     """Whatever the step, the ball is where the event-driven engine has it; many bounces fit into one step."""
-    ball = gp.Body((2.0, 3.0), (1.0, 0.0), 0.5)
-    scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=[ball], gravity=(0.0, -2.0))
+    ball = gp.Particle((2.0, 3.0), (1.0, 0.0), 0.5)
+    scene = gp.Scene(gp.Container((10.0, 10.0)), particles=[ball], gravity=(0.0, -2.0))
     exact = gp.Simulation(scene, gp.EventDriven())
     exact.advance(duration=16.0)
     for time_step in (8.0, 0.25, 0.001):
@@ -268,16 +276,16 @@ def test_a_falling_gas_keeps_its_energy_whatever_the_search():
     assert all(np.array_equal(ends[0], end) for end in ends[1:])
 
 
-def test_oversized_and_fixed_bodies_follow_the_event_driven_engine():
-    """A body larger than a box is kept outside the partition, a fixed one passes no momentum on."""
-    large = gp.Body((10.0, 10.0), (0.1, 0.0), 4.0, mass=50.0)
-    bodies = [large, gp.Body((3.0, 16.0), (0.0, 0.0), 0.5, fixed=True)]
+def test_oversized_and_fixed_particles_follow_the_event_driven_engine():
+    """A particle larger than a box is kept outside the partition, a fixed one passes no momentum on."""
+    large = gp.Particle((10.0, 10.0), (0.1, 0.0), 4.0, mass=50.0)
+    particles = [large, gp.Particle((3.0, 16.0), (0.0, 0.0), 0.5, fixed=True)]
     kinds = [gp.Species(25, 0.3, temperature=1.0)]
-    scene = gp.Scene(gp.Container((20.0, 20.0), "periodic"), kinds, bodies)
+    scene = gp.Scene(gp.Container((20.0, 20.0), "periodic"), kinds, particles)
     exact = gp.Simulation(scene, gp.EventDriven(), seed=5)
     exact.advance(duration=5.0)
     assert exact.tally.collisions > 5
-    for search in ({}, {"boxes_per_side": 20}):  # boxes of 1, the large body of 8
+    for search in ({}, {"boxes_per_side": 20}):  # boxes of 1, the large particle of 8
         sim = gp.Simulation(scene, gp.TimeStepped(0.0005, **search), seed=5)
         sim.advance(duration=5.0)
         assert sim.tally.collisions == exact.tally.collisions

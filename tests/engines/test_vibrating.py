@@ -20,9 +20,9 @@ _PARTED = 1e-5  # time after a bounce at which the ball is clear of the face: le
 
 def ball(faces, height=2.0, velocity=0.0, law=None, gravity=DOWN, side=40.0):
     """One ball between a floor and a ceiling."""
-    body = gp.Body((2.0, 0.5 + height), (0.0, velocity), 0.5)
+    particle = gp.Particle((2.0, 0.5 + height), (0.0, velocity), 0.5)
     container = gp.Container((4.0, side), ("periodic", "wall"))
-    return gp.Scene(container, bodies=[body], faces=faces, gravity=gravity, restitution=law)
+    return gp.Scene(container, particles=[particle], faces=faces, gravity=gravity, restitution=law)
 
 
 def place(face, time):
@@ -68,7 +68,7 @@ def bounces(sim, count):
     before = len(sim.events["time"])
     sim.advance(max_events=count)
     events = {key: array[before:] for key, array in sim.events.items()}
-    faces = -1 - events["bodies"][:, 1]
+    faces = -1 - events["particles"][:, 1]
     height, velocity = events["positions"][:, 0, 1] - 0.5, events["velocities"][:, 0, 1]
     return list(zip(events["time"], faces, height, velocity, strict=True))
 
@@ -203,7 +203,7 @@ def test_what_cannot_vibrate_is_refused():
     with pytest.raises(gp.SceneError, match=r"y_low\.amplitude.*no room"):
         replace(scene, faces={"y_low": gp.Vibrating(10.0, 1.0), "y_high": gp.Vibrating(9.6, 1.0)})
     with pytest.raises(gp.SceneError, match="close packing"):
-        replace(scene, bodies=(), species=[gp.Species(120, 0.5)], faces={"y_low": gp.Vibrating(10.0, 1.0)})
+        replace(scene, particles=(), species=[gp.Species(120, 0.5)], faces={"y_low": gp.Vibrating(10.0, 1.0)})
     for wrong in ((0.0, 1.0), (1.0, 0.0), (1e50, 1e-50)):
         with pytest.raises(gp.SceneError, match="amplitude|period"):
             gp.Vibrating(*wrong)
@@ -213,9 +213,9 @@ def test_what_cannot_vibrate_is_refused():
 
 def test_obstacles_against_which_a_face_would_press_are_refused():
     scene = ball({"y_low": SINE})
-    post = gp.Body((1.0, 1.5), (0.0, 0.0), 0.2, fixed=True)
-    with pytest.raises(gp.SceneError, match="bodies.*less than a largest diameter"):
-        replace(scene, bodies=(post,), species=[gp.Species(1, 0.5)])
+    post = gp.Particle((1.0, 1.5), (0.0, 0.0), 0.2, fixed=True)
+    with pytest.raises(gp.SceneError, match="particles.*less than a largest diameter"):
+        replace(scene, particles=(post,), species=[gp.Species(1, 0.5)])
     with pytest.raises(gp.SceneError, match="species.*fixed"):
         replace(scene, species=[gp.Species(1, 0.1, fixed=True)])
     for ends in (((0.0, 1.0), (1.0, 1.0)), ((1.0, 0.5), (1.0, 9.0)), ((1.0, 0.0), (1.1, 9.0))):

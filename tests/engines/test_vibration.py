@@ -33,9 +33,9 @@ def test_all_searches_give_the_same_events_bit_for_bit_and_keep_the_energy(scene
 def test_a_contact_swaps_the_normal_energy_with_that_of_the_mode(energy):
     """At 30 degrees off centre: the normal part of the velocity becomes sqrt(2E/m), the other stays."""
     n = np.array([math.cos(math.pi / 6), math.sin(math.pi / 6)])
-    still = gp.Body((6.0, 5.0 + 0.5), (0.0, 0.0), 0.5, fixed=True, vibration=energy)
-    body = gp.Body((3.0, 5.0), (2.0, 0.0), 0.5, 2.0)
-    scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=[body, still], faces=FACES)
+    still = gp.Particle((6.0, 5.0 + 0.5), (0.0, 0.0), 0.5, fixed=True, vibration=energy)
+    particle = gp.Particle((3.0, 5.0), (2.0, 0.0), 0.5, 2.0)
+    scene = gp.Scene(gp.Container((10.0, 10.0)), particles=[particle, still], faces=FACES)
     sim = gp.Simulation(scene, gp.EventDriven())
     sim.record_events = True
     sim.advance(max_events=1)
@@ -55,12 +55,12 @@ def test_time_reversal():
     start, end = there.initial_state, there.state
     assert there.tally.collisions > 5
     turned = [
-        gp.Body(tuple(x), tuple(-v), r, fixed=bool(np.isinf(m)), vibration=e if np.isinf(m) else None)
+        gp.Particle(tuple(x), tuple(-v), r, fixed=bool(np.isinf(m)), vibration=e if np.isinf(m) else None)
         for x, v, r, m, e in zip(
             end.positions, end.velocities, end.radii, end.masses, end.vibrations, strict=True
         )
     ]
-    back = gp.Simulation(gp.Scene(scene.container, bodies=turned), gp.EventDriven())
+    back = gp.Simulation(gp.Scene(scene.container, particles=turned), gp.EventDriven())
     back.advance(duration=4.0)
     assert back.state.vibrations == pytest.approx(start.vibrations, abs=1e-6)
     assert back.state.positions == pytest.approx(start.positions, abs=1e-6)

@@ -26,11 +26,11 @@ def damping_of(restitution):
 
 def pair(speed, radii=(0.5, 0.5), masses=(1.0, 1.0)):
     """Two discs that approach each other centrally; the first species only sets the scale."""
-    bodies = [
-        gp.Body((20.0 - 2.0, 20.0), (speed, 0.0), radii[0], masses[0]),
-        gp.Body((20.0 + 2.0, 20.0), (0.0, 0.0), radii[1], masses[1]),
+    particles = [
+        gp.Particle((20.0 - 2.0, 20.0), (speed, 0.0), radii[0], masses[0]),
+        gp.Particle((20.0 + 2.0, 20.0), (0.0, 0.0), radii[1], masses[1]),
     ]
-    return gp.Scene(ROOM, [gp.Species(0, 0.5)], bodies=bodies, restitution=LAW)
+    return gp.Scene(ROOM, [gp.Species(0, 0.5)], particles=particles, restitution=LAW)
 
 
 def parted(scene):
@@ -53,9 +53,9 @@ def test_the_damping_depends_on_radii_and_masses():
     factor = fifth_root(radius / mass**2 / (0.25 / 0.5**2))
     found = parted(pair(2.0, (0.3, 1.2), (2.0, 5.0)))
     assert found == pytest.approx(restitution_of(factor * damping_of(0.8)), rel=1e-13)
-    body = gp.Body((20.0, 2.0), (0.0, -2.0), 0.3, mass=2.0)
+    particle = gp.Particle((20.0, 2.0), (0.0, -2.0), 0.3, mass=2.0)
     sim = gp.Simulation(
-        gp.Scene(ROOM, [gp.Species(0, 0.5)], bodies=[body], restitution=LAW), gp.EventDriven()
+        gp.Scene(ROOM, [gp.Species(0, 0.5)], particles=[particle], restitution=LAW), gp.EventDriven()
     )
     sim.advance(max_events=1)
     factor = fifth_root(0.3 / 2.0**2 / (0.25 / 0.5**2))

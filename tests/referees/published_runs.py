@@ -55,7 +55,7 @@ def compared(number, folder):
     eta, d = number.packing_fraction, number.dimension
     row = {"what": number.what, "source": number.source}
     if number.kind == "pressure":
-        density = eta / theory.body_volume(d)
+        density = eta / theory.particle_volume(d)
         ours, theirs = (density * z, density * error, density * z), (number.value, number.error)
     else:
         z -= float(theory.finite_size_correction(eta, d, number.count, "canonical"))
@@ -71,7 +71,7 @@ def compared(number, folder):
 
 def scene(number):
     d, eta = number.dimension, number.packing_fraction
-    side = (number.count * theory.body_volume(d) / eta) ** (1.0 / d)
+    side = (number.count * theory.particle_volume(d) / eta) ** (1.0 / d)
     species = gp.Species(count=number.count, radius=0.5, temperature=1.0, arrangement="compressed")
     return gp.Scene(container=gp.Container(lengths=(side,) * d, boundary="periodic"), species=[species])
 

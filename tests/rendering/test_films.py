@@ -20,7 +20,7 @@ def runs(tmp_path_factory):
     discs = gp.Scene(
         gp.Container((12.0, 9.0)),
         [gp.Species(20, 0.5, temperature=1.0)],
-        bodies=[gp.Body((6.0, 4.5), (0.0, 0.0), 1.5, 10.0)],
+        particles=[gp.Particle((6.0, 4.5), (0.0, 0.0), 1.5, 10.0)],
         walls=[gp.Wall((1.0, 1.0), (1.0, 3.0))],
     )
     spheres = gp.Scene(gp.Container((6.0,) * 3), [gp.Species(20, 0.5, temperature=1.0)])

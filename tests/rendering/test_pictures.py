@@ -15,11 +15,11 @@ BLACK = np.zeros((1, 3))
 
 def state(positions, radii, lengths, velocities=None):
     """A state of particles at rest, or not."""
-    bodies = [
-        gp.Body(tuple(x), tuple(v), r)
+    particles = [
+        gp.Particle(tuple(x), tuple(v), r)
         for x, r, v in zip(positions, radii, velocities or np.zeros_like(positions), strict=True)
     ]
-    scene = gp.Scene(gp.Container(tuple(lengths)), bodies=bodies)
+    scene = gp.Scene(gp.Container(tuple(lengths)), particles=particles)
     return gp.Simulation(scene, gp.EventDriven(search="direct")).initial_state
 
 
@@ -90,11 +90,11 @@ def test_an_impossible_size_is_refused(size):
 
 
 def test_a_disc_at_a_periodic_face_is_drawn_on_both_sides():
-    body = gp.Body((0.5, 4.0), (0.0, 0.0), 1.0)
+    particle = gp.Particle((0.5, 4.0), (0.0, 0.0), 1.0)
     white = np.zeros((1, 3))
     areas = []
     for boundary in ("wall", ("periodic", "wall")):
-        scene = gp.Scene(gp.Container((16.0, 8.0), boundary), bodies=[body], centres_to_walls=True)
+        scene = gp.Scene(gp.Container((16.0, 8.0), boundary), particles=[particle], centres_to_walls=True)
         simulation = gp.Simulation(scene, gp.EventDriven(search="direct"))
         image = render(simulation, size=(400, 100), colour=white)
         empty = render(gp.Simulation(gp.Scene(scene.container), gp.EventDriven()), size=(400, 100))
@@ -197,9 +197,9 @@ def test_a_piston_is_drawn_where_it_is(tmp_path):
     """It falls freely: no particle is in its way."""
     for lengths, sides in (((8.0, 6.0), 1), ((8.0, 6.0, 7.0), 4)):
         container = gp.Container(lengths, ("periodic", "wall", "wall")[: len(lengths)])
-        body = gp.Body((1.0,) * len(lengths), (0.0,) * len(lengths), 0.5)
+        particle = gp.Particle((1.0,) * len(lengths), (0.0,) * len(lengths), 0.5)
         push = lengths[0] * (1.0 if sides == 1 else 7.0) / 56.0
-        scene = gp.Scene(container, bodies=[body], faces={"y_high": gp.Piston(56.0, 1.0)})
+        scene = gp.Scene(container, particles=[particle], faces={"y_high": gp.Piston(56.0, 1.0)})
         path = gp.run(scene, gp.EventDriven(), 0, 2.0, 2.0, tmp_path / f"{sides}.nc")
         sim = gp.Simulation(scene, gp.EventDriven())
         sim.advance(until=2.0)

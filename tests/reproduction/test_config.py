@@ -200,10 +200,10 @@ def test_without_a_dimension_there_is_no_scene():
         check(config)
 
 
-def test_a_scene_without_bodies_has_no_points(tmp_path):
+def test_a_scene_without_particles_has_no_points(tmp_path):
     (tmp_path / "empty.yaml").write_text("container: {lengths: [9.0, 9.0]}\n")
     config = copy.deepcopy(GOOD)
-    point = {"scene": str(tmp_path / "empty.yaml"), "duration": 1.0, "boxes_per_body": 1.0}
+    point = {"scene": str(tmp_path / "empty.yaml"), "duration": 1.0, "boxes_per_particle": 1.0}
     config["experiments"]["gas"] = {"point": point}
     with pytest.raises(SceneError, match="needs at least one particle"):
         check(config)

@@ -82,7 +82,7 @@ def test_the_schema_of_scenes_accepts_the_scene_files(path):
         (("species", 0, "mass"), 0.0),
         (("species", 0, "count"), 2.5),
         (("species", 0, "arrangement"), "neat"),
-        (("bodies", 0, "position"), [1.0]),
+        (("particles", 0, "position"), [1.0]),
         (("container", "boundary"), "fog"),
         (("faces", "x_low", "kind"), "cold"),
         (("faces", "left"), {"kind": "thermal", "temperature": 1.0}),
@@ -107,7 +107,7 @@ def test_the_schema_of_configs_is_the_one_that_is_checked():
 
 
 def test_the_tables_of_the_engines_follow_from_the_keys():
-    assert set(keys.ENGINES["event"]) == {"search", "boxes_per_side", "boxes_per_body"}
+    assert set(keys.ENGINES["event"]) == {"search", "boxes_per_side", "boxes_per_particle"}
     assert {"time_step", "skin", "boxes_per_side"} <= set(keys.ENGINES["step"])
     whole = {"dimension", "count", "samples", "steps", "attempts", "follow", "lags"}
     assert whole | {"replicas", "passes", "threads"} == config_keys.WHOLE

@@ -23,7 +23,7 @@ def test_a_plain_gas_has_what_theory_takes():
 def test_its_temperature_is_that_of_the_initial_velocities():
     speeds = replace(DISCS, temperature=None, speed=3.0)
     still = replace(DISCS, temperature=None)
-    fast = gp.Body((1.0, 1.0), (4.0, 0.0), 0.3, mass=2.0)
+    fast = gp.Particle((1.0, 1.0), (4.0, 0.0), 0.3, mass=2.0)
     assert gp.Scene(BOX, [speeds]).gas.temperature == 9.0
     assert gp.Scene(BOX, [still]).gas.temperature == 0.0
     assert gp.Scene(BOX, [still], [fast]).gas.temperature == pytest.approx(16.0 / 51.0)

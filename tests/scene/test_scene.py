@@ -57,13 +57,21 @@ def changed(path, value):
         (("container", "boundary"), ["wall"], "container.boundary"),
         (("centres_to_walls",), "yes", "centres_to_walls"),
         (("species",), {"count": 3}, "species"),
-        (("bodies",), [{"position": [0.1, 5], "velocity": [0, 0], "radius": 0.5}], "bodies[0].position"),
-        (("bodies",), [{"position": [5, 5, 5], "velocity": [0, 0], "radius": 0.5}], "bodies[0].position"),
-        (("bodies",), [{"position": [5, 5], "velocity": [0, 0]}], "bodies[0].radius"),
         (
-            ("bodies",),
+            ("particles",),
+            [{"position": [0.1, 5], "velocity": [0, 0], "radius": 0.5}],
+            "particles[0].position",
+        ),
+        (
+            ("particles",),
+            [{"position": [5, 5, 5], "velocity": [0, 0], "radius": 0.5}],
+            "particles[0].position",
+        ),
+        (("particles",), [{"position": [5, 5], "velocity": [0, 0]}], "particles[0].radius"),
+        (
+            ("particles",),
             [{"position": [5, y], "velocity": [0, 0], "radius": 0.5} for y in (5, 5.5)],
-            "bodies[1].position",
+            "particles[1].position",
         ),
     ],
 )
@@ -76,9 +84,9 @@ def test_one_line_names_file_key_and_value(path, value, key):
 
 
 def test_overlap_is_found_across_a_periodic_face():
-    bodies = [gp.Body((0.2, 5.0), (0, 0), 0.5), gp.Body((9.8, 5.0), (0, 0), 0.5)]
+    particles = [gp.Particle((0.2, 5.0), (0, 0), 0.5), gp.Particle((9.8, 5.0), (0, 0), 0.5)]
     with pytest.raises(gp.SceneError, match="overlaps"):
-        gp.Scene(gp.Container((10.0, 10.0), "periodic"), bodies=bodies)
+        gp.Scene(gp.Container((10.0, 10.0), "periodic"), particles=particles)
 
 
 @given(st.data())
@@ -88,35 +96,35 @@ def test_overlaps_are_those_that_a_search_of_all_pairs_finds(data):
     boundary = data.draw(
         st.lists(st.sampled_from(["wall", "periodic"]), min_size=dimension, max_size=dimension)
     )
-    container, bodies = gp.Container(lengths, boundary), []
+    container, particles = gp.Container(lengths, boundary), []
     for _ in range(data.draw(st.integers(2, 12))):
         radius = data.draw(st.floats(0.05, 0.6))
         at = tuple(radius + data.draw(st.floats(0.001, 0.999)) * (length - 2 * radius) for length in lengths)
-        bodies.append(gp.Body(at, (0.0,) * dimension, radius))
+        particles.append(gp.Particle(at, (0.0,) * dimension, radius))
     alone = gp.Scene(container)
     pairs = [
         (n, m)
-        for n, one in enumerate(bodies)
-        for m, other in enumerate(bodies[:n])
+        for n, one in enumerate(particles)
+        for m, other in enumerate(particles[:n])
         if alone.separation(one.position, other.position) < one.radius + other.radius
     ]
     if pairs:
         with pytest.raises(gp.SceneError) as caught:
-            gp.Scene(container, bodies=bodies)
+            gp.Scene(container, particles=particles)
         assert (caught.value.key, caught.value.rule) == (
-            f"bodies[{pairs[0][0]}].position",
-            f"overlaps bodies[{pairs[0][1]}]",
+            f"particles[{pairs[0][0]}].position",
+            f"overlaps particles[{pairs[0][1]}]",
         )
     elif alone.container.volume > 60.0:
-        assert gp.Scene(container, bodies=bodies).count == len(bodies)
+        assert gp.Scene(container, particles=particles).count == len(particles)
 
 
-def test_many_single_bodies_are_compared_with_their_neighbours_only():
+def test_many_single_particles_are_compared_with_their_neighbours_only():
     side = 100
     places = [(x + 0.5, y + 0.5) for x in range(side) for y in range(side)]
-    bodies = [gp.Body(place, (0.0, 0.0), 0.4) for place in places]
+    particles = [gp.Particle(place, (0.0, 0.0), 0.4) for place in places]
     begun = time.process_time()
-    gp.Scene(gp.Container((side, side)), bodies=bodies)
+    gp.Scene(gp.Container((side, side)), particles=particles)
     assert time.process_time() - begun < 5.0  # all pairs take ten times as long
 
 
@@ -176,8 +184,8 @@ HOLED = {"x_low": gp.Well(1.0, 2.0), "x_high": gp.Well(1.0, 2.0)}
         (lambda: gp.Plate((1.0, 1.0, 1.0), ((1.0, 0.0, 0.0),)), "edges = .*: must be two lists of 3"),
         (lambda: gp.Plate((1.0, 1.0, 1.0), ((1, 0, 0), (0, 0, 0))), "must have a length and a width"),
         (lambda: gp.Plate((1.0, 1.0, 1.0), ((1, 0, 0), (1, 1, 0))), "must be at right angles"),
-        (lambda: gp.Body((1.0, 1.0), (1.0, 0.0), 0.5, fixed=True), "a fixed particle has none"),
-        (lambda: gp.Body((1.0, 1.0), (0.0, 0.0), 0.5, vibration=1.0), "only a fixed particle vibrates"),
+        (lambda: gp.Particle((1.0, 1.0), (1.0, 0.0), 0.5, fixed=True), "a fixed particle has none"),
+        (lambda: gp.Particle((1.0, 1.0), (0.0, 0.0), 0.5, vibration=1.0), "only a fixed particle vibrates"),
         (lambda: gp.Species(1, 1e70), "choose other units"),
         (lambda: gp.TimeStepped(0.1, skin=0.1, boxes_per_side=3), "skin = 0.1: excludes boxes_per_side"),
         (lambda: gp.TimeStepped(0.1, near_boxes=True), "needs boxes_per_side"),
@@ -200,7 +208,7 @@ def test_a_mistake_in_python_is_refused_in_one_line_too(make, complaint):
         gp.Scene,
         gp.Container,
         gp.Species,
-        gp.Body,
+        gp.Particle,
         gp.Restitution,
         gp.Wall,
         gp.Plate,

@@ -34,8 +34,8 @@ def decimal_pair(rng):
 
 def scene_of(container, places, radii, apart=0.0):
     still = (0.0,) * container.dimension
-    bodies = [gp.Body(tuple(at), still, r - apart) for at, r in zip(places, radii, strict=True)]
-    return gp.Scene(container, bodies=bodies)
+    particles = [gp.Particle(tuple(at), still, r - apart) for at, r in zip(places, radii, strict=True)]
+    return gp.Scene(container, particles=particles)
 
 
 def test_pairs_that_touch_in_decimals_are_accepted_and_overlaps_are_not():
@@ -45,15 +45,15 @@ def test_pairs_that_touch_in_decimals_are_accepted_and_overlaps_are_not():
         container, places, radii = decimal_pair(rng)
         assert scene_of(container, places, radii).count == 2
         overlapping += np.linalg.norm(np.subtract(*places)) < sum(radii)  # in binary numbers
-        with pytest.raises(gp.SceneError, match=r"bodies\[1\]\.position.*overlaps bodies\[0\]"):
+        with pytest.raises(gp.SceneError, match=r"particles\[1\]\.position.*overlaps particles\[0\]"):
             scene_of(container, places, radii, apart=-1e-12)
     assert overlapping > 100  # so that the tolerance is what accepts them
 
 
 def row(*places, radius=0.05, speed=2.0):
-    bodies = [gp.Body((x, 0.2, 0.2), (0.0,) * 3, radius) for x in places]
-    first = gp.Body((0.2, 0.2, 0.2), (speed, 0.0, 0.0), radius)
-    return gp.Scene(gp.Container((1.0, 0.4, 0.4)), bodies=[first, *bodies])
+    particles = [gp.Particle((x, 0.2, 0.2), (0.0,) * 3, radius) for x in places]
+    first = gp.Particle((0.2, 0.2, 0.2), (speed, 0.0, 0.0), radius)
+    return gp.Scene(gp.Container((1.0, 0.4, 0.4)), particles=[first, *particles])
 
 
 @pytest.mark.parametrize("engine", [gp.EventDriven(), gp.EventDriven(search="pairs"), gp.TimeStepped(0.001)])
@@ -66,7 +66,7 @@ def test_a_row_of_touching_balls_hands_on_the_momentum(engine):
 
 
 def test_a_particle_in_a_corner_touches_both_walls():
-    scene = gp.Scene(gp.Container((0.3, 0.3)), bodies=[gp.Body((0.2, 0.1), (-1.0, 0.0), 0.1)])
+    scene = gp.Scene(gp.Container((0.3, 0.3)), particles=[gp.Particle((0.2, 0.1), (-1.0, 0.0), 0.1)])
     sim = gp.Simulation(scene, gp.EventDriven())
     assert sim.state.positions[0, 0] == 0.3 - 0.1  # exactly where the wall stops it
     sim.advance(until=0.35)
@@ -74,22 +74,22 @@ def test_a_particle_in_a_corner_touches_both_walls():
     assert np.allclose(sim.state.positions, [[0.15, 0.1]], atol=1e-15)
     for x in (0.2 + 1e-14, 0.1 - 1e-14):
         with pytest.raises(gp.SceneError, match="completely inside"):
-            gp.Scene(gp.Container((0.3, 0.3)), bodies=[gp.Body((x, 0.1), (0.0, 0.0), 0.1)])
+            gp.Scene(gp.Container((0.3, 0.3)), particles=[gp.Particle((x, 0.1), (0.0, 0.0), 0.1)])
 
 
 def test_touching_across_a_periodic_face():
     box = gp.Container((0.7, 0.7), "periodic")
-    bodies = [gp.Body((x, 0.3), (0.0, 0.0), 0.1) for x in (0.6, 0.1)]
-    assert gp.Scene(box, bodies=bodies).count == 2
+    particles = [gp.Particle((x, 0.3), (0.0, 0.0), 0.1) for x in (0.6, 0.1)]
+    assert gp.Scene(box, particles=particles).count == 2
     with pytest.raises(gp.SceneError, match="overlaps"):
-        gp.Scene(box, bodies=[bodies[0], gp.Body((0.1, 0.3), (0.0, 0.0), 0.1 + 1e-14)])
+        gp.Scene(box, particles=[particles[0], gp.Particle((0.1, 0.3), (0.0, 0.0), 0.1 + 1e-14)])
 
 
 def test_a_tower_on_the_floor_stands():
     """Four discs that touch, at rest under gravity, with contacts that lose energy: nothing moves."""
-    bodies = [gp.Body((1.0, y), (0.0, 0.0), 0.1) for y in (0.1, 0.3, 0.5, 0.7)]
+    particles = [gp.Particle((1.0, y), (0.0, 0.0), 0.1) for y in (0.1, 0.3, 0.5, 0.7)]
     law = {"gravity": (0.0, -9.81), "restitution": gp.Restitution(0.5)}
-    sim = gp.Simulation(gp.Scene(gp.Container((2.0, 6.0)), bodies=bodies, **law), gp.EventDriven())
+    sim = gp.Simulation(gp.Scene(gp.Container((2.0, 6.0)), particles=particles, **law), gp.EventDriven())
     sim.advance(until=0.5)
     assert np.allclose(sim.state.positions[:, 1], [0.1, 0.3, 0.5, 0.7], atol=1e-6)
 
@@ -97,18 +97,18 @@ def test_a_tower_on_the_floor_stands():
 def test_a_triangular_crystal_at_close_packing_is_valid():
     places = [(0.1 + 0.2 * x + 0.1 * (y % 2), 0.1 * np.sqrt(3.0) * y) for y in range(6) for x in range(5)]
     box = gp.Container((1.0, 6 * 0.1 * np.sqrt(3.0)), "periodic")
-    scene = gp.Scene(box, bodies=[gp.Body(at, (0.0, 0.0), 0.1) for at in places])
+    scene = gp.Scene(box, particles=[gp.Particle(at, (0.0, 0.0), 0.1) for at in places])
     assert scene.packing_fraction == pytest.approx(CLOSE_PACKING[2], rel=1e-12)
 
 
 def rock_salt(gap):
     """Eight unit cells of large and small spheres, which touch at a gap of 0: a ratio of sqrt(2) - 1."""
     large, small, edge = 0.5, 0.5 * (np.sqrt(2.0) - 1.0), np.sqrt(2.0) * (1.0 + gap)
-    bodies = []
+    particles = []
     for place in np.ndindex(4, 4, 4):
         at = tuple(0.5 * edge * np.array(place))
-        bodies.append(gp.Body(at, (0.0,) * 3, small if sum(place) % 2 else large))
-    return gp.Scene(gp.Container((2.0 * edge,) * 3, "periodic"), bodies=bodies)
+        particles.append(gp.Particle(at, (0.0,) * 3, small if sum(place) % 2 else large))
+    return gp.Scene(gp.Container((2.0 * edge,) * 3, "periodic"), particles=particles)
 
 
 def test_mixtures_may_be_denser_than_equal_particles():
@@ -116,10 +116,10 @@ def test_mixtures_may_be_denser_than_equal_particles():
     assert scene.packing_fraction == pytest.approx(0.793 / 1.005**3, abs=1e-3)
     assert scene.packing_fraction > CLOSE_PACKING[3]
     pushed = [
-        gp.Body(it.position, (0.1, 0.2, -0.3), it.radius) if n == 0 else it
-        for n, it in enumerate(scene.bodies)
+        gp.Particle(it.position, (0.1, 0.2, -0.3), it.radius) if n == 0 else it
+        for n, it in enumerate(scene.particles)
     ]
-    sim = gp.Simulation(gp.Scene(scene.container, bodies=pushed), gp.EventDriven())
+    sim = gp.Simulation(gp.Scene(scene.container, particles=pushed), gp.EventDriven())
     sim.advance(max_events=500)
     sim.check_invariants()
     assert sim.tally.collisions == 500

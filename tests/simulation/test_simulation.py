@@ -89,8 +89,8 @@ def test_recording_changes_no_bit():
     hits = plain.tally.wall_hits.sum()
     assert len(events["time"]) == plain.tally.collisions + hits > 4096  # more than the record holds at once
     assert (np.diff(events["time"]) >= -1e-12).all()
-    assert (events["bodies"][:, 1] < 0).sum() == hits
-    pairs = events["bodies"][:, 1] >= 0
+    assert (events["particles"][:, 1] < 0).sum() == hits
+    pairs = events["particles"][:, 1] >= 0
     r = events["positions"][pairs, 1] - events["positions"][pairs, 0]
     assert np.allclose((r**2).sum(axis=1), 1.0, atol=1e-10)
 
@@ -129,11 +129,11 @@ def test_chosen_properties_at_any_time():
 def test_energies_of_spinning_and_fixed_particles():
     for spin in (2.0, (0.0, 0.0, 2.0)):
         d = 2 if isinstance(spin, float) else 3
-        bodies = [
-            gp.Body((1.0,) * d, (1.0,) * d, 0.5, mass=3.0, spin=spin, moment_of_inertia=4.0),
-            gp.Body((3.0,) * d, (0.0,) * d, 0.5, fixed=True),
+        particles = [
+            gp.Particle((1.0,) * d, (1.0,) * d, 0.5, mass=3.0, spin=spin, moment_of_inertia=4.0),
+            gp.Particle((3.0,) * d, (0.0,) * d, 0.5, fixed=True),
         ]
-        sim = gp.Simulation(gp.Scene(gp.Container((5.0,) * d), bodies=bodies), gp.EventDriven())
+        sim = gp.Simulation(gp.Scene(gp.Container((5.0,) * d), particles=particles), gp.EventDriven())
         assert sim.properties("kinetic_energies")["kinetic_energies"].tolist() == [1.5 * d + 8.0, 0.0]
         assert sim.state.kinetic_energy == 1.5 * d + 8.0
 
@@ -194,8 +194,8 @@ def test_targets_that_are_not_numbers(arguments, key):
 @pytest.mark.parametrize("search", ["boxes", "pairs"])
 def test_work_is_bounded_where_nothing_but_crossings_happens(search):
     """Two discs that cross a thin periodic axis a million million times and never meet."""
-    discs = [gp.Body((0.5, height), (1.0, 0.0), 0.05) for height in (1e9, 9e9)]
-    scene = gp.Scene(gp.Container((1.0, 1e10), "periodic"), bodies=discs)
+    discs = [gp.Particle((0.5, height), (1.0, 0.0), 0.05) for height in (1e9, 9e9)]
+    scene = gp.Scene(gp.Container((1.0, 1e10), "periodic"), particles=discs)
     sim, whole = (gp.Simulation(scene, gp.EventDriven(search), seed=1) for _ in range(2))
     crossed, pieces = 0, [100_000, 1, 7, 100_000]
     for work in pieces:

@@ -35,12 +35,12 @@ def test_without_the_key_velocities_are_as_drawn():
 
 
 def test_obstacles_and_friction_take_up_momentum():
-    post = gp.Body((6.0, 4.5, 7.0), (0.0, 0.0, 0.0), 0.5, fixed=True)
+    post = gp.Particle((6.0, 4.5, 7.0), (0.0, 0.0, 0.0), 0.5, fixed=True)
     plate = gp.Plate((1.0, 1.0, 1.0), ((2.0, 0.0, 0.0), (0.0, 2.0, 0.0)))
     rough, slit = gp.Restitution(tangential=1.0), ("periodic", "periodic", "wall")
     hot = {"z_low": gp.Thermal(1.0)}
     for boundary, more in (
-        ("periodic", {"bodies": [post]}),
+        ("periodic", {"particles": [post]}),
         ("periodic", {"walls": [plate]}),
         (slit, {"restitution": rough}),
         (slit, {"faces": hot}),

@@ -58,7 +58,7 @@ def advice(scene):
 
 def test_what_an_overfull_scene_is_told_to_do_works():
     lattice, fewer = "use arrangement: lattice", "use fewer or smaller particles, or a larger container"
-    box, obstacle = gp.Container((12.0, 12.0)), gp.Body((6.0, 6.0), (0.0, 0.0), 0.5, fixed=True)
+    box, obstacle = gp.Container((12.0, 12.0)), gp.Particle((6.0, 6.0), (0.0, 0.0), 0.5, fixed=True)
     kinds = [gp.Species(120, 0.5)]
     scene = gp.Scene(box, kinds)
     assert advice(scene) == lattice
@@ -130,8 +130,8 @@ def test_velocities_have_their_speed_or_temperature():
 
 
 def test_explicit_particles_come_first_and_keep_their_positions():
-    body = gp.Body((5.0, 5.0), (1.0, 0.0), 2.0, mass=7.0)
-    scene = gp.Scene(gp.Container((10.0, 10.0)), [gp.Species(20, 0.3, speed=1.0)], [body])
+    particle = gp.Particle((5.0, 5.0), (1.0, 0.0), 2.0, mass=7.0)
+    scene = gp.Scene(gp.Container((10.0, 10.0)), [gp.Species(20, 0.3, speed=1.0)], [particle])
     state = initial_state(scene, seed=4)
     assert state.positions[0].tolist() == [5.0, 5.0]
     assert state.masses[0] == 7.0

@@ -23,17 +23,17 @@ def test_collisions_carry_the_friction():
     """Random kicks: <(V(0)/V^2).dV> per collision of a heavy particle, drawn from a Maxwellian flux, give
     g."""
     rng = np.random.default_rng(1)
-    body, drift = 50.0, 0.02
+    particle, drift = 50.0, 0.02
     gas = rng.standard_normal((400_000, 3))
     relative = gas - [drift, 0.0, 0.0]
     normal = rng.standard_normal(gas.shape)
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     along = (relative * normal).sum(axis=1)
-    kick = 2.0 * body / (1.0 + body) / body * np.minimum(along, 0.0) * normal[:, 0]
+    kick = 2.0 * particle / (1.0 + particle) / particle * np.minimum(along, 0.0) * normal[:, 0]
     chance = 4.0 * np.pi * np.maximum(-along, 0.0)  # per time, at n a^2 = 1
     rate = -(kick * chance).mean() / drift
     scatter = (kick * chance).std() / np.sqrt(len(kick)) / drift
-    assert abs(rate - theory.friction_rate(1.0, 1.0, body)) < 3.5 * scatter
+    assert abs(rate - theory.friction_rate(1.0, 1.0, particle)) < 3.5 * scatter
 
 
 def test_langevin_displacements():

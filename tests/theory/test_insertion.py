@@ -38,7 +38,7 @@ def test_large_containers_tend_to_the_infinite_value(dimension, boundary):
 
 @pytest.mark.parametrize(("dimension", "first"), [(2, 4.0), (3, 8.0)])
 def test_failures_at_low_density(dimension, first):
-    assert theory.failures_per_body(1e-6, dimension) == pytest.approx(first * 1e-6, rel=1e-4)
+    assert theory.failures_per_particle(1e-6, dimension) == pytest.approx(first * 1e-6, rel=1e-4)
     assert theory.available_fraction(0.0, dimension) == 1.0
 
 

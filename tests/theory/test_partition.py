@@ -79,7 +79,7 @@ def test_touched_boxes_do_not_suffice():
 
 def test_the_ideal_number_is_the_minimum():
     tests, boxes = 3.0, 0.2
-    ideal = partition.ideal_boxes_per_body(tests, boxes, 3)
+    ideal = partition.ideal_boxes_per_particle(tests, boxes, 3)
     density = ideal * np.array([0.9, 1.0, 1.1])
     cost = tests * 13.5 / density + boxes * density
     assert cost.argmin() == 1

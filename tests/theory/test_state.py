@@ -163,8 +163,8 @@ def test_the_reference_ends_where_the_fluid_does():
 
 
 def test_density_and_packing_fraction_are_inverse():
-    assert theory.body_volume(2, 2.0) == pytest.approx(np.pi)
-    assert theory.body_volume(3, 2.0) == pytest.approx(4.0 / 3.0 * np.pi)
+    assert theory.particle_volume(2, 2.0) == pytest.approx(np.pi)
+    assert theory.particle_volume(3, 2.0) == pytest.approx(4.0 / 3.0 * np.pi)
     density = theory.number_density(0.3, 3, 0.4)
     assert theory.packing_fraction(density, 3, 0.4) == pytest.approx(0.3, rel=1e-15)
     assert theory.number_density(theory.CLOSE_PACKING[3], 3) == pytest.approx(np.sqrt(2.0))

@@ -17,7 +17,7 @@ def test_second_and_third_coefficient_are_the_cluster_integrals(dimension):
     surface = {2: 2.0 * np.pi, 3: 4.0 * np.pi}[dimension]
     second = 0.5 * quad(lambda r: surface * r ** (dimension - 1), 0.0, 1.0)[0]
     third = quad(lambda r: surface * r ** (dimension - 1) * overlap(r, dimension), 0.0, 1.0)[0] / 3.0
-    volume = theory.body_volume(dimension)
+    volume = theory.particle_volume(dimension)
     coefficients, _ = theory.virial_coefficients(dimension)
     assert coefficients[1] == pytest.approx(second / volume, rel=1e-12)
     assert coefficients[2] == pytest.approx(third / volume**2, rel=1e-10)

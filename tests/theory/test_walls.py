@@ -92,7 +92,7 @@ def second_order(length, density, dimension, axes):
     """
     inner, width = length - 1.0, 100.0
     moments = {2: (math.pi, 4.0 / 3.0, 0.5), 3: (4.0 * math.pi / 3.0, math.pi / 2.0, 8.0 / 15.0, 1.0 / 6.0)}
-    bodies = density * inner**axes * width ** (dimension - axes)
+    particles = density * inner**axes * width ** (dimension - axes)
 
     def logarithm(stretched):
         sides = [stretched] + [inner] * (axes - 1) + [width] * (dimension - axes)
@@ -102,7 +102,7 @@ def second_order(length, density, dimension, axes):
             lengths = math.prod(side for k, side in enumerate(sides) if k not in chosen)
             close += (-1) ** len(chosen) * moments[dimension][len(chosen)] * lengths
         volume = math.prod(sides)
-        return math.log(volume) - 0.5 * bodies * close / volume**2
+        return math.log(volume) - 0.5 * particles * close / volume**2
 
     step = 1e-4 * inner
     return inner * (logarithm(inner + step) - logarithm(inner - step)) / (2.0 * step)

@@ -17,7 +17,7 @@ from gaspart.tradeoff.advice import EQUILIBRATION, QUANTILE, advise
 
 
 def gas(fraction, count=1000, dimension=3, **more):
-    side = (count * theory.body_volume(dimension) / fraction) ** (1.0 / dimension)
+    side = (count * theory.particle_volume(dimension) / fraction) ** (1.0 / dimension)
     species = Species(count, 0.5, temperature=1.0, arrangement="lattice")
     return Scene(Container((side,) * dimension, boundary="periodic"), species=(species,), **more)
 
@@ -39,7 +39,9 @@ def test_bias_and_noise_make_up_the_wanted_accuracy(dimension, observable, accur
     noise = table.noise(dimension, 0.2, observable)
     best = found.setting
     assert best.bias + QUANTILE * math.sqrt(noise / best.contacts) <= accuracy * (1.0 + 1e-9)
-    assert found.replicas * found.collisions_per_body * found.gas.count == pytest.approx(2.0 * best.contacts)
+    assert found.replicas * found.collisions_per_particle * found.gas.count == pytest.approx(
+        2.0 * best.contacts
+    )
     assert all(best.seconds <= other.seconds for other in found.others)
 
 

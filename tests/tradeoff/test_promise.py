@@ -30,7 +30,7 @@ def scene(number):
     fraction = float(np.exp(rng.uniform(math.log(0.012), math.log(0.42 if dimension == 3 else 0.5))))
     count = int(rng.integers(400, 3000))
     radius, temperature = float(np.exp(rng.uniform(-1, 1))), float(np.exp(rng.uniform(-2, 2)))
-    volume = count * theory.body_volume(dimension, 2.0 * radius) / fraction
+    volume = count * theory.particle_volume(dimension, 2.0 * radius) / fraction
     gas = Scene(
         Container((volume ** (1.0 / dimension),) * dimension, boundary="periodic"),
         species=(Species(count, radius, temperature=temperature, arrangement="lattice"),),

@@ -18,8 +18,8 @@ def mixture(dimension):
     """Two species and an explicit particle between walls along y, periodic along the other axes."""
     container = gp.Container((9.0, 8.0, 7.0)[:dimension], ("periodic", "wall", "periodic")[:dimension])
     species = [gp.Species(12, 0.5, temperature=1.0), gp.Species(8, 0.25, mass=2.0, temperature=1.0)]
-    body = gp.Body((4.0, 4.0, 4.0)[:dimension], (0.5, 0.25, 1.0)[:dimension], radius=0.75, mass=3.0)
-    return gp.Scene(container, species, [body])
+    particle = gp.Particle((4.0, 4.0, 4.0)[:dimension], (0.5, 0.25, 1.0)[:dimension], radius=0.75, mass=3.0)
+    return gp.Scene(container, species, [particle])
 
 
 @pytest.fixture(scope="module", params=[2, 3], ids=["discs", "spheres"])

@@ -82,9 +82,9 @@ def test_what_cannot_be_counted_is_refused(tmp_path, path):
     target = tmp_path / "run.nc"
     with pytest.raises(gp.SceneError, match='^pairs = True: .*"event" engine'):
         gp.run(mixture(), gp.TimeStepped(time_step=0.01), 1, 1.0, 0.5, target, pairs=True)
-    body = gas(3, 10, 0.1).with_bodies(gp.Body((0.5, 0.5, 0.5), (0.0, 0.0, 0.0), 0.01))
-    with pytest.raises(gp.SceneError, match="^bodies = 1: "):
-        gp.run(body, gp.EventDriven(), 1, 1.0, 0.5, target, pairs=True)
+    particle = gas(3, 10, 0.1).with_particles(gp.Particle((0.5, 0.5, 0.5), (0.0, 0.0, 0.0), 0.01))
+    with pytest.raises(gp.SceneError, match="^particles = 1: "):
+        gp.run(particle, gp.EventDriven(), 1, 1.0, 0.5, target, pairs=True)
     uncounted = gp.run(mixture(), gp.EventDriven(), 1, 4.0, 0.125, target)
     with pytest.raises(gp.SceneError, match="^pairs = False: .*--pairs"):
         gp.analysis.contact_values(uncounted)

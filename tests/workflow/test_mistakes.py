@@ -102,6 +102,6 @@ def test_titles_with_braces_and_numbers_with_exponents_are_planned(fresh, tmp_pa
     """Snakemake fills braces in its parameters, and its reader takes 1e3 for text."""
     given = tmp_path / "given.yaml"
     title = 'title: "{x} $(touch PWNED) é <b>\\"\'"\n'
-    given.write_text(f"{title}experiments: {{virial_discs: {{point: {{collisions_per_body: 1e3}}}}}}\n")
+    given.write_text(f"{title}experiments: {{virial_discs: {{point: {{collisions_per_particle: 1e3}}}}}}\n")
     result = fresh.snakemake("--cores", "1", "--dry-run", *SMOKE, str(given))
     assert result.returncode == 0, result.stdout[-2000:]

@@ -31,7 +31,7 @@ _CHUNK = 20_000  # events that are kept at once
 _PATIENCE = 1_000_000  # events without a collision of two particles
 _ABOUT = {
     "time": ("time of the collision", "time"),
-    "bodies": ("the two particles, the lower index first", "1"),
+    "particles": ("the two particles, the lower index first", "1"),
     "normal": ("unit vector at contact, from the first particle to the second", "1"),
     "approach": ("relative speed along the normal, before", "length / time"),
     "relative_speed": ("relative speed, before", "length / time"),
@@ -157,15 +157,15 @@ def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
 def pair_rows(events: dict, last: tuple, scene: Scene) -> tuple[xr.Dataset, tuple]:
     """The collisions of two particles among `events`, as rows of `collision_data`, and each particle's time
     and velocity after its last one; `last`: those before them."""
-    bodies, times, after = events["bodies"], events["time"], events["velocities"]
+    particles, times, after = events["particles"], events["time"], events["velocities"]
     number_of_particles = len(last[0])
     # each particle's history in order: its state before, then its part in every event
     rows = np.arange(len(times))
-    inside = bodies >= 0
-    index = np.concatenate([np.arange(number_of_particles), bodies[inside]])
-    when = np.concatenate([last[0], np.broadcast_to(times[:, None], bodies.shape)[inside]])
+    inside = particles >= 0
+    index = np.concatenate([np.arange(number_of_particles), particles[inside]])
+    when = np.concatenate([last[0], np.broadcast_to(times[:, None], particles.shape)[inside]])
     velocity = np.concatenate([last[1], after[inside]])
-    slot = np.full(bodies.shape, -1)
+    slot = np.full(particles.shape, -1)
     slot[inside] = number_of_particles + np.arange(inside.sum())
     order = np.argsort(index, kind="stable")
     before = np.empty(len(index), dtype=int)
@@ -173,7 +173,7 @@ def pair_rows(events: dict, last: tuple, scene: Scene) -> tuple[xr.Dataset, tupl
     final = order[np.append(np.flatnonzero(np.diff(index[order])), len(index) - 1)]
 
     collided = rows[inside[:, 1]]
-    pair = bodies[collided]
+    pair = particles[collided]
     previous = before[slot[collided]]
     incoming = velocity[previous]
     free_time = times[collided, None] - when[previous]
@@ -184,7 +184,7 @@ def pair_rows(events: dict, last: tuple, scene: Scene) -> tuple[xr.Dataset, tupl
     relative = incoming[:, 1] - incoming[:, 0]
     values = {
         "time": (("collision",), times[collided]),
-        "bodies": (("collision", "of"), pair),
+        "particles": (("collision", "of"), pair),
         "normal": (("collision", "axis"), normal),
         "approach": (("collision",), -(relative * normal).sum(axis=1)),
         "relative_speed": (("collision",), np.sqrt((relative**2).sum(axis=1))),

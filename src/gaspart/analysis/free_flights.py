@@ -53,8 +53,10 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
     mean = (simulation.time - float(events["time"][0])) * count / (2.0 * number_of_events)
     times, paths = flights["free_time"].values, flights["free_path"].values
     begun = flights["time"].values[:, None] - times
-    chosen = (begun < simulation.time - COMPLETE * mean) & np.isfinite(state.masses)[flights["bodies"].values]
-    group = (flights["bodies"].values % GROUPS)[chosen]
+    chosen = (begun < simulation.time - COMPLETE * mean) & np.isfinite(state.masses)[
+        flights["particles"].values
+    ]
+    group = (flights["particles"].values % GROUPS)[chosen]
     members = [(times[chosen][group == n], paths[chosen][group == n]) for n in range(GROUPS)]
     edges = np.linspace(0.0, _LONGEST * mean, count_of("bins", bins, least=2) + 1)
     width = edges[1]

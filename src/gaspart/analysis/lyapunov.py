@@ -88,7 +88,7 @@ def follow(deviation: Deviation, scene: Scene, masses: np.ndarray, events: Mappi
     away = events["positions"][:, 0] - events["positions"][:, 1]
     away -= np.where(scene.container.periodic, lengths * np.rint(away / lengths), 0.0)
     parting = events["velocities"][:, 0] - events["velocities"][:, 1]
-    rows = events["time"].tolist(), events["bodies"].tolist(), away.tolist(), parting.tolist()
+    rows = events["time"].tolist(), events["particles"].tolist(), away.tolist(), parting.tolist()
     for time, (i, j), apart, velocity in zip(*rows, strict=True):
         deviation.advance(i, time)
         if j < 0:

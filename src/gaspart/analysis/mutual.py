@@ -35,7 +35,7 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
     """
     with measured(source, start) as run:
         kinds = run.scene.species
-        if len(kinds) != 2 or run.scene.bodies:
+        if len(kinds) != 2 or run.scene.particles:
             raise SceneError("species", len(run.scene.kinds), "mutual diffusion is that of two species")
         if not run.moving.all():
             raise SceneError("species", "fixed", "mutual diffusion is that of two species that move")

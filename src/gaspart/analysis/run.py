@@ -18,7 +18,7 @@ from gaspart.scene.gas import Gas, Mixture
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of, number
 from gaspart.simulation import Simulation
-from gaspart.state.insertion import per_body
+from gaspart.state.insertion import per_particle
 from gaspart.state.tally import Tally
 from gaspart.trajectory.pairs import PairCounter
 from gaspart.trajectory.reading import open_trajectory
@@ -95,18 +95,18 @@ class Run:
     @cached_property
     def masses(self) -> np.ndarray:
         """(N,), infinite for fixed particles; single particles come before species."""
-        fixed = per_body(self.scene, "fixed").astype(bool)
-        return np.where(fixed, np.inf, per_body(self.scene, "mass").astype(float))
+        fixed = per_particle(self.scene, "fixed").astype(bool)
+        return np.where(fixed, np.inf, per_particle(self.scene, "mass").astype(float))
 
     @cached_property
     def radii(self) -> np.ndarray:
         """(N,)."""
-        return per_body(self.scene, "radius").astype(float)
+        return per_particle(self.scene, "radius").astype(float)
 
     @cached_property
     def species(self) -> np.ndarray:
         """(N,) numbers of species, as in the scene; single particles have the number after the last."""
-        counts = [len(self.scene.bodies), *(kind.count for kind in self.scene.species)]
+        counts = [len(self.scene.particles), *(kind.count for kind in self.scene.species)]
         return np.repeat([len(self.scene.species), *range(len(self.scene.species))], counts)
 
     @cached_property
@@ -203,7 +203,7 @@ def selected(run: Run, species: int | None, particles: Sequence[int] | None) -> 
         raise SceneError("species", species, "excludes particles")
     chosen = np.arange(len(moving))
     if species is not None:
-        kinds = len(run.scene.species) + bool(run.scene.bodies)
+        kinds = len(run.scene.species) + bool(run.scene.particles)
         if count_of("species", species) >= kinds:
             raise SceneError("species", species, f"there are {kinds}, numbered from 0")
         chosen = np.flatnonzero(run.species[moving] == species)

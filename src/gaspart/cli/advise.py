@@ -89,7 +89,7 @@ def _lines(advice: Advice, file: str) -> list[str]:
     from gaspart.tradeoff.advice import EQUILIBRATION
 
     best, gas = advice.setting, advice.gas
-    length = f"{advice.collisions_per_body:.3g} collisions per particle, duration {advice.duration:.4g}"
+    length = f"{advice.collisions_per_particle:.3g} collisions per particle, duration {advice.duration:.4g}"
     boxes = "automatic, about one per particle" if best.engine.name == "event" else "none: a neighbour list"
     lines = [
         f"engine            {_name(best)}",

@@ -14,13 +14,13 @@ class EventLog:
     def __init__(self, dimension: int, spins: bool = False) -> None:
         from gaspart.kernels.event.monitors import Record
 
-        self._keys = ("time", "bodies", "positions", "velocities", *(("spins",) if spins else ()))
+        self._keys = ("time", "particles", "positions", "velocities", *(("spins",) if spins else ()))
         self._dimension = dimension
         self._parts: list[tuple[np.ndarray, ...]] = []
         self.room = Record(
             filled=np.zeros(1, dtype=np.int64),
             time=np.empty(_ROOM),
-            bodies=np.empty((_ROOM, 2), dtype=np.int64),
+            particles=np.empty((_ROOM, 2), dtype=np.int64),
             positions=np.empty((_ROOM, 2, dimension)),
             velocities=np.empty((_ROOM, 2, dimension)),
             spins=np.empty((_ROOM, 2, 3)),
@@ -43,9 +43,9 @@ class EventLog:
 
     @property
     def events(self) -> dict[str, np.ndarray]:
-        """time (M,), bodies (M, 2), positions and velocities (M, 2, d), and spins (M, 2) or (M, 2, 3).
+        """time (M,), particles (M, 2), positions and velocities (M, 2, d), and spins (M, 2) or (M, 2, 3).
 
-        The second of `bodies` is -1 - face for a hit at a wall, and the values of the second are NaN.
+        The second of `particles` is -1 - face for a hit at a wall, and the values of the second are NaN.
         """
         parts = zip(*(self._parts or [self._copy(0)]), strict=True)
         return dict(zip(self._keys, map(np.concatenate, parts), strict=True))

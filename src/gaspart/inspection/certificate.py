@@ -46,8 +46,8 @@ def _samples(scene: Scene, series: dict) -> str:
     """Independent values of the pressure: intervals between frames over twice their correlation time, but no
     more than there are collisions."""
     counted = np.diff(series["virial_sum"])
-    per_body = 2.0 * series["collisions"][-1] / max(scene.count, 1)
-    collisions = f"{per_body:.4g} collisions per particle"
+    per_particle = 2.0 * series["collisions"][-1] / max(scene.count, 1)
+    collisions = f"{per_particle:.4g} collisions per particle"
     if not series["collisions"][-1]:
         return f"{collisions}; no sample of the pressure"
     if len(counted) < 4:

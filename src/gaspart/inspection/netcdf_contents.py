@@ -15,7 +15,7 @@ import numpy as np
 from gaspart.errors import SceneError
 from gaspart.inspection.contents import Contents, Given
 from gaspart.inspection.netcdf_size import needed_bytes
-from gaspart.state.insertion import per_body
+from gaspart.state.insertion import per_particle
 from gaspart.trajectory.amber import BOOKKEEPING
 from gaspart.trajectory.recipe import check_frames, open_descriptor, opened, read_recipe
 
@@ -235,7 +235,7 @@ def _add_scene(contents: Contents, path: Path) -> None:
     contents.boundary = tuple("periodic" if periodic else "wall" for periodic in scene.container.periodic)
     contents.flat = d == 2
     contents.lengths = np.broadcast_to(scene.container.lengths, (frames, d))
-    contents.masses = per_body(scene, "mass")[:count].astype(float)
+    contents.masses = per_particle(scene, "mass")[:count].astype(float)
     contents.plain = contents.isolated = bool(elastic and quiet and free and alike)
     contents.part = recipe.stored_count < scene.count
     contents.sampled = not recipe.engine.keeps_apart

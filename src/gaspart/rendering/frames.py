@@ -23,7 +23,7 @@ from gaspart.scene.validation import count_of
 from gaspart.scene.walls import Wall
 from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state
-from gaspart.state.insertion import per_body
+from gaspart.state.insertion import per_particle
 from gaspart.state.state import State
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.yaml_text import parse_yaml
@@ -112,7 +112,7 @@ def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -
         lengths=shown["cell_lengths"][: positions.shape[1]],
         walls=_walls(scene, float(shown["time"]), shown.get("piston_position")),
         periodic=scene.container.periodic,
-        masses=per_body(scene, "mass")[: len(source["radius"])].astype(float),
+        masses=per_particle(scene, "mass")[: len(source["radius"])].astype(float),
         parameters=parameters_of(scene),
     )
 

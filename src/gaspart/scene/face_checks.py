@@ -67,13 +67,13 @@ def _check_vibrating(scene: Scene, name: str, surface: Vibrating) -> None:
     clear = 2.0 * (surface.amplitude + scene.largest_radius)
     for n, thing in enumerate(scene.species):
         if thing.fixed and thing.count:
-            rule = f"must not be true where {name} vibrates: give fixed particles positions, as bodies"
+            rule = f"must not be true where {name} vibrates: give fixed particles positions, as particles"
             raise SceneError(f"species[{n}].fixed", True, rule)
-    for n, body in enumerate(scene.bodies):
-        x = vector(f"bodies[{n}].position", body.position, scene.dimension)[axis]
-        if body.fixed and (length - x if upper else x) < clear + body.radius:
+    for n, particle in enumerate(scene.particles):
+        x = vector(f"particles[{n}].position", particle.position, scene.dimension)[axis]
+        if particle.fixed and (length - x if upper else x) < clear + particle.radius:
             rule = f"leaves less than a largest diameter between the particle and {name}, which vibrates"
-            raise SceneError(f"bodies[{n}].position", body.position, rule)
+            raise SceneError(f"particles[{n}].position", particle.position, rule)
     for n, wall in enumerate(scene.walls):
         heights = [length - corner[axis] if upper else corner[axis] for corner in wall.corners.values()]
         if min(heights) < clear and not (min(heights) <= 0.0 and _is_upright(wall, axis)):

@@ -14,7 +14,7 @@ from gaspart.scene.validation import vector
 if TYPE_CHECKING:
     from gaspart.scene.container import Container
     from gaspart.scene.scene import Scene
-    from gaspart.scene.species import Body, Species
+    from gaspart.scene.species import Particle, Species
 
 _RESOLVED = 1e12  # diameters in the longest side, at most: contacts are then accurate to a thousandth
 _ROOM = 1e-6  # of a radius: the least room of a particle between two walls
@@ -31,7 +31,7 @@ def rounding(position: Iterable[float], *lengths: float) -> float:
 def closest_packing(scene: Scene) -> float:
     """The highest packing fraction that the particles may have: proven for equal ones, 1 for others."""
     alike = (
-        len({kind.radius for kind in scene.species if kind.count} | {it.radius for it in scene.bodies}) < 2
+        len({kind.radius for kind in scene.species if kind.count} | {it.radius for it in scene.particles}) < 2
     ) and all(kind.alike for kind in scene.species)
     return CLOSE_PACKING[scene.dimension] if alike else 1.0
 
@@ -42,7 +42,7 @@ def check_packing(scene: Scene) -> None:
         raise SceneError("packing_fraction", scene.packing_fraction, "exceeds close packing")
 
 
-def check_room(container: Container, centres_to_walls: bool, key: str, thing: Body | Species) -> None:
+def check_room(container: Container, centres_to_walls: bool, key: str, thing: Particle | Species) -> None:
     """Raise SceneError, with `key`, if a particle does not fit into the container, cannot move in it though
     it is not fixed, or is so small that its contacts are lost in rounding."""
     radius = thing.largest_radius

@@ -26,9 +26,9 @@ from gaspart.scene.geometry import ball_volume
 from gaspart.scene.keys import FLAG, VECTOR, checked_by_class, declared, instance_of, list_of, validate
 from gaspart.scene.limits import Nearby, check_packing, check_region, check_room, rounding
 from gaspart.scene.restitution import Restitution
-from gaspart.scene.species import SHARED, Body, Species
+from gaspart.scene.species import SHARED, Particle, Species
 from gaspart.scene.thermostat import Thermostat
-from gaspart.scene.validation import MOST_BODIES, from_mapping, set_fields, vector
+from gaspart.scene.validation import MOST_PARTICLES, from_mapping, set_fields, vector
 from gaspart.scene.walls import WALL_RULE, Plate, Wall, check_walls, wall_kind
 from gaspart.yaml_text import read_yaml, write_yaml
 
@@ -42,7 +42,7 @@ _ABSENT = ("fixed", "exact_temperature", "walls", "faces")  # not written into a
 
 @dataclass(frozen=True)
 class Scene:
-    """A container and its particles: first `bodies` in their order, then each of `species` in turn.
+    """A container and its particles: first `particles` in their order, then each of `species` in turn.
 
     With `centres_to_walls` the walls stop the particles' centres instead of their surfaces (the rule of
     Frederickx & Meerts 2010, whose spheres stick out of the container). walls: each a Wall in two dimensions,
@@ -56,8 +56,9 @@ class Scene:
         default=(),
         metadata=declared(list_of(Species, rule="must be a Species"), "particles placed by the program"),
     )
-    bodies: Sequence[Body] = field(
-        default=(), metadata=declared(list_of(Body, rule="must be a Body"), "particles at given positions")
+    particles: Sequence[Particle] = field(
+        default=(),
+        metadata=declared(list_of(Particle, rule="must be a Particle"), "particles at given positions"),
     )
     centres_to_walls: bool = field(
         default=False,
@@ -88,8 +89,8 @@ class Scene:
 
     def __post_init__(self) -> None:
         validate(self)
-        if self.count > MOST_BODIES:
-            raise SceneError("count", self.count, f"there may be {MOST_BODIES} particles")
+        if self.count > MOST_PARTICLES:
+            raise SceneError("count", self.count, f"there may be {MOST_PARTICLES} particles")
         self._check_gravity()
         check_walls(self)
         check_faces(self)
@@ -100,12 +101,14 @@ class Scene:
             check_region(self.container, f"species[{n}].region", kind)
         arrangements = {kind.arrangement for kind in self.species}
         for shared in arrangements & set(SHARED):
-            if self.bodies or arrangements != {shared}:
+            if self.particles or arrangements != {shared}:
                 raise SceneError("arrangement", shared, "is shared by all particles of a scene")
-        earlier = Nearby(self.container, max((2.0 * body.radius for body in self.bodies), default=0.0))
-        for n, body in enumerate(self.bodies):
-            self._check_body(n, body, earlier)
-            earlier.add(n, body.position)
+        earlier = Nearby(
+            self.container, max((2.0 * particle.radius for particle in self.particles), default=0.0)
+        )
+        for n, particle in enumerate(self.particles):
+            self._check_particle(n, particle, earlier)
+            earlier.add(n, particle.position)
         check_packing(self)
 
     def _check_gravity(self) -> None:
@@ -134,29 +137,29 @@ class Scene:
                     return f"walls[{n}]"
         return None
 
-    def _fits(self, key: str, thing: Body | Species) -> None:
+    def _fits(self, key: str, thing: Particle | Species) -> None:
         check_room(self.container, self.centres_to_walls, key, thing)
 
-    def _check_body(self, n: int, body: Body, earlier: Nearby) -> None:
-        where = f"bodies[{n}]"
-        vector(f"{where}.position", body.position, self.dimension)
-        vector(f"{where}.velocity", body.velocity, self.dimension)
-        self._fits(f"{where}.radius", body)
-        lower, upper = self.reach(body.radius)
-        for x, low, high in zip(body.position, lower, upper, strict=True):
-            slack = rounding((x,), high, body.radius)
+    def _check_particle(self, n: int, particle: Particle, earlier: Nearby) -> None:
+        where = f"particles[{n}]"
+        vector(f"{where}.position", particle.position, self.dimension)
+        vector(f"{where}.velocity", particle.velocity, self.dimension)
+        self._fits(f"{where}.radius", particle)
+        lower, upper = self.reach(particle.radius)
+        for x, low, high in zip(particle.position, lower, upper, strict=True):
+            slack = rounding((x,), high, particle.radius)
             if not low - slack <= x <= high + slack:
                 raise SceneError(
-                    f"{where}.position", body.position, "must be completely inside the container"
+                    f"{where}.position", particle.position, "must be completely inside the container"
                 )
-        if wall := self.wall_at(body.position, body.radius):
-            raise SceneError(f"{where}.position", body.position, f"overlaps {wall}")
-        for m in earlier.around(body.position):
-            other = self.bodies[m]
-            contact = body.radius + other.radius
-            slack = rounding((*body.position, *other.position), contact)
-            if self.separation(body.position, other.position) < contact - slack:
-                raise SceneError(f"{where}.position", body.position, f"overlaps bodies[{m}]")
+        if wall := self.wall_at(particle.position, particle.radius):
+            raise SceneError(f"{where}.position", particle.position, f"overlaps {wall}")
+        for m in earlier.around(particle.position):
+            other = self.particles[m]
+            contact = particle.radius + other.radius
+            slack = rounding((*particle.position, *other.position), contact)
+            if self.separation(particle.position, other.position) < contact - slack:
+                raise SceneError(f"{where}.position", particle.position, f"overlaps particles[{m}]")
 
     @property
     def dimension(self) -> int:
@@ -164,9 +167,9 @@ class Scene:
         return self.container.dimension
 
     @property
-    def kinds(self) -> tuple[Species | Body, ...]:
+    def kinds(self) -> tuple[Species | Particle, ...]:
         """All that has a radius and a mass: species and single particles."""
-        return (*self.species, *self.bodies)
+        return (*self.species, *self.particles)
 
     @property
     def contact_duration(self) -> float:
@@ -216,9 +219,9 @@ class Scene:
     @property
     def packing_fraction(self) -> float:
         """Volume (3D) or area (2D) of all particles over that of the container."""
-        bodies = sum(body.radius**self.dimension for body in self.bodies)
+        particles = sum(particle.radius**self.dimension for particle in self.particles)
         species = sum(kind.total_power(self.dimension) for kind in self.species)
-        return ball_volume(self.dimension) * (bodies + species) / self.container.volume
+        return ball_volume(self.dimension) * (particles + species) / self.container.volume
 
     @property
     def largest_radius(self) -> float:
@@ -275,9 +278,9 @@ class Scene:
             square += min(gap, length - gap) ** 2 if periodic else gap**2
         return math.sqrt(square)
 
-    def with_bodies(self, *bodies: Body) -> Scene:
+    def with_particles(self, *particles: Particle) -> Scene:
         """A new scene with these particles added."""
-        return replace(self, bodies=(*self.bodies, *bodies))
+        return replace(self, particles=(*self.particles, *particles))
 
     def with_species(self, *species: Species) -> Scene:
         """A new scene with these species added."""
@@ -336,7 +339,7 @@ class Scene:
                 faces = parts["faces"].items()
                 parts["faces"] = {name: surface_from_dict(face, f"faces.{name}") for name, face in faces}
             wall = wall_kind(parts["container"])
-            for key, kind in (("species", Species), ("bodies", Body), ("walls", wall)):
+            for key, kind in (("species", Species), ("particles", Particle), ("walls", wall)):
                 items = parts.get(key, ())
                 if not isinstance(items, (list, tuple)):
                     raise SceneError(key, items, "must be a list")

@@ -23,7 +23,7 @@ from gaspart.scene.keys import (
     validate,
 )
 from gaspart.scene.sizes import DISTRIBUTIONS, MOST_UNIFORM, relative_radii
-from gaspart.scene.validation import LARGEST, MOST_BODIES, SMALLEST, number, set_fields, size, vector
+from gaspart.scene.validation import LARGEST, MOST_PARTICLES, SMALLEST, number, set_fields, size, vector
 
 if TYPE_CHECKING:
     import numpy as np
@@ -43,7 +43,7 @@ _FIXED = declared(FLAG, "the particle never moves: it has infinite mass")
 _SPIN: dict = {"type": ["number", "array"], "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
 
 
-def _check_matter(thing: Species | Body) -> None:
+def _check_matter(thing: Species | Particle) -> None:
     """The rules for several keys that species and single particles have in common."""
     if thing.moment_of_inertia is not None:
         if not SMALLEST <= thing.moment_of_inertia / thing.mass / thing.radius**2 <= LARGEST:
@@ -72,7 +72,7 @@ class Species:
     the same for all.
     """
 
-    count: int = field(metadata=declared(count(MOST_BODIES), "number of particles"))
+    count: int = field(metadata=declared(count(MOST_PARTICLES), "number of particles"))
     radius: float = field(metadata=declared(POSITIVE, "radius; the mean, if there is a polydispersity"))
     mass: float = field(default=1.0, metadata=_MASS)
     speed: float | None = field(default=None, metadata=declared(NOT_NEGATIVE, "one initial speed for all"))
@@ -191,7 +191,7 @@ class Species:
 
 
 @dataclass(frozen=True)
-class Body:
+class Particle:
     """One particle at a given position. In 2D its spin, the angular velocity, is a number, in 3D (3,)."""
 
     count: ClassVar[int] = 1

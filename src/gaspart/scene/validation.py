@@ -21,7 +21,7 @@ T = TypeVar("T", bound="DataclassInstance")
 
 SMALLEST, LARGEST = 1e-60, 1e60
 """Size of any quantity: contacts multiply four of them, and the product must neither vanish nor overflow."""
-MOST_BODIES = 2**31 - 1
+MOST_PARTICLES = 2**31 - 1
 """Largest number of particles of a scene or a species: their indices have 32 bits."""
 MOST_BOXES = 2**26
 """Largest number of boxes of a partition: more exceed the memory of a common machine."""

@@ -20,7 +20,7 @@ from gaspart.scene.limits import closest_packing
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
 from gaspart.state.boxes import make_boxes, sides_for
-from gaspart.state.insertion import per_body, random_insertion
+from gaspart.state.insertion import per_particle, random_insertion
 from gaspart.state.random import normals, stream
 
 JAMMED = 1e6
@@ -61,7 +61,7 @@ def compress(
     Raises SceneError for scenes with particles or walls of their own, and if particles jam before they are as
     dense as wanted.
     """
-    if scene.bodies or scene.walls or any(kind.fixed for kind in scene.species):
+    if scene.particles or scene.walls or any(kind.fixed for kind in scene.species):
         raise SceneError(
             "arrangement", "compressed", "all particles must be free to move, without interior walls"
         )
@@ -126,7 +126,7 @@ class _Growing:
         self._scene, self._growth, self._flight, self._kernels = scene, growth, flight, model
         d, n = scene.dimension, scene.count
         self.scale, self.pressure, self.collisions = scale, 1.0, 0
-        self._radii = per_body(scene, "radius").astype(float)
+        self._radii = per_particle(scene, "radius").astype(float)
         self.flights = aligned((n,), model.flight_dtype(d))
         self.flights["position"] = positions
         self.flights["velocity"] = normals(stream(seed, _MOTION), n, d)

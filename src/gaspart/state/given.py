@@ -8,7 +8,7 @@ from gaspart.errors import SceneError
 from gaspart.scene.features import FEATURES, features
 from gaspart.scene.scene import Scene
 from gaspart.state.initial import assembled, masses_of
-from gaspart.state.insertion import per_body
+from gaspart.state.insertion import per_particle
 from gaspart.state.overlaps import deepest_overlap
 from gaspart.state.state import State
 
@@ -42,7 +42,7 @@ def given_state(
     spins = np.zeros(turning) if spins is None or not scene.rough else np.array(spins, dtype=float)
     if spins.shape != turning or not np.isfinite(spins).all():
         raise SceneError("initial", spins.shape, f"must have finite spins of the scene's shape, {turning}")
-    radii = per_body(scene, "radius").astype(float)
+    radii = per_particle(scene, "radius").astype(float)
     return assembled(scene, _inside(scene, np.array(positions, dtype=float), radii), velocities, spins)
 
 
@@ -61,7 +61,7 @@ def taken_state(scene: Scene, other: State) -> State:
     if tuple(other.lengths) != lengths:
         raise SceneError("initial", tuple(other.lengths.tolist()), f"the container of the scene is {lengths}")
     for name, its, mine in (
-        ("radius", other.radii, per_body(scene, "radius").astype(float)),
+        ("radius", other.radii, per_particle(scene, "radius").astype(float)),
         ("mass", other.masses, masses_of(scene)),
     ):
         if differ := np.flatnonzero(its != mine).tolist():

@@ -12,7 +12,7 @@ from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import LATTICES
 from gaspart.state.compression import compressed
-from gaspart.state.insertion import per_body, random_insertion
+from gaspart.state.insertion import per_particle, random_insertion
 from gaspart.state.random import directions, natural_log, normals, stream
 from gaspart.state.state import State
 from gaspart.state.wells import places_in_wells, well_energies
@@ -25,10 +25,10 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
 
     Raises SceneError if the particles cannot be placed.
     """
-    explicit = len(scene.bodies)
+    explicit = len(scene.particles)
     spins = np.zeros((scene.count, 3))
     if explicit:
-        spins[:explicit] = [body.spin_vector for body in scene.bodies]
+        spins[:explicit] = [particle.spin_vector for particle in scene.particles]
     rng = stream(seed, _POSITIONS)
     arrangements = {kind.arrangement for kind in scene.species if kind.count}
     ordered = arrangements & set(LATTICES)
@@ -56,17 +56,19 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
 
 def masses_of(scene: Scene) -> np.ndarray:
     """(N,) masses of all particles, infinite if fixed."""
-    return np.where(per_body(scene, "fixed").astype(bool), np.inf, per_body(scene, "mass").astype(float))
+    return np.where(
+        per_particle(scene, "fixed").astype(bool), np.inf, per_particle(scene, "mass").astype(float)
+    )
 
 
 def assembled(scene: Scene, positions: np.ndarray, velocities: np.ndarray, spins: np.ndarray) -> State:
     """The state at time 0 with these positions and velocities (N, d), and spins (N,) or (N, 3)."""
-    radii, masses = per_body(scene, "radius").astype(float), per_body(scene, "mass").astype(float)
+    radii, masses = per_particle(scene, "radius").astype(float), per_particle(scene, "mass").astype(float)
     shape = 1 / 2 if scene.dimension == 2 else 2 / 5  # of a uniform disc or sphere
-    inertia = per_body(scene, "moment_of_inertia").astype(float)  # None becomes nan
+    inertia = per_particle(scene, "moment_of_inertia").astype(float)  # None becomes nan
     inertia = np.where(np.isnan(inertia), shape * masses * radii**2, inertia)
     groups = [len(scene.species), *range(len(scene.species))]
-    counts = [len(scene.bodies), *(kind.count for kind in scene.species)]
+    counts = [len(scene.particles), *(kind.count for kind in scene.species)]
     return State(
         time=0.0,
         positions=positions,
@@ -77,7 +79,7 @@ def assembled(scene: Scene, positions: np.ndarray, velocities: np.ndarray, spins
         species=np.repeat(groups, counts).astype(np.int64),
         lengths=np.array(scene.container.lengths),
         spins=spins,
-        moments_of_inertia=np.where(per_body(scene, "fixed").astype(bool), np.inf, inertia),
+        moments_of_inertia=np.where(per_particle(scene, "fixed").astype(bool), np.inf, inertia),
         gravity=None if scene.gravity is None else np.array(scene.gravity),
         well_energies=well_energies(scene, places_in_wells(scene, positions, radii)) if scene.faces else None,
     )
@@ -87,7 +89,7 @@ def _on_lattice(scene: Scene, rng: np.random.Generator, arrangement: str) -> np.
     """(N, d) positions of a "lattice" or "slab". Raises SceneError where `lattice` does, and if a particle
     would overlap an interior wall."""
     positions = lattice(scene, rng, slab=arrangement == "slab")
-    radii = per_body(scene, "radius").astype(float)
+    radii = per_particle(scene, "radius").astype(float)
     hit = (scene.wall_at(place, radius) for place, radius in zip(positions, radii, strict=True))
     if scene.walls and any(hit):
         raise SceneError("arrangement", arrangement, "a particle would overlap an interior wall; use random")
@@ -114,7 +116,7 @@ def _piston(scene: Scene) -> np.ndarray | None:
 
 def _vibrations(scene: Scene, rng: np.random.Generator) -> np.ndarray:
     """(N,) energies of the modes: given, or drawn from exp(-E/kT)/kT; 0 where there is no mode."""
-    parts = [np.array([body.vibration or 0.0 for body in scene.bodies])]
+    parts = [np.array([particle.vibration or 0.0 for particle in scene.particles])]
     for kind in scene.species:
         if kind.vibrates and kind.temperature is not None:
             parts.append(-kind.temperature * natural_log(1.0 - rng.random(kind.count)))
@@ -125,7 +127,11 @@ def _vibrations(scene: Scene, rng: np.random.Generator) -> np.ndarray:
 
 def _velocities(scene: Scene, rng: np.random.Generator) -> np.ndarray:
     """(N, d): given, of one fixed speed, Maxwellian, or none."""
-    parts = [np.array([body.velocity for body in scene.bodies], dtype=float).reshape(-1, scene.dimension)]
+    parts = [
+        np.array([particle.velocity for particle in scene.particles], dtype=float).reshape(
+            -1, scene.dimension
+        )
+    ]
     for kind in scene.species:
         if kind.speed is not None:
             parts.append(kind.speed * directions(rng, kind.count, scene.dimension))
@@ -144,7 +150,7 @@ def _make_exact(scene: Scene, velocities: np.ndarray) -> None:
     """Give the species of exact temperature, together, no mean velocity along axes on which momentum is
     conserved, and the mean of m v^2 / kT per degree of freedom 1. With sums whose rounding is that of no
     machine. Raises SceneError without a degree of freedom."""
-    first, parts = len(scene.bodies), []
+    first, parts = len(scene.particles), []
     for kind in scene.species:
         if kind.exact_temperature and kind.temperature and kind.count:
             parts.append((np.arange(first, first + kind.count), kind.mass, kind.temperature))

@@ -21,9 +21,9 @@ PATIENCE = 2_000_000
 """Failed attempts at placing one particle after which a container counts as full."""
 
 
-def per_body(scene: Scene, attribute: str) -> np.ndarray:
+def per_particle(scene: Scene, attribute: str) -> np.ndarray:
     """(N,) an attribute of all particles; all of one species have the same, but for the radius."""
-    alone = [getattr(body, attribute) for body in scene.bodies]
+    alone = [getattr(particle, attribute) for particle in scene.particles]
     if attribute == "radius":
         return np.concatenate([alone, *(kind.radii for kind in scene.species)])
     return np.concatenate([alone, *(np.full(kind.count, getattr(kind, attribute)) for kind in scene.species)])
@@ -67,13 +67,13 @@ def random_insertion(
     """
     from gaspart.kernels.insertion import Task, place, put
 
-    dimension, explicit = scene.dimension, len(scene.bodies)
+    dimension, explicit = scene.dimension, len(scene.particles)
     species = sorted(range(len(scene.species)), key=lambda n: -scene.species[n].largest_radius)
     order = [np.arange(explicit)]  # particles in the order in which they are placed
     first = explicit + np.cumsum([0, *(kind.count for kind in scene.species)])
     order += [np.arange(first[n], first[n + 1]) for n in species]
     radii = np.concatenate(
-        [[body.radius for body in scene.bodies]] + [scene.species[n].radii for n in species]
+        [[particle.radius for particle in scene.particles]] + [scene.species[n].radii for n in species]
     ).astype(float)
     largest = largest_in_boxes(scene)
     boxes = make_boxes(scene, sides_for(scene, 2 * largest), images=False, narrowest=2 * largest)
@@ -83,8 +83,10 @@ def random_insertion(
     placed, grid, block = empty_arrays(scene, boxes, radii)
     placed.failures[:explicit] = 0
 
-    for n, body in enumerate(scene.bodies):  # their places are given, and the scene has checked them
-        position = np.clip(body.position, *scene.reach(body.radius))  # at a wall that it touches, exactly
+    for n, particle in enumerate(scene.particles):  # their places are given, and the scene has checked them
+        position = np.clip(
+            particle.position, *scene.reach(particle.radius)
+        )  # at a wall that it touches, exactly
         placed.positions[n] = position
         put(placed, boxes.index_of(position), n)
     done = explicit

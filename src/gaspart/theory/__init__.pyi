@@ -49,9 +49,9 @@ from gaspart.theory.freezing import alder_hoover_young_crystal as alder_hoover_y
 from gaspart.theory.freezing import coexistence_packing_fractions as coexistence_packing_fractions
 from gaspart.theory.freezing import crystal_finite_size_correction as crystal_finite_size_correction
 from gaspart.theory.freezing import speedy_crystal as speedy_crystal
-from gaspart.theory.geometry import body_volume as body_volume
 from gaspart.theory.geometry import number_density as number_density
 from gaspart.theory.geometry import packing_fraction as packing_fraction
+from gaspart.theory.geometry import particle_volume as particle_volume
 from gaspart.theory.granular import cooling_rate as cooling_rate
 from gaspart.theory.granular import cooling_rate_finite_size_factor as cooling_rate_finite_size_factor
 from gaspart.theory.granular import driven_cumulant as driven_cumulant
@@ -78,7 +78,7 @@ from gaspart.theory.heat import free_molecular_flux as free_molecular_flux
 from gaspart.theory.insertion import RSA_SATURATION as RSA_SATURATION
 from gaspart.theory.insertion import RSA_SATURATION_UNCERTAINTY as RSA_SATURATION_UNCERTAINTY
 from gaspart.theory.insertion import available_fraction as available_fraction
-from gaspart.theory.insertion import failures_per_body as failures_per_body
+from gaspart.theory.insertion import failures_per_particle as failures_per_particle
 from gaspart.theory.insertion import insertion_saturation as insertion_saturation
 from gaspart.theory.insertion import insertion_saturation_uncertainty as insertion_saturation_uncertainty
 from gaspart.theory.mixtures import MIXTURE_THEORIES as MIXTURE_THEORIES

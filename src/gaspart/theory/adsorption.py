@@ -8,7 +8,7 @@ import numpy as np
 
 from gaspart.theory._arguments import Numbers, Values, checked, checked_packing_fraction
 from gaspart.theory.equations import STABLE_DISCS
-from gaspart.theory.geometry import body_volume
+from gaspart.theory.geometry import particle_volume
 from gaspart.theory.potential import packing_fraction_at
 
 _EXACT = np.sqrt(0.75)
@@ -34,7 +34,7 @@ def excess_in_well(held: Numbers, free: Numbers, diameter: float, width: float, 
     of at least a diameter. A sphere's ball of radius sigma, 4 pi sigma^3 / 3, is closed to other centres;
     beyond a plane at a random distance within a layer of thickness t lies pi sigma^4 / (4 t) of it (exact).
     """
-    ball, beyond = body_volume(3, 2.0 * diameter), 0.25 * np.pi * diameter**4
+    ball, beyond = particle_volume(3, 2.0 * diameter), 0.25 * np.pi * diameter**4
     in_well = held * (ball - 2.0 * beyond / width) + free * beyond / width
     in_gas = free * (ball - 2.0 * beyond / outside) + held * beyond / outside
     return in_gas - in_well

@@ -12,7 +12,7 @@ def unit_sphere_surface(dimension: int) -> float:
 
 
 @checked
-def body_volume(dimension: int, diameter: float = 1.0) -> float:
+def particle_volume(dimension: int, diameter: float = 1.0) -> float:
     """Area of a disc, pi sigma^2 / 4, or volume of a sphere, pi sigma^3 / 6 (exact; length^dimension)."""
     return ball_volume(checked_dimension(dimension), 0.5 * diameter)
 
@@ -20,10 +20,10 @@ def body_volume(dimension: int, diameter: float = 1.0) -> float:
 @checked
 def number_density(packing_fraction: Numbers, dimension: int, diameter: float = 1.0) -> Values:
     """Particles per volume, rho = eta / v (exact; 1 / length^dimension)."""
-    return packing_fraction / body_volume(dimension, diameter)
+    return packing_fraction / particle_volume(dimension, diameter)
 
 
 @checked
 def packing_fraction(number_density: Numbers, dimension: int, diameter: float = 1.0) -> Values:
     """Fraction of the container's volume that particles fill, eta = rho v (exact; dimensionless)."""
-    return number_density * body_volume(dimension, diameter)
+    return number_density * particle_volume(dimension, diameter)

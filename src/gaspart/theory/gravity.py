@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
-from gaspart.theory.geometry import body_volume
+from gaspart.theory.geometry import particle_volume
 from gaspart.theory.potential import packing_fraction_at
 
 
@@ -126,7 +126,7 @@ def hydrostatic_profiles(
     z = np.asarray(z, dtype=float)
     numbers, weights = np.asarray(numbers, dtype=float), np.asarray(weights, dtype=float)
     fields = -weights[:, None] * (z - z[0])
-    volume = body_volume(dimension, diameter)
+    volume = particle_volume(dimension, diameter)
     # Start dilute; each round scales the activities by what is missing. It converges from below, because the
     # density grows more slowly than the activity.
     logarithms = np.log(numbers * volume / np.trapezoid(np.exp(fields), z, axis=1))

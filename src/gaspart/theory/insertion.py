@@ -83,7 +83,7 @@ def available_fraction(packing_fraction: Numbers, dimension: int) -> Values:
     return 1.0 - first * eta + second * eta**2
 
 
-def failures_per_body(packing_fraction: Numbers, dimension: int) -> Values:
+def failures_per_particle(packing_fraction: Numbers, dimension: int) -> Values:
     """Mean number of failed attempts before a particle is placed at this packing fraction: 1 / available - 1.
 
     2^d eta at low density (exact); range that of `available_fraction`.

@@ -20,7 +20,7 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.theory._arguments import Numbers, checked, checked_dimension, checked_packing_fraction
-from gaspart.theory.geometry import body_volume, unit_sphere_surface
+from gaspart.theory.geometry import particle_volume, unit_sphere_surface
 from gaspart.theory.state import HIGHEST_PACKING_FRACTION, contact_value
 
 MIXTURE_THEORIES = {"boublik": (3,), "linear": (2, 3), "santos": (2, 3)}
@@ -148,7 +148,7 @@ def mixture_collision_rates(
     if len(each) not in (1, len(sizes)):
         raise SceneError("masses", len(each), f"there are {len(sizes)} diameters")
     inverse = np.broadcast_to(1.0 / each, sizes.shape)
-    densities = packing_fraction * parts / (body_volume(dimension) * float(parts @ sizes**dimension))
+    densities = packing_fraction * parts / (particle_volume(dimension) * float(parts @ sizes**dimension))
     speeds = np.sqrt(temperature * np.add.outer(inverse, inverse) / (2.0 * math.pi))
     between = 0.5 * np.add.outer(sizes, sizes)
     return unit_sphere_surface(dimension) * densities * between ** (dimension - 1) * speeds * contact

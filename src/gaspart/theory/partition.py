@@ -93,7 +93,7 @@ def share_of_contacts_in_a_box(width: Numbers, diameter: Numbers, dimension: int
     return 1.0 - 1.5 * s + 2.0 * s**2 / math.pi - s**3 / (4.0 * math.pi)
 
 
-def ideal_boxes_per_body(test_cost: Numbers, box_cost: Numbers, dimension: int) -> Values:
+def ideal_boxes_per_particle(test_cost: Numbers, box_cost: Numbers, dimension: int) -> Values:
     """Boxes per particle at which a step costs least, if a pair test and a box cost what is given (same
     unit).
 

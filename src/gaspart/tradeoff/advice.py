@@ -49,7 +49,7 @@ class Setting:
 class Advice:
     """The setting to take, the best one of each other kind, and what follows for the run.
 
-    collisions_per_body: measured, in each replica; duration: the same in the scene's time; finite_size:
+    collisions_per_particle: measured, in each replica; duration: the same in the scene's time; finite_size:
     relative difference from the infinite gas; bulk_count: particles for which that is a quarter of the
     accuracy. Both NaN where there is no theory. scatter: relative standard deviation of D and of the
     collision rate from run to run, if velocities are drawn from a temperature and have it only on average.
@@ -62,7 +62,7 @@ class Advice:
     setting: Setting
     others: tuple[Setting, ...]
     replicas: int
-    collisions_per_body: float
+    collisions_per_particle: float
     finite_size: float
     bulk_count: float
     scatter: float
@@ -70,17 +70,19 @@ class Advice:
     @property
     def duration(self) -> float:
         """Measured length of each replica, in the scene's time."""
-        return self.collisions_per_body / float(theory.collision_rate(**self.gas.parameters))
+        return self.collisions_per_particle / float(theory.collision_rate(**self.gas.parameters))
 
     @property
     def recipe(self) -> Recipe:
         """One replica, equilibration included, with a frame for each collision of a particle or fewer."""
-        interval = self.duration / self.collisions_per_body * max(1.0, self.collisions_per_body / _FRAMES)
+        interval = (
+            self.duration / self.collisions_per_particle * max(1.0, self.collisions_per_particle / _FRAMES)
+        )
         quantum = self.setting.engine.quantum
         interval = (
             float(f"{interval:.2g}") if quantum is None else max(1, round(interval / quantum)) * quantum
         )
-        part = self.duration * (1.0 + EQUILIBRATION / self.collisions_per_body) / interval
+        part = self.duration * (1.0 + EQUILIBRATION / self.collisions_per_particle) / interval
         return Recipe(self.scene, self.setting.engine, 1, math.ceil(part) * interval, interval)
 
     @property
@@ -194,8 +196,8 @@ def advise(
         )
         if kind
     )
-    per_body = 2.0 * best.contacts / gas.count
-    replicas = max(1, min(os.cpu_count() or 1, int(per_body / (_PER_EQUILIBRATION * EQUILIBRATION))))
+    per_particle = 2.0 * best.contacts / gas.count
+    replicas = max(1, min(os.cpu_count() or 1, int(per_particle / (_PER_EQUILIBRATION * EQUILIBRATION))))
     finite_size = _finite_size(gas, observable)
     return Advice(
         scene,
@@ -205,7 +207,7 @@ def advise(
         best,
         others,
         replicas,
-        per_body / replicas,
+        per_particle / replicas,
         finite_size,
         gas.count * (abs(finite_size) * _BULK / accuracy) ** (gas.dimension if observable == "D" else 1),
         0.5 * temperature_scatter(scene),
@@ -248,7 +250,7 @@ def _finite_size(gas: Gas, observable: str) -> float:
         return float(shift / theory.compressibility_factor(fraction, dimension))
     if observable == "collision_rate":
         return float(theory.collision_rate_finite_size_factor(fraction, dimension, count)) - 1.0
-    side = (count * theory.body_volume(dimension) / fraction) ** (1.0 / dimension)
+    side = (count * theory.particle_volume(dimension) / fraction) ** (1.0 / dimension)
     diffusion = float(theory.enskog_diffusion(fraction, dimension))
     carried = float(theory.number_density(fraction, dimension)) * diffusion  # modes decay with nu + D
     lost = theory.yeh_hummer(side, float(theory.enskog_viscosity(fraction, dimension)) + carried)

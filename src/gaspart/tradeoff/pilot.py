@@ -105,7 +105,7 @@ def _crossing(scene: Scene) -> float:
         kind.temperature / kind.mass if kind.temperature else (kind.speed or 0.0) ** 2
         for kind in scene.species
     ]
-    squares += [sum(v * v for v in body.velocity) for body in scene.bodies]
+    squares += [sum(v * v for v in particle.velocity) for particle in scene.particles]
     squares += [getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()]
     if scene.gravity:
         squares.append(max(map(abs, scene.gravity)) * min(scene.container.lengths))

@@ -29,7 +29,7 @@ def factor(dimension: int, engine: str, precision: str, count: int) -> float:
     """
     growth = max(1.0, count / _MOST) ** _GROWTH
     count = min(max(count, _LEAST), _MOST)
-    side = (count * theory.body_volume(dimension) / REFERENCE) ** (1.0 / dimension)
+    side = (count * theory.particle_volume(dimension) / REFERENCE) ** (1.0 / dimension)
     particles = Species(count, 0.5, temperature=1.0, arrangement="lattice")
     gas = Scene(Container((side,) * dimension, boundary="periodic"), species=(particles,))
     chosen = EventDriven() if engine == "event" else TimeStepped(STEP, precision=precision)

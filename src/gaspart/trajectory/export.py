@@ -14,7 +14,7 @@ import numpy as np
 
 from gaspart.errors import SceneError, optional
 from gaspart.files import Kind, begins_with, descriptor_path, output_path, writing
-from gaspart.state.insertion import per_body
+from gaspart.state.insertion import per_particle
 from gaspart.trajectory.recipe import check_frames, opened, read_recipe
 
 KINDS = {
@@ -66,7 +66,7 @@ def _snapshot(path: Path, frame: int) -> Snapshot:
             positions=np.asarray(file["coordinates"][frame], dtype=float),
             velocities=np.asarray(file["velocities"][frame], dtype=float),
             diameters=2.0 * radii,
-            masses=per_body(scene, "mass")[: len(radii)].astype(float),
+            masses=per_particle(scene, "mass")[: len(radii)].astype(float),
             types=np.asarray(file["type"][:]),
             lengths=np.asarray(file["cell_lengths"][frame], dtype=float),
             time=float(file["time"][frame]),
@@ -109,7 +109,7 @@ def _write_data(path: Path, snapshot: Snapshot) -> None:
     density = snapshot.masses / (math.pi / 6.0 * snapshot.diameters**3)
     low = np.array([0.0, 0.0, -0.5 * snapshot.lengths[2] if snapshot.dimension == 2 else 0.0])
     lines = [
-        f"gaspart: {count} bodies at time {snapshot.time!r}; atom_style sphere",
+        f"gaspart: {count} particles at time {snapshot.time!r}; atom_style sphere",
         "",
         f"{count} atoms",
         f"{int(snapshot.types.max()) + 1} atom types",

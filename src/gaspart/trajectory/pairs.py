@@ -15,9 +15,9 @@ _NAME = "pair collisions"  # of the array in a checkpoint
 
 def pairs_of(scene: Scene) -> list[tuple[int, int]]:
     """The pairs of species by their numbers, the lower one first. Raises SceneError for single particles."""
-    if scene.bodies:
+    if scene.particles:
         raise SceneError(
-            "bodies", len(scene.bodies), "pairs are counted by species: there are single particles"
+            "particles", len(scene.particles), "pairs are counted by species: there are single particles"
         )
     return list(combinations_with_replacement(range(len(scene.species)), 2))
 
@@ -46,8 +46,8 @@ class PairCounter:
 
     def take(self) -> None:
         """Count the events since the last call, and forget them."""
-        bodies = self._simulation.events["bodies"]
-        species = self._species[bodies[bodies[:, 1] >= 0]]  # without hits of faces and walls
+        particles = self._simulation.events["particles"]
+        species = self._species[particles[particles[:, 1] >= 0]]  # without hits of faces and walls
         found = self._number[species[:, 0], species[:, 1]]
         self.counts += np.bincount(found, minlength=len(self.counts))
         self._simulation.record_events = True  # a new, empty list

@@ -20,7 +20,7 @@ from gaspart.scene.faces import pistons, sliding_faces
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of, number
 from gaspart.state.given import given_state, taken_state
-from gaspart.state.insertion import per_body
+from gaspart.state.insertion import per_particle
 from gaspart.state.random import stream
 from gaspart.state.state import State
 from gaspart.trajectory import amber, provenance
@@ -206,10 +206,10 @@ class Recipe:
         from gaspart.kernels.compile.policy import source_digest
 
         scene, versions = self.scene, provenance.versions()
-        groups = [len(scene.species)] * len(scene.bodies) + list(range(len(scene.species)))
-        counts = [1] * len(scene.bodies) + [kind.count for kind in scene.species]
+        groups = [len(scene.species)] * len(scene.particles) + list(range(len(scene.species)))
+        counts = [1] * len(scene.particles) + [kind.count for kind in scene.species]
         types = np.repeat(groups, counts)[: self.stored_count]
-        radii = per_body(scene, "radius")[: self.stored_count]
+        radii = per_particle(scene, "radius")[: self.stored_count]
         attributes = {
             "Conventions": "AMBER",
             "ConventionVersion": "1.0",

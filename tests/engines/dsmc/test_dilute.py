@@ -53,7 +53,7 @@ def test_the_collision_rate_is_boltzmanns(dimension, species):
 def test_the_rate_with_default_settings_is_right_to_half_a_thousandth(dimension):
     """4e7 collisions: a standard error of 1.6e-4."""
     eta, n, ratios = 1e-3, 50_000, []
-    side = (n * theory.body_volume(dimension) / eta) ** (1.0 / dimension)
+    side = (n * theory.particle_volume(dimension) / eta) ** (1.0 / dimension)
     gas = gp.Species(n, 0.5, temperature=1.0, exact_temperature=True)
     scene = gp.Scene(gp.Container((side,) * dimension, "periodic"), [gas])
     rate = float(theory.collision_rate(eta, dimension) / theory.contact_value(eta, dimension))

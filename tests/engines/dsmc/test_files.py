@@ -39,7 +39,7 @@ def test_a_run_states_its_cells_its_step_and_the_error_that_they_bring(tmp_path,
 
 def test_a_config_has_it(tmp_path):
     point = {"dimension": 3, "boundary": "periodic", "radius": 0.1, "count": 500, "temperature": 1.0}
-    point |= {"engine": "dsmc", "collisions_per_body": 2.0, "samples": 3}
+    point |= {"engine": "dsmc", "collisions_per_particle": 2.0, "samples": 3}
     block = {"point": point, "grid": {"packing_fraction": [1e-3], "model": ["boltzmann", "enskog"]}}
     config = {"seed": 1, "points": "results/points", "experiments": {"gas": block}, "figures": {}}
     made = points(config, "gas")

@@ -65,8 +65,10 @@ def test_a_gas_that_falls_has_the_barometric_profile():
 
 
 def test_a_particle_bounces_on_a_floor_for_ever():
-    body = gp.Body((5.0, 3.0), (0.3, 0.0), 0.5)
-    scene = gp.Scene(gp.Container((10.0, 10.0), ("periodic", "wall")), bodies=[body], gravity=(0.0, -1.0))
+    particle = gp.Particle((5.0, 3.0), (0.3, 0.0), 0.5)
+    scene = gp.Scene(
+        gp.Container((10.0, 10.0), ("periodic", "wall")), particles=[particle], gravity=(0.0, -1.0)
+    )
     sim = advanced(scene, 10_000, time_step=0.1, cells_per_side=1)
     assert sim.state.energy == pytest.approx(sim.initial_state.energy, rel=1e-10)
     period = 2.0 * math.sqrt(2.0 * 2.5)
@@ -74,8 +76,8 @@ def test_a_particle_bounces_on_a_floor_for_ever():
 
 
 def test_a_corner_reflects_both_components():
-    body = gp.Body((9.0, 8.5), (1.0, 1.0), 0.5)
-    scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=[body])
+    particle = gp.Particle((9.0, 8.5), (1.0, 1.0), 0.5)
+    scene = gp.Scene(gp.Container((10.0, 10.0)), particles=[particle])
     sim = advanced(scene, 1, time_step=2.0, cells_per_side=1)
     assert sim.state.positions[0] == pytest.approx((8.0, 8.5))
     assert sim.state.velocities[0] == pytest.approx((-1.0, -1.0))

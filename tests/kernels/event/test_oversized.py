@@ -1,4 +1,4 @@
-"""Bodies too large for the boxes: the same events as without a partition, in less work."""
+"""Particles too large for the boxes: the same events as without a partition, in less work."""
 
 import math
 
@@ -15,10 +15,10 @@ from gaspart.state.oversized import largest_in_boxes, work
 
 
 @given(uneven(), st.integers(0, 2**32), st.integers(8, 16))
-def test_bodies_outside_the_boxes_give_the_same_events_bit_for_bit(scene, seed, per_side):
+def test_particles_outside_the_boxes_give_the_same_events_bit_for_bit(scene, seed, per_side):
     try:
         referee = events_of(scene, "pairs", 150, seed, may_collapse=True)
-    except gp.SceneError as error:  # a wall may leave no room for oversized bodies
+    except gp.SceneError as error:  # a wall may leave no room for oversized particles
         assert "does not fit by random insertion" in error.rule
         reject()
     found = events_of(scene, "boxes", 150, seed, may_collapse=True, boxes_per_side=per_side)
@@ -27,24 +27,24 @@ def test_bodies_outside_the_boxes_give_the_same_events_bit_for_bit(scene, seed, 
 
 
 def uneven_gas(dimension, count, ratio):
-    """Bodies of radius 1/ratio around one of radius 1 in the middle of a container of side 4."""
-    large = gp.Body((2.0,) * dimension, (0.0,) * dimension, 1.0, mass=10.0)
+    """Particles of radius 1/ratio around one of radius 1 in the middle of a container of side 4."""
+    large = gp.Particle((2.0,) * dimension, (0.0,) * dimension, 1.0, mass=10.0)
     small = gp.Species(count, 1.0 / ratio, temperature=1.0)
     return gp.Scene(gp.Container((4.0,) * dimension), [small], [large])
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_size_ratios_to_ten_thousand(dimension):
-    """The same events, from less than a tenth of the bodies looked at, and no energy lost."""
+    """The same events, from less than a tenth of the particles looked at, and no energy lost."""
     scene = uneven_gas(dimension, 300 if dimension == 2 else 3000, 1e4)
     boxes, direct = (events_of(scene, search, 500) for search in ("boxes", "direct"))
     assert same_bits(boxes, direct)
-    assert (boxes.events["bodies"] == 0).any()
+    assert (boxes.events["particles"] == 0).any()
     assert boxes.tally.pair_tests < 0.1 * direct.tally.pair_tests
     boxes.check_invariants()
 
 
-def test_which_bodies_are_kept_outside():
+def test_which_particles_are_kept_outside():
     assert largest_in_boxes(uneven_gas(2, 1000, 100.0)) == 0.01
     assert work(uneven_gas(2, 1000, 100.0), 0.01) < 0.1 * work(uneven_gas(2, 1000, 100.0), 1.0)
     assert largest_in_boxes(gas(3, 1000, 0.1)) == 0.5
@@ -53,14 +53,14 @@ def test_which_bodies_are_kept_outside():
     assert largest_in_boxes(gp.Scene(gp.Container((4.0, 4.0)))) == 0.0
 
 
-def test_boxes_narrower_than_most_bodies_are_refused():
+def test_boxes_narrower_than_most_particles_are_refused():
     scene = gp.Scene(gp.Container((10.0, 10.0)), [gp.Species(5, 0.1), gp.Species(5, 0.6)])
     with pytest.raises(gp.SceneError, match="boxes_per_side = 9: boxes must not be narrower"):
         gp.Simulation(scene, gp.EventDriven(boxes_per_side=9))
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_big_bodies_among_ten_thousand_small_ones_are_placed(dimension):
+def test_big_particles_among_ten_thousand_small_ones_are_placed(dimension):
     side = 60.0 if dimension == 3 else 600.0
     species = [gp.Species(10_000, 0.5), gp.Species(3, 8.0)]
     scene = gp.Scene(gp.Container((side,) * dimension, "periodic"), species)

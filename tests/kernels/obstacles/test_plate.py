@@ -18,8 +18,8 @@ SEARCHES = pytest.mark.parametrize("search", ["boxes", "pairs"])
 
 def sent(position, velocity, search="boxes", walls=(PLATE,), gravity=(0.0, 0.0, -1e-60), **rest):
     """One sphere and its first event; the weakest of gravities, so that all tests share their kernels."""
-    body = gp.Body(position, velocity, 0.5)
-    scene = gp.Scene(gp.Container((12.0,) * 3, **rest), bodies=[body], walls=walls, gravity=gravity)
+    particle = gp.Particle(position, velocity, 0.5)
+    scene = gp.Scene(gp.Container((12.0,) * 3, **rest), particles=[particle], walls=walls, gravity=gravity)
     sim = gp.Simulation(scene, gp.EventDriven(search))
     sim.record_events = True
     sim.advance(max_events=1)
@@ -41,7 +41,7 @@ def test_all_searches_agree_bit_for_bit_and_no_particle_passes_a_plate(scene, se
 def test_a_side(search, x, v):
     sim = sent((x, 6.0, 5.0), (v, 0.25, 0.0), search)
     assert sim.events["time"].tolist() == [3.5]
-    assert sim.events["bodies"].tolist() == [[0, -7]]
+    assert sim.events["particles"].tolist() == [[0, -7]]
     assert sim.state.velocities[0, :2].tolist() == [-v, 0.25]
     assert sim.tally.wall_impulse.tolist() == [0.0] * 6 + [2.0]
 
@@ -58,7 +58,7 @@ def test_an_edge_is_a_cylinder(search, degrees):
 
 @SEARCHES
 def test_a_corner_is_a_sphere(search):
-    """Sent along the diagonal of a cube at a corner, a body comes back; beside it, it passes."""
+    """Sent along the diagonal of a cube at a corner, a particle comes back; beside it, it passes."""
     way = np.array([1.0, 1.0, 1.0])
     sim = sent(tuple(np.array([6.0, 4.0, 4.0]) - 2 * way), tuple(way), search)
     assert sim.events["time"] == pytest.approx([2.0 - 0.5 / math.sqrt(3.0)], rel=1e-14)
@@ -78,7 +78,7 @@ def test_a_rim_is_met_where_side_and_edge_meet(search):
 
 @SEARCHES
 def test_thrown_over_an_edge_and_back_onto_it(search):
-    """Beside the end of an edge a body passes its line, rises, and comes down on the edge itself."""
+    """Beside the end of an edge a particle passes its line, rises, and comes down on the edge itself."""
     shelf = gp.Plate((6.0, 6.0, 4.0), ((5.0, 0.0, 0.0), (0.0, 0.0, -3.0)))  # its upper edge along x
     sim = sent((3.0, 6.0, 2.0), (0.8, 0.0, 3.0), search, walls=[shelf], gravity=(0.0, 0.0, -1.0))
     down = 3.0 + math.sqrt(9.0 - 2 * 2.5)  # z = 2 + 3t - t^2/2 = 4.5
@@ -103,8 +103,8 @@ def test_a_plate_is_met_across_a_periodic_face():
 
 
 def test_a_box_of_plates_keeps_a_gas():
-    body = gp.Body((5.5, 6.0, 6.0), (1.0, 0.3, 0.7), 0.3)
-    scene = gp.Scene(gp.Container((12.0,) * 3), bodies=[body], gravity=(0.0, 0.0, -0.1))
+    particle = gp.Particle((5.5, 6.0, 6.0), (1.0, 0.3, 0.7), 0.3)
+    scene = gp.Scene(gp.Container((12.0,) * 3), particles=[particle], gravity=(0.0, 0.0, -0.1))
     sim = gp.Simulation(scene, gp.EventDriven())
     sim.record_events = True
     sim.add_box((4.0, 4.0, 4.0), (7.0, 8.0, 7.0))
@@ -126,17 +126,17 @@ def test_a_box_of_plates_keeps_a_gas():
         ({"corner": [6, 4, 4], "edges": [[0, 9, 0], [0, 0, 4]]}, "walls[0].edges[0]"),
         ({"corner": [6, 13, 4], "edges": [[0, 4, 0], [0, 0, 4]]}, "walls[0].corner"),
         ({"start": [6, 4], "end": [6, 6]}, "walls[0].start"),
-        ({"corner": [2.4, 4, 4], "edges": [[0, 4, 0], [0, 0, 4]]}, "bodies[0].position"),
+        ({"corner": [2.4, 4, 4], "edges": [[0, 4, 0], [0, 0, 4]]}, "particles[0].position"),
     ],
 )
 def test_what_is_refused(plate, key):
-    body = {"position": [2.0, 5.0, 5.0], "velocity": [0.0, 0.0, 0.0], "radius": 0.7}
+    particle = {"position": [2.0, 5.0, 5.0], "velocity": [0.0, 0.0, 0.0], "radius": 0.7}
     with pytest.raises(gp.SceneError) as caught:
-        gp.Scene.from_dict({"container": {"lengths": [12.0] * 3}, "bodies": [body], "walls": [plate]})
+        gp.Scene.from_dict({"container": {"lengths": [12.0] * 3}, "particles": [particle], "walls": [plate]})
     assert caught.value.key == key
 
 
-def test_random_bodies_keep_clear_and_files_keep_plates():
+def test_random_particles_keep_clear_and_files_keep_plates():
     scene = gp.Scene(gp.Container((12.0,) * 3), [gp.Species(300, 0.4)], walls=[PLATE])
     state = gp.Simulation(scene, gp.EventDriven(), seed=3).initial_state
     assert all(PLATE.distance(tuple(place)) >= 0.4 for place in state.positions)

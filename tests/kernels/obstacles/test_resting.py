@@ -1,4 +1,4 @@
-"""Bodies that rest on interior walls under gravity, slide along them, and leave them."""
+"""Particles that rest on interior walls under gravity, slide along them, and leave them."""
 
 import math
 
@@ -14,15 +14,15 @@ FLAT = [gp.Wall((5.0, 10.0), (15.0, 10.0))]
 ROOT = math.sqrt(0.5)
 
 
-def discs(bodies, walls=FLAT, restitution=None, boundary="wall", gravity=(0.0, -1.0)):
+def discs(particles, walls=FLAT, restitution=None, boundary="wall", gravity=(0.0, -1.0)):
     container = gp.Container((20.0, 20.0), boundary)
-    bodies = [gp.Body(place, velocity, 0.5) for place, velocity in bodies]
-    return gp.Scene(container, bodies=bodies, walls=walls, restitution=restitution, gravity=gravity)
+    particles = [gp.Particle(place, velocity, 0.5) for place, velocity in particles]
+    return gp.Scene(container, particles=particles, walls=walls, restitution=restitution, gravity=gravity)
 
 
-def spheres(bodies, walls):
-    bodies = [gp.Body(place, velocity, 0.5) for place, velocity in bodies]
-    return gp.Scene(gp.Container((10.0,) * 3), bodies=bodies, walls=walls, gravity=(0.0, 0.0, -1.0))
+def spheres(particles, walls):
+    particles = [gp.Particle(place, velocity, 0.5) for place, velocity in particles]
+    return gp.Scene(gp.Container((10.0,) * 3), particles=particles, walls=walls, gravity=(0.0, 0.0, -1.0))
 
 
 def after(scene, duration):

@@ -30,7 +30,9 @@ def test_no_particle_passes_through_a_wall(scene, seed):
 @pytest.mark.parametrize("search", ["boxes", "direct", "pairs"])
 def test_a_container_of_walls_keeps_a_gas(search):
     container = gp.Container((20.0, 20.0))
-    scene = gp.Scene(container, bodies=[gp.Body((9.0 + n, 9.0), (1.0, 0.3 * n), 0.3) for n in range(3)])
+    scene = gp.Scene(
+        container, particles=[gp.Particle((9.0 + n, 9.0), (1.0, 0.3 * n), 0.3) for n in range(3)]
+    )
     sim = gp.Simulation(scene, gp.EventDriven(search))
     sim.add_box((7.3, 7.7), (13.1, 12.2))
     sim.advance(duration=300.0)
@@ -45,7 +47,7 @@ def test_a_container_of_walls_keeps_a_gas(search):
         sim.add_wall((1.0, 1.0), (2.0, 2.0))
 
 
-def test_a_body_passes_just_beside_an_end_and_does_not_pass_just_inside():
+def test_a_particle_passes_just_beside_an_end_and_does_not_pass_just_inside():
     wall = gp.Wall((6.0, 4.0), (6.0, 6.0))
     for beside, hits in ((0.5 + 1e-9, 0), (0.5 - 1e-9, 1)):
         sim = sent((2.0, 6.0 + beside), (1.0, 0.0), [wall])
@@ -80,7 +82,7 @@ def test_walls_that_cross_are_corners():
 
 @pytest.mark.parametrize("boxes_per_side", [1, 2, 4])
 def test_a_wall_is_met_across_a_periodic_face(boxes_per_side):
-    # the wall stands a little inside the low face; the body comes to the high face and touches its image
+    # the wall stands a little inside the low face; the particle comes to the high face and touches its image
     wall = gp.Wall((0.2, 3.0), (0.2, 9.0))
     sim = sent((9.0, 6.0), (1.0, 0.0), [wall], boundary="periodic", boxes_per_side=boxes_per_side)
     sim.advance(duration=4.0)
@@ -95,7 +97,7 @@ def test_gravity_and_a_shelf():
     sim.record_events = True
     sim.advance(duration=39.0)
     assert sim.events["time"] == pytest.approx(2.0 * np.arange(1, 20, 2), rel=1e-13)
-    assert (sim.events["bodies"] == [0, -5]).all()
+    assert (sim.events["particles"] == [0, -5]).all()
     sim = sent((6.0, 2.0), (0.0, 5.0), [shelf], gravity=(0.0, -1.0))
     sim.record_events = True
     sim.advance(max_events=1)
@@ -106,13 +108,13 @@ def test_thrown_round_the_end_of_a_shelf_onto_its_other_side():
     """Up beside the end, over it, and down on the top: the side that it was not on when thrown."""
     shelf = gp.Wall((6.0, 6.0), (11.0, 6.0))
     for search in ("boxes", "direct", "pairs"):
-        body = gp.Body((4.5, 4.0), (0.5, 3.5), 0.5)
-        scene = gp.Scene(gp.Container((12.0, 12.0)), bodies=[body], gravity=(0.0, -1.0), walls=[shelf])
+        particle = gp.Particle((4.5, 4.0), (0.5, 3.5), 0.5)
+        scene = gp.Scene(gp.Container((12.0, 12.0)), particles=[particle], gravity=(0.0, -1.0), walls=[shelf])
         sim = gp.Simulation(scene, gp.EventDriven(search))
         sim.record_events = True
         sim.advance(max_events=1)
         down = 3.5 + math.sqrt(3.5**2 - 2 * 2.5)
-        assert sim.events["bodies"].tolist() == [[0, -5]]
+        assert sim.events["particles"].tolist() == [[0, -5]]
         assert sim.events["time"] == pytest.approx([down], rel=1e-13)
         assert sim.state.positions[0] == pytest.approx([4.5 + 0.5 * down, 6.5], rel=1e-13)
 
@@ -132,11 +134,12 @@ def test_a_rough_wall_follows_its_formula():
     law, n = (
         gp.Restitution(0.7, 0.4),
         np.array([1.0, -1.0, 0.0]) / math.sqrt(2.0),
-    )  # from the body to the wall
-    body = gp.Body((2.0, 6.0), (1.0, 0.2), 0.5, 3.0, 1.3, 0.2)
+    )  # from the particle to the wall
+    particle = gp.Particle((2.0, 6.0), (1.0, 0.2), 0.5, 3.0, 1.3, 0.2)
     wall = gp.Wall((4.0, 4.0), (8.0, 8.0))
     sim = gp.Simulation(
-        gp.Scene(gp.Container((12.0, 12.0)), bodies=[body], restitution=law, walls=[wall]), gp.EventDriven()
+        gp.Scene(gp.Container((12.0, 12.0)), particles=[particle], restitution=law, walls=[wall]),
+        gp.EventDriven(),
     )
     sim.advance(max_events=1)
     v, spin = np.array([1.0, 0.2, 0.0]), np.array([0.0, 0.0, 1.3])
@@ -148,7 +151,7 @@ def test_a_rough_wall_follows_its_formula():
     assert sim.tally.wall_impulse[4] == pytest.approx(-q @ n, rel=1e-14)
 
 
-def test_random_bodies_keep_clear_of_walls():
+def test_random_particles_keep_clear_of_walls():
     walls = [gp.Wall((1.0, 1.0), (19.0, 19.0)), gp.Wall((0.0, 10.0), (20.0, 10.0))]
     scene = gp.Scene(gp.Container((20.0, 20.0), "periodic"), [gp.Species(100, 0.5)], walls=walls)
     state = gp.Simulation(scene, gp.EventDriven(), seed=3).initial_state
@@ -164,23 +167,23 @@ def test_random_bodies_keep_clear_of_walls():
         ({"walls": [{"start": [6.0, math.nan], "end": [6.0, 3.0]}]}, "walls[0].start"),
         (
             {"walls": [{"start": [2.4, 0.0], "end": [2.4, 12.0]}]},
-            "bodies[0].position",
+            "particles[0].position",
         ),  # an overlap of its side
-        ({"walls": [{"start": [2.0, 2.6], "end": [2.0, 9.0]}]}, "bodies[0].position"),  # and of its end
+        ({"walls": [{"start": [2.0, 2.6], "end": [2.0, 9.0]}]}, "particles[0].position"),  # and of its end
         ({"walls": [{"start": [6.0, 2.0], "end": [6.0, 3.0]}], "centres_to_walls": True}, "centres_to_walls"),
     ],
 )
 def test_what_is_refused(change, key):
-    body = {"position": [2.0, 2.0], "velocity": [0.0, 0.0], "radius": 0.7}
+    particle = {"position": [2.0, 2.0], "velocity": [0.0, 0.0], "radius": 0.7}
     with pytest.raises(gp.SceneError) as caught:
-        gp.Scene.from_dict({"container": {"lengths": [12.0, 12.0]}, "bodies": [body]} | change)
+        gp.Scene.from_dict({"container": {"lengths": [12.0, 12.0]}, "particles": [particle]} | change)
     assert caught.value.key == key
 
 
 def test_overlaps_across_a_periodic_face_lattices_and_files():
     container, wall = gp.Container((12.0, 12.0), "periodic"), gp.Wall((0.1, 3.0), (0.1, 9.0))
     with pytest.raises(gp.SceneError, match=r"overlaps walls\[0\]"):
-        gp.Scene(container, bodies=[gp.Body((11.8, 6.0), (0.0, 0.0), 0.5)], walls=[wall])
+        gp.Scene(container, particles=[gp.Particle((11.8, 6.0), (0.0, 0.0), 0.5)], walls=[wall])
     full = gp.Scene(container, [gp.Species(100, 0.5, arrangement="lattice")], walls=[wall])
     with pytest.raises(gp.SceneError, match="arrangement"):
         gp.Simulation(full, gp.EventDriven())
@@ -194,8 +197,10 @@ def test_overlaps_across_a_periodic_face_lattices_and_files():
 
 
 def test_a_trajectory_counts_hits_at_each_wall(tmp_path):
-    body = gp.Body((2.0, 6.0), (1.0, 0.0), 0.5)
-    scene = gp.Scene(gp.Container((12.0, 12.0)), bodies=[body], walls=[gp.Wall((6.0, 0.0), (6.0, 12.0))])
+    particle = gp.Particle((2.0, 6.0), (1.0, 0.0), 0.5)
+    scene = gp.Scene(
+        gp.Container((12.0, 12.0)), particles=[particle], walls=[gp.Wall((6.0, 0.0), (6.0, 12.0))]
+    )
     path = gp.run(scene, gp.EventDriven(), 1, 4.0, 1.0, tmp_path / "run.nc")
     with gp.open_trajectory(path) as data:
         assert data.wall_hits.sel(face="wall 0").values.tolist() == [0, 0, 0, 0, 1]

@@ -19,11 +19,11 @@ def smallest_change(sim):
     """The smallest change of the velocity of a particle by any event of a simulation."""
     velocities, least = sim.initial_state.velocities.copy(), math.inf
     events = sim.events
-    for bodies, after in zip(events["bodies"], events["velocities"], strict=True):
-        for n, body in enumerate(bodies):
-            if body >= 0:
-                least = min(least, abs(after[n] - velocities[body]).max())
-                velocities[body] = after[n]
+    for particles, after in zip(events["particles"], events["velocities"], strict=True):
+        for n, particle in enumerate(particles):
+            if particle >= 0:
+                least = min(least, abs(after[n] - velocities[particle]).max())
+                velocities[particle] = after[n]
     return least
 
 
@@ -46,13 +46,13 @@ def cornered(draw):
     radius, mass = draw(st.floats(0.2, 3.0)), draw(st.floats(0.1, 20.0))
     place = [max(0.5 + 6.0 * component, radius) for component in (math.cos(angle), math.sin(angle))]
     angle = math.atan2(place[1] - 0.5, place[0] - 0.5) + turned
-    bodies = [
-        gp.Body((0.5, 0.5), (-0.01, -0.01), 0.5),
-        gp.Body(tuple(place), (-math.cos(angle), -math.sin(angle)), radius, mass),
+    particles = [
+        gp.Particle((0.5, 0.5), (-0.01, -0.01), 0.5),
+        gp.Particle(tuple(place), (-math.cos(angle), -math.sin(angle)), radius, mass),
     ]
     if draw(st.booleans()):
-        bodies.append(gp.Body((1.5, 0.5), (0.0, -0.01), 0.5))
-    return gp.Scene(gp.Container((20.0, 20.0)), bodies=bodies, faces={k: gp.Sticky(3.0) for k in FACES})
+        particles.append(gp.Particle((1.5, 0.5), (0.0, -0.01), 0.5))
+    return gp.Scene(gp.Container((20.0, 20.0)), particles=particles, faces={k: gp.Sticky(3.0) for k in FACES})
 
 
 @given(cornered())

@@ -41,11 +41,11 @@ def test_velocities_after_a_wall(components):
     sim = gp.Simulation(scene, gp.EventDriven(), seed=2)
     sim.record_events = True
     sim.advance(max_events=30_000)
-    hits = (sim.events["bodies"][:, 1] < 0) & (sim.events["bodies"][:, 0] < 200)
+    hits = (sim.events["particles"][:, 1] < 0) & (sim.events["particles"][:, 0] < 200)
     v = sim.events["velocities"][hits, 0]
     count = len(v)
     assert count > 25_000
-    assert (np.sign(v[:, 0]) == np.where(sim.events["bodies"][hits, 1] == -1, 1.0, -1.0)).all()
+    assert (np.sign(v[:, 0]) == np.where(sim.events["particles"][hits, 1] == -1, 1.0, -1.0)).all()
     speed = abs(v[:, 0]) / 2.0
     assert speed.mean() == pytest.approx(math.sqrt(math.pi / 2), abs=3 * math.sqrt((2 - math.pi / 2) / count))
     assert (speed**2).mean() == pytest.approx(2.0, abs=3 * math.sqrt(4.0 / count))
@@ -55,8 +55,8 @@ def test_velocities_after_a_wall(components):
         assert (across**2).mean() == pytest.approx(1.0, abs=3 * math.sqrt(1.0 / count))
         assert (across**4).mean() == pytest.approx(3.0, abs=3 * math.sqrt(48.0 / count))
         assert np.mean(speed * across[:, 0]) == pytest.approx(0.0, abs=3 * math.sqrt(2.0 / count))
-    else:  # a body keeps its tangential velocity but for the few collisions
-        first = sim.initial_state.velocities[sim.events["bodies"][hits, 0], 1:]
+    else:  # a particle keeps its tangential velocity but for the few collisions
+        first = sim.initial_state.velocities[sim.events["particles"][hits, 0], 1:]
         assert np.mean(v[:, 1:] == first) > 0.9
 
 

@@ -18,11 +18,11 @@ def overhang(angle, foot=(4.0, 3.0)):
 
 
 def discs(place, velocity, walls, gravity=(0.0, -1.0), fixed=None, law=LAW):
-    bodies = [gp.Body(place, velocity, RADIUS)]
+    particles = [gp.Particle(place, velocity, RADIUS)]
     if fixed:
-        bodies.append(gp.Body(fixed, (0.0, 0.0), 1.0, fixed=True))
+        particles.append(gp.Particle(fixed, (0.0, 0.0), 1.0, fixed=True))
     container = gp.Container((20.0, 20.0))
-    return gp.Scene(container, bodies=bodies, walls=walls, restitution=law, gravity=gravity)
+    return gp.Scene(container, particles=particles, walls=walls, restitution=law, gravity=gravity)
 
 
 def after(scene, duration):
@@ -94,10 +94,10 @@ def test_a_sphere_slides_along_a_wedge(plates, along):
         walls.append(gp.Plate((1.5, 1.0, 3.0), ((8.0, 0.0, 0.0), (0.0, 8.0, 0.0))))
     tilt = math.atan2(rise[2], rise[0])
     at = 1.0 + RADIUS / math.tan(0.5 * tilt)
-    body = gp.Body((at + 0.01, 3.0, height + RADIUS), (-SPEED, along, 0.0), RADIUS)
+    particle = gp.Particle((at + 0.01, 3.0, height + RADIUS), (-SPEED, along, 0.0), RADIUS)
     scene = gp.Scene(
         gp.Container((10.0, 10.0, 10.0)),
-        bodies=[body],
+        particles=[particle],
         walls=walls,
         restitution=LAW,
         gravity=(0.0, 0.0, -1.0),

@@ -38,7 +38,7 @@ def test_the_roots_survive_where_they_cancel():
     assert time_against(1.0, 0.0, 1.0) == math.inf
 
 
-def test_a_body_that_left_a_floor_comes_back_even_if_rounding_put_it_below():
+def test_a_particle_that_left_a_floor_comes_back_even_if_rounding_put_it_below():
     assert time_along(0.0, -1.0, 2.0) == 1.0
     assert time_along(-1e-16, -1.0, 2.0) == pytest.approx(1.0, rel=1e-15)
     assert time_along(-1e-16, -1e-9, 2.0) == 5e-10  # it never comes clear: it turns back at the apex

@@ -21,7 +21,7 @@ masses = st.floats(1e-8, 1e8)
 
 
 @given(vectors, vectors, st.floats(0.1, 2.0))
-def test_bodies_touch_at_the_predicted_time(r, v, sigma):
+def test_particles_touch_at_the_predicted_time(r, v, sigma):
     assume(r @ r > 1.01 * sigma**2)
     time = time_to_contact(r @ r, r @ v, v @ v, sigma**2)
     if math.isinf(time):
@@ -30,7 +30,7 @@ def test_bodies_touch_at_the_predicted_time(r, v, sigma):
     else:
         at = r + v * time
         assert time > 0
-        # the contact is where it is to rounding, divided by how squarely the bodies meet
+        # the contact is where it is to rounding, divided by how squarely the particles meet
         assert math.sqrt(at @ at) == pytest.approx(sigma, rel=1e-12 * (1 + r @ r) / sigma**2 + 1e-9)
         assert at @ v <= 1e-6 * (1 + math.sqrt(v @ v))  # on the way in, not out
 

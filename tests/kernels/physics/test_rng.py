@@ -23,9 +23,9 @@ WORDS = st.integers(0, 2**63 - 1)
 def test_the_words_are_those_of_philox(one, other, counter):
     """numpy's Philox is the same generator; it steps its counter before it draws."""
     key = np.array([one, other], dtype=np.uint64)
-    body, number, block = counter
-    numpys = np.random.Philox(key=key, counter=[block - 1, number, body, 0])
-    assert list(random_words(key, body, number, block)) == numpys.random_raw(4).tolist()
+    particle, number, block = counter
+    numpys = np.random.Philox(key=key, counter=[block - 1, number, particle, 0])
+    assert list(random_words(key, particle, number, block)) == numpys.random_raw(4).tolist()
 
 
 @given(st.floats(1e-300, 1e300))

@@ -1,4 +1,4 @@
-"""Faces with a kind, rough bodies and vibrations in time steps: the event-driven engine's own physics.
+"""Faces with a kind, rough particles and vibrations in time steps: the event-driven engine's own physics.
 
 Nearly all scenes are of rough discs among faces with a kind, so that few kernels are compiled.
 """
@@ -23,9 +23,9 @@ FACES = {
 }
 ROUGH = gp.Restitution(1.0, 0.5)
 THREE = (
-    gp.Body((2.0, 5.0), (1.0, 0.3), 0.5, mass=2.0, spin=0.3),
-    gp.Body((6.0, 5.4), (-0.5, 0.0), 0.5, mass=3.0),
-    gp.Body((8.0, 2.4), (-0.5, 0.4), 0.8),
+    gp.Particle((2.0, 5.0), (1.0, 0.3), 0.5, mass=2.0, spin=0.3),
+    gp.Particle((6.0, 5.4), (-0.5, 0.0), 0.5, mass=3.0),
+    gp.Particle((8.0, 2.4), (-0.5, 0.4), 0.8),
 )
 SEARCHES = (
     {"boxes_per_side": 1},
@@ -54,10 +54,10 @@ def rough_gas(boundary="wall", faces=None, count=120):
         ),
     ],
 )
-def test_few_bodies_follow_the_event_driven_engine(parts):
+def test_few_particles_follow_the_event_driven_engine(parts):
     """Wherever in a step they meet walls, edges and one another: the contacts are exact, and the same random
     numbers belong to the same hits."""
-    scene = gp.Scene(gp.Container((10.0, 10.0)), bodies=THREE, **{"restitution": ROUGH} | parts)
+    scene = gp.Scene(gp.Container((10.0, 10.0)), particles=THREE, **{"restitution": ROUGH} | parts)
     exact = gp.Simulation(scene, gp.EventDriven(), seed=3)
     exact.advance(duration=15.0)
     assert exact.tally.collisions >= 2

@@ -102,7 +102,13 @@ def test_work_that_differs_between_repeats_is_an_error(monkeypatch):
 def test_parts_of_the_step_that_the_scene_gives():
     """Half the step, twice as many; an engine that has no step of its own takes the scene's."""
     gas = {"dimension": 3, "count": 200, "radius": 0.5, "packing_fraction": 0.01, "boundary": "periodic"}
-    run = {"temperature": 1.0, "engine": "dsmc", "collisions_per_body": 20, "equilibration": 1, "samples": 2}
+    run = {
+        "temperature": 1.0,
+        "engine": "dsmc",
+        "collisions_per_particle": 20,
+        "equilibration": 1,
+        "samples": 2,
+    }
     scanned = Point("gas", "a", "measure_cost", gas | run | {"scan_step_parts": [1, 0.5]}, ".", 1)
     whole, half = (engine.time_step for engine in scanned.engines)
     assert whole == DSMC().resolved(scanned.scene).time_step == 2.0 * half
@@ -116,6 +122,6 @@ def test_parts_of_the_step_that_the_scene_gives():
 
 def test_parts_of_a_step_need_an_engine_with_steps():
     gas = {"dimension": 3, "count": 20, "radius": 0.5, "packing_fraction": 0.01, "boundary": "periodic"}
-    run = {"temperature": 1.0, "engine": "event", "collisions_per_body": 2, "scan_step_parts": [1]}
+    run = {"temperature": 1.0, "engine": "event", "collisions_per_particle": 2, "scan_step_parts": [1]}
     with pytest.raises(SceneError, match="has no meaning with engine: event"):
         _ = Point("gas", "a", "measure_cost", gas | run, ".", 1).engines

@@ -40,7 +40,7 @@ def test_the_equilibration_is_not_examined():
         ({"until": {"Q": 0.1}}, "until.observable = 'Q': unknown observable"),
         ({"until": {"pressure": 0.1}}, "until = 'pressure': there are no walls: require Z"),
         ({"lags": 10}, "lags = 10: has a meaning with job: simulate only"),
-        ({"duration": None}, "exactly one of collisions_per_body, duration, steps must be given"),
+        ({"duration": None}, "exactly one of collisions_per_particle, duration, steps must be given"),
     ],
 )
 def test_a_mistake_is_one_line(settings, line):

@@ -79,17 +79,17 @@ def test_a_changed_value_in_the_file_changes_the_parameters_and_a_comment_does_n
     assert parameters[0] == parameters[1] != parameters[2]
 
 
-def test_collisions_per_body_are_for_one_species_and_nothing_else(tmp_path):
+def test_collisions_per_particle_are_for_one_species_and_nothing_else(tmp_path):
     alone = gp.Scene(gp.Container((40.0, 40.0), "periodic"), [gp.Species(100, 0.5, mass=3.0, speed=2.0)])
     alone.to_file(tmp_path / "one.yaml")
-    given = {"duration": None, "collisions_per_body": 8}
+    given = {"duration": None, "collisions_per_particle": 8}
     (point,) = points(str(tmp_path / "one.yaml"), **given)
     settings = {"dimension": 2, "count": 100, "radius": 0.5, "side": 40.0, "boundary": "periodic"}
     (same,) = points(None, **given, **settings, mass=3.0, speed=2.0)
     assert point.schedule == same.schedule
     for key, value in (("walls", [{"start": [1.0, 1.0], "end": [5.0, 5.0]}]), ("restitution.normal", 0.9)):
         (point,) = points(str(tmp_path / "one.yaml"), **given, **{f"scene.{key}": value})
-        with pytest.raises(SceneError, match=r"collisions_per_body = 8: .*give duration"):
+        with pytest.raises(SceneError, match=r"collisions_per_particle = 8: .*give duration"):
             _ = point.schedule
 
 

@@ -19,7 +19,7 @@ POINT = {
     "packing_fraction": 0.2,
     "boundary": "periodic",
     "temperature": 2.0,
-    "collisions_per_body": 50,
+    "collisions_per_particle": 50,
     "equilibration": 3,
     "samples": 10,
 }
@@ -107,11 +107,11 @@ def test_paths_by_kind_of_job():
     assert only(job="measure_cost").path == "results/points/gas/single.nc"
 
 
-def test_collisions_per_body_become_time_by_enskogs_rate():
+def test_collisions_per_particle_become_time_by_enskogs_rate():
     schedule = only().schedule
     rate = theory.collision_rate(0.2, 2, 1.0, 2.0, 1.0)
     assert schedule.sample_interval == pytest.approx(50 / rate / 10)
-    assert schedule.equilibration_frames == 1  # 3 collisions per body in intervals of 5, rounded up
+    assert schedule.equilibration_frames == 1  # 3 collisions per particle in intervals of 5, rounded up
     assert schedule.duration == pytest.approx(11 * schedule.sample_interval)
 
 
@@ -121,13 +121,19 @@ def test_a_fixed_speed_counts_as_the_temperature_it_relaxes_to():
 
 
 def test_steps_are_sampled_at_whole_time_steps():
-    steps = {"engine": "step", "time_step": 0.03, "collisions_per_body": None, "steps": 1000, "samples": 7}
+    steps = {
+        "engine": "step",
+        "time_step": 0.03,
+        "collisions_per_particle": None,
+        "steps": 1000,
+        "samples": 7,
+    }
     schedule = only(point={**steps, "equilibration": 0}).schedule
     assert schedule.sample_interval / 0.03 == pytest.approx(143, rel=1e-14)
     assert schedule.equilibration_frames == 0
 
 
-def test_boxes_per_body_are_never_smaller_than_a_diameter():
+def test_boxes_per_particle_are_never_smaller_than_a_diameter():
     assert boxes_per_side(1.0, 1000, 0.1, (10.0, 10.0, 10.0)) == (10, 10, 10)
     assert boxes_per_side(1000.0, 1000, 0.5, (10.0, 20.0)) == (10, 20)
     assert boxes_per_side(1e-6, 10, 0.5, (10.0, 10.0)) == (1, 1)
@@ -166,10 +172,10 @@ def test_a_parameters_is_plain_and_makes_the_same_scene():
         ({"point": {"duration": 1.0}}, "experiments.gas"),
         ({"point": {"time_step": 0.1}}, "experiments.gas.time_step"),
         ({"point": {"engine": "step"}}, "experiments.gas.time_step"),
-        ({"point": {"collisions_per_body": None, "steps": 10}}, "experiments.gas.steps"),
-        ({"point": {"boxes_per_side": 2, "boxes_per_body": 1}}, "experiments.gas.boxes_per_body"),
-        ({"point": {"temperature": None}}, "experiments.gas.collisions_per_body"),
-        ({"point": {"packing_fraction": 0.72}}, "experiments.gas.collisions_per_body"),
+        ({"point": {"collisions_per_particle": None, "steps": 10}}, "experiments.gas.steps"),
+        ({"point": {"boxes_per_side": 2, "boxes_per_particle": 1}}, "experiments.gas.boxes_per_particle"),
+        ({"point": {"temperature": None}}, "experiments.gas.collisions_per_particle"),
+        ({"point": {"packing_fraction": 0.72}}, "experiments.gas.collisions_per_particle"),
         ({"point": {"count": None, "side": [20.0, 20.0, 20.0]}}, "experiments.gas.side"),
         ({"job": "fill"}, "experiments.gas.attempts"),
     ],
@@ -191,14 +197,14 @@ def test_planning_imports_nothing_heavy():
 
 
 def test_engine_auto_becomes_the_engine_for_the_accuracy():
-    wanted = {"engine": "auto", "accuracy": 0.01, "collisions_per_body": None, "equilibration": None}
+    wanted = {"engine": "auto", "accuracy": 0.01, "collisions_per_particle": None, "equilibration": None}
     point = only(point=wanted)
     assert point.settings["engine"] in ("event", "step")
-    assert point.settings["collisions_per_body"] >= 20 and "accuracy" not in point.settings
+    assert point.settings["collisions_per_particle"] >= 20 and "accuracy" not in point.settings
     finer = only(point={**wanted, "accuracy": 0.001})
     runs = [one.schedule.duration * one.replicas for one in (point, finer)]
     assert runs[1] > 30 * runs[0]
-    assert only(point={**wanted, "collisions_per_body": 7}).settings["collisions_per_body"] == 7
+    assert only(point={**wanted, "collisions_per_particle": 7}).settings["collisions_per_particle"] == 7
     with pytest.raises(SceneError, match="accuracy.*required"):
         only(point={"engine": "auto"})
     with pytest.raises(SceneError, match="accuracy.*needs engine: auto"):

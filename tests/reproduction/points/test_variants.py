@@ -68,7 +68,7 @@ def test_every_feature_of_a_scene_that_changes_kernels_distinguishes_variants(sc
     assert features(scene) == expected
 
 
-def test_a_point_is_warmed_by_a_few_of_its_own_bodies_that_have_all_its_features(tmp_path):
+def test_a_point_is_warmed_by_a_few_of_its_own_particles_that_have_all_its_features(tmp_path):
     scene = gp.Scene(
         BOX,
         [GAS, gp.Species(300, 0.25, mass=4.0, moment_of_inertia=0.1)],
@@ -83,8 +83,8 @@ def test_a_point_is_warmed_by_a_few_of_its_own_bodies_that_have_all_its_features
     assert variant(full) == variant(described(tmp_path, scene))
 
 
-def test_a_scene_whose_big_body_stands_beside_the_boxes_is_warmed_with_all_its_bodies(tmp_path):
-    scene = gp.Scene(BOX, [gp.Species(900, 0.1)], [gp.Body((20.0, 20.0), (0.0, 0.0), 5.0)])
+def test_a_scene_whose_big_particle_stands_beside_the_boxes_is_warmed_with_all_its_particles(tmp_path):
+    scene = gp.Scene(BOX, [gp.Species(900, 0.1)], [gp.Particle((20.0, 20.0), (0.0, 0.0), 5.0)])
     assert features(scene) == {"oversized"}
     assert gp.Scene.from_dict(json.loads(task(described(tmp_path, scene)))["scene"]) == scene
 

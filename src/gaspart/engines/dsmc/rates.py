@@ -12,7 +12,7 @@ import numpy as np
 
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.scene import Scene
-from gaspart.scene.species import Body, Species
+from gaspart.scene.species import Particle, Species
 
 SLOPE, BEND = {2: 0.5625, 3: 1.5}, {2: 0.0, 3: 0.5}
 """Coefficients of the contact value, see `contact_values`, by dimension."""
@@ -75,9 +75,9 @@ def rates(scene: Scene, dense: bool) -> Rates:
     return Rates(frequency, float((number * np.sqrt(mean * square)).sum() / number.sum()))
 
 
-def _square(kind: Species | Body, dimension: int) -> float:
+def _square(kind: Species | Particle, dimension: int) -> float:
     """The mean square of a velocity component at the start."""
-    if isinstance(kind, Body):
+    if isinstance(kind, Particle):
         return sum(v * v for v in kind.velocity) / dimension
     return (
         kind.temperature / kind.mass if kind.temperature is not None else (kind.speed or 0.0) ** 2 / dimension

@@ -8,7 +8,7 @@ from gaspart.engines.features.part import Part
 from gaspart.kernels.model import ContactLaw
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene
-from gaspart.state.insertion import per_body
+from gaspart.state.insertion import per_particle
 from gaspart.state.state import State
 
 _BISECTIONS = 100  # until neighbouring numbers enclose the damping of viscoelastic particles
@@ -25,7 +25,7 @@ def contact_law(scene: Scene, state: State) -> ContactLaw | None:
     else:
         spins[:] = state.spins
     vibrations = None
-    modes = per_body(scene, "vibrates")
+    modes = per_particle(scene, "vibrates")
     if modes.any() and state.vibrations is not None:
         vibrations = np.where(modes, state.vibrations, -1.0)
     inverses = 1 / state.masses, 1 / state.moments_of_inertia
@@ -34,13 +34,13 @@ def contact_law(scene: Scene, state: State) -> ContactLaw | None:
 
 def _viscous(scene: Scene) -> float | None:
     """The constant of viscoelastic particles, from the restitution of two of the first species, or else of
-    the first body; None if the restitution is constant."""
+    the first particle; None if the restitution is constant."""
     rule = scene.restitution
     if rule is None or rule.reference_speed is None:
         return None
     from gaspart.kernels.physics.viscoelastic import fifth_root, restitution_of
 
-    first = (scene.species or scene.bodies)[0]
+    first = (scene.species or scene.particles)[0]
     least, most = 0.0, 1.0
     while restitution_of(most) > rule.normal:
         most *= 2.0

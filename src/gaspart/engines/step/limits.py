@@ -20,7 +20,7 @@ _OVERSIZED = 16  # at most so many particles are tested against all others
 _LARGER = 2.0  # radii of the next smaller particle: larger ones are among them
 _SINGLE = 1e9  # the largest length or speed in float32, whose squares are multiplied with each other
 _RESOLVED = 1e5  # diameters in the longest side, at most: float32 then resolves contacts to a hundredth
-MOST_BODIES = 2**28
+MOST_PARTICLES = 2**28
 """An entry of the neighbour list holds two slots and eight marks in 64 bits
 (`kernels.step.neighbour_list`)."""
 
@@ -49,9 +49,9 @@ def oversized_particles(state: State) -> np.ndarray:
 
 def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
     """Raise SceneError for so many particles, or so short a container, that this engine does not model."""
-    if state.count >= MOST_BODIES:
+    if state.count >= MOST_PARTICLES:
         raise SceneError(
-            "count", state.count, f"the time-stepped engine takes {MOST_BODIES - 1} particles at most"
+            "count", state.count, f"the time-stepped engine takes {MOST_PARTICLES - 1} particles at most"
         )
     reach = 2.0 * state.radii.max(initial=0.0)
     if oversized.any():

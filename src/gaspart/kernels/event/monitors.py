@@ -8,12 +8,12 @@ from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 
 
 class Record(NamedTuple):
-    """Room for events: filled (1,), time (M,), bodies (M, 2), the particles, positions and velocities (M, 2,
-    d), spins (M, 2, 3), which only a `ContactLaw` fills in."""
+    """Room for events: filled (1,), time (M,), particles (M, 2), their indices, positions and velocities
+    (M, 2, d), spins (M, 2, 3), which only a `ContactLaw` fills in."""
 
     filled: np.ndarray
     time: np.ndarray
-    bodies: np.ndarray
+    particles: np.ndarray
     positions: np.ndarray
     velocities: np.ndarray
     spins: np.ndarray
@@ -58,8 +58,8 @@ def record_event(flights, i, j, time, model, record):
     if record is not None:
         n = record.filled[0]
         record.time[n] = time
-        record.bodies[n, 0] = i
-        record.bodies[n, 1] = j
+        record.particles[n, 0] = i
+        record.particles[n, 1] = j
         for k in range(len(model.space.lengths)):
             record.positions[n, 0, k] = flights[i].position[k]
             record.velocities[n, 0, k] = flights[i].velocity[k]

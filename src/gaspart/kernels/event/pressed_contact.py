@@ -110,5 +110,5 @@ def _rests_below_fixed(flights, i, j, space, tally, gravity, law, duration):
     if duration is None:
         return False
     normal = direction(flights, i, j, space)
-    body = 1.0 / law.inverse_mass[i], longest_rest(flights, i, gravity, law)
-    return rest_in_wedge(flights, i, normal, body, space, tally, gravity, gravity.support)
+    particle = 1.0 / law.inverse_mass[i], longest_rest(flights, i, gravity, law)
+    return rest_in_wedge(flights, i, normal, particle, space, tally, gravity, gravity.support)

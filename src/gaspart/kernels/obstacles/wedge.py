@@ -69,11 +69,11 @@ def come_to_rest_again(flights, i, longest, space, gravity, support):
 
 
 @inner_kernel
-def rest_in_wedge(flights, i, normal, body, space, tally, gravity, support):
+def rest_in_wedge(flights, i, normal, particle, space, tally, gravity, support):
     """After a bounce on something in the direction of a unit vector (3,): let a particle rest between this
-    and what it rested on, if it would meet it again at once. body: the mass of the particle, and the longest
-    bounce taken for rest. Returns whether it rests."""
-    mass, longest = body
+    and what it rested on, if it would meet it again at once. particle: its mass, and the longest bounce taken
+    for rest. Returns whether it rests."""
+    mass, longest = particle
     v = velocity_of(flights, i, space)
     w, number, p = come_to_rest_again(flights, i, longest, space, gravity, support)
     if number == 0 or dot(normal, w) <= _INTO * sqrt(dot(v, v)):

@@ -1,8 +1,9 @@
-"""When do falling bodies touch: the roots of flights under a uniform pull.
+"""When do falling particles touch: the roots of flights under a uniform pull.
 
-Two bodies that fall alike move straight relative to each other, so these are needed only where one of the two
-does not fall: a wall, the side of a box, a fixed body, a body that lies on a floor. As in `contact`, a body
-that touches and approaches does so now, and every root is taken in the form that does not cancel.
+Two particles that fall alike move straight relative to each other, so these are needed only where one of
+the two does not fall: a wall, the side of a box, a fixed particle, a particle that lies on a floor. As in
+`contact`, a particle that touches and approaches does so now, and every root is taken in the form that does
+not cancel.
 """
 
 from math import inf, sqrt
@@ -37,7 +38,7 @@ def time_along(gap, speed, pull):
     """Time until a `gap` is crossed in the direction of `pull` > 0, begun at `speed` (negative: away).
 
     The larger root of gap - speed t - pull t^2 / 2 = 0. If the gap is not even open (>= 0) when the way back
-    begins, as rounding may leave it for a body that has just left a floor, that is the time.
+    begins, as rounding may leave it for a particle that has just left a floor, that is the time.
     """
     if speed >= 0.0:
         if gap <= 0.0:
@@ -50,7 +51,7 @@ def time_along(gap, speed, pull):
 
 @inner_helper
 def time_to_side(gap, closing, pull):
-    """Time until a body touches the side that it is on: `gap` from it, approaching at `closing`, drawn
+    """Time until a particle touches the side that it is on: `gap` from it, approaching at `closing`, drawn
     towards it by `pull`; inf if it never does."""
     if pull > 0.0:
         return time_along(gap, closing, pull)
@@ -100,7 +101,7 @@ def _root_between(c0, c1, c2, c3, c4, low, high):
 
 @kernel
 def time_to_contact_pulled(gap, rv, vv, ra, va, aa):
-    """Time until two bodies touch whose separation is r + v t + a t^2 / 2; inf if they never do.
+    """Time until two particles touch whose separation is r + v t + a t^2 / 2; inf if they never do.
 
     gap = r.r - sigma^2, rv = r.v, vv = v.v, ra = r.a, va = v.a, aa = a.a > 0. The first time at which they
     touch or overlap and approach: the quartic f(t) = |r(t)|^2 - sigma^2 is looked at between the roots of
@@ -147,7 +148,7 @@ def time_to_contact_pulled(gap, rv, vv, ra, va, aa):
 
 @kernel
 def time_of_summit(rv, vv, ra, va, aa):
-    """When the distance of such two bodies is greatest between two approaches; inf if there is only one."""
+    """When the distance of two such particles is greatest between two approaches; inf after a single one."""
     c1, c2, c3, c4 = 2.0 * rv, vv + ra, va, 0.25 * aa
     square = 9.0 * c3 * c3 - 24.0 * c4 * c2
     if square <= 0.0:

@@ -1,7 +1,7 @@
-"""The physics of one contact: when do two bodies touch, and what momentum passes.
+"""The physics of one contact: when do two particles touch, and what momentum passes.
 
 Both engines use these functions and no others. With r and v the separation and relative velocity of two
-bodies (second minus first), they work on the invariants rr = r.r, rv = r.v, vv = v.v and ss = sigma^2,
+particles (second minus first), they work on the invariants rr = r.r, rv = r.v, vv = v.v and ss = sigma^2,
 sigma the distance of the centres at contact; so they know no dimension, no container and no engine.
 The arithmetic keeps the type of its arguments (float32 stays float32): hence x + x for 2x.
 """

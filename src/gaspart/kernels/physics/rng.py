@@ -1,5 +1,5 @@
-"""Random numbers inside kernels: a function of a key, a body and a number of its own count, and of nothing
-else, so that they do not depend on the order in which events are found.
+"""Random numbers inside kernels: a function of a key, a particle and a number of its own count, and of
+nothing else, so that they do not depend on the order in which events are found.
 
 Everything made of the random words uses +, -, x, / and the square root only, as in `random`.
 """
@@ -28,12 +28,12 @@ def _product(a, b):
 
 
 @kernel
-def random_words(key, body, number, block):
+def random_words(key, particle, number, block):
     """Four random words of 64 bits: Philox4x64-10 (Salmon, Moraes, Dror & Shaw, SC11 (2011)).
 
-    key: (2,) words of the seed; body, number, block: the counter.
+    key: (2,) words of the seed; particle, number, block: the counter.
     """
-    c0, c1, c2, c3 = np.uint64(block), np.uint64(number), np.uint64(body), np.uint64(0)
+    c0, c1, c2, c3 = np.uint64(block), np.uint64(number), np.uint64(particle), np.uint64(0)
     k0, k1 = key[0], key[1]
     for _ in range(_ROUNDS):
         high0, low0 = _product(_M0, c0)
@@ -66,20 +66,20 @@ def log_of(x):
 
 
 @kernel
-def flux_speed(key, body, number):
-    """The normal speed of a body that leaves a wall, in units of sqrt(kT/m): of density v exp(-v^2/2)."""
-    word, _, _, _ = random_words(key, body, number, 0)
+def flux_speed(key, particle, number):
+    """The normal speed of a particle that leaves a wall, in units of sqrt(kT/m): of density v exp(-v^2/2)."""
+    word, _, _, _ = random_words(key, particle, number, 0)
     return sqrt(-2.0 * log_of(uniform(word)))
 
 
 @kernel
-def normal_pair(key, body, number, block):
+def normal_pair(key, particle, number, block):
     """Two standard normal numbers by Marsaglia's polar method, and the first block that they have not used.
 
     `block`: where to begin, at least 1, since `flux_speed` takes block 0.
     """
     while True:
-        words = random_words(key, body, number, block)
+        words = random_words(key, particle, number, block)
         block += 1
         for n in (0, 2):
             u, v = 2.0 * uniform(words[n]) - 1.0, 2.0 * uniform(words[n + 1]) - 1.0

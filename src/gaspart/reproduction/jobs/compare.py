@@ -168,7 +168,7 @@ def _missed_contacts(scene: Scene, engine: TimeStepped, state: State, steps: int
     listed = np.zeros((steps, state.count), dtype=bool)
     at = ((log.events["time"] - state.time) / engine.time_step).astype(int)
     for side in range(2):
-        listed[np.minimum(at, steps - 1), log.events["bodies"][:, side]] = True
+        listed[np.minimum(at, steps - 1), log.events["particles"][:, side]] = True
     dynamics, before = engine.start(scene, state), state.velocities.astype(engine.precision)
     differs = np.zeros((steps, state.count), dtype=bool)
     for n in range(steps):

@@ -42,21 +42,25 @@ def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> PointData
     The scene's count is the largest number of particles, which may exceed saturation: insertion
     stops when all are placed or the attempts (``attempts`` times the count) are used up.
 
-    Returns a dataset: ``failures`` (replica, body), failed attempts before each particle was placed, -1
+    Returns a dataset: ``failures`` (replica, particle), failed attempts before each particle was placed, -1
     for one never placed; ``placed`` and ``attempts`` (replica,).
-    Attributes: packing_fraction_per_body, side, radius.
+    Attributes: packing_fraction_per_particle, side, radius.
     """
     import numpy as np
 
     runs = [_fill_once(scene, attempts * scene.count, seed) for seed in seeds]
     return PointData(
         {
-            "failures": (("replica", "body"), np.array([failures for failures, _ in runs]), {"units": "1"}),
+            "failures": (
+                ("replica", "particle"),
+                np.array([failures for failures, _ in runs]),
+                {"units": "1"},
+            ),
             "placed": ("replica", np.array([(failures >= 0).sum() for failures, _ in runs]), {"units": "1"}),
             "attempts": ("replica", np.array([used for _, used in runs]), {"units": "1"}),
         },
         attributes={
-            "packing_fraction_per_body": scene.packing_fraction / scene.count,
+            "packing_fraction_per_particle": scene.packing_fraction / scene.count,
             "side": list(scene.container.lengths),
             "radius": scene.largest_radius,
         },

@@ -41,7 +41,7 @@ KEYS: dict[str, Kind] = {
     "scan_boxes_per_side": listed(
         COUNT, "numbers of boxes per side that one job times in turn", default=None
     ),
-    "scan_boxes_per_body": listed(
+    "scan_boxes_per_particle": listed(
         POSITIVE, "numbers of boxes per particle that one job times in turn", default=None
     ),
     "scan_time_steps": SCAN_TIME_STEPS,

@@ -38,7 +38,7 @@ def pack(scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]]) -> Po
     """Pack a scene of one species, once per seed: offer the container `attempts` random positions for each
     particle, or, with None, let the particles grow until they jam.
 
-    Returns a dataset: position (replica, body, axis), NaN for a particle never placed; radius and
+    Returns a dataset: position (replica, particle, axis), NaN for a particle never placed; radius and
     packing_fraction (replica,); pressure (replica,), reduced, NaN for an insertion; length (axis,).
     """
     import numpy as np
@@ -62,7 +62,7 @@ def pack(scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]]) -> Po
             pressures.append(np.nan)
     return PointData(
         {
-            "position": (("replica", "body", "axis"), positions, {"units": "length"}),
+            "position": (("replica", "particle", "axis"), positions, {"units": "length"}),
             "radius": ("replica", scene.largest_radius * np.array(scales), {"units": "length"}),
             "packing_fraction": ("replica", fractions, {"units": "1"}),
             "pressure": ("replica", pressures, {"units": "N k_B T / V"}),

@@ -34,7 +34,7 @@ KEYS: dict[str, Kind] = {
     ),
     "pairs": flag("count the collisions of each pair of species", default=False),
     "follow": count(
-        "keep only the first so many particles (single `bodies` come first, then `species`); counters and "
+        "keep only the first so many particles (single `particles` come first, then `species`); counters and "
         "energies are those of all",
         default=None,
     ),

@@ -37,7 +37,7 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
     if isinstance(engine, TimeStepped):
         made |= {"time_step": engine.time_step, "precision": engine.precision}
     if not keys.LENGTHS.keys() & settings.keys():
-        made["collisions_per_body"] = math.ceil(advice.collisions_per_body)
+        made["collisions_per_particle"] = math.ceil(advice.collisions_per_particle)
         made.setdefault("replicas", advice.replicas)
         made.setdefault("equilibration", EQUILIBRATION)
     return made

@@ -39,20 +39,22 @@ def scanned(point: Point) -> list[Engine]:
         if whole.quantum is None:
             raise point.refused(scan, f"has no meaning with engine: {whole.name}")
         return [replace(whole, time_step=part * whole.time_step) for part in values]
-    if len(scans) > 1 or "boxes_per_side" in settings or "boxes_per_body" in settings:
+    if len(scans) > 1 or "boxes_per_side" in settings or "boxes_per_particle" in settings:
         raise point.refused(scan, "a scan excludes every other choice of boxes")
     if not values:
         raise point.refused(scan, "must not be empty")
-    if scan == "scan_boxes_per_body":
-        values = [boxes_per_side(per_body, *point.extents) for per_body in values]
+    if scan == "scan_boxes_per_particle":
+        values = [boxes_per_side(per_particle, *point.extents) for per_particle in values]
     single = _made(point, {**settings, "boxes_per_side": 1})
     return [replace(single, boxes_per_side=partition) for partition in dict.fromkeys(values)]
 
 
-def boxes_per_side(per_body: float, count: int, radius: float, lengths: tuple[float, ...]) -> tuple[int, ...]:
-    """(d,) boxes per axis: nearly cubic ones, ``per_body`` for each particle, none smaller than a
+def boxes_per_side(
+    per_particle: float, count: int, radius: float, lengths: tuple[float, ...]
+) -> tuple[int, ...]:
+    """(d,) boxes per axis: nearly cubic ones, ``per_particle`` for each particle, none smaller than a
     diameter."""
-    edge = (math.prod(lengths) / (per_body * count)) ** (1.0 / len(lengths))
+    edge = (math.prod(lengths) / (per_particle * count)) ** (1.0 / len(lengths))
     return tuple(max(1, min(round(length / edge), int(length / (2.0 * radius)))) for length in lengths)
 
 
@@ -62,8 +64,8 @@ def _made(point: Point, settings: dict) -> Engine:
     _check(point, name, settings)
     fields = {key: settings[key] for key in ENGINES[name] if key in settings}
     count, radius, lengths = point.extents
-    if "boxes_per_body" in fields:
-        fields["boxes_per_side"] = boxes_per_side(fields.pop("boxes_per_body"), count, radius, lengths)
+    if "boxes_per_particle" in fields:
+        fields["boxes_per_side"] = boxes_per_side(fields.pop("boxes_per_particle"), count, radius, lengths)
     partition = fields.get("boxes_per_side", 1)
     sides = tuple(partition) if isinstance(partition, (list, tuple)) else (partition,) * len(lengths)
     if len(sides) != len(lengths):
@@ -83,5 +85,5 @@ def _check(point: Point, name: str, settings: dict) -> None:
     for key in {key: None for keys in ENGINES.values() for key in keys}:
         if key in settings and key not in ENGINES[name]:
             raise point.refused(key, f"has no meaning with engine: {name}")
-    if "boxes_per_side" in settings and "boxes_per_body" in settings:
-        raise point.refused("boxes_per_body", "excludes boxes_per_side")
+    if "boxes_per_side" in settings and "boxes_per_particle" in settings:
+        raise point.refused("boxes_per_particle", "excludes boxes_per_side")

@@ -92,7 +92,7 @@ ENGINE: dict[str, Kind] = {
     )
 }
 
-_BOXES_PER_BODY = positive(
+_BOXES_PER_PARTICLE = positive(
     "instead of `boxes_per_side`: nearly cubic boxes, so many for each particle, none smaller than a "
     "diameter",
     default=None,
@@ -105,7 +105,7 @@ def _settings(engine: Any) -> dict[str, Kind]:
     made = {name: {"default": None, **kind} for name, kind in declared["properties"].items()}
     for name in declared.get("required", ()):
         made[name]["description"] += "; required"
-    return {**made, **({"boxes_per_body": _BOXES_PER_BODY} if "boxes_per_side" in made else {})}
+    return {**made, **({"boxes_per_particle": _BOXES_PER_PARTICLE} if "boxes_per_side" in made else {})}
 
 
 ENGINES: dict[str, dict[str, Kind]] = {
@@ -120,7 +120,7 @@ ENGINES: dict[str, dict[str, Kind]] = {
 """The keys that each engine has a meaning for."""
 
 LENGTHS: dict[str, Kind] = {
-    "collisions_per_body": positive(
+    "collisions_per_particle": positive(
         "length in collisions per particle (each collision counts for two), which become time by Enskog's "
         "rate: for one species of smooth particles and nothing else",
         default=None,
@@ -130,5 +130,5 @@ LENGTHS: dict[str, Kind] = {
 }
 """Exactly one of them is given."""
 
-SCANS = ("scan_boxes_per_side", "scan_boxes_per_body", "scan_time_steps", "scan_step_parts")
+SCANS = ("scan_boxes_per_side", "scan_boxes_per_particle", "scan_time_steps", "scan_step_parts")
 """Keys of the jobs that run several engines in turn."""

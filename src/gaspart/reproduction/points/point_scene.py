@@ -16,7 +16,7 @@ from gaspart.errors import SceneError, shown
 from gaspart.reproduction.points.keys import EXTENTS, GAS, PREFIX
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.sizes import DISTRIBUTIONS
-from gaspart.scene.validation import MOST_BODIES
+from gaspart.scene.validation import MOST_PARTICLES
 from gaspart.yaml_text import read_yaml
 
 if TYPE_CHECKING:
@@ -64,8 +64,8 @@ def extents(point: Point) -> Extents:
     volume = math.prod(lengths)
     if count is None:
         number = fraction * volume / (unit * radius**dimension)
-        if not 0.5 < number <= MOST_BODIES:
-            rule = f"makes {number:g} particles, which must be from 1 to {MOST_BODIES}"
+        if not 0.5 < number <= MOST_PARTICLES:
+            rule = f"makes {number:g} particles, which must be from 1 to {MOST_PARTICLES}"
             raise point.refused("packing_fraction", rule)
         count = round(number)
     elif radius is None:

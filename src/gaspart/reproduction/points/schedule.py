@@ -75,7 +75,7 @@ def _unit_of_time(point: Point, unit: str) -> float:
         return point.settings["time_step"]
     from gaspart import theory
 
-    key, given = f"experiments.{point.experiment}.collisions_per_body", point.settings[unit]
+    key, given = f"experiments.{point.experiment}.collisions_per_particle", point.settings[unit]
     gas, mixture = point.scene.gas, point.scene.mixture
     if mixture is None:
         rule = "is known only for smooth particles without gravity or obstacles; give duration"

@@ -18,7 +18,11 @@ if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
 
 _FEW = 8  # particles and walls that a tiny run has of each kind
-_MATTER = {"species.Species", "bodies.Body", "restitution.Restitution"}  # whose properties are features
+_MATTER = {
+    "species.Species",
+    "particles.Particle",
+    "restitution.Restitution",
+}  # whose properties are features
 # in every kernel, or in none
 _NO_FEATURE = ("container", "count", "radius", "speed", "temperature", "centres_to_walls", "region")
 _NO_FEATURE += ("exact_temperature", "polydispersity", "radius_distribution")
@@ -53,7 +57,7 @@ def features(scene: Scene) -> set[str]:
     where that is a word."""
     names = set(_differing(scene)) - _MATTER
     if len({kind.mass for kind in scene.kinds}) <= 1:
-        names -= {"species.mass", "bodies.mass"}  # equal masses are left out of the kernels
+        names -= {"species.mass", "particles.mass"}  # equal masses are left out of the kernels
     if names & _LAW:
         names = (names - _LAW) | {"restitution"}
     names.discard("restitution.contact_duration")

@@ -1,4 +1,4 @@
-"""A made-up measurement of walls that hold bodies, with known answers."""
+"""A made-up measurement of walls that hold particles, with known answers."""
 
 import numpy as np
 import xarray as xr

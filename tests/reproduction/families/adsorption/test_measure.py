@@ -44,7 +44,7 @@ def test_an_ideal_gas_in_frames_is_counted_as_it_was_made():
     assert flux / (flux.sum() * 0.2) == pytest.approx(flux_density(middle), abs=0.03)
 
 
-def test_only_bodies_without_a_velocity_along_the_normal_are_stuck():
+def test_only_particles_without_a_velocity_along_the_normal_are_stuck():
     holder = adsorption.Holder.of(point("sticky"))
     height, velocity = np.array([[0.0, 0.1, 0.2, 5.0]]), np.array([[0.0, 0.5, -0.5, 2.0]])
     held, free, far, slowly, flux = adsorption.counts_of(holder, height, velocity, SETTINGS, 1.0)

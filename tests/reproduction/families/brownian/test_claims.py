@@ -7,7 +7,7 @@ from gaspart.reproduction.families.brownian import claims as brownian
 
 
 def measured(**changes):
-    """What `measure.brownian` gives of a heavy body, if theory is right."""
+    """What `measure.brownian` gives of a heavy particle, if theory is right."""
     values = {
         "equal_speeds": False,
         "is_light": False,
@@ -40,7 +40,8 @@ def measured(**changes):
 
 
 def equal_speeds(**changes):
-    """The same of a light body in a gas of equal speeds, of which the linear Boltzmann equation is solved."""
+    """The same of a light particle in a gas of equal speeds, for which the linear Boltzmann equation is
+    solved."""
     expected = {"expected_equipartition": 0.93, "expected_friction": 0.0475, "expected_diffusion": 0.186}
     errors = {f"{name}_error": 0.001 * value for name, value in expected.items()}
     found = {"equipartition": 0.925, "measured_friction": 0.0478, "measured_diffusion": 0.184}

@@ -1,4 +1,4 @@
-"""The large body's numbers, from made-up paths whose friction and diffusion are known."""
+"""The large particle's numbers, from made-up paths whose friction and diffusion are known."""
 
 import numpy as np
 import pytest
@@ -86,7 +86,7 @@ def test_a_light_particle_is_expected_to_move_as_the_linear_boltzmann_equation_s
     equal_speeds = {"scene.species.0.temperature": None, "scene.species.0.speed": 3**0.5}
     found = {}
     for name, gas in (("maxwell", {}), ("equal", equal_speeds)):
-        light = {"replicas": 40, "boundary": "wall", "scene.bodies.0.mass": 1.0, **gas}
+        light = {"replicas": 40, "boundary": "wall", "scene.particles.0.mass": 1.0, **gas}
         setting = brownian.setting_of(point(**light))
         unit = 1.0 / setting.friction
         chosen = point(**light, duration=24.0 * unit, equilibration=6.0 * unit, samples=240)
@@ -106,7 +106,7 @@ def test_between_walls_nothing_is_given_back():
     setting = brownian.setting_of(point(boundary="wall"))
     assert setting.share == 0.0
     assert setting.diffusion * setting.friction * setting.mass == pytest.approx(setting.temperature)
-    light = brownian.setting_of(point(boundary="wall", **{"scene.bodies.0.mass": 1.0}))
+    light = brownian.setting_of(point(boundary="wall", **{"scene.particles.0.mass": 1.0}))
     assert light.diffusion * light.friction == pytest.approx(1.01895)
 
 
@@ -142,5 +142,5 @@ def test_what_cannot_be_measured_is_refused(made_up):
     found = [(t[:60], x[:60], v[:60]) for t, x, v in paths(setting, 2)]
     with pytest.raises(gp.SceneError, match="must be .* or more"):
         brownian.brownian_msd([made_up(short, found)], {})
-    with pytest.raises(gp.SceneError, match="one entry of bodies and one species"):
-        brownian.setting_of(point(scene="config/scenes/brownian.yaml", **{"scene.bodies": []}))
+    with pytest.raises(gp.SceneError, match="one entry of particles and one species"):
+        brownian.setting_of(point(scene="config/scenes/brownian.yaml", **{"scene.particles": []}))

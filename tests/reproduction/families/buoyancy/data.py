@@ -25,10 +25,10 @@ def dilute_fluid(rng, frames, count, large):
 
 def stretch(positions, displaced):
     """The stretch of such frames at temperature 1, whose fluid bears the weight of so many small discs."""
-    frames, bodies, _ = positions.shape
-    energies = np.ones((frames, bodies))
+    frames, particles, _ = positions.shape
+    energies = np.ones((frames, particles))
     energies[:, 0] = 0.0
-    weight = STRENGTH * (bodies - 1)
+    weight = STRENGTH * (particles - 1)
     return Stretch(positions, energies, weight + 2.0 + displaced * STRENGTH, 2.0, 0.0)
 
 

@@ -16,15 +16,15 @@ COUNT = 30
 @pytest.fixture
 def points(tmp_path):
     """A point with the disc held fast at height 20 above the small discs' lowest, and one with it free."""
-    body = gp.Body((12.0, 20.0 + SMALL), (0.0, 0.0), RADIUS, mass=0.5)
+    particle = gp.Particle((12.0, 20.0 + SMALL), (0.0, 0.0), RADIUS, mass=0.5)
     scene = gp.Scene(
         gp.Container((WIDTH, HEIGHT + 2 * SMALL), ("periodic", "wall")),
         [gp.Species(COUNT, SMALL)],
-        bodies=[body],
+        particles=[particle],
         gravity=(0.0, -STRENGTH),
     )
     scene.to_file(tmp_path / "scene.yaml")
-    return [point(tmp_path / "scene.yaml", **{"scene.bodies.0.fixed": fixed}) for fixed in (True, False)]
+    return [point(tmp_path / "scene.yaml", **{"scene.particles.0.fixed": fixed}) for fixed in (True, False)]
 
 
 @pytest.fixture

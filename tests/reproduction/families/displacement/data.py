@@ -23,7 +23,7 @@ def point(dimension=3, count=100, packing_fraction=0.02, experiment="msd", name=
         "arrangement": "lattice",
         "temperature": 1.0,
         "engine": "event",
-        "collisions_per_body": 120,
+        "collisions_per_particle": 120,
         "samples": 120,
         "displacements": True,
         "lags": 120,
@@ -33,8 +33,8 @@ def point(dimension=3, count=100, packing_fraction=0.02, experiment="msd", name=
 
 
 def langevin(rng, one, drift=0.0, length=1.0, speed=1.0):
-    """What a run of `one` accumulates of independent bodies with <v(0).v(t)> / d = exp(-rate t), at Enskog's
-    D: exact steps of the Ornstein-Uhlenbeck process.
+    """What a run of `one` accumulates of independent particles with <v(0).v(t)> / d = exp(-rate t), at
+    Enskog's D: exact steps of the Ornstein-Uhlenbeck process.
 
     Their D is speed^2 / rate. drift: a velocity that all share; length: unit of the displacements.
     """

@@ -22,7 +22,7 @@ def stored(monkeypatch):
 
 
 def fill(stored, one, seed, **unit):
-    """Langevin bodies with Enskog's D, sampled as the point says, in the place of its trajectories."""
+    """Langevin particles with Enskog's D, sampled as the point says, in the place of its trajectories."""
     rng = np.random.default_rng(seed)
     for path in one.replica_paths:
         stored[path] = langevin(rng, one, **unit)
@@ -62,8 +62,8 @@ def test_a_line_needs_four_points():
 
 
 @pytest.mark.parametrize("unit", [{}, {"drift": 7.0}, {"length": 2.0, "speed": 3.0}], ids=str)
-def test_diffusion_of_langevin_bodies_in_any_unit(stored, unit):
-    one = point(collisions_per_body=240, samples=240, radius=0.5 * unit.get("length", 1.0))
+def test_diffusion_of_langevin_particles_in_any_unit(stored, unit):
+    one = point(collisions_per_particle=240, samples=240, radius=0.5 * unit.get("length", 1.0))
     fill(stored, replace(one, settings={**one.settings, "radius": 0.5}), seed=4, **unit)
     ds = displacement.msd_spheres([one], {}).isel(point=0)
     expected, error = float(theory.enskog_diffusion(0.02, 3)), float(ds["diffusion_error"])
@@ -76,7 +76,7 @@ def test_diffusion_of_langevin_bodies_in_any_unit(stored, unit):
 
 
 def test_short_runs_compare_green_and_kubo_with_einstein(stored):
-    one = point(experiment="short", collisions_per_body=60, samples=240)
+    one = point(experiment="short", collisions_per_particle=60, samples=240)
     fill(stored, one, seed=5)
     ds = displacement.msd_spheres([one], {}).isel(point=0)
     assert np.isnan(ds["diffusion"])
@@ -95,7 +95,7 @@ def test_sizes_at_one_packing_fraction_make_a_series(stored):
     ds = displacement.msd_spheres(chosen, {})
     assert ds["in_series"].values.tolist() == [True, True, True, False]
     assert ds["largest"].values.tolist() == [False, False, True, True]
-    # Langevin bodies do not feel each other: no slope, and Enskog's D in every container.
+    # Langevin particles do not feel each other: no slope, and Enskog's D in every container.
     assert abs(float(ds["size_slope"])) < 4 * float(ds["size_slope_error"])
     enskog = float(theory.enskog_diffusion(0.3, 3))
     assert abs(float(ds["size_intercept"]) - enskog) < 4 * float(ds["size_intercept_error"])
@@ -137,7 +137,7 @@ def test_a_point_without_lags_is_refused():
     [
         ({"displacements": False}, "displacements"),
         ({"replicas": 1}, "replicas"),
-        ({"collisions_per_body": 30, "samples": 30}, "collisions per particle"),
+        ({"collisions_per_particle": 30, "samples": 30}, "collisions per particle"),
         ({"lags": 10}, "collisions per particle.*`lags` reach half of it"),
     ],
 )

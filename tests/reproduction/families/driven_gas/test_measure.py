@@ -27,10 +27,12 @@ def test_a_driven_gas_is_at_the_temperature_of_the_energy_balance(tmp_path):
 
 def test_the_cumulant_is_that_of_the_velocities(tmp_path):
     """Of one frame with known speeds: those of the centre of mass are left out."""
-    bodies = [
-        gp.Body((2.0 + 3.0 * n, 5.0), (v + 7.0, 0.5), 0.1) for n, v in enumerate((1.0, -1.0, 2.0, -2.0))
+    particles = [
+        gp.Particle((2.0 + 3.0 * n, 5.0), (v + 7.0, 0.5), 0.1) for n, v in enumerate((1.0, -1.0, 2.0, -2.0))
     ]
-    scene = gp.Scene(gp.Container((100.0, 10.0), "periodic"), bodies=bodies, species=[gp.Species(0, 0.1)])
+    scene = gp.Scene(
+        gp.Container((100.0, 10.0), "periodic"), particles=particles, species=[gp.Species(0, 0.1)]
+    )
     scene.to_file(tmp_path / "scene.yaml")
     point = made(tmp_path, "still", scene, duration=0.001, samples=1, replicas=1)
     (found,) = [measure.means(run) for run in runs(point)]

@@ -14,7 +14,7 @@ GAS = {
     "exact_temperature": True,
     "engine": "dsmc",
     "cells_per_side": 1,
-    "collisions_per_body": 600,
+    "collisions_per_particle": 600,
     "samples": 1200,
     "lags": 30,
     "follow": 1,

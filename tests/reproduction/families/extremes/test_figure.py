@@ -63,7 +63,7 @@ def test_a_failure_is_named():
     [
         ("at time 1 80 of 338 contacts were found a step too late", "a"),
         ("time_step = 0.01: moves particles by less than float32 resolves in a length of 8", "b"),
-        ("bodies[0].radius = 0.5: leaves no room between two walls", "f"),
+        ("particles[0].radius = 0.5: leaves no room between two walls", "f"),
         ("at time 0 particle 9 has had 12 contacts: an inelastic collapse, or a stack at rest", "g"),
         ("something else", "?"),
     ],

@@ -26,7 +26,7 @@ PLAIN = {"speeds", "contacts", "steps", "few"}
 PLAIN_ROWS = {"discs in 1e9 diameters", "discs in 1e15 diameters", "corner of two walls", "no gap at all"}
 PLAIN_ROWS |= {"a gap of 1e-6", "no room between walls", "clock to 1e9"}
 REFUSALS = {
-    "discs in 1e15 diameters": "bodies[0].radius",
+    "discs in 1e15 diameters": "particles[0].radius",
     "speeds 1e-300": "speed",
     "speeds 1e300": "speed",
     "no gap at all": "",
@@ -62,7 +62,7 @@ def test_a_wrong_count_fails():
 
 
 def test_another_last_state_than_the_referees_fails():
-    row = next(row for row in ROWS if row.name == "two bodies")
+    row = next(row for row in ROWS if row.name == "two particles")
     referee = attempt(row, "event, all pairs")
     assert attempt(row, "event", referee).verdict == PASSES
     outcome = attempt(row, "event", replace(referee, bits=b"another"))
@@ -75,7 +75,7 @@ def test_digits_of_pi():
 
 
 def test_contacts_on_a_line():
-    """Two bodies from the walls towards each other, at one speed: they meet, hit a wall each..."""
+    """Two particles from the walls towards each other, at one speed: they meet, hit a wall each..."""
     assert exact.contacts_on_line((1.0, 9.0), (1.0, -1.0), 10.0, 3.9) == 0
     assert exact.contacts_on_line((1.0, 9.0), (1.0, -1.0), 10.0, 4.1) == 1
     assert exact.contacts_on_line((1.0, 9.0), (1.0, -1.0), 10.0, 9.1) == 3
@@ -95,7 +95,8 @@ def test_what_hangs_or_dies_is_ended_and_the_rest_goes_on():
 
 
 def test_steps_that_come_too_late_are_refused_even_if_energy_is_kept():
-    """The light body becomes 1e6 times as fast as it was judged by, and is thrown between wall and body."""
+    """The light particle becomes 1e6 times as fast as it was judged by, and is thrown between wall and
+    particle."""
     row = Row("ratio 1e12", "masses", lambda: scenes.galperin(1e12), 3.5, 1e-4, None)
     outcome = attempt(row, "step")
     assert outcome.verdict == REFUSED
@@ -119,13 +120,13 @@ def test_sizes_that_no_square_holds_are_refused(key, value):
 
 
 def test_a_post_may_fill_the_container_from_wall_to_wall():
-    post = gp.Body((0.5, 2.0), (0.0, 0.0), 0.5, fixed=True)
-    assert gp.Scene(gp.Container((1.0, 4.0)), bodies=[post]).count == 1
+    post = gp.Particle((0.5, 2.0), (0.0, 0.0), 0.5, fixed=True)
+    assert gp.Scene(gp.Container((1.0, 4.0)), particles=[post]).count == 1
     with pytest.raises(gp.SceneError, match="no room"):
-        gp.Scene(gp.Container((1.0, 4.0)), bodies=[replace(post, fixed=False)])
+        gp.Scene(gp.Container((1.0, 4.0)), particles=[replace(post, fixed=False)])
 
 
-def test_an_unresolved_body_is_refused():
+def test_an_unresolved_particle_is_refused():
     assert math.isclose(scenes.pair_in(1e9).container.lengths[0], 1e9)
     with pytest.raises(gp.SceneError, match="too small"):
         scenes.pair_in(1e15)

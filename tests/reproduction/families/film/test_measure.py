@@ -10,7 +10,7 @@ from gaspart.trajectory.run import run
 
 
 def slit(rng, density, width, samples, side=6.0):
-    """Bodies that do not interact, uniform between the walls, and the pressure that they exert."""
+    """Particles that do not interact, uniform between the walls, and the pressure that they exert."""
     count = round(density * side**2 * (width - 1.0))
     positions = rng.random((samples, count, 3)) * [side, side, width - 1.0] + [0.0, 0.0, 0.5]
     height = np.minimum(positions[..., 2], width - positions[..., 2]) - 0.5
@@ -18,7 +18,7 @@ def slit(rng, density, width, samples, side=6.0):
     return film.Slit(rng.normal(density, 0.01, samples), height, width, side**2, positions, sides)
 
 
-def test_contact_density_of_uniform_bodies_is_their_density():
+def test_contact_density_of_uniform_particles_is_their_density():
     rng = np.random.default_rng(1)
     one = slit(rng, 0.5, 5.0, 600)
     density = film._contact(one)

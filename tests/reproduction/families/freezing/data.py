@@ -49,13 +49,13 @@ def discs(error=0.005, seed=1):
     ):
         dataset[name] = "start", np.full(2, value)
     rng = np.random.default_rng(seed)
-    shown, bodies = 3, 64
+    shown, particles = 3, 64
     waves = np.linspace(-12.0, 12.0, 9)
     pictures = xr.Dataset(
         {
-            "x": (("shown", "body"), 10.0 * rng.random((shown, bodies))),
-            "y": (("shown", "body"), 9.0 * rng.random((shown, bodies))),
-            "angle": (("shown", "body"), rng.uniform(-np.pi, np.pi, (shown, bodies))),
+            "x": (("shown", "particle"), 10.0 * rng.random((shown, particles))),
+            "y": (("shown", "particle"), 9.0 * rng.random((shown, particles))),
+            "angle": (("shown", "particle"), rng.uniform(-np.pi, np.pi, (shown, particles))),
             "g": (("shown", "distance"), np.ones((shown, 20))),
             "wave_x": (("shown", "mode_x"), np.tile(waves, (shown, 1))),
             "wave_y": (("shown", "mode_y"), np.tile(waves, (shown, 1))),

@@ -38,9 +38,11 @@ def test_discs_with_plateau_order_and_structure():
         assert one.get_label() == f"{float(ds['shown'][k]):.3g}"
     for k in range(3):
         at, (snapshot, scattering) = ds.isel(shown=k), pictures[2 * k : 2 * k + 2]
-        (bodies,) = snapshot.collections
-        assert bodies.get_offsets() == pytest.approx(np.stack([at["x"], at["y"]], axis=1))
-        assert np.asarray(bodies.get_array()) == pytest.approx(np.mod(at["angle"].values / np.pi + 0.5, 2.0))
+        (particles,) = snapshot.collections
+        assert particles.get_offsets() == pytest.approx(np.stack([at["x"], at["y"]], axis=1))
+        assert np.asarray(particles.get_array()) == pytest.approx(
+            np.mod(at["angle"].values / np.pi + 0.5, 2.0)
+        )
         assert f"{float(at['shown']):.3g}" in snapshot.get_title()
         (mesh,) = scattering.collections
         assert np.asarray(mesh.get_array()) == pytest.approx(at["structure_factor"].values.T)

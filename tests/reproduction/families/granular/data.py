@@ -82,8 +82,8 @@ def inelastic(rate=1.0, exponent=-2.0, clustered=True, seed=1):
             "cluster_excess_error": (("clusters", "step"), 0.05 * excess),
             "variance": (("clusters", "step"), 0.5 * np.stack([excess[0], np.ones(21)])),
             "variance_error": (("clusters", "step"), np.full(s.shape, 0.02)),
-            "x": ("body", rng.uniform(0.0, 20.0, 50)),
-            "y": ("body", rng.uniform(0.0, 20.0, 50)),
+            "x": ("particle", rng.uniform(0.0, 20.0, 50)),
+            "y": ("particle", rng.uniform(0.0, 20.0, 50)),
         },
         attrs={"side": 20.0, "radius": 0.5},
     )

@@ -31,7 +31,7 @@ def made(tmp_path, name, scene, **settings):
 
 
 def gas(count=256, dimension=2, packing_fraction=0.02, **scene):
-    side = float((count * theory.body_volume(dimension) / packing_fraction) ** (1 / dimension))
+    side = float((count * theory.particle_volume(dimension) / packing_fraction) ** (1 / dimension))
     inertia = {"moment_of_inertia": 0.125} if dimension == 2 else {}
     return gp.Scene(
         gp.Container((side,) * dimension, "periodic"),
@@ -105,7 +105,7 @@ def test_an_inelastic_gas_cools_as_haff_says_and_the_number_variance_is_counted(
     ds = granular.cooling(points, {"clustering": ["dense"], "cells_per_side": 4})
     assert abs(ds["rate"].item() - theory.cooling_rate(0.8, 2)) < 4.0 * ds["rate_error"].item() < 0.05
     assert abs(ds["exponent"].item() + 2.0) < 0.15
-    assert ds.sizes["body"] == 256 and ds.attrs["side"] > 0.0
+    assert ds.sizes["particle"] == 256 and ds.attrs["side"] > 0.0
     assert ds["cluster_excess"].values == pytest.approx(np.ones((1, 4)), rel=0.1)
     assert np.all((ds["variance"].values > 0.1) & (ds["variance"].values < 1.0))
 

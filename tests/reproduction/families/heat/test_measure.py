@@ -79,7 +79,7 @@ def test_scatterers_on_a_grid_are_distinguished_from_electrons(tmp_path):
     """The scatterers come first; they and the electrons take the temperature of the walls."""
     faces = dict.fromkeys(("x_low", "x_high"), gp.Thermal(2.0))
     centres = [(x, y) for x in (2.0, 4.0, 6.0) for y in (1.0, 3.0, 5.0)]
-    scatterers = [gp.Body(centre, (0.0, 0.0), 0.5, fixed=True, vibration=0.0) for centre in centres]
+    scatterers = [gp.Particle(centre, (0.0, 0.0), 0.5, fixed=True, vibration=0.0) for centre in centres]
     container = gp.Container((8.0, 6.0), ("wall", "periodic"))
     scene = gp.Scene(container, [gp.Species(20, 0.02, temperature=1.0)], scatterers, faces=faces)
     point = run(tmp_path, scene, duration=6000.0, equilibration=100.0, samples=600)

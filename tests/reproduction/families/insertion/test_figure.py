@@ -36,13 +36,13 @@ def test_failures_and_the_approach_to_saturation_are_drawn(dataset):
     names = [insertion.SERIES[key] for key in ((3, "centres_to_walls"), (2, "periodic"), (3, "periodic"))]
 
     def series(one, label):
-        positive = one["failures_per_body"].where(one["failures_per_body"] > 0)
-        return Points(label, one["packing_fraction"], positive, one["failures_per_body_error"])
+        positive = one["failures_per_particle"].where(one["failures_per_particle"] > 0)
+        return Points(label, one["packing_fraction"], positive, one["failures_per_particle_error"])
 
     shows(failures, "packing fraction", "failed", series(source, names[0]), series(discs, names[1]))
     shows(dilute, "packing fraction", "failures", series(thin, names[2]))
     for one, dimension in zip(lines(dilute), (2, 3), strict=True):
-        obeys(one, lambda eta, d=dimension: theory.failures_per_body(eta, d))
+        obeys(one, lambda eta, d=dimension: theory.failures_per_particle(eta, d))
     drawn = lines(filled)
     for n, (one, dimension) in enumerate(((source, 3), (discs, 2))):
         points, fit, limit = drawn[3 * n : 3 * n + 3]

@@ -37,7 +37,7 @@ def test_attempts_that_found_no_place_count_where_they_were_made():
     assert (failures + successes).sum(axis=1).tolist() == [20, 40]
 
 
-def test_packing_fraction_counts_the_bodies_placed_in_time():
+def test_packing_fraction_counts_the_particles_placed_in_time():
     one = Fill(np.array([[0, 3, -1]]), np.array([20]), 0.1, 2)  # placed at attempts 1 and 5
     assert one.packing_fraction(np.array([0.05, 0.1, 0.45, 0.5, 2.0])) == pytest.approx(
         np.array([[0.0, 0.1, 0.1, 0.2, 0.2]])
@@ -85,11 +85,11 @@ def test_real_fills(tmp_path):
     ratio, error = (float(dataset[name][2]) for name in ("dilute_failures", "dilute_failures_error"))
     assert abs(ratio - 1.0) < 4.0 * error
     assert error < 0.05
-    assert float(dataset["failures_per_body"][0, -1]) > 100.0
+    assert float(dataset["failures_per_particle"][0, -1]) > 100.0
 
 
-def test_low_density_failures_are_compared_body_by_body():
-    expected = theory.failures_per_body(np.arange(400) * 1e-4, 3)
+def test_low_density_failures_are_compared_particle_by_particle():
+    expected = theory.failures_per_particle(np.arange(400) * 1e-4, 3)
     rng = np.random.default_rng(2)
     failures = rng.geometric(1.0 / (1.0 + expected), size=(200, 400)) - 1
     ratio, error = dilute_failures(Fill(failures, failures.sum(axis=1) + 400, 1e-4, 3), up_to=0.04)

@@ -16,7 +16,7 @@ GAS = {
     "temperature": 1.0,
     "exact_temperature": True,
     "engine": "event",
-    "collisions_per_body": 300,
+    "collisions_per_particle": 300,
     "equilibration": 20,
     "samples": 32,
     "replicas": 2,

@@ -15,7 +15,7 @@ def packings(inserted=0.376, compressed=0.641, contacts=5.85):
             "freedom": ("packing", [7, 7]),
             "contacts": ("packing", [np.nan, contacts]),
             "contacts_error": ("packing", [np.nan, 0.03]),
-            "position": (("packing", "body", "axis"), np.array([corners, corners])),
+            "position": (("packing", "particle", "axis"), np.array([corners, corners])),
             "radius": ("packing", [0.5, 0.9]),
             "length": (("packing", "axis"), np.full((2, 3), 4.0)),
         }

@@ -10,8 +10,8 @@ from gaspart.reproduction.families.packing import figure as packing
 def test_the_first_and_the_last_packing_are_drawn_with_their_packing_fractions(monkeypatch):
     drawn = []
 
-    def picture(bodies, size, colours):
-        drawn.append(bodies)
+    def picture(particles, size, colours):
+        drawn.append(particles)
         return np.full((*size, 3), len(drawn), dtype=np.uint8)
 
     monkeypatch.setattr(packing, "picture", picture)
@@ -20,12 +20,12 @@ def test_the_first_and_the_last_packing_are_drawn_with_their_packing_fractions(m
     titles = [axis.get_title() for axis in axes]
     assert "periodic" in titles[0] and "0.3760(10)" in titles[0]
     assert "jammed" in titles[1] and "0.6410(10)" in titles[1]
-    for k, (axis, bodies) in enumerate(zip(axes, drawn, strict=True)):
+    for k, (axis, particles) in enumerate(zip(axes, drawn, strict=True)):
         one = ds.isel(packing=k)
         assert np.all(axis.images[0].get_array() == k + 1)
-        assert np.array_equal(bodies.positions, one["position"])
-        assert np.all(bodies.radii == float(one["radius"]))
-        assert np.array_equal(bodies.lengths, one["length"])
+        assert np.array_equal(particles.positions, one["position"])
+        assert np.all(particles.radii == float(one["radius"]))
+        assert np.array_equal(particles.lengths, one["length"])
 
 
 def test_packings_of_fewer_particles_are_drawn_without_the_missing_ones():

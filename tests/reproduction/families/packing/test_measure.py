@@ -29,5 +29,5 @@ def test_packings_by_insertion_and_by_growth():
     assert (inserted["packing_fraction"] < 0.4).all()
     assert (grown["pressure"] > 1e6).all()
     assert np.isfinite(grown["position"]).all()
-    placed = np.isfinite(inserted["position"]).all("axis").sum("body")
+    placed = np.isfinite(inserted["position"]).all("axis").sum("particle")
     assert np.allclose(inserted["packing_fraction"], scene.packing_fraction * placed / 120)

@@ -13,8 +13,8 @@ def scene(**changes):
     return xr.Dataset(
         {
             **values,
-            "position": (("body", "axis"), np.zeros((8000, 3))),
-            "radius": ("body", np.full(8000, values.pop("size", 0.2))),
+            "position": (("particle", "axis"), np.zeros((8000, 3))),
+            "radius": ("particle", np.full(8000, values.pop("size", 0.2))),
             "length": ("axis", np.full(3, 60.0)),
         },
         attrs={"count": 8000, "packing_fraction": 8000 * 4 / 3 * np.pi * 0.2**3 / 60.0**3},
@@ -38,8 +38,8 @@ def test_the_gas(changes, disagreeing):
     assert found == disagreeing
 
 
-def test_the_large_body():
+def test_the_large_particle():
     assert set(judge(pictures.brownian_render(scene(overlaps=0.0)))) == {"agrees"}
     assert judge(pictures.brownian_render(scene(overlaps=1.0))).count("disagrees") == 1
-    lost = scene(overlaps=0.0).isel(body=slice(7999))
+    lost = scene(overlaps=0.0).isel(particle=slice(7999))
     assert judge(pictures.brownian_render(lost)).count("disagrees") == 2

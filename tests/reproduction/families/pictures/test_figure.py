@@ -10,10 +10,10 @@ from gaspart.reproduction.families.pictures import figure as pictures
 def dataset():
     rng = np.random.default_rng(1)
     return xr.Dataset({
-        "position": (("body", "axis"), rng.uniform(1, 9, (20, 3))),
-        "radius": ("body", rng.uniform(0.4, 0.6, 20)),
-        "species": ("body", np.arange(20) // 19),
-        "speed": ("body", rng.uniform(0, 2, 20)),
+        "position": (("particle", "axis"), rng.uniform(1, 9, (20, 3))),
+        "radius": ("particle", rng.uniform(0.4, 0.6, 20)),
+        "species": ("particle", np.arange(20) // 19),
+        "speed": ("particle", rng.uniform(0, 2, 20)),
         "length": ("axis", np.array([10.0, 11.0, 12.0])),
     })  # fmt: skip
 
@@ -33,18 +33,18 @@ def test_the_picture_is_drawn_with_a_pixel_for_each_dot(dataset, function):
 def test_the_particles_of_the_data_set_are_drawn(monkeypatch, dataset, function, colour):
     drawn, coloured = [], []
 
-    def picture(bodies, size, colours):
-        drawn.append(bodies)
+    def picture(particles, size, colours):
+        drawn.append(particles)
         return np.zeros((*size[::-1], 3), dtype=np.uint8)
 
     monkeypatch.setattr(pictures, "picture", picture)
-    monkeypatch.setattr(pictures, "colours_of", lambda bodies, by: coloured.append(by))
+    monkeypatch.setattr(pictures, "colours_of", lambda particles, by: coloured.append(by))
     figure = draw(function, dataset)
-    bodies = drawn[-1]
+    particles = drawn[-1]
     assert coloured == [colour]
     columns = {"positions": "position", "radii": "radius", "species": "species", "speeds": "speed"}
     for name, column in {**columns, "lengths": "length"}.items():
-        assert np.array_equal(getattr(bodies, name), dataset[column])
+        assert np.array_equal(getattr(particles, name), dataset[column])
     scales = figure.axes[1:]
     assert len(scales) == (colour == "speed")
     for scale in scales:

@@ -22,7 +22,7 @@ def test_overlapping_pairs(second, periodic, expected):
     assert pictures.overlapping(places, np.full(3, 0.5), CUBE, (periodic,) * 3) == expected
 
 
-def test_overlaps_across_a_face_and_with_a_large_body():
+def test_overlaps_across_a_face_and_with_a_large_particle():
     places = np.array([[0.2, 5.0, 5.0], [9.6, 5.0, 5.0], [5.0, 5.0, 5.0], [5.0, 7.4, 5.0], [5.0, 8.1, 5.0]])
     radii = np.array([0.5, 0.5, 2.0, 0.5, 0.5])
     assert pictures.overlapping(places, radii, CUBE, (False,) * 3) == 2
@@ -42,7 +42,7 @@ def test_a_scene_is_counted_and_kept_for_drawing(tmp_path):
     (tmp_path / "brownian_render/single").mkdir(parents=True)
     run(point.scene, point.engine, 1, 2.0, 2.0, point.replica_path(0))
     ds = pictures.brownian_render([point], {})
-    assert ds.sizes["body"] == ds.attrs["count"] == 201
+    assert ds.sizes["particle"] == ds.attrs["count"] == 201
     assert float(ds["overlaps"]) == 0.0 and float(ds["resolved"]) == 0.0
     assert ds["radius"].values.tolist() == [10.0] + [0.5] * 200
     assert float(ds["mean_speed"]) == pytest.approx(1.0, abs=0.1)

@@ -15,7 +15,7 @@ def test_one_disc_and_its_piston(tmp_path):
     """The disc, at rest in the middle, is not met; the piston falls freely."""
     scene = gp.Scene(
         CONTAINER,
-        bodies=[gp.Body((8.0, 5.0), (0.0, 1.0), 0.5), gp.Body((1.0, 5.0), (0.0, 1.0), 0.5)],
+        particles=[gp.Particle((8.0, 5.0), (0.0, 1.0), 0.5), gp.Particle((1.0, 5.0), (0.0, 1.0), 0.5)],
         species=[gp.Species(0, 0.5)],
         faces={"x_high": gp.Piston(10.0, 0.01)},
     )

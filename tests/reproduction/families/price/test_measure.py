@@ -85,18 +85,18 @@ def test_claims_can_fail(points):
 
 def test_branches_on_absent_features_are_cut_out():
     source = """
-def move(body, gravity):
+def move(particle, gravity):
     if gravity is not None:
-        body.fall(gravity)
+        particle.fall(gravity)
     if oversized is None:
-        body.go()
+        particle.go()
     else:
-        body.look()
-    return 1.0 if masses is None else masses[body], other is None
+        particle.look()
+    return 1.0 if masses is None else masses[particle], other is None
 """
     assert stripped(source).split("\n")[1:] == [
         "    pass",
-        "    body.go()",
+        "    particle.go()",
         "    return (1.0, other is None)",
     ]
 

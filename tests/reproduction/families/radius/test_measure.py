@@ -34,8 +34,8 @@ def test_crossings_fall_with_the_box_and_with_density():
 @pytest.fixture(scope="module")
 def dataset(tmp_path_factory):
     root = tmp_path_factory.mktemp("points")
-    common = {"dimension": 3, "side": 10, "boundary": "periodic", "temperature": 1.0, "boxes_per_body": 1}
-    event = {"engine": "event", "collisions_per_body": 60, "equilibration": 10, "samples": 20}
+    common = {"dimension": 3, "side": 10, "boundary": "periodic", "temperature": 1.0, "boxes_per_particle": 1}
+    event = {"engine": "event", "collisions_per_particle": 60, "equilibration": 10, "samples": 20}
     step = {"engine": "step", "time_step": 0.02, "passes": 1, "steps": 200, "equilibration": 100}
     step |= {"samples": 4}
     experiments = {

@@ -12,8 +12,13 @@ from gaspart.theory import partition
 from gaspart.yaml_text import read_yaml
 
 ROOT = Path(__file__).parents[4]
-BODY, TEST, BOX, LIST = 30e-9, 12e-9, 0.3e-9, 2e-9  # s per body and step (with a list), pair test, box
-NEAR, CONTACTS = 20e-9, 10  # s per body and step to leave out boxes; contacts in a timing
+PARTICLE, TEST, BOX, LIST = (
+    30e-9,
+    12e-9,
+    0.3e-9,
+    2e-9,
+)  # s per particle and step (with a list), pair test, box
+NEAR, CONTACTS = 20e-9, 10  # s per particle and step to leave out boxes; contacts in a timing
 CONFIG = read_yaml(ROOT / "config/config.yaml")
 SCALING = ("naive_scaling", "box_count", "ideal_boxes", "linear_scaling", "event_scaling")
 
@@ -44,10 +49,10 @@ def job(point):
     gas = {"dimension": dimension, "side": side, "radius": radius}
     if point.settings["engine"] == "step":
         counted = _steps(count, tuple(np.maximum(sides, 1).tolist()), **gas)
-        body = BODY
-        if not sides.any():  # a list of one pair a body
-            body, counted = LIST, {**counted, "pair_tests": np.array([10 * count])}
-        seconds = 10 * (body * count + BOX * sides**dimension) + TEST * counted["pair_tests"]
+        particle = PARTICLE
+        if not sides.any():  # a list of one pair a particle
+            particle, counted = LIST, {**counted, "pair_tests": np.array([10 * count])}
+        seconds = 10 * (particle * count + BOX * sides**dimension) + TEST * counted["pair_tests"]
     else:
         counted = _events(count, sides, getattr(chosen[0], "search", ""), gas)
         seconds = TEST * counted["pair_tests"] + 4e-7 * counted["collisions"]

@@ -49,7 +49,7 @@ def test_box_count(measure):
         timed("within reach", reached, ds, "near_seconds", 1e9),
     )  # fmt: skip
     near = (ds["seconds"] <= 3.0 * ds["seconds"].min()).values
-    model = ds["body_seconds"] + ds["test_seconds"] * ds["pair_tests"]
+    model = ds["particle_seconds"] + ds["test_seconds"] * ds["pair_tests"]
     model = model + ds["box_seconds"] * ds["boxes_emptied"]
     follows(line(time, "tests"), boxes[near], 1e9 * model[near])
     shows(
@@ -110,7 +110,7 @@ def test_ideal_boxes(measure):
         one = ds.isel(gas=int(gas))
         scale = 1.0 / float(one["seconds"].min())
         radius = float(one["radius"])
-        series.append(timed(f"$r = {radius:g}$".lstrip("$"), one["boxes_per_body"], one, scale=scale))
+        series.append(timed(f"$r = {radius:g}$".lstrip("$"), one["boxes_per_particle"], one, scale=scale))
     shows(time, "boxes per particle", "time over", *series)
 
 

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from reproduction.families.scaling.data import BODY, BOX, TEST, points, settings
+from reproduction.families.scaling.data import BOX, PARTICLE, TEST, points, settings
 
 from gaspart.reproduction.families.scaling.ideal_boxes import ideal_boxes
 
@@ -25,7 +25,7 @@ def test_plateaus(tmp_path):
     plateau = ds.isel(plateau=0)
     assert plateau.plateau_boxes == 25**3 and plateau.plateau_count == 2000
     number = 25**3 / 2000
-    least = BODY + 2.0 * math.sqrt(13.5 * TEST * BOX)
-    cost = BODY + TEST * 13.5 / number + BOX * number
+    least = PARTICLE + 2.0 * math.sqrt(13.5 * TEST * BOX)
+    cost = PARTICLE + TEST * 13.5 / number + BOX * number
     assert float(plateau.plateau_penalty) == pytest.approx(cost / least, abs=0.03)
     assert (ds.plateau_penalty >= 1.0).all() and (ds.plateau_penalty_error < 0.03).all()

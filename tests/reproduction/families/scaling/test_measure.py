@@ -34,7 +34,7 @@ def test_linear_scaling(tmp_path):
     assert ds.exponent.values == pytest.approx(1.0, abs=0.06)
     assert ds.list_pair_tests.values == pytest.approx(1.0)
     assert ds.list_seconds.values == pytest.approx(LIST + TEST, rel=0.03)
-    assert (ds.list_share.values < 0.5).all()  # boxes cost BODY at least, and some tests
+    assert (ds.list_share.values < 0.5).all()  # boxes cost PARTICLE at least, and some tests
     count = float(ds.extrapolated_count)
     assert float(ds.extrapolated_seconds) == pytest.approx(TEST * count * (count - 1) / 2, rel=0.03)
 

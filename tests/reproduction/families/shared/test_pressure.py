@@ -19,7 +19,7 @@ from gaspart.trajectory.run import run
 def small_point(tmp_path, **settings):
     values = {
         "dimension": 2, "count": 64, "radius": 0.5, "packing_fraction": 0.2, "boundary": "periodic",
-        "temperature": 2.0, "collisions_per_body": 400, "equilibration": 20, "samples": 40, "replicas": 2,
+        "temperature": 2.0, "collisions_per_particle": 400, "equilibration": 20, "samples": 40, "replicas": 2,
     }  # fmt: skip
     return Point("test", "single", "simulate", values | settings, str(tmp_path), 7)
 

@@ -8,16 +8,16 @@ import xarray as xr
 
 from gaspart.reproduction.families.shared import timings
 
-BODY, TEST, BOX = 30e-9, 12e-9, 0.3e-9
+PARTICLE, TEST, BOX = 30e-9, 12e-9, 0.3e-9
 IDEAL = math.sqrt(13.5 * TEST / BOX)
 
 
 def costs(boxes, noise=0.0, seed=0):
-    """`per_body` costs of a gas whose pair tests and boxes cost what is given."""
+    """`per_particle` costs of a gas whose pair tests and boxes cost what is given."""
     rng = np.random.default_rng(seed)
     boxes = np.asarray(boxes, dtype=float)
-    seconds = (BODY + TEST * 13.5 / boxes + BOX * boxes) * (1.0 + noise * rng.standard_normal(boxes.size))
-    columns = {"boxes_per_body": boxes, "seconds": seconds, "pair_tests": 13.5 / boxes}
+    seconds = (PARTICLE + TEST * 13.5 / boxes + BOX * boxes) * (1.0 + noise * rng.standard_normal(boxes.size))
+    columns = {"boxes_per_particle": boxes, "seconds": seconds, "pair_tests": 13.5 / boxes}
     columns["seconds_error"] = noise * seconds
     return xr.Dataset({name: ("partition", values) for name, values in columns.items()})
 
@@ -46,7 +46,7 @@ def test_a_minimum_beyond_the_scan_is_not_claimed():
 def test_penalty():
     boxes = np.geomspace(1.0, 256.0, 9)
     made = costs(boxes)
-    least = BODY + 2.0 * math.sqrt(TEST * 13.5 * BOX)
+    least = PARTICLE + 2.0 * math.sqrt(TEST * 13.5 * BOX)
     assert timings.penalty(made, 4.0)[0] == pytest.approx(float(made.seconds[2]) / least, rel=1e-4)
     assert timings.penalty(made, IDEAL)[0] == pytest.approx(1.0, abs=1e-4)
     assert math.isnan(timings.penalty(made, 300.0)[0])
@@ -67,7 +67,7 @@ def test_the_uncertainty_of_a_penalty_is_its_scatter():
     """Of 300 scans with noise of which the errors know."""
     boxes = np.geomspace(1.0, 256.0, 12)
     found = np.array([timings.penalty(costs(boxes, 0.03, seed), 4.0) for seed in range(300)])
-    exact = float(costs([4.0]).seconds[0]) / (BODY + 2.0 * math.sqrt(TEST * 13.5 * BOX))
+    exact = float(costs([4.0]).seconds[0]) / (PARTICLE + 2.0 * math.sqrt(TEST * 13.5 * BOX))
     assert found[:, 0].mean() == pytest.approx(exact, rel=0.01)
     assert 0.7 < found[:, 0].std() / found[:, 1].mean() < 1.4
 
@@ -83,6 +83,6 @@ def test_times_in_turn_are_compared_repeat_by_repeat():
 
 
 def test_weights():
-    tests, bodies = np.array([10.0, 100.0, 1000.0]), np.array([5.0, 15.0, 45.0])
-    fit = timings.weights(2.0 * bodies + 3.0 * tests, 1e-3 * tests, bodies, tests)
+    tests, particles = np.array([10.0, 100.0, 1000.0]), np.array([5.0, 15.0, 45.0])
+    fit = timings.weights(2.0 * particles + 3.0 * tests, 1e-3 * tests, particles, tests)
     assert fit.values == pytest.approx([2.0, 3.0])

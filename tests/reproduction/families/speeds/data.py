@@ -24,7 +24,7 @@ def point(dimension=3, count=200, experiment="speeds", **more):
 
 
 def trajectory(velocities, collisions):
-    """What `open_trajectory` gives of speeds: velocities (T, N, d), collisions per body (T,)."""
+    """What `open_trajectory` gives of speeds: velocities (T, N, d), collisions per particle (T,)."""
     frames, count, _ = velocities.shape
     return xr.Dataset(
         {

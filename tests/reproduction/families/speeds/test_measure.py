@@ -52,7 +52,7 @@ def test_walls_do_not_hit_but_the_last_bit_does():
     assert speeds.never_hit(later).tolist() == [1.0, 1.0, 0.5]
 
 
-def test_a_mixture_of_hit_and_never_hit_bodies_is_told_apart(stored):
+def test_a_mixture_of_hit_and_never_hit_particles_is_told_apart(stored):
     rng = np.random.default_rng(2)
     event, step = {"engine": "event", "replicas": 6}, {"engine": "step", "time_step": 0.1}
     chosen = [point(count=4000, **event), point(count=4000, experiment="other", **step)]

@@ -18,7 +18,7 @@ GAS = {
     "temperature": 1.0,
     "arrangement": "lattice",
     "engine": "event",
-    "collisions_per_body": 400,
+    "collisions_per_particle": 400,
     "equilibration": 20,
     "samples": 200,
 }

@@ -120,7 +120,7 @@ def point(folder, **settings):
 
 
 def test_relaxation_of_a_small_gas(tmp_path):
-    run = {"count": 400, "speed": math.sqrt(3.0), "collisions_per_body": 3, "samples": 12, "replicas": 4}
+    run = {"count": 400, "speed": math.sqrt(3.0), "collisions_per_particle": 3, "samples": 12, "replicas": 4}
     made = point(tmp_path, engine="event", **run)
     found = flows.relaxation_of(made)
     assert abs((found.value - relaxation.relaxation_time(1.0)).deviation) < 4.0
@@ -134,7 +134,7 @@ def test_cells_of_a_small_gas(tmp_path):
     gas = {
         "count": 400, "temperature": 1.0, "exact_temperature": True, "arrangement": "lattice",
         "engine": "dsmc", "model": "enskog",
-        "collisions_per_body": 1000, "equilibration": 10, "samples": 50,
+        "collisions_per_particle": 1000, "equilibration": 10, "samples": 50,
     }  # fmt: skip
     (tmp_path / "one").mkdir(), (tmp_path / "many").mkdir()
     one = uniform.cells_of(point(tmp_path / "one", cells_per_side=1, **gas))

@@ -13,7 +13,7 @@ GAS = {
     "exact_temperature": True,
     "arrangement": "lattice",
     "engine": "event",
-    "collisions_per_body": 800,
+    "collisions_per_particle": 800,
     "equilibration": 20,
     "samples": 800,
     "lags": 15,

@@ -18,7 +18,7 @@ def test_autocorrelation_is_the_mean_over_all_pairs_of_frames():
 def test_the_start_of_a_gas_is_enskogs_and_momentum_is_restored(tmp_path):
     settings = {
         "dimension": 3, "count": 256, "radius": 0.5, "boundary": "periodic", "packing_fraction": 0.2,
-        "temperature": 2.0, "arrangement": "lattice", "collisions_per_body": 12, "equilibration": 20,
+        "temperature": 2.0, "arrangement": "lattice", "collisions_per_particle": 12, "equilibration": 20,
         "samples": 240, "lags": 120, "replicas": 3,
     }  # fmt: skip
     point = Point("memory", "single", "simulate", settings, str(tmp_path), 3)

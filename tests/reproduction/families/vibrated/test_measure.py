@@ -43,10 +43,10 @@ def test_the_flows_of_energy_and_the_profile_of_a_bed(tmp_path):
 
 def test_a_frame_of_known_places_and_velocities(tmp_path):
     """Two discs at rest beside one another that fall from a known height, far above the floor."""
-    bodies = [gp.Body((2.0 + 4.0 * n, 50.5), ((3.0, -1.0)[n], 0.0), 0.5) for n in range(2)]
+    particles = [gp.Particle((2.0 + 4.0 * n, 50.5), ((3.0, -1.0)[n], 0.0), 0.5) for n in range(2)]
     scene = gp.Scene(
         gp.Container((10.0, 400.0), ("periodic", "wall")),
-        bodies=bodies,
+        particles=particles,
         species=[gp.Species(0, 0.5)],
         gravity=(0.0, -2.0),
         restitution=gp.Restitution(0.9, contact_duration=0.0),

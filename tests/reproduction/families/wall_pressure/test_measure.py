@@ -1,4 +1,4 @@
-"""Pressure on walls from trajectories: of one body, exactly, and of a short run of a gas."""
+"""Pressure on walls from trajectories: of one particle, exactly, and of a short run of a gas."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ from gaspart.reproduction.points.point import Point
 def point(tmp_path, **settings):
     settings = {
         "dimension": 2, "radius": 0.5, "side": [20, 10], "boundary": ["wall", "periodic"], "count": 40,
-        "temperature": 1.0, "collisions_per_body": 300, "equilibration": 20, "samples": 32,
+        "temperature": 1.0, "collisions_per_particle": 300, "equilibration": 20, "samples": 32,
     } | settings  # fmt: skip
     made = Point("some", "single", "simulate", settings, str(tmp_path), 1)
     recipe = made.parameters
@@ -41,7 +41,7 @@ def test_a_gas_between_two_walls_has_the_pressure_of_theory(tmp_path):
 
 
 def test_the_force_and_the_drift_are_taken_exactly(tmp_path):
-    """Two bodies drifting along the periodic axis, one hit of 2 m v on each wall and interval."""
+    """Two particles drifting along the periodic axis, one hit of 2 m v on each wall and interval."""
     made = Point("some", "single", "simulate", {
         "dimension": 2, "radius": 1.0, "side": [10, 8], "boundary": ["wall", "periodic"], "count": 2,
         "temperature": 1.0, "duration": 64.0, "samples": 32,

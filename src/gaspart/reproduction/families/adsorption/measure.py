@@ -25,7 +25,7 @@ from gaspart.theory.adsorption import (
     layer_diameter,
     length_in_langmuirs_formula,
 )
-from gaspart.theory.geometry import body_volume
+from gaspart.theory.geometry import particle_volume
 from gaspart.theory.potential import excess_chemical_potential, packing_fraction_at
 from gaspart.theory.state import compressibility_factor
 
@@ -85,7 +85,7 @@ class Holder:
 
     def coverage(self, count: float | np.ndarray) -> float | np.ndarray:
         """The share of the wall's area that so many particles cover."""
-        return count * body_volume(2, 2.0 * self.radius) / self.area
+        return count * particle_volume(2, 2.0 * self.radius) / self.area
 
     def gas_density(self, count: np.ndarray) -> np.ndarray:
         """The number density of so many particles at least a diameter from both walls and from the well."""
@@ -94,7 +94,7 @@ class Holder:
     def activity(self, density: float | np.ndarray) -> float | np.ndarray:
         """The pressure of the gas in k_B T, as the coverage of a layer whose particles do not
         interact: beta P w e^{depth/kT} pi sigma^2 / 4, a packing fraction (0 without a well)."""
-        eta = density * body_volume(3, 2.0 * self.radius)
+        eta = density * particle_volume(3, 2.0 * self.radius)
         pressure = density * compressibility_factor(eta, 3)
         return pressure * self._hold
 
@@ -115,12 +115,12 @@ class Holder:
 
     @property
     def _hold(self) -> float:
-        return self.width * np.exp(self.depth / self.temperature) * body_volume(2, 2.0 * self.radius)
+        return self.width * np.exp(self.depth / self.temperature) * particle_volume(2, 2.0 * self.radius)
 
     def fugacity(self, density: float | np.ndarray) -> float | np.ndarray:
         """`activity` with that of the gas, rho exp(mu_excess / kT), in the place of its pressure: what it
         would be if the layer felt nothing of the gas in front of it."""
-        eta = density * body_volume(3, 2.0 * self.radius)
+        eta = density * particle_volume(3, 2.0 * self.radius)
         return density * np.exp(excess_chemical_potential(eta, 3)) * self._hold
 
 

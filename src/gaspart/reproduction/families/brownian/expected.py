@@ -51,25 +51,27 @@ class Setting:
 def setting_of(point: Point) -> Setting:
     """The setting of a point's scene; SceneError for one that has not one particle and one species."""
     scene, where = point.scene, f"experiments.{point.experiment}.scene"
-    if len(scene.bodies) != 1 or len(scene.species) != 1:
-        raise SceneError(where, point.settings.get("scene"), "must have one entry of bodies and one species")
-    body, gas = scene.bodies[0], scene.species[0]
+    if len(scene.particles) != 1 or len(scene.species) != 1:
+        raise SceneError(
+            where, point.settings.get("scene"), "must have one entry of particles and one species"
+        )
+    particle, gas = scene.particles[0], scene.species[0]
     temperature = gas.initial_temperature(3)
-    contact = body.radius + gas.radius
+    contact = particle.radius + gas.radius
     lower, upper = scene.reach(gas.radius)
     room = math.prod(b - a for a, b in zip(lower, upper, strict=True))
-    density = gas.count / (room - theory.body_volume(3, 2.0 * contact))
-    friction = float(theory.friction_rate(density, contact, body.mass, gas.mass, temperature))
+    density = gas.count / (room - theory.particle_volume(3, 2.0 * contact))
+    friction = float(theory.friction_rate(density, contact, particle.mass, gas.mass, temperature))
     conserved = all(scene.container.periodic)
     return Setting(
-        mass=body.mass,
+        mass=particle.mass,
         gas_mass=gas.mass,
-        radius=body.radius,
+        radius=particle.radius,
         temperature=temperature,
         contact=contact,
         friction=friction,
-        diffusion=float(theory.tagged_diffusion(friction, body.mass, gas.mass, temperature)),
-        share=body.mass / (body.mass + gas.count * gas.mass) if conserved else 0.0,
+        diffusion=float(theory.tagged_diffusion(friction, particle.mass, gas.mass, temperature)),
+        share=particle.mass / (particle.mass + gas.count * gas.mass) if conserved else 0.0,
         mean_free_path=1.0 / (math.sqrt(2.0) * math.pi * density * (2.0 * gas.radius) ** 2),
     )
 

@@ -23,7 +23,7 @@ from gaspart.reproduction.families.shared.columns import (
 from gaspart.reproduction.families.shared.rows import entries
 from gaspart.reproduction.points.point import Point
 from gaspart.theory.buoyancy import displaced_area
-from gaspart.theory.geometry import body_volume
+from gaspart.theory.geometry import particle_volume
 from gaspart.theory.gravity import hydrostatic_profiles
 from gaspart.theory.potential import excess_chemical_potential, packing_fraction_at
 
@@ -44,7 +44,7 @@ def buoyancy(points: list[Point], settings: dict) -> xr.Dataset:
     force; `count_radius`, that of as many discs as are missing.
     """
     own = [point for point in points if point.experiment not in settings["source"]]
-    held = [point for point in own if point.scene.bodies[0].fixed]
+    held = [point for point in own if point.scene.particles[0].fixed]
     fixed = [_fixed(point, settings) for point in held]
     free = [_free(point, settings) for point in own if point not in held]
     of_source = [_free(point, settings) for point in points if point not in own]
@@ -89,7 +89,7 @@ def _fluid(
     weight = place.masses[-1] * place.strength / temperature
     number = density[skip : len(density) - skip].sum() * width
     lowest = hydrostatic_profiles(z, [number], [weight], 2, place.diameter)[0, 0]
-    eta = lowest * body_volume(2, place.diameter)
+    eta = lowest * particle_volume(2, place.diameter)
     logarithm = np.log(eta) + excess_chemical_potential(eta, 2) + weight * z[0]
     return lambda height: packing_fraction_at(np.exp(logarithm - weight * height), 2)
 
@@ -107,7 +107,7 @@ def _fixed(point: Point, settings: dict) -> dict:
     z = (np.arange(settings["bins"]) + 0.5) * place.height / settings["bins"]
     chord = np.sqrt(np.maximum(radius**2 - (z - height) ** 2, 0.0))
     chord /= chord.sum()
-    volume = body_volume(2, place.diameter)
+    volume = particle_volume(2, place.diameter)
 
     # One smooth profile for all blocks, scaled to each one's number: missing discs are counted relative to
     # it.
@@ -158,7 +158,7 @@ def _free(point: Point, settings: dict) -> dict:
     place, found = field(point), stretches(point, settings["blocks"])
     radius, _ = _large(point, place)
     ratio = 2.0 * radius / place.diameter
-    mass = point.scene.bodies[0].mass
+    mass = point.scene.particles[0].mass
     heights = np.array([[s.heights[:, 0].mean(), (s.heights[:, 0] ** 2).mean()] for s in found])
     warm = float(np.mean([temperature(place, stretch) for stretch in found]))
     fluid = _fluid(place, np.mean([_far(place, s, radius, settings) for s in found], axis=0), warm, settings)
@@ -190,5 +190,5 @@ def _free(point: Point, settings: dict) -> dict:
 
 def _large(point: Point, place: Field) -> tuple[float, float]:
     """Radius of the large disc, and the height of its place in the scene file."""
-    body = point.scene.bodies[0]
-    return body.radius, body.position[1] - 0.5 * place.diameter
+    particle = point.scene.particles[0]
+    return particle.radius, particle.position[1] - 0.5 * place.diameter

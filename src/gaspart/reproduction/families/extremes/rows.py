@@ -139,7 +139,7 @@ ROWS = (
         chaotic=True,
         refused=FLOAT32,
     ),
-    Row("no bodies", "few", partial(scenes.few, 0), 10.0, 0.01, 0),
-    Row("one body", "few", partial(scenes.few, 1), 10.0, 0.01, 0),
-    Row("two bodies", "few", partial(scenes.few, 2), 10.0, 0.01, chaotic=True),
+    Row("no particles", "few", partial(scenes.few, 0), 10.0, 0.01, 0),
+    Row("one particle", "few", partial(scenes.few, 1), 10.0, 0.01, 0),
+    Row("two particles", "few", partial(scenes.few, 2), 10.0, 0.01, chaotic=True),
 )

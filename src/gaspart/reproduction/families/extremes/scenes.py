@@ -9,21 +9,21 @@ from gaspart.scene.container import Container
 from gaspart.scene.geometry import CLOSE_PACKING
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene
-from gaspart.scene.species import Body, Species
+from gaspart.scene.species import Particle, Species
 
 GRAZE = 2.0**-50
 """Nearly 1e-15, and a number by which a distance of 1 can be changed exactly."""
 
 
-def between_walls(lengths: tuple[float, ...], *bodies: Body, **rest: Any) -> Scene:
+def between_walls(lengths: tuple[float, ...], *particles: Particle, **rest: Any) -> Scene:
     """A few particles in a container with walls."""
-    return Scene(Container(lengths), bodies=bodies, **rest)
+    return Scene(Container(lengths), particles=particles, **rest)
 
 
 def galperin(ratio: float) -> Scene:
     """A wall, a light disc at rest, 1 from it, and a heavy one, 1 from that, which approaches with speed
     1."""
-    light, heavy = Body((1.5, 2.0), (0.0, 0.0), 0.5), Body((3.5, 2.0), (-1.0, 0.0), 0.5, mass=ratio)
+    light, heavy = Particle((1.5, 2.0), (0.0, 0.0), 0.5), Particle((3.5, 2.0), (-1.0, 0.0), 0.5, mass=ratio)
     return between_walls((20.0, 4.0), light, heavy)
 
 
@@ -56,32 +56,34 @@ def unequal_sizes(dimension: int = 2) -> Scene:
 def grazing(nearer: float) -> Scene:
     """Two discs of diameter 1 whose centres' tracks are 1 - `nearer` apart."""
     return between_walls(
-        (4.0, 4.0), Body((1.0, 1.0), (1.0, 0.0), 0.5), Body((1.0 + 1e-6, 2.0 - nearer), (0.0, 0.0), 0.5)
+        (4.0, 4.0),
+        Particle((1.0, 1.0), (1.0, 0.0), 0.5),
+        Particle((1.0 + 1e-6, 2.0 - nearer), (0.0, 0.0), 0.5),
     )
 
 
 def cradle() -> Scene:
     """Newton's: a disc hits four that touch."""
-    still = (Body((4.0 + n, 2.0), (0.0, 0.0), 0.5) for n in range(4))
-    return between_walls((12.0, 4.0), Body((2.0, 2.0), (1.0, 0.0), 0.5), *still)
+    still = (Particle((4.0 + n, 2.0), (0.0, 0.0), 0.5) for n in range(4))
+    return between_walls((12.0, 4.0), Particle((2.0, 2.0), (1.0, 0.0), 0.5), *still)
 
 
 def four_at_once() -> Scene:
     """Four discs approach one point from four sides, and touch at one instant."""
     sides = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
-    bodies = (Body((4.0 - 2.0 * x, 4.0 - 2.0 * y), (x, y), 0.5) for x, y in sides)
-    return between_walls((8.0, 8.0), *bodies)
+    particles = (Particle((4.0 - 2.0 * x, 4.0 - 2.0 * y), (x, y), 0.5) for x, y in sides)
+    return between_walls((8.0, 8.0), *particles)
 
 
 def corner(dimension: int) -> Scene:
     """A particle moves into a corner, where all faces are hit at once."""
-    body = Body((2.0,) * dimension, (-1.0,) * dimension, 0.5)
-    return between_walls((4.0,) * dimension, body)
+    particle = Particle((2.0,) * dimension, (-1.0,) * dimension, 0.5)
+    return between_walls((4.0,) * dimension, particle)
 
 
 def one_fast() -> Scene:
     """One disc that crosses its container a hundred times in a time of 1."""
-    return between_walls((10.0, 10.0), Body((5.0, 5.0), (1234.5, 777.0), 0.5))
+    return between_walls((10.0, 10.0), Particle((5.0, 5.0), (1234.5, 777.0), 0.5))
 
 
 def crystal(packing_fraction: float, dimension: int) -> Scene:
@@ -95,26 +97,28 @@ def crystal(packing_fraction: float, dimension: int) -> Scene:
 def jammed() -> Scene:
     """Four discs that touch each other and all walls."""
     moves = {(0.5, 0.5): (1.0, 0.5), (1.5, 0.5): (-1.0, 0.5), (0.5, 1.5): (1.0, 0.5), (1.5, 1.5): (1.0, 0.5)}
-    return between_walls((2.0, 2.0), *(Body(place, move, 0.5 - 1e-6) for place, move in moves.items()))
+    return between_walls((2.0, 2.0), *(Particle(place, move, 0.5 - 1e-6) for place, move in moves.items()))
 
 
 def touching() -> Scene:
     """Four discs that touch each other through periodic faces too, without any gap."""
     moves = {(0.5, 0.5): (1.0, 0.5), (1.5, 0.5): (-1.0, 0.5), (0.5, 1.5): (1.0, 0.5), (1.5, 1.5): (1.0, 0.5)}
-    bodies = tuple(Body(place, move, 0.5) for place, move in moves.items())
-    return Scene(Container((2.0, 2.0), "periodic"), bodies=bodies)
+    particles = tuple(Particle(place, move, 0.5) for place, move in moves.items())
+    return Scene(Container((2.0, 2.0), "periodic"), particles=particles)
 
 
 def wedged() -> Scene:
     """A disc exactly as wide as its container."""
-    return between_walls((1.0, 4.0), Body((0.5, 2.0), (1.0, 0.5), 0.5))
+    return between_walls((1.0, 4.0), Particle((0.5, 2.0), (1.0, 0.5), 0.5))
 
 
 def pair_in(side: float) -> Scene:
     """Two discs of diameter 1 in a container of any size."""
     place = side / 8.0
     return between_walls(
-        (side, side), Body((place,) * 2, (1.0, 0.0), 0.5), Body((place + 10.0, place + 0.3), (0.0, 0.0), 0.5)
+        (side, side),
+        Particle((place,) * 2, (1.0, 0.0), 0.5),
+        Particle((place + 10.0, place + 0.3), (0.0, 0.0), 0.5),
     )
 
 
@@ -125,13 +129,15 @@ def line() -> Scene:
     """Three discs on a line, far apart between two walls."""
     places = ((x + 5.0 + 10.0 * n, 10.0) for n, x in enumerate(LINE_STARTS))
     moves = ((v, 0.0) for v in LINE_VELOCITIES)
-    return between_walls((1e6 + 30.0, 20.0), *(Body(x, v, 5.0) for x, v in zip(places, moves, strict=True)))
+    return between_walls(
+        (1e6 + 30.0, 20.0), *(Particle(x, v, 5.0) for x, v in zip(places, moves, strict=True))
+    )
 
 
 def sticking() -> Scene:
     """A disc hits another, and they separate at zero speed."""
-    bodies = Body((2.0, 2.0), (1.0, 0.0), 0.5), Body((5.0, 2.0), (0.0, 0.0), 0.5)
-    return between_walls((10.0, 4.0), *bodies, restitution=Restitution(0.0))
+    particles = Particle((2.0, 2.0), (1.0, 0.0), 0.5), Particle((5.0, 2.0), (0.0, 0.0), 0.5)
+    return between_walls((10.0, 4.0), *particles, restitution=Restitution(0.0))
 
 
 def dissipative_gas() -> Scene:
@@ -141,7 +147,7 @@ def dissipative_gas() -> Scene:
 
 def bouncing(gravity: float) -> Scene:
     """A disc falls from a height of 2 on to a floor, and bounces."""
-    return between_walls((4.0, 4.0), Body((1.0, 2.5), (0.0, 0.0), 0.5), gravity=(0.0, -gravity))
+    return between_walls((4.0, 4.0), Particle((1.0, 2.5), (0.0, 0.0), 0.5), gravity=(0.0, -gravity))
 
 
 def falling_gas(gravity: float) -> Scene:

@@ -48,8 +48,8 @@ def freezing_discs(points: list[Point], settings: dict) -> xr.Dataset:
     `compared_packing_fraction`: compared_pressure, its _error, _drift and _drift_error, of the points of
     COMPARED discs, if there are any. Over `start`: plateau, plateau_error, and plateau_low, plateau_high, the
     packing fractions at its ends (see `plateau`). Over `shown` (of the last start): g(distance), S(wave_x,
-    wave_y), and of the last frame x, y and angle, the argument of psi_6, over `body`; positions in units of
-    the diameter.
+    wave_y), and of the last frame x, y and angle, the argument of psi_6, over `particle`; positions in units
+    of the diameter.
     """
     compared = [point for point in points if point.scene.count == COMPARED]
     points = [point for point in points if point not in compared]
@@ -202,9 +202,9 @@ def _pictures(chosen: dict[float, Point], settings: dict) -> xr.Dataset:
 
     return xr.Dataset(
         {
-            "x": (("shown", "body"), np.array([row[0][:, 0] for row in rows])),
-            "y": (("shown", "body"), np.array([row[0][:, 1] for row in rows])),
-            "angle": (("shown", "body"), np.array([row[1] for row in rows])),
+            "x": (("shown", "particle"), np.array([row[0][:, 0] for row in rows])),
+            "y": (("shown", "particle"), np.array([row[0][:, 1] for row in rows])),
+            "angle": (("shown", "particle"), np.array([row[1] for row in rows])),
             "g": (("shown", "distance"), np.array([row[2][1] for row in rows])),
             "wave_x": (("shown", "mode_x"), np.array([inner(row[3][0], 0) for row in rows])),
             "wave_y": (("shown", "mode_y"), np.array([inner(row[3][1], 1) for row in rows])),

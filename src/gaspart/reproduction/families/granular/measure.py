@@ -166,8 +166,8 @@ def cooling(points: list[Point], settings: dict) -> xr.Dataset:
     `gas`: dimension, restitution, rate and its error (-d ln T / ds, per replica between `RELAXED` and the
     end), exponent and its error (of T against 1 + t / t_H). Over `clusters` and `step`: cluster_collisions;
     cluster_excess, T over exp(-rate s) of theory, and its error; variance, of the number of particles in a
-    cell over its mean, and its error; over `clusters`: cluster_restitution. Over `body`: x, y, at the end of
-    one run of the least restitution; attrs side, radius.
+    cell over its mean, and its error; over `clusters`: cluster_restitution. Over `particle`: x, y, at the
+    end of one run of the least restitution; attrs side, radius.
     """
     apart = [point for point in points if point.experiment in settings["clustering"]]
     gases = from_rows("gas", [_gas(point) for point in points if point not in apart], ("frame",), units={})
@@ -231,6 +231,6 @@ def _picture(point: Point) -> xr.Dataset:
         positions = trajectory["coordinates"][-1].values
     units = {"units": "scene length"}
     return xr.Dataset(
-        {"x": ("body", positions[:, 0], units), "y": ("body", positions[:, 1], units)},
+        {"x": ("particle", positions[:, 0], units), "y": ("particle", positions[:, 1], units)},
         attrs={"side": point.scene.container.lengths[0], "radius": point.scene.largest_radius},
     )

@@ -26,7 +26,7 @@ from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
 from gaspart.state.initial import initial_state
-from gaspart.theory.geometry import body_volume
+from gaspart.theory.geometry import particle_volume
 from gaspart.theory.gravity import (
     hydrostatic_profiles,
     ideal_energy_moments,
@@ -128,7 +128,7 @@ class Bins:
 
     def packing_fraction(self, density: np.ndarray) -> np.ndarray:
         """(B,) of all species."""
-        return density.sum(axis=0) * body_volume(2, self.place.diameter)
+        return density.sum(axis=0) * particle_volume(2, self.place.diameter)
 
     def pressure_ratio(self, density: np.ndarray, pressure: np.ndarray, energy: np.ndarray) -> np.ndarray:
         """(B,) pressure over that of the reference at this density and temperature."""
@@ -136,7 +136,7 @@ class Bins:
 
     def slope_ratio(self, density: np.ndarray, temperature: float) -> np.ndarray:
         """(S,) slopes of ln eta_i + mu_excess(eta) over -m_i g / T."""
-        volume = body_volume(2, self.place.diameter)
+        volume = particle_volume(2, self.place.diameter)
         excess = excess_chemical_potential(self.packing_fraction(density), 2)
         with np.errstate(divide="ignore"):
             slopes = [self._slope(np.log(row * volume) + excess, row) for row in density]

@@ -21,7 +21,7 @@ from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.faces import thermal_face
 from gaspart.scene.scene import Scene
-from gaspart.state.insertion import per_body
+from gaspart.state.insertion import per_particle
 from gaspart.theory.enskog import mean_free_path
 from gaspart.theory.geometry import packing_fraction
 from gaspart.theory.heat import conducting_slab, dilute_fourier_flux, free_molecular_flux
@@ -145,7 +145,7 @@ def heat_conduction_metal(points: list[Point], settings: dict) -> xr.Dataset:
 def _metal(point: Point, settings: dict) -> dict:
     """The numbers of one point."""
     scene = point.scene
-    gap, fixed = Gap.of(scene), per_body(scene, "fixed").astype(bool)
+    gap, fixed = Gap.of(scene), per_particle(scene, "fixed").astype(bool)
     bins, blocks = settings["bins"], settings["blocks"] if point.replicas == 1 else 1
     capacity = 0.5 * gap.dimension * np.sum(~fixed) + np.sum(fixed)
     tables, totals, squares, heats, modes = [], [], [], [], []
@@ -175,16 +175,18 @@ def _metal(point: Point, settings: dict) -> dict:
         modes.append(vibrations.mean(axis=1).reshape(blocks, length).mean(axis=1))
         ends = slice(None, used + 1, length)
         heats.append(np.diff(heat[ends], axis=0) / np.diff(time[ends])[:, None] / gap.area)
-    bodies, kinetic, scatterers, vibrating = np.moveaxis(np.concatenate(tables), 1, 0)
+    particles, kinetic, scatterers, vibrating = np.moveaxis(np.concatenate(tables), 1, 0)
     given, taken = np.concatenate(heats).T
     total, square, mode = (np.concatenate(values) for values in (totals, squares, modes))
     warm = gap.hot if gap.hot == gap.cold else np.nan
     made = {
-        "electrons": jackknife(lambda k, n: k / n, kinetic, bodies),
+        "electrons": jackknife(lambda k, n: k / n, kinetic, particles),
         "modes": jackknife(lambda v, s: v / s, vibrating, scatterers),
-        "share": jackknife(lambda k, n, v, s: (v / s * n / k).mean(), kinetic, bodies, vibrating, scatterers),
+        "share": jackknife(
+            lambda k, n, v, s: (v / s * n / k).mean(), kinetic, particles, vibrating, scatterers
+        ),
         "flux": jackknife(lambda out, into: 0.5 * (into - out), given, taken),
-        "bend": jackknife(_bend, kinetic, bodies),
+        "bend": jackknife(_bend, kinetic, particles),
         "energy_ratio": jackknife(lambda e: e / (capacity * warm), total),
         "mode_ratio": jackknife(lambda e: e / warm, mode),
         "log_fluctuation": jackknife(lambda q: np.log(q / (capacity * warm**2)), square),
@@ -193,7 +195,7 @@ def _metal(point: Point, settings: dict) -> dict:
         "electrons_part": 1.0 - np.sum(fixed) / capacity,
         "expected": capacity,
         "gap_over_path": gap.length / _path(scene, gap, fixed),
-        "regular": bool(scene.bodies),
+        "regular": bool(scene.particles),
         "hot": gap.hot,
         "cold": gap.cold,
         "position": (np.arange(bins) + 0.5) / bins,
@@ -202,7 +204,7 @@ def _metal(point: Point, settings: dict) -> dict:
 
 def _path(scene: Scene, gap: Gap, fixed: np.ndarray) -> float:
     """Mean free path of electrons among discs: pi times the free area over the discs' perimeter (exact)."""
-    contact = per_body(scene, "radius")[fixed] + scene.smallest_radius
+    contact = per_particle(scene, "radius")[fixed] + scene.smallest_radius
     return float((gap.length * gap.area - np.pi * np.sum(contact**2)) / (2.0 * np.sum(contact)))
 
 

@@ -50,8 +50,8 @@ def fill_failures(dataset: xr.Dataset) -> Figure:
 
 def _failures(axis: Axes, one: xr.Dataset, kind: int, label: str) -> None:
     style.points(
-        axis, one["packing_fraction"], one["failures_per_body"].where(one["failures_per_body"] > 0),
-        one["failures_per_body_error"], kind=kind, markersize=2.5,
+        axis, one["packing_fraction"], one["failures_per_particle"].where(one["failures_per_particle"] > 0),
+        one["failures_per_particle_error"], kind=kind, markersize=2.5,
         label=label,
     )  # fmt: skip
 
@@ -77,7 +77,7 @@ def _low_density(axis: Axes) -> None:
     """The first particles of a large container, and the expansion that is exact there."""
     eta = np.linspace(0.0, 0.06, 60)
     for dimension in (2, 3):
-        axis.plot(eta, theory.failures_per_body(eta, dimension), color="black", linewidth=0.8, zorder=4)
+        axis.plot(eta, theory.failures_per_particle(eta, dimension), color="black", linewidth=0.8, zorder=4)
     axis.text(0.036, 0.48, "$2^3\\eta+\\ldots$", ha="right")
     axis.text(0.058, 0.03, "$2^2\\eta+\\ldots$", ha="right")
     axis.set_xlim(0.0, 0.06)

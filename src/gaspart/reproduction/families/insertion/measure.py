@@ -26,12 +26,12 @@ TIMES = 60
 
 @dataclass(frozen=True)
 class Fill:
-    """All replicas of one container: `failures` (replica, body) before each particle, -1 for one never
-    placed, and `attempts` (replica,) in all; body: packing fraction of one particle; dimension."""
+    """All replicas of one container: `failures` (replica, particle) before each particle, -1 for one never
+    placed, and `attempts` (replica,) in all; particle: packing fraction of one particle; dimension."""
 
     failures: np.ndarray
     attempts: np.ndarray
-    body: float
+    particle: float
     dimension: int
 
     @property
@@ -42,16 +42,16 @@ class Fill:
     @property
     def last_time(self) -> float:
         """The time t that every replica reached."""
-        return float(self.attempts.min()) * self.body
+        return float(self.attempts.min()) * self.particle
 
     def packing_fraction(self, times: np.ndarray) -> np.ndarray:
         """(replica, times): packing fraction at the times t."""
-        attempts = times / self.body
+        attempts = times / self.particle
         placed_at = [np.cumsum(one[one >= 0] + 1) for one in self.failures]
-        return self.body * np.array([np.searchsorted(one, attempts, side="right") for one in placed_at])
+        return self.particle * np.array([np.searchsorted(one, attempts, side="right") for one in placed_at])
 
     def trials(self) -> tuple[np.ndarray, np.ndarray]:
-        """(replica, body) failures and successes at each number of particles; zero beyond the end."""
+        """(replica, particle) failures and successes at each number of particles; zero beyond the end."""
         successes = (self.failures >= 0).astype(int)
         failures = np.where(self.failures >= 0, self.failures, 0)
         for k, placed in enumerate(self.placed):
@@ -70,8 +70,8 @@ def fill_failures(points: list[Point], settings: dict) -> xr.Dataset:
 
     Returns over `container` (the experiment's name): dimension, side_over_diameter, rule, replicas, placed
     (mean); final and final_spread, mean and standard deviation of the packing fraction of a single fill at
-    its end; last_time, in t; failures_per_body with its error at packing_fraction, each (container, bin), NaN
-    without attempts; filled (container, sample), mean packing fraction at `time` (container, sample);
+    its end; last_time, in t; failures_per_particle with its error at packing_fraction, each (container, bin),
+    NaN without attempts; filled (container, sample), mean packing fraction at `time` (container, sample);
     saturation with its error (container, window) and the degrees of freedom of that (container), NaN for
     those not in `saturated`, and slope of its line in t^(-1/d); approach and its error: exponent p of eta_s -
     eta ~ t^-p with the literature's eta_s (saturated periodic containers only); dilute_failures with error:
@@ -104,7 +104,9 @@ def fill_failures(points: list[Point], settings: dict) -> xr.Dataset:
     samples = ("container", "sample")
     return xr.Dataset(
         {
-            **_columns(bins, curves, "packing_fraction", "failures_per_body", "failures_per_body_error"),
+            **_columns(
+                bins, curves, "packing_fraction", "failures_per_particle", "failures_per_particle_error"
+            ),
             **_columns(ends_of, ends, "saturation", "saturation_error", "saturation_slope"),
             "saturation_freedom": ("container", [len(one.attempts) - 1 for one in fills]),
             "time": (samples, times, {"units": "attempts v / V"}),
@@ -126,7 +128,7 @@ def _columns(dimensions: str | tuple[str, ...], table: np.ndarray, *names: str) 
 def _properties(points: list[Point], fills: list[Fill]) -> dict[str, tuple]:
     """Variables of the containers and of their state at the end."""
     sides = [min(point.extents[2]) / (2.0 * point.extents[1]) for point in points]
-    final = [one.placed * one.body for one in fills]
+    final = [one.placed * one.particle for one in fills]
     return {
         "dimension": ("container", [one.dimension for one in fills]),
         "side_over_diameter": ("container", sides, {"units": "1"}),
@@ -144,7 +146,7 @@ def _read(point: Point) -> Fill:
         return Fill(
             failures=dataset["failures"].values.astype(np.int64),
             attempts=dataset["attempts"].values.astype(np.int64),
-            body=float(dataset.attrs["packing_fraction_per_body"]),
+            particle=float(dataset.attrs["packing_fraction_per_particle"]),
             dimension=point.settings["dimension"],
         )
 
@@ -173,7 +175,11 @@ def failures_by_density(fill: Fill, bins: int) -> tuple[np.ndarray, np.ndarray, 
         ratio = lost.sum() / won.sum()
         tried = (failures + successes)[:, bin_of == k].sum(axis=0) > 0
         own = np.sqrt(ratio * (1.0 + ratio) / won.sum())
-        result[:, k] = states[bin_of == k][tried].mean() * fill.body, ratio, max(own, _jackknife(lost, won))
+        result[:, k] = (
+            states[bin_of == k][tried].mean() * fill.particle,
+            ratio,
+            max(own, _jackknife(lost, won)),
+        )
     return result[0], result[1], result[2]
 
 
@@ -219,13 +225,13 @@ def approach_exponent(fill: Fill, window: float) -> tuple[float, float]:
 def dilute_failures(fill: Fill, up_to: float) -> tuple[float, float]:
     """Failures below the packing fraction `up_to`, over those expected, and the ratio's standard error.
 
-    Expected: for each particle k the `theory.failures_per_body` at k particles. Error: the geometric
+    Expected: for each particle k the `theory.failures_per_particle` at k particles. Error: the geometric
     distribution's, sqrt(sum of f (1 + f)) over the sum of f.
     """
     failures, _ = fill.trials()
     states = np.arange(failures.shape[1])
-    below = (states * fill.body <= up_to) & (states < fill.placed.min())
-    expected = theory.failures_per_body(states[below] * fill.body, fill.dimension)
+    below = (states * fill.particle <= up_to) & (states < fill.placed.min())
+    expected = theory.failures_per_particle(states[below] * fill.particle, fill.dimension)
     replicas = len(failures)
     total = replicas * expected.sum()
     if total == 0.0:

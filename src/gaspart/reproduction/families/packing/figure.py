@@ -30,7 +30,7 @@ def densest_fill(ds: xr.Dataset) -> Figure:
         places = one["position"].values
         places = places[np.isfinite(places).all(axis=1)]
         count = len(places)
-        bodies = DrawnParticles(
+        particles = DrawnParticles(
             positions=places,
             radii=np.full(count, float(one["radius"])),
             species=np.zeros(count, dtype=int),
@@ -39,7 +39,7 @@ def densest_fill(ds: xr.Dataset) -> Figure:
             walls=np.zeros((0, 2, 2)),
         )
         side = round(DOTS * style.PAGE / 3)
-        axis.imshow(picture(bodies, (side, side), colours_of(bodies, "species")))
+        axis.imshow(picture(particles, (side, side), colours_of(particles, "species")))
         axis.set_axis_off()
         fraction, error = float(one["packing_fraction"]), float(one["error"])
         style.letter(axis, f"({'ab'[shown.index(k)]})")

@@ -21,8 +21,8 @@ def densest_fill(points: list[Point], settings: dict) -> xr.Dataset:
     and the first replica of each packing for the picture.
 
     Returns a dataset: packing_fraction, error, contacts, contacts_error (packing,), contacts of those that do
-    not rattle, NaN for insertions; rule (packing,); position (packing, body, axis), radius (packing,), length
-    (packing, axis). freedom: that of the errors.
+    not rattle, NaN for insertions; rule (packing,); position (packing, particle, axis), radius (packing,),
+    length (packing, axis). freedom: that of the errors.
     """
     rows = []
     for point in points:
@@ -48,7 +48,7 @@ def densest_fill(points: list[Point], settings: dict) -> xr.Dataset:
                 "length": length,
             }
         )
-    inner = {"position": ("body", "axis"), "length": ("axis",)}
+    inner = {"position": ("particle", "axis"), "length": ("axis",)}
     return from_rows("packing", rows, inner, dict.fromkeys(("position", "radius", "length"), "length"))
 
 

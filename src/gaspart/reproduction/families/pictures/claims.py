@@ -76,7 +76,7 @@ def _number(ds: xr.Dataset) -> Claim:
     return Claim(
         claim="spheres drawn",
         kind="identity",
-        measured=Estimate(ds.sizes["body"]),
+        measured=Estimate(ds.sizes["particle"]),
         expected=ds.attrs["count"],
         required=0.0,
         source="the scene's number of particles",

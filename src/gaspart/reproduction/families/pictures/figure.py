@@ -41,7 +41,7 @@ def brownian_render(ds: xr.Dataset) -> Figure:
 
 def _shown(ds: xr.Dataset, colour: str, bar: float = 0.0) -> tuple[Figure, Axes]:
     """A figure filled by a picture of the particles of a dataset; bar: height in inches of what is below."""
-    bodies = DrawnParticles(
+    particles = DrawnParticles(
         positions=ds["position"].values,
         radii=ds["radius"].values,
         species=ds["species"].values,
@@ -52,6 +52,6 @@ def _shown(ds: xr.Dataset, colour: str, bar: float = 0.0) -> tuple[Figure, Axes]
     height = min(HIGHEST, HEIGHT * style.width())
     size = (round(DOTS * height / HEIGHT), round(DOTS * height))
     figure, (axis,) = style.new((height + bar,))
-    axis.imshow(picture(bodies, size, colours_of(bodies, colour)))
+    axis.imshow(picture(particles, size, colours_of(particles, colour)))
     axis.set_axis_off()
     return figure, axis

@@ -52,10 +52,10 @@ def _scene(point: Point) -> xr.Dataset:
     step = point.settings["time_step"] if point.settings.get("engine") == "step" else 0.0
     return xr.Dataset(
         {
-            "position": (("body", "axis"), shown, {"units": "length"}),
-            "radius": ("body", radii, {"units": "length"}),
-            "species": ("body", kind),
-            "speed": ("body", speeds[0], {"units": "length/time"}),
+            "position": (("particle", "axis"), shown, {"units": "length"}),
+            "radius": ("particle", radii, {"units": "length"}),
+            "species": ("particle", kind),
+            "speed": ("particle", speeds[0], {"units": "length/time"}),
             "length": ("axis", np.array(scene.container.lengths), {"units": "length"}),
             "overlaps": float(sum(overlaps)),
             "resolved": step * sum(collisions),

@@ -8,7 +8,9 @@ FIGURES = {
     "naive_scaling": {},
     "box_count": {
         "round_per_side": listed(COUNT, "boxes per side that source A found quicker for their round width"),
-        "source_boxes_per_body": positive("the ideal number of boxes per particle in source A's figure 6"),
+        "source_boxes_per_particle": positive(
+            "the ideal number of boxes per particle in source A's figure 6"
+        ),
     },
     "ideal_boxes": {
         "rule": positive("source A's boxes per particle"),
@@ -17,7 +19,7 @@ FIGURES = {
                 {
                     "count": count("number of particles"),
                     "radius": positive("radius"),
-                    "boxes_per_body": positive("ideal number of boxes per particle"),
+                    "boxes_per_particle": positive("ideal number of boxes per particle"),
                 }
             ),
             "what source A found for the largest gas of its figures 5, 6 and 7",

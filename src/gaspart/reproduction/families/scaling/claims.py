@@ -75,7 +75,7 @@ def box_count(ds: xr.Dataset) -> list[Claim]:
         )
     # The minimum is flat: what matters is what the source's number costs, not where exactly the least is.
     number = Claim.at_most(
-        claim=f"time with {float(ds.source_boxes_per_body):g} boxes per particle over the least of the scan",
+        claim=f"time with {float(ds.source_boxes_per_particle):g} boxes per particle over the least of all",
         kind="reproduction",
         measured=Estimate.of(ds, "source_penalty"),
         bound=1.05,

@@ -52,7 +52,7 @@ def box_count(ds: xr.Dataset) -> Figure:
 
 
 def _scan_time(axis: Axes, ds: xr.Dataset, boxes: np.ndarray) -> None:
-    model = ds.body_seconds + ds.test_seconds * ds.pair_tests + ds.box_seconds * ds.boxes_emptied
+    model = ds.particle_seconds + ds.test_seconds * ds.pair_tests + ds.box_seconds * ds.boxes_emptied
     style.measured(axis, boxes, estimates(ds, "seconds") * _NS, color=style.DATA, label="measured")
     style.measured(
         axis, ds.near_boxes_per_side.values.astype(float) ** 3, estimates(ds, "near_seconds") * _NS,
@@ -62,12 +62,16 @@ def _scan_time(axis: Axes, ds: xr.Dataset, boxes: np.ndarray) -> None:
     axis.plot(
         boxes[near], (model * _NS).values[near], color=style.REFERENCE, label="$a + b$ tests $+ c$ boxes"
     )
-    bodies = float(boxes[-1] / ds.boxes_per_body[-1])
-    interval = [float(ds.ideal_low) * bodies, float(ds.ideal_high) * bodies]
+    particles = float(boxes[-1] / ds.boxes_per_particle[-1])
+    interval = [float(ds.ideal_low) * particles, float(ds.ideal_high) * particles]
     if np.isfinite(interval[1]):
         axis.axvspan(*interval, color=style.GREY, alpha=0.25, lw=0)
     axis.axvline(
-        float(ds.source_boxes_per_body) * bodies, color=_SOURCE, linestyle="--", ymax=0.45, label="F & M"
+        float(ds.source_boxes_per_particle) * particles,
+        color=_SOURCE,
+        linestyle="--",
+        ymax=0.45,
+        label="F & M",
     )
     axis.set(xscale="log", yscale="log", ylabel="time per particle and step (ns)")
     axis.legend(loc="upper right")
@@ -154,7 +158,7 @@ def ideal_boxes(ds: xr.Dataset) -> Figure:
         least = float(one.seconds.min())
         label = f"$N = {_thousands(one['count'])}$, $r = {float(one.radius):g}$"
         style.measured(
-            bottom, one.boxes_per_body, estimates(one, "seconds") / least,
+            bottom, one.boxes_per_particle, estimates(one, "seconds") / least,
             kind=kind, linestyle="-", label=label,
         )  # fmt: skip
     bottom.axvspan(7.0, 10.0, color=_SOURCE, alpha=0.4, lw=0)

@@ -9,7 +9,7 @@ from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.timings import (
     ideal,
     penalty,
-    per_body,
+    per_particle,
     trend,
 )
 from gaspart.reproduction.points.point import Point
@@ -19,21 +19,22 @@ def ideal_boxes(points: list[Point], settings: dict) -> xr.Dataset:
     """The ideal number of boxes of many gases.
 
     settings: ``rule``, source A's boxes per particle; ``source_numbers``, those that it found for the largest
-    gas of its figures 5, 6 and 7 (each with ``count``, ``radius``, ``boxes_per_body``); ``source_plateaus``,
-    the ranges of N in which it found one number of boxes (``radius``, ``counts``, ``boxes_per_side``).
+    gas of its figures 5, 6 and 7 (each with ``count``, ``radius``, ``boxes_per_particle``);
+    ``source_plateaus``, the ranges of N in which it found one number of boxes (``radius``, ``counts``,
+    ``boxes_per_side``).
 
-    Over (``gas``, ``partition``): costs as in `per_body`, NaN beyond a gas's own partitions. Over ``gas``:
-    ``count``, ``radius``, ``most`` (boxes per particle of a diameter's width, the limit), the results of
-    `ideal`, and ``penalty``, the time at the rule's number over the least, with error. Over ``source``:
-    ``source_number``, and what was found there: ``source_ideal`` with interval, ``source_penalty`` at that
-    number, with error. Over ``plateau``: see `_plateau`. Over ``series`` (gases of one ``series_radius``):
-    ``exponent`` of the ideal number of boxes in N, where it was found between the partitions timed, with
-    error from the scatter.
+    Over (``gas``, ``partition``): costs as in `per_particle`, NaN beyond a gas's own partitions. Over
+    ``gas``: ``count``, ``radius``, ``most`` (boxes per particle of a diameter's width, the limit), the
+    results of `ideal`, and ``penalty``, the time at the rule's number over the least, with error. Over
+    ``source``: ``source_number``, and what was found there: ``source_ideal`` with interval,
+    ``source_penalty`` at that number, with error. Over ``plateau``: see `_plateau`. Over ``series`` (gases of
+    one ``series_radius``): ``exponent`` of the ideal number of boxes in N, where it was found between the
+    partitions timed, with error from the scatter.
     """
     runs = sorted(
         (xr.load_dataset(point.path) for point in points), key=lambda run: (-run.radius, run.attrs["count"])
     )
-    costs = [per_body(run) for run in runs]
+    costs = [per_particle(run) for run in runs]
     gases = from_rows("gas", [_gas(*one, settings["rule"]) for one in zip(runs, costs, strict=True)])
     radius, boxes = (
         gases.radius.values,
@@ -75,10 +76,10 @@ def _source(given: dict, costs: list[xr.Dataset], gases: xr.Dataset) -> dict[str
         **{f"source_{name}": gases[name].values[at] for name in found},
         "source_interior": gases.ideal_interior.values[at],
         "source_gas": at,
-        "source_number": given["boxes_per_body"],
+        "source_number": given["boxes_per_particle"],
         "source_count": given["count"],
         "source_radius": given["radius"],
-        **entries({"source_penalty": penalty(costs[at], given["boxes_per_body"])}),
+        **entries({"source_penalty": penalty(costs[at], given["boxes_per_particle"])}),
     }
 
 

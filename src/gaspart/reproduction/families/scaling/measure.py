@@ -21,8 +21,8 @@ from gaspart.reproduction.families.shared.timings import (
     listed,
     one_box,
     penalty,
-    per_body,
     per_event,
+    per_particle,
     trend,
     weights,
 )
@@ -55,9 +55,9 @@ def box_count(points: list[Point], settings: dict) -> xr.Dataset:
     """One gas: cost against the number of boxes, time-stepped and event-driven.
 
     settings: ``round_per_side``, the boxes per side that source A found quicker for their round width;
-    ``source_boxes_per_body``, the ideal number in its figure 6.
+    ``source_boxes_per_particle``, the ideal number in its figure 6.
 
-    Over ``scan`` (the scan that has one box): costs as in `per_body`; ``expected_tests`` with
+    Over ``scan`` (the scan that has one box): costs as in `per_particle`; ``expected_tests`` with
     ``tests_spread`` and ``expected_visits``; the boxes that a particle would search, with each
     pair tested once, if it left out those that it does not touch (``touched``: within a radius) or those
     that can hold no partner (``in_reach``: within a diameter).
@@ -77,8 +77,8 @@ def box_count(points: list[Point], settings: dict) -> xr.Dataset:
     stepped = [run for run in runs if run.engine == "step"]
     main = next(run for run in stepped if 1 in run.boxes)
     fine = sorted((run for run in stepped if 1 not in run.boxes), key=lambda run: run.side)
-    costs, events = per_body(main), per_event(sectors)
-    pair = xr.concat([per_body(run) for run in fine], "container")
+    costs, events = per_particle(main), per_event(sectors)
+    pair = xr.concat([per_particle(run) for run in fine], "container")
     pair = pair.rename(_names("fine", pair))
     sides = settings["round_per_side"]
     powers = [
@@ -99,8 +99,8 @@ def box_count(points: list[Point], settings: dict) -> xr.Dataset:
         **_crossings(events, sectors),
         count=main.attrs["count"],
         radius=main.radius,
-        source_boxes_per_body=settings["source_boxes_per_body"],
-        **entries({"source_penalty": penalty(costs, settings["source_boxes_per_body"])}),
+        source_boxes_per_particle=settings["source_boxes_per_particle"],
+        **entries({"source_penalty": penalty(costs, settings["source_boxes_per_particle"])}),
         container_side=("container", [run.side for run in fine]),
     )
 
@@ -128,7 +128,7 @@ def linear_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     settings: ``source_figures``, radius and range of counts of source A's figures 8, 9 and 10;
     ``naive_count``, to which the naive method is extrapolated; ``source_years``, A's estimate for it.
     Over ``gas`` (points with several partitions): ``count``, ``radius``, costs of the cheapest partition as
-    in `per_body`, and ``work``, pair tests and box visits together. Over ``naive`` (points with one box):
+    in `per_particle`, and ``work``, pair tests and box visits together. Over ``naive`` (points with one box):
     ``naive_count``, ``naive_seconds`` per step, with error. Over ``part`` (A's figures): ``part_low``,
     ``part_high``, ``part_radius``, and ``exponent`` of the time per step in N, with error. Over ``listed``
     (points without partition): see `listed`.
@@ -142,7 +142,7 @@ def linear_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     naive = one_box([run for run in runs if run.boxes.values.tolist() == [1]])
     lists = [run for run in runs if not run.boxes.values.any()]
     runs = [run for run in runs if run.sizes["partition"] > 1]
-    costs = [per_body(run) for run in runs]
+    costs = [per_particle(run) for run in runs]
     gases = xr.concat([cost.isel(partition=int(np.argmin(cost.seconds.values))) for cost in costs], "gas")
     count = np.array([run.attrs["count"] for run in runs], dtype=float)
     radius = np.array([run.radius for run in runs])

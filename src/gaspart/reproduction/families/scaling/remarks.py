@@ -9,7 +9,7 @@ import xarray as xr
 
 from gaspart.analysis.statistics import means_of
 from gaspart.reproduction.families.shared.rows import entries
-from gaspart.reproduction.families.shared.timings import log_ratios, per_body, ratio_of_jobs
+from gaspart.reproduction.families.shared.timings import log_ratios, per_particle, ratio_of_jobs
 from gaspart.theory.partition import boxes_in_reach, share_of_contacts_in_a_box
 
 
@@ -27,7 +27,7 @@ def near_boxes(runs: list[xr.Dataset]) -> xr.Dataset:
     """
     first, partitions = runs[0], runs[0].sizes["partition"] // 2
     width = first.side / first.boxes_per_side.values[:partitions]
-    costs = [per_body(run) for run in runs]
+    costs = [per_particle(run) for run in runs]
     timed = np.array([cost.seconds.values for cost in costs])
     seconds, error = means_of(timed[:, :partitions])
     least = ratio_of_jobs(np.log(timed[:, :partitions].min(axis=1) / timed[:, partitions:].min(axis=1)))

@@ -12,7 +12,7 @@ import numpy as np
 
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
-from gaspart.scene.species import Body, Species
+from gaspart.scene.species import Particle, Species
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,9 @@ def field(point: Point) -> Field:
     scene = point.scene
     radius = scene.smallest_radius
     lower, upper = scene.reach(radius)
-    parts: list[tuple[Species | Body, int, int]] = [(body, 1, len(scene.species)) for body in scene.bodies]
+    parts: list[tuple[Species | Particle, int, int]] = [
+        (particle, 1, len(scene.species)) for particle in scene.particles
+    ]
     parts += [(kind, kind.count, n) for n, kind in enumerate(scene.species)]
     return Field(
         strength=-scene.gravity[-1] if scene.gravity else 0.0,

@@ -16,7 +16,7 @@ import xarray as xr
 
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
-from gaspart.theory.partition import ideal_boxes_per_body
+from gaspart.theory.partition import ideal_boxes_per_particle
 
 NEAR = 3.0
 """A minimum is fitted to the partitions that cost at most this many times the cheapest."""
@@ -35,22 +35,22 @@ def median(seconds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return middle, math.sqrt(0.5 * math.pi / seconds.shape[-1]) * spread
 
 
-def per_body(run: xr.Dataset) -> xr.Dataset:
+def per_particle(run: xr.Dataset) -> xr.Dataset:
     """Costs per particle and step, over the partitions of one time-stepped gas.
 
-    ``boxes_per_side``, ``boxes_per_body``; ``seconds`` with ``seconds_error``; ``pair_tests``,
+    ``boxes_per_side``, ``boxes_per_particle``; ``seconds`` with ``seconds_error``; ``pair_tests``,
     ``box_visits`` and ``boxes_emptied``.
     """
-    body_steps = run.attrs["count"] * run.steps.values
+    particle_steps = run.attrs["count"] * run.steps.values
     seconds, error = median(run.seconds.values)
     boxes = run.boxes.values / run.attrs["count"]
     columns = {
         "boxes_per_side": run.boxes_per_side.values,
-        "boxes_per_body": boxes,
-        "seconds": seconds / body_steps,
-        "seconds_error": error / body_steps,
-        "pair_tests": run.pair_tests.values / body_steps,
-        "box_visits": run.box_visits.values / body_steps,
+        "boxes_per_particle": boxes,
+        "seconds": seconds / particle_steps,
+        "seconds_error": error / particle_steps,
+        "pair_tests": run.pair_tests.values / particle_steps,
+        "box_visits": run.box_visits.values / particle_steps,
         "boxes_emptied": boxes,
     }
     return _dataset(columns, seconds="s", seconds_error="s")
@@ -59,14 +59,14 @@ def per_body(run: xr.Dataset) -> xr.Dataset:
 def per_event(run: xr.Dataset) -> xr.Dataset:
     """Costs per event (a collision, or a hit at a wall), over the partitions of one event-driven gas.
 
-    ``boxes_per_side``, ``boxes_per_body``, ``events``; ``seconds`` with ``seconds_error``; ``pair_tests``,
-    ``box_visits``, ``crossings`` of box boundaries.
+    ``boxes_per_side``, ``boxes_per_particle``, ``events``; ``seconds`` with ``seconds_error``;
+    ``pair_tests``, ``box_visits``, ``crossings`` of box boundaries.
     """
     events = (run.collisions + run.wall_hits).values
     seconds, error = median(run.seconds.values)
     columns = {
         "boxes_per_side": run.boxes_per_side.values,
-        "boxes_per_body": run.boxes.values / run.attrs["count"],
+        "boxes_per_particle": run.boxes.values / run.attrs["count"],
         "events": events,
         "seconds": seconds / events,
         "seconds_error": error / events,
@@ -97,24 +97,26 @@ def weights(seconds: np.ndarray, error: np.ndarray, *work: float | np.ndarray) -
 
 
 def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
-    """The ideal number of boxes per particle of one gas, from its `per_body` costs; each with its 95 %
+    """The ideal number of boxes per particle of one gas, from its `per_particle` costs; each with its 95 %
     interval.
 
     By time: the minimum of a + b / boxes + c boxes (``ideal``, ``ideal_low``, ``ideal_high``,
     ``ideal_interior``), and the boxes from ``flat_low`` to ``flat_high`` that cost at most 5 % more. By
     work: with seconds = a + b tests + c boxes, all per particle, fitted to the same partitions, the
     minimum is at sqrt(3^d b / 2 c) (``model``, ``model_low``, ``model_high``; NaN if a weight is not
-    positive), with ``body_seconds`` a (moving, sorting, and looking into boxes, whose number hardly
+    positive), with ``particle_seconds`` a (moving, sorting, and looking into boxes, whose number hardly
     changes), ``test_seconds`` b, ``box_seconds`` c, and their ``_error``.
     """
-    boxes, seconds, error = (costs[name].values for name in ("boxes_per_body", "seconds", "seconds_error"))
+    boxes, seconds, error = (
+        costs[name].values for name in ("boxes_per_particle", "seconds", "seconds_error")
+    )
     best = statistics.optimum(boxes, seconds, within=NEAR)
     near = _near(seconds)
     fit = weights(seconds[near], error[near], 1.0, costs.pair_tests.values[near], boxes[near])
-    (body, test, box), errors = fit.values, fit.errors
+    (particle, test, box), errors = fit.values, fit.errors
     model = spread = math.nan
     if test > 0.0 and box > 0.0:
-        model = float(ideal_boxes_per_body(test, box, dimension))
+        model = float(ideal_boxes_per_particle(test, box, dimension))
         gradient = np.array([0.0, 0.5 / test, -0.5 / box])  # of ln model
         spread = 1.96 * math.sqrt(gradient @ fit.covariance @ gradient)
     return {
@@ -127,8 +129,8 @@ def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
         "model": model,
         "model_low": model * math.exp(-spread),
         "model_high": model * math.exp(spread),
-        "body_seconds": body,
-        "body_seconds_error": errors[0],
+        "particle_seconds": particle,
+        "particle_seconds_error": errors[0],
         "test_seconds": test,
         "test_seconds_error": errors[1],
         "box_seconds": box,
@@ -136,7 +138,7 @@ def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
     }
 
 
-def penalty(costs: xr.Dataset, boxes_per_body: float) -> tuple[float, float]:
+def penalty(costs: xr.Dataset, boxes_per_particle: float) -> tuple[float, float]:
     """Time at a given number of boxes per particle over the least time of the scan, and its standard error;
     NaN beyond the partitions timed.
 
@@ -145,11 +147,13 @@ def penalty(costs: xr.Dataset, boxes_per_body: float) -> tuple[float, float]:
     """
     from scipy.optimize import nnls
 
-    boxes, seconds, error = (costs[name].values for name in ("boxes_per_body", "seconds", "seconds_error"))
-    if not boxes.min() <= boxes_per_body <= boxes.max():
+    boxes, seconds, error = (
+        costs[name].values for name in ("boxes_per_particle", "seconds", "seconds_error")
+    )
+    if not boxes.min() <= boxes_per_particle <= boxes.max():
         return math.nan, math.nan
     near = _near(seconds)
-    fine = np.append(boxes_per_body, np.geomspace(boxes.min(), boxes.max(), 1001))
+    fine = np.append(boxes_per_particle, np.geomspace(boxes.min(), boxes.max(), 1001))
     at, curve = (np.stack([np.ones(x.size), 1.0 / x, x], axis=1) for x in (boxes[near], fine))
     spread = np.hypot(error, SYSTEMATIC * seconds)[near]
     costly = nnls(at / spread[:, None], seconds[near] / spread)[0] > 0.0
@@ -205,10 +209,10 @@ def one_box(runs: list[xr.Dataset]) -> xr.Dataset:
 
 
 def listed(runs: list[xr.Dataset], gases: xr.Dataset) -> xr.Dataset:
-    """Over ``listed``: costs per particle of neighbour lists, ``list_seconds`` ... as in `per_body`;
+    """Over ``listed``: costs per particle of neighbour lists, ``list_seconds`` ... as in `per_particle`;
     ``list_count``, ``list_radius``; and ``list_share``, the time over that of the gas of the same count and
     radius among `gases` (NaN if there is none), with error."""
-    costs = xr.concat([per_body(run).isel(partition=0) for run in runs], "listed")
+    costs = xr.concat([per_particle(run).isel(partition=0) for run in runs], "listed")
     share = np.full((len(runs), 2), math.nan)
     for n, run in enumerate(runs):
         same = (gases["count"] == run.attrs["count"]).values & (gases.radius == run.radius).values
@@ -232,7 +236,7 @@ def listed(runs: list[xr.Dataset], gases: xr.Dataset) -> xr.Dataset:
 
 def extrapolate(naive: xr.Dataset, count: float) -> tuple[float, float]:
     """Time of one naive step with `count` particles, and its error, from time = a N + b tests."""
-    bodies = naive["count"].values.astype(float)
-    fit = weights(naive.seconds.values, naive.seconds_error.values, bodies, naive.pair_tests.values)
+    particles = naive["count"].values.astype(float)
+    fit = weights(naive.seconds.values, naive.seconds_error.values, particles, naive.pair_tests.values)
     work = np.array([count, 0.5 * count * (count - 1.0)])
     return float(work @ fit.values), math.sqrt(work @ fit.covariance @ work)

@@ -68,7 +68,7 @@ class Uniform:
     ) -> Choice:
         """That of an engine. errors: of model and discretisation; each: processor time per contact; noise:
         relative variance times contacts."""
-        body = 0.5 * self.count * each.value  # per collision of every particle
+        particle = 0.5 * self.count * each.value  # per collision of every particle
         decay, trace = self.decay(observable)
         return Choice(
             engine=engine,
@@ -76,9 +76,9 @@ class Uniform:
             discretisation=errors[1],
             finite_size=self.finite_size(observable),
             unit=noise * each.value,
-            least=LEAST * body,
-            equilibration=EQUILIBRATION * body,
-            decay=decay * body,
+            least=LEAST * particle,
+            equilibration=EQUILIBRATION * particle,
+            decay=decay * particle,
             trace=trace,
             uncertainty=each.error / each.value,
         )
