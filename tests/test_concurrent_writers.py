@@ -10,8 +10,8 @@ import pytest
 
 import gaspart as gp
 from gaspart.analysis.collisions import record_collisions
+from gaspart.trajectory.partial import TRAJECTORY
 from gaspart.trajectory.provenance import git_revision
-from gaspart.trajectory.run import TRAJECTORY
 
 GAS = """\
 container: {lengths: [12.0, 12.0], boundary: wall}

@@ -18,7 +18,7 @@ from scenes import gas
 import gaspart as gp
 from gaspart.interruption import SIGNALS, deferred
 from gaspart.trajectory import recording
-from gaspart.trajectory.run import checkpoint_path
+from gaspart.trajectory.checkpoint import checkpoint_path
 
 SCENE = gas(3, 200, 0.2)
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}

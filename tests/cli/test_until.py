@@ -7,7 +7,7 @@ import pytest
 import gaspart as gp
 from gaspart.cli import main, run
 from gaspart.tradeoff.reached import Reached
-from gaspart.trajectory.run import partial_path
+from gaspart.trajectory.partial import partial_path
 
 GAS = """\
 container: {lengths: [5.0, 5.0, 5.0], boundary: periodic}

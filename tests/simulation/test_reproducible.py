@@ -15,8 +15,9 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart.trajectory import amber, recording
+from gaspart.trajectory.checkpoint import checkpoint_path
 from gaspart.trajectory.frames import frame_count
-from gaspart.trajectory.run import checkpoint_path, partial_path
+from gaspart.trajectory.partial import partial_path
 
 ENGINES = {
     "event": gp.EventDriven(),

@@ -13,8 +13,8 @@ from gaspart.analysis.statistics import correlated_mean
 from gaspart.analysis.statistics.blocks import ORDER
 from gaspart.tradeoff.reached import Examiner, Reached, confirmed
 from gaspart.trajectory import recording
+from gaspart.trajectory.partial import partial_path
 from gaspart.trajectory.recipe import read_recipe
-from gaspart.trajectory.run import partial_path
 from gaspart.trajectory.until import examined_before, examined_frames, is_examined
 
 RUNS = 2000

@@ -9,8 +9,8 @@ from scenes import centred, gas
 import gaspart as gp
 from gaspart.analysis.correlations import accumulated, correlate
 from gaspart.trajectory.correlator import SUMS, Correlations, Correlator
+from gaspart.trajectory.partial import partial_path
 from gaspart.trajectory.recipe import read_recipe
-from gaspart.trajectory.run import partial_path
 
 ASKED = gp.Correlations(interval=0.25, lags=6, start=2.0)
 

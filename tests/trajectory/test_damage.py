@@ -12,9 +12,9 @@ from scenes import gas
 import gaspart as gp
 from gaspart.cli import main
 from gaspart.trajectory import recording
-from gaspart.trajectory.checkpoint import read_checkpoint
+from gaspart.trajectory.checkpoint import checkpoint_path, read_checkpoint
+from gaspart.trajectory.partial import TRAJECTORY, partial_path
 from gaspart.trajectory.recipe import read_recipe
-from gaspart.trajectory.run import TRAJECTORY, checkpoint_path, partial_path
 
 SCENE = gas(2, 10, 0.1)
 RECIPE = (SCENE, gp.EventDriven(), 1, 8.0, 0.5)

@@ -8,8 +8,8 @@ from scenes import gas
 import gaspart as gp
 from gaspart.trajectory import extension, recording, run
 from gaspart.trajectory.checkpoint import checkpoint_path
+from gaspart.trajectory.partial import partial_path
 from gaspart.trajectory.recipe import read_recipe
-from gaspart.trajectory.run import partial_path
 
 MIXTURE = gp.Scene(
     gp.Container((12.0, 12.0), "periodic"),

@@ -8,8 +8,8 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart.state.given import check_apart, taken_state
+from gaspart.trajectory.partial import partial_path
 from gaspart.trajectory.recipe import read_recipe
-from gaspart.trajectory.run import partial_path
 
 PLAIN = gas(3, 100, 0.3)
 ENGINES = [gp.EventDriven(), gp.TimeStepped(time_step=0.015625), gp.DSMC(time_step=0.0625, cells_per_side=3)]

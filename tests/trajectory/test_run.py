@@ -13,8 +13,9 @@ from scenes import gas
 import gaspart as gp
 from gaspart.trajectory import recording, run
 from gaspart.trajectory.amber import stored_header
+from gaspart.trajectory.checkpoint import checkpoint_path
+from gaspart.trajectory.partial import partial_path
 from gaspart.trajectory.recipe import multiple, read_recipe
-from gaspart.trajectory.run import checkpoint_path, partial_path
 
 
 def test_no_frame_is_lost_to_rounding(tmp_path):
@@ -126,7 +127,7 @@ def test_a_trajectory_ends_in_nc(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("moment", ["read_recipe", "begun_as", "may_replace", "_is_blank", "_locked"])
+@pytest.mark.parametrize("moment", ["read_recipe", "begun_as", "may_replace", "is_blank", "locked"])
 @pytest.mark.parametrize("command", ["resume", "run"])
 def test_a_run_that_another_process_finishes_meanwhile(tmp_path, monkeypatch, command, moment):
     """At each moment at which its files are looked at."""

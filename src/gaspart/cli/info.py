@@ -28,8 +28,9 @@ def add_info(parser: Parser) -> None:
 def _info(given: argparse.Namespace) -> None:
     from gaspart.cli.run import run_options
     from gaspart.inspection.certificate import certificate
-    from gaspart.trajectory.recipe import PARTIAL, check_frames, opened, read_recipe
-    from gaspart.trajectory.run import partial_path
+    from gaspart.trajectory.opening import check_frames, opened
+    from gaspart.trajectory.partial import PARTIAL, partial_path
+    from gaspart.trajectory.recipe import read_recipe
 
     path = Path(given.trajectory)
     stored_at = path if path.exists() or not partial_path(path).exists() else partial_path(path)

@@ -247,7 +247,7 @@ def _report(path: Path) -> None:
 def accuracy_lines(path: Path) -> list[str]:
     """What a run with --until was to reach, and what it has reached."""
     from gaspart.tradeoff.reached import reached_accuracy
-    from gaspart.trajectory.recipe import PARTIAL
+    from gaspart.trajectory.partial import PARTIAL
 
     lines, reached = [], reached_accuracy(path)
     for one in reached:

@@ -8,7 +8,8 @@ import numpy as np
 
 from gaspart.analysis.statistics import autocorrelation_time
 from gaspart.scene.scene import Scene
-from gaspart.trajectory.recipe import opened, read_recipe
+from gaspart.trajectory.opening import opened
+from gaspart.trajectory.recipe import read_recipe
 
 
 def certificate(path: Path) -> list[str]:

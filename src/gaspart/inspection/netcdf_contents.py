@@ -17,7 +17,8 @@ from gaspart.inspection.contents import Contents, Given
 from gaspart.inspection.netcdf_size import needed_bytes
 from gaspart.state.insertion import per_particle
 from gaspart.trajectory.amber import BOOKKEEPING
-from gaspart.trajectory.recipe import check_frames, open_descriptor, opened, read_recipe
+from gaspart.trajectory.opening import check_frames, open_descriptor, opened
+from gaspart.trajectory.recipe import read_recipe
 
 _RIGHT_ANGLE = 2e-5
 """Degrees from 90 that are attributed to single precision."""

@@ -13,7 +13,7 @@ from xarray.core import indexing
 
 from gaspart.errors import SceneError
 from gaspart.trajectory.frames import CheckedFrames
-from gaspart.trajectory.recipe import damage
+from gaspart.trajectory.opening import damage
 
 _EVEN = 1e-9
 """Relative deviation of a frame's time from a multiple of the interval, beyond which the frame is checked."""

@@ -15,7 +15,8 @@ import numpy as np
 from gaspart.errors import SceneError, optional
 from gaspart.files import Kind, begins_with, descriptor_path, output_path, writing
 from gaspart.state.insertion import per_particle
-from gaspart.trajectory.recipe import check_frames, opened, read_recipe
+from gaspart.trajectory.opening import check_frames, opened
+from gaspart.trajectory.recipe import read_recipe
 
 KINDS = {
     ".gsd": Kind("a GSD file", begins_with(b"\xdf\x65" * 4)),

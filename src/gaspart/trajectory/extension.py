@@ -15,7 +15,8 @@ from gaspart.errors import SceneError
 from gaspart.scene.validation import number
 from gaspart.trajectory.checkpoint import Checkpoint, checkpoint_path, read_checkpoint, write_checkpoint
 from gaspart.trajectory.frames import Frames, frames_of
-from gaspart.trajectory.recipe import Recipe, begun_as, check_frames, checked, read_recipe, stored_revision
+from gaspart.trajectory.opening import check_frames, checked
+from gaspart.trajectory.recipe import Recipe, begun_as, read_recipe, stored_revision
 
 
 def longer(path: Path, duration: float) -> Recipe:

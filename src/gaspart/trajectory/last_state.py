@@ -9,8 +9,9 @@ from gaspart.errors import SceneError
 from gaspart.state.given import given_state
 from gaspart.state.state import State
 from gaspart.trajectory.checkpoint import checkpoint_path, read_checkpoint
+from gaspart.trajectory.opening import checked
 from gaspart.trajectory.reading import open_trajectory
-from gaspart.trajectory.recipe import checked, read_recipe
+from gaspart.trajectory.recipe import read_recipe
 from gaspart.trajectory.run import simulation_of
 
 

@@ -12,8 +12,9 @@ from gaspart.errors import SceneError
 from gaspart.state.tally import ENERGY, Tally
 from gaspart.trajectory import amber
 from gaspart.trajectory.correlator import stress_units
+from gaspart.trajectory.opening import open_checked
 from gaspart.trajectory.pairs import pair_names
-from gaspart.trajectory.recipe import open_checked, stored_recipe
+from gaspart.trajectory.recipe import stored_recipe
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 import json
-import os
-import stat
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaspart.engines import Engine, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
-from gaspart.files import descriptor_path
 from gaspart.scene.faces import pistons, sliding_faces
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of, number
@@ -25,7 +20,7 @@ from gaspart.state.random import stream
 from gaspart.state.state import State
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.correlator import Correlations, stress_sums, sums_of
-from gaspart.trajectory.frames import CheckedFrames, damaged_frame, frame_count
+from gaspart.trajectory.opening import opened
 from gaspart.trajectory.pairs import pair_names, pairs_of
 from gaspart.trajectory.until import Until
 from gaspart.yaml_text import dump_yaml, parse_yaml
@@ -33,8 +28,6 @@ from gaspart.yaml_text import dump_yaml, parse_yaml
 if TYPE_CHECKING:
     import netCDF4
 
-PARTIAL = ".partial"
-"""The suffix of a trajectory that is being written."""
 ROUNDING = 1e-9
 """Relative deviation from an integer multiple that is attributed to rounding."""
 
@@ -223,79 +216,6 @@ class Recipe:
             **({"git_revision": revision} if revision else {}),
         }
         return self.layout.header(attributes, radii, types, self._initial())
-
-
-@contextmanager
-def checked(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
-    """A trajectory of gaspart: the file, its header and its number of frames, which are checked against it.
-
-    Raises SceneError for a file of another kind, truncated, or damaged in its header.
-    """
-    try:
-        with open(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as file:  # a pipe must not block
-            status = os.fstat(file.fileno())
-            if not stat.S_ISREG(status.st_mode):
-                raise ValueError("cannot be read: it is no regular file")
-            if path.suffix == PARTIAL and amber.is_blank(file):
-                raise ValueError("nothing was written to it yet; start the run again with `gaspart run`")
-            header, frames = amber.stored_header(file), frame_count(file)
-            needed = len(header) + frames * amber.frame_bytes(header)
-            if status.st_size < needed:
-                rule = f"is truncated: {status.st_size} bytes, where {frames} frames need {needed}"
-                raise ValueError(rule)
-            if status.st_size > needed and path.suffix != PARTIAL:  # that one may end within a frame
-                rule = f"is damaged: {status.st_size} bytes, where {frames} frames need {needed}"
-                raise ValueError(rule)
-            yield file, header, frames
-    except OSError as error:
-        raise SceneError("file", str(path), f"cannot be read: {error.strerror}") from None
-    except ValueError as error:
-        if isinstance(error, SceneError):
-            raise
-        raise SceneError("file", str(path), str(error)) from None
-
-
-def open_netcdf(path: Path) -> netCDF4.Dataset:
-    """A trajectory of gaspart as a netCDF4.Dataset, to be closed by the caller.
-
-    Raises SceneError for a file of another kind, truncated, or damaged in its header.
-    """
-    return open_checked(path)[0]
-
-
-def open_checked(path: Path) -> tuple[netCDF4.Dataset, CheckedFrames]:
-    """A trajectory as `open_netcdf` opens it, and the record of which of its frames were checked; the caller
-    closes both."""
-    with checked(path) as (file, header, frames):
-        return open_descriptor(file), CheckedFrames(file, header, frames)
-
-
-def open_descriptor(file: BinaryIO) -> netCDF4.Dataset:
-    """An open file as a netCDF4.Dataset."""
-    import netCDF4
-
-    return netCDF4.Dataset(descriptor_path(file))
-
-
-@contextmanager
-def opened(path: Path) -> Iterator[netCDF4.Dataset]:
-    """A trajectory as `open_netcdf` opens it, closed after the block."""
-    with open_netcdf(path) as file:
-        yield file
-
-
-def check_frames(path: Path, numbers: range | None = None) -> None:
-    """Read some frames of a trajectory, or all. SceneError if one is damaged."""
-    with checked(path) as (file, header, frames):
-        wanted = range(frames) if numbers is None else range(numbers.start, min(numbers.stop, frames))
-        damaged = damaged_frame(file.fileno(), header, wanted)
-        if damaged is not None:
-            raise ValueError(damage(damaged))
-
-
-def damage(frame: int) -> str:
-    """The message about a frame whose checksum is wrong."""
-    return f"frame {frame} is damaged: its checksum does not match"
 
 
 def read_recipe(path: str | Path) -> Recipe:

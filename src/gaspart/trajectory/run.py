@@ -7,17 +7,16 @@ A checkpoint that is kept is then the state at the end, from which a longer run 
 
 from __future__ import annotations
 
-import fcntl
 import os
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO, TypeAlias
 
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
-from gaspart.files import OVERWRITE, Kind, may_replace, output_path, place
+from gaspart.files import OVERWRITE, may_replace, output_path, place
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
 from gaspart.simulation import Simulation
@@ -26,26 +25,14 @@ from gaspart.trajectory.checkpoint import checkpoint_path, read_checkpoint, remo
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.extension import is_beginning, longer, take_over
 from gaspart.trajectory.frames import Frames, frame_count
-from gaspart.trajectory.recipe import (
-    PARTIAL,
-    Recipe,
-    begun_as,
-    check_frames,
-    read_recipe,
-    stored_revision,
-)
+from gaspart.trajectory.opening import check_frames
+from gaspart.trajectory.partial import TRAJECTORY, UNFINISHED, is_blank, locked, partial_path, writing
+from gaspart.trajectory.recipe import Recipe, begun_as, read_recipe, stored_revision
 from gaspart.trajectory.recording import Examine, Progress, Recording
 from gaspart.trajectory.until import Accuracy, is_examined
 
 Examiner: TypeAlias = Callable[[Path, tuple[Accuracy, ...], int], float]
 """What examines the first frames of a file: the largest error over the required one, inf if unknown."""
-
-
-def partial_path(path: Path) -> Path:
-    """Where a trajectory is while it is being written. Raises SceneError for a path without a name."""
-    if not path.name:
-        raise SceneError("path", str(path), "must be the name of a file")
-    return path.with_name(path.name + PARTIAL)
 
 
 def run(
@@ -110,7 +97,7 @@ def resume(path: str | Path, manner: Manner) -> Path:
     path = Path(path)
     partial = partial_path(path)
     try:
-        with _writing(path):
+        with writing(path):
             wanted = read_recipe(partial)
             if not begun_as(partial, wanted):
                 rule = "was begun by another version of gaspart, Python or a package: it could end otherwise"
@@ -145,9 +132,9 @@ def extend(path: str | Path, duration: float, manner: Manner) -> Path:
         rule = f"is unfinished: resume it without a duration, which {partial.name} has, before it is extended"
         raise SceneError("path", str(path), rule)
     wanted = longer(path, duration)
-    with _writing(path):
+    with writing(path):
         kept = manner.keep_checkpoint or checkpoint.exists()
-        with _locked(partial) as file:
+        with locked(partial) as file:
             if amber.is_blank(file):  # this file states what is under way, whenever it is cut short
                 Frames(file, wanted.layout, wanted.header(stored_revision(path)))
             elif not begun_as(partial, wanted):
@@ -164,7 +151,7 @@ def simulation_of(recipe: Recipe) -> Simulation:
 def _carry_out(wanted: Recipe, path: Path, manner: Manner) -> Path:
     """Finish a trajectory from its present state."""
     partial, checkpoint = partial_path(path), checkpoint_path(path)
-    with _writing(path):
+    with writing(path):
         if path.is_dir() or not os.access(path.parent, os.W_OK | os.X_OK):
             raise SceneError("path", str(path), "must be a file in an existing folder that can be written to")
         if _is_finished(wanted, path, manner):
@@ -172,7 +159,7 @@ def _carry_out(wanted: Recipe, path: Path, manner: Manner) -> Path:
                 remove_checkpoint(checkpoint)
             return path
         simulation = simulation_of(wanted)
-        with _locked(partial) as file:
+        with locked(partial) as file:
             # again: another process may have finished or begun a run before the lock
             if not _is_finished(wanted, path, manner):
                 _record(wanted, simulation, file, path, manner)
@@ -200,7 +187,7 @@ def _extends(partial: Path, path: Path, wanted: Recipe) -> bool:
     """Whether the run at `path` is being extended to this one."""
     return (
         partial.exists()
-        and not _is_blank(partial)
+        and not is_blank(partial)
         and begun_as(partial, wanted)
         and is_beginning(path, wanted)
     )
@@ -209,8 +196,8 @@ def _extends(partial: Path, path: Path, wanted: Recipe) -> bool:
 def _can_continue(partial: Path, wanted: Recipe) -> bool:
     """Whether nothing was begun, or this run. Raises SceneError for a file of another kind."""
     with suppress(FileNotFoundError):  # another process has finished it just now
-        begun = may_replace(partial, _BEGUN, overwrite=True)
-        return not begun or _is_blank(partial) or begun_as(partial, wanted) or not partial.exists()
+        begun = may_replace(partial, UNFINISHED, overwrite=True)
+        return not begun or is_blank(partial) or begun_as(partial, wanted) or not partial.exists()
     return True
 
 
@@ -252,21 +239,6 @@ def _can_keep(partial: Path, frames: int, overwrite: bool) -> bool:
     return True
 
 
-def _is_blank(path: Path) -> bool:
-    with path.open("rb") as file:
-        return amber.is_blank(file)
-
-
-def _is_trajectory(path: Path) -> bool:
-    with path.open("rb") as file:
-        head = file.read(4096)
-    return head.startswith(b"CDF") and b"AMBER" in head and b"gaspart" in head
-
-
-TRAJECTORY = Kind("a trajectory written by gaspart", _is_trajectory)
-_BEGUN = Kind("an unfinished trajectory", lambda path: _is_blank(path) or _is_trajectory(path))
-
-
 def _record(
     wanted: Recipe,
     simulation: Simulation,
@@ -292,31 +264,3 @@ def _record(
     if checkpoint:
         recording.restore(checkpoint.arrays)
     recording.finish(manner.keep_checkpoint)
-
-
-@contextmanager
-def _writing(path: Path) -> Iterator[None]:
-    """Raise SceneError for OSError: a full disk, a read-only folder, and the like."""
-    try:
-        yield
-    except OSError as error:
-        rule = f"cannot be written: {error.strerror}; what was written before is kept"
-        raise SceneError("path", str(path), rule) from None
-
-
-@contextmanager
-def _locked(partial: Path) -> Iterator[BinaryIO]:
-    """The partial file, open to read and write, without a buffer, locked by this process."""
-    with open(os.open(partial, os.O_RDWR | os.O_CREAT, 0o666), "r+b", buffering=0) as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            ours = os.stat(partial).st_ino == os.fstat(file.fileno()).st_ino
-        except (BlockingIOError, FileNotFoundError):
-            ours = False
-        if not ours:
-            raise SceneError("path", str(partial), "is being written by another process")
-        try:
-            yield file
-        finally:
-            if os.fstat(file.fileno()).st_size == 0:
-                partial.unlink(missing_ok=True)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import IO
 
-from gaspart.trajectory.recipe import opened
+from gaspart.trajectory.opening import opened
 
 _CHUNK = 1 << 20
 _CHECKSUM = "checksum"
