@@ -22,8 +22,8 @@ if " " in sys.executable:
 from gaspart.reproduction.claims.captions import filled
 from gaspart.reproduction.claims.table import summary
 from gaspart.reproduction.config import check, explained, read_numbers
-from gaspart.reproduction.families.registry import functions, of_claims, titles
-from gaspart.reproduction.families.own import caption
+from gaspart.reproduction.families import registry
+from gaspart.reproduction.families.registry import caption, functions, of_claims, titles
 from gaspart.reproduction.points.modules import digest, kernel_digest
 from gaspart.reproduction.points.point import TRAJECTORIES
 from gaspart.reproduction.points.points import all_points
@@ -114,9 +114,10 @@ def settings_of(wildcards):
 
 
 def stated_of(wildcards):
-    """[the claims that the config states], of a figure of a name of its own; [] for others."""
+    """[the claims that the config states], of a figure whose kind has a setting for them; [] for others."""
     block = config["figures"][wildcards.figure]
-    return [block.get("claims", [])] if "kind" in block else []
+    stated = "kind" in block and "claims" in registry.settings_of_kind(block["kind"])
+    return [block.get("claims", [])] if stated else []
 
 
 def other_claims(wildcards):
@@ -151,7 +152,7 @@ def flagged(path, kind):
     return report(
         path,
         caption="../report/figure.rst",
-        category=lambda wildcards: titles()[family(wildcards)],
+        category=lambda wildcards: registry.title(wildcards.figure, config["figures"][wildcards.figure]),
         subcategory="{figure}",
         labels={"figure": "{figure}", "type": kind},
     )
@@ -170,11 +171,32 @@ def sources(stage, family=None):
     if stage in TRAJECTORIES:
         script = "simulate"
     named = (
-        [f"gaspart.reproduction.families.{family}.{PARTS[stage]}"]
+        [registry.module(family, PARTS[stage])]
         if family
         else [job] if script in ("simulate", "compute") else []
     )
     return [SCRIPTS / "_job.py", SCRIPTS / f"{script}.py", *named]
+
+
+def module_of(stage):
+    """The module of a figure's family for a stage, as a parameter of its rule."""
+    return lambda wildcards: registry.module(family(wildcards), PARTS[stage])
+
+
+def modules_of(stage):
+    """A digest of what the stage of a figure is made of, as a parameter of its rule: the files of another installed
+    package too, where that brings the family."""
+
+    def found(wildcards):
+        files = registry.files(family(wildcards))
+        return digest(*sources(stage, family(wildcards)), *files, others=files)
+
+    return found
+
+
+def package_of(wildcards):
+    """Name and version of the installed package that brings a figure's family; "" for those of this one."""
+    return registry.package_of(config["figures"][wildcards.figure])
 
 
 @cache

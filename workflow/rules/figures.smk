@@ -21,8 +21,8 @@ rule draw:
         mem_mb=1500,
         runtime=10,
     params:
-        modules=lambda wildcards: digest(*sources("draw", family(wildcards))),
-        family=family,
+        modules=modules_of("draw"),
+        module=module_of("draw"),
         function=function_of,
         caption=caption_of,
     script:

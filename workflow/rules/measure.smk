@@ -19,11 +19,12 @@ rule measure:
         mem_mb=4000,
         runtime=30,
     params:
-        modules=lambda wildcards: digest(*sources("measure", family(wildcards))),
-        family=family,
+        modules=modules_of("measure"),
+        module=module_of("measure"),
         function=function_of,
         points=lambda wildcards: [point.to_dict() for point in figure_points(wildcards)],
         settings=settings_of,
+        package=package_of,
         title=lambda wildcards: config["title"],
     script:
         "../scripts/measure.py"
@@ -45,8 +46,8 @@ rule judge:
         mem_mb=1000,
         runtime=10,
     params:
-        modules=lambda wildcards: digest(*sources("judge", family(wildcards))),
-        family=family,
+        modules=modules_of("judge"),
+        module=module_of("judge"),
         function=function_of,
         stated=stated_of,
     script:

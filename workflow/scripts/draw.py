@@ -9,8 +9,7 @@ with job(snakemake):
     from gaspart.rendering.legibility import flaws
 
     figure, output = snakemake.wildcards.figure, snakemake.output
-    module = f"gaspart.reproduction.families.{snakemake.params.family}.figure"
-    draw = function(module, snakemake.params.function)
+    draw = function(snakemake.params.module, snakemake.params.function)
     dataset = xr.load_dataset(snakemake.input.dataset)
     pictures = {"page": (output.png, output.svg), "journal": (output.journal_png, output.journal_pdf)}
     for layout, paths in pictures.items():

@@ -10,8 +10,7 @@ with job(snakemake):
 
     dataset = xr.load_dataset(snakemake.input.dataset)
     figure = snakemake.wildcards.figure
-    module = f"gaspart.reproduction.families.{snakemake.params.family}.claims"
     # What the config states, of a figure that has its claims there.
-    judged = function(module, snakemake.params.function)(dataset, *snakemake.params.stated)
+    judged = function(snakemake.params.module, snakemake.params.function)(dataset, *snakemake.params.stated)
     with whole_file(snakemake.output[0]) as partial:
         claims.write(partial, figure, judged)

@@ -14,8 +14,7 @@ with job(snakemake):
     tables = list(snakemake.input.tables)
     points = tables or [Point.from_dict(values) for values in snakemake.params.points]
     settings = {key: value for key, value in snakemake.params.settings.items() if key != "experiments"}
-    module = f"gaspart.reproduction.families.{snakemake.params.family}.measure"
-    dataset = function(module, snakemake.params.function)(points, settings)
+    dataset = function(snakemake.params.module, snakemake.params.function)(points, settings)
     dataset.attrs.update(
         figure=figure,
         config=snakemake.params.title,
@@ -24,5 +23,7 @@ with job(snakemake):
         git_revision=provenance.git_revision(),
         **provenance.versions(),
     )
+    if snakemake.params.package:
+        dataset.attrs["package"] = snakemake.params.package
     with whole_file(snakemake.output[0]) as partial:
         dataset.to_netcdf(partial)

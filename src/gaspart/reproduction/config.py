@@ -12,7 +12,6 @@ from typing import Any
 from gaspart.errors import SceneError, unknown_word
 from gaspart.kinds import Kind
 from gaspart.reproduction.families import registry
-from gaspart.reproduction.families.own.rules import validate
 from gaspart.reproduction.points import jobs, keys
 from gaspart.reproduction.points.config_keys import POINT
 from gaspart.reproduction.points.overlay import laid_over
@@ -46,12 +45,12 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str,
     try:
         _check_values(config)
         _check_names(config)
-        _against(schema(), config, "")
+        _against(schema(_installed_kinds(config)), config, "")
         planned = {experiment: checked_points(config, experiment) for experiment in config["experiments"]}
         for figure, block in config["figures"].items():
             shown = figure_points(config, figure, planned)
             if "kind" in block:
-                validate(figure, block, shown)
+                registry.validate(figure, block, shown)
         for animation, block in config.get("animations", {}).items():
             _animation(config, animation, block)
         return planned
@@ -121,6 +120,26 @@ def _check_names(config: object) -> None:
         if "kind" not in block and figure not in registry.families():
             rule = unknown_word(figure, registry.families())
             raise SceneError(f"figures.{figure}", block, f"{rule} (one's own has a kind: observable)")
+
+
+def _installed_kinds(config: object) -> tuple[tuple[str, str], ...]:
+    """(figure, kind) of each figure whose kind another installed package brings. Raises SceneError for a kind
+    that is unknown, or whose package cannot be used."""
+    figures = config.get("figures") if isinstance(config, dict) else None
+    found = []
+    for figure, block in figures.items() if isinstance(figures, dict) else ():
+        kind = block.get("kind") if isinstance(block, dict) else None
+        if kind is None or kind in list(registry.kinds()):
+            continue
+        where = f"figures.{figure}"
+        if kind not in registry.known_kinds():
+            raise SceneError(f"{where}.kind", kind, f"must be one of {registry.known_kinds()}")
+        try:
+            registry.settings_of_kind(kind)
+        except SceneError as error:
+            raise error.inside(where) from None
+        found.append((figure, kind))
+    return tuple(found)
 
 
 def _animation(config: dict, animation: str, block: dict | None) -> None:

@@ -33,15 +33,24 @@ _FEATURES = "## Features and engines\n\nWhich engine models what, and which feat
 
 
 @cache
-def schema() -> Kind:
-    """The JSON schema of a config. Scenes and engines are validated by themselves when a point makes them."""
+def schema(installed: tuple[tuple[str, str], ...] = ()) -> Kind:
+    """The JSON schema of a config. Scenes and engines are validated by themselves when a point makes them.
+
+    installed: figures of the config whose kind another installed package brings, each with its kind.
+    """
     figures = {
         figure: record({"experiments": _EXPERIMENTS, **settings})
         for figure, settings in registry.settings().items()
     }
-    ((kind, settings),) = registry.kinds().items()
-    own = record({"kind": choice("the kind of a figure with a name of one's own", kind), **settings})
+    figures |= {figure: _of_kind(kind) for figure, kind in installed}
+    (own,) = map(_of_kind, registry.kinds())
     return {"$schema": _DRAFT, **record(config_keys.config(figures, own))}
+
+
+def _of_kind(kind: str) -> Kind:
+    """The entry of a figure with a name of one's own."""
+    stated = choice("the kind of a figure with a name of one's own", kind)
+    return record({"kind": stated, "experiments": _EXPERIMENTS, **registry.settings_of_kind(kind)})
 
 
 def scene_schema() -> Kind:

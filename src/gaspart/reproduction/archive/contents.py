@@ -11,7 +11,7 @@ from gaspart.errors import SceneError
 from gaspart.reproduction.archive.finished import Finished
 from gaspart.reproduction.claims import table
 from gaspart.reproduction.claims.captions import filled
-from gaspart.reproduction.families.own import caption
+from gaspart.reproduction.families.registry import caption
 
 WORKFLOW = "Snakefile"
 CITATION = "CITATION.cff"

@@ -8,19 +8,28 @@ A family may also state `OF_CLAIMS`, that its figures are made of the claims of 
 and what readers may vary on the page of the report (`report.explore`): `SERIES`, figures of an equation of
 state with the dimension and the largest packing fraction to choose; `COSTS`, figures of the cost of an
 accuracy. `KINDS` are kinds of figures, with their settings, to which a config gives names of its own: the
-entry of such a figure has `kind`, the name of the functions.
+entry of such a figure has `kind`, the name of the functions. Such a family also has the functions
+`caption(settings)` and, if its settings have rules of their own, `validate(figure, settings, points)`. Other
+installed packages may bring families of this form (`families.installed`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from gaspart.kinds import Kind
+from gaspart.reproduction.families import installed
+
+if TYPE_CHECKING:
+    from gaspart.reproduction.points.point import Point
+
+_OWN = "own"
+"""The family, and its chapter, of figures to which a config gives names."""
 
 
 @cache
@@ -35,9 +44,15 @@ def titles() -> dict[str, str]:
     return {name: package.TITLE for name, package in _packages().items()}
 
 
-def chapters() -> dict[str, str]:
-    """The chapter of the report in which each family stands."""
-    return {name: package.CHAPTER for name, package in _packages().items()}
+def title(figure: str, entry: Mapping[str, Any]) -> str:
+    """The title of the family of a figure of a config. entry: that of the config. Raises SceneError."""
+    family, _ = functions(figure, entry)
+    return titles()[family] if family in _packages() else str(installed.package(entry["kind"]).TITLE)
+
+
+def chapter(family: str) -> str:
+    """The chapter of the report in which a family stands."""
+    return str(_packages().get(family, _packages()[_OWN]).CHAPTER)
 
 
 @cache
@@ -53,9 +68,46 @@ def _kinds() -> dict[str, str]:
 
 
 def functions(figure: str, entry: Mapping[str, Any]) -> tuple[str, str]:
-    """The family of a figure of a config and the name of its functions there. entry: that of the config."""
+    """The family of a figure of a config and the name of its functions there. entry: that of the config.
+
+    The family of another installed package has the name by which it is imported. Raises SceneError.
+    """
     kind = entry.get("kind")
-    return (families()[figure], figure) if kind is None else (_kinds()[kind], kind)
+    if kind is None:
+        return families()[figure], figure
+    return (_kinds()[kind] if kind in _kinds() else installed.family(kind)), kind
+
+
+def module(family: str, part: str) -> str:
+    """The name of a module of a family: part is `measure`, `claims` or `figure`."""
+    return f"{_packages()[family].__name__ if family in _packages() else family}.{part}"
+
+
+def files(family: str) -> tuple[Path, ...]:
+    """The files of the other installed package that brings a family; none of a family of this one."""
+    return () if family in _packages() else tuple(installed.files(family))
+
+
+def package_of(entry: Mapping[str, Any]) -> str:
+    """Name and version of the other installed package that brings the kind of a figure; "" for this one."""
+    kind = entry.get("kind")
+    return "" if kind is None or kind in _kinds() else installed.source(kind)
+
+
+def caption(settings: Mapping[str, Any]) -> str:
+    """The caption of a figure to which a config gives a name, from its settings there. Raises SceneError."""
+    if settings["kind"] in _kinds():
+        return str(_packages()[_kinds()[settings["kind"]]].caption(settings))
+    return installed.caption(settings)
+
+
+def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) -> None:
+    """Apply the rules of a figure to which a config gives a name, beyond the kinds of its settings. points:
+    those that it shows. Raises SceneError."""
+    if settings["kind"] in _kinds():
+        _packages()[_kinds()[settings["kind"]]].validate(figure, settings, points)
+    else:
+        installed.validate(figure, settings, points)
 
 
 def of_claims() -> frozenset[str]:
@@ -81,6 +133,17 @@ def settings() -> dict[str, dict[str, Kind]]:
 
 
 def kinds() -> dict[str, dict[str, Kind]]:
-    """The settings of each kind of figures to which a config gives a name."""
+    """The settings of each kind of figures of this package to which a config gives a name."""
     parts = (getattr(package, "KINDS", {}) for package in _packages().values())
     return {kind: keys for part in parts for kind, keys in part.items()}
+
+
+def known_kinds() -> list[str]:
+    """The kinds of this package, and after them those of other installed ones, which are not imported."""
+    return [*_kinds(), *(kind for kind in installed.kinds() if kind not in _kinds())]
+
+
+def settings_of_kind(kind: str) -> dict[str, Kind]:
+    """The settings of a kind of figures, of this or another installed package. Raises SceneError."""
+    settings: dict[str, Kind] = kinds()[kind] if kind in _kinds() else installed.package(kind).KINDS[kind]
+    return settings

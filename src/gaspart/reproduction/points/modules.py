@@ -70,7 +70,10 @@ def _homes(package: str) -> dict[str, str]:
 @cache
 def _file(module: str) -> Path | None:
     """The file of a module of the package; None if there is none of this name."""
-    path = PACKAGE.joinpath(*module.split(".")[1:])
+    top, *below = module.split(".")
+    path = PACKAGE.joinpath(*below)
+    if top != PACKAGE.name:
+        return None
     for file in (path / "__init__.py", path.with_suffix(".py")):
         if file.is_file():
             return file
@@ -78,10 +81,10 @@ def _file(module: str) -> Path | None:
 
 
 @cache
-def digest(*roots: str | Path) -> str:
-    """A short digest of the files of a closure."""
+def digest(*roots: str | Path, others: tuple[Path, ...] = ()) -> str:
+    """A short digest of the files of a closure, and of other files: those of another installed package."""
     total = hashlib.sha256()
-    for path in _in_order(closure(*roots)):
+    for path in [*_in_order(closure(*roots)), *others]:
         total.update(_content(path))
     return total.hexdigest()[:12]
 

@@ -13,7 +13,7 @@ from typing import Any
 
 from gaspart.reproduction.claims import counts
 from gaspart.reproduction.claims.captions import filled
-from gaspart.reproduction.families.registry import chapters
+from gaspart.reproduction.families.registry import chapter
 from gaspart.reproduction.report.caption import Caption, divided, html_of
 from gaspart.reproduction.report.strip import dots
 
@@ -37,7 +37,7 @@ HEADLINE = ("test", "identity", "reproduction")
 
 @dataclass(frozen=True)
 class Section:
-    """A figure on the page. family_name: the folder of its functions; claims: its rows of the claims table;
+    """A figure on the page. family_name: of its functions; claims: its rows of the claims table;
     films: their names; settings: of its measurement, as text; points: the files of its simulations."""
 
     name: str
@@ -66,11 +66,10 @@ class Section:
 
 def by_chapter(sections: Iterable[Section]) -> dict[str, list[Section]]:
     """The sections of each chapter, in the order of the figures."""
-    of_family = chapters()
-    of_chapter: dict[str, list[Section]] = {chapter: [] for chapter in CHAPTERS}
+    of_chapter: dict[str, list[Section]] = {title: [] for title in CHAPTERS}
     for section in sections:
-        of_chapter[of_family[section.family_name]].append(section)
-    return {chapter: members for chapter, members in of_chapter.items() if members}
+        of_chapter[chapter(section.family_name)].append(section)
+    return {title: members for title, members in of_chapter.items() if members}
 
 
 def findings(chosen: Iterable[Mapping[str, str]], rows: list[dict[str, Any]]) -> list[dict[str, str]]:

@@ -1,7 +1,15 @@
 """Figures that a config states by itself: an observable against what varies in a grid."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
 from gaspart.analysis.names import OBSERVABLES
 from gaspart.kinds import TEXT, Kind, choice, described, flag, listed, names, positive, record
+
+if TYPE_CHECKING:
+    from gaspart.reproduction.points.point import Point
 
 TITLE = "Own figures"
 CHAPTER = "Own figures"
@@ -62,9 +70,16 @@ KINDS: dict[str, dict[str, Kind]] = {
 """The settings of each kind of figure, to which a config gives a name of its own."""
 
 
-def caption(settings: dict) -> str:
+def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) -> None:
+    """Raise SceneError where settings do not belong together, or the points cannot be drawn."""
+    from gaspart.reproduction.families.own import rules
+
+    rules.validate(figure, settings, points)
+
+
+def caption(settings: Mapping[str, Any]) -> str:
     """The caption of a figure, as the config states it, with a title if it begins with none."""
-    text = settings.get("caption", "").strip()
+    text = str(settings.get("caption", "")).strip()
     if text.startswith("**"):
         return text
     meaning = OBSERVABLES[settings["observable"]][2].partition(",")[0]

@@ -1,0 +1,143 @@
+"""Kinds of figures that other installed packages bring, found by their entry points.
+
+A package names each kind in the entry points of the group `gaspart.families`; what it names is a package that
+has the form of a family of this one (see `families.registry`), with the kind in its `KINDS`. Only the names
+are read until a config has a figure of the kind: its package is then imported, and no other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from functools import cache
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from gaspart.errors import SceneError
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+    from gaspart.reproduction.points.point import Point
+
+GROUP = "gaspart.families"
+_PARTS = ("measure", "claims", "figure")
+
+
+@cache
+def _entry_points() -> dict[str, list[EntryPoint]]:
+    """The entry points of each kind, of which there should be one."""
+    from importlib.metadata import entry_points  # 0.02 s
+
+    found: dict[str, list[EntryPoint]] = {}
+    for entry_point in entry_points(group=GROUP):
+        others = found.setdefault(entry_point.name, [])
+        if entry_point not in others:  # a package that is on the path twice
+            others.append(entry_point)
+    return found
+
+
+def kinds() -> list[str]:
+    """The kinds of installed packages, in alphabetical order; no package is imported."""
+    return sorted(_entry_points())
+
+
+def family(kind: str) -> str:
+    """The family of a kind: the import name of its package. Raises SceneError if several bring it."""
+    return _entry_point(kind).value
+
+
+def package(kind: str) -> ModuleType:
+    """The package of a kind. Raises SceneError, with the installed package, its entry point and the reason,
+    for one that cannot be imported or does not have the form of a family."""
+    with blamed(kind):
+        found = import_module(family(kind))
+        _check(found, kind)
+    return found
+
+
+def source(kind: str) -> str:
+    """Name and version of the installed package that brings a kind."""
+    distribution = _entry_point(kind).dist
+    return f"{distribution.name} {distribution.version}" if distribution else "a package without metadata"
+
+
+def files(family: str) -> list[Path]:
+    """The Python files of the whole package that a family belongs to, in alphabetical order."""
+    spec = find_spec(family.partition(".")[0])
+    folders = (spec.submodule_search_locations if spec else None) or ()
+    return sorted(path for folder in folders for path in Path(folder).rglob("*.py"))
+
+
+def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) -> None:
+    """Apply the function `validate` of a kind's package, if it has one, to a figure of a config.
+
+    Raises SceneError: that of the function, or one which blames the package.
+    """
+    rules = getattr(package(settings["kind"]), "validate", None)
+    if rules is not None:
+        with blamed(settings["kind"], f"figures.{figure}"):
+            rules(figure, settings, points)
+
+
+def caption(settings: Mapping[str, Any]) -> str:
+    """The caption of a figure, as the package of its kind makes it from the settings. Raises SceneError."""
+    found = package(settings["kind"])
+    with blamed(settings["kind"]):
+        text = found.caption(settings)
+        if not isinstance(text, str):
+            raise TypeError(f"caption() must return text, not {type(text).__name__}")
+    return text
+
+
+@contextmanager
+def blamed(kind: str, where: str = "") -> Iterator[None]:
+    """Whatever a package raises within this context becomes a SceneError of one line that names it.
+
+    where: the place of the figure in the config, unless the caller adds it.
+    """
+    try:
+        yield
+    except SceneError:
+        raise
+    except (Exception, SystemExit) as error:  # the code of others may raise anything
+        entry_point = f"{GROUP}: {kind} = {family(kind)}"
+        reason = f"{type(error).__name__}: {error}"
+        rule = f"the entry point ({entry_point}) of {source(kind)} cannot be used: {reason}"
+        raise SceneError(f"{where}.kind".lstrip("."), kind, rule) from error
+
+
+def _entry_point(kind: str) -> EntryPoint:
+    found = _entry_points()[kind]
+    if len(found) > 1:
+        owners = ", ".join(sorted(one.dist.name if one.dist else one.value for one in found))
+        raise SceneError("kind", kind, f"several installed packages bring this kind ({GROUP}): {owners}")
+    return found[0]
+
+
+def _check(found: ModuleType, kind: str) -> None:
+    """Raise an error with the reason unless a package has the form of a family with a kind."""
+    from jsonschema import Draft202012Validator, SchemaError
+
+    from gaspart.kinds import record
+
+    if Path(__file__).with_name(found.__name__).is_dir():
+        raise ValueError("it has the name of a family of gaspart")
+    if not isinstance(getattr(found, "TITLE", None), str):
+        raise TypeError("its TITLE must be text")
+    settings = getattr(found, "KINDS", None)
+    if not isinstance(settings, dict) or not isinstance(settings.get(kind), dict):
+        raise TypeError(f"its KINDS must have the settings of {kind}, a mapping from keys to their kinds")
+    try:
+        Draft202012Validator.check_schema(record(settings[kind]))
+    except SchemaError as error:
+        where = ".".join(str(part) for part in list(error.absolute_path)[1:])
+        raise TypeError(f"its KINDS of {kind}: {where}: {error.message}") from None
+    if not callable(getattr(found, "caption", None)):
+        raise TypeError("it must have a function caption(settings)")
+    for part in _PARTS:
+        if find_spec(f"{found.__name__}.{part}") is None:
+            raise ModuleNotFoundError(f"it has no module {part}")
