@@ -56,9 +56,18 @@ def test_what_are_no_replicas_is_refused(paths, tmp_path):
     refused("must be a list of two runs or more", paths[0])
     with pytest.raises(gp.SceneError, match="must be a list of two runs or more"):
         gp.analysis.replicas("Z", str(paths[0]))
-    refused("is that of two runs, which are the same", paths[0], paths[1], paths[0])
+    refused(r"0\.nc: seed = '0': is that of .*0\.nc too", paths[0], paths[1], paths[0])
     other = gp.run(gas(3, 64, 0.1), gp.EventDriven(), 1, 20.0, 0.25, tmp_path / "other.nc")
-    refused("different scenes or engines", paths[0], other)
+    difference = (
+        r"other\.nc: scene\.container\.lengths\[0\] = 6\.9.*: is 5\.5.* in .*0\.nc: replicas differ in"
+    )
+    refused(difference, paths[0], other)
+    events, steps = (
+        gp.Simulation(GAS, gp.EventDriven(), 1),
+        gp.Simulation(GAS, gp.TimeStepped(time_step=1e-3), 2),
+    )
+    events.advance(duration=5.0)
+    refused("run 2: engine.name = 'step': is 'event' in run 1", events, steps)
     shorter = gp.run(GAS, gp.EventDriven(), 99, 15.0, 0.25, tmp_path / "shorter.nc")
     refused("have their values at different places", paths[0], shorter, name="msd")
     refused("unknown observable", *paths[:2], name="ZZ")

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from contextlib import nullcontext
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,10 +16,11 @@ from gaspart.analysis.measuring import measure
 from gaspart.analysis.observable import Observable
 from gaspart.analysis.run import Source
 from gaspart.analysis.statistics import means_of
-from gaspart.errors import SceneError
+from gaspart.engines import engine_to_dict
+from gaspart.errors import SceneError, shown
 from gaspart.simulation import Simulation
 from gaspart.trajectory.reading import open_trajectory
-from gaspart.yaml_text import dump_yaml
+from gaspart.yaml_text import parse_yaml
 
 
 def replicas(
@@ -31,33 +34,66 @@ def replicas(
     there are runs (`freedom`). The variable with the suffix _replicas has the value of each (replica, ...).
     Theory is the mean of theirs.
 
-    Raises SceneError for fewer than two runs, runs of different scenes or engines, two of the same seed,
-    curves at different places, and as the observable's function does.
+    Raises SceneError for fewer than two runs, runs of different scenes or engines, with the first difference,
+    two of the same seed, curves at different places, and as the observable's function does.
     """
     if isinstance(sources, str | Path | Simulation | xr.Dataset) or len(sources) < 2:
         raise SceneError("sources", sources, "must be a list of two runs or more")
-    found, seeds, scenes = [], [], set()
-    for source in sources:
+    found: list[Observable] = []
+    recipes: list[_Recipe] = []
+    for number, source in enumerate(sources, 1):
         with open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source) as run:
-            scene, seed = _recipe(run)
-            scenes.add(scene)
-            seeds.append(seed)
+            recipe = _recipe(run, str(source) if isinstance(source, str | Path) else f"run {number}")
+            _check_replica(recipe, recipes)
+            recipes.append(recipe)
             found.append(measure(name, run, start, **selection))
-    if len(scenes) > 1:
-        raise SceneError("sources", len(scenes), "different scenes or engines: replicas differ in their seed")
-    for seed in seeds:
-        if seeds.count(seed) > 1:
-            raise SceneError("seed", seed, "is that of two runs, which are the same and have no scatter")
     return _mean(found)
 
 
-def _recipe(run: Any) -> tuple[str, str]:
-    """Scene with engine, and seed, of an open trajectory or a simulation, as texts."""
+@dataclass(frozen=True)
+class _Recipe:
+    """What a run was made from. name: of the run, for its user; settings: its scene and engine."""
+
+    name: str
+    settings: dict[str, Any]
+    seed: str
+
+
+def _recipe(run: Any, name: str) -> _Recipe:
+    """The recipe of an open trajectory or a simulation."""
     if isinstance(run, Simulation):
-        return f"{dump_yaml(run.scene.to_dict())}{run.engine}", str(run.seed)
+        settings = {"scene": run.scene.to_dict(), "engine": engine_to_dict(run.engine)}
+        return _Recipe(name, settings, str(run.seed))
     if not isinstance(run, xr.Dataset) or not {"scene", "engine", "seed"} <= set(run.attrs):
         raise SceneError("sources", type(run).__name__, "must be trajectories, their paths or simulations")
-    return f"{run.attrs['scene']}{run.attrs['engine']}", str(run.attrs["seed"])
+    settings = {"scene": parse_yaml(run.attrs["scene"]), "engine": json.loads(run.attrs["engine"])}
+    return _Recipe(name, settings, str(run.attrs["seed"]))
+
+
+def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
+    """Raise SceneError unless a run is a replica of others: the same but for the seed."""
+    for other in others:
+        if difference := _difference(recipe.settings, other.settings):
+            key, one, two = difference
+            rule = f"is {shown(two)} in {other.name}: replicas differ in nothing but their seed"
+            raise SceneError(key, one, rule, recipe.name)
+        if recipe.seed == other.seed:
+            rule = f"is that of {other.name} too: two runs which are the same have no scatter"
+            raise SceneError("seed", recipe.seed, rule, recipe.name)
+
+
+def _difference(one: Any, two: Any, key: str = "") -> tuple[str, Any, Any] | None:
+    """The first difference of two trees, as its dotted key and both values; None if they are equal."""
+    if isinstance(one, dict) and isinstance(two, dict):
+        pairs = {str(name): (one.get(name), two.get(name)) for name in {**one, **two}}
+        form = f"{key}.{{}}" if key else "{}"
+    elif isinstance(one, list | tuple) and isinstance(two, list | tuple) and len(one) == len(two):
+        pairs = {str(n): pair for n, pair in enumerate(zip(one, two, strict=True))}
+        form = f"{key}[{{}}]"
+    else:
+        return None if one == two else (key, one, two)
+    found = (_difference(*pair, form.format(name)) for name, pair in pairs.items())
+    return next((difference for difference in found if difference), None)
 
 
 def _mean(found: list[Observable]) -> Observable:

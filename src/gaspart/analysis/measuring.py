@@ -20,7 +20,7 @@ def measure(name: str, trajectory: Source, start: float | None = None, **selecti
     function, arguments, _ = OBSERVABLES[known(name)]
     for key, value in selection.items():
         if name not in SELECTIONS[key]:
-            rule = f"{name} is of all particles; a part have {', '.join(SELECTIONS[key])}"
+            rule = f"cannot be chosen for {name}, only for {', '.join(SELECTIONS[key])}"
             raise SceneError(key, value, rule)
     found: Observable = getattr(analysis, function)(trajectory, start=start, **arguments, **selection)
     return found

@@ -43,8 +43,13 @@ FLUXES = ("shear_viscosity", "bulk_viscosity", "thermal_conductivity", "pressure
 """Those that need a run which correlates the stress tensor and the heat flux."""
 CURVES = ("msd", "vacf", "speeds", "rdf", "structure_factor", "density", "temperature")
 """Those that are a curve; others are a number, or one for each face, pair or component."""
-SELECTIONS = {"species": ("msd", "vacf", "D"), "particles": ("msd", "vacf")}
-"""Those that can be of one species, or of some particles."""
+SELECTIONS = {
+    "species": ("msd", "vacf", "D"),
+    "particles": ("msd", "vacf"),
+    "per_axis": ("msd", "D"),
+    "axis": ("density", "temperature"),
+}
+"""Those that can be of one species, of some particles, along each axis, or along one of them."""
 
 
 def known(name: object) -> str:

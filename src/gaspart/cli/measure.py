@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import argparse
 import io
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -34,17 +35,22 @@ _TABLE = Kind("a table written by gaspart measure", begins_with(_TITLE.encode())
 _EXAMPLES = """examples:
   gaspart measure run.nc Z msd
   gaspart measure run.nc vacf -o vacf.png
-  gaspart measure run.nc msd -o msd.csv --start 10"""
+  gaspart measure run.nc msd -o msd.csv --start 10
+  gaspart measure run-1.nc run-2.nc run-3.nc D      replicas: their mean, with the scatter of the runs
+  gaspart measure run.nc D --per-axis
+  gaspart measure run.nc density --axis x"""
 
 
 def add_measure(parser: Parser) -> None:
     """Add the arguments of the command to its parser."""
     names = "; ".join(f"{name}: {meaning}" for name, (_, _, meaning) in OBSERVABLES.items())
-    text = f"{names}. Uncertainties are one standard deviation; of curves a few rows are printed."
+    text = f"{names}. Uncertainties are one standard deviation; of curves a few rows are printed. "
+    text += "Several files are runs of one scene with different seeds: their mean and its scatter are given."
     set_command(parser, _measure, text, _EXAMPLES)
     add = parser.add_argument
     add_trajectory(parser)
-    add("observables", nargs="+", choices=tuple(OBSERVABLES), metavar="NAME", help=", ".join(OBSERVABLES))
+    words = ", ".join(OBSERVABLES)
+    add("words", nargs="+", choices=_Words(OBSERVABLES), metavar="NAME", help=words)
     text = "time from which frames count; default: a quarter of the run"
     add("--start", type=real(least=0.0), metavar="T", help=text)
     text = "of one species only, by its number in the scene, from 0 (single particles: after the last): "
@@ -52,25 +58,72 @@ def add_measure(parser: Parser) -> None:
     text = "of these particles only, by their numbers in the file, from 0: "
     names = ", ".join(SELECTIONS["particles"])
     add("--particles", type=several(int), metavar="N[,N...]", help=text + names)
+    text = "along each axis instead of their sum or mean: "
+    add("--per-axis", action="store_true", default=None, help=text + ", ".join(SELECTIONS["per_axis"]))
+    text = "along this axis instead of the last one: "
+    add("--axis", choices=("x", "y", "z"), help=text + ", ".join(SELECTIONS["axis"]))
     add("-o", "--output", metavar="FILE", help="all rows of one observable as .csv, or a plot as .png")
     add("--force", action="store_true", help="replace a table or a picture")
+    usage = parser.format_usage().partition(": ")[2]
+    parser.usage = usage.replace("FILE NAME", "FILE [FILE ...] NAME").strip()
+
+
+class _Words(tuple):
+    """The names of observables, of which a shell completes one. Files may stand among the words too."""
+
+    def __contains__(self, word: object) -> bool:
+        return super().__contains__(word) or _is_file(str(word))
+
+
+def _is_file(word: str) -> bool:
+    """Whether a word is meant as a file: no name of an observable has a suffix or a folder."""
+    return "." in word or "/" in word or os.sep in word
+
+
+def _sorted(given: argparse.Namespace) -> tuple[list[str], list[str]]:
+    """The files and the names of observables of a command line, the files first. Raises UsageError."""
+    names = list(given.words)
+    files = [given.trajectory]
+    while names and _is_file(names[0]):
+        files.append(names.pop(0))
+    if not names:
+        raise UsageError(f"NAME is missing after the files: one or more of {', '.join(OBSERVABLES)}")
+    if late := [word for word in names if _is_file(word)]:
+        raise UsageError(f"{late[0]!r}: files stand before the names of observables")
+    return files, names
 
 
 def _measure(given: argparse.Namespace) -> None:
-    from gaspart.trajectory.reading import open_trajectory
-
-    write = _writer(given)
+    files, names = _sorted(given)
+    write = _writer(given, names)
     asked = {key: getattr(given, key) for key in SELECTIONS}
     selection = {key: value for key, value in asked.items() if value is not None}
-    with open_trajectory(given.trajectory) as trajectory:
-        for name in given.observables:
+    for name, observable in _measured(files, names, given.start, selection):
+        if observable.estimate.ndim:
+            _print_curve(name, observable)
+        else:
+            _print_scalar(name, observable)
+        write(observable)
+
+
+def _measured(
+    files: list[str], names: list[str], start: float | None, selection: dict[str, Any]
+) -> Iterator[tuple[str, Observable]]:
+    """Each observable with its name: of one file, or the mean of several."""
+    from gaspart.analysis.combination import replicas
+    from gaspart.trajectory.reading import open_trajectory
+
+    if len(files) > 1:
+        for name in names:
+            with waiting(f"measuring {name} of {len(files)} files"):
+                found = replicas(name, files, start, **selection)
+            yield name, found
+        return
+    with open_trajectory(files[0]) as trajectory:
+        for name in names:
             with waiting(f"measuring {name}"):
-                observable = measure(name, trajectory, given.start, **selection)
-            if observable.estimate.ndim:
-                _print_curve(name, observable)
-            else:
-                _print_scalar(name, observable)
-            write(observable)
+                found = measure(name, trajectory, start, **selection)
+            yield name, found
 
 
 def _print_scalar(name: str, observable: Observable) -> None:
@@ -92,12 +145,13 @@ def _with_error(value: Any, error: Any) -> str:
 
 
 def _print_curve(name: str, observable: Observable) -> None:
-    (along,) = observable.estimate.dims
+    along = observable.estimate.dims[-1]
     rows = observable.sizes[along]
     stride = max(1, -(-rows // _ROWS))
-    columns = [observable[along], observable.estimate, observable.error]
-    columns += [] if observable.theory is None else [observable.theory]
-    heads = [str(along), name, "error", *(["theory"] if observable.theory is not None else [])]
+    heads, columns = [str(along)], [observable[along]]
+    for label, part in _parts(observable):
+        columns += [part.estimate, part.error, *([] if part.theory is None else [part.theory])]
+        heads += [f"{name} {label}".rstrip(), "error", *([] if part.theory is None else ["theory"])]
     wide = [max(14, len(head) + 2) for head in heads]
     print_line("".join(f"{head:>{width}}" for head, width in zip(heads, wide, strict=True)))
     for row in range(0, rows, stride):
@@ -109,12 +163,20 @@ def _print_curve(name: str, observable: Observable) -> None:
         print_line(f"({shown} of {rows} rows; -o {name}.csv writes all, -o {name}.png draws them)")
 
 
-def _writer(given: argparse.Namespace) -> Callable[[Observable], None]:
+def _parts(observable: Observable) -> list[tuple[str, Observable]]:
+    """The curves of an observable, such as that along each axis, with their names; a single one has none."""
+    if observable.estimate.ndim == 1:
+        return [("", observable)]
+    over = observable.estimate.dims[0]
+    return [(str(text), observable.sel({over: text})) for text in observable[over].values]
+
+
+def _writer(given: argparse.Namespace, names: list[str]) -> Callable[[Observable], None]:
     """What writes the result, after the arguments were checked."""
     if given.output is None:
         return lambda observable: None
     path = output_path(given.output)
-    if len(given.observables) > 1:
+    if len(names) > 1:
         raise UsageError("-o takes one observable; give one, or leave -o out")
     if path.suffix == ".csv":
         return partial(_write_table, path, given.force)
@@ -125,10 +187,22 @@ def _writer(given: argparse.Namespace) -> Callable[[Observable], None]:
 
 def _write_table(path: Any, overwrite: bool, observable: Observable) -> None:
     with writing(path, _TABLE, overwrite) as scratch:
+        observable = _with_columns(observable)
         units = {name: variable.attrs.get("units", "1") for name, variable in observable.variables.items()}
         title = f"{_TITLE}: units " + ", ".join(f"{name}: {unit}" for name, unit in units.items())
         scratch.write_text(f"{title}\n{observable.to_dataframe().to_csv()}", encoding="utf-8")
     print_line(path)
+
+
+def _with_columns(observable: Observable) -> Observable:
+    """An observable whose values of each replica, if there are several, are variables of their own."""
+    each = f"{observable.attrs['quantity']}_replicas"
+    if each not in observable:
+        return observable
+    if not observable.estimate.ndim:  # which has them as `stretches`
+        return observable.drop_vars(each).rename(time="replica")
+    columns = {f"{each}_{n}": one for n, one in enumerate(observable[each], 1)}
+    return observable.drop_vars(each).assign(columns)
 
 
 def _write_plot(path: Any, overwrite: bool, observable: Observable) -> None:
