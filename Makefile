@@ -3,7 +3,7 @@
 # make check-all  the linters, the tests, 2500 new random scenes for each property of the engines, and the slow tests
 # make smoke      all figures, small: results/smoke/report.html
 # make docs       the documentation site, with executed notebooks: results/docs/html/index.html; after a complete
-#                 reproduction also docs/gallery.png, the picture of the README
+#                 reproduction also docs/gallery.png, the picture of the README, and docs/figures, its small pictures
 # make archive    all figures, and archive.zip, the file to deposit
 # make benchmark  the speed of the engines on this machine, which should run nothing else: results/tables/performance.csv
 # make referees   gaspart's runs judged by programs of others, which have an environment of their own, .venv-referees:
@@ -112,6 +112,7 @@ report: setup
 
 docs: setup
 	.venv/bin/python docs/gallery.py results docs/gallery.png
+	.venv/bin/python docs/thumbnails.py results
 	.venv/bin/python -m sphinx --quiet --fail-on-warning --jobs auto docs results/docs/html
 	@echo "documentation: results/docs/html/index.html"
 

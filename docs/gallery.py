@@ -7,6 +7,8 @@ It is kept as it is where results are missing, or are not those of config/config
 """
 
 import sys
+from collections.abc import Iterable
+from itertools import chain
 from pathlib import Path
 
 import netCDF4
@@ -23,12 +25,12 @@ GAP = 12  # pixels
 CONFIG = Path(__file__).parents[1] / "config/config.yaml"
 
 
-def source(results: Path) -> dict[str, str]:
-    """The config and the revisions that the figures were measured from. Raises ValueError for another config,
+def source(results: Path, figures: Iterable[str]) -> dict[str, str]:
+    """The config and the revisions that figures were measured from. Raises ValueError for another config,
     and where a figure is missing."""
     title = yaml.safe_load(CONFIG.read_text(encoding="utf-8"))["title"]
     found = set()
-    for name in (name for names in COLUMNS for name in names):
+    for name in figures:
         measurement, figure = results / f"measurements/{name}.nc", results / f"figures/{name}.png"
         if not (measurement.exists() and figure.exists()):
             raise ValueError(f"{figure} or its measurement is missing")
@@ -47,7 +49,7 @@ def _column(folder: Path, names: tuple[str, ...], width: int) -> list[Image.Imag
 def gallery(results: Path, path: Path) -> None:
     """Write the figures of COLUMNS as one picture. Raises ValueError as `source`."""
     about = PngInfo()
-    for key, text in source(results).items():
+    for key, text in source(results, chain.from_iterable(COLUMNS)).items():
         about.add_text(key, text)
     columns = [_column(results / "figures", names, width) for names, width in COLUMNS.items()]
     heights = [sum(picture.height for picture in column) + GAP * (len(column) - 1) for column in columns]

@@ -12,6 +12,8 @@ import shutil
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 
+import indexes
+
 import gaspart
 from gaspart import analysis, theory
 from gaspart.cli import commands
@@ -51,45 +53,39 @@ def entry(name):
     return f".. py:data:: {name}\n   :value: {thing!r}\n\n"
 
 
-def api():
-    """Pages of the public names: path -> text."""
-    pages, homes = {}, stated(f"{gaspart.__file__}i")
+def public_names():
+    """Page -> title, and the public names on it by section; the first section has no title."""
+    groups, homes = {}, stated(f"{gaspart.__file__}i")
     for page, (title, packages) in GROUPS.items():
         names = [name for name, home in homes.items() if f"{home}.".split(".")[1] in packages]
-        pages[f"api/{page}.rst"] = heading(title) + "".join(
-            entry(f"gaspart.{name}") for name in sorted(names)
-        )
-    public = "".join(entry(f"gaspart.analysis.{name}") for name in analysis.__all__)
-    pages["api/analysis.rst"] = (
-        heading("Analysis")
-        + "Functions of ``gaspart.analysis``.\n\n"
-        + public
-        + heading("Collisions", "-")
-        + pages["api/analysis.rst"].partition("\n\n")[2]
-    )
-    pages["api/theory.rst"] = heading("Theory") + theory_page()
-    listed = "".join(f"   {page}\n" for page in (*GROUPS, "theory"))
-    pages["api/index.rst"] = (
-        heading("Public names")
-        + "All names are importable from ``gaspart``, those of theory from ``gaspart.theory``,\n"
-        + "observables from ``gaspart.analysis``. :doc:`An example of each <../../examples>`.\n\n"
-        + f".. toctree::\n   :maxdepth: 2\n\n{listed}"
-    )
-    return pages
+        groups[page] = title, {"": [f"gaspart.{name}" for name in sorted(names)]}
+    title, sections = groups["analysis"]
+    observables = [f"gaspart.analysis.{name}" for name in sorted(analysis.__all__)]
+    groups["analysis"] = title, {"": observables, "Collisions": sections[""]}
+    return {**groups, "theory": ("Theory", theory_names())}
 
 
-def theory_page():
+def theory_names():
     """The names of gaspart.theory, in sections by the module that defines them."""
     sections = {}
     for name in sorted(theory.__all__, key=str.lower):
         home = inspect.getmodule(getattr(theory, name))
         module = home.__name__.rpartition(".")[2] if home else "constants"
-        sections.setdefault(module, []).append(name)
-    text = inspect.getdoc(theory) + "\n\n"
-    for module, names in sorted(sections.items()):
-        text += heading(module.replace("_", " ").capitalize(), "-")
-        text += "".join(entry(f"gaspart.theory.{name}") for name in names)
-    return text
+        sections.setdefault(module, []).append(f"gaspart.theory.{name}")
+    return {module.replace("_", " ").capitalize(): names for module, names in sorted(sections.items())}
+
+
+def api():
+    """Pages of the public names, and their index: path -> text."""
+    groups = public_names()
+    about = {"analysis": "Functions of ``gaspart.analysis``.", "theory": inspect.getdoc(theory)}
+    pages = {"api/index.rst": indexes.interface(groups)}
+    for page, (title, sections) in groups.items():
+        text = heading(title) + (f"{about[page]}\n\n" if page in about else "")
+        for section, names in sections.items():
+            text += (heading(section, "-") if section else "") + "".join(map(entry, names))
+        pages[f"api/{page}.rst"] = text
+    return pages
 
 
 def command_line():
@@ -97,7 +93,7 @@ def command_line():
     text = heading("Command line")
     text += "What each command prints with ``--help``.\n\n"
     for name, parser in commands().items():
-        text += heading(f"gaspart {name}", "-")
+        text += f".. _command-{name}:\n\n" + heading(f"gaspart {name}", "-")
         text += f".. code-block:: text\n\n{indented(helped(parser))}\n"
     return {"command-line.rst": text}
 
@@ -148,7 +144,8 @@ def figures(folder):
             text += heading(name, "-") + f".. code-block:: text\n\n{indented(doc.strip())}\n"
         pages[f"figures/{family}.rst"] = text
     listed = "".join(f"   {family}\n" for family in titles())
-    pages["figures/index.rst"] = heading("Figures") + f".. toctree::\n   :maxdepth: 2\n\n{listed}"
+    index = indexes.figures(folder / "figures/small")
+    pages["figures/index.rst"] = f"{index}.. toctree::\n   :hidden:\n\n{listed}"
     return pages
 
 

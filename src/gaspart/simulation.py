@@ -48,7 +48,9 @@ PROPERTIES = (
 
 
 class Simulation:
-    """One run. `seed`: a whole number, or a tuple of them, that fixes the initial state and the random
+    """One run of a scene by an engine, which is advanced in time.
+
+    `seed`: a whole number, or a tuple of them, that fixes the initial state and the random
     numbers of thermal walls. stress: whether `tally` has the stress tensor and the heat flux, of a periodic
     scene without gravity. initial: a state whose positions, velocities and spins are those at time 0, instead
     of what the scene states; its particles and the size of its container must be the scene's.

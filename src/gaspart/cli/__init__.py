@@ -47,6 +47,11 @@ _EXAMPLES = """examples:
   gaspart run --help"""
 
 
+def lines() -> dict[str, str]:
+    """The line of each command in `gaspart --help`."""
+    return {name: line for name, (_, line) in _COMMANDS.items()}
+
+
 def main(arguments: Sequence[str] | None = None, without_output: bool = False) -> int:
     """Carry out a command line; returns the exit code. without_output: the standard output is closed; a
     command whose result would be printed there has failed."""

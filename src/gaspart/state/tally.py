@@ -21,7 +21,7 @@ def tallied_fluxes(sums: np.ndarray, dimension: int) -> dict[str, np.ndarray]:
 
 @dataclass
 class Tally:
-    """Sums since the last reset.
+    """Counters of a simulation and other sums, since the last reset.
 
     time: simulated time covered; collisions of pairs; wall_hits and wall_impulse (2d + interior walls,), the
     momentum given to each face (x low, x high, y low ...) and then to each interior wall; wall_energy, the

@@ -13,6 +13,7 @@ from gaspart.scene.geometry import CLOSE_PACKING
 from gaspart.theory._arguments import Numbers, Values, checked_dimension, checked_packing_fraction
 
 HIGHEST_ORDER = 10
+"""Order up to which all virial coefficients are known."""
 _TABLES = Path(__file__).parent / "data"
 
 # b_1 to b_4, exact. Discs: B2 = 2A, B3 and B4 as in source C, Eq. 48 (Rowlinson 1964, Hemmer 1965).
