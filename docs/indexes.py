@@ -50,16 +50,16 @@ def figures(folder):
 def _card(figure, folder):
     """A figure in the index: its picture, its name and its finding."""
     address = f"{families()[figure]}.html#figure-{figure.replace('_', '-')}"
-    picture = thumbnails.path(figure)
-    drawn = ROOT / f"results/figures/{figure}.png"
+    small = folder / thumbnails.path(figure).name
+    drawn, kept = ROOT / f"results/figures/{figure}.png", thumbnails.path(figure)
     text = ".. container:: card\n\n"
     if drawn.exists():
-        thumbnails.reduced(drawn).save(folder / picture.name)
-    elif picture.exists():
-        shutil.copyfile(picture, folder / picture.name)
-    if (folder / picture.name).exists():
+        thumbnails.reduced(drawn).save(small)
+    elif kept.exists():
+        shutil.copyfile(kept, small)
+    if drawn.exists() or kept.exists():
         text += (
-            f"   .. image:: {folder.name}/{picture.name}\n      :target: {address}\n      :alt: {figure}\n\n"
+            f"   .. image:: {folder.name}/{small.name}\n      :target: {address}\n      :alt: {figure}\n\n"
         )
     return text + f"   :ref:`{_breakable(figure)} <figure-{figure}>`\n\n   {finding(figure)}\n"
 

@@ -15,6 +15,7 @@ from gaspart.analysis.pairs import structure_factor as structure_factor
 from gaspart.analysis.pressure import collision_rate as collision_rate
 from gaspart.analysis.pressure import compressibility_factor as compressibility_factor
 from gaspart.analysis.pressure import wall_pressure as wall_pressure
+from gaspart.analysis.species import by_species as by_species
 from gaspart.analysis.structure import order_parameter as order_parameter
 from gaspart.analysis.structure import profile as profile
 from gaspart.analysis.structure import speed_distribution as speed_distribution

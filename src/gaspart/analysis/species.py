@@ -1,0 +1,102 @@
+"""A table of what can be measured of each species of a run."""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gaspart.analysis.measuring import measure
+from gaspart.analysis.names import SELECTIONS
+from gaspart.analysis.observable import Observable, scalar
+from gaspart.analysis.run import Run, Source, measured, selected
+from gaspart.errors import SceneError
+from gaspart.trajectory.reading import open_trajectory
+
+
+def by_species(source: Source, start: float | None = None) -> xr.Dataset:
+    """What can be measured of each species that moves, (species,), with standard uncertainties (`_error`).
+
+    source: a trajectory, by its path or open, or a simulation; start: the time from which frames count (by
+    default a quarter of the run). The coordinate `species` has the numbers of the scene (single particles
+    have the number after the last). Variables:
+
+    - `count`, moving particles;
+    - `temperature` (energy), twice the mean kinetic energy of flight per degree of freedom;
+    - `mean_speed` (length / time);
+    - `D` (length^2 / time), and the curves `msd` and `vacf` (species, lag), as of `gaspart measure` with a
+      species. NaN where a species cannot have one, such as a D between walls, for the reason in the attribute
+      `not_measured`, and where it has fewer lags than others.
+
+    Along axes on which the total momentum is conserved velocities are those about the centre of mass. There
+    the mean square of a particle of mass m is 1 - m / M of that without this condition, M the mass of all
+    (exact in equilibrium), for which temperatures and speeds are corrected. `to_dataframe` of the variables
+    without lags is a table with a row for each species.
+
+    Raises SceneError where nothing moves, and for too few frames.
+    """
+    opened = open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source)
+    with opened as run_of_all:
+        with measured(run_of_all, start) as run:
+            kinds = [int(kind) for kind in np.unique(run.species[run.moving])]
+            if not kinds:
+                raise SceneError("species", [], "none of the particles moves")
+            counts = [int((run.species[run.moving] == kind).sum()) for kind in kinds]
+            rows: list[dict[str, Observable]] = [_of_velocities(run, kind) for kind in kinds]
+        missing = {}
+        for kind, row in zip(kinds, rows, strict=True):
+            for name in SELECTIONS["species"]:
+                try:
+                    row[name] = measure(name, run_of_all, start, species=kind)
+                except SceneError as error:
+                    missing[f"{name} of species {kind}"] = error.rule
+    table = xr.Dataset(coords={"species": ("species", kinds, {"long_name": "number of the species"})})
+    table["count"] = ("species", counts, {"units": "1", "long_name": "moving particles"})
+    for name in ("temperature", "mean_speed", *SELECTIONS["species"]):
+        table = table.merge(_column(name, [row.get(name) for row in rows]))
+    reasons = "; ".join(f"{what}: {reason}" for what, reason in missing.items())
+    return table.assign_attrs(not_measured=reasons)
+
+
+def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:
+    """The temperature and the mean speed of the moving particles of a species."""
+    chosen, masses = selected(run, kind, None), run.masses[run.moving]
+    part = masses[chosen] / masses.sum()
+    free = np.where(run.conserved, 1.0 - part[:, None], 1.0)  # (n, d) degrees of freedom of each particle
+    if not free.sum(axis=1).all():
+        raise SceneError("count", len(masses), "a single particle keeps its velocity")
+    velocities = run.peculiar[:, chosen]
+    energies = np.einsum("tnd,tnd,n->t", velocities, velocities, masses[chosen]) / free.sum()
+    with np.errstate(divide="ignore", invalid="ignore"):
+        squares = np.where(free > 0.0, velocities**2 / free, 0.0).sum(axis=2)
+    edges = np.append(run.time, 2.0 * run.time[-1] - run.time[-2])
+    about: dict[str, Any] = {"units": "energy", "long_name": "temperature"}
+    temperature = scalar("temperature", energies, edges, **about)
+    about = {"units": "length / time", "long_name": "mean speed"}
+    return {
+        "temperature": temperature,
+        "mean_speed": scalar("mean_speed", np.sqrt(squares).mean(axis=1), edges, **about),
+    }
+
+
+def _column(name: str, found: list[Observable | None]) -> xr.Dataset:
+    """One observable of all species with its uncertainty; nothing if it was measured of none."""
+    known = [one for one in found if one is not None]
+    if not known:
+        return xr.Dataset()
+    blank = xr.full_like(known[0].estimate, np.nan)
+    parts = {
+        name: [blank if one is None else one.estimate for one in found],
+        f"{name}_error": [blank if one is None else one.error for one in found],
+    }
+    columns = {}
+    for key, values in parts.items():
+        plain = [value.drop_vars("time", errors="ignore") for value in values]
+        column = xr.concat(plain, "species", join="outer")  # few particles have fewer lags
+        columns[key] = column.rename(key).assign_attrs(values[0].attrs)
+    columns[name].attrs.update(known[0].estimate.attrs)
+    columns[f"{name}_error"].attrs.update(known[0].error.attrs)
+    return xr.Dataset(columns)
