@@ -77,7 +77,7 @@ class _Runs(ast.NodeTransformer):
 def reexported(package):
     """The module of each name in the stub of a package, if it has one."""
     stub = PACKAGE.joinpath(*package.split(".")[1:], "__init__.pyi")
-    nodes = ast.parse(stub.read_text(encoding="utf-8")).particle if stub.exists() else []
+    nodes = ast.parse(stub.read_text(encoding="utf-8")).body if stub.exists() else []
     return {node.names[0].name: node.module for node in nodes if isinstance(node, ast.ImportFrom)}
 
 
