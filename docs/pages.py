@@ -175,6 +175,12 @@ standard errors (p-values as the Gaussian deviation of the same chance, after Bo
 where there are several), or a difference that single precision explains. *Planted* is the same distance
 with the error in the files.
 
+SPARTA (`Plimpton and others, Phys. Fluids 31, 086101 (2019)
+<https://doi.org/10.1063/1.5108534>`_) is a peer of the DSMC engine: it simulates the same dilute gases of
+hard spheres, with as many cells and steps. It is no Python package and judges where somebody has installed
+it, ``make referees GASPART_SPARTA=/path/to/spa_serial``; elsewhere it is skipped, and its lines of the table
+stay. The error planted is one in what it is told of the gas.
+
 """
 PUBLISHED = """\
 Numbers that are known more precisely than a run of some minutes measures them: our deviation in our own
@@ -189,7 +195,7 @@ NOT_JUDGED = """\
 gaspart writes no XYZ files; LAMMPS data files of style *sphere* are read by MDAnalysis and OVITO, of
 which ASE accepts no such lines. freud is no referee of :math:`g(r)`, which gaspart computes by freud.
 Granular contacts of LAMMPS are soft springs, which tend to gaspart's hard ones only for stiffness without
-bound: no such comparison is made. Nor is one with SPARTA as a peer of the DSMC engine.
+bound: no such comparison is made.
 """
 
 

@@ -67,6 +67,7 @@ def row(referee, found):
     line |= {"scale": good.scale, "error": referee.error, "allowed": f"{good.allowed:g}"}
     line |= {"distance": f"{good.distance:.2g}", "planted": f"{wrong.distance:.2g}"}
     if referee in REFEREES:
-        return line | {"version": metadata.version(referee.package)}
+        version = referee.version() if referee.version else metadata.version(referee.package)
+        return line | {"version": version}
     deviations = published.deviations(FOLDER)[referee.what]
     return line | dict(zip(("in_ours", "in_theirs"), deviations, strict=True))

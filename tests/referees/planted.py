@@ -118,3 +118,17 @@ def number(which):
         return to
 
     return plant
+
+
+def stated(which, key):
+    """A quantity of one row of dilute.json, which SPARTA reads there, is 3 % larger than in our run."""
+
+    def plant(folder, to):
+        path = copied(folder, to, "dilute.json") / "dilute.json"
+        rows = json.loads(path.read_text())
+        (row,) = (row for row in rows if row["name"] == which)
+        row[key] *= 1.0 + ERROR
+        path.write_text(json.dumps(rows))
+        return to
+
+    return plant

@@ -10,6 +10,7 @@ import planted
 import published
 import readers
 import series
+import sparta
 import structure
 from finding import Finding
 
@@ -22,13 +23,14 @@ PISTON = planted.scaled("piston", 1.0 + planted.ERROR, 0)
 @dataclass(frozen=True)
 class Referee:
     """package: that judges; what: it judges; judge(folder): its finding; error: that is planted in words;
-    plant(folder, to): makes the folder `to` with that error."""
+    plant(folder, to): makes the folder `to` with that error; version(): of what is no Python package."""
 
     package: str
     what: str
     judge: Callable[[Path], Finding]
     error: str
     plant: Callable[[Path, Path], Path]
+    version: Callable[[], str] | None = None
 
 
 def _netcdf(name, change):
@@ -111,6 +113,21 @@ REFEREES = [
     Referee(
         "ovito", "positions, container of .data",
         partial(readers.ovito, suffix=".data"), "container", planted.data_box,
+    ),
+    Referee(
+        "SPARTA", "DSMC: flux of heat between plates, T = 2 and 1, Kn = 0.1",
+        partial(sparta.compared, which="Kn = 0.1", measure=sparta.fluxes),
+        "diameter", planted.stated("Kn = 0.1", "diameter"), sparta.version,
+    ),
+    Referee(
+        "SPARTA", "DSMC: the same, Kn = 1",
+        partial(sparta.compared, which="Kn = 1", measure=sparta.fluxes),
+        "temperature of the hot plate", planted.stated("Kn = 1", "hot"), sparta.version,
+    ),
+    Referee(
+        "SPARTA", "DSMC: fourth moment of speeds that were equal, after a collision of each",
+        partial(sparta.compared, which="relaxation", measure=sparta.moments),
+        "diameter", planted.stated("relaxation", "diameter"), sparta.version,
     ),
 ]  # fmt: skip
 
