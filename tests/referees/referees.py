@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 
 import ensembles
+import heaps
 import planted
 import published
 import readers
@@ -113,6 +114,10 @@ REFEREES = [
     Referee(
         "ovito", "positions, container of .data",
         partial(readers.ovito, suffix=".data"), "container", planted.data_box,
+    ),
+    Referee(
+        "lammps", "mean height of discs of two sizes at rest in a box, contacts of restitution 0.8",
+        heaps.compared, "width of the box", planted.wider_heaps,
     ),
     Referee(
         "SPARTA", "DSMC: flux of heat between plates, T = 2 and 1, Kn = 0.1",

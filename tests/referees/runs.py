@@ -3,8 +3,8 @@
 `thermal.nc`, `rough.nc`, `piston_low.nc`, `piston_high.nc`: gases in contact with thermal faces;
 `series_*.nc`: long series of a small one; `gas.nc`, `gas.gsd`, `gas.data`: a periodic gas in every format
 that is written. `stated.json` has what the scenes state and gaspart's numbers, `gas.npz` what gaspart reads
-and measures in `gas.nc`, `dilute.json` gases of the DSMC engine, `published.json` the comparison with
-published numbers.
+and measures in `gas.nc`, `dilute.json` gases of the DSMC engine, `heaps.json` discs at rest, `published.json`
+the comparison with published numbers.
 """
 
 import json
@@ -16,6 +16,7 @@ from pathlib import Path
 
 import dilute_runs
 import numpy as np
+from heap_runs import heaps
 from published_runs import PUBLISHED, compared
 
 import gaspart as gp
@@ -109,6 +110,7 @@ def main(folder):
     folder.mkdir(parents=True)
     with ProcessPoolExecutor(2) as pool:
         published = [pool.submit(compared, number, folder) for number in PUBLISHED]
+        fallen = pool.submit(heaps)
         dilute = [pool.submit(*job) for job in dilute_runs.jobs()]
         runs = {name: pool.submit(partial(simulate, folder, name, *run)) for name, run in scenes().items()}
         errors = [standard_error(runs[name].result()) for name in sorted(runs) if name.startswith("series")]
@@ -117,6 +119,7 @@ def main(folder):
         numbers, gases = ([job.result() for job in jobs] for jobs in (published, dilute))
     measure_gas(folder)
     (folder / "stated.json").write_text(json.dumps(stated() | {"standard_errors": errors}, indent=1))
+    (folder / "heaps.json").write_text(json.dumps(fallen.result()))
     (folder / "dilute.json").write_text(json.dumps(gases, indent=1))
     (folder / "published.json").write_text(json.dumps(numbers, indent=1))
 
