@@ -152,7 +152,7 @@ def _velocities(scene: Scene, rng: np.random.Generator) -> np.ndarray:
 def _add_flow(scene: Scene, positions: np.ndarray, velocities: np.ndarray) -> None:
     """Let drawn velocities (N, d) be about the flow of a sheared gas, without a mean: a gas that moves across
     the flow would be dragged along by it, ever faster."""
-    drawn = slice(len(scene.bodies), None)
+    drawn = slice(len(scene.particles), None)
     if scene.shear_rate is None or not len(positions[drawn]):
         return
     masses = masses_of(scene)[drawn]

@@ -19,8 +19,9 @@ class State:
     the particle's species, explicit particles being one more species after the others; lengths (d,); spins,
     angular velocities, (N,) in 2D and (N, 3) in 3D; moments_of_inertia (N,); gravity (d,) or None;
     well_energies (N,), the potential energy in the wells of the faces, and vibrations (N,), the energy of
-    each particle's vibration, or None; piston (2,), its place along its axis and its velocity, or None; displaced,
-    how far images above the container are displaced along x in a sheared gas, or None. The mass and moment of inertia of a fixed particle are infinite; they count in no sum.
+    each particle's vibration, or None; piston (2,), its place along its axis and its velocity, or None;
+    displaced, how far images above the container are displaced along x in a sheared gas, or None. The mass
+    and moment of inertia of a fixed particle are infinite; they count in no sum.
     """
 
     time: float

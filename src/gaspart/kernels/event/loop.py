@@ -99,14 +99,14 @@ def leave_box(particles, i, face, time, boxes, space, tally, lists):
 
 
 @inner_helper
-def enter_opposite_box(particles, i, face, time, boxes, space, tally, lists, shear):
+def enter_opposite_box(particles, i, face, time, boxes, model, tally, lists):
     """Let a particle that has crossed a periodic face be found where it now is."""
     if lists is not None:
-        renew(particles.flights, i, time, lists, space, tally)
+        renew(particles.flights, i, time, lists, model.space, tally)
     else:
         axis, upper = face // 2, face % 2
         move(particles.predictions, boxes, i, axis, 0 if upper else boxes.per_side[axis] - 1)
-        follow(particles, i, axis, boxes, shear)
+        follow(particles, i, axis, boxes, model.shear)
 
 
 @inner_helper
@@ -127,9 +127,7 @@ def process(particles, i, time, queue, boxes, model, tally):
         else:
             partner, happens = meet_obstacle(particles, i, face, time, model, tally)
             if not happens and face < BOX_FACES:
-                enter_opposite_box(
-                    particles, i, face, time, boxes, model.space, tally, boxes.lists, model.shear
-                )
+                enter_opposite_box(particles, i, face, time, boxes, model, tally, boxes.lists)
     elif is_outdated(predictions, i):
         happens = changes = False
         tally.counts[OUTDATED] += 1

@@ -78,11 +78,15 @@ def time_of_sheared_contact(flights, i, j, image, offset, space, shear):
             vv += v * v
     sigma = flights[i].radius + flights[j].radius
     ss = sigma * sigma
-    within = 0.0 if rr <= ss else time_to_contact(rr, rv, vv, ss)
-    if within == inf:
-        return inf
+    if rr > ss:
+        near = time_to_contact(rr, rv, vv, ss)
+        if near == inf:
+            return inf
+        start += near
+        along += speed * near
+        rr, rv = ss, rv + vv * near
     length = space.lengths[FLOW]
-    r = along - length * np.rint((along + speed * within) / length)
+    r = along - length * np.rint(along / length)
     soon = time_to_contact(rr + r * r, rv + r * speed, vv + speed * speed, ss)
     r -= copysign(length, speed)
     later = time_to_contact(rr + r * r, rv + r * speed, vv + speed * speed, ss)
