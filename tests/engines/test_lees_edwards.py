@@ -132,7 +132,7 @@ LAWS = {
 @pytest.mark.parametrize("species", [None, MIXED], ids=["alike", "mixture"])
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 def test_the_energy_gained_is_the_work_of_the_stress(rate, species, law):
-    """d(thermal energy) / dt = -shear rate V P_yx - losses, exactly, and the faces' work that of all energy."""
+    """d(thermal energy) / dt = -shear rate V P_yx - losses, exactly; the faces' work, of all energy."""
     scene = sheared(rate, species=species, restitution=law)
     sim = gp.Simulation(scene, gp.EventDriven(), seed=2, stress=True)
     before, whole = thermal_energy(scene, sim.state), sim.state.kinetic_energy
@@ -232,13 +232,11 @@ def test_the_profile_of_the_flow_is_linear():
     assert (np.abs(u - expected) < 5.0 * errors + 0.02).all()
 
 
-@pytest.mark.parametrize(
-    ("packing", "rate", "duration", "within"), [(0.01, 0.02, 500.0, 0.06), (0.2, 0.15, 60.0, 0.06)]
-)
-def test_the_response_is_the_viscosity_of_enskog(packing, rate, duration, within):
+@pytest.mark.parametrize(("packing", "rate", "duration"), [(0.05, 0.04, 400.0), (0.2, 0.15, 60.0)])
+def test_the_response_is_the_viscosity_of_enskog(packing, rate, duration):
     """Spheres at a dilute and a moderate density; noise is 2 %. Each interval over sqrt(T), by which the gas
     and its viscosity scale while it heats."""
-    scene = sheared(rate, 2000, packing, 3)
+    scene = sheared(rate, 4000, packing, 3)
     sim = gp.Simulation(scene, gp.EventDriven(), seed=8, stress=True)
     sim.advance(until=0.1 * duration)
     ratios = []
@@ -250,4 +248,4 @@ def test_the_response_is_the_viscosity_of_enskog(packing, rate, duration, within
         found = -sim.tally.stress_sum[1, 0] / (rate * scene.container.volume * sim.tally.time)
         expected = gp.theory.enskog_viscosity(packing, 3, temperature=temperature, mass=1.0, diameter=1.0)
         ratios.append(found / expected)
-    assert np.mean(ratios) == pytest.approx(1.0, abs=within)
+    assert np.mean(ratios) == pytest.approx(1.0, abs=0.05)
