@@ -169,10 +169,10 @@ class Run:
 
     @property
     def fluid(self) -> Gas | None:
-        """The scene's gas if it is one of two particles or more in a periodic container, at rest, within the
-        range of the fluid's equation of state."""
+        """The scene's gas if it is one of two particles or more in a periodic container, within
+        the range of the fluid's equation of state."""
         gas = self.scene.gas
-        if gas is None or gas.count < 2 or not self.periodic.all() or self.scene.shear_rate is not None:
+        if gas is None or gas.count < 2 or not self.periodic.all():
             return None
         return gas if gas.packing_fraction <= theory.HIGHEST_PACKING_FRACTION[gas.dimension] else None
 

@@ -126,7 +126,7 @@ def _response(run: Run, lag: float | None) -> Observable:
     carried = run.increments("stress_sum")[:, 1, 0]
     viscosity = -carried / (rate * scene.container.volume * np.diff(run.time))
     expected: dict[str, Any] = {}
-    if (gas := scene.gas) and not run.dissipates and not scene.rough:
+    if gas := replace(scene, faces={}).gas:
         value = theory.enskog_viscosity(**replace(gas, temperature=run.temperature).parameters)
         expected = {"theory": (float(value), math.nan), "source": "Enskog, of a small shear rate"}
     public, symbol = _PUBLIC["shear"]
