@@ -225,6 +225,7 @@ class LeesEdwards(Surface):
     shear_rate: float = field(metadata=declared(NUMBER, "gradient of the flow, du_x / dy"))
 
     kind: ClassVar[str] = "lees_edwards"
+    moves: ClassVar[bool] = True
 
 
 S = TypeVar("S", bound=Surface)
