@@ -45,11 +45,11 @@ def _blocks(run: Run, blocks: int) -> tuple[np.ndarray, np.ndarray]:
     sums = run.data["stress_sum"].values[: used + 1 : length]
     time = np.diff(run.time[: used + 1 : length])
     pressures = np.diff(sums, axis=0) / (scene.container.volume * time)[:, None, None]
-    temperature = _temperatures(run)[: used + 1]
-    shape = scene.packing_fraction, 3, 2.0 * scene.smallest_radius
-    viscosity = theory.enskog_viscosity(*shape, temperature=0.5 * (temperature[1:] + temperature[:-1]))
+    root = np.sqrt(_temperatures(run)[: used + 1])
+    unit = float(theory.enskog_viscosity(scene.packing_fraction, 3, 2.0 * scene.smallest_radius))
+    viscosity = unit * 0.5 * (root[1:] + root[:-1])
     assert scene.shear_rate is not None
-    return pressures, scene.shear_rate * np.asarray(viscosity).reshape(blocks, length).mean(axis=1)
+    return pressures, scene.shear_rate * viscosity.reshape(blocks, length).mean(axis=1)
 
 
 def _temperatures(run: Run) -> np.ndarray:
