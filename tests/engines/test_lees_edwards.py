@@ -118,6 +118,20 @@ def test_all_searches_give_the_same_bits(dimension, law):
         assert (stress == found[0][1]).all()
 
 
+def test_neighbour_lists_and_oversized_particles_are_not_used():
+    with pytest.raises(gp.SceneError, match="neighbour lists do not support sheared faces"):
+        gp.Simulation(sheared(0.5), gp.EventDriven(search="lists"), 1)
+    large = [gp.Species(200, 0.1, temperature=1.0), gp.Species(1, 2.0, temperature=1.0)]
+    found = []
+    for engine in (gp.EventDriven(), gp.EventDriven(search="direct")):
+        sim = gp.Simulation(sheared(0.5, species=large), engine, seed=1)
+        sim.advance(until=10.0)
+        found.append(sim.state)
+    assert (found[0].positions == found[1].positions).all()
+    with pytest.raises(gp.SceneError, match="must not be narrower than the largest diameter"):
+        gp.Simulation(sheared(0.5, species=large), gp.EventDriven(boxes_per_side=8), 1)
+
+
 MIXED = [gp.Species(40, 0.5, mass=1.0, temperature=1.0), gp.Species(20, 0.25, mass=0.2, temperature=1.0)]
 
 
