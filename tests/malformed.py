@@ -61,6 +61,11 @@ SCENES = [
         "particles": [{"position": [4, 4, 4], "velocity": [0, 0, 1], "radius": 0.3, "spin": [0, 0, 1]}],
         "walls": [{"corner": [1, 1, 1], "edges": [[2, 0, 0], [0, 2, 0]]}],
     },
+    {
+        "container": {"lengths": [8.0, 9.0], "boundary": "periodic"},
+        "species": [{"count": 5, "radius": 0.3, "temperature": 1.0}],
+        "faces": {"y_high": {"kind": "lees_edwards", "shear_rate": -0.5}},
+    },
 ]  # fmt: skip
 
 NASTY_TEXT = ["", " ", "\0", "\n", "wall\n", "periodic", "random", "all", "thermal", "1e3", "..", "/"]

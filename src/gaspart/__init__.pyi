@@ -14,6 +14,7 @@ from gaspart.rendering.frames import render as render
 from gaspart.rendering.view import view as view
 from gaspart.reproduction.sweep import sweep as sweep
 from gaspart.scene.container import Container as Container
+from gaspart.scene.faces import LeesEdwards as LeesEdwards
 from gaspart.scene.faces import Piston as Piston
 from gaspart.scene.faces import Sticky as Sticky
 from gaspart.scene.faces import Thermal as Thermal

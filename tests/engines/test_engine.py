@@ -45,6 +45,7 @@ assert gp.Simulation(scene, Skeleton(stride=1.0), 1).engine.name == "skeleton"
 """
 
 CONTAINER = gp.Container((20.0, 20.0))
+AROUND = gp.Container((20.0, 20.0), "periodic")
 DISCS = gp.Species(3, 0.5, temperature=1.0)
 WITH = {
     "gravity": {"gravity": (0.0, -1.0)},
@@ -63,6 +64,7 @@ WITH = {
     "well": {"faces": {"x_low": gp.Well(1.0, 0.5)}},
     "sticky": {"faces": {"x_low": gp.Sticky(1.0)}},
     "vibrating": {"faces": {"x_low": gp.Vibrating(0.1, 1.0)}},
+    "lees_edwards": {"container": AROUND, "faces": {"y_high": gp.LeesEdwards(1.0)}},
     "piston": {"faces": {"x_low": gp.Piston(1.0, 0.1)}},
 }
 
@@ -94,6 +96,7 @@ def test_an_engine_refuses_what_it_does_not_model_and_names_one_that_does(engine
     if missing:
         with pytest.raises(gp.SceneError, match='needs the "event"') as refused:
             settings.check_features(scene)
-        assert refused.value.key.removesuffix(".x_low") in {FEATURES[one].key for one in missing}
+        face = f".{next(iter(scene.faces), '')}"
+        assert refused.value.key.removesuffix(face) in {FEATURES[one].key for one in missing}
     else:
         settings.check_features(scene)

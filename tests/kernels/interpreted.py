@@ -32,6 +32,7 @@ FINE = {"oversized": (6, 6, 5), "oversized and rough": (12, 10)}  # boxes too na
 def event_scenes():
     """Scenes of the event-driven engine, by name; each with features of its own."""
     box, room = gp.Container((6.0, 5.0)), gp.Container((6.0, 6.0, 5.0), ("wall", "periodic", "wall"))
+    around = gp.Container((4.0, 4.0), "periodic")
     two = [gp.Species(6, 0.3, temperature=1.0), gp.Species(3, 0.4, 3.0, temperature=1.0)]
     fixed = gp.Species(2, 0.3, fixed=True)
     cross = [gp.Wall((1.0, 1.0), (4.0, 3.0)), gp.Wall((4.0, 1.5), (2.0, 4.0))]
@@ -63,6 +64,7 @@ def event_scenes():
         "holding": gp.Scene(room, two, faces=low | high),
         "vibrating": gp.Scene(box, two, gravity=down, restitution=ROUGH, faces=shaking),
         "piston": gp.Scene(room, two, faces={"x_low": gp.Piston(5.0, 0.1)}),
+        "sheared": gp.Scene(around, two, restitution=ROUGH, faces={"y_high": gp.LeesEdwards(0.7)}),
         "viscoelastic": gp.Scene(box, [*two, fixed], restitution=VISCOUS),
         "metal": gp.Scene(box, electrons, restitution=METAL, faces=heat),
         "oversized": gp.Scene(room, [small, large]),

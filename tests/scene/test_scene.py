@@ -164,6 +164,8 @@ def test_derived_numbers():
 
 ROOM = gp.Container((5.0, 5.0, 5.0), "wall")
 FLAT = gp.Container((5.0, 5.0), "wall")
+AROUND, HALF = gp.Container((5.0, 5.0), "periodic"), gp.Container((5.0, 5.0), ("wall", "periodic"))
+SHEARED = {"y_high": gp.LeesEdwards(1.0)}
 BALL = [gp.Species(1, 0.5, speed=1.0)]
 HOLED = {"x_low": gp.Well(1.0, 2.0), "x_high": gp.Well(1.0, 2.0)}
 
@@ -174,7 +176,7 @@ HOLED = {"x_low": gp.Well(1.0, 2.0), "x_high": gp.Well(1.0, 2.0)}
         (lambda: gp.Scene(ROOM, walls=[gp.Wall((1.0, 1.0), (2.0, 2.0))]), "a Wall needs a container of two"),
         (lambda: gp.Scene(FLAT, BALL, faces=HOLED), "faces.x_low.width = 2.0: leaves no room outside"),
         (lambda: gp.Scene(FLAT, faces={"y_low": HOLED["x_low"]}, gravity=(0.0, -1.0)), "without gravity"),
-        (lambda: gp.Scene(FLAT, faces={"x_low": 3}), "must be Thermal, Well, Sticky, Vibrating or Piston"),
+        (lambda: gp.Scene(FLAT, faces={"x_low": 3}), "must be Thermal, Well, .* or LeesEdwards"),
         (lambda: gp.Scene(FLAT, faces=["x_low"]), "must be a mapping of faces"),
         (lambda: gp.Scene(FLAT, restitution=0.9), "restitution = 0.9: must be a Restitution"),
         (lambda: gp.Scene(FLAT, gravity=(0.0, -1.0, 0.0)), "must be a list of 2 finite numbers"),
@@ -202,6 +204,37 @@ def test_a_mistake_in_python_is_refused_in_one_line_too(make, complaint):
     assert "\n" not in str(caught.value)
 
 
+FAST, WALL = {"y_high": gp.LeesEdwards(1e60)}, gp.Wall((1.0, 1.0), (2.0, 2.0))
+FIXED, KICKS = gp.Species(1, 0.5, fixed=True), gp.Thermostat(1.0, 0.1)
+
+
+@pytest.mark.parametrize(
+    ("make", "complaint"),
+    [
+        (
+            lambda: gp.Scene(AROUND, faces={"x_high": SHEARED["y_high"]}),
+            "x_high = .*: state it of y_high",
+        ),
+        (
+            lambda: gp.Scene(HALF, faces=SHEARED),
+            "y_high = .*: needs a container that is periodic",
+        ),
+        (lambda: gp.Scene(AROUND, faces=FAST), "faces.y_high.shear_rate = .*: must be 0 or of a size"),
+        (lambda: gp.LeesEdwards("fast"), "shear_rate = 'fast': must be a finite number"),
+        (lambda: gp.Scene(AROUND, walls=[WALL], faces=SHEARED), "walls .*: the images of walls would slide"),
+        (lambda: gp.Scene(AROUND, [FIXED], faces=SHEARED), "fixed .*: the images of fixed particles would"),
+        (
+            lambda: gp.Scene(AROUND, thermostat=KICKS, faces=SHEARED),
+            "thermostat .*: kicks need faces",
+        ),
+    ],
+)
+def test_what_cannot_be_sheared_is_refused_in_one_line(make, complaint):
+    with pytest.raises(gp.SceneError, match=complaint) as caught:
+        make()
+    assert "\n" not in str(caught.value)
+
+
 @pytest.mark.parametrize(
     "kind",
     [
@@ -217,6 +250,7 @@ def test_a_mistake_in_python_is_refused_in_one_line_too(make, complaint):
         gp.Sticky,
         gp.Vibrating,
         gp.Piston,
+        gp.LeesEdwards,
     ],
 )
 def test_every_field_of_a_scene_has_a_rule_and_a_meaning(kind):

@@ -22,6 +22,7 @@ from gaspart.engines import EventDriven
 from gaspart.errors import SceneError, SimulationError
 from gaspart.files import Kind, begins_with, descriptor_path, writing
 from gaspart.scene.scene import Scene
+from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.validation import count_of, number
 from gaspart.simulation import Simulation
 from gaspart.theory.geometry import unit_sphere_surface
@@ -57,6 +58,7 @@ def collision_data(
     number("equilibration", equilibration, "must not be negative", least=0.0)
     if scene.gravity is not None:
         raise SceneError("gravity", scene.gravity, "free paths are straight only without gravity")
+    refuse_sheared(scene, "distances at contacts are not defined where images of the particles slide")
     if scene.count < 2:
         raise SceneError("count", scene.count, "a collision needs two particles")
     simulation = Simulation(scene, EventDriven(), seed)

@@ -39,7 +39,7 @@ def field(
     Raises SceneError for an unknown property or axis, a file without all particles, and too few frames.
     """
     choice("of", of, QUANTITIES)
-    with measured(source, start) as run:
+    with measured(source, start, sheared=True) as run:
         along = _axes(run, axes)
         numbers = _numbers(cells, len(along))
         parts = np.array_split(np.arange(len(run.time)), min(STRETCHES, len(run.time)))

@@ -12,6 +12,7 @@ from gaspart.analysis.collisions import pair_rows
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
+from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.validation import count_of
 from gaspart.simulation import Simulation
 from gaspart.theory.speeds import mean_speed, mean_speed_factor
@@ -38,6 +39,7 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
     particles.
     """
     scene, state = simulation.scene, simulation.state
+    refuse_sheared(scene, "free flights are those of a gas at rest")
     if not all(scene.container.periodic) or scene.walls:
         rule = "has walls, which end flights: only the flights of a periodic gas are between collisions"
         raise SceneError("container.boundary", scene.container.boundary, rule)

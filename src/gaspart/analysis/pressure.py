@@ -177,7 +177,7 @@ def collision_rate(source: Source, start: float | None = None) -> Observable:
     the fluid's equation of state, corrected for the number of particles. Raises SceneError for too few
     frames, without a collision, and if particles come to rest.
     """
-    with measured(source, start) as run:
+    with measured(source, start, sheared=True) as run:
         if not run.moving.any():
             raise SceneError("species.fixed", True, "fixed particles do not collide")
         refuse_rest(run, "touch others without a collision, so that there is no rate")

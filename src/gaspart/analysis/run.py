@@ -16,6 +16,7 @@ from gaspart import theory
 from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas, Mixture
 from gaspart.scene.scene import Scene
+from gaspart.scene.shear import flow, refuse_sheared
 from gaspart.scene.validation import count_of, number
 from gaspart.simulation import Simulation
 from gaspart.state.insertion import per_particle
@@ -125,8 +126,10 @@ class Run:
     @cached_property
     def peculiar(self) -> np.ndarray:
         """(T, M, d) velocities of the M moving particles about the centre of mass's, where that is
-        conserved."""
+        conserved, and about the flow of a sheared gas."""
         velocities, masses = self.velocities[:, self.moving], self.masses[self.moving]
+        if self.scene.shear_rate is not None:
+            velocities = velocities - flow(self.scene, self.positions[:, self.moving])
         drift = np.einsum("tnd,n->td", velocities, masses) / (masses.sum() or 1.0)  # of none: nothing
         return velocities - np.where(self.conserved, drift, 0.0)[:, None]
 
@@ -166,8 +169,8 @@ class Run:
 
     @property
     def fluid(self) -> Gas | None:
-        """The scene's gas if it is one of two particles or more in a periodic container, within the range of
-        the fluid's equation of state."""
+        """The scene's gas if it is one of two particles or more in a periodic container, within
+        the range of the fluid's equation of state."""
         gas = self.scene.gas
         if gas is None or gas.count < 2 or not self.periodic.all():
             return None
@@ -239,12 +242,15 @@ def require_collisions(run: Run) -> None:
 
 
 @contextmanager
-def measured(source: Source, start: float | None, pairs: bool = False) -> Iterator[Run]:
+def measured(
+    source: Source, start: float | None, pairs: bool = False, sheared: bool = False
+) -> Iterator[Run]:
     """The part of a source from the time `start` on; by default without its first quarter.
 
     A simulation is run again, from its start to the present time; with `pairs`, the collisions of each pair
-    of species are counted then. Raises SceneError for fewer than two frames
-    and for what `open_trajectory` refuses.
+    of species are counted then. sheared: whether the observable has a meaning in a sheared gas. Raises
+    SceneError for a sheared gas where it has none, for fewer than two frames, and for what `open_trajectory`
+    refuses.
     """
     if isinstance(source, Simulation):
         opened = nullcontext(repeated(source, pairs))
@@ -264,7 +270,10 @@ def measured(source: Source, start: float | None, pairs: bool = False) -> Iterat
         if chosen.sum() < 2:
             raise SceneError("start", begin, f"leaves {chosen.sum()} frames of a run until time {last:g}")
         part = data.isel(frame=slice(int(np.argmax(chosen)), None))
-        yield Run(Scene.from_dict(parse_yaml(data.attrs["scene"])), time[chosen], part)
+        scene = Scene.from_dict(parse_yaml(data.attrs["scene"]))
+        if not sheared:
+            refuse_sheared(scene, "this observable is not defined where images of the particles slide")
+        yield Run(scene, time[chosen], part)
 
 
 def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:

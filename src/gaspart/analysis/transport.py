@@ -34,11 +34,16 @@ def shear_viscosity(source: Source, lag: float | None = None, start: float | Non
 
     source: a trajectory with correlations of the stress; lag: the time until which correlations count, by
     default the longest; start: the time from which frames count. The result has `green_kubo` and `helfand`
-    (lag,) beside the value. The antisymmetric part of the stress is included, which is zero unless
-    collisions do not conserve angular momentum, as in the cells of DSMC. Theory: Enskog's. Raises SceneError
-    for a run without correlations of the stress, a lag that is longer than theirs, and fewer than 17 frames.
+    (lag,) beside the value. Between sheared faces (`LeesEdwards`) it is the response -P_yx / shear_rate
+    instead, without a lag and without these curves. The antisymmetric part of the stress is included, which
+    is zero unless collisions do not conserve angular momentum, as in the cells of DSMC. Theory: Enskog's.
+    Raises SceneError for a run without correlations of the stress, a lag that is longer than theirs, fewer
+    than 17 frames, and a shear rate of 0.
     """
-    return _coefficient(source, "shear", lag, start, theory.enskog_viscosity)
+    with measured(source, start, sheared=True) as run:
+        if run.scene.shear_rate is None:
+            return _coefficient(run, "shear", lag, theory.enskog_viscosity)
+        return _response(run, lag)
 
 
 def bulk_viscosity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
@@ -47,7 +52,8 @@ def bulk_viscosity(source: Source, lag: float | None = None, start: float | None
     Arguments, theory and errors as of `shear_viscosity`. The mean is that of the run, of duration T, which
     makes the value too low by about 2 lag / T of it.
     """
-    return _coefficient(source, "bulk", lag, start, theory.enskog_bulk_viscosity)
+    with measured(source, start) as run:
+        return _coefficient(run, "bulk", lag, theory.enskog_bulk_viscosity)
 
 
 def thermal_conductivity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
@@ -56,16 +62,18 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
     Arguments, theory and errors as of `shear_viscosity`; SceneError also for a mixture, whose heat flux
     contains that of diffusion.
     """
-    return _coefficient(source, "heat", lag, start, theory.enskog_conductivity)
+    with measured(source, start) as run:
+        return _coefficient(run, "heat", lag, theory.enskog_conductivity)
 
 
 def pressure_tensor(source: Source, start: float | None = None) -> Observable:
     """The components of the pressure tensor (component,), mass / (length^(d-2) time^2), xx, xy ...
 
-    source: a trajectory with correlations of the stress. Theory: the equation of state. Raises SceneError for
-    other trajectories, and fewer than 17 frames.
+    source: a trajectory with correlations of the stress. Of a sheared gas it is that of velocities about the
+    flow. Theory: the equation of state, of a gas at rest. Raises SceneError for other trajectories, and fewer
+    than 17 frames.
     """
-    with measured(source, start) as run:
+    with measured(source, start, sheared=True) as run:
         _stored(run)
         d, volume = run.dimension, math.prod(run.scene.container.lengths)
         rates = run.increments("stress_sum") / (volume * np.diff(run.time))[:, None, None]
@@ -107,40 +115,56 @@ def _temperature(run: Run) -> float:
     return float(2.0 * run.data["kinetic_energy"].mean() / freedom)
 
 
-def _coefficient(
-    source: Source, name: str, lag: float | None, start: float | None, enskog: Callable[..., Any]
-) -> Observable:
+def _response(run: Run, lag: float | None) -> Observable:
+    """The shear viscosity of a sheared gas, from the momentum that it carries across the flow."""
+    _stored(run)
+    scene, rate = run.scene, run.scene.shear_rate
+    if lag is not None:
+        raise SceneError("lag", lag, "is that of fluctuations at rest; a sheared gas responds without")
+    if not rate:
+        raise SceneError("shear_rate", rate, "gives no response")
+    carried = run.increments("stress_sum")[:, 1, 0]
+    viscosity = -carried / (rate * scene.container.volume * np.diff(run.time))
+    expected: dict[str, Any] = {}
+    if gas := replace(scene, faces={}).gas:
+        value = theory.enskog_viscosity(**replace(gas, temperature=run.temperature).parameters)
+        expected = {"theory": (float(value), math.nan), "source": "Enskog, of a small shear rate"}
+    public, symbol = _PUBLIC["shear"]
+    about: dict[str, Any] = {"units": f"mass length^{2 - run.dimension} / time", **expected}
+    return scalar(public, viscosity, run.time, long_name=f"shear viscosity {symbol}, response", **about)
+
+
+def _coefficient(run: Run, name: str, lag: float | None, enskog: Callable[..., Any]) -> Observable:
     """A transport coefficient from the correlations of `trajectory.correlator.STRESS`."""
     public, symbol = _PUBLIC[name]
-    with measured(source, start) as run:
-        settings = _stored(run)
-        if name == "heat" and not run.scene.alike:
-            raise SceneError("species", len(run.scene.kinds), "the heat flux of a mixture contains diffusion")
-        lags = _lags_until(settings, lag)
-        running, slopes = (
-            np.sum([form(run, part) for part in _PARTS.get(name, (name,))], axis=0)
-            for form in (green_kubo, helfand)
-        )
-        expected: dict[str, Any] = {}
-        if gas := run.fluid:
-            value = enskog(**replace(gas, temperature=_temperature(run)).parameters)
-            expected = {"theory": (float(value), math.nan), "source": "Enskog"}
-        d = run.dimension
-        units = f"1 / (length^{d - 2} time)" if name == "heat" else f"mass length^{2 - d} / time"
-        about: dict[str, Any] = {
-            "units": units,
-            "long_name": f"{public.replace('_', ' ')} {symbol}",
-            **expected,
-        }
-        result = scalar(public, running[:, lags], run.time[-len(running) - 1 :], **about)
-        time = settings.interval * np.arange(running.shape[1])
-        result["lag"] = ("lag", time, {"units": "time", "long_name": "lag"})
-        curves = {"green_kubo": running, "helfand": slopes}
-        for key, blocks in curves.items():
-            values, errors = means_of(blocks)
-            result[key] = ("lag", values, {"units": units, "long_name": f"{key} until this lag"})
-            result[f"{key}_error"] = ("lag", errors, {"units": units, "long_name": "standard uncertainty"})
-        return result
+    settings = _stored(run)
+    if name == "heat" and not run.scene.alike:
+        raise SceneError("species", len(run.scene.kinds), "the heat flux of a mixture contains diffusion")
+    lags = _lags_until(settings, lag)
+    running, slopes = (
+        np.sum([form(run, part) for part in _PARTS.get(name, (name,))], axis=0)
+        for form in (green_kubo, helfand)
+    )
+    expected: dict[str, Any] = {}
+    if gas := run.fluid:
+        value = enskog(**replace(gas, temperature=_temperature(run)).parameters)
+        expected = {"theory": (float(value), math.nan), "source": "Enskog"}
+    d = run.dimension
+    units = f"1 / (length^{d - 2} time)" if name == "heat" else f"mass length^{2 - d} / time"
+    about: dict[str, Any] = {
+        "units": units,
+        "long_name": f"{public.replace('_', ' ')} {symbol}",
+        **expected,
+    }
+    result = scalar(public, running[:, lags], run.time[-len(running) - 1 :], **about)
+    time = settings.interval * np.arange(running.shape[1])
+    result["lag"] = ("lag", time, {"units": "time", "long_name": "lag"})
+    curves = {"green_kubo": running, "helfand": slopes}
+    for key, blocks in curves.items():
+        values, errors = means_of(blocks)
+        result[key] = ("lag", values, {"units": units, "long_name": f"{key} until this lag"})
+        result[f"{key}_error"] = ("lag", errors, {"units": units, "long_name": "standard uncertainty"})
+    return result
 
 
 _PARTS = {"shear": ("shear", "rotational")}

@@ -212,6 +212,18 @@ class Oversized(NamedTuple):
     largest_radius: float
 
 
+class Shear(NamedTuple):
+    """Periodic faces whose images slide, see `physics.lees_edwards`: rate, of the shear; velocity, of the
+    images above. origin (1,): their displacement where the clocks are at zero, but for so many lengths of the
+    container, turns (1,). kept (3,), room for where a particle was before a contact, and its velocity."""
+
+    rate: float
+    velocity: float
+    origin: np.ndarray
+    turns: np.ndarray
+    kept: np.ndarray
+
+
 class Model(NamedTuple):
     """What is simulated. space: a `Space`, of either engine; masses (N,), or None if all are 1 or the law
     knows them; whatever else may be absent is None."""
@@ -223,6 +235,7 @@ class Model(NamedTuple):
     faces: Faces | None
     walls: InteriorWalls | None
     oversized: Oversized | None
+    shear: Shear | None
 
 
 class Tally(NamedTuple):

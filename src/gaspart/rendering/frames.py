@@ -19,6 +19,7 @@ from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, pictu
 from gaspart.rendering.shown import Picture
 from gaspart.scene.faces import Piston, Vibrating, pistons
 from gaspart.scene.scene import Scene
+from gaspart.scene.shear import fixed_images
 from gaspart.scene.validation import count_of
 from gaspart.scene.walls import Wall
 from gaspart.simulation import Simulation
@@ -111,8 +112,8 @@ def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -
         speeds=np.sqrt((velocities**2).sum(axis=1)),
         lengths=shown["cell_lengths"][: positions.shape[1]],
         walls=_walls(scene, float(shown["time"]), shown.get("piston_position")),
-        periodic=scene.container.periodic,
         masses=per_particle(scene, "mass")[: len(source["radius"])].astype(float),
+        periodic=fixed_images(scene),
         parameters=parameters_of(scene),
     )
 
@@ -151,7 +152,7 @@ def _of_state(state: State, scene: Scene | None) -> DrawnParticles:
     walls = np.zeros((0, 2, state.dimension))
     if scene:
         walls = _walls(scene, state.time, None if state.piston is None else state.piston[0])
-    periodic = scene.container.periodic if scene else (False,) * state.dimension
+    periodic = fixed_images(scene) if scene else (False,) * state.dimension
     parameters = parameters_of(scene) if scene else ()
     looks = state.positions, state.radii, state.species, state.speeds
     return DrawnParticles(*looks, state.lengths, walls, periodic, state.masses, parameters)

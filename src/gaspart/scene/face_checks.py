@@ -5,7 +5,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import FACES, KINDS, Piston, Sticky, Thermal, Vibrating, Well, pistons
+from gaspart.scene.faces import (
+    FACES,
+    GRADIENT,
+    KINDS,
+    LeesEdwards,
+    Piston,
+    Sticky,
+    Thermal,
+    Vibrating,
+    Well,
+    pistons,
+)
 from gaspart.scene.limits import closest_packing
 from gaspart.scene.validation import size, vector
 
@@ -26,6 +37,9 @@ def check_faces(scene: Scene) -> None:
             *others, last = (kind.__name__ for kind in KINDS.values())
             raise SceneError(f"faces.{name}", surface, f"must be {', '.join(others)} or {last}")
         axis = known.index(name) // 2
+        if isinstance(surface, LeesEdwards):
+            _check_sheared(scene, name, surface)
+            continue
         if scene.container.periodic[axis]:
             raise SceneError(f"faces.{name}", surface.kind, "a periodic axis has no faces")
         if isinstance(surface, Thermal) and surface.velocity is not None:
@@ -43,6 +57,16 @@ def check_faces(scene: Scene) -> None:
         if isinstance(surface, Piston):
             _check_piston(scene, name, surface)
     _check_room(scene)
+
+
+def _check_sheared(scene: Scene, name: str, surface: LeesEdwards) -> None:
+    """Raise SceneError for a sheared face that is not y_high, and a container with walls."""
+    if name != FACES[2 * GRADIENT + 1]:
+        rule = "state it of y_high: the flow is along x, with a gradient along y, and y_low is its other side"
+        raise SceneError(f"faces.{name}", surface.kind, rule)
+    if not all(scene.container.periodic):
+        raise SceneError(f"faces.{name}", surface.kind, "needs a container that is periodic along all axes")
+    size(f"faces.{name}.shear_rate", surface.shear_rate * scene.container.lengths[GRADIENT])
 
 
 def _check_velocity(scene: Scene, name: str, velocity: tuple[float, ...]) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 from gaspart.errors import SceneError
 from gaspart.kinds import described
-from gaspart.scene.keys import NOT_NEGATIVE, POSITIVE, VECTOR, declared, schema_of, validate
+from gaspart.scene.keys import NOT_NEGATIVE, NUMBER, POSITIVE, VECTOR, declared, schema_of, validate
 from gaspart.scene.keys import choice as choice_of
 from gaspart.scene.validation import choice, from_mapping, size
 
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 FACES = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
 COMPONENTS = ("all", "normal")
 WAVEFORMS = ("sine", "sawtooth")
+FLOW, GRADIENT = 0, 1
+"""The axes of the flow of a sheared gas and of its gradient."""
 
 
 KINDS: dict[str, type[Surface]] = {}
@@ -207,6 +209,23 @@ class Piston(Surface):
         """That by which its load pushes it inwards."""
         container = scene.container
         return self.pressure / self.mass * (container.volume / container.lengths[axis])
+
+
+@dataclass(frozen=True)
+class LeesEdwards(Surface):
+    """Periodic faces whose images slide (Lees & Edwards, J. Phys. C 5, 1921 (1972)): a gas without walls is
+    sheared, u_x = `shear_rate` (y - L_y / 2).
+
+    It is stated of the face y_high, and is true of y_low too, of a container that is periodic along all axes.
+    A particle that leaves there enters at y_low displaced by -shear_rate L_y t along x, with v_x less by
+    shear_rate L_y, and back. It acts at the start too: drawn velocities are about this flow, without a mean.
+    The faces do work, by which an elastic gas heats.
+    """
+
+    shear_rate: float = field(metadata=declared(NUMBER, "gradient of the flow, du_x / dy"))
+
+    kind: ClassVar[str] = "lees_edwards"
+    moves: ClassVar[bool] = True
 
 
 S = TypeVar("S", bound=Surface)

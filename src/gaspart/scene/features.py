@@ -107,6 +107,9 @@ EXCLUDED: dict[tuple[str, str], str] = {
     ("well", "thermostat"): "kicks need faces that are hard or thermal",
     ("sticky", "thermostat"): "kicks need faces that are hard or thermal",
     ("vibrating", "thermostat"): "kicks need faces that are hard or thermal",
+    ("thermostat", "lees_edwards"): "kicks need faces that are hard or thermal",
+    ("walls", "lees_edwards"): "the images of walls would slide",
+    ("fixed", "lees_edwards"): "the images of fixed particles would slide",
     ("restitution", "vibrations"): "energy would be lost twice",
     ("centres_to_walls", "roughness"): "rough particles touch walls with their surfaces",
 }

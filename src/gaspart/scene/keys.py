@@ -42,12 +42,20 @@ def _sized(name: str, value: Any) -> tuple[float, ...]:
     return found
 
 
+def _sized_number(name: str, value: Any) -> float:
+    found = validation.number(name, value, "must be a finite number")
+    validation.size(name, found)
+    return found
+
+
 def _numbers(least: int, most: int) -> Kind:
     return kinds.listed({"type": "number"}, least=least, most=most)
 
 
 POSITIVE = Rule(validation.positive, kinds.POSITIVE)
 NOT_NEGATIVE = Rule(validation.not_negative, kinds.NOT_NEGATIVE)
+NUMBER = Rule(_sized_number, {"type": "number"})
+"""A number of either sign, 0 or of an acceptable size."""
 FLAG = Rule(validation.flag, kinds.FLAG)
 POSITION = Rule(validation.vector, _numbers(2, 3))
 VECTOR = Rule(_sized, _numbers(2, 3))

@@ -19,7 +19,7 @@ from gaspart.errors import SceneError
 from gaspart.scene.container import Container
 from gaspart.scene.face_checks import check_faces
 from gaspart.scene.faces import SCHEMA as FACES_SCHEMA
-from gaspart.scene.faces import Sticky, Surface, surface_from_dict, surface_to_dict
+from gaspart.scene.faces import LeesEdwards, Sticky, Surface, surface_from_dict, surface_to_dict
 from gaspart.scene.features import FEATURES, check_features, features
 from gaspart.scene.gas import Gas, Mixture, mixture_of
 from gaspart.scene.geometry import ball_volume
@@ -201,9 +201,16 @@ class Scene:
         return sticky or any(thing.vibrates for thing in self.kinds)
 
     @property
+    def shear_rate(self) -> float | None:
+        """du_x / dy between sheared faces (`LeesEdwards`), None without any."""
+        rates = (face.shear_rate for face in self.faces.values() if isinstance(face, LeesEdwards))
+        return next(rates, None)
+
+    @property
     def conserved_axes(self) -> tuple[bool, ...]:
         """(d,) whether the total momentum along an axis is conserved: a periodic one, if no particle is fixed
-        and nothing but smooth faces, which act along their normals, is in the container."""
+        and nothing but smooth faces, which act along their normals, is in the container; of a sheared gas
+        that about the flow."""
         periodic = self.container.periodic
         fixed = any(it.fixed and it.count for it in self.kinds)
         smooth = all(face.smooth for face in self.faces.values())

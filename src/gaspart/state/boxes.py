@@ -8,7 +8,7 @@ axes of one or two boxes need no code of their own.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -46,6 +46,12 @@ class Boxes:
             along = (positions[:, k] / self.widths[k]).astype(np.int64)
             boxes[:, k] = np.clip(along, 0, self.per_side[k] - 1)
         return boxes
+
+    def cut(self, axis: int) -> Boxes:
+        """The same, but along an axis the first and the last boxes are not neighbours."""
+        neighbour, last = self.neighbour.copy(), self.per_side[axis] - 1
+        neighbour[axis, 0, 0] = neighbour[axis, last, 2] = NOWHERE
+        return replace(self, neighbour=neighbour)
 
     def index_of(self, position: np.ndarray) -> int:
         """The linear index of the box that holds a position (d,)."""

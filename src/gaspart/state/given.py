@@ -12,8 +12,8 @@ from gaspart.state.insertion import per_particle
 from gaspart.state.overlaps import deepest_overlap
 from gaspart.state.state import State
 
-_REMEMBER = ("piston", "vibrating", "sticky", "vibrations")
-"""Features that keep more than the positions, velocities and spins of particles."""
+_REMEMBER = ("piston", "vibrating", "sticky", "lees_edwards", "vibrations")
+"""Features that keep more than the positions, velocities and spins of particles, or depend on the time."""
 _SINGLE = 2.0**-24
 """Largest relative error of a number in single precision, as in the frames of a trajectory."""
 

@@ -10,6 +10,7 @@ import numpy as np
 from gaspart.errors import SceneError
 from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
+from gaspart.scene.shear import flow
 from gaspart.scene.species import LATTICES
 from gaspart.state.compression import compressed
 from gaspart.state.insertion import per_particle, random_insertion
@@ -42,11 +43,13 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
         except SceneError as error:
             rule = f"{error.rule}; {_instead_of_random(scene, seed)}"
             raise SceneError(error.key, error.value, rule) from None
+    velocities = _velocities(scene, stream(seed, _VELOCITIES))
+    _add_flow(scene, positions, velocities)
     return replace(
         assembled(
             scene,
             positions,
-            _velocities(scene, stream(seed, _VELOCITIES)),
+            velocities,
             spins[:, 2] if scene.dimension == 2 else spins,
         ),
         vibrations=_vibrations(scene, stream(seed, _VIBRATIONS)) if scene.vibrates else None,
@@ -144,6 +147,18 @@ def _velocities(scene: Scene, rng: np.random.Generator) -> np.ndarray:
     if any(kind.exact_temperature for kind in scene.species):
         _make_exact(scene, velocities)
     return velocities
+
+
+def _add_flow(scene: Scene, positions: np.ndarray, velocities: np.ndarray) -> None:
+    """Let drawn velocities (N, d) be about the flow of a sheared gas, without a mean: a gas that moves across
+    the flow would be dragged along by it, ever faster."""
+    drawn = slice(len(scene.particles), None)
+    if scene.shear_rate is None or not len(positions[drawn]):
+        return
+    masses = masses_of(scene)[drawn]
+    for k in range(scene.dimension):
+        velocities[drawn, k] -= math.fsum(masses * velocities[drawn, k]) / math.fsum(masses)
+    velocities[drawn] += flow(scene, positions[drawn])
 
 
 def _make_exact(scene: Scene, velocities: np.ndarray) -> None:

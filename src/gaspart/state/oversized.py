@@ -34,7 +34,7 @@ def largest_in_boxes(scene: Scene) -> float:
     outside them, that with which a search looks at least, but the largest of all unless that saves a quarter.
     """
     radii, counts = sizes(scene)
-    if len(radii) < 2:
+    if len(radii) < 2 or scene.shear_rate is not None:
         return scene.largest_radius
     oversized = counts.sum() - counts.cumsum()
     works = {radius: work(scene, radius) for radius in radii[oversized <= MOST]}
@@ -56,7 +56,7 @@ def boxes_and_largest(scene: Scene, boxes_per_side: int | tuple[int, ...] | None
     narrowest = min(boxes.widths[boxes.per_side > 1], default=np.inf)
     radii, counts = sizes(scene)
     listed = 2.0 * radii <= narrowest
-    if counts[listed].sum() <= counts[~listed].sum():
+    if scene.shear_rate is not None or counts[listed].sum() <= counts[~listed].sum():
         return make_boxes(scene, boxes_per_side, images=True), scene.largest_radius
     return boxes, float(radii[listed][-1])
 

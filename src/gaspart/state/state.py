@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from gaspart.scene.faces import FLOW, GRADIENT
+
 
 @dataclass(repr=False)
 class State:
@@ -17,8 +19,9 @@ class State:
     the particle's species, explicit particles being one more species after the others; lengths (d,); spins,
     angular velocities, (N,) in 2D and (N, 3) in 3D; moments_of_inertia (N,); gravity (d,) or None;
     well_energies (N,), the potential energy in the wells of the faces, and vibrations (N,), the energy of
-    each particle's vibration, or None; piston (2,), its place along its axis and its velocity, or None. The
-    mass and moment of inertia of a fixed particle are infinite; they count in no sum.
+    each particle's vibration, or None; piston (2,), its place along its axis and its velocity, or None;
+    displaced, how far images above the container are displaced along x in a sheared gas, or None. The mass
+    and moment of inertia of a fixed particle are infinite; they count in no sum.
     """
 
     time: float
@@ -35,6 +38,7 @@ class State:
     well_energies: np.ndarray | None = None
     vibrations: np.ndarray | None = None
     piston: np.ndarray | None = None
+    displaced: float | None = None
 
     def __repr__(self) -> str:
         kind = "discs" if self.dimension == 2 else "spheres"
@@ -53,7 +57,10 @@ class State:
     @property
     def unwrapped(self) -> np.ndarray:
         """(N, d) positions continued across periodic faces."""
-        return self.positions + self.images * self.lengths
+        places = self.positions + self.images * self.lengths
+        if self.displaced is not None:
+            places[:, FLOW] += self.images[:, GRADIENT] * self.displaced
+        return places
 
     @property
     def speeds(self) -> np.ndarray:

@@ -13,6 +13,7 @@ from gaspart.engines import Engine, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.scene.faces import pistons, sliding_faces
 from gaspart.scene.scene import Scene
+from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.validation import count_of, number
 from gaspart.state.given import given_state, taken_state
 from gaspart.state.insertion import per_particle
@@ -93,6 +94,8 @@ class Recipe:
         """Refuse correlations that this run cannot have, with SceneError."""
         if asked.stress:
             self.engine.check_stress(self.scene)
+        else:
+            refuse_sheared(self.scene, "carries particles along: correlations need stress")
         interval = "correlations.interval", asked.interval
         if self.engine.quantum:
             multiple(*interval, "time_step", self.engine.quantum)

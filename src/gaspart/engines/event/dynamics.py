@@ -15,7 +15,7 @@ from gaspart.engines.event.stalling import MANY, CollapsePart, check_events, che
 from gaspart.engines.event.tally import EventTally
 from gaspart.engines.event_log import EventLog
 from gaspart.engines.features.part import arrays_of, write_parts
-from gaspart.engines.features.stress import StressPart
+from gaspart.engines.features.stress import stress_part
 from gaspart.errors import SimulationError
 from gaspart.kernels.event import loop, prediction
 from gaspart.kernels.event import neighbour_lists as lists
@@ -24,6 +24,7 @@ from gaspart.kernels.event.monitors import Monitors, Record
 from gaspart.kernels.event.queue import EVENT_COUNT, empty_queue
 from gaspart.kernels.model import Space
 from gaspart.kernels.physics.flight import advance_all, restart_clocks
+from gaspart.scene.faces import GRADIENT
 from gaspart.scene.scene import Scene
 from gaspart.state.oversized import boxes_and_largest
 from gaspart.state.state import State
@@ -49,6 +50,7 @@ class EventDynamics:
         self._search = chosen_search(scene, search, boxes_per_side is not None)
         with_boxes = self._search == "boxes"
         self._grid, largest = boxes_and_largest(scene, boxes_per_side if with_boxes else 1)
+        self._grid = self._grid if scene.shear_rate is None else self._grid.cut(GRADIENT)
         self._particles = particles_of(state, self._grid)
         self._flights = self._particles.flights
         self._boxes = empty_lists(self._grid, n, neighbour_lists(scene) if self._search == "lists" else None)
@@ -59,7 +61,7 @@ class EventDynamics:
         self._model, unit_mass = event_model(scene, state, seed, self._grid, largest)
         self._collapse = CollapsePart(self._model, n)
         self._parts = [*event_parts(scene, state, seed, self._model, unit_mass), self._collapse]
-        self._stress = StressPart(self._flights, self._model, unit_mass) if stress else None
+        self._stress = stress_part(self._flights, self._model, unit_mass) if stress else None
         self._parts += [self._stress] if self._stress else []
         self._epochs = Epochs(scene, sum(part.gained for part in self._parts) if n else 0.0)
         self._base, self._quiet = self._epochs.length(self._epochs.speed(state.velocities)), 0
@@ -175,6 +177,8 @@ class EventDynamics:
 
     def _next_epoch(self) -> None:
         """Start the clocks again from zero, and predict all events anew."""
+        for part in self._parts:
+            part.close_epoch(self._epoch)
         restart_clocks(self._flights, self._epoch, self._model.space, self._model.gravity)
         self._start += self._epoch
         self._clock = 0.0
@@ -223,17 +227,16 @@ class EventDynamics:
     @property
     def state(self) -> State:
         """All particles at the present time."""
-        space, flights = self._model.space, self._present()
-        positions, images = flights["position"].copy(), self._particles.images.copy()
-        _wrap(positions, images, space)
+        flights = self._present()
         state = replace(
             self._reference,
             time=self.time,
-            positions=positions,
+            positions=flights["position"].copy(),
             velocities=flights["velocity"].copy(),
-            images=images,
+            images=self._particles.images.copy(),
         )
         write_parts(self._parts, state, self._clock)
+        _wrap(state.positions, state.images, self._model.space)
         return state
 
     def _arrays(self) -> dict[str, np.ndarray]:

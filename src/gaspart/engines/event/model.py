@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from gaspart.engines.features.contact_duration import DurationPart, contact_duration
-from gaspart.engines.features.faces import FacesPart, special_faces
+from gaspart.engines.features.faces import FacesPart, has_special_faces, special_faces
 from gaspart.engines.features.gravity import GravityPart, gravity_of
 from gaspart.engines.features.law import LawPart, contact_law
 from gaspart.engines.features.masses import scaled_masses
 from gaspart.engines.features.part import Part
 from gaspart.engines.features.piston import PistonPart
 from gaspart.engines.features.rest import rest_watch
+from gaspart.engines.features.shear import ShearPart, shear_of
 from gaspart.engines.features.thermostat import kicks
 from gaspart.engines.features.vibrating import VibratingPart
 from gaspart.engines.features.walls import interior_walls
@@ -50,9 +51,10 @@ def event_model(
         masses=masses,
         gravity=gravity_of(scene, state),
         law=law,
-        faces=special_faces(scene, state, seed, unit_mass) if scene.faces else None,
+        faces=special_faces(scene, state, seed, unit_mass) if has_special_faces(scene) else None,
         walls=interior_walls(scene, boxes, largest) if scene.walls else None,
         oversized=Oversized(oversized, largest) if len(oversized) else None,
+        shear=shear_of(scene),
     )
     return model, unit_mass
 
@@ -65,6 +67,7 @@ def event_parts(
     parts = (
         GravityPart(gravity, scene.container.lengths) if gravity else None,
         FacesPart(scene, faces, unit_mass, float(state.masses.min(initial=np.inf))) if faces else None,
+        ShearPart(scene, model.shear) if model.shear else None,
         VibratingPart(scene, faces.motion) if faces and faces.motion else None,
         PistonPart(faces.piston, scene) if faces and faces.piston else None,
         LawPart(law) if law else None,

@@ -47,6 +47,8 @@ def obstacle_to_lists(scene: Scene) -> str | None:
         return "gravity"
     if scene.walls:
         return "interior walls"
+    if scene.shear_rate is not None:
+        return "sheared faces"
     if not _SMALLEST < scene.largest_radius < _LARGEST:
         return "particles of so extreme a size"
     if scene.count == 0:

@@ -38,6 +38,11 @@ def sliding_velocities(scene: Scene) -> np.ndarray | None:
     return velocities if velocities.any() else None
 
 
+def has_special_faces(scene: Scene) -> bool:
+    """Whether particles meet faces with a kind, other than periodic ones."""
+    return bool(scene.faces) and scene.shear_rate is None
+
+
 def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float) -> Faces:
     """The kinds of the container's faces as the kernels' `Faces`, in units of `unit_mass`."""
     kind, level = kinds_and_levels(scene)

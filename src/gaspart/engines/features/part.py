@@ -59,6 +59,10 @@ class Part:
         Returns the model for it."""
         return model
 
+    def close_epoch(self, length: float) -> None:
+        """Count what depends on the flights of an epoch of this `length`, before all particles are moved to
+        its end."""
+
     def end_epoch(self, length: float, start: float) -> None:
         """Let the clocks count from zero again after an epoch of this `length`, which is the time `start`."""
         for times in self._times:

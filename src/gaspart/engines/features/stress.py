@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from gaspart.engines.features.part import Part
+from gaspart.kernels.event.sheared_stress import add_sheared_flights
 from gaspart.kernels.event.stress import Stress, add_flights
 from gaspart.kernels.model import Model
 from gaspart.kernels.physics.running_sum import values
@@ -45,3 +46,36 @@ class StressPart(Part):
     def counts(self, clock: float) -> dict[str, Any]:
         """The sums, by the fields of `Tally`."""
         return tallied_fluxes(self.read(clock), self._dimension)
+
+
+class ShearedStressPart(StressPart):
+    """The same of a sheared gas, whose velocities relative to the flow change in flight, so that each flight
+    counts from its clock on."""
+
+    def __init__(self, flights: np.ndarray, model: Model, unit_mass: float) -> None:
+        super().__init__(flights, model, unit_mass)
+        self._model = model
+
+    def close_epoch(self, length: float) -> None:
+        """Add what the particles have carried until the end of the epoch."""
+        add_sheared_flights(self._flights, length, 1.0, self._model, self.sums)
+
+    def end_epoch(self, length: float, start: float) -> None:
+        """Nothing: the flights begin anew."""
+
+    def reset(self, clock: float) -> None:
+        """Begin to count from zero."""
+        self.sums.sums[...] = 0.0
+        add_sheared_flights(self._flights, clock, -1.0, self._model, self.sums)
+
+    def read(self, clock: float) -> np.ndarray:
+        """(2 d^2 + d,) the sums until this time on the clocks of the epoch."""
+        total = self.sums._replace(sums=self.sums.sums.copy())
+        add_sheared_flights(self._flights, clock, 1.0, self._model, total)
+        return values(total.sums) * self._unit_mass
+
+
+def stress_part(flights: np.ndarray, model: Model, unit_mass: float) -> StressPart:
+    """The part for a gas that is sheared or not."""
+    kind = StressPart if model.shear is None else ShearedStressPart
+    return kind(flights, model, unit_mass)

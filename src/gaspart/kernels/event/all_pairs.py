@@ -8,6 +8,7 @@ from gaspart.kernels.model import NONE, PAIR_TESTS
 from gaspart.kernels.obstacles.face import next_face
 from gaspart.kernels.obstacles.interior_wall import find_wall
 from gaspart.kernels.physics.flight import time_of_contact
+from gaspart.kernels.physics.lees_edwards import FLOW, GRADIENT, time_of_sheared_contact
 
 
 @inner_helper
@@ -18,6 +19,19 @@ def image_offset(image, space):
     absent = (x != 0 and not space.periodic[0]) or (y != 0 and not space.periodic[1])
     absent = absent or (z != 0 and not space.periodic[last])
     return (x * space.lengths[0], y * space.lengths[1], z * space.lengths[last]), not absent
+
+
+@inner_helper
+def time_in_image(flights, i, j, offset, space, gravity, shear):
+    """When particles i and j touch, j displaced by `offset` (3,), and across sheared faces also by as much as
+    they are: there each image is that of all along the flow."""
+    if shear is not None:
+        if offset[GRADIENT] != 0.0:
+            if offset[FLOW] != 0.0:
+                return inf
+            image = 1 if offset[GRADIENT] > 0.0 else -1
+            return time_of_sheared_contact(flights, i, j, image, offset[2], space, shear)
+    return time_of_contact(flights, i, j, offset, space, gravity)
 
 
 @inner_helper
@@ -38,7 +52,7 @@ def first_of_all(particles, boxes, model, tally):
                 offset, present = image_offset(image, space)
                 if present:
                     tally.counts[PAIR_TESTS] += 1
-                    time = time_of_contact(flights, i, j, offset, space, gravity)
+                    time = time_in_image(flights, i, j, offset, space, gravity, model.shear)
                     if time < soon:
                         soon, first, second = time, i, j
     return soon, first, second, face

@@ -25,6 +25,8 @@ from gaspart.kernels.event.pair_contact import collide
 from gaspart.kernels.event.prediction import NOT_CROSSED, predict_after, predict_after_piston, predict_island
 from gaspart.kernels.event.prefetch import CACHED, CACHED_LISTS, crossing_of, prefetch, prefetch_lists
 from gaspart.kernels.event.queue import count_event, is_outdated, soonest, time_of
+from gaspart.kernels.event.sheared_search import follow
+from gaspart.kernels.event.sheared_stress import end_flight
 from gaspart.kernels.model import BOX_FACES, CROSSINGS, NONE, OUTDATED, WALLS, WELL_EDGES, Model
 from gaspart.kernels.obstacles.face import meet_face
 from gaspart.kernels.obstacles.interior_wall import meet_wall
@@ -39,13 +41,14 @@ STOP, EVENTS, FULL, COLLAPSE, NO_ROOM, CROSSED = range(6)
 @inner_helper
 def without_obstacles(model):
     """What all contacts depend on. Their functions need not be translated again for each kind of obstacle."""
-    return Model(model.space, model.masses, model.gravity, model.law, None, None, None)
+    return Model(model.space, model.masses, model.gravity, model.law, None, None, None, model.shear)
 
 
 @inner_helper
 def without_contacts(model):
     """What predictions depend on, whatever happens at contacts."""
-    return Model(model.space, None, model.gravity, None, model.faces, model.walls, model.oversized)
+    obstacles = model.faces, model.walls, model.oversized
+    return Model(model.space, None, model.gravity, None, *obstacles, model.shear)
 
 
 @inner_helper
@@ -59,6 +62,7 @@ def meet_obstacle(particles, i, face, time, model, tally):
         return -1 - wall, wall != NONE
     if face >= WELL_EDGES:
         return -1 - meet_edge(particles.flights, i, face, time, bare, tally, model.faces), True
+    end_flight(particles.flights, i, time, bare, tally.stress, model.shear)
     return -1 - face, meet_face(particles, i, face, time, bare, tally, model.faces)
 
 
@@ -95,13 +99,14 @@ def leave_box(particles, i, face, time, boxes, space, tally, lists):
 
 
 @inner_helper
-def enter_opposite_box(particles, i, face, time, boxes, space, tally, lists):
+def enter_opposite_box(particles, i, face, time, boxes, model, tally, lists):
     """Let a particle that has crossed a periodic face be found where it now is."""
     if lists is not None:
-        renew(particles.flights, i, time, lists, space, tally)
+        renew(particles.flights, i, time, lists, model.space, tally)
     else:
         axis, upper = face // 2, face % 2
         move(particles.predictions, boxes, i, axis, 0 if upper else boxes.per_side[axis] - 1)
+        follow(particles, i, axis, boxes, model.shear)
 
 
 @inner_helper
@@ -122,7 +127,7 @@ def process(particles, i, time, queue, boxes, model, tally):
         else:
             partner, happens = meet_obstacle(particles, i, face, time, model, tally)
             if not happens and face < BOX_FACES:
-                enter_opposite_box(particles, i, face, time, boxes, model.space, tally, boxes.lists)
+                enter_opposite_box(particles, i, face, time, boxes, model, tally, boxes.lists)
     elif is_outdated(predictions, i):
         happens = changes = False
         tally.counts[OUTDATED] += 1

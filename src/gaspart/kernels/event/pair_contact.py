@@ -3,7 +3,9 @@
 from gaspart.kernels.compile.policy import inner_helper
 from gaspart.kernels.event.jams import free_if_moved, join_jam, squeezed
 from gaspart.kernels.event.pressed_contact import least_parting, part, release_pair
-from gaspart.kernels.event.stress import add_contact, note_pair
+from gaspart.kernels.event.sheared_contact import fold, unfold
+from gaspart.kernels.event.sheared_stress import end_flight, tally_contact
+from gaspart.kernels.event.stress import note_pair
 from gaspart.kernels.model import COLLISIONS, VIRIAL
 from gaspart.kernels.physics.collision import exchange_momentum, gap_along
 from gaspart.kernels.physics.flight import advance
@@ -14,8 +16,11 @@ from gaspart.kernels.physics.running_sum import add
 def collide(flights, i, j, time, model, tally):
     """Advance two particles to their contact and exchange momentum."""
     space = model.space
+    end_flight(flights, i, time, model, tally.stress, model.shear)
+    end_flight(flights, j, time, model, tally.stress, model.shear)
     advance(flights, i, time, space, model.gravity)
     advance(flights, j, time, space, model.gravity)
+    image = unfold(flights, i, j, time, space, model.shear)
     rr = 0.0
     rv = 0.0
     for k in range(len(space.lengths)):
@@ -30,7 +35,8 @@ def collide(flights, i, j, time, model, tally):
     part(flights, i, j, least, model, tally, model.law)
     release_pair(flights, i, j, model, tally, model.gravity, model.law)
     join_jam(flights, joins, i + j - joins, model, tally, model.gravity, model.law)
-    add_contact(flights, i, j, time, space, model.masses, model.law, tally.stress)
+    tally_contact(flights, i, j, time, model, tally.stress, model.shear)
+    fold(flights, j, image, model, tally, model.shear)
     sigma = flights[i].radius + flights[j].radius
     tally.worst[0] = max(tally.worst[0], abs(rr / (sigma * sigma) - 1.0))
     tally.counts[COLLISIONS] += 1

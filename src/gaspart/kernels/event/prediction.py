@@ -11,6 +11,7 @@ from gaspart.kernels.event.box_search import find_contact
 from gaspart.kernels.event.neighbour_lists import is_renewed_first, next_renewal, search_list
 from gaspart.kernels.event.oversized import search_oversized
 from gaspart.kernels.event.queue import EVENT_COUNT, bucket_of, fill, reschedule
+from gaspart.kernels.event.sheared_search import search_sheared
 from gaspart.kernels.model import NONE
 from gaspart.kernels.obstacles.face import next_face
 from gaspart.kernels.obstacles.interior_wall import find_wall
@@ -30,6 +31,7 @@ def predict_contact(particles, i, boxes, model, tally, crossed, lists):
         search_list(particles, i, lists, model.space, tally)
     else:
         find_contact(particles, i, boxes, model.space, tally, crossed, model.gravity)
+        search_sheared(particles, i, boxes, model.space, tally, crossed, model.shear)
         search_oversized(particles, i, boxes, model.space, tally, crossed, model.gravity, model.oversized)
 
 

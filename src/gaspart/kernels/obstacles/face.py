@@ -19,6 +19,7 @@ from gaspart.kernels.obstacles.well import time_to_edge
 from gaspart.kernels.physics.ballistic import time_against, time_along
 from gaspart.kernels.physics.contact import time_to_plane
 from gaspart.kernels.physics.flight import acceleration_of, advance, face_plane
+from gaspart.kernels.physics.lees_edwards import shift_image
 from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.running_sum import add
 
@@ -214,6 +215,7 @@ def meet_face(particles, i, face, time, model, tally, faces):
             flights, i, space, model.gravity
         )  # it comes to rest again, on another image of the wall
         flights[i].position[axis] = 0.0 if upper else space.lengths[axis]
+        shift_image(particles, i, axis, upper, model, tally, model.shear)
         particles.images[i, axis] += 1 if upper else -1
         return False
     place_at(flights, i, face, space, faces)

@@ -26,7 +26,8 @@ KEYS: dict[str, Kind] = {
     "displacements": flag("keep displacements in float64, for mean-squared displacements", default=False),
     "lags": count(
         "accumulate time correlations of all samples up to so many intervals apart, but at most half the "
-        "length, and keep the first and the last frame only; with `displacements` of these too",
+        "length, and keep the first and the last frame only, of a sheared gas all; with `displacements` of "
+        "these too",
         default=None,
     ),
     "stress": flag(
@@ -56,10 +57,11 @@ def parameters(point: Point) -> dict:
         lags = min(point.settings["lags"], (times.samples + 1) // 2)
         correlations = {"interval": times.sample_interval, "lags": lags, "start": times.equilibration}
         correlations |= {"stress": True} if point.settings.get("stress") else {}
+    only_ends = correlations is not None and point.scene.shear_rate is None
     return {
         "engine": engine_to_dict(point.engine),
         "duration": times.duration,
-        "sample_interval": times.duration if correlations else times.sample_interval,
+        "sample_interval": times.duration if only_ends else times.sample_interval,
         "displacements": point.settings.get("displacements", False),
         "follow": follow,
         "correlations": correlations,

@@ -37,6 +37,9 @@ def measured(error=1.0, seed=1):
         shown |= {"flow_error": np.full(10, 0.001), "temperature_error": np.full(10, 0.001)}
         at = {"engine": engine, "packing_fraction": eta, "knudsen": knudsen, "speed": speed}
         rows.append({"part": "flows", **at, **numbers, **shown})
+    for eta, off in ((0.1, 0.002), (0.3, -0.002)):
+        ratio = {"viscosity": 1.0 + off * error, "viscosity_error": 0.006 * error, "viscosity_freedom": 79.0}
+        rows.append({"part": "sheared", "engine": "event-driven", "packing_fraction": eta, **ratio})
     still = {"viscosity": 1.0, "viscosity_error": 0.004 * error, "viscosity_freedom": 7.0}
     rows.append({"part": "equilibrium", "engine": "event-driven", "packing_fraction": 0.3, **still})
     return from_rows("point", rows, ("bin",))

@@ -21,12 +21,13 @@ def test_profiles_and_coefficients_are_drawn():
     shows(temperature, "u^2", "temperature", *(Points(names[n], squares[n], *warm[n]) for n in squares))
     both = (("DSMC", 0, 2), ("event-driven", 3))
     shows(stress, "Knudsen", "stress", *(points(name, "knudsen", "stress", *n) for name, *n in both))
-    still = points("Green-Kubo", "packing_fraction", "viscosity", 5, shift=0.005)
+    uniform = points("response, without walls", "packing_fraction", "viscosity", 5, 6, shift=-0.005)
+    still = points("Green-Kubo", "packing_fraction", "viscosity", 7, shift=0.005)
     both = (("DSMC", 0), ("event-driven", 3, 4))
     eta = "packing_fraction"
     shows(
         viscosity, "packing fraction", "Enskog",
-        *(points(name, eta, "viscosity", *n) for name, *n in both), still,
+        *(points(name, eta, "viscosity", *n) for name, *n in both), uniform, still,
     )  # fmt: skip
     shows(slip, "packing fraction", "slip", *(points(name, eta, "slip", *n) for name, *n in both))
     dilute = ds.isel(point=[0, 1])

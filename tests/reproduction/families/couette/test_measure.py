@@ -72,3 +72,26 @@ def test_numbers_of_an_exact_flow():
     assert abs(found["slip"] - 1.25) < 0.05
     assert abs(found["heating"]) < 1e-9 and abs(found["pressure"] - 1.0) < 1e-12
     assert max(abs(found[f"normal_{axis}"]) for axis in "xyz") < 1e-12
+
+
+def test_a_sheared_gas_has_enskogs_viscosity(tmp_path, monkeypatch):
+    """And the work that it heats by is that of the measured stress."""
+    monkeypatch.chdir(tmp_path)
+    sheared = {
+        "container": {"lengths": [10.0, 10.0, 10.0], "boundary": "periodic"},
+        "species": [{"count": 191, "radius": 0.5, "temperature": 1.0}],
+        "faces": {"y_high": {"kind": "lees_edwards", "shear_rate": 0.15}},
+    }
+    path = tmp_path / "scene.yaml"
+    Scene.from_dict(sheared).to_file(path)
+    settings = {"engine": "event", "duration": 200, "equilibration": 20, "samples": 80}
+    settings |= {"lags": 2, "stress": True, "replicas": 2, "scene": str(path)}
+    point = Point("sheared", "s", "simulate", settings, "results", 1)
+    (tmp_path / point.path).parent.mkdir(parents=True, exist_ok=True)
+    simulate.run(point.parameters, tmp_path / point.path)
+    parts = {"parts": {"flows": [], "sheared": ["sheared"], "equilibrium": []}}
+    row = couette.couette([point], SETTINGS | parts).isel(point=0)
+    assert row["part"] == "sheared" and abs(float(row["packing_fraction"]) - 0.1) < 1e-4
+    assert abs(float(row["viscosity"]) - 1.0) < 4.5 * float(row["viscosity_error"]) < 0.3
+    assert 0.05 < float(row["reduced_rate"]) < 0.12
+    assert abs(sum(float(row[f"normal_{name}"]) for name in "xyz")) < 1e-12

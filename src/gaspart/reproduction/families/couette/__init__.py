@@ -9,6 +9,7 @@ FIGURES = {
         "parts": record(
             {
                 "flows": names("gases between walls that slide"),
+                "sheared": names("periodic gases that are sheared without walls"),
                 "equilibrium": names("gases with correlations of the stress, as `viscosity`"),
             },
             "the experiments of each part",

@@ -26,6 +26,7 @@ SECOND = 4.0
 def couette(ds: xr.Dataset) -> list[Claim]:
     """Viscosity from the response, slip, free flight, heating and normal stresses."""
     flows = rows(ds.isel(point=np.flatnonzero(ds["part"].values == "flows")), "point")
+    sheared = rows(ds.isel(point=np.flatnonzero(ds["part"].values == "sheared")), "point")
     still = rows(ds.isel(point=np.flatnonzero(ds["part"].values == "equilibrium")), "point")
     narrow = [row for row in flows if float(row["knudsen"]) > FREE]
     wide = [row for row in flows if float(row["knudsen"]) < SLIP_FLOW]
@@ -35,7 +36,7 @@ def couette(ds: xr.Dataset) -> list[Claim]:
     dense = [row for row in slow if float(row["packing_fraction"]) > DILUTE]
     claims = [*(_dilute(row) for row in dilute), _slip(dilute)]
     claims += [_dense(row) for row in dense if float(row["packing_fraction"]) < ACCURATE + NEAR]
-    claims += _equilibrium(dense, still)
+    claims += _equilibrium(dense, still) + _uniform(sheared, still)
     claims += [_pressure(row) for row in slow] + [_free(row) for row in narrow]
     return claims + [claim for row in fast for claim in (_heating(row), *_normal(row))]
 
@@ -96,16 +97,37 @@ def _dense(row: xr.Dataset) -> Claim:
     )
 
 
-def _equilibrium(dense: list[xr.Dataset], still: list[xr.Dataset]) -> list[Claim]:
-    """The viscosity of dense gases, against that from the fluctuations of the stress: of each, and of all
-    together."""
+def _ratios(responses: list[xr.Dataset], still: list[xr.Dataset]) -> dict[str, Estimate]:
+    """The viscosity of gases over that from the fluctuations at the same density, if it is known."""
     ratios = {}
-    for row in dense:
+    for row in responses:
         eta = float(row["packing_fraction"])
         beside = [one for one in still if abs(float(one["packing_fraction"]) - eta) < NEAR]
         if beside:
             nearest = min(beside, key=lambda one: abs(float(one["packing_fraction"]) - eta))
             ratios[_named(row)] = Estimate.of(row, "viscosity") / Estimate.of(nearest, "viscosity")
+    return ratios
+
+
+def _uniform(sheared: list[xr.Dataset], still: list[xr.Dataset]) -> list[Claim]:
+    """The same of gases that are sheared without walls."""
+    return [
+        Claim(
+            claim=f"viscosity from uniform shear over that from equilibrium, {name}",
+            measured=ratio,
+            expected=1.0,
+            required=0.03,
+            source="Green and Kubo: the response is linear, its coefficient an integral of fluctuations",
+            fails_if="images that slide at another speed, or a stress that contains the flow",
+        )
+        for name, ratio in _ratios(sheared, still).items()
+    ]
+
+
+def _equilibrium(dense: list[xr.Dataset], still: list[xr.Dataset]) -> list[Claim]:
+    """The viscosity of dense gases, against that from the fluctuations of the stress: of each, and of all
+    together."""
+    ratios = _ratios(dense, still)
     stated = {name: (ratio, 0.03) for name, ratio in ratios.items()}
     stated["spheres at all densities"] = weighted_mean(list(ratios.values())), 0.015
     return [

@@ -103,6 +103,9 @@ def _viscosity(axis: Axes, ds: xr.Dataset) -> None:
         row = _some(ds, wide & (ds["engine"].values == engine) & (ds["part"].values == "flows"))
         label = f"response, {engine}"
         style.measured(axis, row["packing_fraction"], estimates(row, "viscosity"), kind, label=label)
+    uniform = _some(ds, ds["part"].values == "sheared")
+    values = estimates(uniform, "viscosity")
+    style.measured(axis, uniform["packing_fraction"] - 0.005, values, 3, label="response, without walls")
     still = _some(ds, ds["part"].values == "equilibrium")
     values = estimates(still, "viscosity")
     style.measured(axis, still["packing_fraction"] + 0.005, values, 2, hollow=True, label="Green-Kubo")

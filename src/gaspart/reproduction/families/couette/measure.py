@@ -17,6 +17,7 @@ from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import fit_linear, jackknife
+from gaspart.reproduction.families.couette.uniform import uniform
 from gaspart.reproduction.families.heat.gap import Gap, sums
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
@@ -41,15 +42,22 @@ def couette(points: list[Point], settings: dict) -> xr.Dataset:
     slip, the velocity of the gas relative to the wall, extrapolated, over mean free path and gradient there;
     heating, -dT/du^2; normal_x, _y, _z, the kinetic energy of each component over their mean, minus 1;
     pressure on the walls over that of the equation of state; reduced_rate, stress over pressure. place,
-    flow and temperature by bin. Of equilibrium points packing_fraction and `viscosity` by Green and Kubo.
+    flow and temperature by bin. Of sheared gases what `uniform` states. Of equilibrium points
+    packing_fraction and `viscosity` by Green and Kubo.
     """
     rows = []
     for part, experiments in settings["parts"].items():
         for point in (point for point in points if point.experiment in experiments):
-            row = _flow(point, settings) if part == "flows" else _equilibrium(point)
-            rows.append({"part": part, "engine": point.engine.title, **row})
+            rows.append({"part": part, "engine": point.engine.title, **_row(part, point, settings)})
     units = {"place": "gap", "flow": "speed of the walls", "temperature": "temperature of the walls"}
     return from_rows("point", rows, ("bin",), units)
+
+
+def _row(part: str, point: Point, settings: dict) -> dict:
+    """The numbers of a point of this part."""
+    if part == "flows":
+        return _flow(point, settings)
+    return uniform(point, settings["blocks"]) if part == "sheared" else _equilibrium(point)
 
 
 def _equilibrium(point: Point) -> dict:

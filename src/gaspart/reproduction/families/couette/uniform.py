@@ -1,0 +1,65 @@
+"""A gas in uniform shear, without walls (`scene.faces.LeesEdwards`).
+
+The flow is along the first axis, its gradient along the second; particles have the mass 1. The gas heats.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gaspart import theory
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.run import Run
+from gaspart.analysis.statistics import jackknife
+from gaspart.reproduction.families.shared.rows import entries
+from gaspart.reproduction.families.shared.runs import runs
+from gaspart.reproduction.points.point import Point
+from gaspart.scene.shear import flow
+
+_AXES = {"y": 0, "x": 1, "z": 2}  # of the container, by name as of walls across x: x is that of the gradient
+
+
+def uniform(point: Point, blocks: int) -> dict:
+    """The numbers of a sheared gas, as of a flow between walls: viscosity, the response over Enskog's at the
+    temperature of the time; reduced_rate, stress over pressure; normal_x, _y, _z, the pressure along
+    gradient, flow and vorticity over their mean, minus 1. Errors are by leaving out each stretch of time, of
+    which each run has `blocks`."""
+    scene = point.scene
+    series = [
+        np.concatenate(parts) for parts in zip(*(_blocks(run, blocks) for run in runs(point)), strict=True)
+    ]
+    values, errors = jackknife(_numbers, *series)
+    names = ("viscosity", "reduced_rate", *(f"normal_{name}" for name in _AXES))
+    found = zip(names, values, errors, strict=True)
+    freedom = len(series[0]) - 1
+    return {
+        "packing_fraction": scene.packing_fraction,
+        **entries({name: Estimate(value, error, freedom) for name, value, error in found}),
+    }
+
+
+def _blocks(run: Run, blocks: int) -> tuple[np.ndarray, np.ndarray]:
+    """(K, d, d) the pressure tensor of stretches of a run, and (K,) the stress that Enskog states."""
+    length, scene = run.block_length(blocks), run.scene
+    used = length * blocks
+    sums = run.data["stress_sum"].values[: used + 1 : length]
+    time = np.diff(run.time[: used + 1 : length])
+    pressures = np.diff(sums, axis=0) / (scene.container.volume * time)[:, None, None]
+    root = np.sqrt(_temperatures(run)[: used + 1])
+    unit = float(theory.enskog_viscosity(scene.packing_fraction, 3, 2.0 * scene.smallest_radius))
+    viscosity = unit * 0.5 * (root[1:] + root[:-1])
+    assert scene.shear_rate is not None
+    return pressures, scene.shear_rate * viscosity.reshape(blocks, length).mean(axis=1)
+
+
+def _temperatures(run: Run) -> np.ndarray:
+    """(T,) of each frame, from the velocities about the flow, without momentum."""
+    relative = run.velocities - flow(run.scene, run.positions)
+    return (relative**2).sum(axis=(1, 2)) / (3 * (run.count - 1))
+
+
+def _numbers(pressures: np.ndarray, expected: float) -> np.ndarray:
+    """The numbers of `uniform`, from averages over stretches."""
+    along = np.diag(pressures)
+    mean, stress = along.mean(), -pressures[1, 0]
+    return np.array([stress / expected, stress / mean, *(along[list(_AXES.values())] / mean - 1.0)])

@@ -1,0 +1,38 @@
+"""The flow of a gas between sheared faces (`faces.LeesEdwards`)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaspart.errors import SceneError
+from gaspart.scene.faces import FLOW, GRADIENT, LeesEdwards
+
+if TYPE_CHECKING:
+    from gaspart.scene.scene import Scene
+
+
+def flow(scene: Scene, positions: np.ndarray) -> np.ndarray:
+    """(..., d) the velocity of the flow at positions (..., d); 0 without sheared faces."""
+    velocities = np.zeros_like(positions, dtype=float)
+    if scene.shear_rate is not None:
+        middle = 0.5 * scene.container.lengths[GRADIENT]
+        velocities[..., FLOW] = scene.shear_rate * (positions[..., GRADIENT] - middle)
+    return velocities
+
+
+def fixed_images(scene: Scene) -> tuple[bool, ...]:
+    """(d,) whether an axis has images of the particles at its length, always: a periodic one, unless these
+    slide."""
+    periodic = scene.container.periodic
+    return tuple(
+        along and (scene.shear_rate is None or axis != GRADIENT) for axis, along in enumerate(periodic)
+    )
+
+
+def refuse_sheared(scene: Scene, rule: str) -> None:
+    """Raise SceneError, with a rule, for a scene with sheared faces."""
+    for name, face in scene.faces.items():
+        if isinstance(face, LeesEdwards):
+            raise SceneError(f"faces.{name}", face.kind, rule)
