@@ -86,6 +86,9 @@ from gaspart.theory.mixtures import enskog_mutual_diffusion as enskog_mutual_dif
 from gaspart.theory.mixtures import mixture_collision_rates as mixture_collision_rates
 from gaspart.theory.mixtures import mixture_compressibility_factor as mixture_compressibility_factor
 from gaspart.theory.mixtures import mixture_contact_values as mixture_contact_values
+from gaspart.theory.mode_pairs import transport_logarithmic_slope as transport_logarithmic_slope
+from gaspart.theory.mode_pairs import transport_modes as transport_modes
+from gaspart.theory.mode_pairs import transport_uniform_mode as transport_uniform_mode
 from gaspart.theory.modes import diffusion_modes as diffusion_modes
 from gaspart.theory.modes import sound_attenuation as sound_attenuation
 from gaspart.theory.modes import velocity_autocorrelation_modes as velocity_autocorrelation_modes

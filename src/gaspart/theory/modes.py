@@ -15,6 +15,7 @@ coefficients are Enskog's. Everything is in diameters, masses and k_B T.
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -36,16 +37,20 @@ _SMALLEST = 40.0
 def sound_attenuation(packing_fraction: float, dimension: int) -> float:
     """Gamma, by which sound of the wave number k decays as exp(-Gamma k^2 t / 2) (diameter^2 / time).
 
-    Of hard particles c_v = d/2, and c_p - c_v = Z^2 / (d rho Z / d rho) (exact); the transport coefficients
-    are Enskog's.
+    The heat capacities are those of `heat_capacities`, the transport coefficients Enskog's.
     """
     d, eta = checked_dimension(dimension), packing_fraction
-    density, z = float(number_density(eta, d)), float(compressibility_factor(eta, d))
-    slope = float(speed_of_sound(eta, d)) ** 2 - 2.0 * z**2 / d  # of rho Z
-    added, constant = z**2 / slope, 0.5 * d
+    constant, free = heat_capacities(eta, d)
     viscous = float(enskog_longitudinal_viscosity(eta, d))
-    thermal = float(enskog_conductivity(eta, d)) * (1.0 / constant - 1.0 / (constant + added))
-    return (viscous + thermal) / density
+    thermal = float(enskog_conductivity(eta, d)) * (1.0 / constant - 1.0 / free)
+    return (viscous + thermal) / float(number_density(eta, d))
+
+
+def heat_capacities(packing_fraction: float, dimension: int) -> tuple[float, float]:
+    """c_v and c_p of a particle: d/2, and c_p - c_v = Z^2 / (d rho Z / d rho) (exact; k_B = 1)."""
+    z = float(compressibility_factor(packing_fraction, dimension))
+    slope = float(speed_of_sound(packing_fraction, dimension)) ** 2 - 2.0 * z**2 / dimension  # of rho Z
+    return 0.5 * dimension, 0.5 * dimension + z**2 / slope
 
 
 @checked
@@ -71,24 +76,32 @@ def diffusion_modes(time: Numbers, packing_fraction: float, dimension: int, coun
 
 def _sum(time: Numbers, eta: float, dimension: int, count: int, integrated: bool) -> Values:
     """Over all wave vectors but 0 that matter at the earliest time: C(t), or its integral."""
-    times = np.atleast_1d(np.asarray(time, dtype=float))
-    if np.any(times <= 0.0):
-        raise ValueError("time: must be positive")
     d = checked_dimension(dimension)
     diffusion, density = float(enskog_diffusion(eta, d)), float(number_density(eta, d))
     shear = diffusion + float(enskog_viscosity(eta, d)) / density
     sound = diffusion + 0.5 * sound_attenuation(eta, d)
-    unit = 2.0 * math.pi * (density / count) ** (1.0 / d)
-    most = math.ceil(math.sqrt(_SMALLEST / (min(shear, sound) * times.min())) / unit)
+    modes = [(d - 1.0, shear, 0.0), (1.0, sound, float(speed_of_sound(eta, d)))]
+    return sum_of_modes(time, modes, d, (density / count) ** (1.0 / d), integrated) / (d * count)
+
+
+def sum_of_modes(
+    time: Numbers, modes: Sequence[tuple[float, float, float]], dimension: int, inverse: float, integrated: bool
+) -> Values:
+    """The sum of w exp(-D k^2 t) cos(c k t) over modes (w, D, c) and all wave vectors k but 0 of a periodic
+    cube or square of side 1 / `inverse`; or its integral over time, but for a constant. Raises ValueError for
+    a time that is not positive."""
+    times = np.atleast_1d(np.asarray(time, dtype=float))
+    if np.any(times <= 0.0):
+        raise ValueError("time: must be positive")
+    weights, widths, speeds = np.array(modes).T
+    unit = 2.0 * math.pi * inverse
+    most = math.ceil(math.sqrt(_SMALLEST / (widths.min() * times.min())) / unit)
     axis = np.arange(-most, most + 1) ** 2
-    squares, numbers = np.unique(sum(np.meshgrid(*[axis] * d)), return_counts=True)
+    squares, numbers = np.unique(sum(np.meshgrid(*[axis] * dimension)), return_counts=True)
     inside = (squares > 0) & (squares <= most**2)
     squares, numbers = unit**2 * squares[inside], numbers[inside]
-    rates = np.stack(
-        [-shear * squares, -sound * squares + 1j * float(speed_of_sound(eta, d)) * np.sqrt(squares)]
-    )
+    rates = -np.multiply.outer(widths, squares) + 1j * np.multiply.outer(speeds, np.sqrt(squares))
     terms = np.exp(np.multiply.outer(times, rates))
     if integrated:
         terms /= rates
-    total = ((d - 1) * terms[:, 0] + terms[:, 1]).real @ numbers / (d * count)
-    return total.reshape(np.shape(time))[()]
+    return (weights @ terms.real @ numbers).reshape(np.shape(time))[()]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import xarray as xr
 
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import PARTICLES, rows
+from gaspart.reproduction.families.shared.claims import PARTICLES, rows, weighted_mean
 
 DILUTE = 0.02
 """Packing fraction up to which a gas counts as dilute."""
@@ -16,6 +16,9 @@ ENSKOG = "Enskog's theory, with the Sonine polynomials that matter [Chapman 1970
 ACCURATE = 0.3
 """Packing fraction up to which Enskog's coefficients of spheres are known to be good to a few per cent."""
 FEW_PER_CENT = 0.05
+NEXT_ORDER = 0.15
+"""Part of the modes' growth that the next order in time adds, 2 / s after s collisions, as in the correlation
+of discs' velocities; most of the growth that is compared is between 10 and 20."""
 
 
 def viscosity(ds: xr.Dataset) -> list[Claim]:
@@ -84,4 +87,38 @@ def _claims(ds: xr.Dataset, name: str) -> list[Claim]:
                 fails_if="sums that are not those of the same fluxes",
             )
         )
+    return claims
+
+
+def logarithmic_growth(ds: xr.Dataset) -> list[Claim]:
+    """The growth of discs' coefficients with the logarithm of time, and with that of the number of discs."""
+    claims = []
+    for name in ("viscosity", "conductivity"):
+        amplitudes = [Estimate.of(row, f"{name}_amplitude") for row in rows(ds, "point")]
+        claims.append(
+            Claim(
+                claim=f"growth of the {name}'s integral with time over that of pairs of modes, all containers",
+                measured=weighted_mean(amplitudes),
+                expected=Estimate(1.0, NEXT_ORDER),
+                required=0.25,
+                source="mode coupling [Ernst 1971], the modes of the containers (gaspart.theory.mode_pairs)",
+                allowance_source="terms of the next order in time",
+                alternative=0.0,
+                fails_if=f"a flux without a 1/t tail, so that the {name} exists",
+            )
+        )
+        if f"{name}_size_slope" in ds:
+            expected = float(ds[f"{name}_size_expected"])
+            claims.append(
+                Claim(
+                    claim=f"slope of the {name} until the last time, over Enskog's, against ln N",
+                    measured=Estimate.of(ds, f"{name}_size_slope"),
+                    expected=Estimate(expected, abs(float(ds[f"{name}_size_allowance"]))),
+                    required=0.4 * expected,
+                    source="the same modes, and the finite number as in a dilute gas",
+                    allowance_source="half of the latter",
+                    alternative=0.0,
+                    fails_if=f"a {name} that does not depend on the container",
+                )
+            )
     return claims

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart.rendering import style
-from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared.claims import PARTICLES, rows
 from gaspart.reproduction.families.shared.rows import estimates
 
 
@@ -21,6 +21,25 @@ def viscosity(ds: xr.Dataset) -> Figure:
 def conductivity(ds: xr.Dataset) -> Figure:
     """The conductivity of heat over Enskog's, likewise."""
     return _figure(ds, r"$\lambda/\lambda_\mathrm{Enskog}$")
+
+
+def logarithmic_growth(ds: xr.Dataset) -> Figure:
+    """The integrals of both fluxes of discs against the logarithm of time, in containers of several sizes."""
+    figure, axes = style.new((2.4,), (2.4,))
+    names = {"viscosity": r"$\eta/\eta_\mathrm{Enskog}$", "conductivity": r"$\lambda/\lambda_\mathrm{Enskog}$"}
+    for axis, (name, label) in zip(axes, names.items(), strict=True):
+        axis.set_xscale("log")
+        for kind, row in enumerate(rows(ds, "point")):
+            value, error = estimates(row, name)
+            text = f"{int(row['count'])} discs"
+            style.points(axis, row["time"], value, error, kind=kind, label=text)
+            axis.plot(row["time"], row[f"{name}_modes"], color=style.COLOURS[kind], lw=1.2)
+        axis.plot([], [], color=style.GREY, lw=1.2, label="pairs of modes")
+        axis.set_xlabel(r"collisions per particle $\nu t$")
+        axis.set_ylabel(f"{label}, discs")
+        axis.legend(loc="lower right")
+    style.letters(*axes)
+    return figure
 
 
 def _figure(ds: xr.Dataset, name: str) -> Figure:

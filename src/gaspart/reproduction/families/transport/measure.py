@@ -15,8 +15,9 @@ import xarray as xr
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.run import Run
-from gaspart.analysis.statistics import mean_of, means_of
+from gaspart.analysis.statistics import fit_polynomial, mean_of, means_of
 from gaspart.analysis.transport import green_kubo, helfand
+from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import plain_gas
@@ -24,6 +25,7 @@ from gaspart.trajectory.reading import open_trajectory
 
 QUANTITIES = {"shear": "viscosity", "heat": "conductivity"}
 """What the correlation of each flux makes."""
+ENSKOG = {"viscosity": theory.enskog_viscosity, "conductivity": theory.enskog_conductivity}
 LATE = 0.5
 """Part of the longest lag from which on the squared change of Helfand's sum is taken to grow evenly."""
 
@@ -46,8 +48,8 @@ def _dataset(points: list[Point], flux: str, enskog: Callable[..., Any]) -> xr.D
     Helfand's squared change between lags `LATE` and 1 of the longest; `difference`, growth over the mean of
     the integral between these lags, minus 1, from the same runs; each with `_error` and `_freedom`, the
     degrees of freedom of the error. running (lag,), the integral until each lag, its `_error`, and `time`,
-    that lag. dimension, packing_fraction, count; `finite`, what a dilute gas of so many particles has over
-    an infinite one.
+    `end` of the integral. dimension, packing_fraction, count; `finite`, what a dilute gas of so many
+    particles has over an infinite one.
     """
     rows = [coefficient(point, flux, enskog) for point in points]
     return from_rows("point", rows, ("lag",), {"time": "collisions per particle"})
@@ -92,9 +94,15 @@ def coefficient(point: Point, flux: str, enskog: Callable[..., Any]) -> dict:
         "count": gas.count,
         "finite": theory.transport_finite_size_factor(gas.count, gas.dimension, QUANTITIES[flux]),
         **entries(numbers, freedom),
-        "time": rate * lags,
+        "time": rate * end(lags),
         **entries({"running": means_of(samples)}),
     }
+
+
+def end(lags: np.ndarray) -> np.ndarray:
+    """The time until which the integral with each lag goes: half an interval later, the mean until the next
+    lag, since fluxes are means over intervals."""
+    return lags + 0.5 * (lags[1] - lags[0])
 
 
 def _half(lags: np.ndarray) -> int:
@@ -107,3 +115,86 @@ def _growth(lags: np.ndarray, slopes: np.ndarray) -> float:
     first = _half(lags)
     change = slopes * lags
     return float((change[-1] - change[first]) / (lags[-1] - lags[first]))
+
+
+def logarithmic_growth(points: list[Point], settings: dict) -> xr.Dataset:
+    """How much the integrals of discs grow with time and with the container, beside hydrodynamic modes.
+
+    settings: `start`, collisions of a particle from which on they are compared. Over `point`: count,
+    packing_fraction, sound (collisions until sound has crossed the container); over `lag` too: time, in
+    collisions. Of each quantity, "viscosity" and "conductivity", over Enskog's: its integral until each time
+    (lag,) and `_error`; _modes (lag,), the modes of the container, with the height of the integrals from
+    `start` on (NaN before); _amplitude, the factor of the modes that fits these increments best, with
+    `_error` and `_freedom`. If there are several sizes, of the integral until the last time, over what a
+    dilute gas of so many particles has: _size_slope against ln N, `_error`, `_freedom`, _size_expected by
+    the modes, and _size_allowance, half of what that factor changes the slope.
+    """
+    rows = [_growing(point, settings["start"]) for point in points]
+    found = from_rows("point", rows, ("lag",), {"time": "collisions per particle"})
+    return found if len(rows) < 2 else found.assign(entries(_sizes(found)) | _expected_sizes(found))
+
+
+def _growing(point: Point, start: float) -> dict:
+    """One point of `logarithmic_growth`, and `_last` and its `_error`, `_last_expected` and `_finite`, of
+    which the slopes against ln N are made."""
+    gas, lengths = plain_gas(point.scene), point.scene.container.lengths
+    if gas.dimension != 2 or gas.diameter != 1.0 or gas.temperature != 1.0:
+        raise SceneError(f"experiments.{point.experiment}", "gas", "must be discs of diameter and k_B T 1")
+    eta, count, row = gas.packing_fraction, gas.count, {}
+    rate = float(theory.collision_rate(eta, 2))
+    for flux, name in QUANTITIES.items():
+        enskog = float(ENSKOG[name](**gas.parameters))
+        lags, samples = _integrals(point, flux)
+        samples /= enskog
+        time = end(lags)
+        late = rate * time >= start
+        modes = np.where(late, theory.transport_modes(time, eta, count, name) / enskog, np.nan)
+        steps = np.diff(modes[late])
+        amplitude = mean_of((np.diff(samples[:, late]) @ steps / (steps @ steps)).tolist())
+        values, errors = means_of(samples)
+        finite = theory.transport_finite_size_factor(count, 2, name)
+        last = mean_of((samples[:, -1] / finite).tolist())
+        first = theory.transport_modes(start / rate, eta, count, name)
+        taken = theory.transport_uniform_mode(eta, count, name) * start / rate
+        row |= {
+            **entries({f"{name}_amplitude": amplitude, f"{name}_last": last}),
+            **entries({name: (values, errors)}),
+            f"{name}_modes": modes + np.mean((values - modes)[late]),
+            f"{name}_last_expected": modes[-1] - (first + taken) / enskog,
+            f"{name}_finite": finite,
+        }
+    sound = rate * lengths[0] / float(theory.speed_of_sound(eta, 2))
+    return {"count": count, "packing_fraction": eta, "sound": sound, "time": rate * time, **row}
+
+
+def _integrals(point: Point, flux: str) -> tuple[np.ndarray, np.ndarray]:
+    """(lags,) the lags, and (B, lags) Green and Kubo's integrals of a flux in all blocks of all runs."""
+    blocks = []
+    for path in point.replica_paths:
+        with open_trajectory(path) as trajectory:
+            run = Run(point.scene, trajectory["time"].values, trajectory)
+            lags = trajectory["lag"].values
+            blocks += list(green_kubo(run, flux))
+    return lags, np.array(blocks)
+
+
+def _sizes(found: xr.Dataset) -> dict[str, Estimate]:
+    """The slopes of the last integrals against ln N."""
+    slopes = {}
+    for name in QUANTITIES.values():
+        errors, freedoms = found[f"{name}_last_error"], found[f"{name}_last_freedom"]
+        fit = fit_polynomial(np.log(found["count"]), found[f"{name}_last"], errors, freedoms=freedoms)
+        slopes[f"{name}_size_slope"] = fit.estimate(1)
+    return slopes
+
+
+def _expected_sizes(found: xr.Dataset) -> dict[str, float]:
+    """The same slopes by the modes, and half of those of the factor of a dilute gas."""
+    slopes = {}
+    for name in QUANTITIES.values():
+        parts = {"size_expected": (1.0, "last_expected"), "size_allowance": (0.5, "finite")}
+        for key, (factor, column) in parts.items():
+            errors = found[f"{name}_last_error"]
+            fit = fit_polynomial(np.log(found["count"]), found[f"{name}_{column}"], errors)
+            slopes[f"{name}_{key}"] = factor * fit.estimate(1).value
+    return slopes

@@ -1,0 +1,113 @@
+"""Pairs of hydrodynamic modes, against linearised equations that are solved without modes."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from gaspart import theory
+from gaspart.errors import SceneError
+from gaspart.theory.modes import heat_capacities
+
+QUANTITIES = ["viscosity", "conductivity"]
+
+
+def correlations(eta, k, time):
+    """(4, 4) the correlations, times the volume, of density, temperature and the velocities along (times i)
+    and across k at a time with those at 0; and (4,) the pressure, and the entropy of a particle times the
+    density, as sums of these.
+
+    By the linearised equations of continuity, momentum and energy with Enskog's coefficients; nothing is
+    assumed about modes.
+    """
+    density = float(theory.number_density(eta, 2))
+    z, constant = float(theory.compressibility_factor(eta, 2)), heat_capacities(eta, 2)[0]
+    step = 1e-5
+    pressure = [
+        float(theory.number_density(e, 2) * theory.compressibility_factor(e, 2))
+        for e in (eta * (1 - step), eta * (1 + step))
+    ]
+    slope = (pressure[1] - pressure[0]) / (2.0 * step * density)
+    along = float(theory.enskog_longitudinal_viscosity(eta, 2)) / density
+    across = float(theory.enskog_viscosity(eta, 2)) / density
+    heat = float(theory.enskog_conductivity(eta, 2)) / (density * constant)
+    matrix = np.array(
+        [
+            [0.0, 0.0, -density * k, 0.0],
+            [0.0, -heat * k**2, -z / constant * k, 0.0],
+            [slope / density * k, z * k, -along * k**2, 0.0],
+            [0.0, 0.0, 0.0, -across * k**2],
+        ]
+    )
+    static = np.array([density / slope, 1.0 / (density * constant), 1.0 / density, 1.0 / density])
+    found = expm(matrix * time) * static
+    pressing = np.array([slope, density * z, 0.0, 0.0])
+    entropy = np.array([-z, density * constant, 0.0, 0.0])
+    return found, pressing, entropy
+
+
+def by_equations(eta, count, time, quantity):
+    """The derivative of the coefficient with respect to time, from products of the correlations above."""
+    density = float(theory.number_density(eta, 2))
+    side = math.sqrt(count / density)
+    # beyond this all pairs have decayed by exp(-30)
+    longest = math.sqrt(15.0 * density / (float(theory.enskog_viscosity(eta, 2)) * time))
+    axis = np.arange(-math.ceil(longest * side / (2.0 * math.pi)), 1 + longest * side / (2.0 * math.pi))
+    squares, numbers = np.unique(axis**2 + axis[:, None] ** 2, return_counts=True)
+    pairs = [_pair(eta, 2.0 * math.pi / side * math.sqrt(one), time, quantity) for one in squares[1:]]
+    return numbers[1:] @ pairs / side**2
+
+
+def _pair(eta, k, time, quantity):
+    density = float(theory.number_density(eta, 2))
+    found, pressing, entropy = correlations(eta, k, time)
+    along, across = found[2, 2], found[3, 3]
+    if quantity == "viscosity":  # <u_x u_y u_x u_y>, the mean over the directions of k
+        return density**2 * ((along**2 + across**2) / 4.0 + along * across / 2.0)
+    flux = entropy + pressing  # of rho T s + p; times u along k, which is -i times the third variable
+    carried, crossed, back = flux @ found @ flux, flux @ found[:, 2], found[2] @ flux
+    return 0.5 * (carried * (along + across) - crossed * back)
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_linearised_equations_give_the_sums(quantity):
+    """In a large container, in which long waves alone are left; in small ones they differ in order k^4."""
+    eta, count, time, step = 0.2, 40_000, 300.0, 0.5
+    ends = theory.transport_modes(np.array([time - step, time + step]), eta, count, quantity)
+    found = (ends[1] - ends[0]) / (2.0 * step)
+    assert found == pytest.approx(by_equations(eta, count, time, quantity), rel=0.02)
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_a_large_container_grows_by_the_slope(quantity):
+    """But for the term of k = 0, and for the sound that decays faster than 1/t."""
+    eta, count = 0.3, 8_000_000
+    times = np.array([200.0, 600.0])
+    growth = np.diff(theory.transport_modes(times, eta, count, quantity))[0]
+    growth += theory.transport_uniform_mode(eta, count, quantity) * np.diff(times)[0]
+    expected = theory.transport_logarithmic_slope(eta, quantity) * math.log(3.0)
+    assert growth == pytest.approx(expected, rel=0.01)
+
+
+def test_slopes_of_a_dilute_gas_by_hand():
+    """c_p = 2, c^2 = 2, Gamma = (eta + lambda / 2) / rho; both amplitudes are proportional to the density."""
+    eta = 1e-5
+    density = float(theory.number_density(eta, 2))
+    nu, conductivity = 0.28829 / density, 1.16192 / density
+    sound, heat = nu + 0.5 * conductivity, 0.5 * conductivity
+    viscosity = (1.0 / nu + 1.0 / sound) / (32.0 * math.pi)
+    conduct = (2.0 / (nu + heat) + 2.0 / sound) / (8.0 * math.pi)
+    assert theory.transport_logarithmic_slope(eta, "viscosity") == pytest.approx(viscosity, rel=1e-3)
+    assert theory.transport_logarithmic_slope(eta, "conductivity") == pytest.approx(conduct, rel=1e-3)
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_nothing_grows_after_all_modes_have_decayed(quantity):
+    late = theory.transport_modes(np.array([1e4, 2e4]), 0.3, 256, quantity)
+    assert late[0] == late[1]
+
+
+def test_an_unknown_quantity_is_refused():
+    with pytest.raises(SceneError, match="quantity"):
+        theory.transport_modes(1.0, 0.2, 100, "heat")
