@@ -13,10 +13,10 @@ H_k = exp(-D_T k^2 t), the mean over the directions of k gives
 .. math:: \frac{d\lambda}{dt} = \frac{1}{2V} \sum_{k \ne 0} \left[ \frac{k_BT c_p}{m} H_k (T_k + S_k)
           + c^2 (e^{-\Gamma k^2 t} + T_k S_k) \right] ,
 
-of an infinite fluid the tails (32 pi t)^-1 (1/nu + 1/Gamma) k_B T, and (8 pi t)^-1 [k_B T c_p / (m (nu + D_T))
-+ c^2 / Gamma]. The method is that of Ernst, Hauge and van Leeuwen, Phys. Rev. A 4, 2055 (1971), and J. Stat.
-Phys. 15, 7 (1976); the amplitudes were derived again and not compared with the papers (tested against the
-linearised equations of the fluid). That of c^2 without a cosine is energy which travels with the sound.
+of an infinite fluid the tails (32 pi t)^-1 (1/nu + 1/Gamma) k_B T, and (8 pi t)^-1 [k_B T c_p / (m (nu +
+D_T)) + c^2 / Gamma]. The method is that of Ernst, Hauge and van Leeuwen, Phys. Rev. A 4, 2055 (1971), and J.
+Stat. Phys. 15, 7 (1976); the amplitudes were derived again and not compared with the papers (tested against
+the linearised equations of the fluid). That of c^2 without a cosine is energy which travels with the sound.
 Transport coefficients are Enskog's, and terms of the next order in 1/t are neglected. Everything is in
 diameters, masses and k_B T.
 """
@@ -60,8 +60,8 @@ def transport_uniform_mode(packing_fraction: float, count: int, quantity: str) -
 def transport_logarithmic_slope(packing_fraction: float, quantity: str) -> float:
     """Discs: how much the integral of an infinite fluid grows while t grows by a factor e.
 
-    (1/nu + 1/Gamma) / (32 pi) of the viscosity, [c_p / (nu + D_T) + c^2 / Gamma] / (8 pi) of the conductivity.
-    Arguments and errors as of `transport_modes`.
+    (1/nu + 1/Gamma) / (32 pi) of the viscosity, [c_p / (nu + D_T) + c^2 / Gamma] / (8 pi) of the
+    conductivity. Arguments and errors as of `transport_modes`.
     """
     still = [weight / width for weight, width, speed in _pairs(packing_fraction, quantity) if speed == 0.0]
     return sum(still) / (4.0 * math.pi)

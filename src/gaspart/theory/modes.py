@@ -85,7 +85,11 @@ def _sum(time: Numbers, eta: float, dimension: int, count: int, integrated: bool
 
 
 def sum_of_modes(
-    time: Numbers, modes: Sequence[tuple[float, float, float]], dimension: int, inverse: float, integrated: bool
+    time: Numbers,
+    modes: Sequence[tuple[float, float, float]],
+    dimension: int,
+    inverse: float,
+    integrated: bool,
 ) -> Values:
     """The sum of w exp(-D k^2 t) cos(c k t) over modes (w, D, c) and all wave vectors k but 0 of a periodic
     cube or square of side 1 / `inverse`; or its integral over time, but for a constant. Raises ValueError for

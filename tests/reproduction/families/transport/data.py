@@ -30,3 +30,28 @@ def measured(error=0.002, seed=1):
             }
         )
     return from_rows("point", rows, ("lag",))
+
+
+def growing(error=0.05, amplitude=1.0, slope=0.02, seed=1):
+    """Two containers whose integrals grow by `amplitude` times the modes, and by `slope` with ln N."""
+    rng, rows = np.random.default_rng(seed), []
+    time = np.arange(1.0, 40.0, 2.0)
+    for count in (256, 1024):
+        row = {"count": count, "time": time}
+        for name in ("viscosity", "conductivity"):
+            modes = np.where(time > 10.0, 1.0 + 0.03 * np.log(time / 40.0) + 1e-4 * count, np.nan)
+            row |= {
+                f"{name}_amplitude": amplitude + error * rng.normal(),
+                f"{name}_amplitude_error": error,
+                f"{name}_amplitude_freedom": 15.0,
+                f"{name}_modes": modes,
+                name: 1.0 - np.exp(-time) + 1e-5 * count,
+                f"{name}_error": np.full(time.size, 0.002),
+            }
+        rows.append(row)
+    found = from_rows("point", rows, ("lag",))
+    for name in ("viscosity", "conductivity"):
+        known = {"slope": slope, "slope_error": 0.1 * error, "slope_freedom": 15.0}
+        known |= {"expected": 0.02, "allowance": 0.002}
+        found = found.assign({f"{name}_size_{key}": value for key, value in known.items()})
+    return found

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 from reproduction.claims.data import judged
-from reproduction.families.transport.data import measured
+from reproduction.families.transport.data import growing, measured
 
 from gaspart.reproduction.families.transport import claims as transport
 
@@ -35,3 +35,26 @@ def test_noise_is_inconclusive():
     found = judged(transport.viscosity(measured(error=0.05)))
     assert {verdict for claim, verdict in found.items() if "Chapman" in claim} == {"inconclusive"}
     assert np.isfinite(measured()["value"].values).all()
+
+
+def test_growth_by_the_modes_agrees():
+    found = judged(transport.logarithmic_growth(growing()))
+    assert len(found) == 4 and set(found.values()) == {"agrees"}
+
+
+@pytest.mark.parametrize(
+    ("change", "verdicts"),
+    [
+        ({"amplitude": 0.0}, {"agrees", "disagrees"}),
+        ({"slope": -0.02}, {"agrees", "disagrees"}),
+        ({"error": 0.6}, {"inconclusive"}),
+    ],
+)
+def test_plateaus_disagree_and_noise_is_inconclusive(change, verdicts):
+    assert set(judged(transport.logarithmic_growth(growing(**change))).values()) == verdicts
+
+
+def test_one_container_states_nothing_of_sizes():
+    ds = growing()
+    ds = ds.drop_vars([name for name in ds if "_size_" in name]).isel(point=[0])
+    assert len(transport.logarithmic_growth(ds)) == 2

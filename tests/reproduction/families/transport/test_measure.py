@@ -1,3 +1,5 @@
+import numpy as np
+
 from gaspart import theory
 from gaspart.reproduction.families.transport import measure as transport
 from gaspart.reproduction.jobs import simulate
@@ -36,7 +38,35 @@ def test_coefficients_are_near_enskogs(tmp_path, monkeypatch):
         assert abs(float(row["value"]) - 1.0) < 4.5 * error + 0.03
         assert float(row["finite"]) == theory.transport_finite_size_factor(64, 3, name)
         assert abs(float(row["difference"])) < 4.5 * float(row["difference_error"]) + 0.02
-        assert abs(float(row["time"][1]) - 1.0) < 0.02
+        assert abs(float(row["time"][1]) - 1.5) < 0.02
     bulk = transport.viscosity([one], {}).isel(point=0)
     assert float(bulk["bulk_error"]) < 0.15
     assert abs(float(bulk["bulk"]) - 1.0) < 4.5 * float(bulk["bulk_error"]) + 0.03
+
+
+def test_growth_is_the_integrals_own(tmp_path, monkeypatch):
+    """Dilute discs in two small containers: amplitudes are noise, the curves those of `_dataset`."""
+    monkeypatch.chdir(tmp_path)
+    points = []
+    for count in (36, 64):
+        gas = GAS | {"dimension": 2, "count": count, "replicas": 4, "samples": 200}
+        one = Point(
+            "discs", f"count={count}", "simulate", gas | {"collisions_per_particle": 200}, "results", 1
+        )
+        (tmp_path / one.path).parent.mkdir(parents=True, exist_ok=True)
+        simulate.run(one.parameters, tmp_path / one.path)
+        points.append(one)
+    found = transport.logarithmic_growth(points, {"viscosity_from": 4.0, "conductivity_from": 8.0})
+    for name, function in (("viscosity", transport.viscosity), ("conductivity", transport.conductivity)):
+        plain = function(points, {})
+        np.testing.assert_allclose(found[name], plain["running"])
+        np.testing.assert_allclose(found["time"], plain["time"])
+        late = found["time"].values >= {"viscosity": 4.0, "conductivity": 8.0}[name]
+        modes = found[f"{name}_modes"].values
+        assert (np.isfinite(modes) == late).all()
+        for row in range(2):
+            steps, grown = np.diff(modes[row, late[row]]), np.diff(found[name].values[row, late[row]])
+            amplitude = float(found[f"{name}_amplitude"][row])
+            assert np.isclose(amplitude, grown @ steps / (steps @ steps))
+        slope = np.diff(found[f"{name}_last"].values)[0] / np.log(64 / 36)
+        assert np.isclose(float(found[f"{name}_size_slope"]), slope)

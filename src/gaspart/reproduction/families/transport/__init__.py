@@ -8,6 +8,9 @@ FIGURES: dict[str, dict] = {
     "viscosity": {},
     "conductivity": {},
     "logarithmic_growth": {
-        "start": positive("collisions of a particle from which on the growth of the integrals is compared"),
+        "viscosity_from": positive(
+            "collisions of a particle from which on the integral's growth is compared"
+        ),
+        "conductivity_from": positive("the same of the heat flux, whose first order holds later"),
     },
 }

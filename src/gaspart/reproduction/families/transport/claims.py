@@ -97,7 +97,7 @@ def logarithmic_growth(ds: xr.Dataset) -> list[Claim]:
         amplitudes = [Estimate.of(row, f"{name}_amplitude") for row in rows(ds, "point")]
         claims.append(
             Claim(
-                claim=f"growth of the {name}'s integral with time over that of pairs of modes, all containers",
+                claim=f"growth of the {name}'s integral with time over that of the containers' modes",
                 measured=weighted_mean(amplitudes),
                 expected=Estimate(1.0, NEXT_ORDER),
                 required=0.25,

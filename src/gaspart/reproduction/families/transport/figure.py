@@ -11,6 +11,9 @@ from gaspart.rendering import style
 from gaspart.reproduction.families.shared.claims import PARTICLES, rows
 from gaspart.reproduction.families.shared.rows import estimates
 
+SHOWN_FROM = 4.0
+"""Collisions of a particle after which the integrals are near enough to their ends for the axis."""
+
 
 def viscosity(ds: xr.Dataset) -> Figure:
     """The shear viscosity over Enskog's, and the bulk viscosity, against density, and the integral of the
@@ -26,15 +29,18 @@ def conductivity(ds: xr.Dataset) -> Figure:
 def logarithmic_growth(ds: xr.Dataset) -> Figure:
     """The integrals of both fluxes of discs against the logarithm of time, in containers of several sizes."""
     figure, axes = style.new((2.4,), (2.4,))
-    names = {"viscosity": r"$\eta/\eta_\mathrm{Enskog}$", "conductivity": r"$\lambda/\lambda_\mathrm{Enskog}$"}
+    names = {
+        "viscosity": r"$\eta/\eta_\mathrm{Enskog}$",
+        "conductivity": r"$\lambda/\lambda_\mathrm{Enskog}$",
+    }
     for axis, (name, label) in zip(axes, names.items(), strict=True):
         axis.set_xscale("log")
-        for kind, row in enumerate(rows(ds, "point")):
+        for kind, row in enumerate(rows(ds.isel(lag=(ds["time"] >= SHOWN_FROM).all("point")), "point")):
             value, error = estimates(row, name)
             text = f"{int(row['count'])} discs"
             style.points(axis, row["time"], value, error, kind=kind, label=text)
             axis.plot(row["time"], row[f"{name}_modes"], color=style.COLOURS[kind], lw=1.2)
-        axis.plot([], [], color=style.GREY, lw=1.2, label="pairs of modes")
+        axis.plot([], [], color=style.GREY, lw=1.2, label="modes of the container")
         axis.set_xlabel(r"collisions per particle $\nu t$")
         axis.set_ylabel(f"{label}, discs")
         axis.legend(loc="lower right")

@@ -26,6 +26,8 @@ from gaspart.trajectory.reading import open_trajectory
 QUANTITIES = {"shear": "viscosity", "heat": "conductivity"}
 """What the correlation of each flux makes."""
 ENSKOG = {"viscosity": theory.enskog_viscosity, "conductivity": theory.enskog_conductivity}
+EARLY = 5.0
+"""Collisions of a particle after which containers of different sizes differ by their uniform modes only."""
 LATE = 0.5
 """Part of the longest lag from which on the squared change of Helfand's sum is taken to grow evenly."""
 
@@ -120,21 +122,22 @@ def _growth(lags: np.ndarray, slopes: np.ndarray) -> float:
 def logarithmic_growth(points: list[Point], settings: dict) -> xr.Dataset:
     """How much the integrals of discs grow with time and with the container, beside hydrodynamic modes.
 
-    settings: `start`, collisions of a particle from which on they are compared. Over `point`: count,
-    packing_fraction, sound (collisions until sound has crossed the container); over `lag` too: time, in
-    collisions. Of each quantity, "viscosity" and "conductivity", over Enskog's: its integral until each time
-    (lag,) and `_error`; _modes (lag,), the modes of the container, with the height of the integrals from
-    `start` on (NaN before); _amplitude, the factor of the modes that fits these increments best, with
-    `_error` and `_freedom`. If there are several sizes, of the integral until the last time, over what a
-    dilute gas of so many particles has: _size_slope against ln N, `_error`, `_freedom`, _size_expected by
-    the modes, and _size_allowance, half of what that factor changes the slope.
+    settings: `viscosity_from` and `conductivity_from`, collisions of a particle from which on they are
+    compared. Over `point`: count, packing_fraction, sound (collisions until sound has crossed the container);
+    over `lag` too: time, in collisions. Of each quantity, "viscosity" and "conductivity", over Enskog's: its
+    integral until each time (lag,) and `_error`; _modes (lag,), the modes of the container, with the height
+    of the integrals from then on (NaN before); _amplitude, the factor of the modes that fits these increments
+    best, with `_error` and `_freedom`. If there are several sizes, of the integral until the last time, over
+    what a dilute gas of so many particles has: _size_slope against ln N, `_error`, `_freedom`, _size_expected
+    by the modes, and _size_allowance, half of what that factor changes the slope. Raises SceneError for
+    spheres, and for discs whose diameter or temperature is not 1.
     """
-    rows = [_growing(point, settings["start"]) for point in points]
+    rows = [_growing(point, settings) for point in points]
     found = from_rows("point", rows, ("lag",), {"time": "collisions per particle"})
     return found if len(rows) < 2 else found.assign(entries(_sizes(found)) | _expected_sizes(found))
 
 
-def _growing(point: Point, start: float) -> dict:
+def _growing(point: Point, settings: dict) -> dict:
     """One point of `logarithmic_growth`, and `_last` and its `_error`, `_last_expected` and `_finite`, of
     which the slopes against ln N are made."""
     gas, lengths = plain_gas(point.scene), point.scene.container.lengths
@@ -147,15 +150,15 @@ def _growing(point: Point, start: float) -> dict:
         lags, samples = _integrals(point, flux)
         samples /= enskog
         time = end(lags)
-        late = rate * time >= start
+        late = rate * time >= settings[f"{name}_from"]
         modes = np.where(late, theory.transport_modes(time, eta, count, name) / enskog, np.nan)
         steps = np.diff(modes[late])
         amplitude = mean_of((np.diff(samples[:, late]) @ steps / (steps @ steps)).tolist())
         values, errors = means_of(samples)
         finite = theory.transport_finite_size_factor(count, 2, name)
         last = mean_of((samples[:, -1] / finite).tolist())
-        first = theory.transport_modes(start / rate, eta, count, name)
-        taken = theory.transport_uniform_mode(eta, count, name) * start / rate
+        first = theory.transport_modes(EARLY / rate, eta, count, name)
+        taken = theory.transport_uniform_mode(eta, count, name) * EARLY / rate
         row |= {
             **entries({f"{name}_amplitude": amplitude, f"{name}_last": last}),
             **entries({name: (values, errors)}),
