@@ -88,3 +88,18 @@ def test_logarithmic_slope_is_the_integral_of_the_tail():
 def test_tail_of_spheres_falls_with_the_power_three_halves():
     tail = theory.velocity_autocorrelation_tail(np.array([10.0, 40.0]), 0.3, 3)
     assert tail[0] / tail[1] == pytest.approx(8.0)
+
+
+def test_the_viscosity_ratio_is_that_of_the_table():
+    eta = np.array([0.0, 0.1, 0.3, 0.4, 0.425, 0.49])
+    assert theory.viscosity_ratio(eta) == pytest.approx([1.0, 1.0, 1.0, 1.1219, 1.22785, 1.7817])
+    with pytest.raises(ValueError, match="packing_fraction"):
+        theory.viscosity_ratio(0.5)
+
+
+def test_a_more_viscous_fluid_loses_less_to_its_container():
+    """At 0.4 the measured viscosity is 12 % above Enskog's, and the shift 10 % less."""
+    lost = float(theory.erpenbeck_wood_diffusion(0.4)) - theory.diffusion_in_cube(0.4, 12.0)[0]
+    viscosity = float(theory.enskog_viscosity(0.4, 3))
+    carried = float(theory.number_density(0.4, 3) * theory.erpenbeck_wood_diffusion(0.4))
+    assert lost == pytest.approx(float(theory.yeh_hummer(12.0, 1.1219 * viscosity + carried)))

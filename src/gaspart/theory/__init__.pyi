@@ -7,6 +7,7 @@ from gaspart.theory.buoyancy import displaced_area as displaced_area
 from gaspart.theory.buoyancy import insertion_work as insertion_work
 from gaspart.theory.diffusion import ERPENBECK_WOOD_HIGHEST as ERPENBECK_WOOD_HIGHEST
 from gaspart.theory.diffusion import ERPENBECK_WOOD_UNCERTAINTY as ERPENBECK_WOOD_UNCERTAINTY
+from gaspart.theory.diffusion import VISCOSITY_RATIO_UNCERTAINTY as VISCOSITY_RATIO_UNCERTAINTY
 from gaspart.theory.diffusion import YEH_HUMMER_CONSTANT as YEH_HUMMER_CONSTANT
 from gaspart.theory.diffusion import diffusion_in_cube as diffusion_in_cube
 from gaspart.theory.diffusion import enskog_mean_squared_displacement as enskog_mean_squared_displacement
@@ -15,6 +16,7 @@ from gaspart.theory.diffusion import erpenbeck_wood_ratio as erpenbeck_wood_rati
 from gaspart.theory.diffusion import logarithmic_slope as logarithmic_slope
 from gaspart.theory.diffusion import velocity_autocorrelation_tail as velocity_autocorrelation_tail
 from gaspart.theory.diffusion import velocity_decay_rate as velocity_decay_rate
+from gaspart.theory.diffusion import viscosity_ratio as viscosity_ratio
 from gaspart.theory.diffusion import yeh_hummer as yeh_hummer
 from gaspart.theory.enskog import collision_rate as collision_rate
 from gaspart.theory.enskog import collision_rate_finite_size_factor as collision_rate_finite_size_factor

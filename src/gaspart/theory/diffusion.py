@@ -4,6 +4,7 @@ Arguments as in `enskog`: packing fraction (number or array), diameter, temperat
 """
 
 import math
+from pathlib import Path
 
 import numpy as np
 
@@ -17,6 +18,8 @@ ERPENBECK_WOOD_UNCERTAINTY = 0.007
 Pieprzyk and others (2019)."""
 ERPENBECK_WOOD_HIGHEST = 0.4915
 """Packing fraction up to which `erpenbeck_wood_ratio` holds: where spheres freeze."""
+VISCOSITY_RATIO_UNCERTAINTY = 0.02
+"""Relative standard uncertainty of `viscosity_ratio`: the largest of its table."""
 _DENSE = 0.45, 0.03
 # Packing fraction from which on the uncertainty is larger, and which; the difference is 2 % at 0.487.
 YEH_HUMMER_CONSTANT = 2.837297
@@ -46,11 +49,24 @@ def erpenbeck_wood_diffusion(
 
 
 @checked
+def viscosity_ratio(packing_fraction: Numbers) -> Values:
+    """Spheres: the shear viscosity over Enskog's, as measured by this program (dimensionless).
+
+    Straight lines between the rows of `data/viscosity_3d.csv`; 1 up to 0.3, where 1.00(1) was measured.
+    Uncertain by `VISCOSITY_RATIO_UNCERTAINTY`, and by some 2 % more between the rows. Range: eta <= 0.4915.
+    """
+    eta = checked_packing_fraction(packing_fraction, ERPENBECK_WOOD_HIGHEST)
+    path = Path(__file__).parent / "data" / "viscosity_3d.csv"
+    known, ratio, _ = np.loadtxt(path, delimiter=",", skiprows=1, unpack=True)
+    return np.interp(eta, known, np.r_[1.0, ratio[1:]])[()]
+
+
+@checked
 def yeh_hummer(length: Numbers, viscosity: Numbers, temperature: float = 1.0) -> Values:
     """Spheres: D_infinity - D_L = 2.837297 k_B T / (6 pi viscosity L): to be added to D_L (length^2 / time).
 
     Yeh and Hummer, J. Phys. Chem. B 108, 15873 (2004), abstract. `length`: side of the cubic periodic
-    container; `viscosity`: shear viscosity, `enskog.enskog_viscosity` will do to eta = 0.3. Hydrodynamics:
+    container; `viscosity`: shear viscosity, `enskog.enskog_viscosity` times `viscosity_ratio`. Hydrodynamics:
     holds where the mean free path is much smaller than L. Modes of the velocity field that decay with nu + D
     instead of nu, as in a gas, are those of a viscosity larger by rho D.
     """
@@ -67,11 +83,12 @@ def diffusion_in_cube(
 ) -> tuple[float, float]:
     """Spheres: D in a periodic cube of side `length`, and its standard uncertainty (length^2 / time).
 
-    `erpenbeck_wood_diffusion` less `yeh_hummer`, of modes that decay with nu + D by Enskog's viscosity. The
-    latter is taken as uncertain by half of it, for containers that are not long beside a mean free path.
+    `erpenbeck_wood_diffusion` less `yeh_hummer`, of modes that decay with nu + D, the viscosity Enskog's times
+    `viscosity_ratio`. The latter is taken as uncertain by half of it, for containers that are not long beside a mean free path.
     """
     infinite = float(erpenbeck_wood_diffusion(packing_fraction, diameter, temperature, mass))
     viscosity = float(enskog_viscosity(packing_fraction, 3, diameter, temperature, mass))
+    viscosity *= float(viscosity_ratio(packing_fraction))
     carried = mass * float(number_density(packing_fraction, 3, diameter)) * infinite
     shift = float(yeh_hummer(length, viscosity + carried, temperature))
     dense, large = _DENSE

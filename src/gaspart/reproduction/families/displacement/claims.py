@@ -72,7 +72,7 @@ def _size_slope(ds: xr.Dataset) -> Claim:
         measured=Estimate.of(ds, "size_slope"),
         expected=expected,
         required=0.15 * abs(expected),
-        source="[Yeh 2004], with Enskog's viscosity and modes that decay with nu + D",
+        source="[Yeh 2004], with the measured viscosity and modes that decay with nu + D",
         alternative=0.0,
         fails_if="D that does not depend on the container as hydrodynamics states",
     )

@@ -143,7 +143,8 @@ def _growing(point: Point, settings: dict) -> dict:
     gas, lengths = plain_gas(point.scene), point.scene.container.lengths
     if gas.dimension != 2 or gas.diameter != 1.0 or gas.temperature != 1.0:
         raise SceneError(f"experiments.{point.experiment}", "gas", "must be discs of diameter and k_B T 1")
-    eta, count, row = gas.packing_fraction, gas.count, {}
+    eta, count = gas.packing_fraction, gas.count
+    row: dict[str, Any] = {}
     rate = float(theory.collision_rate(eta, 2))
     for flux, name in QUANTITIES.items():
         enskog = float(ENSKOG[name](**gas.parameters))
