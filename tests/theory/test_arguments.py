@@ -13,7 +13,7 @@ GOOD = {"packing_fraction": 0.1, "dimension": 3, "width": 3.0, "length": 9.0, "c
 GOOD |= {"inertia": 0.5, "tangential": 0.5, "restitution": 0.9, "energy": 5.0, "count": 8, "probability": 0.5}
 GOOD |= {"z": np.linspace(0.0, 5.0, 11), "numbers": [0.1], "weights": [0.1], "reach": 1.0, "per_side": 3}
 GOOD |= {"mean": 12.0, "variance": 3.0, "compressibility_factor": 9.0, "density": 0.5, "bulk_density": 0.5}
-GOOD |= {"diameters": [1.0, 0.5]}
+GOOD |= {"diameters": [1.0, 0.5], "quantity": "viscosity"}
 GOOD |= {"side_over_diameter": 9.0, "boundary": "wall", "radius": 0.5, "side": 9.0}
 
 

@@ -83,8 +83,9 @@ def diffusion_in_cube(
 ) -> tuple[float, float]:
     """Spheres: D in a periodic cube of side `length`, and its standard uncertainty (length^2 / time).
 
-    `erpenbeck_wood_diffusion` less `yeh_hummer`, of modes that decay with nu + D, the viscosity Enskog's times
-    `viscosity_ratio`. The latter is taken as uncertain by half of it, for containers that are not long beside a mean free path.
+    `erpenbeck_wood_diffusion` less `yeh_hummer`, of modes that decay with nu + D, with the viscosity of
+    `viscosity_ratio`. The shift is taken as uncertain by half of it, for containers that are not long beside
+    a mean free path.
     """
     infinite = float(erpenbeck_wood_diffusion(packing_fraction, diameter, temperature, mass))
     viscosity = float(enskog_viscosity(packing_fraction, 3, diameter, temperature, mass))

@@ -142,11 +142,11 @@ def spheres(point: Point) -> dict:
     Of N particles whose total momentum is zero, D is (N - 1) / N of that of N particles without this
     condition (exact for a dilute gas, where the others carry -1 / (N - 1) of a particle's momentum each): all
     curves are multiplied by N / (N - 1). The rest of the finite size is hydrodynamic: Yeh and Hummer's
-    correction with the measured viscosity (`theory.viscosity_ratio`), to which rho D is added, because a particle
-    leaves a vortex by its own diffusion too: each mode decays with nu + D, as in the long-time tail (Ernst,
-    Hauge and van Leeuwen 1970); half of it in a dilute gas. Its uncertainty is that of the viscosity, and
-    (2 pi mean free path / side)^2 of it, the next order of hydrodynamics in the slowest mode, but not more
-    than all of it.
+    correction with the measured viscosity (`theory.viscosity_ratio`), to which rho D is added, because a
+    particle leaves a vortex by its own diffusion too: each mode decays with nu + D, as in the long-time tail
+    (Ernst, Hauge and van Leeuwen 1970); half of it in a dilute gas. Its uncertainty is that of the viscosity,
+    and (2 pi mean free path / side)^2 of it, the next order of hydrodynamics in the slowest mode, but not
+    more than all of it.
     """
     state = _state(point)
     start = max(LINEAR_FROM / state["collision_rate"], SETTLE_SHEAR_TIMES * state["shear_time"])
@@ -171,13 +171,13 @@ def spheres(point: Point) -> dict:
     diffusion = _mean("diffusion", slopes)
     carried = float(theory.number_density(state["packing_fraction"], 3)) * diffusion["diffusion"]
     correction = float(theory.yeh_hummer(state["side"], state["viscosity"] + carried))
+    rough = theory.VISCOSITY_RATIO_UNCERTAINTY
     next_order = (2.0 * math.pi * state["mean_free_path"] / state["side"]) ** 2
     return {
         **rows,
         **diffusion,
         "correction": correction,
-        "correction_uncertainty": correction
-        * min(1.0, math.hypot(theory.VISCOSITY_RATIO_UNCERTAINTY, next_order)),
+        "correction_uncertainty": correction * min(1.0, math.hypot(rough, next_order)),
         "fit_from": start,
         "fit_to": 2.0 * start,
     }
