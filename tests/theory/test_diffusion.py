@@ -43,7 +43,8 @@ def test_diffusion_in_a_cube_has_the_units_of_its_particles():
         inside, unsure = theory.diffusion_in_cube(eta, 20.0)
         infinite = float(theory.erpenbeck_wood_diffusion(eta))
         shift = infinite - inside
-        whole = float(theory.yeh_hummer(20.0, theory.enskog_viscosity(eta, 3)))
+        viscosity = theory.viscosity_ratio(eta) * theory.enskog_viscosity(eta, 3)
+        whole = float(theory.yeh_hummer(20.0, viscosity))
         assert shift / whole == pytest.approx(part, abs=0.02)
         assert unsure == pytest.approx(np.hypot(0.007 * infinite, 0.5 * shift))
         other = theory.diffusion_in_cube(eta, 40.0, diameter=2.0, temperature=3.0, mass=12.0)
