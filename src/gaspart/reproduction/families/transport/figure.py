@@ -70,7 +70,7 @@ def _density(axis: Axes, row: xr.Dataset, dimension: int) -> None:
     if "bulk" in row:
         style.measured(axis, eta, estimates(row, "bulk"), 2, label="bulk, Green-Kubo")
     axis.axhline(1.0, color=style.GREY, lw=0.8, label="Enskog")
-    axis.set_xlim(0.0)
+    axis.set_xlim(0.0, 1.1 * eta.max())
     axis.set_xlabel(r"packing fraction $\phi$")
     axis.legend(loc="upper left")
 

@@ -132,12 +132,13 @@ def logarithmic_growth(points: list[Point], settings: dict) -> xr.Dataset:
     by the modes, and _size_allowance, half of what that factor changes the slope. Raises SceneError for
     spheres, and for discs whose diameter or temperature is not 1.
     """
-    rows = [_growing(point, settings) for point in points]
+    starts = {"viscosity": settings["viscosity_from"], "conductivity": settings["conductivity_from"]}
+    rows = [_growing(point, starts) for point in points]
     found = from_rows("point", rows, ("lag",), {"time": "collisions per particle"})
     return found if len(rows) < 2 else found.assign(entries(_sizes(found)) | _expected_sizes(found))
 
 
-def _growing(point: Point, settings: dict) -> dict:
+def _growing(point: Point, starts: dict[str, float]) -> dict:
     """One point of `logarithmic_growth`, and `_last` and its `_error`, `_last_expected` and `_finite`, of
     which the slopes against ln N are made."""
     gas, lengths = plain_gas(point.scene), point.scene.container.lengths
@@ -151,7 +152,7 @@ def _growing(point: Point, settings: dict) -> dict:
         lags, samples = _integrals(point, flux)
         samples /= enskog
         time = end(lags)
-        late = rate * time >= settings[f"{name}_from"]
+        late = rate * time >= starts[name]
         modes = np.where(late, theory.transport_modes(time, eta, count, name) / enskog, np.nan)
         steps = np.diff(modes[late])
         amplitude = mean_of((np.diff(samples[:, late]) @ steps / (steps @ steps)).tolist())
