@@ -11,11 +11,9 @@ import math
 import time
 from dataclasses import dataclass
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.analysis.measuring import measure
 from gaspart.analysis.names import FLUXES, PAIRS
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine, engine_to_dict
@@ -24,12 +22,11 @@ from gaspart.kernels.compile.cache import cache_directory
 from gaspart.kernels.compile.policy import source_digest
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
+from gaspart.tradeoff.estimates import Component, components
+from gaspart.tradeoff.reached import bound
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.run import run
-
-if TYPE_CHECKING:
-    from gaspart.analysis.observable import Observable
 
 SEED = 0
 _PROBE = 0.15
@@ -40,33 +37,58 @@ _HELD = 20_000_000
 _LAGS = 100
 _SAMPLED = 0.1
 """Time between two samples of a correlation, in collisions of a particle."""
-_FREEDOM = 15.0
-"""Degrees of freedom of an error, where an observable states none."""
 
 
 @dataclass(frozen=True)
 class Pilot:
     """What a short run of an engine has shown.
 
-    speed: processor seconds per unit of time; measured: the time that the observable is of, 0 where it could
-    not be measured, for the reason in `rule`; value: the largest component; accuracy: the relative standard
-    error, of a curve the root of the mean square over that of its values, of several components the worst;
-    freedom: its degrees of freedom; seconds: that the pilot took, 0 if it was kept from before.
+    speed: processor seconds per unit of time; seconds: that the pilot took, 0 if it was kept from before;
+    component: the one that is known worst, None where the observable could not be measured, for the reason in
+    `rule`; interval: between frames.
     """
 
     engine: Engine
     speed: float
     seconds: float = 0.0
-    measured: float = 0.0
-    value: float = math.nan
-    accuracy: float = math.inf
-    freedom: float = _FREEDOM
+    component: Component | None = None
+    interval: float = math.inf
     rule: str = ""
 
     @property
-    def noise(self) -> float:
-        """The square of the relative standard error, times the time that was measured."""
-        return self.accuracy**2 * self.measured if self.measured else math.inf
+    def measured(self) -> float:
+        """The time that the observable is of, 0 where it was not measured."""
+        return self.component.time if self.component else 0.0
+
+    @property
+    def duration(self) -> float:
+        """Of the run, with what was not measured, 0 likewise."""
+        return self.measured / (1.0 - EQUILIBRATION)
+
+    @property
+    def value(self) -> float:
+        """Of that component."""
+        return self.component.value if self.component else math.nan
+
+    @property
+    def accuracy(self) -> float:
+        """Its relative standard error."""
+        return self.component.accuracy if self.component else math.inf
+
+    def length(self, accuracy: float) -> float:
+        """The measured time with which the upper bound of the error is so small, as of a run `until`
+        accurate; inf if none is."""
+        if not self.component or not self.accuracy < math.inf or not accuracy > 0.0:
+            return math.inf
+        room = accuracy * self.component.scale / bound(self.component.freedom)
+        part = 0.5 * self.component.spectrum / room**2
+        return part + math.sqrt(part**2 + self.component.stored / room**2)
+
+    def reaches(self, time: float) -> float:
+        """The inverse: that bound after a measured time, relative."""
+        if not self.component or not self.accuracy < math.inf:
+            return math.inf
+        return self.component.error(time) / self.component.scale * bound(self.component.freedom)
 
 
 def speed_of(scene: Scene, engine: Engine, observable: str) -> float:
@@ -76,7 +98,7 @@ def speed_of(scene: Scene, engine: Engine, observable: str) -> float:
         return _speed_of_sampling(scene, engine, observable)
     simulation = Simulation(scene, engine, SEED)
     quantum = simulation.engine.quantum
-    stretch = quantum or 1e-3 * _crossing(scene)
+    stretch = quantum or 1e-3 * crossing(scene)
     simulation.advance(duration=4.0 * stretch)  # compiles
     while True:
         before, start = simulation.time, time.process_time()
@@ -99,7 +121,7 @@ def _speed_of_sampling(scene: Scene, engine: Engine, observable: str) -> float:
     return took / duration
 
 
-def _crossing(scene: Scene) -> float:
+def crossing(scene: Scene) -> float:
     """The time in which a particle crosses the shortest side of the container."""
     squares = [
         kind.temperature / kind.mass if kind.temperature else (kind.speed or 0.0) ** 2
@@ -134,13 +156,12 @@ def run_pilot(scene: Scene, engine: Engine, observable: str, seconds: float, spe
             return Pilot(engine, speed, rule=str(error))
         took = time.process_time() - start
     with open_trajectory(path) as trajectory:
-        last = float(trajectory["time"][-1])
         try:
-            result = measure(observable, trajectory)
+            found = components(trajectory, observable)
         except SceneError as error:
             return Pilot(engine, speed, took, rule=f"{error.key}: {error.rule}")
-    value, accuracy, freedom = _worst(result)
-    return Pilot(engine, speed, took, (1.0 - EQUILIBRATION) * last, value, accuracy, freedom)
+    worst = max(found.values(), key=lambda one: one.accuracy)
+    return Pilot(engine, speed, took, worst, interval)
 
 
 def schedule(
@@ -172,26 +193,6 @@ def _of_fluxes(scene: Scene, engine: Engine, length: float) -> tuple[float, floa
     frames = max(4, round(length / (per_frame * sample)))
     interval = per_frame * sample
     return frames * interval, interval, Correlations(interval=sample, lags=_LAGS, stress=True)
-
-
-def _worst(result: Observable) -> tuple[float, float, float]:
-    """Value, relative error and degrees of freedom of an observable; of faces or axes those of the worst,
-    of a curve the norms of its values and errors."""
-    value, error = np.asarray(result.estimate, dtype=float), np.asarray(result.error, dtype=float)
-    freedom = float(result.attrs.get("freedom", _FREEDOM))
-    if not value.ndim:
-        relative = float(error / abs(value)) if value else math.inf
-        return float(value), relative, freedom
-    places = result[result.estimate.dims[-1]]
-    if places.dtype.kind in "US":
-        relative = np.where(value != 0.0, error / np.abs(value), np.inf)
-        worst = int(np.argmax(relative))
-        return float(value.flat[worst]), float(relative.flat[worst]), freedom
-    known = np.isfinite(value) & np.isfinite(error)
-    norm = float(np.sqrt(np.mean(value[known] ** 2))) if known.any() else 0.0
-    if not norm > 0.0:
-        return 0.0, math.inf, freedom
-    return norm, float(np.sqrt(np.mean(error[known] ** 2))) / norm, freedom
 
 
 def _digest(scene: Scene, engine: Engine, kind: str, seconds: float) -> str:

@@ -12,17 +12,20 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from gaspart.analysis.names import FLUXES, PAIRS, known
+from gaspart.analysis.names import CURVES, FLUXES, PAIRS, known
+from gaspart.analysis.pairs import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
+from gaspart.engines import Engine
+from gaspart.engines.dsmc.rates import rates
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
 from gaspart.tradeoff import PILOT_SECONDS
 from gaspart.tradeoff.advice import ACCURACIES, is_driven, temperature_scatter
-from gaspart.tradeoff.candidates import Candidate, candidates
-from gaspart.tradeoff.pilot import Pilot, run_pilot, schedule, speed_of
-from gaspart.tradeoff.reached import bound
-from gaspart.tradeoff.table import QUANTILE
+from gaspart.tradeoff.candidates import STRUCTURE, Candidate, candidates
+from gaspart.tradeoff.pilot import Pilot, crossing, run_pilot, schedule, speed_of
+from gaspart.tradeoff.table import EQUILIBRATION as EQUILIBRATED
+from gaspart.tradeoff.table import LEAST, QUANTILE
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.until import OBSERVABLES, Accuracy, Until
 
@@ -30,11 +33,15 @@ _WORTH = 3.0
 """How many times as cheap as the first engine one must be to have a pilot of its own."""
 _DIFFERS = 2.5
 """Standard errors by which two pilots differ if one is biased more than theory says."""
-_FRAMES = 256
-_LONGEST = 16.0
-"""The longest duration of a run with `--until`, over the predicted one. The error of a short run may be
-overstated: where impulses on a wall are anticorrelated, by a factor of two, which takes four times as
-long."""
+_FRAMES = 384
+"""Of a run: 288 independent intervals give an error 17 degrees of freedom, and 15 are required."""
+_LONGEST = 4.0
+"""The longest duration of a run with `--until` over the predicted one: two examinations, and an error that
+chance made too small in the pilot."""
+_LAGS = "msd", "vacf"
+"""Observables whose lags reach to half of a run: the longer it is, the more of them are little known."""
+_CROSSINGS = 10.0
+"""How often a particle crosses a container with walls at least in a run."""
 _POWERS = {
     **dict.fromkeys(("pressure", "temperature", "pressure_tensor", "vacf"), 1.0),
     **dict.fromkeys(("collision_rate", "pair_rates", "D", "mutual_diffusion", "msd", "speeds"), 0.5),
@@ -85,11 +92,18 @@ class Plan:
         return _POWERS.get(self.observable, 0.0) * temperature_scatter(self.scene)
 
     @property
+    def longest_interval(self) -> float:
+        """Between frames, of an observable that they sample: that of the pilot, whose noise is known."""
+        sampled = self.observable in CURVES and self.observable not in STRUCTURE
+        return min(one.interval for one in self.pilots) if sampled else math.inf
+
+    @property
     def recipe(self) -> Recipe:
         """The run to make: until it is accurate where that can be asked, else of a fixed duration."""
         best = self.best
         scene, engine, correlations = self.scene, best.candidate.engine, None
-        duration, interval = best.duration, float(f"{best.duration / _FRAMES:.2g}")
+        duration, interval = best.duration, min(best.duration / _FRAMES, self.longest_interval)
+        interval = float(f"{interval:.3g}")
         if self.observable in FLUXES:
             duration, interval, correlations = schedule(scene, engine, self.observable, duration)
         elif quantum := engine.resolved(scene).quantum:
@@ -99,7 +113,8 @@ class Plan:
         if self.observable in OBSERVABLES and self.affordable:
             relative = (self.accuracy - best.bias) / QUANTILE
             asked = Accuracy(self.observable, float(f"{0.99 * relative:.3g}"))
-            until = Until((asked,), at_most=float(f"{_LONGEST * duration:.2g}"))
+            longest = max(_LONGEST * duration, *(one.duration for one in self.pilots))
+            until = Until((asked,), at_most=float(f"{longest:.2g}"))
         fixed = None if until else max(1, round(duration / interval)) * interval
         pairs = self.observable in PAIRS
         return Recipe(scene, engine, 1, fixed, interval, correlations=correlations, until=until, pairs=pairs)
@@ -127,6 +142,9 @@ def plan(
     accuracy = number("accuracy", accuracy, f"must be from {low:g} to {high:g}", least=low, most=high)
     if budget is not None:
         budget = number("budget", budget, "must be positive", above=0.0)
+    if observable in _LAGS:
+        rule = "has lags up to half of the run, which no length makes more accurate; state D or a duration"
+        raise SceneError("observable", observable, rule)
     pilot_seconds = number("pilot", pilot_seconds, "must be positive", above=0.0)
     _require_steady(scene)
     able, refused = candidates(scene, observable, accuracy)
@@ -145,8 +163,13 @@ def plan(
         rule = f"{pilots[0].rule or 'does not change in the pilot run'}; allow longer pilots"
         raise SceneError("observable", observable, rule)
     longest = max(faithful, key=lambda one: one.measured)
+
+    def limits(engine: Engine, speed: float) -> tuple[float, float]:
+        affordable = math.inf if budget is None else budget / speed
+        return _least(scene, engine), min(affordable, _longest(observable, longest))
+
     options = [
-        _option(one, speed, _bias(one, measured), longest, accuracy, budget)
+        _option(one, speed, _bias(one, measured), longest, accuracy, limits(one.engine, speed))
         for one, speed in zip(able, speeds, strict=True)
     ]
     options.sort(key=lambda one: (max(one.half_width, accuracy * (1.0 + 1e-9)), one.seconds))
@@ -198,16 +221,37 @@ def _bias(candidate: Candidate, measured: list[Pilot]) -> float:
 
 
 def _option(
-    candidate: Candidate, speed: float, bias: float, pilot: Pilot, accuracy: float, budget: float | None
+    candidate: Candidate,
+    speed: float,
+    bias: float,
+    pilot: Pilot,
+    accuracy: float,
+    limits: tuple[float, float] = (0.0, math.inf),
 ) -> Option:
-    """What a candidate needs for an accuracy, with the noise of a pilot, or reaches within a budget."""
-    noise = pilot.noise * bound(pilot.freedom) ** 2
-    room = (accuracy - bias) / QUANTILE
-    measured = noise / room**2 if room > 0.0 else math.inf
-    most = math.inf if budget is None else budget / speed * (1.0 - EQUILIBRATION)
-    measured = min(measured, most)
+    """What a candidate needs for an accuracy, with the noise of a pilot, or reaches within limits of the
+    duration."""
+    least, most = ((1.0 - EQUILIBRATION) * limit for limit in limits)
+    measured = min(max(pilot.length((accuracy - bias) / QUANTILE), least), most)
     if not math.isfinite(measured):
         return Option(candidate, speed, bias, math.inf, math.inf, math.inf)
     duration = measured / (1.0 - EQUILIBRATION)
-    half_width = bias + QUANTILE * math.sqrt(noise / measured)
+    half_width = bias + QUANTILE * pilot.reaches(measured)
     return Option(candidate, speed, bias, duration, duration * speed, half_width)
+
+
+def _longest(observable: str, pilot: Pilot) -> float:
+    """The longest duration that is of use: what is of positions is of a number of frames, and those of the
+    pilot say how much each of them tells; more time between them is not known to help."""
+    if observable not in STRUCTURE:
+        return math.inf
+    frames = pilot.measured / pilot.interval
+    return pilot.measured * _FRAMES / (frames / math.ceil(frames / MOST_FRAMES))
+
+
+def _least(scene: Scene, engine: Engine) -> float:
+    """The shortest duration: what the table equilibrates and measures at least, some crossings of a container
+    with walls, and the engine's steps between frames."""
+    frequency = rates(scene, dense=True).frequency
+    collisions = (EQUILIBRATED + LEAST) / frequency if frequency > 0.0 else 0.0
+    crossings = 0.0 if all(scene.container.periodic) else _CROSSINGS * crossing(scene)
+    return max(collisions, crossings, _FRAMES * (engine.resolved(scene).quantum or 0.0))

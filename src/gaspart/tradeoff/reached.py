@@ -25,6 +25,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
+from gaspart.tradeoff.estimates import LEAST_FREEDOM, components
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import read_recipe
 from gaspart.trajectory.until import Accuracy, examined_before
@@ -34,18 +35,9 @@ if TYPE_CHECKING:
 
     from gaspart.analysis.estimate import Estimate
 
-LEAST_FREEDOM = 15.0
-"""Degrees of freedom of an error that can end a run."""
 _DOUBT = 0.1
 """Probability with which the true error exceeds its bound."""
 _CONFIDENCE = 0.95
-_FUNCTIONS = {
-    "Z": "compressibility_factor",
-    "D": "diffusion_coefficient",
-    "collision_rate": "collision_rate",
-    "shear_viscosity": "shear_viscosity",
-}
-"""Observables -> functions of `gaspart.analysis`; those of walls are in `_pressures`."""
 _TOO_SHORT = ("frames", "duration", "collisions", "start", "D")
 """Keys of the errors of an analysis that a longer run may not have."""
 
@@ -195,37 +187,6 @@ class Examiner:
 
 
 def _measure(data: xr.Dataset, asked: Accuracy) -> dict[str, Estimate]:
-    """An observable by component, "" for a scalar."""
-    from gaspart import analysis
-    from gaspart.analysis.estimate import Estimate
-    from gaspart.analysis.motion import GROUPS
-
-    if asked.observable == "pressure":
-        return _pressures(data, asked)
-    function = getattr(analysis, _FUNCTIONS[asked.observable])
-    result = function(data, start=asked.start)
-    freedom = result.attrs.get("freedom", GROUPS - 1)
-    if not result.estimate.ndim:
-        return {"": Estimate(result.estimate, result.error, freedom)}
-    names = [str(name) for name in result[result.estimate.dims[0]].values]
-    pairs = zip(result.estimate.values, result.error.values, strict=True)
-    return {name: Estimate(*pair, freedom) for name, pair in zip(names, pairs, strict=True)}
-
-
-def _pressures(data: xr.Dataset, asked: Accuracy) -> dict[str, Estimate]:
-    """The pressures on walls, or on the one that is asked for, each from a series over intervals of frames.
-    (Those of `analysis.wall_pressure` have the errors of 16 blocks, which no blocks confirm.)"""
-    import numpy as np
-
-    from gaspart.analysis.pressure import pressures_on_walls
-    from gaspart.analysis.run import measured
-    from gaspart.analysis.statistics import correlated_mean
-
-    with measured(data, asked.start) as part:
-        faces, series = pressures_on_walls(part, np.arange(len(part.time)))
-    if np.isnan(series).any():
-        raise SceneError("particles at rest", "NaN", "their thrust on walls is not known")
-    if len(series) < LEAST_FREEDOM + 1:
-        raise SceneError("frames", len(series) + 1, f"an error needs {LEAST_FREEDOM + 2:g} or more")
-    means = {str(face): correlated_mean(one).estimate for face, one in zip(faces, series.T, strict=True)}
-    return means if asked.face is None else {asked.face: means[asked.face]}
+    """An observable by component, "" for a scalar; of pressures those that are asked for."""
+    found = components(data, asked.observable, asked.start)
+    return {name: one.estimate for name, one in found.items() if asked.face in (None, name)}

@@ -27,10 +27,10 @@ from gaspart.reproduction.families.tradeoff.uniform import (
     cells_by_fraction,
     compared,
     each_of,
-    model_error,
 )
 from gaspart.reproduction.points.point import Point
 from gaspart.tradeoff import table
+from gaspart.tradeoff.models import model_error
 from gaspart.tradeoff.table import EQUILIBRATION, LEAST, PRECISIONS, QUANTILE, REFERENCE, STEP
 
 FITTED = 3

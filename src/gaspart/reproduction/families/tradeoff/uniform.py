@@ -23,9 +23,9 @@ from gaspart.reproduction.families.shared.pressure import series_of
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.families.tradeoff.choices import Choice
 from gaspart.reproduction.points.point import Point
-from gaspart.theory.dsmc import step_factor
 from gaspart.tradeoff import table
 from gaspart.tradeoff.candidates import cell_loss
+from gaspart.tradeoff.models import model_error, step_error
 from gaspart.tradeoff.table import EQUILIBRATION, LEAST, PRECISIONS
 
 OBSERVABLES = ("collision_rate", "Z", "D")
@@ -104,26 +104,6 @@ class Uniform:
         return viscosity / self._density + float(theory.enskog_diffusion(self.packing_fraction, 3))
 
 
-def model_error(packing_fraction: float, model: str, observable: str) -> float:
-    """|error| of an observable by the Boltzmann or the Enskog equation, relative to hard spheres.
-
-    The Boltzmann equation has a contact value of 1, and no virial. The Enskog model is given the contact
-    value of Carnahan and Starling. D of neither has the memory of correlated collisions [Erpenbeck
-    1991], whose uncertainty is added.
-    """
-    eta, contact = packing_fraction, float(theory.contact_value(packing_fraction, 3))
-    z = float(theory.compressibility_factor(eta, 3))
-    given = 1.0 if model == "boltzmann" else (float(theory.carnahan_starling(eta)) - 1.0) / (4.0 * eta)
-    if observable == "collision_rate":
-        return abs(given / contact - 1.0)
-    if observable == "Z":
-        virial = 0.0 if model == "boltzmann" else 4.0 * eta * given
-        return abs((1.0 + virial) / z - 1.0)
-    ratio = float(theory.erpenbeck_wood_ratio(eta))
-    known = theory.ERPENBECK_WOOD_UNCERTAINTY if eta > 0.01 else 0.0
-    return abs(contact / (given * ratio) - 1.0) + known
-
-
 @dataclass(frozen=True)
 class Cells:
     """What the cells of the Enskog model do at one packing fraction. rate: the collision rate over that of
@@ -187,7 +167,7 @@ def choices(
         if model not in ("boltzmann", "enskog") or (model == "enskog" and cells is None):
             continue
         for step, each in zip(one["time_step"], each_of(one, rate), strict=True):
-            error = step_error(gas, step) if observable == "D" else 0.0
+            error = step_error(gas.packing_fraction, step) if observable == "D" else 0.0
             of_cells = cells.error if cells and model == "enskog" else 0.0
             own = cells.noise.get(observable, variance) if cells and model == "enskog" else variance
             if model == "boltzmann" and observable == "Z":
@@ -200,13 +180,6 @@ def each_of(timed: dict, rate: float) -> list[Estimate]:
     """Processor time per contact with each time step of a timing; rate: contacts per time."""
     pairs = zip(timed["seconds"], timed["error"], strict=True)
     return [Estimate(float(seconds), float(error)) / rate for seconds, error in pairs]
-
-
-def step_error(gas: Uniform, step: float) -> float:
-    """By how much steps of the DSMC engine make D too high. The law is stated for a dilute gas; a dense one
-    collides more often by the contact value, as if its free path were shorter by that."""
-    path = float(theory.mean_free_path(gas.packing_fraction, 3))
-    return float(step_factor("diffusion", step * math.sqrt(2.0) / path)) - 1.0
 
 
 def compared(points: list[Point], timed: list[dict]) -> list[dict]:

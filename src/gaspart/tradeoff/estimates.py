@@ -1,0 +1,145 @@
+"""What a trajectory knows of an observable, by component: of pilots, and of runs `until` accurate.
+
+The squared error of a mean over a time t is S / t + C / t^2. S is the spectrum of the series at frequency 0,
+by `correlated_mean`. C is that of what is stored: a wall takes from the gas what the gas has stored of
+momentum and of sum m x v, and gives it back, so that impulses in consecutive intervals are anticorrelated. In
+a short run C dominates, and an error that is extrapolated as t^(-1/2) is too large; in a series of short
+intervals S is hidden by it. Both stores are known in each frame: the series is regressed on their changes, S
+is of the rest.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaspart.analysis.estimate import Estimate
+from gaspart.errors import SceneError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from gaspart.analysis.observable import Observable
+    from gaspart.analysis.run import Run
+
+LEAST_FREEDOM = 15.0
+"""Degrees of freedom of an error that can end a run, and of that of an observable that states none: of the
+scatter of 16 groups or blocks."""
+_SAME = 1e-12
+"""Relative scatter of what does not change."""
+
+
+@dataclass(frozen=True)
+class Component:
+    """The value of a face, an axis or a pair, or of all of an observable, from a part `time` of a run.
+    spectrum, stored: S and C of its squared error; freedom: degrees of freedom of this; scale: what the error
+    is relative to, the value unless that vanishes on average."""
+
+    value: float
+    scale: float
+    time: float
+    spectrum: float
+    stored: float = 0.0
+    freedom: float = LEAST_FREEDOM
+
+    @property
+    def estimate(self) -> Estimate:
+        """The value with its error in this run."""
+        return Estimate(self.value, self.error(self.time), self.freedom)
+
+    @property
+    def accuracy(self) -> float:
+        """The relative error; inf where it is not known."""
+        return self.error(self.time) / self.scale if self.scale > 0.0 else math.inf
+
+    def error(self, time: float) -> float:
+        """The standard error of a run with so long a measured part."""
+        return math.sqrt(self.spectrum / time + self.stored / time**2)
+
+
+def components(data: xr.Dataset, observable: str, start: float | None = None) -> dict[str, Component]:
+    """An observable of `gaspart measure` of a trajectory, by component, "" for a scalar or a curve, whose
+    value and error are root mean squares. Raises SceneError as the functions of `gaspart.analysis`."""
+    from gaspart.analysis.measuring import measure
+    from gaspart.analysis.run import measured
+
+    with measured(data, start) as run:
+        if observable == "pressure":
+            return _pressures(run)
+        time = float(run.time[-1] - run.time[0])
+    found = measure(observable, data, start)
+    value, error = np.asarray(found.estimate, dtype=float), np.asarray(found.error, dtype=float)
+    freedom = float(found.attrs.get("freedom", LEAST_FREEDOM))
+    names = _names(found)
+    if names == [""]:  # a scalar, or a curve
+        known = np.isfinite(value) & np.isfinite(error)
+        value, error = (np.array(_norm(of[known])) if of.ndim else of for of in (value, error))
+    scales = np.abs(np.ravel(value))
+    if observable == "pressure_tensor":  # its shear components vanish on average
+        scales[:] = _norm(value)
+    parts = zip(names, np.ravel(value), scales, np.ravel(error) ** 2 * time, strict=True)
+    return {
+        name: Component(float(one), float(scale), time, float(spectrum), freedom=freedom)
+        for name, one, scale, spectrum in parts
+    }
+
+
+def _names(found: Observable) -> list[str]:
+    """Of the components of an observable."""
+    if not found.estimate.ndim or found[found.estimate.dims[-1]].dtype.kind not in "US":
+        return [""]
+    return [str(name) for name in found[found.estimate.dims[-1]].values]
+
+
+def _norm(values: np.ndarray) -> float:
+    """The root mean square, 0 of nothing."""
+    return float(np.sqrt(np.mean(values**2))) if values.size else 0.0
+
+
+def _pressures(run: Run) -> dict[str, Component]:
+    """The pressures on walls, each from a series over intervals of frames."""
+    from gaspart.analysis.pressure import pressures_on_walls
+
+    faces, series = pressures_on_walls(run, np.arange(len(run.time)))
+    if np.isnan(series).any():
+        raise SceneError("particles at rest", "NaN", "their thrust on walls is not known")
+    if len(series) < LEAST_FREEDOM + 1:
+        raise SceneError("frames", len(series) + 1, f"an error needs {LEAST_FREEDOM + 2:g} or more")
+    stores = _stores(run)
+    return {
+        str(face): with_stores(one, stores["xyz".index(str(face)[0])], float(np.diff(run.time).mean()))
+        for face, one in zip(faces, series.T, strict=True)
+    }
+
+
+def _stores(run: Run) -> np.ndarray:
+    """(d, T, 2) of each axis the total momentum and sum m x v of the moving particles at each frame;
+    (d, T, 0) of a file that lacks some."""
+    if run.followed:
+        return np.zeros((run.dimension, len(run.time), 0))
+    velocities, masses = run.velocities[:, run.moving], run.masses[run.moving]
+    centred = run.positions[:, run.moving] - 0.5 * np.array(run.scene.container.lengths)
+    momentum = np.einsum("tnd,n->dt", velocities, masses)
+    return np.stack([momentum, np.einsum("tnd,tnd,n->dt", centred, velocities, masses)], axis=2)
+
+
+def with_stores(series: np.ndarray, stores: np.ndarray, interval: float) -> Component:
+    """The mean of a series (K,) over intervals of one length, some of which is the change of what is stored,
+    (K + 1, stores), at their ends.
+
+    The coefficients of the changes are those of a regression of the series. The sum of all changes remains in
+    the mean: it has twice the variance of what is stored.
+    """
+    from gaspart.analysis.statistics import correlated_mean
+
+    mean, time = float(series.mean()), len(series) * interval
+    kept = stores[:, np.ptp(stores, axis=0) > _SAME * np.abs(stores).max(axis=0, initial=0.0)]
+    changes = np.diff(kept, axis=0) / interval
+    centred = changes - changes.mean(axis=0)
+    slopes = np.linalg.lstsq(centred, series - mean, rcond=None)[0]
+    rest = correlated_mean(series - centred @ slopes).estimate
+    stored = 2.0 * float(np.var(kept @ slopes)) if slopes.size else 0.0
+    return Component(mean, abs(mean), time, rest.error**2 * time, stored, rest.freedom)

@@ -1,0 +1,238 @@
+"""Random scenes with an observable and an accuracy, and whether advice on them keeps its promise.
+
+    python tests/advised.py FOLDER FIRST LAST
+
+judges the scenes from FIRST to before LAST: each result is kept in FOLDER, and none that is there is judged
+again, so that several processes can share the scenes. Without FIRST and LAST it summarises what is there.
+"""
+
+import json
+import math
+import sys
+import time
+import warnings
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+import gaspart as gp
+from gaspart.analysis.measuring import measure
+from gaspart.errors import SceneError
+from gaspart.tradeoff.advice import advise, is_tabulated
+from gaspart.tradeoff.pilot import speed_of
+from gaspart.tradeoff.plan import plan
+
+ANYWHERE = ("collision_rate", "speeds", "density", "temperature", "vacf", "msd")
+OF_ONE_FLUID = ("Z", "D", "rdf", "structure_factor", "chemical_potential", "order", "shear_viscosity")
+OF_ONE_FLUID += ("bulk_viscosity", "thermal_conductivity", "pressure_tensor")
+OF_TWO_FLUIDS = ("Z", "D", "pair_rates", "contact_values", "mutual_diffusion", "shear_viscosity")
+OBSERVABLES = {
+    "walls": ("pressure", *ANYWHERE),
+    "thermal": ("pressure", *ANYWHERE),
+    "gravity": ("pressure", *ANYWHERE),
+    "mixture": (*OF_TWO_FLUIDS, "collision_rate"),
+    "driven": ("rdf", "structure_factor", *ANYWHERE),
+    "fluid": (*OF_ONE_FLUID, *ANYWHERE),
+    "plate": ("pressure", *ANYWHERE),
+    "piston": ("collision_rate", "speeds", "vacf"),
+    "vibrated": ("collision_rate", "density", "temperature"),
+    "sliding": ("pressure", *ANYWHERE),
+}
+"""Those of each kind of scene, in turn."""
+COARSE = {"D": 2.0, "mutual_diffusion": 3.0, "shear_viscosity": 4.0, "bulk_viscosity": 5.0}
+COARSE |= {"thermal_conductivity": 4.0, "density": 4.0, "temperature": 3.0, "structure_factor": 4.0}
+COARSE |= {"contact_values": 2.0, "vacf": 2.0, "msd": 2.0, "chemical_potential": 2.0, "rdf": 4.0}
+"""By how much the accuracies of those that take longer are coarser."""
+PILOT_SECONDS = 1.0
+LONGER = 10
+MOST_FRAMES = 2560
+"""Of the run that judges, where its frames need not be those of the other one."""
+EXPENSIVE = 1.5
+
+
+def scene(number):
+    """A random scene, an observable and an accuracy."""
+    rng = np.random.default_rng([2026, number])
+    kind = list(OBSERVABLES)[number % len(OBSERVABLES)]
+    choice = OBSERVABLES[kind]
+    observable = choice[(number // len(OBSERVABLES)) % len(choice)]
+    flat = kind in ("plate", "piston") or (observable not in ("D", "mutual_diffusion") and rng.random() < 0.5)
+    dimension = 2 if flat else 3
+    fraction = float(np.exp(rng.uniform(math.log(1e-3), math.log(0.3))))
+    count = int(rng.integers(50, 400))
+    side = (count * gp.theory.particle_volume(dimension) / fraction) ** (1.0 / dimension)
+    species = [gp.Species(count, 0.5, temperature=1.0, exact_temperature=True)]
+    boundary, last = "wall", "xyz"[dimension - 1]
+    options = {}
+    if kind == "thermal":
+        options["faces"] = {"x_low": gp.Thermal(1.0), "x_high": gp.Thermal(float(rng.uniform(1.0, 3.0)))}
+    if kind == "gravity":
+        options["gravity"] = (0.0,) * (dimension - 1) + (-float(rng.uniform(0.2, 2.0)) / side,)
+    if kind in ("mixture", "driven", "fluid"):
+        boundary = "periodic"
+    if kind == "mixture":
+        small = float(rng.uniform(0.2, 0.5))
+        species.append(replace(species[0], count=max(20, count // 2), radius=small, mass=0.5))
+    if kind == "driven":
+        options["restitution"] = gp.Restitution(normal=float(rng.uniform(0.8, 0.95)))
+        options["thermostat"] = gp.Thermostat(power=1.0, interval=0.1)
+    if kind == "plate":
+        options["walls"] = [gp.Wall((0.4 * side, 0.5 * side), (0.6 * side, 0.5 * side))]
+    if kind == "piston":
+        options["faces"] = {"y_high": gp.Piston(mass=50.0, pressure=count / side**2)}
+    if kind == "vibrated":
+        options["gravity"] = (0.0,) * (dimension - 1) + (-2.0 / side,)
+        options["restitution"] = gp.Restitution(normal=float(rng.uniform(0.8, 0.95)))
+        options["faces"] = {f"{last}_low": gp.Vibrating(amplitude=0.5, period=1.0)}
+    if kind == "sliding":
+        boundary = ("periodic",) * (dimension - 1) + ("wall",)
+        along = (float(rng.uniform(0.2, 1.0)),) + (0.0,) * (dimension - 1)
+        options["faces"] = {
+            f"{last}_low": gp.Thermal(1.0),
+            f"{last}_high": gp.Thermal(1.0, velocity=along),
+        }
+    made = gp.Scene(gp.Container((side,) * dimension, boundary=boundary), species, **options)
+    accuracy = COARSE.get(observable, 1.0) * float(np.exp(rng.uniform(math.log(0.02), math.log(0.1))))
+    return kind, made, observable, min(accuracy, 0.5)
+
+
+def difference(found, truth):
+    """Relative difference, as the accuracy of a pilot is defined: of the worst face or component by its
+    error, or of the norms of a curve, at the places that both have."""
+    along = found.estimate.dims[-1] if found.estimate.ndim else None
+    if along == "lag":
+        mine, its = found["lag"].values, truth["lag"].values
+        near = np.clip(np.searchsorted(its, mine - 1e-6 * its[1]), 0, its.size - 1)
+        shared = np.abs(its[near] - mine) < 1e-3 * its[1]
+        value, exact = found.estimate.values[shared], truth.estimate.values[near[shared]]
+    elif along is not None and found[along].dtype.kind not in "US":
+        value = found.estimate.values
+        exact = np.interp(found[along].values, truth[along].values, truth.estimate.values)
+    else:
+        value, exact = np.asarray(found.estimate, float), np.asarray(truth.estimate, float)
+    if not value.ndim:
+        return float(abs(value / exact - 1.0))
+    if found[along].dtype.kind in "US":
+        worst = int(np.argmax(np.asarray(found.error) / np.abs(value)))
+        return float(abs(value.flat[worst] / exact.flat[worst] - 1.0))
+    known = np.isfinite(value) & np.isfinite(exact)
+    return float(np.sqrt(np.mean((value - exact)[known] ** 2) / np.mean(exact[known] ** 2)))
+
+
+def judged(number, folder):
+    """What advice promised for a scene and what its run kept, or why there is no advice."""
+    kind, gas, observable, accuracy = scene(number)
+    result = {"number": number, "kind": kind, "dimension": gas.dimension, "observable": observable}
+    result["accuracy"] = accuracy
+    start = time.process_time()
+    try:
+        made = _advice(gas, observable, accuracy)
+    except SceneError as error:
+        return result | {"refused": str(error)}
+    try:
+        return (
+            result
+            | _kept(number, gas, observable, accuracy, made, folder)
+            | {"seconds": time.process_time() - start}
+        )
+    except SceneError as error:
+        return result | {"reached": False, "cost": made[1]["ratio"], "failed": str(error)}
+
+
+def _kept(number, gas, observable, accuracy, made, folder):
+    """What the advised run kept, by one that is longer."""
+    recipe, costs = made
+    result = {}
+    path = folder / "advised.nc"
+    asked = {"duration": recipe.duration}
+    if recipe.until:
+        asked = {"until": recipe.until.accuracies, "at_most": recipe.until.at_most}
+    more = {"correlations": recipe.correlations, "pairs": recipe.pairs, "displacements": True}
+    gp.run(
+        gas, recipe.engine, (7, number), sample_interval=recipe.sample_interval, path=path, **asked, **more
+    )
+    with gp.open_trajectory(path) as data:
+        duration, frames = float(data["time"][-1]), data.sizes["frame"] - 1
+        found = measure(observable, data)
+    interval = recipe.sample_interval
+    if "lag" not in found.coords and not recipe.correlations:
+        interval *= math.ceil(LONGER * frames / MOST_FRAMES)
+    path = folder / "longer.nc"
+    longest = round(LONGER * duration / interval) * interval
+    gp.run(gas, gp.EventDriven(), (8, number), longest, interval, path=path, **more)
+    truth = measure(observable, gp.open_trajectory(path))
+    off = difference(found, truth)
+    if recipe.until and costs["predicted"]:
+        result["longer"] = duration / costs["predicted"]
+    return result | {
+        "engine": recipe.engine.name,
+        "off": off,
+        "reached": off <= accuracy,
+        "cost": costs["ratio"],
+    }
+
+
+def _advice(gas, observable, accuracy):
+    """The advised run, and its cost by speeds measured again over that of the cheapest candidate."""
+    if is_tabulated(gas, observable):
+        found = advise(gas, observable, accuracy)
+        return found.recipe, {"ratio": _table_ratio(gas, found, observable), "predicted": 0.0}
+    made = plan(gas, observable, accuracy, pilot_seconds=PILOT_SECONDS)
+    near = [one for one in made.options if one.half_width <= accuracy * 1.001]
+    near = [one for one in near if one.seconds < 4.0 * made.best.seconds] or [made.best]
+    again = [
+        _cost(gas, one.candidate.engine, observable, one.duration) if len(near) > 1 else 1.0 for one in near
+    ]
+    return made.recipe, {"ratio": again[near.index(made.best)] / min(again), "predicted": made.best.duration}
+
+
+def _table_ratio(gas, found, observable):
+    """The same of advice from the table: its settings' collisions by the speed of their engines here."""
+    rate = float(gp.theory.collision_rate(**found.gas.parameters))
+    settings = [found.setting, *found.others]
+    each = gas.count * 0.5 * rate
+    costs = [_cost(gas, one.engine, observable, one.contacts / each) for one in settings]
+    return costs[0] / min(costs)
+
+
+def _cost(gas, engine, observable, duration):
+    """Processor seconds of a run, by the faster of two measurements of the speed."""
+    return duration * min(speed_of(gas, engine, observable) for _ in range(2))
+
+
+def results(folder, numbers):
+    """Those of some scenes, kept in a folder or judged now."""
+    found = []
+    folder.mkdir(parents=True, exist_ok=True)
+    for number in numbers:
+        path = folder / f"{number:03}.json"
+        if not path.exists():
+            with TemporaryDirectory() as place, warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                found_now = judged(number, Path(place))
+            path.write_text(json.dumps(found_now), encoding="utf-8")
+        found.append(json.loads(path.read_text(encoding="utf-8")))
+        print(found[-1], flush=True)
+    return found
+
+
+def interval(successes, trials):
+    """Clopper and Pearson's 95 % interval of a probability."""
+    from scipy.stats import binomtest
+
+    return tuple(binomtest(successes, trials).proportion_ci(0.95, "exact"))
+
+
+if __name__ == "__main__":
+    place = Path(sys.argv[1])
+    if len(sys.argv) > 2:
+        results(place, range(int(sys.argv[2]), int(sys.argv[3])))
+    else:
+        found = [json.loads(one.read_text(encoding="utf-8")) for one in sorted(place.glob("*.json"))]
+        made = [one for one in found if "reached" in one]
+        kept = sum(one["reached"] for one in made)
+        print(len(found), "scenes", len(made), "advised", kept, "reached", interval(kept, len(made)))
+        print("cost ratios", sorted(round(one["cost"], 2) for one in made))
+        print("lengths over predicted", sorted(round(one["longer"], 2) for one in made if "longer" in one))
