@@ -5,7 +5,9 @@ from dataclasses import replace
 
 import pytest
 
+import gaspart as gp
 from gaspart import theory
+from gaspart.analysis.measuring import measure
 from gaspart.cli.advise import _lines
 from gaspart.errors import SceneError
 from gaspart.scene.container import Container
@@ -57,6 +59,32 @@ def test_a_fast_time_stepped_engine_is_taken():
     assert found.others[0].engine.name == "event"
 
 
+def test_dilute_spheres_take_the_model_that_is_accurate_enough():
+    """Boltzmann's equation lacks the contact value, 1 + 5/2 of the packing fraction, and Z - 1."""
+    rough, fine = (advice(0.003, accuracy, "collision_rate", count=4000) for accuracy in (0.03, 1e-4))
+    assert rough.setting.engine.model == "boltzmann" and fine.setting.engine.name == "event"
+    assert rough.setting.bias == pytest.approx(2.5 * 0.003, rel=0.02)
+    by_name = {one.name: one for one in rough.others}
+    assert by_name["event"].seconds > 5.0 * rough.setting.seconds
+    pressure = advice(0.003, 0.03, count=4000)  # Z of Boltzmann's equation is 1 without a run
+    assert pressure.setting.engine.model == "enskog"
+    assert "dsmc" not in {one.name for one in pressure.others}
+    assert advice(0.003, 0.03, "D", count=4000).setting.engine.name == "dsmc"
+    assert advice(0.1, 0.03, "collision_rate").setting.engine.name != "dsmc"
+
+
+@pytest.mark.parametrize("observable", ["collision_rate", "Z"])
+def test_an_advised_run_of_dsmc_is_as_accurate_as_promised(tmp_path, observable):
+    scene = gas(0.003, count=2000)
+    scene = replace(scene, species=(replace(scene.species[0], exact_temperature=True),))
+    found = advise(scene, observable, 0.02, None, speed.as_measured)
+    recipe = found.recipe
+    assert recipe.engine.name == "dsmc"
+    path = gp.run(scene, recipe.engine, 1, recipe.duration, recipe.sample_interval, tmp_path / "run.nc")
+    measured = measure(observable, path)
+    assert float(measured.estimate) == pytest.approx(float(measured.theory), rel=0.02)
+
+
 def test_a_budget_that_does_not_suffice_gives_the_best_within_it():
     wanted = advice(0.2, 1e-4)
     short = advice(0.2, 1e-4, budget=0.25 * wanted.setting.seconds)
@@ -99,7 +127,8 @@ def test_drawn_velocities_add_a_scatter_that_is_stated(exact, scatter):
         (gas(0.2), "viscosity", 0.01, "observable"),
         (gas(0.2), "Z", 0.0, "accuracy"),
         (gas(0.2, dimension=2), "D", 0.01, "observable"),
-        (gas(0.005), "Z", 0.01, "packing_fraction = .*: advice is known from 0.0095"),
+        (gas(0.00005), "Z", 0.01, "packing_fraction = .*: advice is known from 9.5"),
+        (gas(0.005, dimension=2), "Z", 0.01, "packing_fraction = .*: advice is known from 0.0095"),
         (between_walls(("wall",) * 3), "Z", 0.01, "container.boundary.*periodic containers"),
         (
             between_walls(("periodic", "periodic", "wall")),

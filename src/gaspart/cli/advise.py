@@ -16,7 +16,7 @@ from gaspart.cli.arguments import Parser, UsageError, of_configs, print_line, re
 from gaspart.cli.engine_options import one_of, stated
 from gaspart.cli.progress import waiting
 from gaspart.cli.run import run_options
-from gaspart.engines import Engine, TimeStepped
+from gaspart.engines import DSMC, Engine, TimeStepped
 from gaspart.scene.scene import Scene
 from gaspart.tradeoff import PILOT_SECONDS
 
@@ -90,15 +90,14 @@ def _lines(advice: Advice, file: str) -> list[str]:
 
     best, gas = advice.setting, advice.gas
     length = f"{advice.collisions_per_particle:.3g} collisions per particle, duration {advice.duration:.4g}"
-    boxes = "automatic, about one per particle" if best.engine.name == "event" else "none: a neighbour list"
     lines = [
         f"engine            {_name(best)}",
-        f"boxes             {boxes}",
+        f"boxes             {_boxes(best)}",
         f"particles         {gas.count}{_bulk(advice)}",
         f"replicas          {advice.replicas}",
         f"run length        {length}, in each replica; {EQUILIBRATION:g} collisions of equilibration",
         f"predicted cost    {best.seconds:.3g} s of processor time",
-        f"95 % half-width   {best.half_width:.2g} of {advice.observable} (steps: at most {best.bias:.1g})",
+        f"95 % half-width   {best.half_width:.2g} of {advice.observable} (bias: at most {best.bias:.1g})",
     ]
     if advice.observable in ("D", "collision_rate"):
         lines += _drawn(advice.observable, advice.scatter)
@@ -207,9 +206,20 @@ def _shortfall(plan: Plan) -> str:
 
 def _name(setting: Setting) -> str:
     engine = setting.engine
+    if isinstance(engine, DSMC):
+        return f"dsmc, model {engine.model}"
     if not isinstance(engine, TimeStepped):
         return f"{engine.name}, float64"
     return f"step, time_step {engine.time_step:.4g}, {engine.precision}, {engine.passes} passes"
+
+
+def _boxes(setting: Setting) -> str:
+    """How an engine finds pairs."""
+    if setting.engine.name == "event":
+        return "automatic, about one per particle"
+    if isinstance(setting.engine, DSMC):
+        return "cells, whose particles collide by chance: positions of pairs are given up"
+    return "none: a neighbour list"
 
 
 def _bulk(advice: Advice) -> str:

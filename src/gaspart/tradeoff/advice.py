@@ -1,8 +1,8 @@
 """The engine, settings and run length that give a required accuracy at the lowest cost.
 
 The result of a run of n contacts of two particles is off by at most |bias| + 1.96 sqrt(noise / n) in 95 % of
-all runs, bias being that of the time step. For each setting the n follows that makes this the wanted
-accuracy, and from it the cost; the cheapest setting is advised.
+all runs, bias being that of time steps, or of the model and the cells of DSMC. For each setting the n follows
+that makes this the wanted accuracy, and from it the cost; the cheapest setting is advised.
 """
 
 from __future__ import annotations
@@ -14,13 +14,15 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from gaspart import theory
-from gaspart.engines import Engine, EventDriven, TimeStepped
+from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
 from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas, plain_gas
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
 from gaspart.tradeoff import speed, table
-from gaspart.tradeoff.table import EQUILIBRATION, LEAST, QUANTILE
+from gaspart.tradeoff.candidates import cell_loss
+from gaspart.tradeoff.models import model_error, step_error
+from gaspart.tradeoff.table import EQUILIBRATION, LEAST, MODELS, QUANTILE
 from gaspart.trajectory.recipe import Recipe
 
 ACCURACIES = 1e-8, 1.0
@@ -34,11 +36,12 @@ _BULK = 4.0  # the finite size of a gas should cost no more than this part of th
 
 @dataclass(frozen=True)
 class Setting:
-    """One engine with its settings. bias: bound on the error of its time steps; contacts: to be measured, in
-    all replicas; seconds: of processor time, equilibration included; half_width: of the 95 % interval,
-    relative."""
+    """One engine with its settings. name: in the table; bias: bound on its systematic error; contacts: to be
+    measured, in all replicas; seconds: of processor time, equilibration included; half_width: of the 95 %
+    interval, relative."""
 
     engine: Engine
+    name: str
     bias: float
     contacts: float
     seconds: float
@@ -78,7 +81,7 @@ class Advice:
         interval = (
             self.duration / self.collisions_per_particle * max(1.0, self.collisions_per_particle / _FRAMES)
         )
-        quantum = self.setting.engine.quantum
+        quantum = self.setting.engine.resolved(self.scene).quantum
         interval = (
             float(f"{interval:.2g}") if quantum is None else max(1, round(interval / quantum)) * quantum
         )
@@ -182,17 +185,14 @@ def advise(
             "observable", observable, "discs have no diffusion coefficient: it grows with the size"
         )
     wish = _Wish(observable, accuracy, noise, budget, speed_of)
-    settings = [
-        made
-        for engine, precision, step in _engines(gas)
-        if (made := _setting(gas, wish, engine, precision, step))
-    ]
-    best = min(settings, key=lambda made: (max(made.half_width, accuracy), made.seconds))
+    made = (_setting(scene, gas, wish, engine) for engine in _engines(scene, gas))
+    settings = [one for one in made if one]
+    best = min(settings, key=lambda made: (max(made.half_width, accuracy * (1.0 + 1e-9)), made.seconds))
     others = tuple(
         min(kind, key=lambda made: made.seconds)
         for kind in (
-            [made for made in settings if made.engine.name == name and made is not best]
-            for name in ("event", "step")
+            [made for made in settings if made.name == name and made is not best]
+            for name in ("event", "step", *MODELS)
         )
         if kind
     )
@@ -214,30 +214,49 @@ def advise(
     )
 
 
-def _engines(gas: Gas) -> Iterator[tuple[Engine, str, float]]:
+def _engines(scene: Scene, gas: Gas) -> Iterator[tuple[Engine, str, float]]:
     """(engine, precision, its time step in the table's unit) of all settings to compare."""
     yield EventDriven(), "float64", 0.0
     unit = gas.diameter / gas.thermal_speed
     for precision, step in table.steps(gas.dimension):
         yield TimeStepped(step * unit, precision=precision), precision, step
+    for name, model in MODELS.items():
+        if math.isfinite(table.seconds(gas.dimension, gas.packing_fraction, name)):
+            engine = DSMC(model=model).resolved(scene)
+            yield engine, "float64", (engine.time_step or 0.0) / unit
 
 
-def _setting(gas: Gas, wish: _Wish, engine: Engine, precision: str, step: float) -> Setting | None:
-    """Cost and error of one setting; None if its time step is too inaccurate or was not measured."""
-    bias = 0.0
-    if engine.name == "step":
+def _setting(scene: Scene, gas: Gas, wish: _Wish, made: tuple[Engine, str, float]) -> Setting | None:
+    """Cost and error of one setting; None if it is too inaccurate or was not measured."""
+    engine, precision, step = made
+    name, bias = engine.name, 0.0
+    if isinstance(engine, DSMC):
+        name = next(name for name, model in MODELS.items() if model == engine.model)
+        bias, step = _error_of_model(scene, gas, wish.observable, engine, step), 0.0
+    elif engine.name == "step":
         bias = table.bias(gas.dimension, gas.packing_fraction, precision, step, wish.observable)
     room = (wish.accuracy - bias) / QUANTILE
-    each = table.seconds(gas.dimension, gas.packing_fraction, engine.name, precision, step)
+    each = table.seconds(gas.dimension, gas.packing_fraction, name, precision, step)
     if room <= 0.0 or not math.isfinite(each):
         return None
-    each *= wish.speed_of(gas.dimension, engine.name, precision, gas.count)
+    each *= wish.speed_of(gas.dimension, name, precision, gas.count)
     equilibration = 0.5 * gas.count * EQUILIBRATION
     contacts = max(wish.noise / room**2, 0.5 * gas.count * LEAST)
     if wish.budget is not None:
         contacts = min(contacts, max(wish.budget / each - equilibration, 1.0))
     half_width = bias + QUANTILE * math.sqrt(wish.noise / contacts)
-    return Setting(engine, bias, contacts, (contacts + equilibration) * each, half_width)
+    return Setting(engine, name, bias, contacts, (contacts + equilibration) * each, half_width)
+
+
+def _error_of_model(scene: Scene, gas: Gas, observable: str, engine: DSMC, step: float) -> float:
+    """A bound on the error that the DSMC engine makes: by its model, by the cells, and of D by the steps. inf
+    for Z of the Boltzmann model, which is 1 whatever happens: its run would measure nothing."""
+    if engine.model == "boltzmann" and observable == "Z":
+        return math.inf
+    bias = model_error(gas.packing_fraction, engine.model, observable)
+    if engine.model == "enskog":
+        bias += cell_loss(engine, scene)
+    return bias + (step_error(gas.packing_fraction, step) if observable == "D" else 0.0)
 
 
 def _finite_size(gas: Gas, observable: str) -> float:

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from gaspart.tradeoff.table import COLUMNS, PRECISIONS
+from gaspart.tradeoff.table import COLUMNS, MODELS, PRECISIONS
 from gaspart.trajectory import provenance
 
 
@@ -26,6 +26,7 @@ def rows(folder: Path) -> list[dict]:
     found = [
         *_events(accuracy),
         *_steps(accuracy),
+        *_models(accuracy),
         *_noise(xr.load_dataset(folder / "virial_spheres.nc"), 3),
         *_noise(xr.load_dataset(folder / "virial_discs.nc"), 2),
         *_diffusion(xr.load_dataset(folder / "msd_spheres.nc")),
@@ -73,6 +74,15 @@ def _steps(accuracy: xr.Dataset) -> Iterator[dict]:
                     yield _row(*of, f"bias_{observable}", at.bias, at.bias_error)
             if np.isfinite(row.seconds[k]):
                 yield _row(*of, "seconds", row.seconds[k], row.seconds_error[k])
+
+
+def _models(accuracy: xr.Dataset) -> Iterator[dict]:
+    """Times of the models of the DSMC engine, in spheres."""
+    names = {model: name for name, model in MODELS.items()}
+    for n in range(accuracy.sizes["dsmc"]):
+        run = accuracy.isel(dsmc=n)
+        gas = 3, run.dsmc_packing_fraction, names[str(run.dsmc_model.values)]
+        yield _row(*gas, "float64", 0.0, "seconds", run.dsmc_seconds, run.dsmc_seconds_error)
 
 
 def _noise(virial: xr.Dataset, dimension: int) -> Iterator[dict]:

@@ -11,11 +11,12 @@ import math
 import time
 from dataclasses import dataclass
 from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaspart.analysis.names import FLUXES, PAIRS
-from gaspart.analysis.run import EQUILIBRATION
+from gaspart.analysis.run import EQUILIBRATION, measured
 from gaspart.engines import Engine, engine_to_dict
 from gaspart.errors import SceneError, SimulationError
 from gaspart.kernels.compile.cache import cache_directory
@@ -28,12 +29,17 @@ from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.run import run
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 SEED = 0
 _PROBE = 0.15
 """Processor seconds that the speed is measured for, at least."""
 _FRAMES = 48, 512
 _HELD = 20_000_000
 """Numbers that the frames of a pilot hold, at most, unless there are only few frames."""
+_USUAL, _SAME = 2.0, 1e-6
+"""Standard deviations from its mean within which a kinetic energy is usual, and rounding."""
 _LAGS = 100
 _SAMPLED = 0.1
 """Time between two samples of a correlation, in collisions of a particle."""
@@ -45,7 +51,8 @@ class Pilot:
 
     speed: processor seconds per unit of time; seconds: that the pilot took, 0 if it was kept from before;
     component: the one that is known worst, None where the observable could not be measured, for the reason in
-    `rule`; interval: between frames.
+    `rule`; interval: between frames; settled: the time of the first frame after the start whose
+    kinetic energy is as those of the second half.
     """
 
     engine: Engine
@@ -53,6 +60,7 @@ class Pilot:
     seconds: float = 0.0
     component: Component | None = None
     interval: float = math.inf
+    settled: float = 0.0
     rule: str = ""
 
     @property
@@ -157,11 +165,21 @@ def run_pilot(scene: Scene, engine: Engine, observable: str, seconds: float, spe
         took = time.process_time() - start
     with open_trajectory(path) as trajectory:
         try:
-            found = components(trajectory, observable)
+            found, settled = components(trajectory, observable), _settled(trajectory)
         except SceneError as error:
             return Pilot(engine, speed, took, rule=f"{error.key}: {error.rule}")
     worst = max(found.values(), key=lambda one: one.accuracy)
-    return Pilot(engine, speed, took, worst, interval)
+    return Pilot(engine, speed, took, worst, interval, settled)
+
+
+def _settled(trajectory: xr.Dataset) -> float:
+    """See `Pilot`."""
+    with measured(trajectory, 0.0) as run:
+        velocities = run.velocities[:, run.moving]
+        energy = np.einsum("tnd,tnd,n->t", velocities, velocities, run.masses[run.moving])
+        later = energy[len(energy) // 2 :]
+        usual = np.abs(energy - later.mean()) <= _USUAL * later.std() + _SAME * later.mean()
+        return float(run.time[1 + int(np.argmax(usual[1:]))])
 
 
 def schedule(

@@ -166,7 +166,9 @@ def plan(
 
     def limits(engine: Engine, speed: float) -> tuple[float, float]:
         affordable = math.inf if budget is None else budget / speed
-        return _least(scene, engine), min(affordable, _longest(observable, longest))
+        return max(_least(scene, engine), longest.settled / EQUILIBRATION), min(
+            affordable, _longest(observable, longest)
+        )
 
     options = [
         _option(one, speed, _bias(one, measured), longest, accuracy, limits(one.engine, speed))

@@ -8,13 +8,13 @@ import time
 from functools import cache
 
 from gaspart import theory
-from gaspart.engines import EventDriven, TimeStepped
+from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
 from gaspart.scene.container import Container
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
 from gaspart.simulation import Simulation
 from gaspart.tradeoff import table
-from gaspart.tradeoff.table import REFERENCE, STEP
+from gaspart.tradeoff.table import DILUTE, MODELS, REFERENCE, STEP
 
 _LEAST, _MOST = 500, 100_000  # particles in a timed run
 _GROWTH = 0.15  # exponent of the time per contact with the number of particles beyond, which exceed the cache
@@ -29,12 +29,12 @@ def factor(dimension: int, engine: str, precision: str, count: int) -> float:
     """
     growth = max(1.0, count / _MOST) ** _GROWTH
     count = min(max(count, _LEAST), _MOST)
-    side = (count * theory.particle_volume(dimension) / REFERENCE) ** (1.0 / dimension)
+    fraction = DILUTE if engine in MODELS else REFERENCE
+    side = (count * theory.particle_volume(dimension) / fraction) ** (1.0 / dimension)
     particles = Species(count, 0.5, temperature=1.0, arrangement="lattice")
     gas = Scene(Container((side,) * dimension, boundary="periodic"), species=(particles,))
-    chosen = EventDriven() if engine == "event" else TimeStepped(STEP, precision=precision)
-    rate = float(theory.collision_rate(REFERENCE, dimension))
-    run = Simulation(gas, chosen, seed=1)
+    rate = float(theory.collision_rate(fraction, dimension))
+    run = Simulation(gas, _chosen(engine, precision), seed=1)
     run.advance(duration=1.0 / rate)
     stretch = 2.0 * max(_CONTACTS, 0.5 * count) / (count * rate)
     taken = []
@@ -42,9 +42,15 @@ def factor(dimension: int, engine: str, precision: str, count: int) -> float:
         before, start = run.time, time.process_time()
         run.advance(duration=stretch)
         taken.append((time.process_time() - start) / (0.5 * count * rate * (run.time - before)))
-    step = 0.0 if engine == "event" else STEP
-    known = table.seconds(dimension, REFERENCE, engine, precision, step)
+    known = table.seconds(dimension, fraction, engine, precision, STEP if engine == "step" else 0.0)
     return growth * statistics.median(taken) / known if math.isfinite(known) else math.inf
+
+
+def _chosen(engine: str, precision: str) -> Engine:
+    """An engine by its name in the table."""
+    if engine in MODELS:
+        return DSMC(model=MODELS[engine])
+    return EventDriven() if engine == "event" else TimeStepped(STEP, precision=precision)
 
 
 def as_measured(dimension: int, engine: str, precision: str, count: int) -> float:

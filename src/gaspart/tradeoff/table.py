@@ -1,11 +1,12 @@
 """The table of measured costs and errors, and interpolation between its points.
 
-Columns: ``dimension``, ``packing_fraction``; ``engine`` (event or step, the latter with its standard four
-passes and rewinding), ``precision``, ``time_step`` in diameters over the thermal speed (kT / m)^(1/2);
-``quantity``, its ``value`` and standard ``error``. Quantities: ``seconds`` of processor time for one exact
-contact of two particles; ``bias_<observable>``, relative error; ``noise_<observable>``, the relative variance
-of an estimate times the contacts that it is made of; ``price_<feature>``, the time per event with a feature
-over that without it. Observables: Z, collision_rate, D.
+Columns: ``dimension``, ``packing_fraction``; ``engine`` (event; step, with its standard four passes and
+rewinding; dsmc and dsmc enskog, by its model), ``precision``, ``time_step`` in diameters over the thermal
+speed (kT / m)^(1/2), 0 for others than step; ``quantity``, its ``value`` and standard ``error``. Quantities:
+``seconds`` of processor time for one exact contact of two particles; ``bias_<observable>``, relative error;
+``noise_<observable>``, the relative variance of an estimate times the contacts that it is made of;
+``price_<feature>``, the time per event with a feature over that without it. Observables: Z, collision_rate,
+D. Errors of DSMC follow from theory (`gaspart.tradeoff.models`).
 """
 
 from __future__ import annotations
@@ -30,6 +31,10 @@ LEAST = 20.0
 """Collisions per particle that are measured at least: a shorter run is no average over time."""
 REFERENCE, STEP = 0.1, 0.08
 """Packing fraction of the gas by which times are carried over, and the time step with which it is timed."""
+MODELS = {"dsmc": "boltzmann", "dsmc enskog": "enskog"}
+"""The models of the DSMC engine by their names in the table."""
+DILUTE = 0.01
+"""The packing fraction that takes the place of REFERENCE for them."""
 _PRICE = "price_"
 _SAFE = 2.0  # standard errors added to a bias
 _BEYOND = 1.05  # a packing fraction may exceed those of the table by this factor
@@ -48,9 +53,12 @@ def read() -> tuple[dict, ...]:
 
 
 def lowest(dimension: int) -> float:
-    """The lowest packing fraction at which both engines of the table were measured, less what it may be
-    exceeded by. In more dilute gases DSMC, which it does not have, is much cheaper than either."""
-    eta, _, _ = _curve(dimension, "step", "float64", STEP, "seconds")
+    """The lowest packing fraction at which engines were timed, less what it may be exceeded by: of spheres
+    that of DSMC, which in dilute gases is much cheaper than the others; of discs, for which it was not timed,
+    that of time steps."""
+    eta, _, _ = _curve(dimension, "dsmc", "float64", 0.0, "seconds")
+    if not eta.size:
+        eta, _, _ = _curve(dimension, "step", "float64", STEP, "seconds")
     return float(eta[0] / _BEYOND)
 
 
@@ -80,7 +88,7 @@ def seconds(
 ) -> float:
     """Processor time of one exact contact, on the machine of the table; inf where it was not measured."""
     eta, value, _ = _curve(dimension, engine, precision, step, "seconds")
-    if not eta.size or (engine == "step" and not eta[0] / _BEYOND <= fraction <= eta[-1] * _BEYOND):
+    if not eta.size or (engine != "event" and not eta[0] / _BEYOND <= fraction <= eta[-1] * _BEYOND):
         return np.inf
     return float(np.exp(np.interp(np.log(fraction), np.log(eta), np.log(value))))
 

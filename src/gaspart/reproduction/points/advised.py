@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from gaspart.engines import TimeStepped
+from gaspart.engines import DSMC, TimeStepped
 from gaspart.errors import SceneError
 from gaspart.reproduction.points import keys
 from gaspart.tradeoff import speed
@@ -36,6 +36,8 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
     }
     if isinstance(engine, TimeStepped):
         made |= {"time_step": engine.time_step, "precision": engine.precision}
+    if isinstance(engine, DSMC):
+        made |= {"model": engine.model}
     if not keys.LENGTHS.keys() & settings.keys():
         made["collisions_per_particle"] = math.ceil(advice.collisions_per_particle)
         made.setdefault("replicas", advice.replicas)
