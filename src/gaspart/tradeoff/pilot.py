@@ -38,8 +38,8 @@ _PROBE = 0.15
 _FRAMES = 48, 512
 _HELD = 20_000_000
 """Numbers that the frames of a pilot hold, at most, unless there are only few frames."""
-_USUAL, _SAME = 2.0, 1e-6
-"""Standard deviations from its mean within which a kinetic energy is usual, and rounding."""
+_SAME = 1e-6
+"""Part of a kinetic energy that is rounding."""
 _LAGS = 100
 _SAMPLED = 0.1
 """Time between two samples of a correlation, in collisions of a particle."""
@@ -51,8 +51,8 @@ class Pilot:
 
     speed: processor seconds per unit of time; seconds: that the pilot took, 0 if it was kept from before;
     component: the one that is known worst, None where the observable could not be measured, for the reason in
-    `rule`; interval: between frames; settled: the time of the first frame after the start whose
-    kinetic energy is as those of the second half.
+    `rule`; interval: between frames; settled: the time of the first frame after the start at
+    which the kinetic energy reaches its mean of the second half.
     """
 
     engine: Engine
@@ -178,8 +178,9 @@ def _settled(trajectory: xr.Dataset) -> float:
         velocities = run.velocities[:, run.moving]
         energy = np.einsum("tnd,tnd,n->t", velocities, velocities, run.masses[run.moving])
         later = energy[len(energy) // 2 :]
-        usual = np.abs(energy - later.mean()) <= _USUAL * later.std() + _SAME * later.mean()
-        return float(run.time[1 + int(np.argmax(usual[1:]))])
+        beyond = energy - later.mean()
+        reached = (np.abs(beyond) <= _SAME * later.mean()) | (beyond * beyond[0] <= 0.0)
+        return float(run.time[max(1, int(np.argmax(reached)))])
 
 
 def schedule(

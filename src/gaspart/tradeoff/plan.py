@@ -40,6 +40,8 @@ _LONGEST = 4.0
 chance made too small in the pilot."""
 _LAGS = "msd", "vacf"
 """Observables whose lags reach to half of a run: the longer it is, the more of them are little known."""
+_SETTLED = 2.0
+"""The part of a run that is not measured, over the time in which the energy came to its mean in the pilot."""
 _CROSSINGS = 10.0
 """How often a particle crosses a container with walls at least in a run."""
 _POWERS = {
@@ -166,9 +168,7 @@ def plan(
 
     def limits(engine: Engine, speed: float) -> tuple[float, float]:
         affordable = math.inf if budget is None else budget / speed
-        return max(_least(scene, engine), longest.settled / EQUILIBRATION), min(
-            affordable, _longest(observable, longest)
-        )
+        return _least(scene, engine, longest), min(affordable, _longest(observable, longest))
 
     options = [
         _option(one, speed, _bias(one, measured), longest, accuracy, limits(one.engine, speed))
@@ -250,10 +250,11 @@ def _longest(observable: str, pilot: Pilot) -> float:
     return pilot.measured * _FRAMES / (frames / math.ceil(frames / MOST_FRAMES))
 
 
-def _least(scene: Scene, engine: Engine) -> float:
-    """The shortest duration: what the table equilibrates and measures at least, some crossings of a container
-    with walls, and the engine's steps between frames."""
+def _least(scene: Scene, engine: Engine, pilot: Pilot) -> float:
+    """The shortest duration: what the table equilibrates and measures at least, crossings of a container with
+    walls, the time in which the pilot came to its steady state, and the steps between frames."""
     frequency = rates(scene, dense=True).frequency
     collisions = (EQUILIBRATED + LEAST) / frequency if frequency > 0.0 else 0.0
     crossings = 0.0 if all(scene.container.periodic) else _CROSSINGS * crossing(scene)
-    return max(collisions, crossings, _FRAMES * (engine.resolved(scene).quantum or 0.0))
+    settled = _SETTLED * pilot.settled / EQUILIBRATION
+    return max(collisions, crossings, settled, _FRAMES * (engine.resolved(scene).quantum or 0.0))
