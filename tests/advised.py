@@ -51,7 +51,7 @@ LONGER = 10
 MOST_FRAMES = 2560
 """Of the run that judges, where its frames need not be those of the other one."""
 LEAST_REACHED, COSTS_MORE = 0.93, 1.5
-"""What is promised: the part of the scenes whose accuracy is reached, and the cost over the best candidate's."""
+"""The part of the scenes whose accuracy is reached, at least, and the cost over the best one's, at most."""
 
 
 def scene(number):

@@ -59,8 +59,8 @@ def run(tmp_path_factory):
 
 
 def test_a_short_run_foretells_the_error_of_pressures_in_a_long_one(run):
-    """The errors of sixteen short runs are their scatter, and foretell that of all together; those of 16 blocks
-    of each foretell too much."""
+    """The errors of sixteen short runs are their scatter, and foretell that of all together; those of 16
+    blocks of each foretell too much."""
     with gp.open_trajectory(run) as data:
         whole = components(data, "pressure", start=0.0)
         starts = range(0, data.sizes["frame"] - 512, 512)

@@ -108,7 +108,7 @@ def _lines(advice: Advice, file: str) -> list[str]:
     lines.append(f"command           {_command(advice.recipe, file)}{each}")
     for other in advice.others:
         lines.append(f"why: {_name(other)} takes {other.seconds:.3g} s")
-    if len({other.engine.name for other in advice.others} | {best.engine.name}) == 1:
+    if "step" not in {other.name for other in (best, *advice.others)}:
         lines.append("why: no time step is known to be as accurate at this density")
     return lines
 
