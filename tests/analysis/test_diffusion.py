@@ -89,3 +89,15 @@ def test_frames_too_far_apart_are_named(tmp_path):
     path = gp.run(scene, gp.EventDriven(), 1, 48.0, 12.0, tmp_path / "a.nc", displacements=True)
     with pytest.raises(gp.SceneError, match=r"sample_interval = 12.0: is too long: frames .* apart"):
         A.diffusion_coefficient(path, start=0.0)
+
+
+def test_the_error_of_a_mixture_falls_with_the_length_of_the_run(tmp_path):
+    """Its groups have the same composition: light particles diffuse faster than heavy ones."""
+    species = [gp.Species(64, 0.5, mass=mass, temperature=1.0) for mass in (1.0, 4.0)]
+    path = run(tmp_path, gp.Scene(gp.Container(CUBE, "periodic"), species), 640.0, 1.0)
+    fast, slow = (A.diffusion_coefficient(path, species=n).estimate for n in (0, 1))
+    assert fast > 1.2 * slow
+    both = A.diffusion_coefficient(path)
+    assert float(both.estimate) == pytest.approx(float(fast + slow) / 2.0, rel=0.02)
+    difference = float(fast - slow) / 2.0 / 4.0  # its standard error if each of 16 groups were of one species
+    assert float(both.error) < 0.6 * difference

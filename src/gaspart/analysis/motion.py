@@ -285,7 +285,7 @@ def _groups(
         centre = np.einsum("tnd,n->td", values, masses) / masses.sum()
         motion = free * (values[:, chosen] - np.where(about, centre, 0.0)[:, None])
         if len(chosen) >= GROUPS:
-            return [motion[:, part] for part in np.array_split(np.arange(len(chosen)), GROUPS)]
+            return [motion[:, part] for part in _alike(run.species[moving][chosen])]
         length = len(motion) // GROUPS
         if length < 4:
             rule = f"an error of fewer than {GROUPS} particles needs {4 * GROUPS} frames or more"
@@ -297,6 +297,15 @@ def _groups(
         velocities=parts(run.velocities[::stride, moving]),
         interval=float(steps.mean()) * stride,
     )
+
+
+def _alike(species: np.ndarray) -> list[np.ndarray]:
+    """Which particles, of these species (M,), are in each group. Groups of a mixture have the same
+    composition: else the difference between species, which no longer run reduces, would be their scatter."""
+    if np.ptp(species) == 0:
+        return np.array_split(np.arange(len(species)), GROUPS)
+    order = np.argsort(species, kind="stable")
+    return [order[first::GROUPS] for first in range(GROUPS)]
 
 
 def _stride(run: Run) -> int:

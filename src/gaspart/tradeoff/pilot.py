@@ -15,9 +15,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaspart.analysis.motion import LINEAR_FROM, MOST_FRAMES
 from gaspart.analysis.names import FLUXES, PAIRS
 from gaspart.analysis.run import EQUILIBRATION, measured
 from gaspart.engines import Engine, engine_to_dict
+from gaspart.engines.dsmc.rates import rates
 from gaspart.errors import SceneError, SimulationError
 from gaspart.kernels.compile.cache import cache_directory
 from gaspart.kernels.compile.policy import source_digest
@@ -32,6 +34,7 @@ from gaspart.trajectory.run import run
 if TYPE_CHECKING:
     import xarray as xr
 
+DIFFUSION = "D", "mutual_diffusion"
 SEED = 0
 _PROBE = 0.15
 """Processor seconds that the speed is measured for, at least."""
@@ -188,20 +191,31 @@ def schedule(
 ) -> tuple[float, float, Correlations | None]:
     """Duration, time between frames and correlations of a run of about a length."""
     least, most = _FRAMES
+    longest_interval, longest = span(scene, observable)
+    length = min(length, longest)
     frames = int(np.clip(_HELD // max(1, 3 * scene.count * scene.dimension), least, most))
     if observable in FLUXES:
         return _of_fluxes(scene, engine, length)
-    interval = length / frames
+    interval = min(length / frames, longest_interval)
+    frames = math.ceil(length / interval * (1.0 - 1e-9))
     if quantum := engine.resolved(scene).quantum:
         interval = max(1, round(interval / quantum)) * quantum
     return frames * interval, interval, None
 
 
+def span(scene: Scene, observable: str) -> tuple[float, float]:
+    """The longest time between frames and the longest run from which an observable is measured without loss:
+    of diffusion by the lags of its slope, and by the number of frames that are correlated."""
+    frequency = rates(scene, dense=True).frequency
+    if observable not in DIFFUSION or not frequency > 0.0:
+        return math.inf, math.inf
+    interval = 0.5 * LINEAR_FROM / frequency
+    return interval, interval * MOST_FRAMES / (1.0 - EQUILIBRATION)
+
+
 def _of_fluxes(scene: Scene, engine: Engine, length: float) -> tuple[float, float, Correlations]:
     """The same with correlations of the fluxes. Raises SceneError for no plain gas, whose collisions give the
     time between samples."""
-    from gaspart.engines.dsmc.rates import rates
-
     found = rates(scene, dense=True).frequency
     if not found > 0.0:
         raise SceneError("observable", "shear_viscosity", "needs particles that collide")

@@ -23,7 +23,7 @@ from gaspart.scene.validation import number
 from gaspart.tradeoff import PILOT_SECONDS
 from gaspart.tradeoff.advice import ACCURACIES, is_driven, temperature_scatter
 from gaspart.tradeoff.candidates import STRUCTURE, Candidate, candidates
-from gaspart.tradeoff.pilot import Pilot, crossing, run_pilot, schedule, speed_of
+from gaspart.tradeoff.pilot import DIFFUSION, Pilot, crossing, run_pilot, schedule, span, speed_of
 from gaspart.tradeoff.table import EQUILIBRATION as EQUILIBRATED
 from gaspart.tradeoff.table import LEAST, QUANTILE
 from gaspart.trajectory.recipe import Recipe
@@ -95,7 +95,10 @@ class Plan:
 
     @property
     def longest_interval(self) -> float:
-        """Between frames, of an observable that they sample: that of the pilot, whose noise is known."""
+        """Between frames: of diffusion by its lags; of an observable that they sample that of the pilot,
+        whose noise is known."""
+        if self.observable in DIFFUSION:
+            return span(self.scene, self.observable)[0]
         sampled = self.observable in CURVES and self.observable not in STRUCTURE
         return min(one.interval for one in self.pilots) if sampled else math.inf
 
@@ -116,6 +119,7 @@ class Plan:
             relative = (self.accuracy - best.bias) / QUANTILE
             asked = Accuracy(self.observable, float(f"{0.99 * relative:.3g}"))
             longest = max(_LONGEST * duration, *(one.duration for one in self.pilots))
+            longest = min(longest, span(scene, self.observable)[1])
             until = Until((asked,), at_most=float(f"{longest:.2g}"))
         fixed = None if until else max(1, round(duration / interval)) * interval
         pairs = self.observable in PAIRS
@@ -168,7 +172,9 @@ def plan(
 
     def limits(engine: Engine, speed: float) -> tuple[float, float]:
         affordable = math.inf if budget is None else budget / speed
-        return _least(scene, engine, longest), min(affordable, _longest(observable, longest))
+        return _least(scene, engine, longest), min(
+            affordable, _longest(observable, longest), span(scene, observable)[1]
+        )
 
     options = [
         _option(one, speed, _bias(one, measured), longest, accuracy, limits(one.engine, speed))

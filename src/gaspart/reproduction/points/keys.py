@@ -85,8 +85,8 @@ SCENE_FILE: dict[str, Kind] = {
 
 ENGINE: dict[str, Kind] = {
     "engine": choice(
-        "`auto` is the cheapest engine for an `accuracy`, with its time step and precision, and the length "
-        "of the run if none is given (see `gaspart advise`)",
+        "`auto` is the cheapest engine for an `accuracy`, with its time step and precision or model, and "
+        "the length of the run if none is given (see `gaspart advise`)",
         *(*engines.ENGINES, "auto"),
         default="event",
     )
