@@ -11,6 +11,7 @@ from gaspart.reproduction.families.tradeoff import flows, relaxation, uniform
 from gaspart.reproduction.families.tradeoff.choices import PARTS, Choice, cheapest
 from gaspart.reproduction.jobs import simulate
 from gaspart.reproduction.points.point import Point
+from gaspart.tradeoff import models
 
 
 def choice(**changes):
@@ -49,14 +50,14 @@ def test_the_cheapest_choice_is_the_least_biased_one_where_none_reaches():
 
 def test_errors_of_the_models_are_those_of_theory():
     z, contact = (float(f(0.1, 3)) for f in (theory.compressibility_factor, theory.contact_value))
-    assert uniform.model_error(0.1, "boltzmann", "Z") == pytest.approx(1.0 - 1.0 / z)
-    assert uniform.model_error(0.1, "boltzmann", "collision_rate") == pytest.approx(1.0 - 1.0 / contact)
-    assert max(uniform.model_error(0.3, "enskog", name) for name in ("Z", "collision_rate")) < 0.004
+    assert models.model_error(0.1, "boltzmann", "Z") == pytest.approx(1.0 - 1.0 / z)
+    assert models.model_error(0.1, "boltzmann", "collision_rate") == pytest.approx(1.0 - 1.0 / contact)
+    assert max(models.model_error(0.3, "enskog", name) for name in ("Z", "collision_rate")) < 0.004
     ratio = float(theory.erpenbeck_wood_ratio(0.3))
     exact = 1.0 - 1.0 / ratio + theory.ERPENBECK_WOOD_UNCERTAINTY
-    assert uniform.model_error(0.3, "enskog", "D") == pytest.approx(exact, rel=0.02)
+    assert models.model_error(0.3, "enskog", "D") == pytest.approx(exact, rel=0.02)
     for name in uniform.OBSERVABLES:  # in a dilute gas both are right
-        assert uniform.model_error(1e-6, "boltzmann", name) < 1e-5
+        assert models.model_error(1e-6, "boltzmann", name) < 1e-5
 
 
 def test_what_the_size_leaves_falls_with_it():
@@ -72,7 +73,7 @@ def test_steps_of_a_fifth_of_a_free_time():
     step = 0.2 / float(theory.collision_rate(0.001, 3))
     moved = 0.2 * math.sqrt(math.pi) / 2.0
     expected = 4.0 / (27.0 * math.pi) * moved**2
-    assert uniform.step_error(uniform.Uniform(0.001, 1000), step) == pytest.approx(expected, rel=0.01)
+    assert models.step_error(0.001, step) == pytest.approx(expected, rel=0.01)
 
 
 def flow(engine, value, error=0.001, bounds=(0.0, 0.0), **changes):
