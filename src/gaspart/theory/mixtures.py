@@ -70,6 +70,12 @@ def _numbers(name: str, values: Sizes) -> np.ndarray:
     return numbers
 
 
+def _moment(parts: np.ndarray, sizes: np.ndarray, power: int) -> float:
+    """The mean of a power of the diameters, rounded once: that of BLAS depends on the processor, and lengths
+    of runs follow from it."""
+    return math.fsum(parts * np.prod([sizes] * power, axis=0)) if power else math.fsum(parts)
+
+
 def mixture_compressibility_factor(
     packing_fraction: float,
     dimension: int,
@@ -90,7 +96,7 @@ def mixture_compressibility_factor(
     """
     eta, sizes, parts = _checked(theory, packing_fraction, dimension, diameters, fractions)
     sizes = sizes / sizes.max()
-    moment = [float(parts @ sizes**power) for power in range(dimension + 1)]
+    moment = [_moment(parts, sizes, power) for power in range(dimension + 1)]
     ratio = moment[dimension - 1] / moment[dimension]
     total = 0.0
     for power, coefficient in enumerate(_coefficients(theory, eta, dimension, pure)):
@@ -118,7 +124,7 @@ def mixture_contact_values(
     """
     eta, sizes, parts = _checked(theory, packing_fraction, dimension, diameters, fractions)
     sizes = sizes / sizes.max()
-    ratio = float(parts @ sizes ** (dimension - 1)) / float(parts @ sizes**dimension)
+    ratio = _moment(parts, sizes, dimension - 1) / _moment(parts, sizes, dimension)
     z = 2.0 * np.outer(sizes, sizes) / np.add.outer(sizes, sizes) * ratio
     return np.polynomial.polynomial.polyval(z, _coefficients(theory, eta, dimension, pure))
 
@@ -148,7 +154,7 @@ def mixture_collision_rates(
     if len(each) not in (1, len(sizes)):
         raise SceneError("masses", len(each), f"there are {len(sizes)} diameters")
     inverse = np.broadcast_to(1.0 / each, sizes.shape)
-    densities = packing_fraction * parts / (particle_volume(dimension) * float(parts @ sizes**dimension))
+    densities = packing_fraction * parts / (particle_volume(dimension) * _moment(parts, sizes, dimension))
     speeds = np.sqrt(temperature * np.add.outer(inverse, inverse) / (2.0 * math.pi))
     between = 0.5 * np.add.outer(sizes, sizes)
     return unit_sphere_surface(dimension) * densities * between ** (dimension - 1) * speeds * contact

@@ -1,6 +1,7 @@
 """From a config to the points of its grids, and from a point to the parameters of its job."""
 
 import math
+import os
 import subprocess
 import sys
 
@@ -209,3 +210,24 @@ def test_engine_auto_becomes_the_engine_for_the_accuracy():
         only(point={"engine": "auto"})
     with pytest.raises(SceneError, match="accuracy.*needs engine: auto"):
         only(point={"accuracy": 0.01})
+
+
+def test_the_length_of_a_run_of_a_mixture_is_the_same_on_every_processor():
+    """Sums by BLAS are not: each kind of processor has kernels of its own."""
+    sizes, fractions = {"polydispersity": 0.2, "arrangement": "random"}, [0.01 * n for n in range(5, 45)]
+    program = (
+        "from gaspart.reproduction.points.points import points\n"
+        f"config = {config(point=sizes, grid={'packing_fraction': fractions})!r}\n"
+        "print([point.schedule.duration.hex() for point in points(config, 'gas')])"
+    )
+    found = {
+        subprocess.run(
+            [sys.executable, "-c", program],
+            env={**os.environ, "OPENBLAS_CORETYPE": kind},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for kind in ("Prescott", "Nehalem", "Haswell", "SkylakeX")
+    }
+    assert len(found) == 1

@@ -97,4 +97,4 @@ def _mean_rate(mixture: Mixture) -> float:
 
     few = mixture.thinned(_SIZES)
     rates = theory.mixture_collision_rates(*few.sizes, temperature=few.temperature, masses=few.masses)
-    return float(rates.sum(axis=1) @ few.counts) / sum(few.counts)
+    return math.fsum(rates.sum(axis=1) * few.counts) / sum(few.counts)  # by BLAS it depends on the processor
