@@ -184,7 +184,7 @@ SPARTA (`Plimpton and others, Phys. Fluids 31, 086101 (2019)
 <https://doi.org/10.1063/1.5108534>`_) is a peer of the DSMC engine: it simulates the same dilute gases of
 hard spheres, with as many cells and steps. It is no Python package and judges where somebody has installed
 it, ``make referees GASPART_SPARTA=/path/to/spa_serial``; elsewhere it is skipped, and its lines of the table
-stay. The error planted is one in what it is told of the gas.
+stay. The error planted is one in its input: a diameter or a temperature.
 
 """
 PUBLISHED = """\

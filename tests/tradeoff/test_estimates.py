@@ -14,7 +14,7 @@ from gaspart.tradeoff.reached import Examiner
 
 SERIES = 400
 LONG = 16
-"""Length of the run that a short series foretells, over its own."""
+"""Length of the run that a short series predicts, over its own."""
 
 
 def planted(correlation, stored, samples, seed):
@@ -29,20 +29,20 @@ def planted(correlation, stored, samples, seed):
 
 @pytest.mark.parametrize("correlation", [-0.5, 0.0, 0.7])
 @pytest.mark.parametrize("stored", [0.0, 3.0, 12.0])
-def test_a_short_series_foretells_the_error_of_a_long_one(correlation, stored):
+def test_a_short_series_predicts_the_error_of_a_long_one(correlation, stored):
     """The interval between samples is 1."""
     series, store = planted(correlation, stored, 384, 1)
     found = [with_stores(one, its[:, None], 1.0) for one, its in zip(series, store, strict=True)]
     for times in (1, LONG):
         longer, _ = planted(correlation, stored, 384 * times, 2)
         true = longer.mean(axis=1).std()
-        foretold = np.median([one.error(384.0 * times) for one in found])
-        assert foretold == pytest.approx(true, rel=0.12)  # the true one is known to 3.5 %
+        predicted = np.median([one.error(384.0 * times) for one in found])
+        assert predicted == pytest.approx(true, rel=0.12)  # the true one is known to 3.5 %
     kept = np.median([one.stored for one in found])
     assert kept == pytest.approx(2.0 * stored**2, rel=0.05, abs=0.05)
 
 
-def test_without_the_store_a_short_series_foretells_too_much():
+def test_without_the_store_a_short_series_predicts_too_much():
     series, _ = planted(0.0, 12.0, 384, 1)
     found = [with_stores(one, np.zeros((385, 0)), 1.0).error(384.0 * LONG) for one in series]
     assert np.median(found) > 2.0 * math.sqrt(1.0 / (384.0 * LONG))
@@ -58,9 +58,9 @@ def run(tmp_path_factory):
     return gp.run(WALLED, gp.EventDriven("direct"), 5, LONG * 512 * 2.0, 2.0, path)
 
 
-def test_a_short_run_foretells_the_error_of_pressures_in_a_long_one(run):
-    """The errors of sixteen short runs are their scatter, and foretell that of all together; those of 16
-    blocks of each foretell too much."""
+def test_a_short_run_predicts_the_error_of_pressures_in_a_long_one(run):
+    """The errors of sixteen short runs are their scatter, and predict that of all together; those of 16
+    blocks of each predict too much."""
     with gp.open_trajectory(run) as data:
         whole = components(data, "pressure", start=0.0)
         starts = range(0, data.sizes["frame"] - 512, 512)
@@ -68,13 +68,13 @@ def test_a_short_run_foretells_the_error_of_pressures_in_a_long_one(run):
         short = [components(part, "pressure", start=float(part.time[0])) for part in parts]
         blocks = [gp.analysis.wall_pressure(part, start=float(part.time[0])) for part in parts]
     for face, long in whole.items():
-        foretold = np.sqrt(np.mean([one[face].error(long.time) ** 2 for one in short]))
-        assert foretold == pytest.approx(long.estimate.error, rel=0.3)
+        predicted = np.sqrt(np.mean([one[face].error(long.time) ** 2 for one in short]))
+        assert predicted == pytest.approx(long.estimate.error, rel=0.3)
         scatter = np.std([one[face].value for one in short], ddof=1)
         claimed = np.sqrt(np.mean([one[face].estimate.error ** 2 for one in short]))
         assert claimed == pytest.approx(scatter, rel=0.5)  # of 16, known to 18 %
         by_blocks = np.sqrt(np.mean([float(one.error.sel(face=face)) ** 2 for one in blocks]) / LONG)
-        assert by_blocks > 1.3 * foretold
+        assert by_blocks > 1.3 * predicted
 
 
 def test_a_run_until_accurate_has_the_errors_of_its_pilot(run):

@@ -77,7 +77,7 @@ class _Words(tuple):
 
 def _is_file(word: str) -> bool:
     """Whether a word is meant as a file: no name of an observable has a suffix or a folder."""
-    return "." in word or "/" in word or os.sep in word
+    return "." in word or os.sep in word
 
 
 def _sorted(given: argparse.Namespace) -> tuple[list[str], list[str]]:

@@ -91,7 +91,7 @@ def _check_vibrating(scene: Scene, name: str, surface: Vibrating) -> None:
     clear = 2.0 * (surface.amplitude + scene.largest_radius)
     for n, thing in enumerate(scene.species):
         if thing.fixed and thing.count:
-            rule = f"must not be true where {name} vibrates: give fixed particles positions, as particles"
+            rule = f"must not be true where {name} vibrates: give fixed particles positions, in `particles`"
             raise SceneError(f"species[{n}].fixed", True, rule)
     for n, particle in enumerate(scene.particles):
         x = vector(f"particles[{n}].position", particle.position, scene.dimension)[axis]

@@ -2,7 +2,7 @@
 
     python -m gaspart.tradeoff.fit results/measurements > src/gaspart/tradeoff/data/tradeoff.csv
 
-takes speed_accuracy.nc (errors and times of both engines), virial_spheres.nc and virial_discs.nc (noise of Z
+takes speed_accuracy.nc (errors and times of the engines), virial_spheres.nc and virial_discs.nc (noise of Z
 and of the collision rate), msd_spheres.nc (noise of D) and price_of_features.nc from the folder it is given.
 """
 

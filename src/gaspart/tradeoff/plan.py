@@ -249,7 +249,7 @@ def _option(
 
 def _longest(observable: str, pilot: Pilot) -> float:
     """The longest duration that is of use: what is of positions is of a number of frames, and those of the
-    pilot say how much each of them tells; more time between them is not known to help."""
+    pilot say how much each of them contributes; more time between them is not known to help."""
     if observable not in STRUCTURE:
         return math.inf
     frames = pilot.measured / pilot.interval

@@ -13,7 +13,7 @@ from gaspart.kernels.physics.contact import time_to_contact
 from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.running_sum import add
 
-FLOW, GRADIENT = 0, 1  # the axes of the flow and of its gradient
+FLOW, GRADIENT = 0, 1  # as in `scene.faces`, which kernels do not import
 UPPER_FACE = 2 * GRADIENT + 1
 
 
