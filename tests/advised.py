@@ -40,6 +40,7 @@ OBSERVABLES = {
     "piston": ("collision_rate", "speeds", "vacf"),
     "vibrated": ("collision_rate", "density", "temperature"),
     "sliding": ("pressure", *ANYWHERE),
+    "sheared": ("shear_viscosity", "pressure_tensor", "collision_rate"),
 }
 """Those of each kind of scene, in turn."""
 COARSE = {"D": 2.0, "mutual_diffusion": 3.0, "shear_viscosity": 4.0, "bulk_viscosity": 5.0}
@@ -72,7 +73,7 @@ def scene(number):
         options["faces"] = {"x_low": gp.Thermal(1.0), "x_high": gp.Thermal(float(rng.uniform(1.0, 3.0)))}
     if kind == "gravity":
         options["gravity"] = (0.0,) * (dimension - 1) + (-float(rng.uniform(0.2, 2.0)) / side,)
-    if kind in ("mixture", "driven", "fluid"):
+    if kind in ("mixture", "driven", "fluid", "sheared"):
         boundary = "periodic"
     if kind == "mixture":
         small = float(rng.uniform(0.2, 0.5))
@@ -95,6 +96,10 @@ def scene(number):
             f"{last}_low": gp.Thermal(1.0),
             f"{last}_high": gp.Thermal(1.0, velocity=along),
         }
+    if kind == "sheared":
+        options["restitution"] = gp.Restitution(normal=float(rng.uniform(0.8, 0.95)))
+        rate = float(gp.theory.collision_rate(fraction, dimension)) * float(rng.uniform(0.1, 0.5))
+        options["faces"] = {"y_high": gp.LeesEdwards(rate)}
     made = gp.Scene(gp.Container((side,) * dimension, boundary=boundary), species, **options)
     accuracy = COARSE.get(observable, 1.0) * float(np.exp(rng.uniform(math.log(0.02), math.log(0.1))))
     return kind, made, observable, min(accuracy, 0.5)

@@ -1,10 +1,12 @@
 """Advice from pilot runs, for scenes that the table does not cover."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
 import gaspart as gp
+from gaspart.analysis.measuring import measure
 from gaspart.cli import main
 from gaspart.engines import EventDriven
 from gaspart.tradeoff import pilot, plan
@@ -13,6 +15,12 @@ from gaspart.tradeoff.estimates import Component
 from gaspart.tradeoff.pilot import Pilot
 
 BOX = gp.Scene(gp.Container((12.0, 12.0)), [gp.Species(40, 0.5, temperature=1.0)])
+SHEARED = gp.Scene(
+    gp.Container((20.0, 20.0), boundary="periodic"),
+    [gp.Species(120, 0.5, temperature=1.0)],
+    faces={"y_high": gp.LeesEdwards(0.3)},
+    restitution=gp.Restitution(normal=0.9),
+)
 DILUTE = gp.Scene(
     gp.Container((100.0, 100.0, 100.0), boundary="periodic"), [gp.Species(500, 0.5, temperature=1.0)]
 )
@@ -34,6 +42,28 @@ def test_the_advised_run_reaches_the_accuracy(tmp_path):
     (reached,) = gp.reached_accuracy(path)
     assert reached.met and 1.96 * reached.accuracy <= 0.05
     assert plan.plan(BOX, "pressure", 0.05, pilot_seconds=0.4).pilots[0].seconds == 0.0  # kept from before
+
+
+@pytest.mark.parametrize("observable", ["msd", "vacf"])
+def test_lags_are_those_of_correlations(tmp_path, observable):
+    """Whatever the length of the run, so that a longer one is more accurate."""
+    coarse, fine = (plan.plan(BOX, observable, x, pilot_seconds=0.4).recipe for x in (0.05, 0.005))
+    assert fine.correlations.lags == coarse.correlations.lags and fine.duration > 8.0 * coarse.duration
+    assert fine.displacements == (observable == "msd")
+    path = gp.run(
+        BOX, coarse.engine, 3, coarse.duration, coarse.sample_interval, tmp_path / "run.nc",
+        correlations=coarse.correlations, displacements=coarse.displacements,
+    )  # fmt: skip
+    found = measure(observable, path)
+    assert found["lag"][-1] == pytest.approx(coarse.correlations.lags * coarse.correlations.interval)
+    error = float((found.error**2).mean() / (found.estimate**2).mean()) ** 0.5
+    assert 1.96 * error <= 0.05
+
+
+def test_a_sheared_gas_has_a_steady_state():
+    made = plan.plan(SHEARED, "shear_viscosity", 0.1, pilot_seconds=0.4)
+    assert made.affordable and made.recipe.correlations.stress
+    assert made.best.candidate.engine.name == "event" and len(made.refused) == 3
 
 
 def test_dilute_gases_are_advised_to_draw_partners():
@@ -118,7 +148,12 @@ def test_what_is_stored_falls_faster_than_noise():
         (gp.Scene(BOX.container, [gp.Species(40, 0.5)]), "pressure", "moving particles"),
         (gp.Scene(BOX.container), "pressure", "count = 0"),
         (BOX, "Z", "observable = 'Z': container.boundary"),
-        (BOX, "msd", "observable = 'msd': has lags up to half of the run"),
+        (BOX, "shear_viscosity", "stress: needs a periodic container"),
+        (SHEARED, "pressure", "observable = 'pressure': container.boundary: has no walls"),
+        (SHEARED, "vacf", "carries particles along: correlations need stress"),
+        (replace(SHEARED, restitution=None), "shear_viscosity", "nothing takes the energy"),
+        (replace(BOX, faces={"y_low": gp.Vibrating(0.1, 1.0)}), "pressure", "nothing takes the energy"),
+        (replace(BOX, thermostat=gp.Thermostat(1.0, 0.1)), "pressure", "nothing takes the energy"),
         (BOX, "Q", "observable = 'Q': unknown observable"),
     ],
 )

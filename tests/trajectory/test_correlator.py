@@ -23,11 +23,16 @@ def settings(**change):
 
 @pytest.mark.parametrize("displacements", [False, True])
 @pytest.mark.parametrize("fixed", [False, True])
-def test_sums_are_those_of_all_pairs_of_samples(fixed, displacements):
-    """By their definition; more samples than lags; masses differ, and one axis has walls."""
+@pytest.mark.parametrize("alike", [False, True])
+@pytest.mark.parametrize("boundary", ["periodic", ("periodic", "wall")], ids=["periodic", "walls"])
+def test_sums_are_those_of_all_pairs_of_samples(boundary, alike, fixed, displacements):
+    """By their definition, with more samples than lags: mean squares about the centre of mass are (1 - 1 / N)
+    times those of free particles, whatever their masses and the axes along which momentum is conserved."""
     rng, samples, lags = np.random.default_rng(1), 9, 3
-    scene = gp.Scene(gp.Container((9.0, 9.0), ("periodic", "wall")), [gp.Species(5, 0.5, temperature=1.0)])
-    masses = np.array([1.0, 2.0, 3.0, 4.0, np.inf if fixed else 5.0])
+    discs = [gp.Species(4, 0.5, temperature=1.0), gp.Species(1, 0.5, fixed=fixed)]
+    scene = gp.Scene(gp.Container((9.0, 9.0), boundary), discs)
+    masses = np.ones(5) if alike else np.arange(1.0, 6.0)
+    masses[4] = np.inf if fixed else masses[4]
     v, r = rng.normal(size=(2, samples, 5, 2))
     correlator = Correlator(Correlations(1.0, lags), scene, masses, displacements)
     for velocities, unwrapped in zip(v, r, strict=True):
@@ -37,8 +42,11 @@ def test_sums_are_those_of_all_pairs_of_samples(fixed, displacements):
     if fixed:  # momentum is not conserved, and the fixed particle does not count
         v, r = v[:, :4], r[:, :4]
     else:
+        part = masses / masses.sum()
         for values in (v, r):
-            values[..., 0] -= (masses @ values[..., 0].T / masses.sum())[:, None]
+            values[...] -= np.where(scene.conserved_axes, np.einsum("n,tnk->tk", part, values), 0.0)[:, None]
+            free = np.where(scene.conserved_axes, 1.0 / np.sqrt(1.0 - part)[:, None], 1.0)
+            values *= free * np.sqrt(1.0 - 1.0 / len(masses))
     for lag in range(lags + 1):
         late, early, moved = v[lag:], v[: samples - lag], r[lag:] - r[: samples - lag]
         expected = (late * early, moved**2, moved * (late + early))

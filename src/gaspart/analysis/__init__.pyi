@@ -1,11 +1,11 @@
 from gaspart.analysis.combination import replicas as replicas
+from gaspart.analysis.diffusion import diffusion_coefficient as diffusion_coefficient
 from gaspart.analysis.fields import field as field
 from gaspart.analysis.free_flights import free_flight_times as free_flight_times
 from gaspart.analysis.insertion import chemical_potential as chemical_potential
 from gaspart.analysis.lyapunov import lyapunov_exponent as lyapunov_exponent
 from gaspart.analysis.mixtures import contact_values as contact_values
 from gaspart.analysis.mixtures import pair_collision_rates as pair_collision_rates
-from gaspart.analysis.motion import diffusion_coefficient as diffusion_coefficient
 from gaspart.analysis.motion import mean_squared_displacement as mean_squared_displacement
 from gaspart.analysis.motion import velocity_autocorrelation as velocity_autocorrelation
 from gaspart.analysis.mutual import mutual_diffusion as mutual_diffusion

@@ -9,7 +9,15 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.run import Run
+from gaspart.analysis.statistics import means_of
+from gaspart.errors import SceneError
 from gaspart.trajectory.correlator import SUMS
+
+_PARTS = 16, 32
+"""Of a run, whose scatter gives an uncertainty: the least and the largest number."""
+_PART = 4.0
+"""The length of one in longest lags, so that few pairs of samples are on both sides of an edge."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +72,41 @@ def accumulated(trajectory: xr.Dataset) -> Curves:
         last[name].values / pairs if name in last else np.full(lags, math.nan) for name in SUMS
     )
     return Curves(last["lag"].values, square, velocity / dimension, crossed / (2 * dimension))
+
+
+def accumulated_mean(run: Run, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The lags of a run's correlations, the mean of one of `SUMS` and its standard error at each, (lags,).
+
+    Over pairs of samples of which the later one is in the measured part; the error is the scatter of 16 to 32
+    consecutive parts of it, of four times the longest lag if it is long enough. As of freely moving
+    particles: where the velocity of the centre of mass, which is taken off, is conserved, times N / (N - 1).
+    Raises SceneError for fewer frames, and a single particle that keeps its velocity.
+    """
+    samples, lags = run.data["correlated_samples"].values, np.arange(run.data.sizes["lag"])
+    pairs = np.maximum(samples[:, None] - lags, 0.0)
+    known = np.flatnonzero(pairs[:, -1] > 0.0)
+    least, most = _PARTS
+    if len(known) <= least:
+        rule = f"an error needs {least + 1} with samples at all lags in the measured part, or more"
+        raise SceneError("frames", len(known), rule)
+    span = float(np.ptp(run.time[known]) / run.data["lag"].values[-1])
+    parts = min(len(known) - 1, int(np.clip(span / _PART, least, most)))
+    edges = known[np.linspace(0, len(known) - 1, parts + 1).round().astype(int)]
+    sums = run.data[name].values[edges]
+    scale = _of_free_particles(run)
+    _, errors = means_of(np.diff(sums, axis=0) / np.diff(pairs[edges], axis=0))
+    values = (sums[-1] - sums[0]) / (pairs[edges[-1]] - pairs[edges[0]])
+    return run.data["lag"].values, scale * values, scale * errors
+
+
+def _of_free_particles(run: Run) -> float:
+    """A square of velocities of freely moving particles over that about the centre of mass."""
+    if not run.conserved.any():
+        return 1.0
+    count = int(np.isfinite(run.masses).sum())
+    if count < 2:
+        raise SceneError("count", count, "a single particle keeps its velocity")
+    return count / (count - 1.0)
 
 
 def autocorrelation(values: np.ndarray, lags: int) -> np.ndarray:

@@ -1,6 +1,8 @@
-"""Observables from the paths and velocities of particles: displacement, diffusion, velocity correlation.
+"""Observables from the paths and velocities of particles: displacement and velocity correlation.
 
-Uncertainties are the scatter of groups of particles, which are taken as independent.
+Of a run with correlations they are what it has accumulated from all its samples, with the scatter of parts of
+the run as the uncertainty. Otherwise frames are correlated, and the uncertainty is the scatter of groups of
+particles, which are taken as independent.
 """
 
 from __future__ import annotations
@@ -13,26 +15,24 @@ from typing import Any
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis.correlations import autocorrelation, correlate
+from gaspart.analysis.correlations import accumulated_mean, autocorrelation, correlate
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.run import Run, Source, measured, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
+from gaspart.scene.gas import Gas
 from gaspart.scene.validation import count_of
 
 GROUPS = 16
 """Number of groups of particles, whose scatter gives the uncertainty."""
 MOST_FRAMES = 1000
 """That are correlated; of a longer run, every second or third ..."""
-LINEAR_FROM = 12.0
-"""Collisions per particle, from which on the mean-squared displacement grows evenly, if there is a D."""
-_CONSTANT = 0.06  # of a slope: what it may change, as by the slow decay of correlations in a fluid
-_SIGNIFICANT = 4.0  # standard errors of 15 degrees of freedom: exceeded by chance once in a thousand
+_SQUARES, _PRODUCTS = "squared_displacement_sum", "velocity_product_sum"
 _FARTHEST = 0.45  # of a side: the longest way between frames by which a particle is followed
 
 
 @dataclass(frozen=True)
-class _Groups:
+class Groups:
     """Paths and velocities (G, T, n, d) of groups of moving particles, at even times, `interval` apart."""
 
     paths: list[np.ndarray]
@@ -50,8 +50,10 @@ def mean_squared_displacement(
 ) -> Observable:
     """<|r(t) - r(0)|^2> over moving particles and time origins, (lag,), in length^2.
 
-    source: a trajectory, by its path or open, or a simulation; lags: their number (by default half of the
-    frames); start: the time from which frames count (by default a quarter of the run). Along axes on which
+    source: a trajectory, by its path or open, or a simulation; lags: their number, in frames (by default half
+    of them); start: the time from which frames count (by default a quarter of the run). Of a run with
+    correlations and displacements, unless any of the other arguments is given, the lags are those of the
+    correlations, and all samples count. Along axes on which
     the total momentum is conserved it is that about the centre of mass, times N / (N - 1). species,
     particles: of one species, by its number in the scene (single particles have the number after the last),
     or of these particles only; of fewer than 16 the error is the scatter of as many stretches of the run.
@@ -61,7 +63,10 @@ def mean_squared_displacement(
     periodic faces.
     """
     with measured(source, start) as run:
-        groups = _groups(run, chosen=_chosen(run, species, particles))
+        if _accumulates(run, _SQUARES, lags, species, particles) and not per_axis:
+            time, values, errors = accumulated_mean(run, _SQUARES)
+            return _displacement(run, time, values, errors)
+        groups = groups_of(run, chosen=chosen_of(run, species, particles))
         number = _lags(groups, lags)
         axes = [slice(k, k + 1) for k in range(run.dimension)] if per_axis else [slice(None)]
         found = np.array(
@@ -72,14 +77,7 @@ def mean_squared_displacement(
         )
         time = groups.interval * np.arange(number)
         values, errors = means_of(found if per_axis else found[:, 0])
-        expected: dict[str, Any] = {}
-        if gas := run.moving_fluid:
-            curve = theory.enskog_mean_squared_displacement(time, **gas.parameters)
-            curve = curve / run.dimension if per_axis else curve
-            expected = {"theory": (curve, math.nan), "source": "Enskog, exponential velocity correlation"}
-        about: dict[str, Any] = {"units": "length^2", "long_name": "mean-squared displacement", **expected}
-        along = {**(_axes(run) if per_axis else {}), **_lag(time)}
-        return observable("mean_squared_displacement", along, values, errors, **about)
+        return _displacement(run, time, values, errors)
 
 
 def velocity_autocorrelation(
@@ -91,160 +89,75 @@ def velocity_autocorrelation(
 ) -> Observable:
     """<v(0) . v(t)> / d over moving particles and time origins, (lag,), in length^2 / time^2.
 
-    Arguments as of `mean_squared_displacement`. Theory: (k_B T / m) exp(-2 nu t / d), nu the collision rate:
-    exact at short times, without the long-time tail. Raises SceneError for fewer than 16 moving particles,
-    and frames at uneven times.
+    Arguments as of `mean_squared_displacement`; correlations suffice, without displacements. Theory: (k_B T /
+    m) exp(-2 nu t / d), nu the collision rate: exact at short times, without the long-time tail. Raises
+    SceneError for fewer than 16 moving particles, and frames at uneven times.
     """
     with measured(source, start) as run:
-        groups = _groups(run, paths=False, chosen=_chosen(run, species, particles))
+        if _accumulates(run, _PRODUCTS, lags, species, particles):
+            time, values, errors = accumulated_mean(run, _PRODUCTS)
+            return _autocorrelation(run, time, values / run.dimension, errors / run.dimension)
+        groups = groups_of(run, paths=False, chosen=chosen_of(run, species, particles))
         number = _lags(groups, lags)
         found = np.array([autocorrelation(velocity, number) for velocity in groups.velocities])
-        time = groups.interval * np.arange(number)
-        values, errors = means_of(found)
-        expected: dict[str, Any] = {}
-        if gas := run.moving_fluid:
-            rate = float(theory.velocity_decay_rate(**gas.parameters))
-            curve = gas.temperature / gas.mass * np.exp(-rate * time)
-            expected = {"theory": (curve, math.nan), "source": "Enskog, exact initial decay"}
-        about: dict[str, Any] = {
-            "units": "length^2 / time^2",
-            "long_name": "velocity autocorrelation",
-            **expected,
-        }
-        return observable("velocity_autocorrelation", _lag(time), values, errors, **about)
+        return _autocorrelation(run, groups.interval * np.arange(number), *means_of(found))
 
 
-def diffusion_coefficient(
-    source: Source, start: float | None = None, species: int | None = None, per_axis: bool = False
-) -> Observable:
-    """D in length^2 / time, by the rise of the mean-squared displacement from 12 to 24 collisions a particle.
-
-    Of a periodic container the mean over axes, a scalar; of one with walls, or `per_axis`, that along each
-    periodic axis, (axis,): across walls displacements are bounded, and there is none. Arguments and
-    condition of zero momentum as in `mean_squared_displacement`; a species needs 16 particles that move.
-    Theory: of spheres in a periodic cube, Erpenbeck and Wood's with the shift of Yeh and Hummer, half of
-    which is its uncertainty.
-
-    Raises SceneError without a periodic axis; for discs whose momentum lasts longer than these collisions, so
-    that their squared displacement grows like t ln t; where the slope from 6 to 12 collisions is another one,
-    so that there is no D; and for runs that are too short, or have too few frames.
-    """
-    with measured(source, start) as run:
-        if not run.periodic.any():
-            rule = "has no periodic axis: displacements between walls are bounded, and there is no D"
-            raise SceneError("container.boundary", run.scene.container.boundary, rule)
-        require_spheres(run, run.conserved)
-        chosen = _chosen(run, species, None)
-        if len(chosen) < GROUPS:
-            raise SceneError("species", species, f"an error needs {GROUPS} moving particles or more")
-        stride = _stride(run)
-        lags = lags_of_slopes(run, stride)
-        lasting = _lasting_momentum(run, lags[1] * stride)
-        require_spheres(run, lasting)
-        slopes = _slopes(_groups(run, about=lasting, chosen=chosen), lags)[..., run.periodic]
-        along = _axes(run, run.periodic)
-        if run.periodic.all() and not per_axis:
-            slopes, along = slopes.mean(axis=2), {}
-        _require_constant(slopes)
-        values, errors = means_of(slopes[:, 1])
-        about: dict[str, Any] = {
-            "units": "length^2 / time",
-            "long_name": "diffusion coefficient D",
-            **_theory_of_d(run),
-        }
-        return observable("diffusion_coefficient", along, values, errors, **about)
+def _accumulates(
+    run: Run, name: str, lags: int | None, species: int | None, particles: Sequence[int] | None
+) -> bool:
+    """Whether a run has accumulated what is asked for, under a name of `SUMS`."""
+    return name in run.data and lags is None and species is None and particles is None
 
 
-def _chosen(run: Run, species: int | None, particles: Sequence[int] | None) -> np.ndarray:
+def _displacement(run: Run, time: np.ndarray, values: np.ndarray, errors: np.ndarray) -> Observable:
+    """The mean-squared displacement (lag,) or (axis, lag), with theory."""
+    expected: dict[str, Any] = {}
+    if gas := _fluid(run):
+        curve = theory.enskog_mean_squared_displacement(time, **gas.parameters)
+        curve = curve / run.dimension if values.ndim > 1 else curve
+        expected = {"theory": (curve, math.nan), "source": "Enskog, exponential velocity correlation"}
+    about: dict[str, Any] = {"units": "length^2", "long_name": "mean-squared displacement", **expected}
+    along = {**(axes_of(run) if values.ndim > 1 else {}), **_lag(time)}
+    return observable("mean_squared_displacement", along, values, errors, **about)
+
+
+def _autocorrelation(run: Run, time: np.ndarray, values: np.ndarray, errors: np.ndarray) -> Observable:
+    """The velocity autocorrelation (lag,), with theory."""
+    expected: dict[str, Any] = {}
+    if gas := _fluid(run):
+        rate = float(theory.velocity_decay_rate(**gas.parameters))
+        curve = gas.temperature / gas.mass * np.exp(-rate * time)
+        expected = {"theory": (curve, math.nan), "source": "Enskog, exact initial decay"}
+    about: dict[str, Any] = {
+        "units": "length^2 / time^2",
+        "long_name": "velocity autocorrelation",
+        **expected,
+    }
+    return observable("velocity_autocorrelation", _lag(time), values, errors, **about)
+
+
+def _fluid(run: Run) -> Gas | None:
+    """The fluid at the temperature of the run, None where the file lacks some of its particles."""
+    return None if run.followed else run.moving_fluid
+
+
+def chosen_of(run: Run, species: int | None, particles: Sequence[int] | None) -> np.ndarray:
     """`selected`; of all particles 16 or more must move."""
     if species is None and particles is None:
-        _require_groups(run)
+        _requiregroups_of(run)
     return selected(run, species, particles)
 
 
-def _require_groups(run: Run) -> None:
+def _requiregroups_of(run: Run) -> None:
     """Raise SceneError for too few moving particles."""
     count = int(run.moving.sum())
     if count < GROUPS:
         raise SceneError("count", count, f"an error needs {GROUPS} moving particles or more")
 
 
-def require_spheres(run: Run, lasting: np.ndarray) -> None:
-    """Raise SceneError for discs whose total momentum lasts along an axis."""
-    if run.dimension == 2 and lasting.any():
-        rule = "discs have no diffusion coefficient: their squared displacement grows like t ln t"
-        raise SceneError("container.lengths", run.scene.container.lengths, rule)
-
-
-def linear_lags(rate: float, interval: float) -> tuple[int, int, int]:
-    """After how many frames, `interval` apart, a particle has had 6, 12 and 24 collisions: before the window
-    of D, at its start and at its end. rate: its collisions per time."""
-    first, middle, last = (math.ceil(k * LINEAR_FROM / rate / interval) for k in (0.5, 1.0, 2.0))
-    return first, middle, last
-
-
-def lags_of_slopes(run: Run, stride: int = 1) -> tuple[int, int, int]:
-    """The `linear_lags` of a run, of which every so many frames are taken, no two of them equal. Raises
-    SceneError for too few frames."""
-    interval = float(np.diff(run.time).mean()) * stride
-    collisions = float(run.increments("collisions").sum())
-    duration = float(run.time[-1] - run.time[0])
-    rate = 2.0 * collisions / (run.moving.sum() * duration)
-    if rate * (duration + interval) < 4.0 * LINEAR_FROM:
-        rule = f"must cover {4.0 * LINEAR_FROM:g} collisions of a particle or more"
-        raise SceneError("duration", duration, rule)
-    first, middle, last = linear_lags(rate, interval)
-    middle = max(middle, first + 1)
-    last = max(last, middle + 1)
-    if len(run.time) < 2 * last * stride:
-        short = 0.5 * LINEAR_FROM
-        rule = f"is too long: frames {short / rate:.3g} apart, the time of {short:g} collisions, suffice"
-        raise SceneError("sample_interval", interval, rule)
-    return first, middle, last
-
-
-def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
-    """(d,) along which axes the total momentum of the moving particles is kept for so many frames: where it
-    is conserved, and where more than half of it is left, as with a few obstacles among many particles."""
-    momentum = np.einsum("tnd,n->td", run.velocities[:, run.moving], run.masses[run.moving])
-    left = (momentum[lag:] * momentum[:-lag]).mean(axis=0)
-    return run.conserved | (run.periodic & (left > 0.5 * (momentum**2).mean(axis=0)))
-
-
-def _slopes(groups: _Groups, lags: tuple[int, ...]) -> np.ndarray:
-    """(G, stretches, d) of the squared displacements between consecutive lags, over two."""
-    squares = np.array(
-        [[((path[lag:] - path[:-lag]) ** 2).mean(axis=(0, 1)) for lag in lags] for path in groups.paths]
-    )
-    return 0.5 * np.diff(squares, axis=1) / (groups.interval * np.diff(lags))[:, None]
-
-
-def _require_constant(slopes: np.ndarray) -> None:
-    """Raise SceneError if the slope of the second stretch differs from that of the first, (G, 2, ...), by
-    more than `_CONSTANT` of it, beyond its error."""
-    early, late = np.atleast_2d(slopes.mean(axis=0).T).T
-    change, error = means_of(slopes[:, 1] - slopes[:, 0])
-    beyond = np.abs(change) - _CONSTANT * np.abs(early) - _SIGNIFICANT * error
-    if (beyond > 0.0).any():
-        n = int(np.argmax(beyond))
-        rule = (
-            f"there is none: the slope of the squared displacement, over 2, changes from {early[n]:.3g} "
-            f"before {LINEAR_FROM:g} collisions to {late[n]:.3g} after them; measure msd"
-        )
-        raise SceneError("D", "not constant", rule)
-
-
-def _theory_of_d(run: Run) -> dict[str, Any]:
-    gas, sides = run.moving_fluid, run.scene.container.lengths
-    if gas is None or gas.dimension == 2 or np.ptp(sides) > 1e-6 * sides[0]:
-        return {}
-    if gas.packing_fraction > theory.ERPENBECK_WOOD_HIGHEST:
-        return {}
-    expected = theory.diffusion_in_cube(gas.packing_fraction, sides[0], **gas.particle)
-    return {"theory": expected, "source": "Erpenbeck and Wood, Yeh and Hummer"}
-
-
-def _axes(run: Run, chosen: np.ndarray | slice = slice(None)) -> dict[str, Any]:
+def axes_of(run: Run, chosen: np.ndarray | slice = slice(None)) -> dict[str, Any]:
+    """The dimension of an observable along the chosen axes."""
     return {"axis": (np.array(list("xyz"[: run.dimension]))[chosen], {"long_name": "axis"})}
 
 
@@ -252,7 +165,7 @@ def _lag(time: np.ndarray) -> dict[str, Any]:
     return {"lag": (time, {"units": "time", "long_name": "lag"})}
 
 
-def _lags(groups: _Groups, lags: int | None) -> int:
+def _lags(groups: Groups, lags: int | None) -> int:
     frames = len(groups.velocities[0])
     number = max(2, frames // 2) if lags is None else count_of("lags", lags, least=2)
     if number > frames:
@@ -260,16 +173,16 @@ def _lags(groups: _Groups, lags: int | None) -> int:
     return number
 
 
-def _groups(
+def groups_of(
     run: Run, paths: bool = True, about: np.ndarray | None = None, chosen: np.ndarray | None = None
-) -> _Groups:
+) -> Groups:
     """The chosen ones of the moving particles in groups, or, of fewer than `GROUPS`, as many stretches of the
     run, about the centre of mass along the axes `about` (d,), by default those along which its velocity is
     conserved.
 
     There its square for a particle of mass m is 1 - m / M of that without this condition, M the mass of all.
     """
-    moving, stride = run.moving, _stride(run)
+    moving, stride = run.moving, stride_of(run)
     steps = np.diff(run.time)
     if np.ptp(steps) > 1e-6 * steps.mean():
         raise SceneError("time", "frames at uneven times", "a correlation needs even ones")
@@ -292,7 +205,7 @@ def _groups(
             raise SceneError("frames", len(motion), rule)
         return [motion[first : first + length] for first in range(0, GROUPS * length, length)]
 
-    return _Groups(
+    return Groups(
         paths=parts(unwrapped(run)[::stride, moving]) if paths else [],
         velocities=parts(run.velocities[::stride, moving]),
         interval=float(steps.mean()) * stride,
@@ -308,7 +221,7 @@ def _alike(species: np.ndarray) -> list[np.ndarray]:
     return [order[first::GROUPS] for first in range(GROUPS)]
 
 
-def _stride(run: Run) -> int:
+def stride_of(run: Run) -> int:
     """The number of frames of which one is taken."""
     return -(-len(run.time) // MOST_FRAMES)
 

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis.motion import lags_of_slopes, require_spheres, unwrapped
+from gaspart.analysis.diffusion import lags_of_slopes, require_spheres
+from gaspart.analysis.motion import unwrapped
 from gaspart.analysis.observable import Observable, scalar
 from gaspart.analysis.run import Run, Source, measured, require_elastic, require_periodic
 from gaspart.errors import SceneError

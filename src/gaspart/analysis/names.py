@@ -41,6 +41,8 @@ PAIRS = ("pair_rates", "contact_values")
 """Those that need a run which counts the collisions of each pair of species."""
 FLUXES = ("shear_viscosity", "bulk_viscosity", "thermal_conductivity", "pressure_tensor")
 """Those that need a run which correlates the stress tensor and the heat flux."""
+MOTION = ("msd", "vacf")
+"""Those of lags, which are those of a run's correlations or else of its frames."""
 CURVES = ("msd", "vacf", "speeds", "rdf", "structure_factor", "density", "temperature")
 """Those that are a curve; others are a number, or one for each face, pair or component."""
 SELECTIONS = {

@@ -143,12 +143,16 @@ def _plan_lines(plan: Plan, file: str) -> list[str]:
     best = plan.best
     lines = [f"engine            {_settings(best)}"]
     if math.isfinite(best.seconds):
+        recipe = plan.recipe
         lines += [
-            f"command           {_command(plan.recipe, file)}",
+            f"command           {_command(recipe, file)}",
             f"predicted cost    {best.seconds:.3g} s of processor time, duration {best.duration:.4g}",
             f"95 % half-width   {best.half_width:.2g} of {plan.observable} (about {plan.value:.4g}): "
             f"{_components(best)}",
         ]
+        if asked := recipe.correlations:
+            lags = f"{asked.interval:g} apart, up to {asked.lags * asked.interval:.4g}"
+            lines.append(f"lags              {lags}, the time of 10 collisions of a particle")
     lines += _drawn(plan.observable, plan.scatter)
     lines.append(_pays(plan.scene, best.candidate.engine, plan.observable))
     if not plan.affordable:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from gaspart import theory
+from gaspart.analysis.diffusion import linear_lags
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.motion import linear_lags
 from gaspart.analysis.statistics import mean_of
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.samples import path, steps

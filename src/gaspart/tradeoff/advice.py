@@ -132,9 +132,13 @@ def fluid_of(scene: Scene) -> Gas:
 def is_driven(scene: Scene) -> bool:
     """Whether a thermostat, or a face that is at a temperature or moves, exchanges energy with the
     particles."""
-    return scene.thermostat is not None or any(
-        face.moves or getattr(face, "temperature", None) for face in scene.faces.values()
-    )
+    moves = any(face.moves for face in scene.faces.values())
+    return scene.thermostat is not None or moves or at_temperature(scene)
+
+
+def at_temperature(scene: Scene) -> bool:
+    """Whether a face gives particles the velocities of a temperature."""
+    return any(getattr(face, "temperature", None) for face in scene.faces.values())
 
 
 def temperature_scatter(scene: Scene) -> float:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis.names import FLUXES, PAIRS
+from gaspart.analysis.names import FLUXES, MOTION, PAIRS
 from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
 from gaspart.engines.dsmc.rates import contact_values, rates
 from gaspart.engines.step.limits import missed_contacts
@@ -23,7 +23,7 @@ from gaspart.state.initial import initial_state
 
 STRUCTURE = ("rdf", "order", "structure_factor", "chemical_potential")
 """Observables of the positions of particles relative to each other, which DSMC does not have."""
-TRANSPORT = ("D", "msd", "vacf", *FLUXES[:3])
+TRANSPORT = ("D", *MOTION, *FLUXES[:3])
 """Observables that depend on the memory of collisions, of which the Enskog model has none."""
 _STATIC = 3e-3
 """Bound on the error of the Enskog model in Z, the collision rate and pressures (figure

@@ -66,7 +66,7 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
     from gaspart.analysis.measuring import measure
     from gaspart.analysis.run import measured
 
-    with measured(data, start) as run:
+    with measured(data, start, sheared=True) as run:
         if observable == "pressure":
             return _pressures(run)
         time = float(run.time[-1] - run.time[0])

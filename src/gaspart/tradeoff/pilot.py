@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.analysis.motion import LINEAR_FROM, MOST_FRAMES
-from gaspart.analysis.names import FLUXES, PAIRS
+from gaspart.analysis.diffusion import LINEAR_FROM
+from gaspart.analysis.motion import MOST_FRAMES
+from gaspart.analysis.names import FLUXES, MOTION, PAIRS
 from gaspart.analysis.run import EQUILIBRATION, measured
 from gaspart.engines import Engine, engine_to_dict
 from gaspart.engines.dsmc.rates import rates
@@ -26,7 +27,7 @@ from gaspart.kernels.compile.policy import source_digest
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.tradeoff.estimates import Component, components
-from gaspart.tradeoff.reached import bound
+from gaspart.tradeoff.reached import TOO_SHORT, bound
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.run import run
@@ -35,17 +36,23 @@ if TYPE_CHECKING:
     import xarray as xr
 
 DIFFUSION = "D", "mutual_diffusion"
+CORRELATED = *FLUXES, *MOTION
+"""Those of a run with correlations."""
 SEED = 0
 _PROBE = 0.15
 """Processor seconds that the speed is measured for, at least."""
+_TIMED = 4
+"""Longest lags, likewise of a run with correlations."""
 _FRAMES = 48, 512
 _HELD = 20_000_000
 """Numbers that the frames of a pilot hold, at most, unless there are only few frames."""
 _SAME = 1e-6
 """Part of a kinetic energy that is rounding."""
-_LAGS = 100
-_SAMPLED = 0.1
-"""Time between two samples of a correlation, in collisions of a particle."""
+_LAGS = {**dict.fromkeys(FLUXES, 100), **dict.fromkeys(MOTION, 40)}
+"""Of correlations, in samples: up to ten collisions of a particle."""
+_LONGEST_LAG = 10.0
+_LEAST_FRAMES = 24
+"""Of a run with correlations: three quarters of them give an error."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +112,7 @@ class Pilot:
 def speed_of(scene: Scene, engine: Engine, observable: str) -> float:
     """Processor seconds per unit of a scene's time, from a run of a fraction of a second after its kernels
     were compiled. Raises SceneError for a scene that the engine does not model."""
-    if observable in FLUXES:  # samples take longer than what happens between them
+    if observable in CORRELATED:  # samples take longer than what happens between them
         return _speed_of_sampling(scene, engine, observable)
     simulation = Simulation(scene, engine, SEED)
     quantum = simulation.engine.quantum
@@ -121,15 +128,18 @@ def speed_of(scene: Scene, engine: Engine, observable: str) -> float:
 
 
 def _speed_of_sampling(scene: Scene, engine: Engine, observable: str) -> float:
-    """The same of a run that correlates fluxes, by two short ones, of which the first compiles."""
-    took, duration = math.inf, 1.0
+    """The same of a run with correlations, by two short ones, of which the first compiles."""
+    took, correlations = math.inf, correlations_of(scene, engine, observable)
+    interval = correlations.lags * correlations.interval
     with TemporaryDirectory() as folder:
         for name in ("first.nc", "second.nc"):
-            duration, interval, correlations = schedule(scene, engine, observable, 0.0)
             start = time.process_time()
-            run(scene, engine, SEED, duration, interval, f"{folder}/{name}", correlations=correlations)
+            run(
+                scene, engine, SEED, _TIMED * interval, interval, f"{folder}/{name}",
+                displacements=observable == "msd", correlations=correlations,
+            )  # fmt: skip
             took = time.process_time() - start
-    return took / duration
+    return took / (_TIMED * interval)
 
 
 def crossing(scene: Scene) -> float:
@@ -152,7 +162,8 @@ def run_pilot(scene: Scene, engine: Engine, observable: str, seconds: float, spe
     """A run of about so many processor seconds, measured; speed: as from `speed_of`. An observable that it is
     too short for is not measured. Raises SceneError for one that the scene does not have."""
     duration, interval, correlations = schedule(scene, engine, observable, seconds / speed)
-    kind = "fluxes" if observable in FLUXES else "pairs" if observable in PAIRS else ""
+    kinds = {"fluxes": FLUXES, "motion": MOTION, "pairs": PAIRS}
+    kind = next((kind for kind, names in kinds.items() if observable in names), "")
     folder = cache_directory() / "pilots" / _digest(scene, engine, kind, seconds)
     folder.mkdir(parents=True, exist_ok=True)
     took, path = 0.0, folder / "run.nc"
@@ -170,15 +181,18 @@ def run_pilot(scene: Scene, engine: Engine, observable: str, seconds: float, spe
         try:
             found, settled = components(trajectory, observable), _settled(trajectory)
         except SceneError as error:
-            return Pilot(engine, speed, took, rule=f"{error.key}: {error.rule}")
+            rule = f"{error.key}: {error.rule}"
+            if error.key not in TOO_SHORT:
+                raise SceneError("observable", observable, rule) from None
+            return Pilot(engine, speed, took, rule=rule)
     worst = max(found.values(), key=lambda one: one.accuracy)
     return Pilot(engine, speed, took, worst, interval, settled)
 
 
 def _settled(trajectory: xr.Dataset) -> float:
     """See `Pilot`."""
-    with measured(trajectory, 0.0) as run:
-        velocities = run.velocities[:, run.moving]
+    with measured(trajectory, 0.0, sheared=True) as run:
+        velocities = run.peculiar
         energy = np.einsum("tnd,tnd,n->t", velocities, velocities, run.masses[run.moving])
         later = energy[len(energy) // 2 :]
         beyond = energy - later.mean()
@@ -194,8 +208,8 @@ def schedule(
     longest_interval, longest = span(scene, observable)
     length = min(length, longest)
     frames = int(np.clip(_HELD // max(1, 3 * scene.count * scene.dimension), least, most))
-    if observable in FLUXES:
-        return _of_fluxes(scene, engine, length)
+    if observable in CORRELATED:
+        return _correlated(scene, engine, observable, length)
     interval = min(length / frames, longest_interval)
     frames = math.ceil(length / interval * (1.0 - 1e-9))
     if quantum := engine.resolved(scene).quantum:
@@ -213,19 +227,31 @@ def span(scene: Scene, observable: str) -> tuple[float, float]:
     return interval, interval * MOST_FRAMES / (1.0 - EQUILIBRATION)
 
 
-def _of_fluxes(scene: Scene, engine: Engine, length: float) -> tuple[float, float, Correlations]:
-    """The same with correlations of the fluxes. Raises SceneError for no plain gas, whose collisions give the
-    time between samples."""
-    found = rates(scene, dense=True).frequency
+def correlations_of(scene: Scene, engine: Engine, observable: str) -> Correlations:
+    """Those that an observable needs. Raises SceneError for a scene whose particles do not collide."""
+    found, lags = rates(scene, dense=True).frequency, _LAGS[observable]
     if not found > 0.0:
-        raise SceneError("observable", "shear_viscosity", "needs particles that collide")
-    sample = float(f"{_SAMPLED / found:.1g}")
+        raise SceneError("observable", observable, "needs particles that collide")
+    sample = float(f"{_LONGEST_LAG / lags / found:.1g}")
     if quantum := engine.resolved(scene, sample).quantum:
-        sample = max(1, round(sample / quantum)) * quantum
-    per_frame = max(_LAGS, round(length / sample / _FRAMES[0]))
-    frames = max(4, round(length / (per_frame * sample)))
-    interval = per_frame * sample
-    return frames * interval, interval, Correlations(interval=sample, lags=_LAGS, stress=True)
+        sample = tidy(max(1, round(sample / quantum)) * quantum)
+    return Correlations(sample, lags, stress=observable in FLUXES)
+
+
+def _correlated(
+    scene: Scene, engine: Engine, observable: str, length: float
+) -> tuple[float, float, Correlations]:
+    """The same with correlations, whose longest lag frames are apart or more."""
+    correlations = correlations_of(scene, engine, observable)
+    sample = correlations.interval
+    per_frame = max(correlations.lags, round(length / sample / _FRAMES[0]))
+    interval = tidy(per_frame * sample)
+    return tidy(max(_LEAST_FRAMES, round(length / interval)) * interval), interval, correlations
+
+
+def tidy(multiple: float) -> float:
+    """A multiple without its rounding error, which a command would show."""
+    return float(f"{multiple:.12g}")
 
 
 def _digest(scene: Scene, engine: Engine, kind: str, seconds: float) -> str:

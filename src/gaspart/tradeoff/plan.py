@@ -12,18 +12,29 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from gaspart.analysis.names import CURVES, FLUXES, PAIRS, known
+from gaspart.analysis.names import CURVES, PAIRS, known
 from gaspart.analysis.pairs import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine
 from gaspart.engines.dsmc.rates import rates
 from gaspart.errors import SceneError
+from gaspart.scene.faces import LeesEdwards, Vibrating
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
 from gaspart.tradeoff import PILOT_SECONDS
-from gaspart.tradeoff.advice import ACCURACIES, is_driven, temperature_scatter
+from gaspart.tradeoff.advice import ACCURACIES, at_temperature, is_driven, temperature_scatter
 from gaspart.tradeoff.candidates import STRUCTURE, Candidate, candidates
-from gaspart.tradeoff.pilot import DIFFUSION, Pilot, crossing, run_pilot, schedule, span, speed_of
+from gaspart.tradeoff.pilot import (
+    CORRELATED,
+    DIFFUSION,
+    Pilot,
+    crossing,
+    run_pilot,
+    schedule,
+    span,
+    speed_of,
+    tidy,
+)
 from gaspart.tradeoff.table import EQUILIBRATION as EQUILIBRATED
 from gaspart.tradeoff.table import LEAST, QUANTILE
 from gaspart.trajectory.recipe import Recipe
@@ -38,8 +49,6 @@ _FRAMES = 384
 _LONGEST = 4.0
 """The longest duration of a run with `--until` over the predicted one: two examinations, and an error that
 chance made too small in the pilot."""
-_LAGS = "msd", "vacf"
-"""Observables whose lags reach to half of a run: the longer it is, the more of them are little known."""
 _SETTLED = 2.0
 """The part of a run that is not measured, over the time in which the energy came to its mean in the pilot."""
 _CROSSINGS = 10.0
@@ -109,7 +118,7 @@ class Plan:
         scene, engine, correlations = self.scene, best.candidate.engine, None
         duration, interval = best.duration, min(best.duration / _FRAMES, self.longest_interval)
         interval = float(f"{interval:.3g}")
-        if self.observable in FLUXES:
+        if self.observable in CORRELATED:
             duration, interval, correlations = schedule(scene, engine, self.observable, duration)
         elif quantum := engine.resolved(scene).quantum:
             engine = engine.resolved(scene)
@@ -121,9 +130,12 @@ class Plan:
             longest = max(_LONGEST * duration, *(one.duration for one in self.pilots))
             longest = min(longest, span(scene, self.observable)[1])
             until = Until((asked,), at_most=float(f"{longest:.2g}"))
-        fixed = None if until else max(1, round(duration / interval)) * interval
-        pairs = self.observable in PAIRS
-        return Recipe(scene, engine, 1, fixed, interval, correlations=correlations, until=until, pairs=pairs)
+        fixed = None if until else tidy(max(1, round(duration / interval)) * interval)
+        return Recipe(
+            scene, engine, 1, fixed, interval,
+            displacements=self.observable == "msd", correlations=correlations, until=until,
+            pairs=self.observable in PAIRS,
+        )  # fmt: skip
 
 
 def plan(
@@ -148,9 +160,6 @@ def plan(
     accuracy = number("accuracy", accuracy, f"must be from {low:g} to {high:g}", least=low, most=high)
     if budget is not None:
         budget = number("budget", budget, "must be positive", above=0.0)
-    if observable in _LAGS:
-        rule = "has lags up to half of the run, which no length makes more accurate; state D or a duration"
-        raise SceneError("observable", observable, rule)
     pilot_seconds = number("pilot", pilot_seconds, "must be positive", above=0.0)
     _require_steady(scene)
     able, refused = candidates(scene, observable, accuracy)
@@ -172,7 +181,7 @@ def plan(
 
     def limits(engine: Engine, speed: float) -> tuple[float, float]:
         affordable = math.inf if budget is None else budget / speed
-        return _least(scene, engine, longest), min(
+        return _least(scene, engine, observable, longest), min(
             affordable, _longest(observable, longest), span(scene, observable)[1]
         )
 
@@ -186,13 +195,19 @@ def plan(
 
 
 def _require_steady(scene: Scene) -> None:
-    """Refuse an empty scene, and one that cools: its observables depend on when they are measured."""
+    """Refuse an empty scene, and one that cools or heats: its observables depend on the time."""
     if not scene.count:
         raise SceneError("count", 0, "advice is for a gas: the scene is empty")
     law = scene.restitution
     if law is not None and law.dissipative and not is_driven(scene):
         rule = "loses energy that nothing returns: there is no steady state to measure; give a duration"
         raise SceneError("restitution.normal", law.normal, rule)
+    heats = scene.thermostat is not None or any(
+        isinstance(face, Vibrating | LeesEdwards) for face in scene.faces.values()
+    )
+    if heats and not (law is not None and law.dissipative) and not at_temperature(scene):
+        rule = "nothing takes the energy that the scene is given: there is no steady state; give a duration"
+        raise SceneError("restitution", None, rule)
 
 
 def _run_pilots(
@@ -256,11 +271,16 @@ def _longest(observable: str, pilot: Pilot) -> float:
     return pilot.measured * _FRAMES / (frames / math.ceil(frames / MOST_FRAMES))
 
 
-def _least(scene: Scene, engine: Engine, pilot: Pilot) -> float:
+def _least(scene: Scene, engine: Engine, observable: str, pilot: Pilot) -> float:
     """The shortest duration: what the table equilibrates and measures at least, crossings of a container with
-    walls, the time in which the pilot came to its steady state, and the steps between frames."""
+    walls, the time in which the pilot came to its steady state, and the steps between frames; with
+    correlations the frames that give an error."""
     frequency = rates(scene, dense=True).frequency
     collisions = (EQUILIBRATED + LEAST) / frequency if frequency > 0.0 else 0.0
     crossings = 0.0 if all(scene.container.periodic) else _CROSSINGS * crossing(scene)
     settled = _SETTLED * pilot.settled / EQUILIBRATION
-    return max(collisions, crossings, settled, _FRAMES * (engine.resolved(scene).quantum or 0.0))
+    if observable in CORRELATED:
+        sampled = schedule(scene, engine, observable, 0.0)[0]
+    else:
+        sampled = _FRAMES * (engine.resolved(scene).quantum or 0.0)
+    return max(collisions, crossings, settled, sampled)

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 _DOUBT = 0.1
 """Probability with which the true error exceeds its bound."""
 _CONFIDENCE = 0.95
-_TOO_SHORT = ("frames", "duration", "collisions", "start", "D")
+TOO_SHORT = ("frames", "duration", "collisions", "start", "D")
 """Keys of the errors of an analysis that a longer run may not have."""
 
 
@@ -180,7 +180,7 @@ class Examiner:
             try:
                 self._known[key] = _measure(data.isel(frame=slice(frames)), asked)
             except SceneError as error:
-                if error.key not in _TOO_SHORT:
+                if error.key not in TOO_SHORT:
                     raise SceneError("until", asked.name, f"{error.key}: {error.rule}") from None
                 self._known[key] = f"{error.key}: {error.rule}"
         return self._known[key]

@@ -7,6 +7,7 @@ velocity components the memory is that of L + 1 samples, and a sample costs abou
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -145,7 +146,9 @@ class Correlator(_Correlator):
     """Correlations of the motion of the particles.
 
     Velocities and positions of the moving particles count, relative to those of the centre of mass along
-    axes where its velocity is conserved: periodic ones, if no particle is fixed.
+    axes where its velocity is conserved (`Scene.conserved_axes`). This makes the mean square of a particle of
+    mass m lower by the factor 1 - m / M, M the mass of all; if masses differ, or if not all axes are such
+    ones, components are multiplied so that the sums are lower by 1 - 1 / N.
 
     masses: (N,), infinite for fixed particles; displacements: whether positions are correlated too. Raises
     SceneError if no particle moves.
@@ -157,7 +160,8 @@ class Correlator(_Correlator):
             raise SceneError("correlations", scene.count, "no particle moves")
         weights = masses[self._moving]
         self._weights = (weights / weights.sum())[:, None]
-        self._conserved = np.array(scene.container.periodic) & self._moving.all()
+        self._conserved = np.array(scene.conserved_axes)
+        self._scale = _scale(self._weights, self._conserved)
         self._positioned = displacements
         components = self._moving.sum() * scene.dimension
         earlier = (2 if displacements else 1, components)
@@ -177,12 +181,22 @@ class Correlator(_Correlator):
         """(M d,) values (N, d) of the moving particles relative to the centre of mass."""
         values = values[self._moving]
         centre = (values * self._weights).sum(axis=0)
-        return (values - np.where(self._conserved, centre, 0.0)).ravel()
+        return (self._scale * (values - np.where(self._conserved, centre, 0.0))).ravel()
 
     def sums(self) -> dict[str, np.ndarray | float]:
         """The sums of `SUMS` so far, (lags + 1,) each, and the number of samples."""
         named = zip(SUMS, self._sums, strict=False)
         return {"correlated_samples": float(self._samples), **dict(named)}
+
+
+def _scale(weights: np.ndarray, conserved: np.ndarray) -> np.ndarray:
+    """(M, d) the factors of components relative to the centre of mass; weights (M, 1): m / M."""
+    count = len(weights)
+    if count < 2 or not conserved.any():
+        return np.ones((count, len(conserved)))
+    lower = 1.0 - 1.0 / count
+    relative = 1.0 if np.ptp(weights) == 0.0 else np.sqrt(lower / (1.0 - weights))
+    return np.where(conserved, relative, math.sqrt(lower)) * np.ones((count, 1))
 
 
 class StressCorrelator(_Correlator):
