@@ -158,7 +158,7 @@ def _kept(number, gas, observable, accuracy, made, folder):
     asked = {"duration": recipe.duration}
     if recipe.until:
         asked = {"until": recipe.until.accuracies, "at_most": recipe.until.at_most}
-    more = {"correlations": recipe.correlations, "pairs": recipe.pairs, "displacements": True}
+    more = {"correlations": recipe.correlations, "pairs": recipe.pairs, "displacements": recipe.displacements}
     gp.run(
         gas, recipe.engine, (7, number), sample_interval=recipe.sample_interval, path=path, **asked, **more
     )

@@ -60,6 +60,21 @@ def test_lags_are_those_of_correlations(tmp_path, observable):
     assert 1.96 * error <= 0.05
 
 
+@pytest.mark.parametrize("observable", ["D", "mutual_diffusion"])
+def test_paths_are_followed_however_far_frames_are_apart(tmp_path, observable):
+    """Some of these particles cross the container between frames."""
+    kinds = [gp.Species(32, radius, temperature=1.0, exact_temperature=True) for radius in (0.5, 0.4)]
+    scene = gp.Scene(gp.Container((20.0, 20.0, 20.0), "periodic"), kinds)
+    recipe = plan.plan(scene, observable, 0.5, pilot_seconds=0.4).recipe
+    paths = [tmp_path / "with.nc", tmp_path / "without.nc"]
+    for path, kept in zip(paths, (recipe.displacements, False), strict=True):
+        interval = recipe.sample_interval
+        gp.run(scene, gp.EventDriven(), 3, 400 * interval, interval, path, displacements=kept)
+    assert float(measure(observable, paths[0]).estimate) > 0.0
+    with pytest.raises(gp.SceneError, match="is too long to follow particles"):
+        measure(observable, paths[1])
+
+
 def test_a_sheared_gas_has_a_steady_state():
     made = plan.plan(SHEARED, "shear_viscosity", 0.1, pilot_seconds=0.4)
     assert made.affordable and made.recipe.correlations.stress

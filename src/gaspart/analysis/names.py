@@ -41,6 +41,8 @@ PAIRS = ("pair_rates", "contact_values")
 """Those that need a run which counts the collisions of each pair of species."""
 FLUXES = ("shear_viscosity", "bulk_viscosity", "thermal_conductivity", "pressure_tensor")
 """Those that need a run which correlates the stress tensor and the heat flux."""
+PATHS = ("msd", "D", "mutual_diffusion")
+"""Those of paths, which need displacements in the file if frames are far apart."""
 MOTION = ("msd", "vacf")
 """Those of lags, which are those of a run's correlations or else of its frames."""
 CURVES = ("msd", "vacf", "speeds", "rdf", "structure_factor", "density", "temperature")

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from gaspart import theory
+from gaspart.analysis.names import PATHS
 from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
 from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas, plain_gas
@@ -86,7 +87,9 @@ class Advice:
             float(f"{interval:.2g}") if quantum is None else max(1, round(interval / quantum)) * quantum
         )
         part = self.duration * (1.0 + EQUILIBRATION / self.collisions_per_particle) / interval
-        return Recipe(self.scene, self.setting.engine, 1, math.ceil(part) * interval, interval)
+        paths = self.observable in PATHS
+        length = math.ceil(part) * interval
+        return Recipe(self.scene, self.setting.engine, 1, length, interval, displacements=paths)
 
     @property
     def within_budget(self) -> bool:

@@ -17,7 +17,7 @@ import numpy as np
 
 from gaspart.analysis.diffusion import LINEAR_FROM
 from gaspart.analysis.motion import MOST_FRAMES
-from gaspart.analysis.names import FLUXES, MOTION, PAIRS
+from gaspart.analysis.names import FLUXES, MOTION, PAIRS, PATHS
 from gaspart.analysis.run import EQUILIBRATION, measured
 from gaspart.engines import Engine, engine_to_dict
 from gaspart.engines.dsmc.rates import rates
@@ -136,7 +136,7 @@ def _speed_of_sampling(scene: Scene, engine: Engine, observable: str) -> float:
             start = time.process_time()
             run(
                 scene, engine, SEED, _TIMED * interval, interval, f"{folder}/{name}",
-                displacements=observable == "msd", correlations=correlations,
+                displacements=observable in PATHS, correlations=correlations,
             )  # fmt: skip
             took = time.process_time() - start
     return took / (_TIMED * interval)

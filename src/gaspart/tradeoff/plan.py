@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from gaspart.analysis.names import CURVES, PAIRS, known
+from gaspart.analysis.names import CURVES, PAIRS, PATHS, known
 from gaspart.analysis.pairs import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine
@@ -133,7 +133,7 @@ class Plan:
         fixed = None if until else tidy(max(1, round(duration / interval)) * interval)
         return Recipe(
             scene, engine, 1, fixed, interval,
-            displacements=self.observable == "msd", correlations=correlations, until=until,
+            displacements=self.observable in PATHS, correlations=correlations, until=until,
             pairs=self.observable in PAIRS,
         )  # fmt: skip
 
