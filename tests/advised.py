@@ -151,26 +151,30 @@ def judged(number, folder):
 
 
 def _kept(number, gas, observable, accuracy, made, folder):
-    """What the advised run kept, by one that is longer."""
+    """What the advised run kept, with its replicas, by one that is longer."""
     recipe, costs = made
     result = {}
-    path = folder / "advised.nc"
     asked = {"duration": recipe.duration}
     if recipe.until:
         asked = {"until": recipe.until.accuracies, "at_most": recipe.until.at_most}
-    more = {"correlations": recipe.correlations, "pairs": recipe.pairs, "displacements": recipe.displacements}
-    gp.run(
-        gas, recipe.engine, (7, number), sample_interval=recipe.sample_interval, path=path, **asked, **more
-    )
-    with gp.open_trajectory(path) as data:
-        duration, frames = float(data["time"][-1]), data.sizes["frame"] - 1
+    more = {"correlations": recipe.correlations, "pairs": recipe.pairs}
+    paths = [folder / f"advised_{replica}.nc" for replica in range(costs["replicas"])]
+    for replica, path in enumerate(paths):
+        seed, kept = (7, number, replica), recipe.displacements
+        interval = recipe.sample_interval
+        gp.run(
+            gas, recipe.engine, seed, sample_interval=interval, path=path, displacements=kept, **asked, **more
+        )
+    with gp.open_trajectory(paths[0]) as data:
+        duration, frames = len(paths) * float(data["time"][-1]), len(paths) * (data.sizes["frame"] - 1)
         found = measure(observable, data)
-    interval = recipe.sample_interval
+    if len(paths) > 1:
+        found = gp.analysis.replicas(observable, paths)
     if "lag" not in found.coords and observable not in STRUCTURE and not recipe.correlations:
         interval *= math.ceil(LONGER * frames / MOST_FRAMES)
     path = folder / "longer.nc"
     longest = round(LONGER * duration / interval) * interval
-    gp.run(gas, gp.EventDriven(), (8, number), longest, interval, path=path, **more)
+    gp.run(gas, gp.EventDriven(), (8, number), longest, interval, path=path, displacements=True, **more)
     with gp.open_trajectory(path) as data:
         truth = _of_longer(observable, data)
     off = difference(found, truth)
@@ -202,14 +206,16 @@ def _advice(gas, observable, accuracy):
     """The advised run, and its cost by speeds measured again over that of the cheapest candidate."""
     if is_tabulated(gas, observable):
         found = advise(gas, observable, accuracy)
-        return found.recipe, {"ratio": _table_ratio(gas, found, observable), "predicted": 0.0}
+        costs = {"ratio": _table_ratio(gas, found, observable), "predicted": 0.0}
+        return found.recipe, costs | {"replicas": found.replicas}
     made = plan(gas, observable, accuracy, pilot_seconds=PILOT_SECONDS)
     near = [one for one in made.options if one.half_width <= accuracy * 1.001]
     near = [one for one in near if one.seconds < 4.0 * made.best.seconds] or [made.best]
     again = [
         _cost(gas, one.candidate.engine, observable, one.duration) if len(near) > 1 else 1.0 for one in near
     ]
-    return made.recipe, {"ratio": again[near.index(made.best)] / min(again), "predicted": made.best.duration}
+    ratio = again[near.index(made.best)] / min(again)
+    return made.recipe, {"ratio": ratio, "predicted": made.best.duration, "replicas": 1}
 
 
 def _table_ratio(gas, found, observable):
