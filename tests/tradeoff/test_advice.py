@@ -73,9 +73,24 @@ def test_dilute_spheres_take_the_model_that_is_accurate_enough():
     assert advice(0.1, 0.03, "collision_rate").setting.engine.name != "dsmc"
 
 
-@pytest.mark.parametrize("observable", ["collision_rate", "Z"])
-def test_an_advised_run_of_dsmc_is_as_accurate_as_promised(tmp_path, observable):
-    scene = gas(0.003, count=2000)
+def test_dilute_discs_take_the_model_that_is_accurate_enough():
+    """Of discs the contact value is 1 + 1.56 of the packing fraction; Z of Boltzmann's equation is 1."""
+    rough, fine = (advice(0.01, accuracy, "collision_rate", dimension=2) for accuracy in (0.1, 0.005))
+    assert rough.setting.name == "dsmc" and fine.setting.name == "event"
+    assert rough.setting.bias == pytest.approx(1.0 - 1.0 / float(theory.contact_value(0.01, 2)))
+    assert rough.setting.bias == pytest.approx(1.564 * 0.01, rel=0.02)
+    by_name = {one.name: one for one in rough.others}
+    assert by_name["event"].seconds > 4.0 * rough.setting.seconds
+    assert advice(0.01, 0.1, dimension=2).setting.name == "event"
+    assert advice(0.1, 0.1, "collision_rate", dimension=2).setting.name == "event"
+
+
+@pytest.mark.parametrize(
+    ("observable", "fraction", "dimension"),
+    [("collision_rate", 0.003, 3), ("Z", 0.003, 3), ("collision_rate", 0.01, 2)],
+)
+def test_an_advised_run_of_dsmc_is_as_accurate_as_promised(tmp_path, observable, fraction, dimension):
+    scene = gas(fraction, count=2000, dimension=dimension)
     scene = replace(scene, species=(replace(scene.species[0], exact_temperature=True),))
     found = advise(scene, observable, 0.02, None, speed.as_measured)
     recipe = found.recipe

@@ -23,10 +23,11 @@ def folder(tmp_path):
             "timed_packing_fraction": ("timed", [0.1, 0.45]),
             "timed_seconds": ("timed", [4e-7, 3e-7]),
             "timed_error": ("timed", [1e-8, 1e-8]),
-            "dsmc_model": ("dsmc", ["boltzmann", "enskog"]),
-            "dsmc_packing_fraction": ("dsmc", [0.01, 0.01]),
-            "dsmc_seconds": ("dsmc", [3e-7, 9e-7]),
-            "dsmc_seconds_error": ("dsmc", [1e-8, 1e-8]),
+            "dsmc_model": ("dsmc", ["boltzmann", "enskog", "boltzmann"]),
+            "dsmc_dimension": ("dsmc", [3, 3, 2]),
+            "dsmc_packing_fraction": ("dsmc", [0.01, 0.01, 0.01]),
+            "dsmc_seconds": ("dsmc", [3e-7, 9e-7, 2e-7]),
+            "dsmc_seconds_error": ("dsmc", [1e-8, 1e-8, 1e-8]),
             "time_step": (both, [[0.01, 0.02, np.nan]] * 2),
             "seconds": (both, [[8e-6, 4e-6, np.nan]] * 2),
             "seconds_error": (both, [[1e-7, 1e-7, np.nan]] * 2),
@@ -74,9 +75,10 @@ def test_the_table_holds_what_was_measured(folder, capsys):
     times = {row["packing_fraction"]: float(row["value"]) for row in events}
     assert times == {"0.1": 4e-7, "0.45": 3e-7}
     found = {(row["engine"], row["time_step"], row["quantity"], row["dimension"]): row for row in rows}
-    assert len(found) + 1 == len(rows) == 2 + 3 + 2 + 2 + 4 + 1 + 2
+    assert len(found) + 1 == len(rows) == 2 + 3 + 2 + 3 + 4 + 1 + 2
     assert float(found["step", "0.02", "seconds", "3"]["value"]) == 4e-6
     assert float(found["dsmc enskog", "0", "seconds", "3"]["value"]) == 9e-7
+    assert [float(found["dsmc", "0", "seconds", d]["value"]) for d in "32"] == [3e-7, 2e-7]
     assert float(found["step", "0.02", "bias_Z", "3"]["error"]) == 0.001
     assert ("step", "0.02", "bias_collision_rate", "3") not in found
     assert float(found["event", "0", "price_two_masses", "3"]["value"]) == 1.02

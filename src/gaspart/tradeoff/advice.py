@@ -260,7 +260,7 @@ def _error_of_model(scene: Scene, gas: Gas, observable: str, engine: DSMC, step:
     for Z of the Boltzmann model, which is 1 whatever happens: its run would measure nothing."""
     if engine.model == "boltzmann" and observable == "Z":
         return math.inf
-    bias = model_error(gas.packing_fraction, engine.model, observable)
+    bias = model_error(gas.packing_fraction, gas.dimension, engine.model, observable)
     if engine.model == "enskog":
         bias += cell_loss(engine, scene)
     return bias + (step_error(gas.packing_fraction, step) if observable == "D" else 0.0)

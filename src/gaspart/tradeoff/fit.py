@@ -77,12 +77,13 @@ def _steps(accuracy: xr.Dataset) -> Iterator[dict]:
 
 
 def _models(accuracy: xr.Dataset) -> Iterator[dict]:
-    """Times of the models of the DSMC engine, in spheres."""
+    """Times of the models of the DSMC engine."""
     names = {model: name for name, model in MODELS.items()}
     for n in range(accuracy.sizes["dsmc"]):
         run = accuracy.isel(dsmc=n)
-        gas = 3, run.dsmc_packing_fraction, names[str(run.dsmc_model.values)]
-        yield _row(*gas, "float64", 0.0, "seconds", run.dsmc_seconds, run.dsmc_seconds_error)
+        gas = run.dsmc_dimension, run.dsmc_packing_fraction
+        model = names[str(run.dsmc_model.values)]
+        yield _row(*gas, model, "float64", 0.0, "seconds", run.dsmc_seconds, run.dsmc_seconds_error)
 
 
 def _noise(virial: xr.Dataset, dimension: int) -> Iterator[dict]:

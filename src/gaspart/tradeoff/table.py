@@ -53,12 +53,9 @@ def read() -> tuple[dict, ...]:
 
 
 def lowest(dimension: int) -> float:
-    """The lowest packing fraction at which engines were timed, less what it may be exceeded by: of spheres
-    that of DSMC, which in dilute gases is much cheaper than the others; of discs, for which it was not timed,
-    that of time steps."""
+    """The lowest packing fraction at which DSMC was timed, which in dilute gases is much cheaper than the
+    other engines, less what it may be exceeded by."""
     eta, _, _ = _curve(dimension, "dsmc", "float64", 0.0, "seconds")
-    if not eta.size:
-        eta, _, _ = _curve(dimension, "step", "float64", STEP, "seconds")
     return float(eta[0] / _BEYOND)
 
 

@@ -1,12 +1,14 @@
 """Costs and errors of made-up choices; the errors that theory states; runs of a few particles."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
+from gaspart.engines.dsmc.rates import contact_values
 from gaspart.reproduction.families.tradeoff import flows, relaxation, uniform
 from gaspart.reproduction.families.tradeoff.choices import PARTS, Choice, cheapest
 from gaspart.reproduction.jobs import simulate
@@ -48,16 +50,34 @@ def test_the_cheapest_choice_is_the_least_biased_one_where_none_reaches():
     assert cheapest([coarse, fine], 0.0005) is fine
 
 
-def test_errors_of_the_models_are_those_of_theory():
-    z, contact = (float(f(0.1, 3)) for f in (theory.compressibility_factor, theory.contact_value))
-    assert models.model_error(0.1, "boltzmann", "Z") == pytest.approx(1.0 - 1.0 / z)
-    assert models.model_error(0.1, "boltzmann", "collision_rate") == pytest.approx(1.0 - 1.0 / contact)
-    assert max(models.model_error(0.3, "enskog", name) for name in ("Z", "collision_rate")) < 0.004
+@pytest.mark.parametrize(("dimension", "order"), [(2, 1.564), (3, 2.5)])
+def test_the_boltzmann_equation_lacks_contact_value_and_virial(dimension, order):
+    """order: of the contact value, 1 + order x packing fraction."""
+    z, contact = (float(f(0.1, dimension)) for f in (theory.compressibility_factor, theory.contact_value))
+    error = partial(models.model_error, dimension=dimension, model="boltzmann")
+    assert error(0.1, observable="Z") == pytest.approx(1.0 - 1.0 / z)
+    assert error(0.1, observable="collision_rate") == pytest.approx(1.0 - 1.0 / contact)
+    assert error(1e-3, observable="collision_rate") == pytest.approx(1e-3 * order, rel=0.005)
+    for name in ("Z", "collision_rate"):  # a dilute gas has neither
+        assert error(1e-6, observable=name) < 1e-5
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_enskog_model_errs_by_the_contact_value_that_its_engine_has(dimension):
+    radius, density = np.array([0.5]), np.array([0.3 / theory.particle_volume(dimension)])
+    given = contact_values(density, radius, dimension).item()
+    error = abs(given / float(theory.contact_value(0.3, dimension)) - 1.0)
+    found = models.model_error(0.3, dimension, "enskog", "collision_rate")
+    assert 0.0 < found < 0.004 and found == pytest.approx(error, rel=1e-9)
+    assert 0.0 < models.model_error(0.3, dimension, "enskog", "Z") < found
+
+
+def test_both_models_lack_the_memory_of_collisions_in_d():
     ratio = float(theory.erpenbeck_wood_ratio(0.3))
     exact = 1.0 - 1.0 / ratio + theory.ERPENBECK_WOOD_UNCERTAINTY
-    assert models.model_error(0.3, "enskog", "D") == pytest.approx(exact, rel=0.02)
-    for name in uniform.OBSERVABLES:  # in a dilute gas both are right
-        assert models.model_error(1e-6, "boltzmann", name) < 1e-5
+    assert models.model_error(0.3, 3, "enskog", "D") == pytest.approx(exact, rel=0.02)
+    assert models.model_error(1e-6, 3, "boltzmann", "D") < 1e-5
+    assert models.model_error(0.01, 2, "boltzmann", "D") == math.inf  # discs have no D
 
 
 def test_what_the_size_leaves_falls_with_it():

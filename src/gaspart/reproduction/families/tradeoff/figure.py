@@ -34,7 +34,8 @@ def speed_accuracy(ds: xr.Dataset) -> Figure:
                 _errors(axis, row.sel(observable=observable), kind, line)
             if setting == "4 passes":
                 _costs(axes[3], row, kind)
-        _models(axes[3], ds.isel(dsmc=(ds.dsmc_packing_fraction == fraction).values), kind)
+        same = (ds.dsmc_dimension == 3) & (ds.dsmc_packing_fraction == fraction)
+        _models(axes[3], ds.isel(dsmc=same.values), kind)
         axes[1].plot([], [], color=style.COLOURS[kind], lw=3.0, label=rf"$\eta={fraction:g}$")
     for axis, (observable, title) in zip(axes, titles.items(), strict=False):
         axis.set(xscale="log", yscale="log", xlabel=r"time step $\Delta t\,v_\mathrm{th}/\sigma$")

@@ -15,7 +15,6 @@ import xarray as xr
 from gaspart import theory
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
-from gaspart.engines.dsmc.settings import MODELS
 from gaspart.reproduction.families.shared.accuracy import costs, setting_name
 from gaspart.reproduction.families.shared.pressure import pressure
 from gaspart.reproduction.families.shared.rows import entries, from_rows
@@ -56,8 +55,8 @@ def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     runs, and ``build_up`` with error, the relative error of their Z minus that of the paired runs. Over
     ``timed``, all gases in which the event-driven engine was timed: ``timed_dimension``,
     ``timed_packing_fraction``, ``timed_seconds`` (per collision) with its error. Over ``dsmc``, the models of
-    the DSMC engine in spheres of the rows' densities: ``dsmc_model``, ``dsmc_packing_fraction``,
-    ``dsmc_seconds`` per exact collision with its error, and ``dsmc_bias`` of Z, a bound.
+    the DSMC engine: ``dsmc_model``, ``dsmc_dimension``, ``dsmc_packing_fraction``, ``dsmc_seconds`` per exact
+    collision with its error, and ``dsmc_bias`` of Z, a bound.
     """
     timed = [costs(point) for point in points if point.job == "measure_cost"]
     rows = compared(points, timed)
@@ -196,19 +195,23 @@ def _orders(row: dict, largest: float) -> list[tuple[float, float]]:
 
 def _models(timed: list[dict], cells: dict[float, Cells]) -> Iterator[dict]:
     """The costs and the errors of Z of the models of the DSMC engine, with the cheapest step, on which Z does
-    not depend, in the gases whose error by cells was measured and the event-driven engine timed."""
+    not depend, in the gases in which the event-driven engine was timed; of the Enskog model those whose error
+    by cells was measured, of spheres."""
     for event in (one for one in timed if one["setting"] == "event"):
         dimension, fraction = event["gas"]
+        of_cells = {"boltzmann": 0.0}
+        if dimension == 3 and fraction in cells:
+            of_cells["enskog"] = cells[fraction].error
         for one in timed:
             model = one["setting"]
-            if dimension == 3 and fraction in cells and one["gas"] == event["gas"] and model in MODELS:
+            if one["gas"] == event["gas"] and model in of_cells:
                 each = min(each_of(one, float(event["collisions"][0])), key=lambda each: each.value)
-                bias = model_error(fraction, model, "Z")
                 yield {
                     "dsmc_model": model,
+                    "dsmc_dimension": dimension,
                     "dsmc_packing_fraction": fraction,
                     **entries({"dsmc_seconds": (each.value, each.error)}),
-                    "dsmc_bias": bias + (cells[fraction].error if model == "enskog" else 0.0),
+                    "dsmc_bias": model_error(fraction, dimension, model, "Z") + of_cells[model],
                 }
 
 

@@ -172,7 +172,7 @@ def choices(
             own = cells.noise.get(observable, variance) if cells and model == "enskog" else variance
             if model == "boltzmann" and observable == "Z":
                 own = 0.0  # it is 1, whatever happens
-            both = model_error(gas.packing_fraction, model, observable), error + of_cells
+            both = model_error(gas.packing_fraction, 3, model, observable), error + of_cells
             yield gas.choice(model, observable, both, each, own)
 
 
