@@ -9,6 +9,7 @@ import gaspart as gp
 from gaspart import theory
 from gaspart.analysis.measuring import measure
 from gaspart.cli.advise import _lines
+from gaspart.engines import DSMC
 from gaspart.errors import SceneError
 from gaspart.scene.container import Container
 from gaspart.scene.restitution import Restitution
@@ -70,6 +71,12 @@ def test_dilute_spheres_take_the_model_that_is_accurate_enough():
     assert pressure.setting.engine.model == "enskog"
     assert "dsmc" not in {one.name for one in pressure.others}
     assert advice(0.003, 0.03, "D", count=4000).setting.engine.name == "dsmc"
+    steps = [
+        advice(0.003, accuracy, observable, count=4000).setting.engine.time_step
+        for observable, accuracy in (("collision_rate", 0.03), ("D", 0.05), ("D", 0.015))
+    ]
+    own = DSMC().resolved(gas(0.003, count=4000)).time_step
+    assert steps[0] == 4.0 * own and steps[0] > steps[1] > steps[2]  # they change D, not the rate
     assert advice(0.1, 0.03, "collision_rate").setting.engine.name != "dsmc"
 
 

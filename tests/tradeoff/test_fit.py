@@ -26,8 +26,12 @@ def folder(tmp_path):
             "dsmc_model": ("dsmc", ["boltzmann", "enskog", "boltzmann"]),
             "dsmc_dimension": ("dsmc", [3, 3, 2]),
             "dsmc_packing_fraction": ("dsmc", [0.01, 0.01, 0.01]),
-            "dsmc_seconds": ("dsmc", [3e-7, 9e-7, 2e-7]),
-            "dsmc_seconds_error": ("dsmc", [1e-8, 1e-8, 1e-8]),
+            "dsmc_step": (("dsmc", "part"), [[4.0, 1.0, 0.5]] * 3),
+            "dsmc_step_seconds": (
+                ("dsmc", "part"),
+                [[2e-7, 3e-7, 4e-7], [8e-7, 9e-7, 1e-6], [1e-7, 2e-7, 3e-7]],
+            ),
+            "dsmc_step_seconds_error": (("dsmc", "part"), [[1e-8] * 3] * 3),
             "time_step": (both, [[0.01, 0.02, np.nan]] * 2),
             "seconds": (both, [[8e-6, 4e-6, np.nan]] * 2),
             "seconds_error": (both, [[1e-7, 1e-7, np.nan]] * 2),
@@ -75,10 +79,12 @@ def test_the_table_holds_what_was_measured(folder, capsys):
     times = {row["packing_fraction"]: float(row["value"]) for row in events}
     assert times == {"0.1": 4e-7, "0.45": 3e-7}
     found = {(row["engine"], row["time_step"], row["quantity"], row["dimension"]): row for row in rows}
-    assert len(found) + 1 == len(rows) == 2 + 3 + 2 + 3 + 4 + 1 + 2
+    assert len(found) + 1 == len(rows) == 2 + 3 + 2 + 6 + 4 + 1 + 2
     assert float(found["step", "0.02", "seconds", "3"]["value"]) == 4e-6
-    assert float(found["dsmc enskog", "0", "seconds", "3"]["value"]) == 9e-7
-    assert [float(found["dsmc", "0", "seconds", d]["value"]) for d in "32"] == [3e-7, 2e-7]
+    assert float(found["dsmc enskog", "1", "seconds", "3"]["value"]) == 9e-7
+    assert [float(found["dsmc", "1", "seconds", d]["value"]) for d in "32"] == [3e-7, 2e-7]
+    assert float(found["dsmc", "4", "seconds", "3"]["value"]) == 2e-7
+    assert not [key for key in found if key[0] == "dsmc" and key[1] == "0.5"]
     assert float(found["step", "0.02", "bias_Z", "3"]["error"]) == 0.001
     assert ("step", "0.02", "bias_collision_rate", "3") not in found
     assert float(found["event", "0", "price_two_masses", "3"]["value"]) == 1.02

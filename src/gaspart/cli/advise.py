@@ -211,7 +211,7 @@ def _shortfall(plan: Plan) -> str:
 def _name(setting: Setting) -> str:
     engine = setting.engine
     if isinstance(engine, DSMC):
-        return f"dsmc, model {engine.model}"
+        return f"dsmc, model {engine.model}, time_step {engine.time_step:.4g}"
     if not isinstance(engine, TimeStepped):
         return f"{engine.name}, float64"
     return f"step, time_step {engine.time_step:.4g}, {engine.precision}, {engine.passes} passes"

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from gaspart import theory
@@ -222,15 +222,15 @@ def advise(
 
 
 def _engines(scene: Scene, gas: Gas) -> Iterator[tuple[Engine, str, float]]:
-    """(engine, precision, its time step in the table's unit) of all settings to compare."""
+    """(engine, precision, its time step in the unit that the table has for it) of all settings to compare."""
     yield EventDriven(), "float64", 0.0
     unit = gas.diameter / gas.thermal_speed
     for precision, step in table.steps(gas.dimension):
         yield TimeStepped(step * unit, precision=precision), precision, step
     for name, model in MODELS.items():
-        if math.isfinite(table.seconds(gas.dimension, gas.packing_fraction, name)):
-            engine = DSMC(model=model).resolved(scene)
-            yield engine, "float64", (engine.time_step or 0.0) / unit
+        own = DSMC(model=model).resolved(scene)
+        for precision, part in table.steps(gas.dimension, name):
+            yield replace(own, time_step=part * (own.time_step or 0.0)), precision, part
 
 
 def _setting(scene: Scene, gas: Gas, wish: _Wish, made: tuple[Engine, str, float]) -> Setting | None:
@@ -239,7 +239,7 @@ def _setting(scene: Scene, gas: Gas, wish: _Wish, made: tuple[Engine, str, float
     name, bias = engine.name, 0.0
     if isinstance(engine, DSMC):
         name = next(name for name, model in MODELS.items() if model == engine.model)
-        bias, step = _error_of_model(scene, gas, wish.observable, engine, step), 0.0
+        bias = _error_of_model(scene, gas, wish.observable, engine)
     elif engine.name == "step":
         bias = table.bias(gas.dimension, gas.packing_fraction, precision, step, wish.observable)
     room = (wish.accuracy - bias) / QUANTILE
@@ -255,7 +255,7 @@ def _setting(scene: Scene, gas: Gas, wish: _Wish, made: tuple[Engine, str, float
     return Setting(engine, name, bias, contacts, (contacts + equilibration) * each, half_width)
 
 
-def _error_of_model(scene: Scene, gas: Gas, observable: str, engine: DSMC, step: float) -> float:
+def _error_of_model(scene: Scene, gas: Gas, observable: str, engine: DSMC) -> float:
     """A bound on the error that the DSMC engine makes: by its model, by the cells, and of D by the steps. inf
     for Z of the Boltzmann model, which is 1 whatever happens: its run would measure nothing."""
     if engine.model == "boltzmann" and observable == "Z":
@@ -263,6 +263,7 @@ def _error_of_model(scene: Scene, gas: Gas, observable: str, engine: DSMC, step:
     bias = model_error(gas.packing_fraction, gas.dimension, engine.model, observable)
     if engine.model == "enskog":
         bias += cell_loss(engine, scene)
+    step = (engine.time_step or 0.0) * gas.thermal_speed / gas.diameter
     return bias + (step_error(gas.packing_fraction, step) if observable == "D" else 0.0)
 
 

@@ -77,13 +77,16 @@ def _steps(accuracy: xr.Dataset) -> Iterator[dict]:
 
 
 def _models(accuracy: xr.Dataset) -> Iterator[dict]:
-    """Times of the models of the DSMC engine."""
+    """Times of the models of the DSMC engine, with its own step and longer ones."""
     names = {model: name for name, model in MODELS.items()}
     for n in range(accuracy.sizes["dsmc"]):
         run = accuracy.isel(dsmc=n)
         gas = run.dsmc_dimension, run.dsmc_packing_fraction
         model = names[str(run.dsmc_model.values)]
-        yield _row(*gas, model, "float64", 0.0, "seconds", run.dsmc_seconds, run.dsmc_seconds_error)
+        for k in np.flatnonzero(run.dsmc_step.values >= 1.0):
+            step, of = float(run.dsmc_step[k]), run.isel(part=k)
+            seconds = of.dsmc_step_seconds, of.dsmc_step_seconds_error
+            yield _row(*gas, model, "float64", step, "seconds", *seconds)
 
 
 def _noise(virial: xr.Dataset, dimension: int) -> Iterator[dict]:

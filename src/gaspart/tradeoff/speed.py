@@ -14,7 +14,7 @@ from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
 from gaspart.simulation import Simulation
 from gaspart.tradeoff import table
-from gaspart.tradeoff.table import DILUTE, MODELS, REFERENCE, STEP
+from gaspart.tradeoff.table import DILUTE, MODELS, OWN_STEP, REFERENCE, STEP
 
 _LEAST, _MOST = 500, 100_000  # particles in a timed run
 _GROWTH = 0.15  # exponent of the time per contact with the number of particles beyond, which exceed the cache
@@ -42,7 +42,8 @@ def factor(dimension: int, engine: str, precision: str, count: int) -> float:
         before, start = run.time, time.process_time()
         run.advance(duration=stretch)
         taken.append((time.process_time() - start) / (0.5 * count * rate * (run.time - before)))
-    known = table.seconds(dimension, fraction, engine, precision, STEP if engine == "step" else 0.0)
+    step = STEP if engine == "step" else OWN_STEP if engine in MODELS else 0.0
+    known = table.seconds(dimension, fraction, engine, precision, step)
     return growth * statistics.median(taken) / known if math.isfinite(known) else math.inf
 
 

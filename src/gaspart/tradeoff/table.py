@@ -2,11 +2,11 @@
 
 Columns: ``dimension``, ``packing_fraction``; ``engine`` (event; step, with its standard four passes and
 rewinding; dsmc and dsmc enskog, by its model), ``precision``, ``time_step`` in diameters over the thermal
-speed (kT / m)^(1/2), 0 for others than step; ``quantity``, its ``value`` and standard ``error``. Quantities:
-``seconds`` of processor time for one exact contact of two particles; ``bias_<observable>``, relative error;
-``noise_<observable>``, the relative variance of an estimate times the contacts that it is made of;
-``price_<feature>``, the time per event with a feature over that without it. Observables: Z, collision_rate,
-D. Errors of DSMC follow from theory (`gaspart.tradeoff.models`).
+speed (kT / m)^(1/2), of DSMC in its own step, a fifth of a mean free time, 0 for event; ``quantity``, its
+``value`` and standard ``error``. Quantities: ``seconds`` of processor time for one exact contact of two
+particles; ``bias_<observable>``, relative error; ``noise_<observable>``, the relative variance of an estimate
+times the contacts that it is made of; ``price_<feature>``, the time per event with a feature over that
+without it. Observables: Z, collision_rate, D. Errors of DSMC follow from theory (`gaspart.tradeoff.models`).
 """
 
 from __future__ import annotations
@@ -33,6 +33,8 @@ REFERENCE, STEP = 0.1, 0.08
 """Packing fraction of the gas by which times are carried over, and the time step with which it is timed."""
 MODELS = {"dsmc": "boltzmann", "dsmc enskog": "enskog"}
 """The models of the DSMC engine by their names in the table."""
+OWN_STEP = 1.0
+"""Their step unless another one is stated."""
 DILUTE = 0.01
 """The packing fraction that takes the place of REFERENCE for them."""
 _PRICE = "price_"
@@ -55,13 +57,13 @@ def read() -> tuple[dict, ...]:
 def lowest(dimension: int) -> float:
     """The lowest packing fraction at which DSMC was timed, which in dilute gases is much cheaper than the
     other engines, less what it may be exceeded by."""
-    eta, _, _ = _curve(dimension, "dsmc", "float64", 0.0, "seconds")
+    eta, _, _ = _curve(dimension, "dsmc", "float64", OWN_STEP, "seconds")
     return float(eta[0] / _BEYOND)
 
 
-def steps(dimension: int) -> list[tuple[str, float]]:
-    """(precision, time_step) of all timed settings of the time-stepped engine."""
-    timed = (row for row in read() if row["engine"] == "step" and row["quantity"] == "seconds")
+def steps(dimension: int, engine: str = "step") -> list[tuple[str, float]]:
+    """(precision, time_step) of all timed settings of an engine."""
+    timed = (row for row in read() if row["engine"] == engine and row["quantity"] == "seconds")
     found = (row for row in timed if row["dimension"] == dimension)
     return list(dict.fromkeys((row["precision"], row["time_step"]) for row in found))
 

@@ -69,7 +69,9 @@ def test_models_of_dsmc_in_discs(tmp_path):
     """The cheapest step; the error of Z of the Boltzmann equation. That of the Enskog model is unknown: the
     loss in its cells was measured in spheres."""
     discs = {"dimension": 2}
-    boltzmann, enskog = ({"engine": "dsmc", "model": model} for model in ("boltzmann", "enskog"))
+    boltzmann, enskog = (
+        {"engine": "dsmc", "model": model, "scan_step_parts": [4, 1]} for model in ("boltzmann", "enskog")
+    )
     points = written(
         tmp_path,
         [
@@ -83,6 +85,8 @@ def test_models_of_dsmc_in_discs(tmp_path):
     found = speed_accuracy(points, SETTINGS).squeeze("dsmc")
     assert str(found.dsmc_model.values) == "boltzmann" and int(found.dsmc_dimension) == 2
     assert float(found.dsmc_seconds) == pytest.approx(0.1 / CONTACTS)
+    assert found.dsmc_step.values.tolist() == [4.0, 1.0]
+    assert found.dsmc_step_seconds.values == pytest.approx(np.array([0.1, 0.2]) / CONTACTS)
     lacking = 1.0 - 1.0 / float(theory.compressibility_factor(0.01, 2))
     assert float(found.dsmc_bias) == pytest.approx(lacking)
 

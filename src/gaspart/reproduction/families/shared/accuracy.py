@@ -63,7 +63,7 @@ def _difference(run: xr.Dataset, name: str, least: np.ndarray) -> np.ndarray:
 
 def costs(point: Point) -> dict:
     """The costs of a `measure_cost` point, per time simulated. setting: "event", that of the time-stepped
-    engine, or the model of the DSMC engine."""
+    engine, or the model of the DSMC engine; step_parts: steps of this, in its own."""
     run = xr.load_dataset(point.path)
     seconds, error = median(run.seconds.values)
     own = point.settings
@@ -76,6 +76,7 @@ def costs(point: Point) -> dict:
         "gas": (run.attrs["dimension"], round(run.attrs["packing_fraction"], 12)),
         "setting": name,
         "time_step": (run.duration / np.maximum(run.steps, 1)).values,
+        "step_parts": np.array(own.get("scan_step_parts", [])),
         "seconds": seconds / run.duration.values,
         "error": error / run.duration.values,
         "collisions": (run.collisions / run.duration).values,

@@ -56,7 +56,8 @@ def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     ``timed``, all gases in which the event-driven engine was timed: ``timed_dimension``,
     ``timed_packing_fraction``, ``timed_seconds`` (per collision) with its error. Over ``dsmc``, the models of
     the DSMC engine: ``dsmc_model``, ``dsmc_dimension``, ``dsmc_packing_fraction``, ``dsmc_seconds`` per exact
-    collision with its error, and ``dsmc_bias`` of Z, a bound.
+    collision with its error, and ``dsmc_bias`` of Z, a bound; over ``part`` too, ``dsmc_step``, each step in
+    the engine's own, and the time with it, ``dsmc_step_seconds`` with its error.
     """
     timed = [costs(point) for point in points if point.job == "measure_cost"]
     rows = compared(points, timed)
@@ -73,7 +74,8 @@ def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     dataset = dataset.assign(from_rows("steady", steady)).merge(frontier(dataset))
     dataset = dataset.assign(from_rows("timed", [_timed(one) for one in timed if one["setting"] == "event"]))
     cells = cells_by_fraction(points, settings["cells"])
-    return dataset.assign(from_rows("dsmc", list(_models(timed, cells))))
+    steps = dict.fromkeys(("dsmc_step", "dsmc_step_seconds", "dsmc_step_seconds_error"), ("part",))
+    return dataset.assign(from_rows("dsmc", list(_models(timed, cells)), steps))
 
 
 def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
@@ -205,12 +207,16 @@ def _models(timed: list[dict], cells: dict[float, Cells]) -> Iterator[dict]:
         for one in timed:
             model = one["setting"]
             if one["gas"] == event["gas"] and model in of_cells:
-                each = min(each_of(one, float(event["collisions"][0])), key=lambda each: each.value)
+                every = each_of(one, float(event["collisions"][0]))
+                each = min(every, key=lambda each: each.value)
                 yield {
                     "dsmc_model": model,
                     "dsmc_dimension": dimension,
                     "dsmc_packing_fraction": fraction,
                     **entries({"dsmc_seconds": (each.value, each.error)}),
+                    "dsmc_step": one["step_parts"],
+                    "dsmc_step_seconds": np.array([each.value for each in every]),
+                    "dsmc_step_seconds_error": np.array([each.error for each in every]),
                     "dsmc_bias": model_error(fraction, dimension, model, "Z") + of_cells[model],
                 }
 
