@@ -24,6 +24,7 @@ from gaspart.tradeoff.advice import advise, is_tabulated
 from gaspart.tradeoff.candidates import STRUCTURE
 from gaspart.tradeoff.pilot import speed_of
 from gaspart.tradeoff.plan import plan
+from gaspart.tradeoff.target import Target
 
 ANYWHERE = ("collision_rate", "speeds", "density", "temperature", "vacf", "msd")
 OF_ONE_FLUID = ("Z", "D", "rdf", "structure_factor", "chemical_potential", "order", "shear_viscosity")
@@ -229,7 +230,7 @@ def _table_ratio(gas, found, observable):
 
 def _cost(gas, engine, observable, duration):
     """Processor seconds of a run, by the faster of two measurements of the speed."""
-    return duration * min(speed_of(gas, engine, observable) for _ in range(2))
+    return duration * min(speed_of(Target(gas, observable), engine) for _ in range(2))
 
 
 def results(folder, numbers):

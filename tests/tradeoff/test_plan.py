@@ -9,10 +9,12 @@ import gaspart as gp
 from gaspart.analysis.measuring import measure
 from gaspart.cli import main
 from gaspart.engines import EventDriven
+from gaspart.state import initial
 from gaspart.tradeoff import pilot, plan
 from gaspart.tradeoff.candidates import CELL_LOSS, Candidate, candidates, cell_loss
 from gaspart.tradeoff.estimates import Component
 from gaspart.tradeoff.pilot import Pilot
+from gaspart.tradeoff.target import Target
 
 BOX = gp.Scene(gp.Container((12.0, 12.0)), [gp.Species(40, 0.5, temperature=1.0)])
 SHEARED = gp.Scene(
@@ -75,6 +77,76 @@ def test_paths_are_followed_however_far_frames_are_apart(tmp_path, observable):
         measure(observable, paths[1])
 
 
+def test_particles_that_start_at_rest_set_the_lags_by_their_collisions_later():
+    """Of which theory says nothing: those of a bed of discs on a floor that moves."""
+    scene = bed(0.3)
+    target, gas_of_theory = Target(scene, "vacf"), Target(SHEARED, "vacf")
+    lags = target.correlations(EventDriven())
+    assert lags.interval * lags.lags * target.frequency == pytest.approx(10.0, rel=0.4)
+    simulation = gp.Simulation(scene, EventDriven(), 1)
+    simulation.advance(until=40.0)
+    before = simulation.tally.collisions
+    simulation.advance(until=80.0)
+    found = 2.0 * (simulation.tally.collisions - before) / scene.count / 40.0
+    assert target.frequency == pytest.approx(found, rel=0.5)
+    assert gas_of_theory.frequency == pytest.approx(1.6, rel=0.5)
+
+
+def bed(amplitude):
+    """Discs that are shaken by their floor, none of which reaches the ceiling."""
+    return gp.Scene(
+        gp.Container((12.0, 60.0), ("periodic", "wall")),
+        [gp.Species(30, 0.5, region=((0.0, 0.0), (12.0, 12.0)))],
+        gravity=(0.0, -1.0),
+        faces={"y_low": gp.Vibrating(amplitude, 2.0)},
+        restitution=gp.Restitution(normal=0.8),
+    )
+
+
+def test_the_pressure_on_one_wall(tmp_path):
+    """Of a wall that nothing hits there is no relative accuracy."""
+    made = plan.plan(bed(0.3), "pressure:y low", 0.05, pilot_seconds=0.4)
+    assert made.target.name == "pressure:y low" and made.affordable
+    assert made.value == pytest.approx(30.0 / 12.0, rel=0.05)  # the weight of the discs
+    (asked,) = made.recipe.until.accuracies
+    assert asked.name == "pressure:y low"
+    with pytest.raises(gp.SceneError, match="does not change in the pilot run.* or state a wall"):
+        plan.plan(bed(0.3), "pressure", 0.05, pilot_seconds=0.4)
+
+
+def test_an_engine_that_cannot_start_is_no_candidate():
+    """Of a few large particles among many small ones DSMC draws no partners."""
+    large = gp.Particle((6.0, 6.0), (0.0, 0.0), radius=2.0, mass=16.0)
+    scene = replace(BOX, particles=(large,))
+    made = plan.plan(scene, "pressure", 0.1, pilot_seconds=0.4)
+    assert made.best.candidate.engine.name in ("event", "step")
+    assert {"dsmc", "dsmc enskog"} == set(made.refused) and "much larger" in made.refused["dsmc"]
+
+
+def test_pilots_of_diffusion_are_its_own():
+    """Frames of others may lie too far apart for it."""
+    kinds = [gp.Species(32, radius, temperature=1.0, exact_temperature=True) for radius in (0.5, 0.4)]
+    scene = gp.Scene(gp.Container((8.0, 8.0, 8.0), "periodic"), kinds)
+    for observable in ("Z", "D"):
+        (found, *_) = plan.plan(scene, observable, 0.1, pilot_seconds=0.4).pilots
+        assert found.measured > 0.0 and found.seconds > 0.0
+
+
+def test_particles_that_are_compressed_are_made_once(monkeypatch):
+    dense = gp.Species(200, 0.5, temperature=1.0, exact_temperature=True, arrangement="compressed")
+    scene = gp.Scene(gp.Container((15.0, 15.0), "periodic"), [dense])
+    made = []
+    whole = initial.compressed
+
+    def compressed(*arguments):
+        made.append(arguments)
+        return whole(*arguments)
+
+    monkeypatch.setattr(initial, "compressed", compressed)
+    plan.plan(scene, "rdf", 0.2, pilot_seconds=0.4)
+    assert len(made) == 1
+
+
 def test_a_sheared_gas_has_a_steady_state():
     made = plan.plan(SHEARED, "shear_viscosity", 0.1, pilot_seconds=0.4)
     assert made.affordable and made.recipe.correlations.stress
@@ -92,22 +164,22 @@ def test_dilute_gases_are_advised_to_draw_partners():
 
 def test_bounds_come_from_theory():
     """Boltzmann's equation lacks the excluded volume; the Enskog model is known up to a density."""
-    able, refused = candidates(BOX, "pressure", 0.01)
+    able, refused = candidates(Target(BOX, "pressure"), 0.01)
     engines = {f"{one.engine.name} {getattr(one.engine, 'model', '')}".strip(): one for one in able}
     contact = gp.theory.contact_value(BOX.packing_fraction, 2)
     assert engines["dsmc boltzmann"].model == pytest.approx(float(contact) - 1.0, rel=0.05)
     assert engines["event"].bias == 0.0 and 0.0 < engines["step"].bias <= 0.01 / 8.0
     assert refused == {}
     dense = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(43, 0.5, temperature=1.0)])
-    _, refused = candidates(dense, "pressure", 0.01)
+    _, refused = candidates(Target(dense, "pressure"), 0.01)
     lost = cell_loss(gp.DSMC(model="enskog", cells_per_side=2), BOX)
     assert lost == pytest.approx(CELL_LOSS * 4 / BOX.count)
     assert cell_loss(gp.DSMC(model="enskog", cells_per_side=1), BOX) == 0.0
     assert list(refused) == ["dsmc enskog"] and "known up to 0.4" in refused["dsmc enskog"]
-    able, refused = candidates(DILUTE, "rdf", 0.01)
+    able, refused = candidates(Target(DILUTE, "rdf"), 0.01)
     assert {one.engine.name for one in able} == {"event", "step"} and len(refused) == 2
     walled = gp.Scene(BOX.container, BOX.species, walls=[gp.Wall((4.0, 4.0), (6.0, 6.0))])
-    able, refused = candidates(walled, "pressure", 0.01)
+    able, refused = candidates(Target(walled, "pressure"), 0.01)
     assert [one.engine.name for one in able] == ["event"] and len(refused) == 3
 
 
@@ -165,6 +237,8 @@ def test_what_is_stored_falls_faster_than_noise():
         (BOX, "Z", "observable = 'Z': container.boundary"),
         (BOX, "shear_viscosity", "stress: needs a periodic container"),
         (SHEARED, "pressure", "observable = 'pressure': container.boundary: has no walls"),
+        (BOX, "pressure:z low", "there is no such wall; the walls are x low, x high, y low, y high"),
+        (BOX, "collision_rate:x low", "collision_rate is not of a wall"),
         (SHEARED, "vacf", "carries particles along: correlations need stress"),
         (replace(SHEARED, restitution=None), "shear_viscosity", "nothing takes the energy"),
         (replace(BOX, faces={"y_low": gp.Vibrating(0.1, 1.0)}), "pressure", "nothing takes the energy"),

@@ -11,7 +11,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaspart.analysis.names import OBSERVABLES, known
+from gaspart.analysis.names import OBSERVABLES
 from gaspart.cli.arguments import Parser, UsageError, of_configs, print_line, real, set_command
 from gaspart.cli.engine_options import one_of, stated
 from gaspart.cli.progress import waiting
@@ -44,7 +44,8 @@ def add_advise(parser: Parser) -> None:
     set_command(parser, _advise, text, _EXAMPLES)
     add = parser.add_argument
     add("scene", nargs="?", help="scene file (YAML)")
-    add("--observable", default="Z", metavar="NAME", help=f"{one_of(OBSERVABLES)}; default: Z")
+    text = f'{one_of(OBSERVABLES)}, or the pressure on one wall, as "pressure:x low"; default: Z'
+    add("--observable", default="Z", metavar="NAME", help=text)
     add("--accuracy", type=real(above=0.0), default=1e-2, metavar="X", help="relative; default: 0.01")
     add("--budget", type=_seconds, metavar="S", help="largest processor time, in s (60 or 60s)")
     text = f"processor time of all pilot runs, in s; default: {PILOT_SECONDS:g}"
@@ -65,9 +66,10 @@ def _advise(given: argparse.Namespace) -> None:
         print_line("\n".join(lines))
         return
     from gaspart.tradeoff.advice import advise, is_tabulated
+    from gaspart.tradeoff.target import Target
 
     scene = Scene.from_file(given.scene)
-    if is_tabulated(scene, known(given.observable)):
+    if is_tabulated(scene, Target.named(scene, given.observable).observable):
         with waiting("measuring the speed of this machine; the first time, compiling kernels"):
             advice = advise(scene, given.observable, given.accuracy, given.budget)
         print_line("\n".join(_lines(advice, given.scene)))
@@ -147,14 +149,14 @@ def _plan_lines(plan: Plan, file: str) -> list[str]:
         lines += [
             f"command           {_command(recipe, file)}",
             f"predicted cost    {best.seconds:.3g} s of processor time, duration {best.duration:.4g}",
-            f"95 % half-width   {best.half_width:.2g} of {plan.observable} (about {plan.value:.4g}): "
+            f"95 % half-width   {best.half_width:.2g} of {plan.target.name} (about {plan.value:.4g}): "
             f"{_components(best)}",
         ]
         if asked := recipe.correlations:
             lags = f"{asked.interval:g} apart, up to {asked.lags * asked.interval:.4g}"
             lines.append(f"lags              {lags}, the time of 10 collisions of a particle")
-    lines += _drawn(plan.observable, plan.scatter)
-    lines.append(_pays(plan.scene, best.candidate.engine, plan.observable))
+    lines += _drawn(plan.target.name, plan.scatter)
+    lines.append(_pays(plan.target.scene, best.candidate.engine, plan.target.observable))
     if not plan.affordable:
         lines.append(_shortfall(plan))
     for pilot in plan.pilots:

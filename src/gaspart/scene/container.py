@@ -57,3 +57,9 @@ class Container:
     def periodic(self) -> tuple[bool, ...]:
         """(d,) whether each axis is periodic."""
         return tuple(kind == "periodic" for kind in self.boundary)
+
+    @property
+    def walls(self) -> tuple[str, ...]:
+        """The names of its walls, `x low`, `x high` and so on."""
+        axes = [axis for axis, around in zip("xyz", self.periodic, strict=False) if not around]
+        return tuple(f"{axis} {end}" for axis in axes for end in ("low", "high"))

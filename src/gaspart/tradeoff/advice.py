@@ -23,6 +23,7 @@ from gaspart.scene.validation import number
 from gaspart.tradeoff import speed, table
 from gaspart.tradeoff.candidates import cell_loss
 from gaspart.tradeoff.models import model_error, step_error
+from gaspart.tradeoff.steady import temperature_scatter
 from gaspart.tradeoff.table import EQUILIBRATION, LEAST, MODELS, QUANTILE
 from gaspart.trajectory.recipe import Recipe
 
@@ -130,28 +131,6 @@ def fluid_of(scene: Scene) -> Gas:
         rule = f"advice is for fluids, up to {highest:g}"
         raise SceneError("packing_fraction", gas.packing_fraction, rule)
     return gas
-
-
-def is_driven(scene: Scene) -> bool:
-    """Whether a thermostat, or a face that is at a temperature or moves, exchanges energy with the
-    particles."""
-    moves = any(face.moves for face in scene.faces.values())
-    return scene.thermostat is not None or moves or at_temperature(scene)
-
-
-def at_temperature(scene: Scene) -> bool:
-    """Whether a face gives particles the velocities of a temperature."""
-    return any(getattr(face, "temperature", None) for face in scene.faces.values())
-
-
-def temperature_scatter(scene: Scene) -> float:
-    """Relative standard deviation, from run to run, of the temperature of a scene whose energy is conserved:
-    velocities that are drawn have that of their species only on average."""
-    drawn = any(kind.temperature is not None and not kind.exact_temperature for kind in scene.species)
-    law = scene.restitution
-    if not drawn or is_driven(scene) or (law is not None and law.dissipative):
-        return 0.0
-    return math.sqrt(2.0 / (scene.dimension * scene.count))
 
 
 def is_tabulated(scene: Scene, observable: str) -> bool:

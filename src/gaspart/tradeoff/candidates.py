@@ -20,6 +20,7 @@ from gaspart.errors import SceneError
 from gaspart.scene.faces import sliding_faces
 from gaspart.scene.scene import Scene
 from gaspart.state.initial import initial_state
+from gaspart.tradeoff.target import SEED, Target
 
 STRUCTURE = ("rdf", "order", "structure_factor", "chemical_potential")
 """Observables of the positions of particles relative to each other, which DSMC does not have."""
@@ -53,19 +54,26 @@ class Candidate:
     gives_up: str = "nothing"
 
     @property
+    def name(self) -> str:
+        """That of the engine, with its model if it is not the engine's own."""
+        model = getattr(self.engine, "model", "")
+        return f"{self.engine.name} {model}" if model == "enskog" else self.engine.name
+
+    @property
     def bias(self) -> float:
         """The bound on its systematic error."""
         return self.model + self.discretisation
 
 
-def candidates(scene: Scene, observable: str, accuracy: float) -> tuple[list[Candidate], dict[str, str]]:
+def candidates(target: Target, accuracy: float) -> tuple[list[Candidate], dict[str, str]]:
     """The engines that model a scene, the event-driven one first, and why each other does not. accuracy: of
     the observable, for which time steps are chosen."""
+    scene, observable = target.scene, target.observable
     makers = {"event": _event, "step": _step, "dsmc": _boltzmann, "dsmc enskog": _enskog}
     made, refused = [], {}
     for name, maker in makers.items():
         try:
-            one = maker(scene, observable, accuracy)
+            one = maker(target, accuracy)
             one.engine.check_features(scene)
             if observable in FLUXES:
                 one.engine.check_stress(scene)
@@ -77,14 +85,14 @@ def candidates(scene: Scene, observable: str, accuracy: float) -> tuple[list[Can
     return made, refused
 
 
-def _event(scene: Scene, observable: str, accuracy: float) -> Candidate:
+def _event(target: Target, accuracy: float) -> Candidate:
     return Candidate(EventDriven())
 
 
-def _step(scene: Scene, observable: str, accuracy: float) -> Candidate:
-    TimeStepped(1.0).check_features(scene)
-    missed = missed_contacts(1.0, True, initial_state(scene, seed=0))
-    met = rates(scene, dense=True).frequency
+def _step(target: Target, accuracy: float) -> Candidate:
+    TimeStepped(1.0).check_features(target.scene)
+    missed = missed_contacts(1.0, True, target.start or initial_state(target.scene, SEED))
+    met = rates(target.scene, dense=True).frequency
     if not missed > 0.0 or not met > 0.0:
         raise SceneError("time_step", None, "follows from contacts, which particles at rest do not have")
     longest = min(math.sqrt(_SHARE * accuracy / (_SAFE * missed)), _LONGEST_STEP / met)
@@ -92,16 +100,18 @@ def _step(scene: Scene, observable: str, accuracy: float) -> Candidate:
     return Candidate(TimeStepped(step), discretisation=_SAFE * missed * step**2, gives_up="exact contacts")
 
 
-def _boltzmann(scene: Scene, observable: str, accuracy: float) -> Candidate:
+def _boltzmann(target: Target, accuracy: float) -> Candidate:
     """Pairs in a cell collide as if they were points: without the excluded volume."""
+    scene, observable = target.scene, target.observable
     _require_no_structure(observable)
     engine, model = DSMC(), boltzmann_error(scene)
     gives_up = "excluded volume, positions of pairs"
     return Candidate(engine, model, _discretisation(engine, scene, observable), gives_up)
 
 
-def _enskog(scene: Scene, observable: str, accuracy: float) -> Candidate:
+def _enskog(target: Target, accuracy: float) -> Candidate:
     """Pairs collide a diameter apart, with the contact value of their density."""
+    scene, observable = target.scene, target.observable
     _require_no_structure(observable)
     filled = scene.packing_fraction
     if filled > _DENSEST:

@@ -12,31 +12,21 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from gaspart.analysis.names import CURVES, PAIRS, PATHS, known
+from gaspart.analysis.names import CURVES, PAIRS
 from gaspart.analysis.pairs import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine
-from gaspart.engines.dsmc.rates import rates
 from gaspart.errors import SceneError
-from gaspart.scene.faces import LeesEdwards, Vibrating
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
 from gaspart.tradeoff import PILOT_SECONDS
-from gaspart.tradeoff.advice import ACCURACIES, at_temperature, is_driven, temperature_scatter
+from gaspart.tradeoff.advice import ACCURACIES
 from gaspart.tradeoff.candidates import STRUCTURE, Candidate, candidates
-from gaspart.tradeoff.pilot import (
-    CORRELATED,
-    DIFFUSION,
-    Pilot,
-    crossing,
-    run_pilot,
-    schedule,
-    span,
-    speed_of,
-    tidy,
-)
+from gaspart.tradeoff.pilot import Pilot, require_defined, run_pilot, speed_of
+from gaspart.tradeoff.steady import require_steady, temperature_scatter
 from gaspart.tradeoff.table import EQUILIBRATION as EQUILIBRATED
 from gaspart.tradeoff.table import LEAST, QUANTILE
+from gaspart.tradeoff.target import DIFFUSION, Target, tidy
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.until import OBSERVABLES, Accuracy, Until
 
@@ -82,8 +72,7 @@ class Plan:
     value: of the observable by the pilots; pilots: their results; affordable: whether the best reaches the
     accuracy within the budget."""
 
-    scene: Scene
-    observable: str
+    target: Target
     accuracy: float
     options: tuple[Option, ...]
     refused: dict[str, str]
@@ -100,41 +89,42 @@ class Plan:
     def scatter(self) -> float:
         """Relative standard deviation of the observable from run to run by that of the energy, beyond the
         interval."""
-        return _POWERS.get(self.observable, 0.0) * temperature_scatter(self.scene)
+        return _POWERS.get(self.target.observable, 0.0) * temperature_scatter(self.target.scene)
 
     @property
     def longest_interval(self) -> float:
         """Between frames: of diffusion by its lags; of an observable that they sample that of the pilot,
         whose noise is known."""
-        if self.observable in DIFFUSION:
-            return span(self.scene, self.observable)[0]
-        sampled = self.observable in CURVES and self.observable not in STRUCTURE
+        observable = self.target.observable
+        if observable in DIFFUSION:
+            return self.target.span[0]
+        sampled = observable in CURVES and observable not in STRUCTURE
         return min(one.interval for one in self.pilots) if sampled else math.inf
 
     @property
     def recipe(self) -> Recipe:
         """The run to make: until it is accurate where that can be asked, else of a fixed duration."""
-        best = self.best
-        scene, engine, correlations = self.scene, best.candidate.engine, None
+        best, target = self.best, self.target
+        scene, engine, correlations = target.scene, best.candidate.engine, None
         duration, interval = best.duration, min(best.duration / _FRAMES, self.longest_interval)
         interval = float(f"{interval:.3g}")
-        if self.observable in CORRELATED:
-            duration, interval, correlations = schedule(scene, engine, self.observable, duration)
+        if target.correlated:
+            duration, interval, correlations = target.schedule(engine, duration)
         elif quantum := engine.resolved(scene).quantum:
             engine = engine.resolved(scene)
             interval = max(1, round(interval / quantum)) * quantum
         until = None
-        if self.observable in OBSERVABLES and self.affordable:
-            relative = (self.accuracy - best.bias) / QUANTILE
-            asked = Accuracy(self.observable, float(f"{0.99 * relative:.3g}"))
+        if target.observable in OBSERVABLES and self.affordable:
+            relative = float(f"{0.99 * (self.accuracy - best.bias) / QUANTILE:.3g}")
             longest = max(_LONGEST * duration, *(one.duration for one in self.pilots))
-            longest = min(longest, span(scene, self.observable)[1])
+            longest = min(longest, target.span[1])
+            asked = Accuracy(target.observable, relative, face=target.face)
             until = Until((asked,), at_most=float(f"{longest:.2g}"))
         fixed = None if until else tidy(max(1, round(duration / interval)) * interval)
         return Recipe(
             scene, engine, 1, fixed, interval,
-            displacements=self.observable in PATHS, correlations=correlations, until=until,
-            pairs=self.observable in PAIRS,
+            displacements=target.needs_paths, correlations=correlations, until=until,
+            pairs=target.observable in PAIRS,
         )  # fmt: skip
 
 
@@ -147,7 +137,7 @@ def plan(
     announce: Announce = lambda text: None,
 ) -> Plan:
     """The cheapest run for a relative accuracy, half of a 95 % interval, of an observable of `gaspart
-    measure`.
+    measure`; of the pressure on one wall as `pressure:x low`.
 
     budget: processor time in seconds of the run; if it does not suffice, the most accurate run within it is
     advised. pilot_seconds: of all pilots together. announce(text): is called before each pilot.
@@ -156,66 +146,52 @@ def plan(
     which the pilots are too short to say anything.
     """
     low, high = ACCURACIES
-    known(observable)
+    target = Target.named(scene, observable)
     accuracy = number("accuracy", accuracy, f"must be from {low:g} to {high:g}", least=low, most=high)
     if budget is not None:
         budget = number("budget", budget, "must be positive", above=0.0)
     pilot_seconds = number("pilot", pilot_seconds, "must be positive", above=0.0)
-    _require_steady(scene)
-    able, refused = candidates(scene, observable, accuracy)
-    if not able:
-        rule = f"no engine runs this scene: {'; '.join(refused.values())}"
-        raise SceneError("engine", ", ".join(refused), rule)
-    speeds = []
+    require_steady(scene)
+    able, refused = candidates(target, accuracy)
+    if able:
+        require_defined(target)
+    timed: list[tuple[Candidate, float]] = []
     for one in able:
         announce(f"timing the {one.engine.title} engine")
-        speeds.append(speed_of(scene, one.engine, observable))
-    pilots = _run_pilots(scene, observable, list(zip(able, speeds, strict=True)), pilot_seconds, announce)
-    biases = {one.engine: one.bias for one in able}
+        try:
+            timed.append((one, speed_of(target, one.engine)))
+        except SceneError as error:  # as of particles from which the engine cannot start
+            refused[one.name] = f"{error.key}: {error.rule}"
+    if not timed:
+        rule = f"no engine runs this scene: {'; '.join(refused.values())}"
+        raise SceneError("engine", ", ".join(refused), rule)
+    pilots = _run_pilots(target, timed, pilot_seconds, announce)
+    biases = {one.engine: one.bias for one, _ in timed}
     measured = [one for one in pilots if 0.0 < one.accuracy < math.inf]
     faithful = [one for one in measured if biases[one.engine] < accuracy] or measured
     if not faithful:
         rule = f"{pilots[0].rule or 'does not change in the pilot run'}; allow longer pilots"
+        if target.observable == "pressure" and not target.face:
+            rule += f", or state a wall, as in pressure:{scene.container.walls[0]}"
         raise SceneError("observable", observable, rule)
     longest = max(faithful, key=lambda one: one.measured)
 
     def limits(engine: Engine, speed: float) -> tuple[float, float]:
         affordable = math.inf if budget is None else budget / speed
-        return _least(scene, engine, observable, longest), min(
-            affordable, _longest(observable, longest), span(scene, observable)[1]
-        )
+        most = min(affordable, _longest(target.observable, longest), target.span[1])
+        return _least(target, engine, longest), most
 
     options = [
         _option(one, speed, _bias(one, measured), longest, accuracy, limits(one.engine, speed))
-        for one, speed in zip(able, speeds, strict=True)
+        for one, speed in timed
     ]
     options.sort(key=lambda one: (max(one.half_width, accuracy * (1.0 + 1e-9)), one.seconds))
     reached = options[0].half_width <= accuracy * (1.0 + 1e-6)
-    return Plan(scene, observable, accuracy, tuple(options), refused, longest.value, tuple(pilots), reached)
-
-
-def _require_steady(scene: Scene) -> None:
-    """Refuse an empty scene, and one that cools or heats: its observables depend on the time."""
-    if not scene.count:
-        raise SceneError("count", 0, "advice is for a gas: the scene is empty")
-    law = scene.restitution
-    if law is not None and law.dissipative and not is_driven(scene):
-        rule = "loses energy that nothing returns: there is no steady state to measure; give a duration"
-        raise SceneError("restitution.normal", law.normal, rule)
-    heats = scene.thermostat is not None or any(
-        isinstance(face, Vibrating | LeesEdwards) for face in scene.faces.values()
-    )
-    if heats and not (law is not None and law.dissipative) and not at_temperature(scene):
-        rule = "nothing takes the energy that the scene is given: there is no steady state; give a duration"
-        raise SceneError("restitution", None, rule)
+    return Plan(target, accuracy, tuple(options), refused, longest.value, tuple(pilots), reached)
 
 
 def _run_pilots(
-    scene: Scene,
-    observable: str,
-    timed: list[tuple[Candidate, float]],
-    seconds: float,
-    announce: Announce,
+    target: Target, timed: list[tuple[Candidate, float]], seconds: float, announce: Announce
 ) -> list[Pilot]:
     """A pilot of the first engine, and of the cheapest one if that is much cheaper."""
     chosen = timed[:1]
@@ -225,7 +201,7 @@ def _run_pilots(
     pilots = []
     for one, speed in chosen:
         announce(f"a pilot run, {one.engine.title} engine, {seconds / len(chosen):.2g} s")
-        pilots.append(run_pilot(scene, one.engine, observable, seconds / len(chosen), speed))
+        pilots.append(run_pilot(target, one.engine, seconds / len(chosen), speed))
     return pilots
 
 
@@ -271,16 +247,16 @@ def _longest(observable: str, pilot: Pilot) -> float:
     return pilot.measured * _FRAMES / (frames / math.ceil(frames / MOST_FRAMES))
 
 
-def _least(scene: Scene, engine: Engine, observable: str, pilot: Pilot) -> float:
+def _least(target: Target, engine: Engine, pilot: Pilot) -> float:
     """The shortest duration: what the table equilibrates and measures at least, crossings of a container with
     walls, the time in which the pilot came to its steady state, and the steps between frames; with
     correlations the frames that give an error."""
-    frequency = rates(scene, dense=True).frequency
+    scene, frequency = target.scene, target.frequency
     collisions = (EQUILIBRATED + LEAST) / frequency if frequency > 0.0 else 0.0
-    crossings = 0.0 if all(scene.container.periodic) else _CROSSINGS * crossing(scene)
+    crossings = 0.0 if all(scene.container.periodic) else _CROSSINGS * target.crossing
     settled = _SETTLED * pilot.settled / EQUILIBRATION
-    if observable in CORRELATED:
-        sampled = schedule(scene, engine, observable, 0.0)[0]
+    if target.correlated:
+        sampled = target.schedule(engine, 0.0)[0]
     else:
         sampled = _FRAMES * (engine.resolved(scene).quantum or 0.0)
     return max(collisions, crossings, settled, sampled)

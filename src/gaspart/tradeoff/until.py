@@ -149,8 +149,7 @@ def require_measurable(
         if correlations is None or not correlations.stress:
             rule = "needs correlations of the stress: --correlations T,L --stress"
     elif asked.observable == "pressure":
-        axes = [axis for axis, open_ in zip("xyz", periodic, strict=False) if not open_]
-        walls = [f"{axis} {end}" for axis in axes for end in ("low", "high")]
+        walls = scene.container.walls
         if not walls or asked.face not in (None, *walls):
             rule = f"the walls are {', '.join(walls)}" if walls else "there are no walls: require Z"
     elif follow is not None and follow < scene.count:

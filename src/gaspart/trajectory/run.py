@@ -14,15 +14,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO, TypeAlias
 
-from gaspart.engines import Engine
 from gaspart.errors import SceneError
 from gaspart.files import OVERWRITE, may_replace, output_path, place
-from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
 from gaspart.simulation import Simulation
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.checkpoint import checkpoint_path, read_checkpoint, remove_checkpoint
-from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.extension import is_beginning, longer, take_over
 from gaspart.trajectory.frames import Frames, frame_count
 from gaspart.trajectory.opening import check_frames
@@ -33,32 +30,6 @@ from gaspart.trajectory.until import Accuracy, is_examined
 
 Examiner: TypeAlias = Callable[[Path, tuple[Accuracy, ...], int], float]
 """What examines the first frames of a file: the largest error over the required one, inf if unknown."""
-
-
-def run(
-    scene: Scene,
-    engine: Engine,
-    seed: int | tuple[int, ...],
-    duration: float,
-    sample_interval: float,
-    path: str | Path,
-    *,
-    displacements: bool = False,
-    follow: int | None = None,
-    correlations: Correlations | None = None,
-    pairs: bool = False,
-    checkpoint_seconds: float = 30.0,
-    progress: Progress | None = None,
-    overwrite: bool = False,
-) -> Path:
-    """Run a scene for a duration and write its trajectory to `path`; returns `path`.
-
-    The arguments, and what is raised, are those of `gaspart.run` (`gaspart.tradeoff.until`).
-    """
-    wanted = Recipe(
-        scene, engine, seed, duration, sample_interval, displacements, follow, correlations, pairs=pairs
-    )
-    return record(wanted, path, Manner(checkpoint_seconds, progress, overwrite))
 
 
 @dataclass(frozen=True)
@@ -81,7 +52,10 @@ class Manner:
 
 
 def record(wanted: Recipe, path: str | Path, manner: Manner) -> Path:
-    """Make the trajectory of a recipe at `path`; returns `path`. As `run`."""
+    """Make the trajectory of a recipe at `path`; returns `path`.
+
+    What is raised is that of `gaspart.run` (`gaspart.tradeoff.until`).
+    """
     path = output_path(path)
     if path.suffix != ".nc" and not path.is_dir():  # `gaspart check` knows the format by it
         raise SceneError("path", str(path), "must end in .nc: a trajectory is a netCDF file")

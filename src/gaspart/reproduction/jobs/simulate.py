@@ -79,17 +79,17 @@ def record(parameters: dict, seed: tuple[int, ...], path: Path, overwrite: bool)
     from gaspart.scene.scene import Scene
     from gaspart.trajectory import run as trajectory
     from gaspart.trajectory.correlator import Correlations
+    from gaspart.trajectory.recipe import Recipe
 
-    trajectory.run(
+    recipe = Recipe(
         Scene.from_dict(parameters["scene"]),
         engine_from_dict(parameters["engine"]),
         seed=seed,
         duration=parameters["duration"],
         sample_interval=parameters["sample_interval"],
-        path=path,
         displacements=parameters["displacements"],
         follow=parameters["follow"],
         correlations=parameters["correlations"] and Correlations(**parameters["correlations"]),
         pairs=parameters.get("pairs", False),
-        overwrite=overwrite,
     )
+    trajectory.record(recipe, path, trajectory.Manner(overwrite=overwrite))

@@ -3,10 +3,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gaspart import theory
+from gaspart import run, theory
 from gaspart.reproduction.families.film import measure as film
 from gaspart.reproduction.points.point import Point
-from gaspart.trajectory.run import run
 
 
 def slit(rng, density, width, samples, side=6.0):

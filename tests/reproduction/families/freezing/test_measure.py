@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
+from gaspart import run
 from gaspart.reproduction.families.freezing.measure import freezing_discs, freezing_spheres
 from gaspart.reproduction.points.points import points
 from gaspart.scene.scene import Scene
-from gaspart.trajectory.run import run
 
 DISCS = {
     "dimension": 2, "count": 64, "side": [8, 8 * 0.8660254037844386], "boundary": "periodic",

@@ -30,7 +30,7 @@ def test_overlaps_across_a_face_and_with_a_large_particle():
 
 
 def test_a_scene_is_counted_and_kept_for_drawing(tmp_path):
-    from gaspart.trajectory.run import run
+    from gaspart import run
 
     settings = {
         "scene": "config/scenes/brownian.yaml",

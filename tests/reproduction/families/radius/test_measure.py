@@ -3,7 +3,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gaspart import theory
+from gaspart import run, theory
 from gaspart.reproduction.claims import judge
 from gaspart.reproduction.families.radius.claims import radius_grid as claims
 from gaspart.reproduction.families.radius.measure import (
@@ -12,7 +12,6 @@ from gaspart.reproduction.families.radius.measure import (
     radius_grid,
 )
 from gaspart.reproduction.points.point import Point
-from gaspart.trajectory.run import run
 
 
 def test_pair_tests_of_one_box_are_all_pairs():

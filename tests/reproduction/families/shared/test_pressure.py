@@ -3,7 +3,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gaspart import theory
+from gaspart import run, theory
 from gaspart.reproduction.families.shared.pressure import (
     COUNTED,
     Series,
@@ -13,7 +13,6 @@ from gaspart.reproduction.families.shared.pressure import (
 )
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
-from gaspart.trajectory.run import run
 
 
 def small_point(tmp_path, **settings):

@@ -1,0 +1,163 @@
+"""What is to be measured of a scene, and how often and how long a run of it is sampled for that."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from gaspart.analysis.diffusion import LINEAR_FROM
+from gaspart.analysis.motion import MOST_FRAMES
+from gaspart.analysis.names import FLUXES, MOTION, PATHS, known
+from gaspart.analysis.run import EQUILIBRATION
+from gaspart.engines import Engine, EventDriven
+from gaspart.engines.dsmc.rates import rates
+from gaspart.errors import SceneError
+from gaspart.scene.scene import Scene
+from gaspart.simulation import Simulation
+from gaspart.state.initial import initial_state
+from gaspart.state.state import State
+from gaspart.trajectory.correlator import Correlations
+
+DIFFUSION = "D", "mutual_diffusion"
+CORRELATED = *FLUXES, *MOTION
+"""Those of a run with correlations."""
+SEED = 0
+_FRAMES = 48, 512
+_HELD = 20_000_000
+"""Numbers that the frames of a pilot hold, at most, unless there are only few frames."""
+_LAGS = {**dict.fromkeys(FLUXES, 100), **dict.fromkeys(MOTION, 40)}
+"""Of correlations, in samples: up to ten collisions of a particle."""
+_LONGEST_LAG = 10.0
+_LEAST_FRAMES = 24
+"""Of a run with correlations: three quarters of them give an error."""
+_FALL = 8.0
+"""Crossings of the container in which particles that start at rest are set in motion."""
+_COLLIDED = 40.0
+"""Collisions of a particle that are enough for that."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """An observable of `gaspart measure` of a scene; face: of the pressure, the wall (`x low`), by default
+    each of them."""
+
+    scene: Scene
+    observable: str
+    face: str | None = None
+
+    @classmethod
+    def named(cls, scene: Scene, name: str) -> Target:
+        """From a name as on the command line: `Z`, or `pressure:x low`. Raises SceneError for an unknown one,
+        and a wall that is not there."""
+        observable, colon, face = str(name).partition(":")
+        known(observable)
+        walls = scene.container.walls
+        if colon and (observable != "pressure" or face not in walls):
+            rule = f"{observable} is not of a wall" if observable != "pressure" else "there is no such wall"
+            raise SceneError("observable", name, f"{rule}; the walls are {', '.join(walls) or 'none'}")
+        return cls(scene, observable, face or None)
+
+    @cached_property
+    def start(self) -> State | None:
+        """The state at time 0 of particles that are compressed, which takes long; None of others."""
+        compressed = any(kind.arrangement == "compressed" for kind in self.scene.species if kind.count)
+        return initial_state(self.scene, SEED) if compressed and not self.scene.vibrates else None
+
+    @cached_property
+    def frequency(self) -> float:
+        """Collisions of a particle per time: by theory in a gas as hot as at the start, or, if its particles
+        start at rest, in the second half of a short run."""
+        found = rates(self.scene, dense=True).frequency
+        if found > 0.0:
+            return found
+        simulation = Simulation(self.scene, EventDriven(), SEED, initial=self.start)
+        times, counts = [0.0], [0.0]
+        while times[-1] < _FALL * self.crossing and counts[-1] < _COLLIDED * self.scene.count:
+            simulation.advance(duration=0.25 * self.crossing)
+            times.append(simulation.time)
+            counts.append(2.0 * float(simulation.tally.collisions))
+        half = len(times) // 2
+        return (counts[-1] - counts[half]) / (self.scene.count * (times[-1] - times[half]))
+
+    @cached_property
+    def crossing(self) -> float:
+        """The time in which a particle crosses the shortest side of the container. Raises SceneError if
+        nothing moves."""
+        scene = self.scene
+        squares = [
+            kind.temperature / kind.mass if kind.temperature else (kind.speed or 0.0) ** 2
+            for kind in scene.species
+        ]
+        squares += [sum(v * v for v in particle.velocity) for particle in scene.particles]
+        squares += [getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()]
+        if scene.gravity:
+            squares.append(max(map(abs, scene.gravity)) * min(scene.container.lengths))
+        fastest = math.sqrt(max(squares))
+        if not fastest > 0.0:
+            raise SceneError("temperature", 0.0, "advice is for moving particles")
+        return min(scene.container.lengths) / fastest
+
+    @property
+    def name(self) -> str:
+        """The observable, with its wall."""
+        return f"{self.observable}:{self.face}" if self.face else self.observable
+
+    @property
+    def needs_paths(self) -> bool:
+        """Whether frames need displacements."""
+        return self.observable in PATHS
+
+    @property
+    def correlated(self) -> bool:
+        """Whether the run accumulates correlations."""
+        return self.observable in CORRELATED
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """The longest time between frames and the longest run from which the observable is measured without
+        loss: of diffusion by the lags of its slope, and by the number of frames that are correlated."""
+        if self.observable not in DIFFUSION or not self.frequency > 0.0:
+            return math.inf, math.inf
+        interval = 0.5 * LINEAR_FROM / self.frequency
+        return interval, interval * MOST_FRAMES / (1.0 - EQUILIBRATION)
+
+    def schedule(self, engine: Engine, length: float) -> tuple[float, float, Correlations | None]:
+        """Duration, time between frames and correlations of a run of about a length."""
+        if self.correlated:
+            return self._correlated(engine, length)
+        least, most = _FRAMES
+        longest_interval, longest = self.span
+        length = min(length, longest)
+        numbers = max(1, 3 * self.scene.count * self.scene.dimension)
+        frames = int(np.clip(_HELD // numbers, least, most))
+        interval = min(length / frames, longest_interval)
+        frames = math.ceil(length / interval * (1.0 - 1e-9))
+        if quantum := engine.resolved(self.scene).quantum:
+            interval = max(1, round(interval / quantum)) * quantum
+        return frames * interval, interval, None
+
+    def correlations(self, engine: Engine) -> Correlations:
+        """Those that the observable needs. Raises SceneError for a scene whose particles do not collide."""
+        lags = _LAGS[self.observable]
+        if not self.frequency > 0.0:
+            raise SceneError("observable", self.observable, "needs particles that collide")
+        sample = float(f"{_LONGEST_LAG / lags / self.frequency:.1g}")
+        if quantum := engine.resolved(self.scene, sample).quantum:
+            sample = tidy(max(1, round(sample / quantum)) * quantum)
+        return Correlations(sample, lags, stress=self.observable in FLUXES)
+
+    def _correlated(self, engine: Engine, length: float) -> tuple[float, float, Correlations]:
+        """`schedule` with correlations, whose longest lag frames are apart or more."""
+        correlations = self.correlations(engine)
+        sample = correlations.interval
+        per_frame = max(correlations.lags, round(length / sample / _FRAMES[0]))
+        interval = tidy(per_frame * sample)
+        return tidy(max(_LEAST_FRAMES, round(length / interval)) * interval), interval, correlations
+
+
+def tidy(multiple: float) -> float:
+    """A multiple without its rounding error, which a command would show."""
+    return float(f"{multiple:.12g}")
