@@ -21,10 +21,9 @@ import gaspart as gp
 from gaspart.analysis.measuring import measure
 from gaspart.errors import SceneError
 from gaspart.tradeoff.advice import advise, is_tabulated
-from gaspart.tradeoff.candidates import STRUCTURE
 from gaspart.tradeoff.pilot import speed_of
 from gaspart.tradeoff.plan import plan
-from gaspart.tradeoff.target import Target
+from gaspart.tradeoff.target import STRUCTURE, Target
 
 ANYWHERE = ("collision_rate", "speeds", "density", "temperature", "vacf", "msd")
 OF_ONE_FLUID = ("Z", "D", "rdf", "structure_factor", "chemical_potential", "order", "shear_viscosity")

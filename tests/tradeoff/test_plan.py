@@ -11,8 +11,9 @@ from gaspart.cli import main
 from gaspart.engines import EventDriven
 from gaspart.state import initial
 from gaspart.tradeoff import pilot, plan
-from gaspart.tradeoff.candidates import CELL_LOSS, Candidate, candidates, cell_loss
+from gaspart.tradeoff.candidates import Candidate, candidates
 from gaspart.tradeoff.estimates import Component
+from gaspart.tradeoff.models import CELL_LOSS, cell_loss
 from gaspart.tradeoff.pilot import Pilot
 from gaspart.tradeoff.target import Target
 

@@ -17,6 +17,7 @@ from gaspart.cli.engine_options import one_of, stated
 from gaspart.cli.progress import waiting
 from gaspart.cli.run import run_options
 from gaspart.engines import DSMC, Engine, TimeStepped
+from gaspart.kernels.compile.loading import load_numba
 from gaspart.scene.scene import Scene
 from gaspart.tradeoff import PILOT_SECONDS
 
@@ -66,11 +67,11 @@ def _advise(given: argparse.Namespace) -> None:
         print_line("\n".join(lines))
         return
     from gaspart.tradeoff.advice import advise, is_tabulated
-    from gaspart.tradeoff.target import Target
 
     scene = Scene.from_file(given.scene)
-    if is_tabulated(scene, Target.named(scene, given.observable).observable):
+    if is_tabulated(scene, given.observable):
         with waiting("measuring the speed of this machine; the first time, compiling kernels"):
+            load_numba(ours=True)
             advice = advise(scene, given.observable, given.accuracy, given.budget)
         print_line("\n".join(_lines(advice, given.scene)))
         return

@@ -21,8 +21,7 @@ from gaspart.scene.gas import Gas, plain_gas
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
 from gaspart.tradeoff import speed, table
-from gaspart.tradeoff.candidates import cell_loss
-from gaspart.tradeoff.models import model_error, step_error
+from gaspart.tradeoff.models import cell_loss, model_error, step_error
 from gaspart.tradeoff.steady import temperature_scatter
 from gaspart.tradeoff.table import EQUILIBRATION, LEAST, MODELS, QUANTILE
 from gaspart.trajectory.recipe import Recipe
@@ -33,6 +32,7 @@ SpeedOf: TypeAlias = Callable[[int, str, str, int], float]
 """A function as `gaspart.tradeoff.speed.factor`."""
 _PER_EQUILIBRATION = 10.0  # smallest ratio of a replica's length to its equilibration
 _FRAMES = 1000
+_WORTH = 3.0  # how many times as cheap the best engine may be by the table, so that another is timed
 _BULK = 4.0  # the finite size of a gas should cost no more than this part of the accuracy
 
 
@@ -153,7 +153,9 @@ def advise(
     D.
 
     budget: processor time in seconds; if it does not suffice, the most accurate setting within it is advised.
-    speed_of: this machine's time over the table's (see `gaspart.tradeoff.speed`).
+    speed_of: this machine's time over the table's (see `gaspart.tradeoff.speed`). An engine that is three
+    times as expensive as another one by the table is not timed: it is taken to be as fast as the event-driven
+    one.
 
     Raises SceneError for anything that the table does not cover.
     """
@@ -170,9 +172,15 @@ def advise(
         raise SceneError(
             "observable", observable, "discs have no diffusion coefficient: it grows with the size"
         )
-    wish = _Wish(observable, accuracy, noise, budget, speed_of)
-    made = (_setting(scene, gas, wish, engine) for engine in _engines(scene, gas))
-    settings = [one for one in made if one]
+    known = _settings(scene, gas, _Wish(observable, accuracy, noise, budget, speed.as_measured))
+    limit = _WORTH * min(one.seconds for one in known)
+    timed = {(one.name, getattr(one.engine, "precision", "float64")) for one in known if one.seconds < limit}
+
+    def speed_here(dimension: int, engine: str, precision: str, count: int) -> float:
+        near = (engine, precision) if (engine, precision) in timed else ("event", "float64")
+        return speed_of(dimension, *near, count)
+
+    settings = _settings(scene, gas, _Wish(observable, accuracy, noise, budget, speed_here))
     best = min(settings, key=lambda made: (max(made.half_width, accuracy * (1.0 + 1e-9)), made.seconds))
     others = tuple(
         min(kind, key=lambda made: made.seconds)
@@ -198,6 +206,12 @@ def advise(
         gas.count * (abs(finite_size) * _BULK / accuracy) ** (gas.dimension if observable == "D" else 1),
         0.5 * temperature_scatter(scene),
     )
+
+
+def _settings(scene: Scene, gas: Gas, wish: _Wish) -> list[Setting]:
+    """All that are accurate enough."""
+    made = (_setting(scene, gas, wish, engine) for engine in _engines(scene, gas))
+    return [one for one in made if one]
 
 
 def _engines(scene: Scene, gas: Gas) -> Iterator[tuple[Engine, str, float]]:

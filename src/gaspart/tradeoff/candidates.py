@@ -20,19 +20,14 @@ from gaspart.errors import SceneError
 from gaspart.scene.faces import sliding_faces
 from gaspart.scene.scene import Scene
 from gaspart.state.initial import initial_state
-from gaspart.tradeoff.target import SEED, Target
+from gaspart.tradeoff.models import cell_loss
+from gaspart.tradeoff.target import SEED, STRUCTURE, Target
 
-STRUCTURE = ("rdf", "order", "structure_factor", "chemical_potential")
-"""Observables of the positions of particles relative to each other, which DSMC does not have."""
 TRANSPORT = ("D", *MOTION, *FLUXES[:3])
 """Observables that depend on the memory of collisions, of which the Enskog model has none."""
 _STATIC = 3e-3
 """Bound on the error of the Enskog model in Z, the collision rate and pressures (figure
 `dsmc_convergence`)."""
-CELL_LOSS = 0.5
-"""Part of its collisions that the Enskog model loses at most, times the particles in a cell: those that have
-met part, and among few others those that approach become rare (docs/dsmc.md: 8 in a cell lose 3 % at a
-packing fraction of 0.1, 6 % at 0.4)."""
 _DENSEST = 0.4
 """Packing fraction up to which that is known."""
 _SHARE = 0.125
@@ -134,12 +129,6 @@ def enskog_error(scene: Scene, observable: str) -> float:
     """Bound on the relative error of the Enskog equation in an observable."""
     transported = observable in TRANSPORT or _flows(scene)
     return _STATIC + (_memory(scene.packing_fraction, scene.dimension) if transported else 0.0)
-
-
-def cell_loss(engine: DSMC, scene: Scene) -> float:
-    """Bound on the part of its collisions that the Enskog model loses; none in a single cell."""
-    cells = np.prod(engine.resolved(scene).cells_per_side or 1)
-    return float(CELL_LOSS * cells / scene.count) if cells > 1 else 0.0
 
 
 def _require_no_structure(observable: str) -> None:

@@ -4,8 +4,17 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from gaspart import theory
+from gaspart.engines import DSMC
+from gaspart.scene.scene import Scene
 from gaspart.theory.dsmc import step_factor
+
+CELL_LOSS = 0.5
+"""Part of its collisions that the Enskog model loses at most, times the particles in a cell: those that have
+met part, and among few others those that approach become rare (docs/dsmc.md: 8 in a cell lose 3 % at a
+packing fraction of 0.1, 6 % at 0.4)."""
 
 
 def model_error(packing_fraction: float, dimension: int, model: str, observable: str) -> float:
@@ -37,3 +46,9 @@ def step_error(packing_fraction: float, step: float) -> float:
     by that."""
     path = float(theory.mean_free_path(packing_fraction, 3))
     return float(step_factor("diffusion", step * math.sqrt(2.0) / path)) - 1.0
+
+
+def cell_loss(engine: DSMC, scene: Scene) -> float:
+    """Bound on the part of its collisions that the Enskog model loses; none in a single cell."""
+    cells = int(np.prod(engine.resolved(scene).cells_per_side or 1))
+    return float(CELL_LOSS * cells / scene.count) if cells > 1 else 0.0

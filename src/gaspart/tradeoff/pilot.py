@@ -171,10 +171,11 @@ def _measured(trajectory: xr.Dataset, target: Target) -> dict[str, Component] | 
     return {name: one for name, one in found.items() if target.face in (None, name)}
 
 
-def run_pilot(target: Target, engine: Engine, seconds: float, speed: float) -> Pilot:
-    """A run of about so many processor seconds, measured; speed: as from `speed_of`. An observable that it is
-    too short for is not measured. Raises SceneError for one that the scene does not have."""
-    scheduled = target.schedule(engine, seconds / speed)
+def run_pilot(target: Target, engine: Engine, seconds: float, speed: float, left: float = 1.0) -> Pilot:
+    """A run of about so many processor seconds, measured; speed: as from `speed_of`; left: the part of the
+    seconds that there is time for, unless a pilot was kept. An observable that it is too short for is not
+    measured. Raises SceneError for one that the scene does not have."""
+    scheduled = target.schedule(engine, left * seconds / speed)
     kinds = {"fluxes": FLUXES, "motion": MOTION, "pairs": PAIRS, "diffusion": DIFFUSION}
     kind = next((kind for kind, names in kinds.items() if target.observable in names), "")
     folder = cache_directory() / "pilots" / _digest(target.scene, engine, kind, seconds)

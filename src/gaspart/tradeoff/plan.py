@@ -8,6 +8,7 @@ The noise and the processor time of a unit of time come from pilots; the bias is
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -21,12 +22,12 @@ from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
 from gaspart.tradeoff import PILOT_SECONDS
 from gaspart.tradeoff.advice import ACCURACIES
-from gaspart.tradeoff.candidates import STRUCTURE, Candidate, candidates
+from gaspart.tradeoff.candidates import Candidate, candidates
 from gaspart.tradeoff.pilot import Pilot, require_defined, run_pilot, speed_of
 from gaspart.tradeoff.steady import require_steady, temperature_scatter
 from gaspart.tradeoff.table import EQUILIBRATION as EQUILIBRATED
 from gaspart.tradeoff.table import LEAST, QUANTILE
-from gaspart.tradeoff.target import DIFFUSION, Target, tidy
+from gaspart.tradeoff.target import DIFFUSION, STRUCTURE, Target, tidy
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.until import OBSERVABLES, Accuracy, Until
 
@@ -140,13 +141,14 @@ def plan(
     measure`; of the pressure on one wall as `pressure:x low`.
 
     budget: processor time in seconds of the run; if it does not suffice, the most accurate run within it is
-    advised. pilot_seconds: of all pilots together. announce(text): is called before each pilot.
+    advised. pilot_seconds: of all pilots together, and of what goes before them, up to half of it.
+    announce(text): is called before each pilot.
 
     Raises SceneError for a scene without a steady state, and for an observable that it does not have, or of
     which the pilots are too short to say anything.
     """
     low, high = ACCURACIES
-    target = Target.named(scene, observable)
+    target, begun = Target.named(scene, observable), time.process_time()
     accuracy = number("accuracy", accuracy, f"must be from {low:g} to {high:g}", least=low, most=high)
     if budget is not None:
         budget = number("budget", budget, "must be positive", above=0.0)
@@ -165,7 +167,8 @@ def plan(
     if not timed:
         rule = f"no engine runs this scene: {'; '.join(refused.values())}"
         raise SceneError("engine", ", ".join(refused), rule)
-    pilots = _run_pilots(target, timed, pilot_seconds, announce)
+    left = max(0.5, 1.0 - (time.process_time() - begun) / pilot_seconds)
+    pilots = _run_pilots(target, timed, pilot_seconds, left, announce)
     biases = {one.engine: one.bias for one, _ in timed}
     measured = [one for one in pilots if 0.0 < one.accuracy < math.inf]
     faithful = [one for one in measured if biases[one.engine] < accuracy] or measured
@@ -191,17 +194,17 @@ def plan(
 
 
 def _run_pilots(
-    target: Target, timed: list[tuple[Candidate, float]], seconds: float, announce: Announce
+    target: Target, timed: list[tuple[Candidate, float]], seconds: float, left: float, announce: Announce
 ) -> list[Pilot]:
-    """A pilot of the first engine, and of the cheapest one if that is much cheaper."""
+    """A pilot of the first engine, and of the cheapest one if that is much cheaper; left: see `run_pilot`."""
     chosen = timed[:1]
     cheapest = min(timed, key=lambda one: one[1])
     if cheapest[1] * _WORTH < timed[0][1]:
         chosen.append(cheapest)
     pilots = []
     for one, speed in chosen:
-        announce(f"a pilot run, {one.engine.title} engine, {seconds / len(chosen):.2g} s")
-        pilots.append(run_pilot(target, one.engine, seconds / len(chosen), speed))
+        announce(f"a pilot run, {one.engine.title} engine, {left * seconds / len(chosen):.2g} s")
+        pilots.append(run_pilot(target, one.engine, seconds / len(chosen), speed, left))
     return pilots
 
 

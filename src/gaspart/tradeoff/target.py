@@ -22,12 +22,16 @@ from gaspart.state.state import State
 from gaspart.trajectory.correlator import Correlations
 
 DIFFUSION = "D", "mutual_diffusion"
+STRUCTURE = "rdf", "order", "structure_factor", "chemical_potential"
+"""Those of the positions of particles relative to each other, which DSMC does not have."""
 CORRELATED = *FLUXES, *MOTION
 """Those of a run with correlations."""
 SEED = 0
 _FRAMES = 48, 512
 _HELD = 20_000_000
 """Numbers that the frames of a pilot hold, at most, unless there are only few frames."""
+_PLACED = 100_000
+"""Particles in all frames of which pairs are measured, likewise: that takes longer than their run."""
 _LAGS = {**dict.fromkeys(FLUXES, 100), **dict.fromkeys(MOTION, 40)}
 """Of correlations, in samples: up to ten collisions of a particle."""
 _LONGEST_LAG = 10.0
@@ -132,6 +136,8 @@ class Target:
         longest_interval, longest = self.span
         length = min(length, longest)
         numbers = max(1, 3 * self.scene.count * self.scene.dimension)
+        if self.observable in STRUCTURE:
+            most = max(least, min(most, _PLACED // max(1, self.scene.count)))
         frames = int(np.clip(_HELD // numbers, least, most))
         interval = min(length / frames, longest_interval)
         frames = math.ceil(length / interval * (1.0 - 1e-9))

@@ -24,8 +24,7 @@ from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.families.tradeoff.choices import Choice
 from gaspart.reproduction.points.point import Point
 from gaspart.tradeoff import table
-from gaspart.tradeoff.candidates import cell_loss
-from gaspart.tradeoff.models import model_error, step_error
+from gaspart.tradeoff.models import cell_loss, model_error, step_error
 from gaspart.tradeoff.table import EQUILIBRATION, LEAST, PRECISIONS
 
 OBSERVABLES = ("collision_rate", "Z", "D")
