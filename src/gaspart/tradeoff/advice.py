@@ -172,15 +172,7 @@ def advise(
         raise SceneError(
             "observable", observable, "discs have no diffusion coefficient: it grows with the size"
         )
-    known = _settings(scene, gas, _Wish(observable, accuracy, noise, budget, speed.as_measured))
-    limit = _WORTH * min(one.seconds for one in known)
-    timed = {(one.name, getattr(one.engine, "precision", "float64")) for one in known if one.seconds < limit}
-
-    def speed_here(dimension: int, engine: str, precision: str, count: int) -> float:
-        near = (engine, precision) if (engine, precision) in timed else ("event", "float64")
-        return speed_of(dimension, *near, count)
-
-    settings = _settings(scene, gas, _Wish(observable, accuracy, noise, budget, speed_here))
+    settings = _timed(scene, gas, _Wish(observable, accuracy, noise, budget, speed_of))
     best = min(settings, key=lambda made: (max(made.half_width, accuracy * (1.0 + 1e-9)), made.seconds))
     others = tuple(
         min(kind, key=lambda made: made.seconds)
@@ -206,6 +198,19 @@ def advise(
         gas.count * (abs(finite_size) * _BULK / accuracy) ** (gas.dimension if observable == "D" else 1),
         0.5 * temperature_scatter(scene),
     )
+
+
+def _timed(scene: Scene, gas: Gas, wish: _Wish) -> list[Setting]:
+    """All settings that are accurate enough, with the times of this machine where these can matter."""
+    known = _settings(scene, gas, replace(wish, speed_of=speed.as_measured))
+    limit = _WORTH * min(one.seconds for one in known)
+    timed = {(one.name, getattr(one.engine, "precision", "float64")) for one in known if one.seconds < limit}
+
+    def speed_of(dimension: int, engine: str, precision: str, count: int) -> float:
+        near = (engine, precision) if (engine, precision) in timed else ("event", "float64")
+        return wish.speed_of(dimension, *near, count)
+
+    return _settings(scene, gas, replace(wish, speed_of=speed_of))
 
 
 def _settings(scene: Scene, gas: Gas, wish: _Wish) -> list[Setting]:

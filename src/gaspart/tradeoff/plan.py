@@ -37,6 +37,8 @@ _DIFFERS = 2.5
 """Standard errors by which two pilots differ if one is biased more than theory says."""
 _FRAMES = 384
 """Of a run: 288 independent intervals give an error 17 degrees of freedom, and 15 are required."""
+_PREPARED = 5.0
+"""Processor seconds until pilots begin that are not taken from theirs."""
 _LONGEST = 4.0
 """The longest duration of a run with `--until` over the predicted one: two examinations, and an error that
 chance made too small in the pilot."""
@@ -141,7 +143,8 @@ def plan(
     measure`; of the pressure on one wall as `pressure:x low`.
 
     budget: processor time in seconds of the run; if it does not suffice, the most accurate run within it is
-    advised. pilot_seconds: of all pilots together, and of what goes before them, up to half of it.
+    advised. pilot_seconds: of all pilots together; up to half of it goes to what comes before them, if that
+    takes more than 5 s, as to compress particles.
     announce(text): is called before each pilot.
 
     Raises SceneError for a scene without a steady state, and for an observable that it does not have, or of
@@ -154,20 +157,9 @@ def plan(
         budget = number("budget", budget, "must be positive", above=0.0)
     pilot_seconds = number("pilot", pilot_seconds, "must be positive", above=0.0)
     require_steady(scene)
-    able, refused = candidates(target, accuracy)
-    if able:
-        require_defined(target)
-    timed: list[tuple[Candidate, float]] = []
-    for one in able:
-        announce(f"timing the {one.engine.title} engine")
-        try:
-            timed.append((one, speed_of(target, one.engine)))
-        except SceneError as error:  # as of particles from which the engine cannot start
-            refused[one.name] = f"{error.key}: {error.rule}"
-    if not timed:
-        rule = f"no engine runs this scene: {'; '.join(refused.values())}"
-        raise SceneError("engine", ", ".join(refused), rule)
-    left = max(0.5, 1.0 - (time.process_time() - begun) / pilot_seconds)
+    timed, refused = _timed(target, accuracy, announce)
+    spent = time.process_time() - begun
+    left = min(1.0, max(0.5, 1.0 - (spent - _PREPARED) / pilot_seconds))
     pilots = _run_pilots(target, timed, pilot_seconds, left, announce)
     biases = {one.engine: one.bias for one, _ in timed}
     measured = [one for one in pilots if 0.0 < one.accuracy < math.inf]
@@ -191,6 +183,27 @@ def plan(
     options.sort(key=lambda one: (max(one.half_width, accuracy * (1.0 + 1e-9)), one.seconds))
     reached = options[0].half_width <= accuracy * (1.0 + 1e-6)
     return Plan(target, accuracy, tuple(options), refused, longest.value, tuple(pilots), reached)
+
+
+def _timed(
+    target: Target, accuracy: float, announce: Announce
+) -> tuple[list[tuple[Candidate, float]], dict[str, str]]:
+    """The candidates with their processor times of a unit of time, and why other engines are none. Raises
+    SceneError if there is none, and for an observable that the scene does not have."""
+    able, refused = candidates(target, accuracy)
+    if able:
+        require_defined(target)
+    timed = []
+    for one in able:
+        announce(f"timing the {one.engine.title} engine")
+        try:
+            timed.append((one, speed_of(target, one.engine)))
+        except SceneError as error:  # as of particles from which the engine cannot start
+            refused[one.name] = f"{error.key}: {error.rule}"
+    if not timed:
+        rule = f"no engine runs this scene: {'; '.join(refused.values())}"
+        raise SceneError("engine", ", ".join(refused), rule)
+    return timed, refused
 
 
 def _run_pilots(
