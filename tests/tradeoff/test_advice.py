@@ -80,6 +80,15 @@ def test_dilute_spheres_take_the_model_that_is_accurate_enough():
     assert advice(0.1, 0.03, "collision_rate").setting.engine.name != "dsmc"
 
 
+def test_long_steps_of_dsmc_are_explained():
+    """The run warns of the viscosity that they change."""
+    for observable, effect in (("collision_rate", "does not depend"), ("D", "the bias includes")):
+        lines = _lines(advice(0.003, 0.05, observable, count=4000), "gas.yaml")
+        (line,) = [line for line in lines if line.startswith("time step")]
+        assert "times the engine's own" in line and effect in line
+    assert not [line for line in _lines(advice(0.3, 0.01), "gas.yaml") if line.startswith("time step")]
+
+
 def test_dilute_discs_take_the_model_that_is_accurate_enough():
     """Of discs the contact value is 1 + 1.56 of the packing fraction; Z of Boltzmann's equation is 1."""
     rough, fine = (advice(0.01, accuracy, "collision_rate", dimension=2) for accuracy in (0.1, 0.005))

@@ -7,7 +7,7 @@ import math
 import shlex
 import sys
 import warnings
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -96,6 +96,7 @@ def _lines(advice: Advice, file: str) -> list[str]:
     lines = [
         f"engine            {_name(best)}",
         f"boxes             {_boxes(best)}",
+        *_steps(advice.scene, best.engine, advice.observable),
         f"particles         {gas.count}{_bulk(advice)}",
         f"replicas          {advice.replicas}",
         f"run length        {length}, in each replica; {EQUILIBRATION:g} collisions of equilibration",
@@ -227,6 +228,17 @@ def _boxes(setting: Setting) -> str:
     if isinstance(setting.engine, DSMC):
         return "cells, whose particles collide by chance: positions of pairs are given up"
     return "none: a neighbour list"
+
+
+def _steps(scene: Scene, engine: Engine, observable: str) -> list[str]:
+    """What steps do that are longer than those of the DSMC engine, of which the run warns."""
+    if not isinstance(engine, DSMC):
+        return []
+    own = replace(engine, time_step=None).resolved(scene).time_step
+    if not own or not engine.time_step or engine.time_step < 1.5 * own:
+        return []
+    effect = "which the bias includes" if observable == "D" else f"on which {observable} does not depend"
+    return [f"time step         {engine.time_step / own:.2g} times the engine's own, {effect}"]
 
 
 def _bulk(advice: Advice) -> str:
