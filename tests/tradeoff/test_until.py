@@ -212,12 +212,27 @@ def test_other_observables(tmp_path, asked, more):
     assert asked.face in (None, one.component)
 
 
+def test_until_d_is_accurate_paths_are_kept(tmp_path):
+    """Particles may cross the container between frames."""
+    asked = gp.Accuracy("D", 0.2)
+    dilute = gp.Scene(gp.Container((20.0, 20.0, 20.0), "periodic"), [gp.Species(64, 0.5, temperature=1.0)])
+    path = gp.run(dilute, gp.EventDriven(), 1, sample_interval=16.0, until=asked, path=tmp_path / "run.nc")
+    assert gp.reached_accuracy(path)[0].met
+
+
 def test_what_no_longer_run_can_measure_ends_it_with_one_line(tmp_path):
-    """Particles that cannot be followed from frame to frame. What is measured later, as D from 48 collisions
-    on, is waited for."""
-    path, asked = tmp_path / "run.nc", gp.Accuracy("D", 0.1)
-    with pytest.raises(gp.SceneError, match="until = 'D': sample_interval: is too long to follow particles"):
-        gp.run(**SETTINGS | {"sample_interval": 8.0}, until=asked, path=path)
+    """The thrust of particles at rest, which an obstacle may carry. What is measured later, as D from 48
+    collisions on, is waited for."""
+    path, asked = tmp_path / "run.nc", gp.Accuracy("pressure", 0.1, face="y low")
+    scene = gp.Scene(
+        gp.Container((4.0, 4.0), ("periodic", "wall")),
+        particles=[gp.Particle((2.0, 0.5), (0.0, 0.0), radius=0.5)],
+        walls=[gp.Wall((1.0, 2.0), (2.0, 2.0))],
+        gravity=(0.0, -1.0),
+        restitution=gp.Restitution(normal=0.5),
+    )
+    with pytest.raises(gp.SceneError, match="until = 'pressure:y low': particles at rest"):
+        gp.run(scene, gp.EventDriven(), 1, sample_interval=0.1, until=asked, path=path)
     assert not path.exists() and partial_path(path).exists()
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from gaspart.analysis.names import PATHS
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
@@ -63,6 +64,7 @@ def run(
     With `until` the run ends when standard error / |value| of all these observables is as small as required,
     which is examined at 64, 96, 128, 192 ... frames, or at_most after so long; see `gaspart.tradeoff.reached`
     and `gaspart.reached_accuracy`. The sample_interval is then by default the mean time between collisions.
+    Until D is accurate, displacements are kept.
 
     `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` after each
     examination. SIGINT and SIGTERM take effect after a checkpoint was written: the handlers of the program
@@ -74,6 +76,7 @@ def run(
     wanted = _request(duration, sample_interval, until, at_most)
     for asked in wanted.accuracies if wanted else ():
         require_measurable(asked, scene, follow, correlations)
+        displacements = displacements or asked.observable in PATHS
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
     start = last_state(initial) if isinstance(initial, str | Path) else initial
