@@ -10,8 +10,8 @@ from gaspart.tradeoff.table import QUANTILE
 
 ENGINES = ("event", "step", "boltzmann", "enskog")
 """The engines that are compared; the last two are the models of the DSMC engine."""
-PARTS = ("model", "discretisation", "finite_size", "equilibration", "noise")
-"""What makes an error, in the order in which it is stacked."""
+PARTS = ("model", "discretisation", "noise", "equilibration", "finite_size")
+"""What makes an error, in the order in which it is stacked: first what adds up to the required accuracy."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class Choice:
         if self.decay and math.isfinite(length):
             left = self.trace * math.exp(-self.equilibration / self.decay) * self.decay / length
         noise = QUANTILE * math.sqrt(self.unit / length)
-        return dict(zip(PARTS, (self.model, self.discretisation, self.finite_size, left, noise), strict=True))
+        return dict(zip(PARTS, (self.model, self.discretisation, noise, left, self.finite_size), strict=True))
 
 
 def cheapest(choices: Sequence[Choice], accuracy: float) -> Choice:

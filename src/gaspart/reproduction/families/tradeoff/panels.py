@@ -24,7 +24,7 @@ TITLES = {
 NAMES = dict(zip(ENGINES, ("event-driven", "time-stepped", "DSMC, Boltzmann", "DSMC, Enskog"), strict=True))
 TINTS = {"event": (0, 0.65), "step": (1, 0.5), "boltzmann": (2, 0.6), "enskog": (2, 0.25)}
 """Colour of each engine, and the part of white in it: figures are read on it."""
-PART_NAMES = ("model", "step, cells", "finite size", "equilibration", "noise")
+PART_NAMES = ("model", "step, cells", "noise", "equilibration", "finite size")
 PLACES = (("D", 0.01, 0.01), ("D", 0.3, 0.01))
 """Observable, packing fraction and accuracy of the errors that are shown."""
 HIGHEST = 1.6
