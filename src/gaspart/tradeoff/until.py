@@ -62,9 +62,8 @@ def run(
     Defaults of engines follow from the scene's `speed` or `temperature` all the same.
 
     With `until` the run ends when standard error / |value| of all these observables is as small as required,
-    which is examined at 64, 96, 128, 192 ... frames, or at_most after so long; see `gaspart.tradeoff.reached`
-    and `gaspart.reached_accuracy`. The sample_interval is then by default the mean time between collisions.
-    Until D is accurate, displacements are kept.
+    examined at 64, 96, 128, 192 ... frames, or at_most after so long (`gaspart.reached_accuracy`). The
+    sample_interval is then by default the mean time between collisions; for D displacements are kept.
 
     `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` after each
     examination. SIGINT and SIGTERM take effect after a checkpoint was written: the handlers of the program
@@ -82,8 +81,8 @@ def run(
     start = last_state(initial) if isinstance(initial, str | Path) else initial
     settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations
     recipe = Recipe(*settings, until=wanted, pairs=pairs, initial=start)
-    how = checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint
-    return trajectory.record(recipe, _required(path), trajectory.Manner(*how))
+    manner = trajectory.Manner(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
+    return trajectory.record(recipe, _required(path), manner)
 
 
 def _required(path: str | Path | None) -> str | Path:
