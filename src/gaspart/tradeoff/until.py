@@ -54,8 +54,7 @@ def run(
     counts the collisions of each pair of species so far (event-driven engine). A run of the same recipe
     and program that was cut short is continued, a complete one is not changed. Another trajectory at `path`,
     or unfinished next to it, is replaced only with `overwrite`; a file of another kind never. With
-    `keep_checkpoint` the float64 state at the end stays beside it, in `path.checkpoint.npz`: `resume` with a
-    longer duration then goes on from it.
+    `keep_checkpoint` the state at the end stays in `path.checkpoint.npz`, and `resume` goes on from it.
 
     With `initial`, a `State` or a trajectory whose `last_state` is meant, the run starts from its positions,
     velocities and spins. Particles and the size of the container must be the scene's; the rest may differ.
