@@ -11,6 +11,7 @@ from gaspart.cli import main
 from gaspart.engines import EventDriven
 from gaspart.state import initial
 from gaspart.tradeoff import pilot, plan
+from gaspart.tradeoff import target as target_module
 from gaspart.tradeoff.candidates import Candidate, candidates
 from gaspart.tradeoff.estimates import Component
 from gaspart.tradeoff.models import CELL_LOSS, cell_loss
@@ -93,6 +94,11 @@ def test_particles_that_start_at_rest_set_the_lags_by_their_collisions_later():
     assert gas_of_theory.frequency == pytest.approx(1.6, rel=0.5)
 
 
+def test_their_frequency_is_known_however_soon_they_have_collided(monkeypatch):
+    monkeypatch.setattr(target_module, "_COLLIDED", 1e-9)
+    assert Target(bed(0.3), "vacf").frequency > 0.0
+
+
 def bed(amplitude):
     """Discs that are shaken by their floor, none of which reaches the ceiling."""
     return gp.Scene(
@@ -124,11 +130,11 @@ def test_an_engine_that_cannot_start_is_no_candidate():
     assert {"dsmc", "dsmc enskog"} == set(made.refused) and "much larger" in made.refused["dsmc"]
 
 
-def test_pilots_of_diffusion_are_its_own():
-    """Frames of others may lie too far apart for it."""
+def test_pilots_of_diffusion_and_structure_are_their_own():
+    """Frames of others may lie too far apart, or be too many."""
     kinds = [gp.Species(32, radius, temperature=1.0, exact_temperature=True) for radius in (0.5, 0.4)]
     scene = gp.Scene(gp.Container((8.0, 8.0, 8.0), "periodic"), kinds)
-    for observable in ("Z", "D"):
+    for observable in ("Z", "D", "rdf"):
         (found, *_) = plan.plan(scene, observable, 0.1, pilot_seconds=0.4).pilots
         assert found.measured > 0.0 and found.seconds > 0.0
 

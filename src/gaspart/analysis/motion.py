@@ -51,13 +51,14 @@ def mean_squared_displacement(
     """<|r(t) - r(0)|^2> over moving particles and time origins, (lag,), in length^2.
 
     source: a trajectory, by its path or open, or a simulation; lags: their number, in frames (by default half
-    of them); start: the time from which frames count (by default a quarter of the run). Of a run with
-    correlations and displacements, unless any of the other arguments is given, the lags are those of the
-    correlations, and all samples count. Along axes on which
+    of them); start: the time from which frames count (by default a quarter of the run). Along axes on which
     the total momentum is conserved it is that about the centre of mass, times N / (N - 1). species,
     particles: of one species, by its number in the scene (single particles have the number after the last),
     or of these particles only; of fewer than 16 the error is the scatter of as many stretches of the run.
-    per_axis: that along each axis instead of their sum, (axis, lag). Theory: that of Enskog's diffusion
+    per_axis: that along each axis instead of their sum, (axis, lag).
+
+    Of a run with correlations and displacements the lags are those of the correlations, and all samples
+    count, unless lags, species, particles or per_axis are given. Theory: that of Enskog's diffusion
     coefficient and an exponential velocity correlation. Raises SceneError for fewer than 16 moving particles,
     unless they are selected, frames at uneven times, and frames too far apart to follow particles across
     periodic faces.

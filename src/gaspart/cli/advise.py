@@ -156,7 +156,7 @@ def _plan_lines(plan: Plan, file: str) -> list[str]:
         ]
         if asked := recipe.correlations:
             lags = f"{asked.interval:g} apart, up to {asked.lags * asked.interval:.4g}"
-            lines.append(f"lags              {lags}, the time of 10 collisions of a particle")
+            lines.append(f"lags              {lags}, the time of about 10 collisions of a particle")
     lines += _drawn(plan.target.name, plan.scatter)
     lines.append(_pays(plan.target.scene, best.candidate.engine, plan.target.observable))
     if not plan.affordable:

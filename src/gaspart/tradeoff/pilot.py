@@ -25,7 +25,7 @@ from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.tradeoff.estimates import Component, components
 from gaspart.tradeoff.reached import TOO_SHORT, bound
-from gaspart.tradeoff.target import DIFFUSION, SEED, Target
+from gaspart.tradeoff.target import DIFFUSION, SEED, STRUCTURE, Target
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.run import Manner, record
@@ -176,7 +176,8 @@ def run_pilot(target: Target, engine: Engine, seconds: float, speed: float, left
     seconds that there is time for, unless a pilot was kept. An observable that it is too short for is not
     measured. Raises SceneError for one that the scene does not have."""
     scheduled = target.schedule(engine, left * seconds / speed)
-    kinds = {"fluxes": FLUXES, "motion": MOTION, "pairs": PAIRS, "diffusion": DIFFUSION}
+    kinds = {"fluxes": FLUXES, "motion": MOTION, "pairs": PAIRS}
+    kinds |= {"diffusion": DIFFUSION, "structure": STRUCTURE}  # whose frames are spaced for them
     kind = next((kind for kind, names in kinds.items() if target.observable in names), "")
     folder = cache_directory() / "pilots" / _digest(target.scene, engine, kind, seconds)
     folder.mkdir(parents=True, exist_ok=True)

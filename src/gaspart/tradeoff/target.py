@@ -80,10 +80,10 @@ class Target:
         simulation = Simulation(self.scene, EventDriven(), SEED, initial=self.start)
         times, counts = [0.0], [0.0]
         while times[-1] < _FALL * self.crossing and counts[-1] < _COLLIDED * self.scene.count:
-            simulation.advance(duration=0.25 * self.crossing)
+            simulation.advance(duration=self.crossing / 32.0)
             times.append(simulation.time)
             counts.append(2.0 * float(simulation.tally.collisions))
-        half = len(times) // 2
+        half = (len(times) - 1) // 2
         return (counts[-1] - counts[half]) / (self.scene.count * (times[-1] - times[half]))
 
     @cached_property
