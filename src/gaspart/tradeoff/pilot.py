@@ -129,19 +129,26 @@ def _speed_of_sampling(target: Target, engine: Engine) -> float:
     with TemporaryDirectory() as folder:
         for name in ("first.nc", "second.nc"):
             start = time.process_time()
-            _make(f"{folder}/{name}", target, engine, (_TIMED * interval, interval, correlations))
+            scheduled = _TIMED * interval, interval, correlations
+            _make(f"{folder}/{name}", target, engine, scheduled, target.needs_paths)
             took = time.process_time() - start
     return took / (_TIMED * interval)
 
 
 def _make(
-    path: str | Path, target: Target, engine: Engine, scheduled: tuple[float, float, Correlations | None]
+    path: str | Path,
+    target: Target,
+    engine: Engine,
+    scheduled: tuple[float, float, Correlations | None],
+    displacements: bool = True,
 ) -> Path:
-    """Run a target as scheduled: duration, time between frames, correlations."""
+    """Run a target as scheduled: duration, time between frames, correlations. displacements: kept by pilots,
+    which serve other observables too."""
     duration, interval, correlations = scheduled
     recipe = Recipe(
         target.scene, engine, SEED, duration, interval,
-        displacements=True, correlations=correlations, pairs=target.observable in PAIRS, initial=target.start,
+        displacements=displacements, correlations=correlations,
+        pairs=target.observable in PAIRS, initial=target.start,
     )  # fmt: skip
     return record(recipe, path, Manner(overwrite=True))
 
