@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from theory.brackets import brackets, collisions, temperature_jump, velocity_slip
+from theory.half_space import temperature_jump, velocity_slip
 
 from gaspart import theory
 from gaspart.theory import heat, shear
+from gaspart.theory.boltzmann import brackets, collisions
 
 
 @pytest.mark.parametrize(("dimension", "orders", "nodes"), [(2, 5, 12), (3, 4, 8)])

@@ -36,6 +36,17 @@ def _kinetic(dilute: float, factor: float, packing_fraction: Numbers, dimension:
     return dilute / contact * (1.0 + factor * excess / (dimension + 2)) ** 2
 
 
+def kinetic_viscosity(packing_fraction: Numbers, dimension: int) -> Values:
+    """The part of `enskog_viscosity` that the kinetic stress makes, the first term, which relaxes within some
+    collisions. Units: diameter = mass = k_B T = 1."""
+    return _kinetic(_DILUTE_VISCOSITY[dimension], 2.0, packing_fraction, dimension)
+
+
+def kinetic_conductivity(packing_fraction: Numbers, dimension: int) -> Values:
+    """Likewise that of `enskog_conductivity`."""
+    return _kinetic(_DILUTE_CONDUCTIVITY[dimension], 3.0, packing_fraction, dimension)
+
+
 @checked
 def collision_rate(
     packing_fraction: Numbers,
@@ -136,9 +147,8 @@ def enskog_viscosity(
     sqrt(m k_B T) / sigma^(d-1)). 3D: eta_0 [1/chi + 0.8 b + 0.7615 b^2 chi]; 2D: eta_0 [1/chi + b + 0.8729
     b^2 chi] (Gass). Good to a few per cent to eta = 0.3 (3D), too low beyond. Unit mass length^(2-d) / time.
     """
-    checked_dimension(dimension)
-    dilute = _DILUTE_VISCOSITY[dimension] * math.sqrt(mass * temperature) / diameter ** (dimension - 1)
-    kinetic = _kinetic(dilute, 2.0, packing_fraction, dimension)
+    unit = math.sqrt(mass * temperature) / diameter ** (checked_dimension(dimension) - 1)
+    kinetic = unit * kinetic_viscosity(packing_fraction, dimension)
     bulk = enskog_bulk_viscosity(packing_fraction, dimension, diameter, temperature, mass)
     return kinetic + dimension / (dimension + 2) * bulk
 
@@ -175,9 +185,8 @@ def enskog_conductivity(
     sqrt(T / m) / sigma^(d-1)). 3D: lambda_0 [1/chi + 1.2 b + 0.7574 b^2 chi]; 2D: lambda_0 [1/chi + 1.5 b +
     0.8716 b^2 chi]. Unit 1 / (length^(d-2) time), with k_B = 1.
     """
-    checked_dimension(dimension)
-    dilute = _DILUTE_CONDUCTIVITY[dimension] * math.sqrt(temperature / mass) / diameter ** (dimension - 1)
-    kinetic = _kinetic(dilute, 3.0, packing_fraction, dimension)
+    unit = math.sqrt(temperature / mass) / diameter ** (checked_dimension(dimension) - 1)
+    kinetic = unit * kinetic_conductivity(packing_fraction, dimension)
     bulk = enskog_bulk_viscosity(packing_fraction, dimension, diameter, temperature, mass)
     return kinetic + 0.5 * dimension / mass * bulk
 

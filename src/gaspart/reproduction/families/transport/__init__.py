@@ -11,6 +11,6 @@ FIGURES: dict[str, dict] = {
         "viscosity_from": positive(
             "collisions of a particle from which on the integral's growth is compared"
         ),
-        "conductivity_from": positive("the same of the heat flux, whose first order holds later"),
+        "conductivity_from": positive("the same of the heat flux, which relaxes half as fast"),
     },
 }

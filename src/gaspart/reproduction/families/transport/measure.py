@@ -15,7 +15,7 @@ import xarray as xr
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.run import Run
-from gaspart.analysis.statistics import fit_polynomial, mean_of, means_of
+from gaspart.analysis.statistics import mean_of, means_of
 from gaspart.analysis.transport import green_kubo, helfand
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.rows import entries, from_rows
@@ -26,8 +26,8 @@ from gaspart.trajectory.reading import open_trajectory
 QUANTITIES = {"shear": "viscosity", "heat": "conductivity"}
 """What the correlation of each flux makes."""
 ENSKOG = {"viscosity": theory.enskog_viscosity, "conductivity": theory.enskog_conductivity}
-EARLY = 5.0
-"""Collisions of a particle after which containers of different sizes differ by their uniform modes only."""
+LONGER = 2.0
+"""Mean free paths: if only longer waves count, the modes' growth differs by the theory's uncertainty."""
 LATE = 0.5
 """Part of the longest lag from which on the squared change of Helfand's sum is taken to grow evenly."""
 
@@ -120,27 +120,24 @@ def _growth(lags: np.ndarray, slopes: np.ndarray) -> float:
 
 
 def logarithmic_growth(points: list[Point], settings: dict) -> xr.Dataset:
-    """How much the integrals of discs grow with time and with the container, beside hydrodynamic modes.
+    """How much the integrals of discs grow with time, beside hydrodynamic modes.
 
     settings: `viscosity_from` and `conductivity_from`, collisions of a particle from which on they are
     compared. Over `point`: count, packing_fraction, sound (collisions until sound has crossed the container);
     over `lag` too: time, in collisions. Of each quantity, "viscosity" and "conductivity", over Enskog's: its
     integral until each time (lag,) and `_error`; _modes (lag,), the modes of the container, with the height
-    of the integrals from then on (NaN before); _amplitude, the factor of the modes that fits these increments
-    best, with `_error` and `_freedom`. If there are several sizes, of the integral until the last time, over
-    what a dilute gas of so many particles has: _size_slope against ln N, `_error`, `_freedom`, _size_expected
-    by the modes, and _size_allowance, half of what that factor changes the slope. Raises SceneError for
-    spheres, and for discs whose diameter or temperature is not 1.
+    of the integrals from then on (NaN before); _growth, how much the integral grows until the last time over
+    how much its modes do, with `_error` and `_freedom`; _short_waves, the part of that which waves of one to
+    two mean free paths make. Raises SceneError for spheres, and for discs whose diameter or temperature is
+    not 1.
     """
     starts = {"viscosity": settings["viscosity_from"], "conductivity": settings["conductivity_from"]}
     rows = [_growing(point, starts) for point in points]
-    found = from_rows("point", rows, ("lag",), {"time": "collisions per particle"})
-    return found if len(rows) < 2 else found.assign(entries(_sizes(found)) | _expected_sizes(found))
+    return from_rows("point", rows, ("lag",), {"time": "collisions per particle"})
 
 
 def _growing(point: Point, starts: dict[str, float]) -> dict:
-    """One point of `logarithmic_growth`, and `_last` and its `_error`, `_last_expected` and `_finite`, of
-    which the slopes against ln N are made."""
+    """One point of `logarithmic_growth`."""
     gas, lengths = plain_gas(point.scene), point.scene.container.lengths
     if gas.dimension != 2 or gas.diameter != 1.0 or gas.temperature != 1.0:
         raise SceneError(f"experiments.{point.experiment}", "gas", "must be discs of diameter and k_B T 1")
@@ -153,20 +150,19 @@ def _growing(point: Point, starts: dict[str, float]) -> dict:
         samples /= enskog
         time = end(lags)
         late = rate * time >= starts[name]
-        modes = np.where(late, theory.transport_modes(time, eta, count, name) / enskog, np.nan)
-        steps = np.diff(modes[late])
-        amplitude = mean_of((np.diff(samples[:, late]) @ steps / (steps @ steps)).tolist())
+        modes, longer = (
+            theory.transport_modes(time, eta, count, name, shortest)[late] / enskog
+            for shortest in (1.0, LONGER)
+        )
+        grown = samples[:, late]
         values, errors = means_of(samples)
-        finite = theory.transport_finite_size_factor(count, 2, name)
-        last = mean_of((samples[:, -1] / finite).tolist())
-        first = theory.transport_modes(EARLY / rate, eta, count, name)
-        taken = theory.transport_uniform_mode(eta, count, name) * EARLY / rate
+        drawn = np.full(len(time), np.nan)
+        drawn[late] = modes + np.mean(values[late] - modes)
         row |= {
-            **entries({f"{name}_amplitude": amplitude, f"{name}_last": last}),
+            **entries({f"{name}_growth": mean_of((grown[:, -1] - grown[:, 0]) / (modes[-1] - modes[0]))}),
             **entries({name: (values, errors)}),
-            f"{name}_modes": modes + np.mean((values - modes)[late]),
-            f"{name}_last_expected": modes[-1] - (first + taken) / enskog,
-            f"{name}_finite": finite,
+            f"{name}_modes": drawn,
+            f"{name}_short_waves": 1.0 - (longer[-1] - longer[0]) / (modes[-1] - modes[0]),
         }
     sound = rate * lengths[0] / float(theory.speed_of_sound(eta, 2))
     return {"count": count, "packing_fraction": eta, "sound": sound, "time": rate * time, **row}
@@ -181,25 +177,3 @@ def _integrals(point: Point, flux: str) -> tuple[np.ndarray, np.ndarray]:
             lags = trajectory["lag"].values
             blocks += list(green_kubo(run, flux))
     return lags, np.array(blocks)
-
-
-def _sizes(found: xr.Dataset) -> dict[str, Estimate]:
-    """The slopes of the last integrals against ln N."""
-    slopes = {}
-    for name in QUANTITIES.values():
-        errors, freedoms = found[f"{name}_last_error"], found[f"{name}_last_freedom"]
-        fit = fit_polynomial(np.log(found["count"]), found[f"{name}_last"], errors, freedoms=freedoms)
-        slopes[f"{name}_size_slope"] = fit.estimate(1)
-    return slopes
-
-
-def _expected_sizes(found: xr.Dataset) -> dict[str, float]:
-    """The same slopes by the modes, and half of those of the factor of a dilute gas."""
-    slopes = {}
-    for name in QUANTITIES.values():
-        parts = {"size_expected": (1.0, "last_expected"), "size_allowance": (0.5, "finite")}
-        for key, (factor, column) in parts.items():
-            errors = found[f"{name}_last_error"]
-            fit = fit_polynomial(np.log(found["count"]), found[f"{name}_{column}"], errors)
-            slopes[f"{name}_{key}"] = factor * fit.estimate(1).value
-    return slopes

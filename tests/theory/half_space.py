@@ -1,69 +1,11 @@
-"""Collision integrals of hard discs and spheres by exact quadrature, and what follows: the numbers that
-gaspart.theory has from the literature are derived again from them.
-
-Velocities are in sqrt(T / m), frequencies per n sigma^(d-1) of them. The normal of all collisions is the last
-axis: integrands are scalars, so that nothing depends on its direction.
-"""
+"""Half spaces of a gas of hard spheres by moments: numbers that gaspart.theory has from the literature are
+derived again from the collision integrals of `gaspart.theory.boltzmann`, in its units."""
 
 import numpy as np
 from scipy.linalg import eig
-from scipy.special import (
-    eval_genlaguerre,
-    eval_legendre,
-    lpmv,
-    roots_genlaguerre,
-    roots_hermitenorm,
-    roots_laguerre,
-)
+from scipy.special import eval_genlaguerre, lpmv, roots_genlaguerre
 
-
-def collisions(dimension, nodes, restitution=1.0):
-    """Weights (Q,) and the velocities (d, Q) of both particles before and after, of all collisions of two
-    Maxwellian particles in which max(g.n, 0) counts. Exact for polynomials of a degree below 2 nodes in each
-    component."""
-    place, share = roots_hermitenorm(nodes)
-    share = share / np.sqrt(2.0 * np.pi)
-    energy, weight = roots_laguerre(nodes)  # of the approach, half the square of its speed over sqrt 2
-    free = 2 * (dimension - 1) + 1
-    axes = [part.ravel() for part in np.meshgrid(*[place] * free, np.sqrt(2.0 * energy), indexing="ij")]
-    shares = np.meshgrid(*[share] * free, weight / np.sqrt(np.pi), indexing="ij")
-    first, second = axes[: dimension - 1], axes[dimension - 1 : 2 * dimension - 2]
-    along = [(axes[-2] + sign * axes[-1]) / np.sqrt(2.0) for sign in (1, -1)]
-    kick = 0.5 * (1.0 + restitution) * (along[0] - along[1])
-    surface = 2.0 * np.pi * (dimension - 1)
-    velocities = [
-        np.array([*across, normal])
-        for across, normal in zip(
-            (first, second, first, second), (*along, along[0] - kick, along[1] + kick), strict=True
-        )
-    ]
-    return surface * np.prod(shares, axis=0).ravel(), velocities
-
-
-def brackets(rank, orders, met, tagged=False):
-    """(K, K) collision integrals between S_k(v^2/2) times the harmonic tensor of this rank, contracted, for
-    Sonine polynomials of the given orders; of one tagged particle, or of a gas."""
-    weights, velocities = met
-    dimension = len(velocities[0])
-    sonine = [
-        [eval_genlaguerre(order, rank + 0.5 * dimension - 1.0, 0.5 * (v**2).sum(axis=0)) for order in orders]
-        for v in velocities
-    ]
-    signs, total = (-1, -1, 1, 1), np.zeros((len(orders), len(orders)))
-    which = (0, 2) if tagged else range(4)
-    for i in which:
-        for j in which:
-            factor = signs[i] * signs[j] * weights * _contraction(rank, velocities[i], velocities[j])
-            total += [[factor @ (a * b) for b in sonine[j]] for a in sonine[i]]
-    return total * (0.5 if tagged else 0.25)
-
-
-def _contraction(rank, v, w):
-    """|v|^l |w|^l P_l of their angle, in two dimensions cos(l angle)."""
-    size = np.sqrt((v**2).sum(axis=0) * (w**2).sum(axis=0))
-    cosine = np.clip((v * w).sum(axis=0) / np.maximum(size, 1e-300), -1.0, 1.0)
-    angular = eval_legendre(rank, cosine) if len(v) == 3 else np.cos(rank * np.arccos(cosine))
-    return size**rank * angular
+from gaspart.theory.boltzmann import brackets, collisions
 
 
 def temperature_jump(highest, nodes):
