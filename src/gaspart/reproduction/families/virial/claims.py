@@ -20,7 +20,7 @@ REFERENCE = {
 }
 REFERENCE_ERROR = {
     2: "of the virial coefficients ([Clisby 2006]), and the tail's distance from Liu's equation",
-    3: "distance from the equation of etomica (theory.compressibility_uncertainty), or from the series, if less",
+    3: "its distance from the equation of etomica, or from the virial series, if less",
 }
 EXACT = {
     2: "exact: [source C], Eq. 48 ([Rowlinson 1964], [Hemmer 1965])",
