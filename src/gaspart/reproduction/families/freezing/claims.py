@@ -204,7 +204,7 @@ def _branch(at: xr.Dataset, melting: float) -> Claim:
         expected=Estimate(reference, allowance),
         required=2e-3 * reference,
         source="[Speedy 1998], by SklogWiki's table of coefficients" if solid else "[Kolafa 2004]",
-        allowance_source="" if solid else "its distance from the equation of etomica, or from the virial series",
+        allowance_source="" if solid else "its distance from etomica's equation, or from the virial series",
         no_verdict="a superheated crystal, which may be melting" if superheated else "",
         fails_if="contacts are missed, defects, or the other phase has begun to grow",
     )
