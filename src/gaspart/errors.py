@@ -8,6 +8,7 @@ from itertools import islice
 from types import ModuleType
 
 _LONGEST = {"value": 120, "key": 200, "rule": 2000, "file": 1000}
+_FIRST_BYTE, _LAST_BYTE = "\udca0", "\udcff"  # as Python reads 0xa0 to 0xff in a name that is not UTF-8
 _ITEMS, _DEPTH, _BITS = 12, 4, 256  # shown of a collection; of nested ones; of an integer
 
 
@@ -108,11 +109,28 @@ def _joined(items: Iterable[str], count: int, depth: int) -> str:
 
 
 def _one_line(text: object, longest: int) -> str:
-    """`text` without line breaks and other unprintable characters; the middle of a long one is left out."""
+    """`visible` text; the middle of a long one is left out."""
     line = str(text)
     if len(line) > longest:
         tail = longest // 4
         line = f"{line[: longest - tail - 3]}...{line[-tail:]}"
+    return visible(line)
+
+
+def visible(text: object, names: bool = False) -> str:
+    """`text` as one line, in which what a terminal would not show as it is, or obey, is escaped: line breaks,
+    control and formatting characters, such as those that reverse the direction of writing.
+
+    Everything that a command prints passes through it, since text of files is that of strangers. names: bytes
+    of file names that are not UTF-8 are kept, unless one of them is a control character by itself.
+    """
+    line = str(text)
     if line.isprintable():
         return line
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in line)
+    return "".join(
+        c if c.isprintable() or (names and _FIRST_BYTE <= c <= _LAST_BYTE) else _escaped(c) for c in line
+    )
+
+
+def _escaped(character: str) -> str:
+    return character.encode("unicode_escape").decode()

@@ -6,6 +6,7 @@ import ctypes
 import errno
 import hashlib
 import os
+import re
 import secrets
 import socket
 import stat
@@ -13,13 +14,17 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO
+from typing import IO, BinaryIO
 
 from gaspart.errors import SceneError
 from gaspart.interruption import scratch_file
 
 _HERE, _NO_REPLACE = -100, 1
 """AT_FDCWD and RENAME_NOREPLACE of Linux's renameat2."""
+
+_KINDS = {stat.S_IFIFO: "a pipe", stat.S_IFSOCK: "a socket", stat.S_IFLNK: "a link"}
+_SCRATCH = re.compile(r"\.gaspart-[0-9a-f]{12}-(\d+)-[0-9a-f]{8}\.partial")
+"""The name of a scratch file, with the number of the process that writes it."""
 
 OVERWRITE = "overwrite it (overwrite=True)"
 """What the rule of a file that exists proposes; the command line has its own option for it."""
@@ -37,7 +42,7 @@ def begins_with(*beginnings: bytes, at: int = 0) -> Callable[[Path], bool]:
     """A test of a file's content: whether one of `beginnings` is in it, `at` bytes from its start."""
 
     def recognises(path: Path) -> bool:
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             file.seek(at)
             return file.read(max(map(len, beginnings))).startswith(beginnings)
 
@@ -50,6 +55,40 @@ def output_path(path: str | Path) -> Path:
     if os.path.basename(text) in ("", ".", "..") or "\0" in text:
         raise SceneError("path", text, "must be the name of a file")
     return Path(text)
+
+
+def open_regular(path: str | Path, follow: bool = True) -> BinaryIO:
+    """A file, open to read: the one way in which input is opened.
+
+    Raises OSError, also for a folder, pipe, socket or device, which could block or never end, and, without
+    `follow`, for a link; ValueError for a name that holds a NUL.
+    """
+    _require_regular(os.stat(path, follow_symlinks=follow), path)  # before: some devices act when opened
+    flags = os.O_NONBLOCK | (0 if follow else os.O_NOFOLLOW)
+    file = open(path, "rb", opener=lambda name, mode: os.open(name, mode | flags))  # noqa: SIM115
+    try:
+        _require_regular(os.fstat(file.fileno()), path)
+    except OSError:
+        file.close()
+        raise
+    return file
+
+
+def _require_regular(found: os.stat_result, path: str | Path) -> None:
+    """Raise OSError for what is no regular file."""
+    if stat.S_ISDIR(found.st_mode):
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    if not stat.S_ISREG(found.st_mode):
+        kind = _KINDS.get(stat.S_IFMT(found.st_mode), "a device")
+        raise OSError(errno.EINVAL, f"it is {kind}, not a regular file", str(path))
+
+
+def is_same_file(one: str | Path, other: str | Path) -> bool:
+    """Whether two names are those of one file, through links and other spellings too; False if there is none."""
+    try:
+        return os.path.samefile(one, other)
+    except (OSError, ValueError):
+        return False
 
 
 def descriptor_path(file: IO[bytes]) -> str:
@@ -86,16 +125,33 @@ def place(scratch: Path, path: Path, kind: Kind | None, overwrite: bool) -> None
             return _rename_to_new(scratch, path)
 
 
+def remove_own(path: Path, kind: Kind) -> None:
+    """Remove a file of this kind, by its content, and what a killed process left of one. Nothing else is
+    removed: no link, no folder, no other file. May raise OSError."""
+    _remove_remainders(path)
+    with suppress(FileNotFoundError, SceneError):
+        if may_replace(path, kind, overwrite=True):
+            path.unlink()
+
+
+def place_folder(scratch: Path, path: Path) -> None:
+    """Rename a folder to `path`, where there is nothing. Raises FileExistsError, and other OSErrors."""
+    _rename_to_new(scratch, path)
+
+
 def _rename_to_new(old: Path, new: Path) -> None:
-    """Rename a file without replacing one. Raises FileExistsError where there is one."""
+    """Rename a file or folder without replacing one. Raises FileExistsError where there is one."""
     rename = getattr(ctypes.CDLL(None, use_errno=True), "renameat2", None)
     if rename and rename(_HERE, os.fsencode(old), _HERE, os.fsencode(new), _NO_REPLACE) == 0:
         return
     code = ctypes.get_errno() if rename else errno.ENOSYS
     if code not in (errno.ENOSYS, errno.EINVAL, errno.EOPNOTSUPP):
         raise OSError(code, os.strerror(code), str(new))
-    # Not supported by this file system or C library: a new, empty file is replaced instead.
-    os.close(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
+    # Not supported by this file system or C library: a new, empty one is replaced instead.
+    if old.is_dir():
+        new.mkdir()
+    else:
+        os.close(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
     os.replace(old, new)
 
 
@@ -133,17 +189,37 @@ def whole_file(path: str | Path) -> AbstractContextManager[Path]:
 @contextmanager
 def scratch_beside(path: Path) -> Iterator[Path]:
     """A new file next to `path`, used by this process only, and removed at the end."""
-    of = hashlib.sha256(os.fsencode(path.name) + socket.gethostname().encode()).hexdigest()[:12]
-    for old in path.parent.glob(f".gaspart-{of}-*.partial"):
-        if not _is_running(old.name.split("-")[2]):
-            old.unlink(missing_ok=True)
-    scratch = path.with_name(f".gaspart-{of}-{os.getpid()}-{secrets.token_hex(4)}.partial")
+    _remove_remainders(path)
+    scratch = path.with_name(f"{_beginning(path)}{os.getpid()}-{secrets.token_hex(4)}.partial")
     with scratch_file(scratch):
         os.close(os.open(scratch, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
         try:
             yield scratch
         finally:
             scratch.unlink(missing_ok=True)
+
+
+def _beginning(path: Path) -> str:
+    """How the names of scratch files for `path` on this machine begin."""
+    of = hashlib.sha256(os.fsencode(path.name) + socket.gethostname().encode()).hexdigest()[:12]
+    return f".gaspart-{of}-"
+
+
+def _remove_remainders(path: Path) -> None:
+    """Remove the scratch files that killed processes of this user have left for `path`."""
+    for old in path.parent.glob(f"{_beginning(path)}*.partial"):
+        with suppress(OSError):
+            if is_remainder(old):
+                old.unlink()
+
+
+def is_remainder(path: Path) -> bool:
+    """Whether this is a scratch file that a process of this user has left which does not run any more."""
+    name = _SCRATCH.fullmatch(path.name)
+    if name is None or _is_running(name[1]):
+        return False
+    found = path.lstat()
+    return stat.S_ISREG(found.st_mode) and found.st_nlink == 1 and found.st_uid == os.geteuid()
 
 
 def _is_running(process: str) -> bool:

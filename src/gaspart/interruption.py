@@ -18,6 +18,8 @@ import threading
 import time
 from contextlib import contextmanager, suppress
 
+from gaspart.errors import visible
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:  # no slow imports: until the handlers are set, Ctrl-C gives a traceback
     from collections.abc import Callable, Iterator
@@ -151,7 +153,7 @@ def interrupted(signum: int = signal.SIGINT) -> str:
 
 def set_note(text: str) -> None:
     """Set the statement of the work that is kept, for the line that is printed at an interruption."""
-    _process.note = text
+    _process.note = visible(text)
 
 
 @contextmanager

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gaspart.errors import SceneError
-from gaspart.files import whole_file
+from gaspart.files import open_regular, whole_file
 
 if TYPE_CHECKING:
     import yaml
@@ -32,7 +32,7 @@ _MERGING = object()  # marks the key <<
 def read_yaml(path: str | Path) -> Any:
     """The content of a YAML file. Raises SceneError, naming the file, if it cannot be read."""
     try:
-        with open(os.fspath(path), "rb") as file:  # not Path, which accepts `file.yaml/`
+        with open_regular(os.fspath(path)) as file:  # not Path, which accepts `file.yaml/`
             text = file.read(MOST_BYTES + 1).decode("utf-8")
     except OSError as error:
         raise SceneError("file", str(path), f"cannot be read: {error.strerror}") from None

@@ -153,10 +153,13 @@ def test_a_run_that_another_process_finishes_meanwhile(tmp_path, monkeypatch, co
 
 def test_a_run_killed_while_its_header_was_written_begins_again(tmp_path):
     path = tmp_path / "run.nc"
-    partial_path(path).write_bytes(bytes(4) + b"half a header")
-    gp.run(gas(2, 10, 0.1), gp.EventDriven(), 1, 1.0, 0.5, path)
-    with gp.open_trajectory(path) as data:
-        assert data.sizes["frame"] == 3
+    recipe = (gas(2, 10, 0.1), gp.EventDriven(), 1, 1.0, 0.5)
+    complete = gp.run(*recipe, path).read_bytes()
+    for length in (1, 4, 13, 20, 24, 30, 500):  # of which the first word is written last
+        path.unlink()
+        partial_path(path).write_bytes((bytes(8) + complete[8:])[:length])
+        assert gp.run(*recipe, path).read_bytes() == complete
+    assert list(tmp_path.iterdir()) == [path]
 
 
 def test_files_that_are_no_trajectories(tmp_path):
@@ -267,7 +270,19 @@ def test_progress_is_reported(tmp_path, monkeypatch):
 def test_a_damaged_checkpoint_costs_the_work_and_nothing_else(tmp_path):
     scene, path = gas(2, 10, 0.1), tmp_path / "run.nc"
     complete = gp.run(scene, gp.EventDriven(), 1, 2.0, 0.5, path).read_bytes()
-    for spoilt in (b"", b"PK\x03\x04 not a zip file", complete):
+    kept = gp.run(scene, gp.EventDriven(), 1, 2.0, 0.5, tmp_path / "kept.nc", keep_checkpoint=True)
+    written = checkpoint_path(kept).read_bytes()
+    checkpoint_path(kept).unlink()
+    kept.unlink()
+    for spoilt in (
+        b"",
+        written[:4],
+        written[:20],
+        written[:200],
+        written[:-1],
+        written[200:],
+        bytes(200) + written,
+    ):
         path.rename(partial_path(path))
         checkpoint_path(path).write_bytes(spoilt)
         assert gp.resume(path).read_bytes() == complete

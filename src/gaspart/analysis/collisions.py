@@ -20,7 +20,7 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
 from gaspart.engines import EventDriven
 from gaspart.errors import SceneError, SimulationError
-from gaspart.files import Kind, begins_with, descriptor_path, writing
+from gaspart.files import Kind, begins_with, descriptor_path, open_regular, writing
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.validation import count_of, number
@@ -117,7 +117,7 @@ def _is_collision_data(path: Path) -> bool:
     if not begins_with(b"CDF\x02", b"\x89HDF")(path):  # older versions wrote netCDF-4
         return False
     try:
-        with path.open("rb") as opened, netCDF4.Dataset(descriptor_path(opened)) as file:
+        with open_regular(path) as opened, netCDF4.Dataset(descriptor_path(opened)) as file:
             return set(_ABOUT) <= set(file.variables) and "gaspart_revision" in file.ncattrs()
     except (OSError, RuntimeError):
         return False

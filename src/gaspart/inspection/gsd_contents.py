@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from gaspart.errors import SceneError, optional
-from gaspart.files import descriptor_path
+from gaspart.files import descriptor_path, open_regular
 from gaspart.inspection.contents import Contents, Given
 
 _TOPOLOGY = ("bonds", "angles", "dihedrals", "impropers", "constraints", "pairs")
@@ -23,7 +23,7 @@ def read_gsd(path: Path, given: Given) -> Contents:
     library raises for a file that cannot be read.
     """
     hoomd = optional("gsd.hoomd", "gsd", "GSD files")
-    with path.open("rb") as opened_file, hoomd.open(descriptor_path(opened_file), "r") as file:
+    with open_regular(path) as opened_file, hoomd.open(descriptor_path(opened_file), "r") as file:
         frames = list(file)
         chunks = set(file.file.find_matching_chunk_names(""))
         old = _old_radii(file.file, chunks, path)

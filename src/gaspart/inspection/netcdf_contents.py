@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.files import open_regular
 from gaspart.inspection.contents import Contents, Given
 from gaspart.inspection.netcdf_size import needed_bytes
 from gaspart.scene.shear import fixed_images
@@ -46,7 +47,7 @@ def read_netcdf(path: Path, given: Given) -> Contents:
 
 def _is_own(path: Path) -> bool:
     """Whether gaspart wrote a file. Several attributes are tried, so that damage to one does not hide it."""
-    with path.open("rb") as file:
+    with open_regular(path) as file:
         head = file.read(4096)
     return any(name.encode() in head for name in BOOKKEEPING)
 
@@ -54,7 +55,7 @@ def _is_own(path: Path) -> bool:
 @contextmanager
 def _foreign(path: Path) -> Iterator[Any]:
     """A netCDF file of another program. Refused: one that ends before its last value."""
-    with path.open("rb") as file:
+    with open_regular(path) as file:
         needed, size = needed_bytes(file), os.fstat(file.fileno()).st_size
         if needed is not None and size < needed:
             rule = f"is truncated: {size} bytes, where its header states {needed}"

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.files import open_regular
 from gaspart.inspection.contents import Given, complete_frames
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.gsd_contents import read_gsd
@@ -44,8 +45,7 @@ def read_frames(
         raise SceneError("file", str(path), f"must end in {', '.join(KINDS)}")
     given = Given(radius, lengths, boundary, time_step)
     try:
-        with path.open("rb"):
-            pass
+        open_regular(path).close()
         with np.errstate(all="ignore"):  # values that are not finite are refused
             return complete_frames(reader(path, given), given, str(path))
     except SceneError:

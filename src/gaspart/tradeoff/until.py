@@ -11,12 +11,15 @@ from pathlib import Path
 from gaspart.analysis.names import PATHS
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
+from gaspart.files import is_same_file, output_path
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 from gaspart.tradeoff.reached import Examiner, Reached
 from gaspart.trajectory import run as trajectory
+from gaspart.trajectory.checkpoint import checkpoint_path
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.last_state import last_state
+from gaspart.trajectory.partial import partial_path
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.recording import Progress
 from gaspart.trajectory.until import Accuracy, Until
@@ -77,11 +80,23 @@ def run(
         displacements = displacements or asked.observable in PATHS
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
-    start = last_state(initial) if isinstance(initial, str | Path) else initial
+    path = _required(path)
+    start = _start(initial, path) if isinstance(initial, str | Path) else initial
     settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations
     recipe = Recipe(*settings, until=wanted, pairs=pairs, initial=start)
     manner = trajectory.Manner(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
-    return trajectory.record(recipe, _required(path), manner)
+    return trajectory.record(recipe, path, manner)
+
+
+def _start(initial: str | Path, path: str | Path) -> State:
+    """The last state of a run, to start another one at `path` from. Raises SceneError if that is the same
+    file, by whatever name: it would be lost."""
+    output = output_path(path)
+    for place in (output, partial_path(output), checkpoint_path(output)):
+        if is_same_file(initial, place):
+            rule = f"is the file that is to be written, {path}: choose another name for the new run"
+            raise SceneError("initial", str(initial), rule)
+    return last_state(initial)
 
 
 def _required(path: str | Path | None) -> str | Path:

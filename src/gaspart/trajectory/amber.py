@@ -50,6 +50,10 @@ _OF_INITIAL = ("particle", "component")
 BOOKKEEPING = ("header_bytes", "header_crc32", "frame_bytes")
 """Attributes by which a file is checked: sizes of the header and of a frame, and the header's checksum."""
 MOST_FRAMES = 2**31 - 1
+_UNFINISHED = bytes(2 * WORD) + struct.pack(">I", 10)
+"""How a file begins before its first word is written: that, no frames, and the tag of a list of dimensions."""
+_FIRST_NAME = struct.pack(">I", 5) + b"frame"
+"""What follows the number of dimensions: the name of the first one."""
 
 
 def counters(engine: Engine, also: Collection[str] = ()) -> tuple[str, ...]:
@@ -234,6 +238,10 @@ def same_header(file: BinaryIO, header: bytes) -> bool:
 
 
 def is_blank(file: BinaryIO) -> bool:
-    """Whether a file is empty, or its header was never finished."""
+    """Whether a file is empty, or its header was never finished: the first word is written last. What
+    follows is compared too, since a file of zeros may be anybody's."""
     file.seek(0)
-    return not any(file.read(len(MAGIC)))
+    start = file.read(len(_UNFINISHED) + WORD + len(_FIRST_NAME))
+    return _UNFINISHED.startswith(start[: len(_UNFINISHED)]) and _FIRST_NAME.startswith(
+        start[len(_UNFINISHED) + WORD :]
+    )

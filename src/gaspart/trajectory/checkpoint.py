@@ -13,7 +13,14 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
+from gaspart.errors import SceneError
+from gaspart.files import Kind, open_regular, place, remove_own, scratch_beside
+
 _DIGEST, _FRAMES = "trajectory header", "trajectory frames"
+_MARKS = tuple(f"{name}.npy".encode() for name in (_DIGEST, _FRAMES))
+"""Names of parts that every checkpoint has, at its beginning and in the directory at its end."""
+_NEAR = 1 << 16  # bytes from either end within which they are
+_LEAST = 64  # bytes; a shorter file has not even the first name
 _COMMENT_LENGTH, _CHECKSUM = struct.Struct("<H"), struct.Struct("<I")  # the end of a zip file
 
 
@@ -30,56 +37,90 @@ def checkpoint_path(path: Path) -> Path:
     return path.with_name(path.name + ".checkpoint.npz")
 
 
+def _is_checkpoint(path: Path) -> bool:
+    """Whether a file was written by `write_checkpoint`, even if it was damaged since."""
+    with open_regular(path) as file:
+        start = file.read(_NEAR)
+        size = file.seek(0, os.SEEK_END)
+        file.seek(max(0, size - _NEAR))
+        end = file.read()
+    if size < _LEAST:
+        return start.startswith(b"PK\x03\x04"[:size])
+    return any(mark in part for mark in _MARKS for part in (start, end))
+
+
+CHECKPOINT = Kind("a checkpoint written by gaspart", _is_checkpoint)
+
+
 def _digest(header: bytes) -> str:
     return hashlib.sha256(header).hexdigest()
 
 
-def _new(path: Path) -> Path:
-    return path.with_name(path.name + ".new")
-
-
 def remove_checkpoint(path: Path) -> None:
-    """Remove a checkpoint that is not needed any more, and the rest of an unfinished one."""
-    path.unlink(missing_ok=True)
-    _new(path).unlink(missing_ok=True)
+    """Remove a checkpoint that is not needed any more, and the rest of an unfinished one; no other file."""
+    remove_own(path, CHECKPOINT)
 
 
 def write_checkpoint(path: Path, header: bytes, frames: int, arrays: dict[str, Any]) -> None:
-    """Write the checkpoint of a run, identified by the header of its trajectory. May raise OSError.
+    """Write the checkpoint of a run, identified by the header of its trajectory.
 
-    It is a zip file of arrays (.npz) whose comment, at the end, is a checksum of all before it.
+    It is a zip file of arrays (.npz) whose comment, at the end, is a checksum of all before it. May raise
+    OSError, and SceneError for a file at `path` that is no checkpoint, which is never replaced.
     """
-    new = _new(path)
-    try:
-        with new.open("w+b") as file:
+    with scratch_beside(path) as new:
+        with new.open("r+b") as file:
             parts: dict[str, Any] = {_DIGEST: np.array(_digest(header)), _FRAMES: np.array(frames)}
-            np.savez(file, **arrays, **parts)
+            np.savez(file, **parts, **arrays)
             file.seek(-_COMMENT_LENGTH.size, os.SEEK_END)
             file.write(_COMMENT_LENGTH.pack(_CHECKSUM.size))
             file.write(_CHECKSUM.pack(_checksum(file)))
             file.flush()
             os.fsync(file.fileno())
-        os.replace(new, path)
-    except OSError:
-        new.unlink(missing_ok=True)
-        raise
+        place(new, path, CHECKPOINT, overwrite=True)
 
 
 def read_checkpoint(path: Path, header: bytes) -> Checkpoint | None:
-    """The checkpoint of the run with this header, or None if there is none, or a damaged one."""
+    """The checkpoint of the run with this header, or None if there is none, or one that cannot be used."""
     try:
-        if not path.is_file():
-            return None
-        with path.open("rb") as file:
+        return _checkpoint(path, header)
+    except SceneError:
+        return None
+
+
+def kept_beside(path: Path, header: bytes, otherwise: str) -> Checkpoint | None:
+    """The checkpoint that was kept beside a trajectory of this header; None if there is none.
+
+    Raises SceneError for one that cannot be used: nothing less exact may silently stand for it. otherwise:
+    what is possible without it, for the message.
+    """
+    try:
+        return _checkpoint(checkpoint_path(path), header)
+    except SceneError as error:
+        raise SceneError(error.key, error.value, f"{error.rule}; {otherwise}, move it away") from None
+
+
+def _checkpoint(path: Path, header: bytes) -> Checkpoint | None:
+    """As `read_checkpoint`, but SceneError for a damaged one, one of another run, and another file."""
+    try:
+        with open_regular(path) as file:
             if not _is_intact(file):  # checked here, because zipfile and numpy raise many kinds of errors
-                return None
+                raise SceneError("file", str(path), "is a damaged checkpoint, or none of gaspart")
             file.seek(0)
             with np.load(file, allow_pickle=False) as parts:
                 arrays = {key: parts[key] for key in parts.files}
         digest, frames = str(arrays.pop(_DIGEST)), int(arrays.pop(_FRAMES))
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+    except FileNotFoundError:
         return None
-    return Checkpoint(frames, arrays) if digest == _digest(header) else None
+    except OSError as error:
+        raise SceneError("file", str(path), f"cannot be read: {error.strerror}") from None
+    except SceneError:
+        raise
+    except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        raise SceneError("file", str(path), f"is no checkpoint of gaspart: {error}") from None
+    if digest != _digest(header):
+        rule = "is the checkpoint of another run than the file beside it, or of one under way"
+        raise SceneError("file", str(path), rule)
+    return Checkpoint(frames, arrays)
 
 
 def _is_intact(file: BinaryIO) -> bool:

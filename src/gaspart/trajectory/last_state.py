@@ -8,7 +8,7 @@ from pathlib import Path
 from gaspart.errors import SceneError
 from gaspart.state.given import given_state
 from gaspart.state.state import State
-from gaspart.trajectory.checkpoint import checkpoint_path, read_checkpoint
+from gaspart.trajectory.checkpoint import kept_beside
 from gaspart.trajectory.opening import checked
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import read_recipe
@@ -19,14 +19,14 @@ def last_state(path: str | Path) -> State:
     """The state of all particles at the end of a trajectory, to look at or to start another run from.
 
     It is exact if the run had `keep_checkpoint`; otherwise positions, velocities and spins are those of the
-    last frame, in single precision. Raises SceneError for a file that `open_trajectory` refuses, and, of a
-    last frame, one that lacks particles (`follow`) or does not hold the state: of a scene with a piston,
-    vibrating or sticky faces, or vibrations.
+    last frame, in single precision. Raises SceneError for a file that `open_trajectory` refuses, for a kept
+    checkpoint that is damaged or of another run, and, of a last frame, one that lacks particles (`follow`)
+    or does not hold the state: of a scene with a piston, vibrating or sticky faces, or vibrations.
     """
     path = Path(path)
     recipe = read_recipe(path)
     with checked(path) as (_, header, frames):
-        checkpoint = read_checkpoint(checkpoint_path(path), header)
+        checkpoint = kept_beside(path, header, "to start from the last frame, in single precision")
     if checkpoint and checkpoint.frames == frames:
         simulation = simulation_of(recipe)
         simulation.restore(checkpoint.arrays)

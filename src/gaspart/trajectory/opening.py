@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from gaspart.errors import SceneError
-from gaspart.files import descriptor_path
+from gaspart.files import descriptor_path, open_regular
 from gaspart.trajectory import amber
 from gaspart.trajectory.frames import CheckedFrames, damaged_frame, frame_count
 from gaspart.trajectory.partial import PARTIAL
@@ -26,10 +25,8 @@ def checked(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
     Raises SceneError for a file of another kind, truncated, or damaged in its header.
     """
     try:
-        with open(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as file:  # a pipe must not block
+        with open_regular(path) as file:
             status = os.fstat(file.fileno())
-            if not stat.S_ISREG(status.st_mode):
-                raise ValueError("cannot be read: it is no regular file")
             if path.suffix == PARTIAL and amber.is_blank(file):
                 raise ValueError("nothing was written to it yet; start the run again with `gaspart run`")
             header, frames = amber.stored_header(file), frame_count(file)

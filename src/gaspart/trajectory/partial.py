@@ -5,12 +5,12 @@ from __future__ import annotations
 import fcntl
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
 from gaspart.errors import SceneError
-from gaspart.files import Kind
+from gaspart.files import Kind, may_replace, open_regular
 from gaspart.trajectory import amber
 
 PARTIAL = ".partial"
@@ -26,12 +26,12 @@ def partial_path(path: Path) -> Path:
 
 def is_blank(path: Path) -> bool:
     """Whether nothing was written to the file yet."""
-    with path.open("rb") as file:
+    with open_regular(path) as file:
         return amber.is_blank(file)
 
 
 def _is_trajectory(path: Path) -> bool:
-    with path.open("rb") as file:
+    with open_regular(path) as file:
         head = file.read(4096)
     return head.startswith(b"CDF") and b"AMBER" in head and b"gaspart" in head
 
@@ -52,8 +52,15 @@ def writing(path: Path) -> Iterator[None]:
 
 @contextmanager
 def locked(partial: Path) -> Iterator[BinaryIO]:
-    """The partial file, open to read and write, without a buffer, locked by this process."""
-    with open(os.open(partial, os.O_RDWR | os.O_CREAT, 0o666), "r+b", buffering=0) as file:
+    """The partial file, open to read and write, without a buffer, locked by this process.
+
+    Raises SceneError for a file that gaspart did not write, for a link, and for a file with a second name:
+    what is written to it would change what the user has under that name.
+    """
+    with suppress(FileNotFoundError):  # another process has finished it just now
+        may_replace(partial, UNFINISHED, overwrite=True)
+    descriptor = os.open(partial, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
+    with open(descriptor, "r+b", buffering=0) as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             ours = os.stat(partial).st_ino == os.fstat(file.fileno()).st_ino
@@ -61,6 +68,10 @@ def locked(partial: Path) -> Iterator[BinaryIO]:
             ours = False
         if not ours:
             raise SceneError("path", str(partial), "is being written by another process")
+        may_replace(partial, UNFINISHED, overwrite=True)  # again: it may have appeared before it was opened
+        if os.fstat(file.fileno()).st_nlink > 1:
+            rule = "is a file with a second name (a hard link), which would change too; copy it instead"
+            raise SceneError("path", str(partial), rule)
         try:
             yield file
         finally:

@@ -11,6 +11,7 @@ import numpy as np
 
 from gaspart.engines import Engine, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
+from gaspart.files import open_regular
 from gaspart.scene.faces import pistons, sliding_faces
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
@@ -273,5 +274,5 @@ def begun_as(path: Path, wanted: Recipe) -> bool:
         header = wanted.header(stored_revision(path))
     except SceneError:
         return False
-    with path.open("rb") as file:
+    with open_regular(path) as file:
         return amber.same_header(file, header)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gaspart.errors import SimulationError
+from gaspart.errors import SceneError, SimulationError
 from gaspart.interruption import Deferral, deferred, set_note
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
@@ -90,11 +90,18 @@ class Recording:
                 if keep:
                     self._save()
         except SimulationError as error:
-            failed = self._path.with_name(self._path.name + ".failed.npz")
-            write_checkpoint(failed, self._frames.header, self._frames.count, self._arrays())
-            raise SimulationError(f"{error}; its state is kept in {failed}") from None
+            raise SimulationError(f"{error}; {self._keep_failed()}") from None
         self._frames.sync()
         set_note("")
+
+    def _keep_failed(self) -> str:
+        """Keep the state of a run that has failed, unless a file of another kind is in its place."""
+        failed = self._path.with_name(self._path.name + ".failed.npz")
+        try:
+            write_checkpoint(failed, self._frames.header, self._frames.count, self._arrays())
+        except SceneError as error:
+            return f"its state is not kept: {failed} {error.rule}"
+        return f"its state is kept in {failed}"
 
     def _is_complete(self) -> bool:
         """Whether the file has all frames. That depends on the frames alone, so that a run that was cut short

@@ -15,14 +15,20 @@ from pathlib import Path
 from typing import BinaryIO, TypeAlias
 
 from gaspart.errors import SceneError
-from gaspart.files import OVERWRITE, may_replace, output_path, place
+from gaspart.files import OVERWRITE, may_replace, open_regular, output_path, place
 from gaspart.scene.validation import number
 from gaspart.simulation import Simulation
 from gaspart.trajectory import amber, provenance
-from gaspart.trajectory.checkpoint import checkpoint_path, read_checkpoint, remove_checkpoint
+from gaspart.trajectory.checkpoint import (
+    CHECKPOINT,
+    checkpoint_path,
+    kept_beside,
+    read_checkpoint,
+    remove_checkpoint,
+)
 from gaspart.trajectory.extension import is_beginning, longer, take_over
 from gaspart.trajectory.frames import Frames, frame_count
-from gaspart.trajectory.opening import check_frames
+from gaspart.trajectory.opening import check_frames, checked
 from gaspart.trajectory.partial import TRAJECTORY, UNFINISHED, is_blank, locked, partial_path, writing
 from gaspart.trajectory.recipe import Recipe, begun_as, read_recipe, stored_revision
 from gaspart.trajectory.recording import Examine, Progress, Recording
@@ -84,7 +90,7 @@ def resume(path: str | Path, manner: Manner) -> Path:
         if path.exists():
             check_frames(path)  # raises SceneError for a damaged file, and one of another program
             wanted = read_recipe(path)
-            with path.open("rb") as file:
+            with open_regular(path) as file:
                 frames = frame_count(file)
             missing = f"has {frames} of {'more' if wanted.until else wanted.frames} frames, and {rule}"
             rule = "is already complete" if _is_all(path, wanted, frames, manner.examiner) else missing
@@ -97,8 +103,8 @@ def extend(path: str | Path, duration: float, manner: Manner) -> Path:
 
     The file has then the bytes of a run of that duration in one go. Without the checkpoint of its end, which
     `keep_checkpoint` leaves beside it, it is run again from its start; one that had it keeps the next one.
-    An extension that was cut short is continued, by this or by `resume`. Raises SceneError as `longer`, and
-    for another run that is unfinished beside the file.
+    An extension that was cut short is continued, by this or by `resume`. Raises SceneError as `longer`, for
+    another run that is unfinished beside the file, and for a checkpoint that is damaged or of another run.
     """
     path = Path(path)
     partial, checkpoint = partial_path(path), checkpoint_path(path)
@@ -106,6 +112,9 @@ def extend(path: str | Path, duration: float, manner: Manner) -> Path:
         rule = f"is unfinished: resume it without a duration, which {partial.name} has, before it is extended"
         raise SceneError("path", str(path), rule)
     wanted = longer(path, duration)
+    if not partial.exists():
+        with checked(path) as (_, header, _):
+            kept_beside(path, header, "to run it again from its start")  # named here, if it is damaged
     with writing(path):
         kept = manner.keep_checkpoint or checkpoint.exists()
         with locked(partial) as file:
@@ -132,6 +141,7 @@ def _carry_out(wanted: Recipe, path: Path, manner: Manner) -> Path:
             if not partial.exists() and not manner.keep_checkpoint:
                 remove_checkpoint(checkpoint)
             return path
+        may_replace(checkpoint, CHECKPOINT, overwrite=True)  # before the work; each checkpoint asks it again
         simulation = simulation_of(wanted)
         with locked(partial) as file:
             # again: another process may have finished or begun a run before the lock
@@ -179,7 +189,7 @@ def _holds(path: Path, wanted: Recipe, examiner: Examiner | None) -> bool:
     """Whether a file is of this run, complete and undamaged."""
     if not begun_as(path, wanted):
         return False
-    with suppress(SceneError), path.open("rb") as file:
+    with suppress(SceneError), open_regular(path) as file:
         check_frames(path)
         return _is_all(path, wanted, frame_count(file), examiner)
     return False

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeAlias
+
+from gaspart.errors import SceneError
+from gaspart.files import is_remainder, may_replace, place_folder
 
 Record: TypeAlias = Callable[[dict, tuple[int, ...], Path, bool], None]
 """Makes one trajectory of some parameters: seed, path, and whether another file there is replaced."""
@@ -16,18 +20,48 @@ def write_replicas(
     """Write a trajectory for each seed of the parameters; report(line) is called for each.
 
     They lie beside `folder`, which Snakemake deletes before a rerun, until all are complete: an interrupted
-    run resumes there.
+    run resumes there. Raises SceneError for a folder there in which anything else lies: only what gaspart
+    wrote is removed.
     """
     partial = Path(f"{folder}.partial")
-    partial.mkdir(parents=True, exist_ok=True)
+    _make(partial)
     paths = replica_paths(parameters, partial)
+    _remainders(partial, paths)  # before the work: refused if it is not ours
     for path, seed in zip(paths, parameters["seeds"], strict=True):
         if report:
             report(f"{path}: seed {seed}")
         record(parameters, tuple(seed), path, True)  # replaces the remainder of a run with other parameters
-    for leftover in set(partial.iterdir()) - set(paths):
+    for leftover in _remainders(partial, paths):
         leftover.unlink()
-    partial.rename(folder)
+    try:
+        place_folder(partial, folder)
+    except OSError as error:
+        raise SceneError("path", str(folder), f"cannot be written: {error.strerror}") from None
+
+
+def _make(folder: Path) -> None:
+    """Make a folder if it is missing. Raises SceneError for a link and for a file."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if folder.is_symlink():
+            raise NotADirectoryError(errno.ENOTDIR, "it is a link")
+    except OSError as error:
+        raise SceneError("path", str(folder), f"cannot be written: {error.strerror}") from None
+
+
+def _remainders(folder: Path, paths: list[Path]) -> list[Path]:
+    """The files that runs of other parameters have left in a folder. Raises SceneError for a file that gaspart
+    did not write, and for a folder or link."""
+    from gaspart.trajectory.checkpoint import CHECKPOINT
+    from gaspart.trajectory.partial import TRAJECTORY, UNFINISHED
+
+    kinds = {".nc.partial": UNFINISHED, ".checkpoint.npz": CHECKPOINT, ".failed.npz": CHECKPOINT}
+    found = []
+    for path in sorted({*folder.iterdir()} - {*paths}):
+        kind = kinds.get("".join(path.suffixes[-2:]), TRAJECTORY)
+        if is_remainder(path) or (may_replace(path, kind, overwrite=True) and kind.recognises(path)):
+            found.append(path)
+    return found
 
 
 def replica_paths(parameters: dict, folder: Path) -> list[Path]:
