@@ -84,7 +84,7 @@ def _require_regular(found: os.stat_result, path: str | Path) -> None:
 
 
 def is_same_file(one: str | Path, other: str | Path) -> bool:
-    """Whether two names are those of one file, through links and other spellings too; False if there is none."""
+    """Whether two names are those of one file, also through links and other spellings; False for no file."""
     try:
         return os.path.samefile(one, other)
     except (OSError, ValueError):

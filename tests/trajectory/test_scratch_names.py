@@ -1,4 +1,4 @@
-"""Files and links with the names of scratch files: what gaspart did not write is neither changed nor removed."""
+"""Files and links with the names of scratch files: what gaspart did not write is neither changed nor lost."""
 
 import os
 import shutil

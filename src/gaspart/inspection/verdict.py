@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gaspart.analysis.estimate import Estimate
+from gaspart.errors import visible
 
 LIMIT = 4.0
 """Standard errors from theory beyond which a check fails: by chance once in 16 000."""
@@ -20,7 +21,7 @@ class Check:
 
     def __str__(self) -> str:
         word = {True: "ok", False: "WRONG", None: "-"}[self.passed]
-        return f"{word:6}{self.name}: {self.text}"
+        return f"{word:6}{visible(self.name)}: {visible(self.text)}"
 
 
 def compared(

@@ -51,7 +51,7 @@ BOOKKEEPING = ("header_bytes", "header_crc32", "frame_bytes")
 """Attributes by which a file is checked: sizes of the header and of a frame, and the header's checksum."""
 MOST_FRAMES = 2**31 - 1
 _UNFINISHED = bytes(2 * WORD) + struct.pack(">I", 10)
-"""How a file begins before its first word is written: that, no frames, and the tag of a list of dimensions."""
+"""How a file begins before its first word is written: with that, no frames, and the tag of dimensions."""
 _FIRST_NAME = struct.pack(">I", 5) + b"frame"
 """What follows the number of dimensions: the name of the first one."""
 

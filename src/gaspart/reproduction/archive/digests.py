@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from bisect import bisect_left as bisect
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import IO
@@ -53,9 +54,11 @@ def joint_digest(paths: Iterable[str], known: Mapping[str, str]) -> str:
     paths: files, or folders, which stand for all `known` files in them; known: the digest of each file.
     Raises KeyError for a path that is neither.
     """
-    lines = set()
+    lines: set[str] = set()
+    names = sorted(known)
     for path in paths:
-        files = [path] if path in known else [name for name in known if name.startswith(f"{path}/")]
+        below = slice(bisect(names, f"{path}/"), bisect(names, f"{path}0"))  # "0" comes after "/"
+        files = [path] if path in known else names[below]
         if not files:
             raise KeyError(path)
         lines |= {f"{name}\0{known[name]}" for name in files}

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import random
 import warnings
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 
 from gaspart.errors import SceneError
 from gaspart.inspection.verdict import Check
 from gaspart.kernels.compile.loading import load_numba
 from gaspart.reproduction.archive import tables
 from gaspart.reproduction.archive.digests import digest_of_numbers
+from gaspart.reproduction.archive.scenes import scene_files
 from gaspart.reproduction.archive.stored import Stored
 from gaspart.reproduction.config import checked
 from gaspart.reproduction.jobs import simulate, simulate_until
@@ -20,7 +21,6 @@ from gaspart.trajectory import provenance
 from gaspart.yaml_text import parse_yaml, write_yaml
 
 _RECORD: dict[str, Record] = {"simulate": simulate.record, "simulate_until": simulate_until.record}
-_SCENES = "config/scenes"
 
 
 def chosen(stored: Stored, folder: Path, count: int) -> list[Point]:
@@ -32,7 +32,7 @@ def chosen(stored: Stored, folder: Path, count: int) -> list[Point]:
     _write_config(stored, folder)
     with checked(folder / "config/config.yaml") as (_, planned):
         points = {(one.experiment, one.name): one for each in planned.values() for one in each.values()}
-    rows = stored.rows(tables.POINTS)
+    rows = stored.rows(tables.POINTS, tables.PointFile._fields)
     listed = list(
         dict.fromkeys((row["experiment"], row["point"]) for row in rows if row["job"] in TRAJECTORIES)
     )
@@ -44,15 +44,15 @@ def chosen(stored: Stored, folder: Path, count: int) -> list[Point]:
 
 
 def _write_config(stored: Stored, folder: Path) -> None:
-    """Write the config and the scene files. Raises SceneError for a name that leads out of the folder."""
+    """Write the config and the scene files that it names. Raises SceneError for one that is not in the
+    archive: a config of a stranger must not have files of this machine read."""
     config = parse_yaml(stored.text(tables.CONFIG), tables.CONFIG)
-    files = {name for name in stored.names if name.startswith(f"{_SCENES}/")}
-    for name in files:
-        if ".." in PurePosixPath(name).parts:
-            raise SceneError("archive", str(stored.path), f"has a file that leads out of it: {name}")
+    for name in scene_files(config):
+        if name not in stored.names:
+            raise stored.refused(f"has a config with a scene that is not in the archive: {name}")
         target = folder / name
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_text(stored.text(name), encoding="utf-8")
+        stored.copy(name, target)
     (folder / "config").mkdir(exist_ok=True)
     write_yaml(folder / "config/config.yaml", config)
 
@@ -60,7 +60,7 @@ def _write_config(stored: Stored, folder: Path) -> None:
 def rerun(stored: Stored, point: Point, folder: Path) -> Check:
     """Simulate all replicas of a point, and compare the bits of their numbers with the archive's digests."""
     load_numba(ours=True)
-    rows = stored.rows(tables.POINTS)
+    rows = stored.rows(tables.POINTS, tables.PointFile._fields)
     known = {row["path"]: row["numbers_sha256"] for row in rows}
     other = []
     for replica, path in enumerate(point.replica_paths):

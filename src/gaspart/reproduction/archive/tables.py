@@ -6,7 +6,7 @@ import csv
 import io
 import os
 import platform
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import distributions
 from pathlib import Path
@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 from gaspart.reproduction.archive.digests import digest_of_file, digest_of_numbers, joint_digest
 from gaspart.reproduction.archive.finished import Finished
+from gaspart.reproduction.archive.limits import MOST_ROWS
 from gaspart.reproduction.claims import table
 from gaspart.reproduction.points.point import TRAJECTORIES
 from gaspart.trajectory import provenance
@@ -136,9 +137,24 @@ def text_of(rows: Iterable[tuple], columns: tuple[str, ...]) -> str:
     return text.getvalue()
 
 
-def rows_of(text: str) -> list[dict[str, str]]:
-    """The inverse of `text_of`."""
-    return list(csv.DictReader(io.StringIO(text)))
+def rows_of(text: str, columns: Sequence[str] = ()) -> list[dict[str, str]]:
+    """The inverse of `text_of`, for a table that has at least these columns. Raises ValueError for another
+    text, one with a field of more than 131072 characters, and one with more than `MOST_ROWS` rows."""
+    lines = csv.reader(io.StringIO(text, newline=""), strict=True)
+    rows: list[dict[str, str]] = []
+    try:
+        names = next(lines, [])
+        if missing := [name for name in columns if name not in names]:
+            raise ValueError(f"it has no column {missing[0]}")
+        for row in lines:
+            if len(row) != len(names):
+                raise ValueError(f"line {lines.line_num} has {len(row)} fields, where {len(names)} are named")
+            if len(rows) == MOST_ROWS:
+                raise ValueError(f"it has more than {MOST_ROWS} rows")
+            rows.append(dict(zip(names, row, strict=True)))
+    except csv.Error as error:
+        raise ValueError(f"line {lines.line_num}: {error}") from None
+    return rows
 
 
 def machine() -> dict[str, Any]:

@@ -14,6 +14,7 @@ from gaspart.reproduction.archive.rerun import chosen, rerun
 from gaspart.reproduction.archive.stored import Stored, opened_archive
 from gaspart.reproduction.archive.writing import MANIFEST
 
+_JUDGED = ("figure", "claim", "verdict")
 _NAMED = 3
 """How many files a message names."""
 
@@ -62,11 +63,11 @@ def _tables(stored: Stored, stated: Mapping[str, str]) -> Iterator[Check]:
         yield _stated(stored)
         yield _claims(stored, stated)
         yield _points(stored)
-    except (KeyError, ValueError, OSError) as error:
-        if isinstance(error, SceneError):
-            raise
-        rule = f"has tables that cannot be read, though they have their digests: {error}"
-        raise SceneError("archive", str(stored.path), rule) from None
+    except SceneError as error:
+        rule = f"has tables that cannot be read, though they have their digests: it {error.rule}"
+        raise stored.refused(rule) from None
+    except KeyError as error:
+        raise stored.refused(f"has claims made of a file that it does not list: {error.args[0]}") from None
 
 
 def _stated(stored: Stored) -> Check:
@@ -78,14 +79,15 @@ def _stated(stored: Stored) -> Check:
 
 def _claims(stored: Stored, stated: Mapping[str, str]) -> Check:
     """Whether each claim of the results is listed, with the digests of the data that are in the archive."""
-    run, points = stored.summary(), stored.rows(tables.POINTS)
-    listed, judged = stored.rows(tables.CLAIMS), stored.rows(f"{run['results']}/tables/claims.csv")
-    named = [tuple(row[key] for key in ("figure", "claim", "verdict")) for row in listed]
-    if named != [tuple(row[key] for key in ("figure", "claim", "verdict")) for row in judged]:
+    run, points = stored.summary(), stored.rows(tables.POINTS, tables.PointFile._fields)
+    listed = stored.rows(tables.CLAIMS, tables.ClaimData._fields)
+    judged = stored.rows(f"{run['results']}/tables/claims.csv", _JUDGED)
+    named = [tuple(row[key] for key in _JUDGED) for row in listed]
+    if named != [tuple(row[key] for key in _JUDGED) for row in judged]:
         return Check("claims", False, f"{tables.CLAIMS} and the results list different claims")
     known = dict(stated) | {row["path"]: row["sha256"] for row in points}
     wrong = []
-    inputs = {row["data"]: _inputs(stored, row["data"]) for row in listed}
+    inputs = {data: _inputs(stored, data) for data in dict.fromkeys(row["data"] for row in listed)}
     joint = {data: joint_digest(paths, known) for data, paths in inputs.items()}
     for row in listed:
         if row["data_sha256"] != stated.get(row["data"]) or row["inputs_sha256"] != joint[row["data"]]:
@@ -97,15 +99,19 @@ def _claims(stored: Stored, stated: Mapping[str, str]) -> Check:
 
 def _inputs(stored: Stored, name: str) -> list[str]:
     """The points, or tables of claims, of which a measurement in an archive is made."""
-    with TemporaryDirectory(prefix="gaspart-") as folder, stored.open(name) as file:
+    with TemporaryDirectory(prefix="gaspart-") as folder:
         copy = Path(folder, "measurement.nc")
-        copy.write_bytes(file.read())
-        return tables.inputs_of(copy)
+        stored.copy(name, copy)
+        try:
+            return tables.inputs_of(copy)
+        except (OSError, RuntimeError, AttributeError, ValueError) as error:
+            raise stored.refused(f"has a measurement that cannot be read, {name}: {error}") from None
 
 
 def _points(stored: Stored) -> Check:
     """Whether the points in the archive have the digests that its table states."""
-    rows = [row for row in stored.rows(tables.POINTS) if row["path"] in stored.names]
+    listed = stored.rows(tables.POINTS, tables.PointFile._fields)
+    rows = [row for row in listed if row["path"] in stored.names]
     wrong = [row["path"] for row in rows if stored.digest(row["path"]) != row["sha256"]]
     text = f"other digests than in {tables.POINTS}: {_shown(wrong)}" if wrong else f"{len(rows)} files"
     return Check("points", not wrong, text)

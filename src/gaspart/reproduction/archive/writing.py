@@ -15,6 +15,7 @@ from gaspart.reproduction.archive import contents, tables
 from gaspart.reproduction.archive.citation import read_citation
 from gaspart.reproduction.archive.digests import digest
 from gaspart.reproduction.archive.finished import Finished, find_finished
+from gaspart.reproduction.archive.limits import check_names, name_fault
 from gaspart.reproduction.archive.metadata import METADATA, Described, metadata
 from gaspart.yaml_text import dump_yaml
 
@@ -29,7 +30,7 @@ def _is_archive(path: Path) -> bool:
     try:
         with zipfile.ZipFile(path) as file:
             return MANIFEST in file.namelist()
-    except zipfile.BadZipFile:
+    except (zipfile.BadZipFile, RuntimeError, ValueError):
         return False
 
 
@@ -91,6 +92,7 @@ class _Writer:
         self._add_text(tables.RUN, json.dumps(summary, indent=1, ensure_ascii=False) + "\n")
         described = Described(dict(self._files), summary, jobs, captions, len(claims))
         self._add_text(METADATA, metadata(described, read_citation(run.root / contents.CITATION)))
+        check_names(run.root, self._files)
         lines = [f"{value}  {name}\n" for name, (_, value) in sorted(self._files.items())]
         self._add_text(MANIFEST, "".join(lines))
         count = sum(1 for _ in run.trajectories())
@@ -109,6 +111,8 @@ class _Writer:
     def _add(self, name: str, source: IO[bytes], size: int, mode: int) -> None:
         if name in self._files:
             return
+        if fault := name_fault(name):
+            raise SceneError("file", name, f"cannot be in an archive: its name {fault}")
         entry = zipfile.ZipInfo(name, _TIME)
         entry.compress_type, entry.external_attr = zipfile.ZIP_DEFLATED, (stat.S_IFREG | mode) << 16
         with self._file.open(entry, "w", force_zip64=size > _LARGE) as target:

@@ -50,8 +50,8 @@ def _make(folder: Path) -> None:
 
 
 def _remainders(folder: Path, paths: list[Path]) -> list[Path]:
-    """The files that runs of other parameters have left in a folder. Raises SceneError for a file that gaspart
-    did not write, and for a folder or link."""
+    """The files that runs of other parameters have left in a folder. Raises SceneError for a file that
+    gaspart did not write, and for a folder or link."""
     from gaspart.trajectory.checkpoint import CHECKPOINT
     from gaspart.trajectory.partial import TRAJECTORY, UNFINISHED
 

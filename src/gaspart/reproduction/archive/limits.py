@@ -1,0 +1,102 @@
+"""What an archive may be: its names, and sizes that can be read in a bounded time and memory."""
+
+from __future__ import annotations
+
+import os
+import struct
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import IO
+from zipfile import ZipInfo
+
+from gaspart.errors import SceneError
+
+MOST_BYTES = 1 << 25
+"""Of a manifest, and of a table: those of ten thousand points are a tenth of it."""
+MOST_ROWS = 200_000
+MOST_FILES = 100_000
+_DIRECTORY = 1 << 24
+"""Bytes of the list of entries at the end of a zip file; each takes about 100, and much more in memory."""
+_EXPANSION, _ALWAYS = 200, 1 << 28
+"""How many times larger than on disk contents may be, and bytes that they always may have. Tables and
+trajectories shrink to a tenth at least; a file made to fill a disk, or never to end, by a thousand."""
+_LONGEST = 1024  # characters of a name
+_LENGTHS, _DESCRIPTOR = 26, 24
+"""Where the header of an entry has the lengths of its name and extra field, at its end; and the most bytes of
+what may follow the contents."""
+_END, _END_64 = b"PK\x05\x06", b"PK\x06\x06"
+_END_BYTES, _COMMENT = 22, (1 << 16) - 1
+
+
+def name_fault(name: str) -> str:
+    """Why a file of an archive cannot have this name; "" if it can."""
+    parts = name.split("/")
+    if not name.isprintable() or not name.strip():
+        return "cannot be shown: it holds control characters, or bytes that are not UTF-8"
+    if len(name) > _LONGEST:
+        return f"has more than {_LONGEST} characters"
+    if name.startswith("/") or "\\" in name or {"", ".", ".."} & {*parts}:
+        return "leads out of it, or has two spellings"
+    return ""
+
+
+def check_names(path: Path, names: Iterable[str]) -> None:
+    """Raise SceneError for names that cannot be unpacked next to one another: two that are equal, perhaps
+    after their case, a file that is also a folder, and those with a `name_fault`. Names of folders end in /."""
+    seen: dict[str, str] = {}
+    folders: set[str] = set()
+    for given in names:
+        name = given.removesuffix("/")
+        if fault := name_fault(name):
+            raise SceneError("archive", str(path), f"has a name that {fault}: {name}")
+        key = name.casefold()
+        if key in seen:
+            rule = f"has two entries of one name: {name}" + (
+                "" if seen[key] == name else f" and {seen[key]}, which are one file on some systems"
+            )
+            raise SceneError("archive", str(path), rule)
+        seen[key] = name
+        above = key.split("/")[: None if given.endswith("/") else -1]
+        folders.update("/".join(above[: n + 1]) for n in range(len(above)))
+    for given in names:
+        if not given.endswith("/") and given.casefold() in folders:
+            raise SceneError("archive", str(path), f"has a file that is also a folder: {given}")
+
+
+def check_size(path: Path, stated: int, there: int) -> None:
+    """Raise SceneError for contents of `stated` bytes that take so few on disk that they must be made up."""
+    if stated > _ALWAYS + _EXPANSION * there:
+        rule = f"has contents of {stated:.3g} bytes in {there:.3g}: no archive of gaspart is so compressed"
+        raise SceneError("archive", str(path), rule)
+
+
+def check_places(path: Path, file: IO[bytes], entries: Sequence[ZipInfo], end: int) -> None:
+    """Raise SceneError unless the entries of a zip file lie one after another up to `end`: what lies between
+    them other programs might unpack. May raise struct.error for a file that is cut short."""
+    at = 0
+    for entry in sorted(entries, key=lambda entry: entry.header_offset):
+        if not at <= entry.header_offset <= at + _DESCRIPTOR:
+            break
+        file.seek(entry.header_offset + _LENGTHS)
+        at = (
+            entry.header_offset + _LENGTHS + 4 + sum(struct.unpack("<HH", file.read(4))) + entry.compress_size
+        )
+    else:
+        if at <= end <= at + _DESCRIPTOR:
+            return
+    raise SceneError("archive", str(path), "has bytes that belong to no entry, or to two")
+
+
+def check_directory(path: Path, file: IO[bytes]) -> None:
+    """Raise SceneError for a zip file whose list of entries, which is read as a whole, is too long."""
+    size = file.seek(0, os.SEEK_END)
+    file.seek(max(0, size - _END_BYTES - _COMMENT - 56 - 20))
+    tail = file.read()
+    for mark, form, at in ((_END, "<I", 12), (_END_64, "<Q", 40)):
+        place = tail.find(mark)
+        while place >= 0:
+            if place + at + struct.calcsize(form) <= len(tail):
+                (length,) = struct.unpack_from(form, tail, place + at)
+                if _DIRECTORY < length <= size:  # a larger one than the file is refused by its reader
+                    raise SceneError("archive", str(path), "has a list of entries that is too long")
+            place = tail.find(mark, place + 1)
