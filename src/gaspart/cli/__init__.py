@@ -17,7 +17,7 @@ from typing import TextIO
 from gaspart import __version__
 from gaspart.cli.arguments import CheckFailed, Parser, UsageError
 from gaspart.cli.progress import clear_line
-from gaspart.errors import SceneError, SimulationError, unknown_word
+from gaspart.errors import SceneError, SimulationError, unknown_word, visible
 from gaspart.files import OVERWRITE
 from gaspart.interruption import interrupted, set_note
 
@@ -116,7 +116,7 @@ def _complain(text: str, code: int) -> int:
     """Print one line on stderr; returns the exit code."""
     for stream, line in (
         (sys.stdout, ""),
-        (sys.stderr, f"{clear_line()}gaspart: {' '.join(text.split())}\n"),
+        (sys.stderr, f"{clear_line()}gaspart: {visible(' '.join(text.split()))}\n"),
     ):
         try:
             stream.write(line)

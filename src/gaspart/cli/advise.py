@@ -12,11 +12,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaspart.analysis.names import OBSERVABLES
-from gaspart.cli.arguments import Parser, UsageError, of_configs, print_line, real, set_command
+from gaspart.cli.arguments import Parser, UsageError, of_configs, print_lines, real, set_command
 from gaspart.cli.engine_options import one_of, stated
 from gaspart.cli.progress import waiting
 from gaspart.cli.run import run_options
 from gaspart.engines import DSMC, Engine, TimeStepped
+from gaspart.errors import visible
 from gaspart.kernels.compile.loading import load_numba
 from gaspart.scene.scene import Scene
 from gaspart.tradeoff import PILOT_SECONDS
@@ -64,7 +65,7 @@ def _advise(given: argparse.Namespace) -> None:
     if given.config:
         with waiting("predicting the cost of every point"):
             lines = of_configs("advise")(given.config)
-        print_line("\n".join(lines))
+        print_lines(lines)
         return
     from gaspart.tradeoff.advice import advise, is_tabulated
 
@@ -73,18 +74,18 @@ def _advise(given: argparse.Namespace) -> None:
         with waiting("measuring the speed of this machine; the first time, compiling kernels"):
             load_numba(ours=True)
             advice = advise(scene, given.observable, given.accuracy, given.budget)
-        print_line("\n".join(_lines(advice, given.scene)))
+        print_lines(_lines(advice, given.scene))
         return
     from gaspart.tradeoff.plan import plan
 
     def announce(text: str) -> None:
         if sys.stderr.isatty():
-            print(f"gaspart: {text}", file=sys.stderr)
+            print(f"gaspart: {visible(text)}", file=sys.stderr)
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of coarse settings, whose error is stated in the table
         made = plan(scene, given.observable, given.accuracy, given.budget, given.pilot, announce)
-    print_line("\n".join(_plan_lines(made, given.scene)))
+    print_lines(_plan_lines(made, given.scene))
 
 
 def _lines(advice: Advice, file: str) -> list[str]:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from textwrap import fill
 from typing import Any, NoReturn, TypeVar
 
-from gaspart.errors import unknown_word
+from gaspart.errors import unknown_word, visible
 from gaspart.scene.validation import number
 
 T = TypeVar("T")
@@ -102,12 +102,20 @@ def of_configs(command: str) -> Callable:
 
 
 def print_line(text: object) -> None:
-    """Print a line. If the standard output cannot encode it, as some file names, characters are escaped."""
+    """Print one line, whatever is in the text (`visible`). If the standard output cannot encode it, as some
+    file names, characters are escaped."""
+    line = visible(text, names=True)
     try:
-        print(text)
+        print(line)
     except UnicodeEncodeError:
         encoding = sys.stdout.encoding
-        print(str(text).encode(encoding, "backslashreplace").decode(encoding))
+        print(line.encode(encoding, "backslashreplace").decode(encoding))
+
+
+def print_lines(lines: Iterable[object]) -> None:
+    """Print several lines; a line break within one of them is escaped."""
+    for line in lines:
+        print_line(line)
 
 
 def several(kind: Callable[[str], T]) -> Callable[[str], tuple[T, ...]]:

@@ -7,7 +7,7 @@ import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaspart.cli.arguments import Parser, add_trajectory, print_line, set_command
+from gaspart.cli.arguments import Parser, add_trajectory, print_line, print_lines, set_command
 
 if TYPE_CHECKING:
     from gaspart.trajectory.recipe import Recipe
@@ -38,7 +38,7 @@ def _info(given: argparse.Namespace) -> None:
     with opened(stored_at) as file:
         stored, frames = file.__dict__, len(file.dimensions["frame"])
     if given.scene:
-        print_line(stored["scene"].rstrip("\n"))
+        print_lines(_lines_of(stored["scene"]))
         return
     check_frames(stored_at)
     scene = recipe.scene
@@ -54,17 +54,22 @@ def _info(given: argparse.Namespace) -> None:
     for line in _request(recipe, stored_at, frames):
         print_line(line)
     print_line(f"packing fraction {scene.packing_fraction:.6g}, number density {scene.number_density:.6g}")
-    print_line("\n".join(certificate(stored_at)))
+    print_lines(certificate(stored_at))
     for key, value in recipe.engine.predictions(scene).items():
         print_line(f"predicted {key.replace('_', ' ')}: {100.0 * value:+.2g} % (by its cells and steps)")
     print_line(f"checksums: the header and {'all frames' if frames else 'no frames yet'} are undamaged")
     print_line(f"written by {', '.join(versions)}; revision {stored.get('git_revision', 'none')}")
     print_line("reproduced, to the same bits, by")
-    print_line("\n".join(f"    {line}" for line in remake))
+    print_lines(f"    {line}" for line in remake)
     if recipe.initial is not None:
         print_line("where OTHER.nc is the run whose last state this one was started from; this file holds it")
     print_line("scene:")
-    print_line("\n".join(f"    {line}" for line in stored["scene"].splitlines()))
+    print_lines(f"    {line}" for line in _lines_of(stored["scene"]))
+
+
+def _lines_of(scene: str) -> list[str]:
+    """The lines of a scene as a file has it."""
+    return scene.rstrip("\n").split("\n")
 
 
 def _request(recipe: Recipe, path: Path, frames: int) -> list[str]:

@@ -9,6 +9,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from gaspart.errors import visible
+
 if TYPE_CHECKING:
     from gaspart.trajectory.recording import Progress
 
@@ -90,7 +92,7 @@ def progress(
 
 def show_line(text: str) -> None:
     """Replace the line of progress."""
-    print(f"{clear_line()}{text}", end="", file=sys.stderr, flush=True)
+    print(f"{clear_line()}{visible(text)}", end="", file=sys.stderr, flush=True)
 
 
 def clear_line() -> str:

@@ -6,17 +6,20 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import chdir, contextmanager, suppress
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from gaspart.errors import SceneError, unknown_word
 from gaspart.kinds import Kind
+from gaspart.reproduction.claims.captions import filled, place_fault
 from gaspart.reproduction.families import registry
 from gaspart.reproduction.points import jobs, keys
 from gaspart.reproduction.points.config_keys import POINT
 from gaspart.reproduction.points.overlay import laid_over
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
 from gaspart.reproduction.points.points import figure_points, points
+from gaspart.reproduction.report.caption import divided
 from gaspart.reproduction.schema import schema
 from gaspart.scene.validation import finite, size
 from gaspart.yaml_text import DEEPEST, MOST_VALUES, is_exponential, read_yaml
@@ -51,6 +54,7 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str,
             shown = figure_points(config, figure, planned)
             if "kind" in block:
                 registry.validate(figure, block, shown)
+                _check_caption(figure, block)
         for animation, block in config.get("animations", {}).items():
             _animation(config, animation, block)
         return planned
@@ -140,6 +144,20 @@ def _installed_kinds(config: object) -> tuple[tuple[str, str], ...]:
             raise error.inside(where) from None
         found.append((figure, kind))
     return tuple(found)
+
+
+def _check_caption(figure: str, block: dict) -> None:
+    """Refuse a caption that the report cannot show. Its text is read where docutils is installed, as it is
+    where the report is made."""
+    text = registry.caption(block)
+    fault = place_fault(text)
+    if not fault and find_spec("docutils"):
+        try:
+            divided(filled(text, []))
+        except ValueError as error:
+            fault = str(error)
+    if fault:
+        raise SceneError(f"figures.{figure}.caption", text, fault)
 
 
 def _animation(config: dict, animation: str, block: dict | None) -> None:

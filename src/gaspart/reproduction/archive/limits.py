@@ -41,8 +41,8 @@ def name_fault(name: str) -> str:
 
 
 def check_names(path: Path, names: Iterable[str]) -> None:
-    """Raise SceneError for names that cannot be unpacked next to one another: two that are equal, perhaps
-    after their case, a file that is also a folder, and those with a `name_fault`. Names of folders end in /."""
+    """Raise SceneError for names that cannot be unpacked next to one another: two that are equal, perhaps but
+    for their case, a file that is also a folder, and those with a `name_fault`. Those of folders end in /."""
     seen: dict[str, str] = {}
     folders: set[str] = set()
     for given in names:

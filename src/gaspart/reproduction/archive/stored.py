@@ -63,7 +63,7 @@ class Stored:
         return self.opener(name)
 
     def text(self, name: str, most: int = MOST_BYTES) -> str:
-        """A file as text. Raises SceneError for one that is missing, damaged, or of more than `most` bytes."""
+        """A file as text. Raises SceneError for one that is missing, damaged, or larger than `most` bytes."""
         try:
             with self.open(name) as file:
                 content = file.read(most + 1)

@@ -37,6 +37,15 @@ def filled(caption: str, rows: Iterable[dict[str, Any]], absent: str = NOT_MEASU
     return _PLACE.sub(value, caption)
 
 
+def place_fault(caption: str) -> str:
+    """What is wrong with the places of a caption; "" if nothing is."""
+    if any(not place.strip() for place in _PLACE.findall(caption)):
+        return "{{ }} must hold the beginning of a claim"
+    if "{{" in _PLACE.sub("", caption):
+        return "{{ is not closed by }}"
+    return ""
+
+
 def _number(row: dict[str, Any], name: str) -> float:
     """A column of a table as a number; pandas leaves nothing where there is none."""
     return math.nan if row[name] == "" else float(row[name])

@@ -8,8 +8,23 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
-_FINDING = re.compile(r"\*\*(.+?)\*\*\s*", re.DOTALL)
+if TYPE_CHECKING:
+    from docutils import nodes
+
+_FINDING = re.compile(r"\*\*(?=[^\s*])(.+?)\*\*\s*", re.DOTALL)
+_SCHEME = re.compile(r"([a-z][a-z0-9+.-]*):")
+_SCHEMES = ("http", "https", "mailto", "doi")
+"""What an address in a caption may begin with, unless it is within the report."""
+_SETTINGS = {
+    "file_insertion_enabled": False,
+    "raw_enabled": False,
+    "math_output": "MathML",
+    "warning_stream": False,  # faults are raised
+    "halt_level": 5,
+}
+_HTML: dict[str, Any] = {"writer": "html5", "settings_overrides": _SETTINGS}
 _SEEN = "*What is seen.*"
 
 
@@ -27,7 +42,7 @@ class Caption:
 def divided(text: str) -> Caption:
     """The parts of a caption.
 
-    Raises ValueError if it does not begin with words in bold.
+    Raises ValueError if it does not begin with words in bold, and as `html_of`.
     """
     paragraphs = re.split(r"\n\s*\n", text.strip())
     finding = _FINDING.match(paragraphs[0])
@@ -48,8 +63,42 @@ def divided(text: str) -> Caption:
 
 
 def html_of(text: str) -> str:
-    """reStructuredText as a fragment of HTML."""
-    from docutils.core import publish_parts
+    """reStructuredText as a fragment of HTML.
 
-    settings = {"file_insertion_enabled": False, "raw_enabled": False, "math_output": "MathML"}
-    return str(publish_parts(text, writer="html5", settings_overrides=settings)["body"]).strip()
+    Raises ValueError for marks that are not closed and other faults, and for an address whose scheme is not
+    one of the web or of mail: `javascript:` would run where the report is read.
+    """
+    from docutils.core import publish_doctree, publish_parts
+
+    try:
+        fault = _fault(publish_doctree(text, settings_overrides=_SETTINGS))
+        body = "" if fault else str(publish_parts(text, **_HTML)["body"]).strip()
+    except Exception as error:  # docutils 0.22 raises AttributeError and others for formulas
+        raise ValueError(f"cannot be read as reStructuredText: {type(error).__name__}: {error}") from None
+    if fault:
+        raise ValueError(fault)
+    if '<aside class="system-message">' in body:  # of a formula, which is read when it is written
+        raise ValueError("holds a formula that cannot be read")
+    return body
+
+
+def _fault(tree: nodes.document) -> str:
+    """What is wrong with a text that was read; "" if nothing is."""
+    from docutils import nodes
+
+    said = [*tree.findall(nodes.system_message), *tree.parse_messages, *tree.transform_messages]
+    serious = [message for message in said if message["level"] > 1]
+    if serious:
+        return str(serious[0].children[0].astext() if serious[0].children else serious[0].astext())
+    for node in tree.findall(nodes.Element):
+        for address in (node.get("refuri"), node.get("uri")):
+            if address and not _is_safe(address):
+                return f"the address {address} must begin with {', '.join(_SCHEMES)} or lie in the report"
+    return ""
+
+
+def _is_safe(address: str) -> bool:
+    """Whether an address is one of the web, of mail, or relative. Browsers skip white space and control
+    characters within a scheme."""
+    scheme = _SCHEME.match("".join(c for c in address if c.isprintable() and c != " ").lower())
+    return scheme is None or scheme[1] in _SCHEMES
