@@ -28,8 +28,8 @@ class SceneError(_OneLine, ValueError):
 
     def __init__(self, key: str, value: object, rule: str, file: str | None = None) -> None:
         self.key, self.value, self.rule, self.file = key, value, rule, file
-        where = f"{_one_line(file, _LONGEST['file'])}: " if file else ""
-        text = f"{_one_line(key, _LONGEST['key'])} = {shown(value)}: {_one_line(rule, _LONGEST['rule'])}"
+        where = f"{visible(file, _LONGEST['file'])}: " if file else ""
+        text = f"{visible(key, _LONGEST['key'])} = {shown(value)}: {visible(rule, _LONGEST['rule'])}"
         super().__init__(where + text)
 
     def __reduce__(self) -> tuple:
@@ -73,7 +73,7 @@ class SimulationError(_OneLine, RuntimeError):
 
 def shown(value: object) -> str:
     """`value` as one printable line of at most 120 characters. The time does not grow with its size."""
-    return _one_line(_repr(value, _DEPTH), _LONGEST["value"])
+    return visible(_repr(value, _DEPTH), _LONGEST["value"])
 
 
 def _repr(value: object, depth: int) -> str:
@@ -108,23 +108,18 @@ def _joined(items: Iterable[str], count: int, depth: int) -> str:
     return ", ".join(islice(items, _ITEMS)) + (", ..." if count > _ITEMS else "")
 
 
-def _one_line(text: object, longest: int) -> str:
-    """`visible` text; the middle of a long one is left out."""
-    line = str(text)
-    if len(line) > longest:
-        tail = longest // 4
-        line = f"{line[: longest - tail - 3]}...{line[-tail:]}"
-    return visible(line)
-
-
-def visible(text: object, names: bool = False) -> str:
+def visible(text: object, longest: int | None = None, names: bool = False) -> str:
     """`text` as one line, in which what a terminal would not show as it is, or obey, is escaped: line breaks,
     control and formatting characters, such as those that reverse the direction of writing.
 
-    Everything that a command prints passes through it, since text of files is that of strangers. names: bytes
-    of file names that are not UTF-8 are kept, unless one of them is a control character by itself.
+    Everything that a command prints passes through it, since text of files is that of strangers. longest: of
+    more characters the middle is left out; names: bytes of file names that are not UTF-8 are kept, unless one
+    of them is a control character by itself.
     """
     line = str(text)
+    if longest is not None and len(line) > longest:
+        tail = longest // 4
+        line = f"{line[: longest - tail - 3]}...{line[-tail:]}"
     if line.isprintable():
         return line
     return "".join(

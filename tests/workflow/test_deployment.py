@@ -1,10 +1,16 @@
 """The workflow as a module of another one, in a folder that has nothing but a config and a Snakefile."""
 
+import json
 import re
+import shutil
+import zipfile
 
 import pytest
+from crates import faults
 from workspace import ROOT, Workspace
 
+from gaspart.cli import main
+from gaspart.reproduction.archive.metadata import METADATA
 from gaspart.reproduction.points.overlay import laid_over
 from gaspart.yaml_text import parse_yaml, write_yaml
 
@@ -65,6 +71,52 @@ def test_a_module_may_have_figures_of_its_own_only(tmp_path):
     assert here.plan("all", source=ROOT) == {**STAGES, "claims": 1, "report": 1, "all": 1}
     write_yaml(tmp_path / "settings.yaml", config | {"figures": {}})
     assert here.plan("points", source=ROOT) == {"warm": 1, "simulate": 3, "points": 1}
+
+
+CITATION = """cff-version: 1.2.0
+message: cite it
+title: my gas
+version: "1"
+license: MIT
+authors:
+- {given-names: Ada, family-names: Example}
+"""
+
+
+def test_results_of_a_module_are_archived_and_verified(tmp_path, capsys):
+    """A folder with a Snakefile, a config of any name, a scene file and CITATION.cff, and no more."""
+    project, snakefile = tmp_path / "project", "workflow/Snakefile"
+    (project / snakefile).parent.mkdir(parents=True)
+    (project / snakefile).write_text(SNAKEFILE)
+    config = {"title": "my gas", "seed": 1, "points": "results/points", **parse_yaml(OWN[1])}
+    scene = {"container": {"lengths": [20.0, 20.0], "boundary": "periodic"}}
+    write_yaml(project / "gas.yaml", scene | {"species": [{"count": 64, "radius": 0.5, "temperature": 1.0}]})
+    point = {"scene": "gas.yaml", "duration": 60.0, "samples": 60, "equilibration": 5.0}
+    grid = {"scene.species.0.count": [40, 60]}
+    config["experiments"] = {"my_gas": {"point": point, "grid": grid}}
+    figure = {"against": "scene.species.0.count", "caption": "**Of discs.**", "claims": []}
+    config["figures"]["my_gas"] |= figure
+    write_yaml(project / "settings.yaml", config)
+    done = Workspace(project).snakemake("--cores", "1", "all", source=ROOT)
+    assert done.returncode == 0, done.stdout[-3000:]
+    archive = tmp_path / "archive.zip"
+    command = ["archive", str(project / "results"), "-o", str(archive)]
+    assert main(command) == 2
+    assert "has no CITATION.cff, which an archive needs" in capsys.readouterr().err
+    (project / "CITATION.cff").write_text(CITATION)
+    assert main(command) == 0, capsys.readouterr().err
+    assert [
+        message for message, severity in faults(archive, tmp_path).items() if severity == "REQUIRED"
+    ] == []
+    with zipfile.ZipFile(archive) as file:
+        names = set(file.namelist())
+        assert json.loads(file.read(METADATA))["@graph"]
+    assert {snakefile, "CITATION.cff", "settings.yaml", "gas.yaml", "results/report.html"} <= names
+    capsys.readouterr()
+    for place in (archive, tmp_path / "unpacked"):
+        assert main(["verify", str(place), "--rerun", "1"]) == 0, capsys.readouterr()
+        assert "the same bits in" in capsys.readouterr().out
+        shutil.unpack_archive(archive, tmp_path / "unpacked")
 
 
 def test_a_figure_of_ones_own_is_laid_over_the_config_in_a_run_with_a_name(fresh, tmp_path):

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from gaspart.analysis.estimate import Estimate
 from gaspart.errors import visible
 
+_LONGEST = 1000  # characters
 LIMIT = 4.0
 """Standard errors from theory beyond which a check fails: by chance once in 16 000."""
 
@@ -21,7 +22,7 @@ class Check:
 
     def __str__(self) -> str:
         word = {True: "ok", False: "WRONG", None: "-"}[self.passed]
-        return f"{word:6}{visible(self.name)}: {visible(self.text)}"
+        return f"{word:6}{visible(self.name, _LONGEST)}: {visible(self.text, _LONGEST)}"
 
 
 def compared(

@@ -18,6 +18,10 @@ from gaspart.trajectory.recipe import read_recipe
 from gaspart.yaml_text import read_yaml
 
 _BASE = Path("config/config.yaml")
+_WORKFLOWS = ("Snakefile", "workflow/Snakefile")
+_RULES = Path("workflow/rules/common.smk")
+_WHOLE = {"experiments", "figures"}
+"""Keys of a config that is laid over no other."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +35,18 @@ class Finished:
     """The merged config."""
     points: list[Point]
     """Those of which figures and films are made."""
+    configs: list[str]
+    """The files of the config that are in `root`."""
+
+    @property
+    def workflow(self) -> str:
+        """The path of the Snakefile."""
+        return next(name for name in _WORKFLOWS if (self.root / name).is_file())
+
+    @property
+    def is_copy(self) -> bool:
+        """Whether `root` is a copy of the project, not a folder with a workflow that uses it as a module."""
+        return (self.root / _RULES).is_file()
 
     @property
     def figures(self) -> list[str]:
@@ -69,6 +85,8 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
     """The run whose results are in a folder, `results` or `results/<run>`.
 
     config: its config; by default the only one in the folders `config` and above with the name of this run.
+    The workflow may also be a module of another one, in a folder with its Snakefile and config.
+
     Raises SceneError for a folder without results, results that are not complete, and trajectories that
     were made with other settings than those of the config.
     """
@@ -78,7 +96,8 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
         raise SceneError("results", str(results), rule)
     named = folder.name != "results"
     root = folder.parents[1] if named else folder.parent
-    if (named and folder.parent.name != "results") or not (root / _BASE).is_file():
+    is_project = any((root / name).is_file() for name in _WORKFLOWS)
+    if (named and folder.parent.name != "results") or not is_project:
         rule = "must be the folder results of a project, or that of a run in it, results/<run>"
         raise SceneError("results", str(results), rule)
     name = folder.name if named else None
@@ -88,7 +107,8 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
         raise SceneError("run", merged.get("run"), f"must be {name or 'absent'}, as {results} is", str(file))
     with chdir(root):
         planned = check(merged, files)
-    found = Finished(root, str(folder.relative_to(root)), merged, _used(merged, planned))
+    inside = [str(one.relative_to(root)) for one in files if one.is_relative_to(root)]
+    found = Finished(root, str(folder.relative_to(root)), merged, _used(merged, planned), inside)
     _check_places(found, file)
     _check_complete(found, results)
     _check_settings(found)
@@ -105,23 +125,25 @@ def _used(config: dict, planned: dict[str, dict[str, Point]]) -> list[Point]:
 
 def _config_of(root: Path, name: str | None) -> Path:
     """The config of a run of this name, None for that without a name. Raises SceneError unless it is one."""
-    if name is None:
+    if name is None and (root / _BASE).is_file():
         return root / _BASE
     files = [*sorted((root / "config").glob("*.y*ml")), *sorted(root.glob("*.y*ml"))]
-    having = [file for file in files if _run_of(file) == name]
+    having = [file for file in files if _is_config_of(file, name)]
     if len(having) != 1:
         rule = f"is the run of {len(having)} configs in {root / 'config'} and {root}: name its config"
         raise SceneError("run", name, f"{rule} (--config FILE)")
     return having[0]
 
 
-def _run_of(file: Path) -> object:
-    """The key `run` of a YAML file, if it is a config."""
+def _is_config_of(file: Path, name: str | None) -> bool:
+    """Whether a file is a config with this key `run`, or a whole one without it."""
     try:
         content = read_yaml(file)
     except SceneError:
-        return None
-    return content.get("run") if isinstance(content, dict) else None
+        return False
+    if not isinstance(content, dict) or (name is None and not content.keys() >= _WHOLE):
+        return False
+    return content.get("run") == name
 
 
 def _check_places(run: Finished, file: Path) -> None:

@@ -21,9 +21,9 @@ _EXPANSION, _ALWAYS = 200, 1 << 28
 """How many times larger than on disk contents may be, and bytes that they always may have. Tables and
 trajectories shrink to a tenth at least; a file made to fill a disk, or never to end, by a thousand."""
 _LONGEST = 1024  # characters of a name
-_LENGTHS, _DESCRIPTOR = 26, 24
+_LENGTHS, _DESCRIPTOR, _HAS_DESCRIPTOR = 26, 24, 8
 """Where the header of an entry has the lengths of its name and extra field, at its end; and the most bytes of
-what may follow the contents."""
+what may follow the contents, with the flag that states that something does."""
 _END, _END_64 = b"PK\x05\x06", b"PK\x06\x06"
 _END_BYTES, _COMMENT = 22, (1 << 16) - 1
 
@@ -73,16 +73,16 @@ def check_size(path: Path, stated: int, there: int) -> None:
 def check_places(path: Path, file: IO[bytes], entries: Sequence[ZipInfo], end: int) -> None:
     """Raise SceneError unless the entries of a zip file lie one after another up to `end`: what lies between
     them other programs might unpack. May raise struct.error for a file that is cut short."""
-    at = 0
+    at = gap = 0
     for entry in sorted(entries, key=lambda entry: entry.header_offset):
-        if not at <= entry.header_offset <= at + _DESCRIPTOR:
+        if not at <= entry.header_offset <= at + gap:
             break
+        contents = entry.header_offset + _LENGTHS + 4
         file.seek(entry.header_offset + _LENGTHS)
-        at = (
-            entry.header_offset + _LENGTHS + 4 + sum(struct.unpack("<HH", file.read(4))) + entry.compress_size
-        )
+        at = contents + sum(struct.unpack("<HH", file.read(4))) + entry.compress_size
+        gap = _DESCRIPTOR if entry.flag_bits & _HAS_DESCRIPTOR else 0
     else:
-        if at <= end <= at + _DESCRIPTOR:
+        if at <= end <= at + gap:
             return
     raise SceneError("archive", str(path), "has bytes that belong to no entry, or to two")
 

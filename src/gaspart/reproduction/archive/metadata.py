@@ -63,7 +63,8 @@ class Described:
     """What the metadata are made of.
 
     files: (size, digest) of each file of the archive, by path; summary: as in `run.json`; jobs: as in
-    `jobs.csv`; captions: by path; claims: their number.
+    `jobs.csv`; captions: by path; claims: their number; workflow: the path of the Snakefile; folders: of
+    sources.
     """
 
     files: Mapping[str, tuple[int, str]]
@@ -71,6 +72,8 @@ class Described:
     jobs: Sequence[tables.JobTime]
     captions: Mapping[str, str]
     claims: int
+    workflow: str
+    folders: Sequence[str]
 
 
 def metadata(described: Described, citation: Citation) -> str:
@@ -80,11 +83,12 @@ def metadata(described: Described, citation: Citation) -> str:
     crate.metadata.extra_contexts.append(_TERMS)
     creators = _add_creators(crate, citation)
     _describe_root(crate, described, citation, creators)
-    files = {path: _add_file(crate, path, described) for path in described.files if _is_listed(path)}
-    folders = [_add_folder(crate, folder) for folder in contents.FOLDERS]
+    listed = [path for path in described.files if _is_listed(path) and path != described.workflow]
+    files = {path: _add_file(crate, path, described) for path in listed}
+    folders = [_add_folder(crate, folder) for folder in described.folders]
     workflow = _add_workflow(crate, described, citation, creators)
     made = [file for path, file in files.items() if path.startswith(f"{described.summary['results']}/")]
-    used = [files[tables.CONFIG], files[contents.LOCKED], *folders]
+    used = [files[path] for path in (tables.CONFIG, contents.LOCKED) if path in files] + folders
     _add_parameters(crate, workflow, described, files)
     _add_run(crate, workflow, described, creators, (used, made))
     return json.dumps(crate.metadata.generate(), indent=1, ensure_ascii=False) + "\n"
@@ -92,7 +96,7 @@ def metadata(described: Described, citation: Citation) -> str:
 
 def _is_listed(path: str) -> bool:
     """Whether a file is described by itself: those in folders of sources are described by their folder."""
-    return path.partition("/")[0] not in contents.FOLDERS and path != contents.WORKFLOW
+    return path.partition("/")[0] not in contents.FOLDERS
 
 
 def _entity(crate: ROCrate, identity: str, **properties: Any) -> ContextEntity:
@@ -158,7 +162,7 @@ def _add_file(crate: ROCrate, path: str, described: Described) -> Any:
 
 
 def _add_folder(crate: ROCrate, folder: str) -> Any:
-    properties = {"name": folder, "description": contents.FOLDER_TITLES[folder]}
+    properties = {"name": folder, "description": contents.FOLDERS[folder]}
     return crate.add_dataset(dest_path=f"{folder}/", properties=properties)
 
 
@@ -166,9 +170,9 @@ def _add_workflow(
     crate: ROCrate, described: Described, citation: Citation, creators: list[ContextEntity]
 ) -> Any:
     """The main entity: the Snakefile."""
-    size, digest = described.files[contents.WORKFLOW]
+    size, digest = described.files[described.workflow]
     workflow = crate.add_workflow(
-        dest_path=contents.WORKFLOW,
+        dest_path=described.workflow,
         main=True,
         lang="snakemake",
         lang_version=described.summary["machine"]["packages"].get("snakemake"),

@@ -71,7 +71,7 @@ class _Writer:
 
     def write(self, run: Finished, trajectories: bool) -> str:
         """Write everything; returns what is in it, in words."""
-        for folder in contents.FOLDERS:  # described as folders, so that they are entries of their own
+        for folder in contents.folders(run):  # described as folders, so that they are entries of their own
             self._file.writestr(zipfile.ZipInfo(f"{folder}/", _TIME), b"")
         for name in [*contents.sources(run), *run.outputs()]:
             self._add_file(name, run.root / name)
@@ -90,7 +90,9 @@ class _Writer:
         self._add_text(tables.JOBS, tables.text_of(jobs, tables.JobTime._fields))
         self._add_text(tables.CONFIG, dump_yaml(run.config))
         self._add_text(tables.RUN, json.dumps(summary, indent=1, ensure_ascii=False) + "\n")
-        described = Described(dict(self._files), summary, jobs, captions, len(claims))
+        described = Described(
+            dict(self._files), summary, jobs, captions, len(claims), run.workflow, contents.folders(run)
+        )
         self._add_text(METADATA, metadata(described, read_citation(run.root / contents.CITATION)))
         check_names(run.root, self._files)
         lines = [f"{value}  {name}\n" for name, (_, value) in sorted(self._files.items())]
