@@ -83,6 +83,14 @@ def _require_regular(found: os.stat_result, path: str | Path) -> None:
         raise OSError(errno.EINVAL, f"it is {kind}, not a regular file", str(path))
 
 
+def resolved(path: str | Path) -> Path:
+    """The absolute path without links, whatever is there: `Path.resolve` fails for links in a circle."""
+    try:
+        return Path(os.path.realpath(path))
+    except ValueError:  # a NUL in it, which opening refuses
+        return Path(path)
+
+
 def is_same_file(one: str | Path, other: str | Path) -> bool:
     """Whether two names are those of one file, also through links and other spellings; False for no file."""
     try:

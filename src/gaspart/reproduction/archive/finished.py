@@ -10,6 +10,7 @@ from typing import Any
 
 from gaspart.engines import engine_from_dict
 from gaspart.errors import SceneError
+from gaspart.files import resolved
 from gaspart.reproduction.config import check
 from gaspart.reproduction.points.overlay import laid_over
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
@@ -90,7 +91,7 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
     Raises SceneError for a folder without results, results that are not complete, and trajectories that
     were made with other settings than those of the config.
     """
-    folder = Path(results).resolve()
+    folder = resolved(results)
     if not (folder / "tables/claims.csv").is_file():
         rule = "holds no results of a finished run: tables/claims.csv is missing"
         raise SceneError("results", str(results), rule)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import io
 import json
 import stat
@@ -58,7 +59,15 @@ def write_archive(
     with writing(path, ARCHIVE, overwrite) as partial:
         run = find_finished(results, config)
         with zipfile.ZipFile(partial, "w", zipfile.ZIP_DEFLATED) as file:
-            line = _Writer(file).write(run, trajectories)
+            try:
+                line = _Writer(file).write(run, trajectories)
+            except (ValueError, LookupError, StopIteration, AttributeError, csv.Error) as error:
+                if isinstance(error, SceneError):
+                    raise
+                rule = (
+                    f"has a table or measurement that cannot be read: {error}"  # edited by hand, or cut short
+                )
+                raise SceneError("results", str(results), rule) from None
     return f"{path}: {line}, {Path(path).stat().st_size / 1e6:.1f} MB"
 
 

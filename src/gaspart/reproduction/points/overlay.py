@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from gaspart.errors import SceneError
+from gaspart.files import resolved
 from gaspart.yaml_text import read_yaml
 
 
@@ -15,8 +16,8 @@ def laid_over(path: Path, base: Path | None = None) -> tuple[dict[str, Any], lis
     base: the other one, by default the `config.yaml` beside it. Raises SceneError for a file that cannot be
     read.
     """
-    path = path.resolve()
-    base = path.parent / "config.yaml" if base is None else base.resolve()
+    path = resolved(path)
+    base = path.parent / "config.yaml" if base is None else resolved(base)
     files = [base, path] if base.exists() and base != path else [path]
     merged: dict[str, Any] = {}
     for file in files:
