@@ -80,17 +80,18 @@ def run(
         displacements = displacements or asked.observable in PATHS
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
-    path = _required(path)
-    start = _start(initial, path) if isinstance(initial, str | Path) else initial
+    start = _start(initial, _required(path))
     settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations
     recipe = Recipe(*settings, until=wanted, pairs=pairs, initial=start)
     manner = trajectory.Manner(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
-    return trajectory.record(recipe, path, manner)
+    return trajectory.record(recipe, _required(path), manner)
 
 
-def _start(initial: str | Path, path: str | Path) -> State:
-    """The last state of a run, to start another one at `path` from. Raises SceneError if that is the same
+def _start(initial: State | str | Path | None, path: str | Path) -> State | None:
+    """What a run at `path` starts from: of another run its last state. Raises SceneError if that is the same
     file, by whatever name: it would be lost."""
+    if not isinstance(initial, str | Path):
+        return initial
     output = output_path(path)
     for place in (output, partial_path(output), checkpoint_path(output)):
         if is_same_file(initial, place):
