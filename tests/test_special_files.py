@@ -115,6 +115,17 @@ def test_as_an_input_of_a_command(folder, run, capsys, command, kind):
     assert sorted(folder.rglob("*")) == before
 
 
+@pytest.mark.parametrize("suffix", [".yaml", ".nc", ".partial", ".gsd", ".xyz"])
+def test_a_file_that_is_larger_than_any_memory(folder, capsys, suffix):
+    """A sparse one, of 4 TB."""
+    path = folder / f"X{suffix}"
+    with path.open("wb") as file:
+        file.truncate(1 << 42)
+    with at_once():
+        assert main(["check", str(path)]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
 @pytest.mark.parametrize("kind", KINDS[:-2])
 def test_as_a_file_that_another_one_names(folder, kind):
     """A scene of a config, the citation of an archive."""

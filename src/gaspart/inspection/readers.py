@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,8 @@ from gaspart.inspection.gsd_contents import read_gsd
 from gaspart.inspection.netcdf_contents import read_netcdf
 from gaspart.inspection.xyz_contents import read_xyz
 
+_MEMORY = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+"""Bytes of this machine's memory, which the frames of a file are read into."""
 KINDS = (".nc", ".gsd", ".xyz")
 _READERS = {
     **dict.fromkeys((".nc", ".ncdf", ".partial"), read_netcdf),
@@ -45,7 +48,7 @@ def read_frames(
         raise SceneError("file", str(path), f"must end in {', '.join(KINDS)}")
     given = Given(radius, lengths, boundary, time_step)
     try:
-        open_regular(path).close()
+        _require_memory(path)
         with np.errstate(all="ignore"):  # values that are not finite are refused
             return complete_frames(reader(path, given), given, str(path))
     except SceneError:
@@ -53,3 +56,14 @@ def read_frames(
     except (OSError, RuntimeError, ValueError, LookupError, TypeError, MemoryError) as error:
         reason = getattr(error, "strerror", None) or error
         raise SceneError("file", str(path), f"cannot be read: {reason}") from None
+
+
+def _require_memory(path: Path) -> None:
+    """Raise SceneError for a file larger than the memory, such as a sparse one; OSError for none."""
+    with open_regular(path) as file:
+        size = os.fstat(file.fileno()).st_size
+    if size > _MEMORY:
+        rule = (
+            f"has {size / 1e9:.3g} GB; this machine has {_MEMORY / 1e9:.3g} GB of memory, to hold all frames"
+        )
+        raise SceneError("file", str(path), rule)

@@ -1,6 +1,7 @@
 """Archives of strangers: each is refused in one line, or found WRONG, in bounded time and memory; nothing
 outside is read, and no text of theirs controls the terminal."""
 
+import io
 import os
 import resource
 import shutil
@@ -203,6 +204,33 @@ def test_a_file_with_64_bit_sizes_is_read(tmp_path, capsys):
             with file.open(entry(name), "w", force_zip64=True) as target:
                 target.write(content)
     assert outcome(capsys, path)[0] == 0
+
+
+class Stream(io.BytesIO):
+    """A file that cannot be rewound: sizes then follow the contents."""
+
+    def seekable(self):
+        return False
+
+    def tell(self):
+        raise OSError
+
+
+def test_archives_that_other_programs_have_packed_are_read(tmp_path, capsys):
+    """With entries for folders, with sizes behind the contents, not compressed, with a comment at the end."""
+    files = stated(contents())
+    path = folder(tmp_path / "a", files)
+    assert outcome(capsys, shutil.make_archive(str(tmp_path / "b"), "zip", path))[0] == 0
+    with zipfile.ZipFile(stream := Stream(), "w", zipfile.ZIP_DEFLATED) as file:
+        for name, content in files.items():
+            file.writestr(name, content)
+    (tmp_path / "c.zip").write_bytes(stream.getvalue())
+    assert stream.getvalue()[6] & 8 and outcome(capsys, tmp_path / "c.zip")[0] == 0
+    with zipfile.ZipFile(tmp_path / "d.zip", "w") as file:
+        file.comment = b"a comment"
+        for name, content in files.items():
+            file.writestr(name, content)
+    assert outcome(capsys, tmp_path / "d.zip")[0] == 0
 
 
 WHOLE = packed(stated(contents()).items())

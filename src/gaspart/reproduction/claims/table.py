@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gaspart.errors import visible
 from gaspart.files import whole_file
 from gaspart.reproduction.claims.claim import KINDS, Claim
 from gaspart.reproduction.claims.judging import (
@@ -138,4 +139,4 @@ def summary(path: str | Path) -> str:
         parts = (f"{number} {COUNTED.get(verdict, verdict)}" for verdict, number in verdicts.items())
         lines.append(f"{PLURALS[kind]}: {', '.join(parts)}")
     lines += [f"disagrees: {row['figure']}: {row['claim']}" for row in rows if row["verdict"] == "disagrees"]
-    return "\n".join(lines)
+    return "\n".join(map(visible, lines))
