@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, ClassVar, Protocol, TypeVar
 from gaspart.errors import SceneError
 from gaspart.scene.features import FEATURES, features
 from gaspart.scene.keys import validate
+from gaspart.scene.stress import require_tallied
 from gaspart.scene.validation import choice, from_mapping
 
 if TYPE_CHECKING:
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
     from gaspart.state.tally import Tally
 
 E = TypeVar("E", bound="type[Engine]")
-_WITH_STRESS = frozenset(("restitution", "roughness", "viscoelasticity", "contact_duration", "lees_edwards"))
-"""The features of scenes whose stress tensor can be tallied: velocities change at contacts only."""
 
 
 class Dynamics(Protocol):
@@ -105,6 +104,12 @@ class Engine:
         validate(self)
 
     @property
+    def equation(self) -> str:
+        """What its particles obey: "exact" if they meet where they touch, or the kinetic equation, "boltzmann"
+        or "enskog", by which partners are drawn. Theory to compare a run with is that of this equation."""
+        return "exact"
+
+    @property
     def quantum(self) -> float | None:
         """The time of which all times that it reaches are multiples; None if it stops at any time."""
         return None
@@ -147,10 +152,7 @@ class Engine:
         if not self.tallies_stress:
             able = " or ".join(f'"{engine.name}"' for engine in ENGINES.values() if engine.tallies_stress)
             raise SceneError("stress", True, f"needs the {able} engine")
-        if not all(scene.container.periodic):
-            raise SceneError("stress", True, "needs a periodic container")
-        for name in sorted(features(scene) - _WITH_STRESS):
-            raise SceneError("stress", True, f"cannot be tallied in a scene with {FEATURES[name].meaning}")
+        require_tallied(scene)
 
     def start(self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0) -> Dynamics:
         """Set the engine up for a scene in a given state; `seed` is that of thermal walls and kicks.

@@ -60,6 +60,11 @@ class DSMC(Engine):
     counters: ClassVar[tuple[str, ...]] = ("steps",)
 
     @property
+    def equation(self) -> str:
+        """The model."""
+        return self.model
+
+    @property
     def quantum(self) -> float | None:
         """A step, once it is known."""
         return self.time_step

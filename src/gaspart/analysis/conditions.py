@@ -1,0 +1,201 @@
+"""Where observables are defined: conditions of a scene, each of which raises SceneError with its reason.
+
+They are asked before a run is made and when it is measured, so that both refuse alike. A selection is what a
+caller has chosen: `species`, `particles`, `axis`, `per_axis`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from gaspart.errors import SceneError
+from gaspart.scene.gas import plain_gas
+from gaspart.scene.scene import Scene
+from gaspart.scene.shear import refuse_sheared
+from gaspart.scene.stress import require_tallied
+from gaspart.scene.validation import choice, count_of
+
+Selection = Mapping[str, Any]
+GROUPS = 16
+"""Groups of particles whose scatter is an uncertainty."""
+SLIDING = "this observable is not defined where images of the particles slide"
+_NEIGHBOURHOOD = {2: 7, 3: 13}  # a particle and those around it in a crystal
+
+
+def unsheared(scene: Scene, selection: Selection) -> None:
+    """No sheared faces."""
+    refuse_sheared(scene, SLIDING)
+
+
+def periodic(scene: Scene, selection: Selection) -> None:
+    """No walls of the container."""
+    _periodic(scene, "this observable needs a periodic container")
+
+
+def periodic_virial(scene: Scene, selection: Selection) -> None:
+    """Likewise, where the pressure on walls takes its place."""
+    _periodic(scene, "Z needs a periodic container; between walls measure pressure (wall_pressure)")
+
+
+def _periodic(scene: Scene, rule: str) -> None:
+    if not all(scene.container.periodic):
+        raise SceneError("container.boundary", scene.container.boundary, rule)
+
+
+def walled(scene: Scene, selection: Selection) -> None:
+    """A wall of the container."""
+    if not scene.container.walls:
+        rule = "has no walls: measure Z (compressibility_factor)"
+        raise SceneError("container.boundary", scene.container.boundary, rule)
+
+
+def elastic(scene: Scene, selection: Selection) -> None:
+    """Contacts that keep energy, so that there is an equilibrium."""
+    law = scene.restitution
+    if law is not None and law.normal < 1.0:
+        raise SceneError("restitution.normal", law.normal, "a gas that loses energy is in no equilibrium")
+
+
+def all_move(scene: Scene, selection: Selection) -> None:
+    """No fixed particles."""
+    if any(kind.fixed and kind.count for kind in scene.kinds):
+        raise SceneError("species.fixed", True, "the virial of fixed particles is not a pressure")
+
+
+def some_move(scene: Scene, selection: Selection) -> None:
+    """A particle that is not fixed."""
+    if not _moving(scene):
+        raise SceneError("species.fixed", True, "fixed particles do not collide")
+
+
+def _moving(scene: Scene) -> int:
+    """The number of particles that are not fixed."""
+    return sum(kind.count for kind in scene.kinds if not kind.fixed)
+
+
+def thermal(scene: Scene, selection: Selection) -> None:
+    """Particles enough for a temperature: one in a periodic container has no flight about its own centre."""
+    if scene.dimension * _moving(scene) - sum(scene.conserved_axes) < 1:
+        raise SceneError("count", _moving(scene), "too few moving particles for a temperature")
+
+
+def of_species(scene: Scene, selection: Selection) -> None:
+    """All particles belong to species."""
+    if scene.particles:
+        rule = "pairs are counted by species: there are single particles"
+        raise SceneError("particles", len(scene.particles), rule)
+
+
+def one_size_each(scene: Scene, selection: Selection) -> None:
+    """Species of one size each, which all move: a contact value is that of two sizes, by rates of flight."""
+    for n, kind in enumerate(scene.species):
+        if not kind.alike:
+            rule = "a contact value is that of two sizes; measure pair_collision_rates"
+            raise SceneError(f"species[{n}].polydispersity", kind.polydispersity, rule)
+        if kind.fixed:
+            rule = "contact values follow from the rates of free flight"
+            raise SceneError(f"species[{n}].fixed", True, rule)
+
+
+def grouped(scene: Scene, selection: Selection) -> None:
+    """Particles enough for groups, unless some are selected; a selection that exists and moves."""
+    chosen = {key: selection.get(key) for key in ("species", "particles")}
+    if all(value is None for value in chosen.values()):
+        _enough(scene)
+        return
+    if chosen["particles"] is not None:
+        if chosen["species"] is not None:
+            raise SceneError("species", chosen["species"], "excludes particles")
+        numbers = [count_of("particles", one) for one in chosen["particles"]]
+        if any(one >= scene.count for one in numbers):
+            raise SceneError("particles", max(numbers), f"there are {scene.count}, numbered from 0")
+        return
+    if not _in_species(scene, chosen["species"]):
+        raise SceneError("species", chosen["species"], "none of them moves")
+
+
+def grouped_species(scene: Scene, selection: Selection) -> None:
+    """Particles enough for groups, those of a selected species too."""
+    species = selection.get("species")
+    if species is None:
+        _enough(scene)
+    elif _in_species(scene, species) < GROUPS:
+        raise SceneError("species", species, f"an error needs {GROUPS} moving particles or more")
+
+
+def _enough(scene: Scene) -> None:
+    if _moving(scene) < GROUPS:
+        raise SceneError("count", _moving(scene), f"an error needs {GROUPS} moving particles or more")
+
+
+def _in_species(scene: Scene, species: Any) -> int:
+    """Moving particles of a species by its number; single particles have the number after the last."""
+    kinds = len(scene.species) + bool(scene.particles)
+    if count_of("species", species) >= kinds:
+        raise SceneError("species", species, f"there are {kinds}, numbered from 0")
+    members = scene.particles if species == len(scene.species) else (scene.species[species],)
+    return sum(one.count for one in members if not one.fixed)
+
+
+def free_axis(scene: Scene, selection: Selection) -> None:
+    """A periodic axis, along which particles go any distance."""
+    if not any(scene.container.periodic):
+        rule = "has no periodic axis: displacements between walls are bounded, and there is no D"
+        raise SceneError("container.boundary", scene.container.boundary, rule)
+
+
+def no_lasting_discs(scene: Scene, selection: Selection) -> None:
+    """Spheres, or discs whose momentum does not last."""
+    if scene.dimension == 2 and any(scene.conserved_axes):
+        rule = "discs have no diffusion coefficient: their squared displacement grows like t ln t"
+        raise SceneError("container.lengths", scene.container.lengths, rule)
+
+
+def two_species(scene: Scene, selection: Selection) -> None:
+    """Two species, which both move, and no single particles."""
+    if len(scene.species) != 2 or scene.particles:
+        raise SceneError("species", len(scene.kinds), "mutual diffusion is that of two species")
+    if any(kind.fixed for kind in scene.species):
+        raise SceneError("species", "fixed", "mutual diffusion is that of two species that move")
+
+
+def a_pair(scene: Scene, selection: Selection) -> None:
+    """Two particles."""
+    if scene.count < 2:
+        raise SceneError("count", scene.count, "a pair needs two particles")
+
+
+def a_neighbourhood(scene: Scene, selection: Selection) -> None:
+    """A particle and its neighbours."""
+    least = _NEIGHBOURHOOD[scene.dimension]
+    if scene.count < least:
+        raise SceneError("count", scene.count, f"needs {least} particles or more")
+
+
+def plain(scene: Scene, selection: Selection) -> None:
+    """Equal smooth particles."""
+    plain_gas(scene)
+
+
+def alike(scene: Scene, selection: Selection) -> None:
+    """Particles of one radius and one mass."""
+    if not scene.alike:
+        raise SceneError("species", len(scene.kinds), "the heat flux of a mixture contains diffusion")
+
+
+def has_axis(scene: Scene, selection: Selection) -> None:
+    """The selected axis."""
+    if selection.get("axis") is not None:
+        choice("axis", selection["axis"], tuple("xyz"[: scene.dimension]))
+
+
+def tallied(scene: Scene, selection: Selection) -> None:
+    """A scene whose fluxes can be tallied."""
+    require_tallied(scene)
+
+
+def shears(scene: Scene, selection: Selection) -> None:
+    """No sheared faces, or such that shear."""
+    if scene.shear_rate == 0.0:
+        raise SceneError("shear_rate", scene.shear_rate, "gives no response")

@@ -1,0 +1,335 @@
+"""The observables that have a name, each declared once.
+
+`gaspart measure`, `sweep`, `advise`, `--until`, `check`, `info` and `theory`, figures of one's own, the
+reference page and the completion of a shell read these declarations, and no other list of names exists
+(`tests/workflow/test_observables.py`). The form of a declaration is in `declaration`.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from gaspart.analysis import conditions as where
+from gaspart.analysis.declaration import Named, units_in
+from gaspart.errors import SceneError, unknown_word
+from gaspart.scene.scene import Scene
+
+_SAMPLED = "is of the positions of pairs, which DSMC does not have"
+_OF_PAIRS: dict[str, Any] = {
+    "samples": "structure",
+    "nothing": dict.fromkeys(("boltzmann", "enskog"), _SAMPLED),
+}
+"""Traits of what the positions of particles relative to each other give."""
+_FLUX: dict[str, Any] = {"needs": "fluxes", "lags": 100}
+"""Traits of what correlations of the stress and the heat flux give."""
+
+OBSERVABLES: dict[str, Named] = {
+    "Z": Named(
+        title="compressibility factor",
+        symbol="Z",
+        definition="compressibility factor PV/(N k_B T), periodic",
+        units="1",
+        function="compressibility_factor",
+        conditions=(where.unsheared, where.periodic_virial, where.elastic, where.all_move, where.thermal),
+        nothing={"boltzmann": "is 1 in the Boltzmann model, whatever happens"},
+        theory="compressibility_factor",
+        bulk="compressibility_factor",
+        ends_runs=True,
+        tabulated=True,
+    ),
+    "pressure": Named(
+        title="pressure",
+        definition="pressure on each wall",
+        units="energy / length^d",
+        function="wall_pressure",
+        along=("face",),
+        conditions=(where.unsheared, where.walled),
+        theory="wall_pressure",
+        power=1.0,
+        ends_runs=True,
+    ),
+    "collision_rate": Named(
+        title="collisions of a particle per time",
+        definition="collisions of a particle per time",
+        units="1 / time",
+        function="collision_rate",
+        conditions=(where.some_move,),
+        theory="collision_rate",
+        bulk="collision_rate",
+        power=0.5,
+        ends_runs=True,
+        tabulated=True,
+    ),
+    "pair_rates": Named(
+        title="collisions of a particle per time",
+        definition="collision rate of each pair of species, of a run with --pairs",
+        units="1 / time",
+        function="pair_collision_rates",
+        along=("pair",),
+        needs="pairs",
+        conditions=(where.unsheared, where.of_species),
+        theory="pair_rates",
+        merged="split",
+        power=0.5,
+    ),
+    "contact_values": Named(
+        title="pair distribution at contact",
+        definition="pair distribution at contact of each pair of species, of a run with --pairs",
+        units="1",
+        function="contact_values",
+        along=("pair",),
+        needs="pairs",
+        conditions=(
+            where.unsheared,
+            where.of_species,
+            where.periodic,
+            where.elastic,
+            where.one_size_each,
+            where.thermal,
+        ),
+        theory="contact_values",
+        merged="split",
+    ),
+    "msd": Named(
+        title="mean-squared displacement",
+        definition="mean-squared displacement",
+        units="length^2",
+        function="mean_squared_displacement",
+        along=("lag",),
+        selections=("species", "particles", "per_axis"),
+        needs="paths",
+        conditions=(where.unsheared, where.grouped),
+        theory="mean_squared_displacement",
+        scatter="particles",
+        power=0.5,
+        memory=True,
+        lags=40,
+    ),
+    "D": Named(
+        title="diffusion coefficient",
+        symbol="D",
+        definition="diffusion coefficient",
+        units="length^2 / time",
+        function="diffusion_coefficient",
+        selections=("species", "per_axis"),
+        needs="paths",
+        conditions=(where.unsheared, where.free_axis, where.no_lasting_discs, where.grouped_species),
+        theory="diffusion",
+        bulk="diffusion",
+        scatter="particles",
+        power=0.5,
+        memory=True,
+        samples="paths",
+        ends_runs=True,
+        tabulated=True,
+    ),
+    "mutual_diffusion": Named(
+        title="mutual diffusion coefficient",
+        definition="mutual diffusion of two species, periodic",
+        units="length^2 / time",
+        function="mutual_diffusion",
+        needs="paths",
+        conditions=(
+            where.unsheared,
+            where.two_species,
+            where.periodic,
+            where.elastic,
+            where.no_lasting_discs,
+        ),
+        theory="mutual_diffusion",
+        merged="lost",
+        power=0.5,
+        memory=True,
+        samples="paths",
+    ),
+    "vacf": Named(
+        title="velocity autocorrelation",
+        definition="velocity autocorrelation",
+        units="length^2 / time^2",
+        function="velocity_autocorrelation",
+        along=("lag",),
+        selections=("species", "particles"),
+        conditions=(where.unsheared, where.grouped),
+        theory="velocity_autocorrelation",
+        scatter="particles",
+        power=1.0,
+        memory=True,
+        lags=40,
+    ),
+    "speeds": Named(
+        title="density of speeds",
+        definition="distribution of speeds",
+        units="time / length",
+        function="speed_distribution",
+        along=("speed",),
+        conditions=(where.unsheared, where.grouped),
+        theory="speeds",
+        scatter="particles",
+        power=0.5,
+    ),
+    "rdf": Named(
+        title="radial distribution",
+        symbol="g(r)",
+        definition="radial distribution function, periodic",
+        units="1",
+        function="rdf",
+        along=("distance",),
+        conditions=(where.unsheared, where.periodic, where.a_pair),
+        theory="radial_distribution",
+        **_OF_PAIRS,
+    ),
+    "structure_factor": Named(
+        title="structure factor",
+        symbol="S(k)",
+        definition="static structure factor, periodic",
+        units="1",
+        function="structure_factor",
+        along=("wave_number",),
+        conditions=(where.unsheared, where.periodic),
+        theory="structure_factor",
+        **_OF_PAIRS,
+    ),
+    "chemical_potential": Named(
+        title="excess chemical potential over k_B T",
+        definition="beyond the ideal gas's, by insertion, periodic",
+        units="1",
+        function="chemical_potential",
+        conditions=(where.unsheared, where.periodic, where.plain),
+        theory="chemical_potential",
+        bulk="chemical_potential",
+        **_OF_PAIRS,
+    ),
+    "density": Named(
+        title="number density",
+        definition="density along the last axis",
+        units="1 / length^d",
+        function="profile",
+        arguments={"of": "density"},
+        along=("position",),
+        selections=("axis",),
+        conditions=(where.unsheared, where.has_axis),
+        theory="density",
+    ),
+    "temperature": Named(
+        title="temperature",
+        definition="temperature along the last axis",
+        units="energy",
+        function="profile",
+        arguments={"of": "temperature"},
+        along=("position",),
+        selections=("axis",),
+        conditions=(where.unsheared, where.has_axis, where.thermal),
+        theory="temperature",
+        power=1.0,
+    ),
+    "shear_viscosity": Named(
+        title="shear viscosity",
+        symbol="η",
+        definition="shear viscosity, of a run with --stress",
+        units="mass length^(2-d) / time",
+        function="shear_viscosity",
+        conditions=(where.shears, where.tallied),
+        theory="shear_viscosity",
+        bulk="shear_viscosity",
+        power=0.5,
+        memory=True,
+        ends_runs=True,
+        **_FLUX,
+    ),
+    "bulk_viscosity": Named(
+        title="bulk viscosity",
+        symbol="ζ",
+        definition="bulk viscosity, likewise",
+        units="mass length^(2-d) / time",
+        function="bulk_viscosity",
+        conditions=(where.unsheared, where.tallied),
+        nothing={"boltzmann": "is 0 in the Boltzmann model, whose contacts have no extent"},
+        theory="bulk_viscosity",
+        bulk="bulk_viscosity",
+        power=0.5,
+        memory=True,
+        **_FLUX,
+    ),
+    "thermal_conductivity": Named(
+        title="thermal conductivity",
+        symbol="κ",
+        definition="conductivity of heat, likewise",
+        units="1 / (length^(d-2) time)",
+        function="thermal_conductivity",
+        conditions=(where.unsheared, where.alike, where.tallied),
+        theory="thermal_conductivity",
+        bulk="thermal_conductivity",
+        power=0.5,
+        memory=True,
+        **_FLUX,
+    ),
+    "pressure_tensor": Named(
+        title="pressure tensor",
+        definition="components of the pressure tensor, likewise",
+        units="mass / (length^(d-2) time^2)",
+        function="pressure_tensor",
+        along=("component",),
+        conditions=(where.tallied,),
+        theory="pressure_tensor",
+        power=1.0,
+        relative_to="norm",
+        **_FLUX,
+    ),
+    "order": Named(
+        title="bond order",
+        definition="global bond order, periodic",
+        units="1",
+        function="order_parameter",
+        conditions=(where.unsheared, where.periodic, where.a_neighbourhood),
+        **_OF_PAIRS,
+    ),
+}
+"""By name, as on the command line, in a sweep and in a config."""
+
+
+def known(name: object) -> str:
+    """The name of an observable. Raises SceneError for any other value."""
+    if name not in OBSERVABLES:
+        raise SceneError("observable", name, unknown_word(name, OBSERVABLES, "observable"))
+    return str(name)
+
+
+def having(**traits: Any) -> tuple[str, ...]:
+    """The names of the observables whose traits have these values."""
+    return tuple(
+        name
+        for name, one in OBSERVABLES.items()
+        if all(getattr(one, trait) == value for trait, value in traits.items())
+    )
+
+
+def selecting(key: str) -> tuple[str, ...]:
+    """The names of the observables that have a selection."""
+    return tuple(name for name, one in OBSERVABLES.items() if key in one.selections)
+
+
+def selections() -> tuple[str, ...]:
+    """All keys of selections."""
+    return tuple(dict.fromkeys(key for one in OBSERVABLES.values() for key in one.selections))
+
+
+def about(name: str, dimension: int) -> dict[str, str]:
+    """The units of an observable and its label, as of the variable that holds it."""
+    one = OBSERVABLES[name]
+    return {"units": units_in(one.units, dimension), "long_name": one.label}
+
+
+def name_of(function: str) -> str:
+    """The name of the observable that a function of `gaspart.analysis` measures; its own name without one."""
+    return next((name for name, one in OBSERVABLES.items() if one.function == function), function)
+
+
+def require_defined(name: str, scene: Scene, **selection: Any) -> None:
+    """Raise SceneError, with the reason, for an observable that a scene does not have, however long its run,
+    and for a selection that the observable or the scene does not have."""
+    one = OBSERVABLES[known(name)]
+    for key, value in selection.items():
+        if value is not None and key not in one.selections:
+            rule = f"cannot be chosen for {name}, only for {', '.join(selecting(key))}"
+            raise SceneError(key, value, rule)
+    one.refuse(scene, **selection)
